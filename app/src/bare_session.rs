@@ -6,20 +6,21 @@
 
 /// Begins anew, once, where the layer would ask in vain; else, or where that fails, returns.
 #[cfg(target_os = "linux")]
-pub fn begin_anew_if_bare() {
+pub fn restart_if_headless() {
     use std::os::unix::process::CommandExt;
     use std::path::Path;
-    const LAYER_IS_OFF: &str = "NODEVICE_SELECT";
-    const TOLD: [&str; 3] = [LAYER_IS_OFF, "MESA_VK_DEVICE_SELECT", "DRI_PRIME"];
-    let can_ask = std::env::var_os("XDG_RUNTIME_DIR").is_some_and(|folder| Path::new(&folder).is_absolute());
-    if can_ask || TOLD.iter().any(|name| std::env::var_os(name).is_some()) {
+    const DISABLE_LAYER: &str = "NODEVICE_SELECT";
+    const LAYER_VARIABLES: [&str; 3] = [DISABLE_LAYER, "MESA_VK_DEVICE_SELECT", "DRI_PRIME"];
+    let has_runtime_folder =
+        std::env::var_os("XDG_RUNTIME_DIR").is_some_and(|folder| Path::new(&folder).is_absolute());
+    if has_runtime_folder || LAYER_VARIABLES.iter().any(|name| std::env::var_os(name).is_some()) {
         return;
     }
     let Ok(program) = std::env::current_exe() else { return };
     let mut arguments = std::env::args_os();
     let name = arguments.next().unwrap_or_else(|| program.clone().into());
     // It only comes back where it fails: then the message is printed, and nothing else is lost.
-    let _ = std::process::Command::new(program).arg0(name).args(arguments).env(LAYER_IS_OFF, "1").exec();
+    let _ = std::process::Command::new(program).arg0(name).args(arguments).env(DISABLE_LAYER, "1").exec();
 }
 
 /// Elsewhere there is no such layer.

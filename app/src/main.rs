@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 fn main() -> ExitCode {
     // Unwrapping runs its engines in children of this very program.
-    atlas::child::run_if_asked();
-    bare_session::begin_anew_if_bare();
+    atlas::child::run_if_child();
+    bare_session::restart_if_headless();
     focus_brush::cli::run()
 }

@@ -66,8 +66,8 @@ pub fn output_of(command: &mut Command) -> Result<Vec<u8>, Failure> {
     if output.status.success() {
         return Ok(output.stdout);
     }
-    let said = String::from_utf8_lossy(&output.stderr);
-    Err(Failure::new(format!("{shown}: failed ({})\n{}", output.status, said.trim_end())))
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    Err(Failure::new(format!("{shown}: failed ({})\n{}", output.status, stderr.trim_end())))
 }
 
 /// A command as a person would type it.

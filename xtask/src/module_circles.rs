@@ -35,18 +35,18 @@ pub fn circles(crates: &[OsString]) -> Result<(), Failure> {
     let metadata = output_of(cargo("metadata").args(["--no-deps", "--format-version", "1"]))?;
     let metadata: Value =
         serde_json::from_slice(&metadata).map_err(|e| Failure::new(format!("cargo metadata: {e}")))?;
-    let mut told = Vec::new();
+    let mut messages = Vec::new();
     for (name, root) in roots(&metadata) {
         if crates.is_empty() || crates.iter().any(|chosen| *chosen == *name) {
-            let found =
+            let crate_circles =
                 circles_in(&root, &|file| std::fs::read_to_string(file).ok()).map_err(Failure::new)?;
-            told.extend(found.iter().map(|circle| format!("{name}: {circle}")));
+            messages.extend(crate_circles.iter().map(|circle| format!("{name}: {circle}")));
         }
     }
-    if told.is_empty() {
+    if messages.is_empty() {
         return Ok(());
     }
-    Err(Failure::new(format!("circles of modules:\n\n{}", told.join("\n"))))
+    Err(Failure::new(format!("circles of modules:\n\n{}", messages.join("\n"))))
 }
 
 /// The libraries and programs in the output of `cargo metadata --no-deps`: the package's name and the root file.
@@ -72,11 +72,11 @@ fn circles_in(root: &Path, read: &dyn Fn(&Path) -> Option<String>) -> Result<Vec
         let file = &modules.files()[file];
         file.strip_prefix(folder).unwrap_or(file).display().to_string()
     };
-    Ok(circles_of(&modules.arrows()).iter().map(|circle| told(circle, &shown)).collect())
+    Ok(circles_of(&modules.arrows()).iter().map(|circle| describe_circle(circle, &shown)).collect())
 }
 
 /// A circle in words: how many modules, then a line for every arrow.
-fn told(circle: &Circle, shown: &dyn Fn(usize) -> String) -> String {
+fn describe_circle(circle: &Circle, shown: &dyn Fn(usize) -> String) -> String {
     let mut lines = vec![format!("{} modules in a circle", circle.files.len())];
     for arrows in circle.arrows.chunk_by(|a, b| (a.from, a.to) == (b.from, b.to)) {
         let names: Vec<_> = arrows.iter().map(|arrow| arrow.name.as_str()).collect();

@@ -24,33 +24,33 @@ use std::path::PathBuf;
 /// Makes the packages that are named, `deb`, `tarball` or `source`; all of them where none is.
 pub fn package(kinds: &[OsString]) -> Result<(), Failure> {
     const KINDS: [&str; 3] = ["deb", "tarball", "source"];
-    if let Some(other) = kinds.iter().find(|kind| !KINDS.iter().any(|known| kind == known)) {
+    if let Some(other) = kinds.iter().find(|kind| !KINDS.iter().any(|supported| kind == supported)) {
         return Err(Failure::new(format!(
             "{}: no package (there are {})",
             other.display(),
             KINDS.join(", ")
         )));
     }
-    let is_wanted = |kind: &str| kinds.is_empty() || kinds.iter().any(|wanted| wanted == kind);
+    let is_selected = |kind: &str| kinds.is_empty() || kinds.iter().any(|selected| selected == kind);
     install_missing(&[TO_BUILD, TO_PACKAGE])?;
     let release = Release::of_commit()?;
-    if is_wanted("deb") || is_wanted("tarball") {
+    if is_selected("deb") || is_selected("tarball") {
         execute(cargo("build").args(["--release", "--package", "focus-brush"]))?;
         let program = target().join("release/focus-brush");
-        if is_wanted("deb") {
-            told(deb::make(&release, &program)?);
+        if is_selected("deb") {
+            print_package(deb::make(&release, &program)?);
         }
-        if is_wanted("tarball") {
-            told(tarball::make(&release, &program)?);
+        if is_selected("tarball") {
+            print_package(tarball::make(&release, &program)?);
         }
     }
-    if is_wanted("source") {
-        told(source::make(&release)?);
+    if is_selected("source") {
+        print_package(source::make(&release)?);
     }
     Ok(())
 }
 
-fn told(package: PathBuf) {
+fn print_package(package: PathBuf) {
     let size = std::fs::metadata(&package).map_or(0, |data| data.len());
     println!("{} ({} MiB)", package.display(), size.div_ceil(1 << 20));
 }

@@ -47,20 +47,20 @@ pub const TO_ACT: &[Package] = &[package("xvfb"), package("xdotool"), package("i
 ///
 /// # Errors
 /// When installing is refused or fails; the message holds the one command that does it by hand.
-pub fn install_missing(wanted: &[&[Package]]) -> Result<(), Failure> {
+pub fn install_missing(requested: &[&[Package]]) -> Result<(), Failure> {
     if !cfg!(target_os = "linux") {
         return Ok(());
     }
-    let wanted = wanted.iter().flat_map(|group| group.iter());
+    let requested = requested.iter().flat_map(|group| group.iter());
     if !has_program("apt-get") || !has_program("dpkg-query") {
         let missing: Vec<_> =
-            wanted.filter(|p| p.provides.is_some_and(|program| !has_program(program))).collect();
+            requested.filter(|p| p.provides.is_some_and(|program| !has_program(program))).collect();
         if !missing.is_empty() {
             eprintln!("note: these may be missing here: {}", joined(missing.iter().copied()));
         }
         return Ok(());
     }
-    let missing: Vec<&Package> = wanted.filter(|p| !is_there(p)).collect();
+    let missing: Vec<&Package> = requested.filter(|p| !is_there(p)).collect();
     if missing.is_empty() {
         return Ok(());
     }

@@ -82,7 +82,7 @@ pub enum Subcommand {
 
 /// How a scene is seen and lit.
 #[derive(Clone, Debug, Default, Args)]
-pub struct SceneLook {
+pub struct AppearanceArguments {
     /// Whether faces that are not double sided are seen from behind (default: the project's, or hide, as glTF asks for). show:
     /// for files whose faces are turned, and to compare with renderers that show them
     #[arg(long, value_name = "show|hide", value_parser = named(BackFaces::ALL))]
@@ -115,7 +115,7 @@ pub struct LightArguments {
 
 impl LightArguments {
     /// How well light is to be found.
-    pub fn quality(&self) -> LightQuality {
+    pub fn light_quality(&self) -> LightQuality {
         match self.light_passes {
             0 => LightQuality::Fine,
             passes => LightQuality::Refined { passes },
@@ -123,7 +123,7 @@ impl LightArguments {
     }
 }
 
-impl SceneLook {
+impl AppearanceArguments {
     /// The variant that was asked for.
     pub fn variant(&self) -> VariantChoice {
         match self.variant.as_deref() {
@@ -143,7 +143,7 @@ pub struct InfoArguments {
     #[arg(long)]
     pub bake: bool,
     #[command(flatten)]
-    pub scene_look: SceneLook,
+    pub appearance: AppearanceArguments,
     /// Write JSON to stdout
     #[arg(long)]
     pub json: bool,
@@ -168,7 +168,7 @@ pub struct NewArguments {
     #[arg(long, value_name = "OLD.fbrush", conflicts_with = "focus")]
     pub paint_from: Option<PathBuf>,
     #[command(flatten)]
-    pub scene_look: SceneLook,
+    pub appearance: AppearanceArguments,
 }
 
 /// `import`.
@@ -287,7 +287,7 @@ pub struct ShotArguments {
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub size: Option<[u32; 2]>,
     #[command(flatten)]
-    pub scene_look: SceneLook,
+    pub appearance: AppearanceArguments,
 }
 
 /// `render`.
@@ -320,7 +320,7 @@ pub struct RenderArguments {
     pub tolerance: Option<f64>,
     /// Samples the light field on a grid of N × N cells a pixel: less is softened, for N² times the time and memory. For what
     /// is not baked yet (default: 1, at --tolerance 0 3)
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=session::MOST_CELLS_A_SIDE as i64))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=session::MAX_CELLS_A_SIDE as i64))]
     pub cells: Option<u32>,
     /// Rays a pixel of the ground truth
     #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=1 << 20))]

@@ -1,9 +1,9 @@
 //! `focus-brush bake`.
 
 use super::arguments::BakeArguments;
-use super::console::{Console, path_text, say_json};
+use super::console::{Console, path_text, print_json};
 use super::failure::Failure;
-use super::shot::{check_folder, opened, shot};
+use super::shot::{camera_and_focus, check_folder, open_input};
 use serde_json::json;
 use session::{InputKind, RenderOptions, write_salf};
 use std::sync::Arc;
@@ -12,25 +12,25 @@ use trace::Tracer;
 
 /// Bakes a light field into a file.
 pub fn run(arguments: &BakeArguments, console: &Console) -> Result<(), Failure> {
-    if InputKind::of(&arguments.file)? == InputKind::LightField {
+    if InputKind::from_path(&arguments.file)? == InputKind::LightField {
         let what = "is baked already (give the scene or project)";
-        return Err(Failure::bad(format!("{}: {what}", arguments.file.display())));
+        return Err(Failure::bad_input(format!("{}: {what}", arguments.file.display())));
     }
     check_folder(&arguments.output)?;
     let start = Instant::now();
-    let input = opened(&arguments.file, &arguments.shot.scene_look, console)?;
+    let input = open_input(&arguments.file, &arguments.shot.appearance, console)?;
     console.warn(&input.warnings);
-    let (camera, focus) = shot(&input, &arguments.shot, console)?;
+    let (camera, focus) = camera_and_focus(&input, &arguments.shot, console)?;
     let open_seconds = start.elapsed().as_secs_f64();
-    let baking = Instant::now();
+    let bake_start = Instant::now();
     let tracer = Arc::new(Tracer::new(input.scene.clone()));
-    let options = RenderOptions { light: arguments.light.quality(), ..RenderOptions::default() };
+    let options = RenderOptions { light: arguments.light.light_quality(), ..RenderOptions::default() };
     let salf = Arc::new(options.bake(&tracer, &camera, &focus, console)?);
-    let bake_seconds = baking.elapsed().as_secs_f64();
+    let bake_seconds = bake_start.elapsed().as_secs_f64();
     let bytes = write_salf(&arguments.output, &arguments.file, &input.scene, &salf)?;
     let statistics = salf.statistics();
     if arguments.json {
-        say_json(&json!({
+        print_json(&json!({
             "input": path_text(&arguments.file),
             "files": [path_text(&arguments.output)],
             "width": camera.width,

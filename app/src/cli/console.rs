@@ -13,16 +13,16 @@ use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 /// Without a terminal, long steps say how far they are this often.
-const REPORT_EVERY: Duration = Duration::from_secs(5);
+const LINE_INTERVAL: Duration = Duration::from_secs(5);
 
 /// Where commands tell what they do.
 pub struct Console {
-    form: Form,
+    format: ProgressFormat,
 }
 
 /// How it is told.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Form {
+enum ProgressFormat {
     Bars,
     Lines,
     Json,
@@ -31,22 +31,28 @@ enum Form {
 impl Console {
     /// The console of this process.
     pub fn new() -> Self {
-        Self { form: if std::io::stderr().is_terminal() { Form::Bars } else { Form::Lines } }
+        Self {
+            format: if std::io::stderr().is_terminal() {
+                ProgressFormat::Bars
+            } else {
+                ProgressFormat::Lines
+            },
+        }
     }
 
     /// The same, which tells progress in this form.
-    pub fn telling(form: ProgressName) -> Self {
-        match form {
+    pub fn with_format(format: ProgressName) -> Self {
+        match format {
             ProgressName::Text => Self::new(),
-            ProgressName::Json => Self { form: Form::Json },
+            ProgressName::Json => Self { format: ProgressFormat::Json },
         }
     }
 
     /// Tells what is odd but does no harm.
     pub fn warn<'a>(&self, warnings: impl IntoIterator<Item = &'a String>) {
         for warning in warnings {
-            match self.form {
-                Form::Json => tell_json(&json!({ "warning": warning })),
+            match self.format {
+                ProgressFormat::Json => write_json_line(&json!({ "warning": warning })),
                 _ => eprintln!("warning: {}", warning.replace('\n', " ")),
             }
         }
@@ -54,27 +60,27 @@ impl Console {
 
     /// Tells on stderr what was done.
     pub fn note(&self, line: &str) {
-        match self.form {
-            Form::Json => tell_json(&json!({ "note": line })),
+        match self.format {
+            ProgressFormat::Json => write_json_line(&json!({ "note": line })),
             _ => eprintln!("{line}"),
         }
     }
 
     /// Tells on stderr what a script wants to know: as `line`, or as JSON where that is asked for.
     pub fn event(&self, line: &str, event: &Value) {
-        match self.form {
-            Form::Json => tell_json(event),
+        match self.format {
+            ProgressFormat::Json => write_json_line(event),
             _ => eprintln!("{line}"),
         }
     }
 }
 
-fn tell_json(value: &Value) {
+fn write_json_line(value: &Value) {
     let _ = writeln!(std::io::stderr(), "{value}");
 }
 
 /// A line of the result on stdout. A reader that has gone is no error.
-pub fn say(line: impl AsRef<str>) {
+pub fn print_line(line: impl AsRef<str>) {
     let _ = writeln!(std::io::stdout(), "{}", line.as_ref());
 }
 
@@ -89,27 +95,27 @@ pub fn path_texts<T: AsRef<Path>>(paths: &[T]) -> Vec<Cow<'_, str>> {
 }
 
 /// The result for a script.
-pub fn say_json(value: &Value) {
-    say(format!("{value:#}"));
+pub fn print_json(value: &Value) {
+    print_line(format!("{value:#}"));
 }
 
 impl Steps for Console {
     fn begin(&self, label: &str) -> Box<dyn Progress + '_> {
-        if self.form == Form::Json {
-            return Box::new(Events::begin(label));
+        if self.format == ProgressFormat::Json {
+            return Box::new(JsonStep::begin(label));
         }
-        if self.form == Form::Bars {
+        if self.format == ProgressFormat::Bars {
             let style = ProgressStyle::with_template("{msg:12} {bar:32} {percent:>3} % {elapsed}");
             let bar = ProgressBar::with_draw_target(Some(1000), ProgressDrawTarget::stderr_with_hz(10));
             bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
             bar.set_message(label.to_owned());
-            Box::new(Bar(bar))
+            Box::new(ProgressBarStep(bar))
         } else {
-            Box::new(Lines::begin(label))
+            Box::new(LineStep::begin(label))
         }
     }
 
-    fn tell(&self, sentence: &str) {
+    fn notice(&self, sentence: &str) {
         self.note(sentence);
     }
 }
@@ -118,14 +124,14 @@ impl Steps for Console {
 impl Progress for Console {
     fn report(&self, _fraction: f32) {}
     fn cancelled(&self) -> bool {
-        stopping::is_asked_for()
+        stopping::is_requested()
     }
 }
 
 /// A bar on a terminal; it goes when the step is over.
-struct Bar(ProgressBar);
+struct ProgressBarStep(ProgressBar);
 
-impl Progress for Bar {
+impl Progress for ProgressBarStep {
     fn report(&self, fraction: f32) {
         let position = (fraction.clamp(0.0, 1.0) * 1000.0) as u64;
         if position > self.0.position() {
@@ -133,96 +139,104 @@ impl Progress for Bar {
         }
     }
     fn cancelled(&self) -> bool {
-        stopping::is_asked_for()
+        stopping::is_requested()
     }
     fn begin_part(&self, part: &Part) {
         self.0.set_message(part.name);
     }
 }
 
-impl Drop for Bar {
+impl Drop for ProgressBarStep {
     fn drop(&mut self) {
         self.0.finish_and_clear();
     }
 }
 
 /// Plain lines where there is no terminal.
-struct Lines {
-    last: Mutex<Line>,
+struct LineStep {
+    last: Mutex<LineState>,
 }
 
 /// What was told last.
-struct Line {
+struct LineState {
     /// What is being done, and the share of the step that is done when it begins and ends.
     part: Cow<'static, str>,
     shares: [f32; 2],
-    told: Instant,
+    reported_at: Instant,
     furthest: f32,
 }
 
-impl Lines {
+impl LineStep {
     fn begin(label: &str) -> Self {
         eprintln!("{label}…");
         let part = label.to_owned().into();
-        Self { last: Mutex::new(Line { part, shares: [0.0, 1.0], told: Instant::now(), furthest: 0.0 }) }
+        Self {
+            last: Mutex::new(LineState {
+                part,
+                shares: [0.0, 1.0],
+                reported_at: Instant::now(),
+                furthest: 0.0,
+            }),
+        }
     }
 }
 
-impl Progress for Lines {
+impl Progress for LineStep {
     fn report(&self, fraction: f32) {
         let Ok(mut last) = self.last.try_lock() else { return };
-        if fraction > last.furthest && last.told.elapsed() >= REPORT_EVERY {
-            (last.told, last.furthest) = (Instant::now(), fraction);
+        if fraction > last.furthest && last.reported_at.elapsed() >= LINE_INTERVAL {
+            (last.reported_at, last.furthest) = (Instant::now(), fraction);
             let [from, to] = last.shares;
             let done = if to > from { ((fraction - from) / (to - from)).clamp(0.0, 1.0) } else { 1.0 };
             eprintln!("{} {:.0} %", last.part, done * 100.0);
         }
     }
     fn cancelled(&self) -> bool {
-        stopping::is_asked_for()
+        stopping::is_requested()
     }
     fn begin_part(&self, part: &Part) {
         eprintln!("{}…", part.name);
         if let Ok(mut last) = self.last.lock() {
-            (last.part, last.shares, last.told) = (part.name.into(), [part.from, part.to], Instant::now());
+            (last.part, last.shares, last.reported_at) =
+                (part.name.into(), [part.from, part.to], Instant::now());
         }
     }
 }
 
 /// A line of JSON at the beginning of a step, now and then while it goes on, and at its end.
-struct Events {
+struct JsonStep {
     label: String,
     last: Mutex<(Instant, f32)>,
 }
 
-impl Events {
+impl JsonStep {
     fn begin(label: &str) -> Self {
-        tell_json(&json!({ "step": label, "done": 0.0 }));
+        write_json_line(&json!({ "step": label, "done": 0.0 }));
         Self { label: label.to_owned(), last: Mutex::new((Instant::now(), 0.0)) }
     }
 }
 
-impl Progress for Events {
+impl Progress for JsonStep {
     fn report(&self, fraction: f32) {
-        const EVERY: Duration = Duration::from_secs(1);
+        const JSON_INTERVAL: Duration = Duration::from_secs(1);
         let Ok(mut last) = self.last.try_lock() else { return };
-        if fraction > last.1 && last.0.elapsed() >= EVERY {
+        if fraction > last.1 && last.0.elapsed() >= JSON_INTERVAL {
             *last = (Instant::now(), fraction);
-            tell_json(&json!({ "step": self.label, "done": fraction }));
+            write_json_line(&json!({ "step": self.label, "done": fraction }));
         }
     }
     fn cancelled(&self) -> bool {
-        stopping::is_asked_for()
+        stopping::is_requested()
     }
     fn begin_part(&self, part: &Part) {
-        tell_json(&json!({ "step": self.label, "part": part.name, "done": part.from }));
+        write_json_line(&json!({ "step": self.label, "part": part.name, "done": part.from }));
     }
 }
 
-impl Drop for Events {
+impl Drop for JsonStep {
     fn drop(&mut self) {
-        if !stopping::is_asked_for() {
-            tell_json(&json!({ "step": self.label, "done": 1.0 }));
+        if !stopping::is_requested() {
+            write_json_line(&json!({ "step": self.label, "done": 1.0 }));
         }
     }
 }

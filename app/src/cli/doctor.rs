@@ -1,7 +1,7 @@
 //! `focus-brush doctor`.
 
 use super::arguments::DoctorArguments;
-use super::console::{say, say_json};
+use super::console::{print_json, print_line};
 use super::failure::Failure;
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -10,19 +10,19 @@ use std::path::{Path, PathBuf};
 struct Library {
     file: &'static str,
     package: &'static str,
-    why: &'static str,
+    purpose: &'static str,
 }
 
 /// What the window needs on Linux; without them it does not open.
 const LIBRARIES: [Library; 8] = [
-    Library { file: "libX11.so.6", package: "libx11-6", why: "the window on X11" },
-    Library { file: "libX11-xcb.so.1", package: "libx11-xcb1", why: "the window on X11" },
-    Library { file: "libXcursor.so.1", package: "libxcursor1", why: "the window on X11" },
-    Library { file: "libXi.so.6", package: "libxi6", why: "mouse and pen on X11" },
-    Library { file: "libXrandr.so.2", package: "libxrandr2", why: "screens on X11" },
-    Library { file: "libxkbcommon.so.0", package: "libxkbcommon0", why: "the keyboard" },
-    Library { file: "libxkbcommon-x11.so.0", package: "libxkbcommon-x11-0", why: "the keyboard on X11" },
-    Library { file: "libvulkan.so.1", package: "libvulkan1", why: "drawing the window" },
+    Library { file: "libX11.so.6", package: "libx11-6", purpose: "the window on X11" },
+    Library { file: "libX11-xcb.so.1", package: "libx11-xcb1", purpose: "the window on X11" },
+    Library { file: "libXcursor.so.1", package: "libxcursor1", purpose: "the window on X11" },
+    Library { file: "libXi.so.6", package: "libxi6", purpose: "mouse and pen on X11" },
+    Library { file: "libXrandr.so.2", package: "libxrandr2", purpose: "screens on X11" },
+    Library { file: "libxkbcommon.so.0", package: "libxkbcommon0", purpose: "the keyboard" },
+    Library { file: "libxkbcommon-x11.so.0", package: "libxkbcommon-x11-0", purpose: "the keyboard on X11" },
+    Library { file: "libvulkan.so.1", package: "libvulkan1", purpose: "drawing the window" },
 ];
 
 /// The package with drivers for machines whose graphics has none of its own.
@@ -42,11 +42,11 @@ pub fn run(arguments: &DoctorArguments) -> Result<(), Failure> {
     if adapters.is_empty() {
         packages.push(DRIVERS);
     }
-    let cure = (!packages.is_empty()).then(|| format!("apt-get install {}", packages.join(" ")));
+    let install_command = (!packages.is_empty()).then(|| format!("apt-get install {}", packages.join(" ")));
     let threads = rayon::current_num_threads();
-    let opens = missing.is_empty() && has_display && !adapters.is_empty();
+    let window_can_open = missing.is_empty() && has_display && !adapters.is_empty();
     if arguments.json {
-        say_json(&json!({
+        print_json(&json!({
             "version": env!("CARGO_PKG_VERSION"),
             "threads": threads,
             "adapters": adapters.iter().map(|adapter| json!({
@@ -54,51 +54,55 @@ pub fn run(arguments: &DoctorArguments) -> Result<(), Failure> {
             })).collect::<Vec<_>>(),
             "missing_libraries": missing.iter().map(|library| library.file).collect::<Vec<_>>(),
             "display": display.map(|name| json!({ name: std::env::var(name).unwrap_or_default() })),
-            "install": cure,
-            "window_can_open": opens,
+            "install": install_command,
+            "window_can_open": window_can_open,
             "command_line_works": true,
         }));
         return Ok(());
     }
-    say(format!("Focus Brush {}", env!("CARGO_PKG_VERSION")));
+    print_line(format!("Focus Brush {}", env!("CARGO_PKG_VERSION")));
     let used = adapters.iter().find(|adapter| adapter.is_used);
-    let sums = used.map_or("every picture is computed here", |_| "light fields are baked here");
-    say(format!("  processor    {threads} threads: {sums}"));
+    let processor_use = used.map_or("every picture is computed here", |_| "light fields are baked here");
+    print_line(format!("  processor    {threads} threads: {processor_use}"));
     if adapters.is_empty() {
-        say(format!("  graphics     no adapter (the window needs one: {DRIVERS} has one in software)"));
+        print_line(format!(
+            "  graphics     no adapter (the window needs one: {DRIVERS} has one in software)"
+        ));
     }
     for adapter in &adapters {
         let splat::AdapterDescription { name, kind, interface, is_used } = adapter;
-        let use_of_it = match (is_used, &**kind) {
+        let adapter_use = match (is_used, &**kind) {
             (true, _) => "pictures are summed here",
             (false, "cpu") => "in software: only with render --backend gpu",
             (false, _) => "only with render --adapter",
         };
-        say(format!("  graphics     {name} ({kind}, {interface}): {use_of_it}"));
+        print_line(format!("  graphics     {name} ({kind}, {interface}): {adapter_use}"));
     }
     match missing.as_slice() {
-        [] => say("  libraries    all there"),
+        [] => print_line("  libraries    all there"),
         missing => missing.iter().for_each(|library| {
-            say(format!(
+            print_line(format!(
                 "  libraries    {} is missing: {} (package {})",
-                library.file, library.why, library.package
+                library.file, library.purpose, library.package
             ));
         }),
     }
     match display {
-        Some(name) => say(format!("  display      {name}={}", std::env::var(name).unwrap_or_default())),
-        None if has_display => say("  display      the system's own"),
-        None => say(
+        Some(name) => {
+            print_line(format!("  display      {name}={}", std::env::var(name).unwrap_or_default()))
+        }
+        None if has_display => print_line("  display      the system's own"),
+        None => print_line(
             "  display      none: DISPLAY and WAYLAND_DISPLAY are not set (start it on a desktop, or under xvfb-run)",
         ),
     }
-    say(if opens {
+    print_line(if window_can_open {
         "  the window can open, and the command line works"
     } else {
         "  the window cannot open; the command line works"
     });
-    if let Some(cure) = cure {
-        say(format!("to get what is missing: {cure}"));
+    if let Some(install_command) = install_command {
+        print_line(format!("to get what is missing: {install_command}"));
     }
     Ok(())
 }

@@ -13,45 +13,48 @@ use std::path::Path;
 /// Writes what was asked for; what fails does not keep the rest from being written.
 pub fn run(arguments: &ExportArguments, console: &Console) -> Result<(), Failure> {
     let project = &arguments.project;
-    if InputKind::of(project)? != InputKind::Project {
-        return Err(Failure::bad(format!("{}: is no project (give a .fbrush file)", project.display())));
+    if InputKind::from_path(project)? != InputKind::Project {
+        return Err(Failure::bad_input(format!(
+            "{}: is no project (give a .fbrush file)",
+            project.display()
+        )));
     }
     let mut input = Input::open(project, console)?;
-    input.follow_surface(&unwrap_options(None), console)?;
+    input.transfer_paint_if_changed(&unwrap_options(None), console)?;
     console.warn(&input.warnings);
-    let mut written = 0;
+    let mut written_count = 0;
     let mut failures = Vec::new();
-    let mut done = |path: &Path, result: Result<(), Failure>| match result {
+    let mut record_result = |path: &Path, result: Result<(), Failure>| match result {
         Ok(()) => {
             console.note(&format!("wrote {}", path.display()));
-            written += 1;
+            written_count += 1;
         }
         Err(failure) => failures.push(failure),
     };
     if let Some(path) = &arguments.focus_map {
-        done(path, focus_map(&input, path, console));
+        record_result(path, export_focus_map(&input, path, console));
     }
     if let Some(path) = &arguments.glb {
-        done(path, glb(&input, path, console));
+        record_result(path, export_glb(&input, path, console));
     }
     if let Some(path) = &arguments.layers {
-        done(path, layers(&input, path, console));
+        record_result(path, export_layers(&input, path, console));
     }
     for (name, path) in &arguments.photo {
-        done(path, photograph(&input, name, path, console));
+        record_result(path, export_photograph(&input, name, path, console));
     }
-    match (written, failures.len()) {
+    match (written_count, failures.len()) {
         (_, 0) => Ok(()),
         (0, 1) => Err(failures.remove(0)),
         (_, _) => {
             let all: Vec<_> = failures.iter().map(|failure| failure.message.as_str()).collect();
             let all = all.join("; ");
-            if written == 0 { Err(Failure::bad(all)) } else { Err(Failure::partly(all)) }
+            if written_count == 0 { Err(Failure::bad_input(all)) } else { Err(Failure::partly_done(all)) }
         }
     }
 }
 
-fn focus_map(input: &Input, path: &Path, console: &Console) -> Result<(), Failure> {
+fn export_focus_map(input: &Input, path: &Path, console: &Console) -> Result<(), Failure> {
     check_folder(path)?;
     let atlas = input.atlas(&unwrap_options(None), console)?;
     let project = input.project.as_ref();
@@ -61,25 +64,28 @@ fn focus_map(input: &Input, path: &Path, console: &Console) -> Result<(), Failur
         map
     };
     let map = project.and_then(|project| project.focus_map.clone()).unwrap_or_else(blank);
-    let lost = write_focus_map(path, &FocusMapFile::of_atlas(&map, &atlas))?;
+    let lost = write_focus_map(path, &FocusMapFile::from_atlas_map(&map, &atlas))?;
     console.warn(&lost.iter().map(|what| format!("{}: {what}", path.display())).collect::<Vec<_>>());
     Ok(())
 }
 
-fn glb(input: &Input, path: &Path, console: &Console) -> Result<(), Failure> {
+fn export_glb(input: &Input, path: &Path, console: &Console) -> Result<(), Failure> {
     check_folder(path)?;
     Ok(input.export_glb(path, &unwrap_options(None), console)?)
 }
 
-fn photograph(input: &Input, name: &str, path: &Path, console: &Console) -> Result<(), Failure> {
+fn export_photograph(input: &Input, name: &str, path: &Path, console: &Console) -> Result<(), Failure> {
     check_folder(path)?;
     let (picture, layers) = input.photograph_picture(name, console)?;
-    written(input, path, &picture, &layers)
+    write_layered_picture(input, path, &picture, &layers)
 }
 
-fn layers(input: &Input, path: &Path, console: &Console) -> Result<(), Failure> {
+fn export_layers(input: &Input, path: &Path, console: &Console) -> Result<(), Failure> {
     if !path.extension().is_some_and(|e| e.eq_ignore_ascii_case("exr")) {
-        return Err(Failure::usage(format!("{}: layers are written as .exr (name one)", path.display())));
+        return Err(Failure::wrong_usage(format!(
+            "{}: layers are written as .exr (name one)",
+            path.display()
+        )));
     }
     check_folder(path)?;
     let focus = input.focus(None, &unwrap_options(None), console)?;
@@ -88,10 +94,15 @@ fn layers(input: &Input, path: &Path, console: &Console) -> Result<(), Failure> 
     let Rendered { picture, layers, warnings, .. } =
         render_input(input, &input.camera, &focus, &options, console)?;
     console.warn(&warnings);
-    written(input, path, &picture, &layers)
+    write_layered_picture(input, path, &picture, &layers)
 }
 
-fn written(input: &Input, path: &Path, picture: &Picture, layers: &[Layer]) -> Result<(), Failure> {
+fn write_layered_picture(
+    input: &Input,
+    path: &Path,
+    picture: &Picture,
+    layers: &[Layer],
+) -> Result<(), Failure> {
     let options = PictureOptions { exposure: input.exposure(), ..PictureOptions::default() };
     write_picture(path, picture, layers, &options)?;
     Ok(())

@@ -23,33 +23,33 @@ pub struct Failure {
     /// One line: `FILE: what is wrong (what to do)`.
     pub message: String,
     /// Whether it is a fault of the program itself.
-    pub is_fault: bool,
+    pub is_internal: bool,
 }
 
 impl Failure {
     fn new(code: u8, message: impl Into<String>) -> Self {
         let message: String = message.into();
-        Self { code, message: message.replace('\n', " "), is_fault: false }
+        Self { code, message: message.replace('\n', " "), is_internal: false }
     }
 
     /// Bad input.
-    pub fn bad(message: impl Into<String>) -> Self {
+    pub fn bad_input(message: impl Into<String>) -> Self {
         Self::new(BAD_INPUT, message)
     }
 
     /// Wrong usage.
-    pub fn usage(message: impl Into<String>) -> Self {
+    pub fn wrong_usage(message: impl Into<String>) -> Self {
         Self::new(WRONG_USAGE, message)
     }
 
     /// Partly done.
-    pub fn partly(message: impl Into<String>) -> Self {
+    pub fn partly_done(message: impl Into<String>) -> Self {
         Self::new(PARTLY_DONE, message)
     }
 
     /// Something that a capture speaks of is missing: no failure, and nothing to pass over.
-    pub fn incomplete(file: &Path) -> Self {
-        Self::partly(format!("{}: something of it is missing, see above", file.display()))
+    pub fn incomplete_capture(file: &Path) -> Self {
+        Self::partly_done(format!("{}: something of it is missing, see above", file.display()))
     }
 
     /// Worth another try.
@@ -58,13 +58,13 @@ impl Failure {
     }
 
     /// A signal came to end.
-    pub fn stopped() -> Self {
+    pub fn terminated() -> Self {
         Self::try_again("stopped: what is finished stays (run it again to go on)")
     }
 
     /// A fault of the program.
-    pub fn fault(message: impl Into<String>) -> Self {
-        Self { is_fault: true, ..Self::new(BAD_INPUT, message) }
+    pub fn internal(message: impl Into<String>) -> Self {
+        Self { is_internal: true, ..Self::new(BAD_INPUT, message) }
     }
 }
 
@@ -74,10 +74,10 @@ impl From<SessionError> for Failure {
         match error {
             SessionError::TryAgain(_) => Self::try_again(message),
             SessionError::GpuAbsent(_) => Self::new(NO_GPU, message),
-            SessionError::Internal(_) => Self::fault(message),
-            SessionError::Cancelled => Self::stopped(),
+            SessionError::Internal(_) => Self::internal(message),
+            SessionError::Cancelled => Self::terminated(),
             SessionError::NothingOpen | SessionError::BadInput(_) | SessionError::NearUnknown { .. } => {
-                Self::bad(message)
+                Self::bad_input(message)
             }
         }
     }

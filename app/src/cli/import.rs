@@ -6,16 +6,16 @@ use super::failure::Failure;
 use super::new::check_project_name;
 use super::shot::{check_folder, unwrap_options};
 use project::CaptureChoices;
-use session::{Beginning, Document, Input, InputKind};
+use session::{Document, Input, InputKind, NewDocumentOptions};
 
 /// Makes a project of a capture. What is missing of it is told, and what was found is imported: then the work is partly done.
 pub fn run(arguments: &ImportArguments, console: &Console) -> Result<(), Failure> {
     let ImportArguments { capture, output, mesh, leave_out, kind, disparity, depth, near } = arguments;
     check_project_name(output)?;
     check_folder(output)?;
-    if InputKind::of(capture)? != InputKind::Capture {
+    if InputKind::from_path(capture)? != InputKind::Capture {
         let what = "is no capture (give the folder of one; `focus-brush new` makes projects of scenes)";
-        return Err(Failure::bad(format!("{}: {what}", capture.display())));
+        return Err(Failure::bad_input(format!("{}: {what}", capture.display())));
     }
     let choices = CaptureChoices {
         depth_strokes: Vec::new(),
@@ -28,9 +28,10 @@ pub fn run(arguments: &ImportArguments, console: &Console) -> Result<(), Failure
     };
     let input = Input::open_capture(capture, choices, console)?;
     let is_incomplete = input.is_incomplete;
-    let document = Document::begin_with(input, &Beginning::default(), &unwrap_options(None), console)?;
+    let document =
+        Document::create_from_input(input, &NewDocumentOptions::default(), &unwrap_options(None), console)?;
     console.warn(&document.warnings);
     document.to_project().save(output)?;
     console.note(&format!("wrote {}", output.display()));
-    if is_incomplete { Err(Failure::incomplete(capture)) } else { Ok(()) }
+    if is_incomplete { Err(Failure::incomplete_capture(capture)) } else { Ok(()) }
 }

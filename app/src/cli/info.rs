@@ -1,9 +1,9 @@
 //! `focus-brush info`.
 
 use super::arguments::InfoArguments;
-use super::console::{Console, path_text, say, say_json};
+use super::console::{Console, path_text, print_json, print_line};
 use super::failure::Failure;
-use super::shot::{opened, unwrap_options};
+use super::shot::{open_input, unwrap_options};
 use lens::Camera;
 use progress::Unwatched;
 use project::{ProjectFile, camera_to_json};
@@ -18,10 +18,10 @@ use trace::Tracer;
 /// Tells what is in a file.
 pub fn run(arguments: &InfoArguments, console: &Console) -> Result<(), Failure> {
     let file = arguments.file.as_path();
-    let kind = InputKind::of(file)?;
+    let kind = InputKind::from_path(file)?;
     let inspection = match kind {
         InputKind::Scene => {
-            let variant = arguments.scene_look.variant.clone().filter(|name| !name.is_empty());
+            let variant = arguments.appearance.variant.clone().filter(|name| !name.is_empty());
             let options = LoadOptions { variant, ..LoadOptions::default() };
             Some(scene::inspect(file, &options).map_err(session::SessionError::from)?)
         }
@@ -29,14 +29,14 @@ pub fn run(arguments: &InfoArguments, console: &Console) -> Result<(), Failure> 
     };
     if let Some(inspection) = inspection.as_ref().filter(|inspection| inspection.triangles == 0) {
         let note = format!("{}: no triangle, so there is nothing to render", file.display());
-        return without_triangles(arguments, inspection, &note, console);
+        return report_empty_scene(arguments, inspection, &note, console);
     }
-    let input = opened(file, &arguments.scene_look, &Unwatched)?;
+    let input = open_input(file, &arguments.appearance, &Unwatched)?;
     console.warn(&input.warnings);
-    let health = MeshHealth::of(&input.scene);
-    let modelled = modelled(&input, arguments.bake, console)?;
+    let health = MeshHealth::measure(&input.scene);
+    let modelled = count_modelled(&input, arguments.bake, console)?;
     if arguments.json {
-        say_json(&json!({
+        print_json(&json!({
             "file": path_text(file),
             "kind": match kind {
                 InputKind::Scene => "scene",
@@ -59,31 +59,31 @@ pub fn run(arguments: &InfoArguments, console: &Console) -> Result<(), Failure> 
             "would_bake": { "width": input.camera.width, "height": input.camera.height },
             "warnings": input.warnings,
         }));
-        return partly(&input);
+        return check_completeness(&input);
     }
-    say(format!("{}", file.display()));
+    print_line(format!("{}", file.display()));
     if let Some(inspection) = &inspection {
-        contents(inspection);
+        print_contents(inspection);
     }
     if let Some(project) = &input.project {
-        project_lines(project);
+        print_project(project);
     }
-    capture_lines(&input);
-    scene_lines(&input.scene, &health);
-    lens_lines(&input.scene);
+    print_capture(&input);
+    print_scene(&input.scene, &health);
+    print_lenses(&input.scene);
     if let Some(modelled) = &modelled {
-        modelled_lines(modelled);
+        print_modelled(modelled);
     }
-    bake_lines(&input.camera, &input.scene);
-    partly(&input)
+    print_bake_estimate(&input.camera, &input.scene);
+    check_completeness(&input)
 }
 
-fn partly(input: &Input) -> Result<(), Failure> {
-    if input.is_incomplete { Err(Failure::incomplete(&input.path)) } else { Ok(()) }
+fn check_completeness(input: &Input) -> Result<(), Failure> {
+    if input.is_incomplete { Err(Failure::incomplete_capture(&input.path)) } else { Ok(()) }
 }
 
 fn capture_json(input: &Input) -> Option<Value> {
-    let Scene { views, left_out, .. } = &*input.scene;
+    let Scene { views, excluded_views: left_out, .. } = &*input.scene;
     let photograph = |view: &View| {
         json!({
             "name": view.name,
@@ -97,13 +97,13 @@ fn capture_json(input: &Input) -> Option<Value> {
     (!views.is_empty()).then(|| json!({ "photographs": all(views), "left_out": all(left_out) }))
 }
 
-fn capture_lines(input: &Input) {
-    let Scene { views, left_out, .. } = &*input.scene;
+fn print_capture(input: &Input) {
+    let Scene { views, excluded_views: left_out, .. } = &*input.scene;
     let Some(first) = views.first() else { return };
     let [width, height] = first.lens.size_px();
     let others =
         if views.iter().all(|view| view.lens.size_px() == [width, height]) { "" } else { " and others" };
-    say(format!(
+    print_line(format!(
         "  photographs  {} of {width} × {height} px{others}, {} left out",
         views.len(),
         left_out.len()
@@ -111,7 +111,7 @@ fn capture_lines(input: &Input) {
 }
 
 /// A file that shows nothing is still a file.
-fn without_triangles(
+fn report_empty_scene(
     arguments: &InfoArguments,
     inspection: &Inspection,
     note: &String,
@@ -120,42 +120,46 @@ fn without_triangles(
     console.warn(&inspection.warnings);
     if arguments.json {
         let file = path_text(&arguments.file);
-        say_json(&json!({ "file": file, "kind": "scene", "contents": inspection, "note": note }));
+        print_json(&json!({ "file": file, "kind": "scene", "contents": inspection, "note": note }));
     } else {
-        say(format!("{}", arguments.file.display()));
-        contents(inspection);
-        say(format!("note: {note}"));
+        print_line(format!("{}", arguments.file.display()));
+        print_contents(inspection);
+        print_line(format!("note: {note}"));
     }
     Ok(())
 }
 
-fn contents(inspection: &Inspection) {
+fn print_contents(inspection: &Inspection) {
     const MODES: [&str; 7] =
         ["points", "lines", "line loops", "line strips", "triangles", "triangle strips", "triangle fans"];
     let Inspection { nodes, meshes, materials, images, cameras, lights, skins, animations, .. } = inspection;
     if let Some(generator) = &inspection.generator {
-        say(format!("  written by   {generator}"));
+        print_line(format!("  written by   {generator}"));
     }
-    say(format!("  file         {nodes} nodes, {meshes} meshes, {materials} materials, {images} images"));
-    say(format!("               {cameras} cameras, {lights} lights, {skins} skins, {animations} animations"));
+    print_line(format!(
+        "  file         {nodes} nodes, {meshes} meshes, {materials} materials, {images} images"
+    ));
+    print_line(format!(
+        "               {cameras} cameras, {lights} lights, {skins} skins, {animations} animations"
+    ));
     for Animation { name, seconds, channels } in &inspection.animation_list {
-        say(format!("  animation    {name:?}: {seconds:.3} s, {channels} channels"));
+        print_line(format!("  animation    {name:?}: {seconds:.3} s, {channels} channels"));
     }
     let modes = inspection.primitives.iter().zip(MODES).filter(|(count, _)| **count > 0);
     let modes: Vec<_> = modes.map(|(count, mode)| format!("{count} × {mode}")).collect();
-    say(format!("  primitives   {}", if modes.is_empty() { "none".into() } else { modes.join(", ") }));
+    print_line(format!("  primitives   {}", if modes.is_empty() { "none".into() } else { modes.join(", ") }));
     if !inspection.extensions_used.is_empty() {
-        say(format!("  extensions   {}", inspection.extensions_used.join(", ")));
+        print_line(format!("  extensions   {}", inspection.extensions_used.join(", ")));
     }
 }
 
-fn project_lines(project: &ProjectFile) {
-    say(format!("  scene        {}", project.scene.display()));
+fn print_project(project: &ProjectFile) {
+    print_line(format!("  scene        {}", project.scene.display()));
     let names: Vec<_> = project.cameras.iter().map(|camera| format!("\"{}\"", camera.name)).collect();
-    say(format!("  cameras      {}", names.join(", ")));
+    print_line(format!("  cameras      {}", names.join(", ")));
     match &project.focus_map {
-        Some(map) => say(format!("  focus map    {} × {} texels", map.width(), map.height())),
-        None => say("  focus map    nothing painted"),
+        Some(map) => print_line(format!("  focus map    {} × {} texels", map.width(), map.height())),
+        None => print_line("  focus map    nothing painted"),
     }
 }
 
@@ -170,9 +174,9 @@ fn project_json(project: &ProjectFile) -> Value {
     })
 }
 
-fn scene_lines(scene: &Scene, health: &MeshHealth) {
-    let made_up = |is: bool| if is { " (made up: the file has none)" } else { "" };
-    say(format!(
+fn print_scene(scene: &Scene, health: &MeshHealth) {
+    let invented_note = |is_invented: bool| if is_invented { " (made up: the file has none)" } else { "" };
+    print_line(format!(
         "  scene        {} triangles in {} parts of {} objects, area {:.4}",
         health.triangles,
         scene.parts.len(),
@@ -180,30 +184,30 @@ fn scene_lines(scene: &Scene, health: &MeshHealth) {
         health.area
     ));
     if let Some(picture) = &scene.picture {
-        say(format!("  picture      {}", picture.origin));
+        print_line(format!("  picture      {}", picture.origin));
     }
     let size = std::array::from_fn::<f64, 3, _>(|k| health.high[k] - health.low[k]);
-    say(format!("  size         {:.4} × {:.4} × {:.4}", size[0], size[1], size[2]));
+    print_line(format!("  size         {:.4} × {:.4} × {:.4}", size[0], size[1], size[2]));
     let names: Vec<_> = scene.cameras.iter().map(|camera| format!("\"{}\"", camera.name)).collect();
-    say(format!("  cameras      {}{}", names.join(", "), made_up(scene.camera_is_invented)));
-    say(format!("  lights       {}", scene.lights.len()));
-    if let Some(name) = own_light(scene) {
-        let is_shown = if scene.world.is_some() { "; another world was chosen" } else { "" };
-        say(format!("  lit by       {name}{is_shown}"));
+    print_line(format!("  cameras      {}{}", names.join(", "), invented_note(scene.has_default_camera)));
+    print_line(format!("  lights       {}", scene.lights.len()));
+    if let Some(name) = own_environment_name(scene) {
+        let override_note = if scene.world.is_some() { "; another world was chosen" } else { "" };
+        print_line(format!("  lit by       {name}{override_note}"));
     }
     if !scene.variants.is_empty() {
         let names: Vec<_> = scene.variants.iter().map(|name| format!("{name:?}")).collect();
         let chosen = scene.variant.as_ref();
         let chosen =
             chosen.map_or_else(|| "none: the scene's own materials".into(), |name| format!("{name:?}"));
-        say(format!("  variants     {} (chosen: {chosen})", names.join(", ")));
+        print_line(format!("  variants     {} (chosen: {chosen})", names.join(", ")));
     }
-    say(format!("  mesh         {}", mesh_sentence(health)));
+    print_line(format!("  mesh         {}", mesh_sentence(health)));
 }
 
 /// What the scene's own environment is called, if it brings one.
-fn own_light(scene: &Scene) -> Option<&str> {
-    match &scene.own_world.as_ref()?.environment {
+fn own_environment_name(scene: &Scene) -> Option<&str> {
+    match &scene.embedded_world.as_ref()?.environment {
         Environment::Map(map) => Some(&map.name),
         Environment::Uniform(_) => None,
     }
@@ -213,18 +217,18 @@ fn mesh_sentence(health: &MeshHealth) -> String {
     let counts = [
         (health.degenerate, "degenerate triangles"),
         (health.duplicates, "duplicate triangles"),
-        (health.turned, "triangles that face away from the outside of a closed mesh (--back-faces show)"),
+        (health.inverted, "triangles that face away from the outside of a closed mesh (--back-faces show)"),
         (health.non_manifold_edges, "edges of more than two triangles"),
         (health.boundary_edges, "open edges"),
         (health.without_uv, "triangles without texture coordinates"),
     ];
-    let odd: Vec<_> =
+    let defects: Vec<_> =
         counts.iter().filter(|(count, _)| *count > 0).map(|(n, what)| format!("{n} {what}")).collect();
-    if odd.is_empty() { "closed, nothing odd".into() } else { odd.join(", ") }
+    if defects.is_empty() { "closed, nothing odd".into() } else { defects.join(", ") }
 }
 
 /// What is modelled: by the light field that the file is, or by one that is baked for a small picture, if that is wanted.
-fn modelled(input: &Input, bake: bool, console: &Console) -> Result<Option<BakedField>, Failure> {
+fn count_modelled(input: &Input, bake: bool, console: &Console) -> Result<Option<BakedField>, Failure> {
     // Unwrapping takes long: without being asked, only an atlas that is stored counts.
     let is_stored = input.project.as_ref().is_some_and(|project| project.atlas.is_some());
     if !bake && input.salf.is_none() {
@@ -235,14 +239,14 @@ fn modelled(input: &Input, bake: bool, console: &Console) -> Result<Option<Baked
     let salf = match &input.salf {
         Some(salf) => salf.clone(),
         None => {
-            let camera = small(&input.camera);
+            let camera = reduced_camera(&input.camera);
             let focus = input.focus(None, &unwrap_options(None), console)?;
             let tolerance_px = RenderOptions::default().tolerance_px;
             Arc::new(session::bake(&tracer, &camera, &focus, tolerance_px, console)?)
         }
     };
     let size = [salf.camera.width, salf.camera.height];
-    Ok(Some(BakedField { modelled: Modelled::of(&salf, &tracer, atlas.as_deref()), size }))
+    Ok(Some(BakedField { modelled: Modelled::measure(&salf, &tracer, atlas.as_deref()), size }))
 }
 
 /// What a light field of a picture of this size holds.
@@ -252,11 +256,11 @@ struct BakedField {
 }
 
 /// Height of the picture that `--bake` bakes, px.
-const SMALL_HEIGHT: u32 = 180;
+const BAKE_HEIGHT_PX: u32 = 180;
 
 /// The camera with a small picture.
-fn small(camera: &Camera) -> Camera {
-    let height = camera.height.min(SMALL_HEIGHT);
+fn reduced_camera(camera: &Camera) -> Camera {
+    let height = camera.height.min(BAKE_HEIGHT_PX);
     let width = (f64::from(height) * camera.aspect()).round().max(1.0) as u32;
     Camera { width, height, ..camera.clone() }
 }
@@ -266,20 +270,20 @@ fn modelled_json(field: &BakedField) -> Value {
         "width": field.size[0],
         "height": field.size[1],
         "kinds": field.modelled.rows(),
-        "texels_asked": field.modelled.texels.map(|texels| texels.asked),
+        "texels_asked": field.modelled.texels.map(|texels| texels.sampled),
         "bytes_a_sample": field.modelled.bytes_a_sample(),
     })
 }
 
-fn modelled_lines(BakedField { modelled, size }: &BakedField) {
+fn print_modelled(BakedField { modelled, size }: &BakedField) {
     let [width, height] = size;
-    say(format!("  modelled     for {width} × {height} px    texels     samples        bytes"));
+    print_line(format!("  modelled     for {width} × {height} px    texels     samples        bytes"));
     let text = |value: Option<usize>| value.map_or_else(|| "–".into(), |n| n.to_string());
     for row in modelled.rows() {
         let [texels, samples, bytes] = [row.texels, row.samples, row.bytes].map(text);
-        say(format!("    {:<22} {texels:>13} {samples:>11} {bytes:>12}", row.kind));
+        print_line(format!("    {:<22} {texels:>13} {samples:>11} {bytes:>12}", row.kind));
     }
-    say(format!("    {:.1} bytes a visible sample", modelled.bytes_a_sample()));
+    print_line(format!("    {:.1} bytes a visible sample", modelled.bytes_a_sample()));
 }
 
 fn scene_json(scene: &Scene) -> Value {
@@ -291,8 +295,8 @@ fn scene_json(scene: &Scene) -> Value {
         "materials": scene.materials.iter().map(|material| &material.name).collect::<Vec<_>>(),
         "cameras": scene.cameras.iter().map(|camera| &camera.name).collect::<Vec<_>>(),
         "camera_lenses": scene.cameras.iter().map(lens_json).collect::<Vec<_>>(),
-        "camera_is_invented": scene.camera_is_invented,
-        "image_based_light": own_light(scene),
+        "camera_is_invented": scene.has_default_camera,
+        "image_based_light": own_environment_name(scene),
         "variants": scene.variants,
         "variant": scene.variant,
         "lights": scene.lights.len(),
@@ -301,33 +305,33 @@ fn scene_json(scene: &Scene) -> Value {
 }
 
 /// Fields of a camera file that glTF has.
-const OF_GLTF: [&str; 2] = ["yfov", "camera_to_world"];
+const GLTF_FIELDS: [&str; 2] = ["yfov", "camera_to_world"];
 /// Fields that a file may say in `extras`, and that else are defaults (the focus distance: the first surface ahead).
-const OF_EXTRAS: [&str; 7] =
+const EXTRAS_FIELDS: [&str; 7] =
     ["width", "height", "focus_distance", "aperture_radius", "sensor_height", "shift", "aperture"];
 
 /// Where each field of a camera of the scene comes from.
 fn lens_json(camera: &SceneCamera) -> Value {
-    let said = camera.lens.said();
-    let default: Vec<&str> = OF_EXTRAS.into_iter().filter(|field| !said.contains(field)).collect();
-    json!({ "name": camera.name, "gltf": OF_GLTF, "extras": said, "default": default })
+    let from_extras = camera.lens.specified_fields();
+    let default: Vec<&str> = EXTRAS_FIELDS.into_iter().filter(|field| !from_extras.contains(field)).collect();
+    json!({ "name": camera.name, "gltf": GLTF_FIELDS, "extras": from_extras, "default": default })
 }
 
-fn lens_lines(scene: &Scene) {
-    for camera in scene.cameras.iter().filter(|_| !scene.camera_is_invented) {
-        let said = camera.lens.said();
-        let lens = match said.is_empty() {
+fn print_lenses(scene: &Scene) {
+    for camera in scene.cameras.iter().filter(|_| !scene.has_default_camera) {
+        let from_extras = camera.lens.specified_fields();
+        let lens = match from_extras.is_empty() {
             true => "no lens in the file: the default one, focused on the first surface ahead".into(),
-            false => format!("from extras.{EXTRAS_KEY}: {}", said.join(", ")),
+            false => format!("from extras.{EXTRAS_KEY}: {}", from_extras.join(", ")),
         };
-        say(format!("  camera       {}: {lens}", camera.name));
+        print_line(format!("  camera       {}: {lens}", camera.name));
     }
 }
 
-fn bake_lines(camera: &Camera, scene: &Scene) {
+fn print_bake_estimate(camera: &Camera, scene: &Scene) {
     let optics = camera.optics();
     let pixels = camera.width as f64 * camera.height as f64;
-    say(format!(
+    print_line(format!(
         "  would bake   {} × {} px, f/{:.2}, focused at {:.3}, {:.1}° high: about {:.1} million samples",
         camera.width,
         camera.height,
@@ -336,10 +340,10 @@ fn bake_lines(camera: &Camera, scene: &Scene) {
         camera.yfov.to_degrees(),
         pixels / 1e6
     ));
-    let depths = corners_ahead(camera, scene);
+    let depths = visible_depth_range(camera, scene);
     if let Some((near, far)) = depths {
         let blur = |depth: f64| optics.circle_of_confusion_px(optics.standard_kappa(1.0 / depth));
-        say(format!(
+        print_line(format!(
             "               depths {near:.3} to {far:.3}: circles of confusion up to {:.1} px near, {:.1} px far",
             if near < camera.focus_distance { blur(near) } else { 0.0 },
             if far > camera.focus_distance { blur(far) } else { 0.0 },
@@ -348,7 +352,7 @@ fn bake_lines(camera: &Camera, scene: &Scene) {
 }
 
 /// The least and greatest depth of vertices inside the picture.
-fn corners_ahead(camera: &Camera, scene: &Scene) -> Option<(f64, f64)> {
+fn visible_depth_range(camera: &Camera, scene: &Scene) -> Option<(f64, f64)> {
     let optics = camera.optics();
     let [width, height] = [camera.width, camera.height].map(f64::from);
     let in_picture = scene.positions.iter().map(|&p| camera.camera_from_world(p)).filter(|p| {

@@ -1,6 +1,6 @@
 //! `focus-brush keys`.
 
-use super::console::{Console, say_json};
+use super::console::{Console, print_json};
 use super::failure::Failure;
 use super::new::check_project_name;
 use super::sequence_arguments::KeysArguments;
@@ -16,7 +16,7 @@ use trace::Tracer;
 /// Sets keys of a project, or lists those that there are.
 pub fn run(arguments: &KeysArguments, console: &Console) -> Result<(), Failure> {
     let Some(output) = &arguments.output else {
-        list(&ProjectFile::load(&arguments.project)?);
+        print_keys(&ProjectFile::load(&arguments.project)?);
         return Ok(());
     };
     check_project_name(output)?;
@@ -28,23 +28,26 @@ pub fn run(arguments: &KeysArguments, console: &Console) -> Result<(), Failure> 
     set_lens(arguments, &mut project.lens_motion, console)?;
     for (name, opacity, seconds) in &arguments.opacity {
         if !(0.0..=1.0).contains(opacity) {
-            return Err(bad(&arguments.project, &format!("{opacity} is no opacity (give 0 to 1)")));
+            return Err(project_failure(
+                &arguments.project,
+                &format!("{opacity} is no opacity (give 0 to 1)"),
+            ));
         }
-        let index = project.layers.as_ref().and_then(|layers| index_of(layers, name));
+        let index = project.layers.as_ref().and_then(|layers| layer_index(layers, name));
         let layers = project.layers.as_mut().zip(index);
         let Some(layer) = layers.and_then(|(layers, index)| layers.layer_mut(index)) else {
-            return Err(bad(
+            return Err(project_failure(
                 &arguments.project,
-                &format!("no layer is called {name:?} ({})", names(&project)),
+                &format!("no layer is called {name:?} ({})", layer_names_sentence(&project)),
             ));
         };
-        put(
-            layer.motion.opacity.put(Key { seconds: *seconds, value: *opacity, ease: arguments.ease }),
+        check_key_added(
+            layer.motion.opacity.insert(Key { seconds: *seconds, value: *opacity, ease: arguments.ease }),
             arguments,
         )?;
     }
     if !project.lens_motion.is_valid() {
-        return Err(bad(&arguments.project, "distances and f-numbers must be above 0"));
+        return Err(project_failure(&arguments.project, "distances and f-numbers must be above 0"));
     }
     project.save(output)?;
     console.note(&format!("wrote {}", output.display()));
@@ -55,10 +58,10 @@ fn set_lens(arguments: &KeysArguments, motion: &mut LensMotion, console: &Consol
     let ease = arguments.ease;
     for &(distance, seconds) in &arguments.distance {
         let value = FocusTarget::Distance(distance);
-        put(motion.focus.put(Key { seconds, value, ease }), arguments)?;
+        check_key_added(motion.focus.insert(Key { seconds, value, ease }), arguments)?;
     }
     for &(value, seconds) in &arguments.f_number {
-        put(motion.f_number.put(Key { seconds, value, ease }), arguments)?;
+        check_key_added(motion.f_number.insert(Key { seconds, value, ease }), arguments)?;
     }
     if arguments.point.is_empty() {
         return Ok(());
@@ -67,25 +70,28 @@ fn set_lens(arguments: &KeysArguments, motion: &mut LensMotion, console: &Consol
     let (camera, tracer) = (&input.camera, Tracer::new(input.scene.clone()));
     for &(place, seconds) in &arguments.point {
         let position = place / DVec2::new(camera.width.into(), camera.height.into());
-        let seen = pick(&tracer, &chief_ray(camera, position));
-        let Some(hit) = seen else {
+        let picked = pick(&tracer, &chief_ray(camera, position));
+        let Some(hit) = picked else {
             let [x, y] = place.to_array();
             let what = format!(
                 "nothing is seen at {x},{y} of {} × {} px (choose another place)",
                 camera.width, camera.height
             );
-            return Err(bad(&arguments.project, &what));
+            return Err(project_failure(&arguments.project, &what));
         };
-        put(motion.focus.put(Key { seconds, value: FocusTarget::Point(hit.point), ease }), arguments)?;
+        check_key_added(
+            motion.focus.insert(Key { seconds, value: FocusTarget::Point(hit.point), ease }),
+            arguments,
+        )?;
     }
     Ok(())
 }
 
-fn index_of(layers: &LayerStack, name: &str) -> Option<usize> {
+fn layer_index(layers: &LayerStack, name: &str) -> Option<usize> {
     layers.layers().iter().position(|layer| layer.name == name)
 }
 
-fn names(project: &ProjectFile) -> String {
+fn layer_names_sentence(project: &ProjectFile) -> String {
     match &project.layers {
         None => "it has a single layer, which always counts whole; add one to fade".into(),
         Some(layers) => {
@@ -95,17 +101,21 @@ fn names(project: &ProjectFile) -> String {
     }
 }
 
-fn put(is_done: bool, arguments: &KeysArguments) -> Result<(), Failure> {
-    if is_done { Ok(()) } else { Err(bad(&arguments.project, "has as many keys as it can (take some away)")) }
+fn check_key_added(is_added: bool, arguments: &KeysArguments) -> Result<(), Failure> {
+    if is_added {
+        Ok(())
+    } else {
+        Err(project_failure(&arguments.project, "has as many keys as it can (take some away)"))
+    }
 }
 
-fn bad(project: &Path, what: &str) -> Failure {
-    Failure::bad(format!("{}: {what}", project.display()))
+fn project_failure(project: &Path, what: &str) -> Failure {
+    Failure::bad_input(format!("{}: {what}", project.display()))
 }
 
-fn list(project: &ProjectFile) {
+fn print_keys(project: &ProjectFile) {
     let layers = project.layers.iter().flat_map(|layers| layers.layers());
-    let moving = layers.filter(|layer| !layer.motion.is_empty());
-    let layers: Vec<_> = moving.map(|layer| json!({ "layer": layer.name, "keys": layer.motion })).collect();
-    say_json(&json!({ "lens": project.lens_motion, "layers": layers }));
+    let animated = layers.filter(|layer| !layer.motion.is_empty());
+    let layers: Vec<_> = animated.map(|layer| json!({ "layer": layer.name, "keys": layer.motion })).collect();
+    print_json(&json!({ "lens": project.lens_motion, "layers": layers }));
 }

@@ -1,7 +1,7 @@
 //! `focus-brush merge`.
 
 use super::arguments::MergeArguments;
-use super::console::{Console, path_text, say_json};
+use super::console::{Console, path_text, print_json};
 use super::failure::Failure;
 use super::shot::check_folder;
 use super::stopping;
@@ -11,8 +11,8 @@ use std::time::Instant;
 
 /// Merges the parts of a picture.
 pub fn run(arguments: &MergeArguments, console: &Console) -> Result<(), Failure> {
-    stopping::heed()?;
-    super::tiles::check_exr(&arguments.output)?;
+    stopping::install_handler()?;
+    super::tiles::check_exr_output(&arguments.output)?;
     check_folder(&arguments.output)?;
     let start = Instant::now();
     let Merged { size: [width, height], tiles, warnings } =
@@ -20,7 +20,7 @@ pub fn run(arguments: &MergeArguments, console: &Console) -> Result<(), Failure>
     console.warn(&warnings);
     let seconds = start.elapsed().as_secs_f64();
     if arguments.json {
-        say_json(&json!({
+        print_json(&json!({
             "file": path_text(&arguments.output),
             "width": width,
             "height": height,

@@ -3,9 +3,9 @@
 use super::arguments::NewArguments;
 use super::console::Console;
 use super::failure::Failure;
-use super::shot::{check_folder, unwrap_options, world};
+use super::shot::{check_folder, read_world, unwrap_options};
 use project::ProjectFile;
-use session::{Beginning, Document};
+use session::{Document, NewDocumentOptions};
 use std::path::Path;
 
 /// Makes a project of a scene.
@@ -13,17 +13,17 @@ pub fn run(arguments: &NewArguments, console: &Console) -> Result<(), Failure> {
     let output = &arguments.output;
     check_project_name(output)?;
     check_folder(output)?;
-    let beginning = Beginning {
+    let beginning = NewDocumentOptions {
         camera: arguments.camera.as_ref(),
         focus: arguments.focus.as_deref(),
         paint_from: arguments.paint_from.as_deref(),
-        variant: arguments.scene_look.variant(),
+        variant: arguments.appearance.variant(),
     };
-    let document = Document::begin(&arguments.scene, &beginning, &unwrap_options(None), console)?;
+    let document = Document::create(&arguments.scene, &beginning, &unwrap_options(None), console)?;
     console.warn(&document.warnings);
     let mut project = document.to_project();
-    project.back_faces = arguments.scene_look.back_faces.unwrap_or(project.back_faces);
-    project.world = world(&arguments.scene_look)?.or(project.world);
+    project.back_faces = arguments.appearance.back_faces.unwrap_or(project.back_faces);
+    project.world = read_world(&arguments.appearance)?.or(project.world);
     project.save(output)?;
     console.note(&format!("wrote {}", output.display()));
     Ok(())
@@ -35,5 +35,5 @@ pub fn check_project_name(output: &Path) -> Result<(), Failure> {
         return Ok(());
     }
     let what = format!("projects end in .{} (name one)", ProjectFile::EXTENSION);
-    Err(Failure::usage(format!("{}: {what}", output.display())))
+    Err(Failure::wrong_usage(format!("{}: {what}", output.display())))
 }

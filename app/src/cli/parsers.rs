@@ -26,11 +26,11 @@ pub fn place(text: &str) -> Result<glam::DVec2, String> {
 
 /// A camera file, or a camera's name.
 pub fn camera_parser() -> impl TypedValueParser<Value = CameraChoice> {
-    OsStringValueParser::new().map(|text| camera_choice(&text))
+    OsStringValueParser::new().map(|text| parse_camera(&text))
 }
 
 /// A path may be any bytes, so it is not made text.
-fn camera_choice(text: &OsStr) -> CameraChoice {
+fn parse_camera(text: &OsStr) -> CameraChoice {
     let is_file = text.as_encoded_bytes().to_ascii_lowercase().ends_with(b".json");
     if is_file { CameraChoice::File(text.into()) } else { CameraChoice::Named(text.to_string_lossy().into()) }
 }
@@ -61,16 +61,16 @@ pub fn named<T: Copy + Send + Sync + 'static, const COUNT: usize>(
     all: [(&'static str, T); COUNT],
 ) -> impl TypedValueParser<Value = T> {
     PossibleValuesParser::new(all.map(|(name, _)| name)).try_map(move |name| {
-        let found = all.iter().find(|(known, _)| *known == name);
-        found.map(|(_, value)| *value).ok_or("not one of them")
+        let entry = all.iter().find(|(candidate, _)| *candidate == name);
+        entry.map(|(_, value)| *value).ok_or("not one of them")
     })
 }
 
 /// An extra channel.
 pub fn aov(name: &str) -> Result<Aov, String> {
     Aov::named(name).ok_or_else(|| {
-        let known: Vec<_> = Aov::ALL.iter().map(|(name, _)| *name).collect();
-        format!("one of {}", known.join(", "))
+        let names: Vec<_> = Aov::ALL.iter().map(|(name, _)| *name).collect();
+        format!("one of {}", names.join(", "))
     })
 }
 
@@ -84,8 +84,8 @@ pub fn not_negative(text: &str) -> Result<f64, String> {
 pub fn integers(text: &str) -> Result<Integers, String> {
     let parts =
         text.split_once(',').and_then(|(a, b)| Some((a.trim().parse().ok()?, b.trim().parse().ok()?)));
-    let found = parts.map(|(standard, painted)| Integers { standard, painted });
-    found.filter(|integers| integers.are_known()).ok_or_else(|| "two of 22, 14 and 6, as in 14,22".into())
+    let bits = parts.map(|(standard, painted)| Integers { standard, painted });
+    bits.filter(|integers| integers.are_valid()).ok_or_else(|| "two of 22, 14 and 6, as in 14,22".into())
 }
 
 #[cfg(test)]
@@ -96,8 +96,8 @@ mod tests {
     fn values_are_checked() {
         assert_eq!(size("960x540"), Ok([960, 540]));
         assert!(size("960").is_err() && size("0x5").is_err() && size("99999x1").is_err());
-        assert_eq!(camera_choice("a.JSON".as_ref()), CameraChoice::File("a.JSON".into()));
-        assert_eq!(camera_choice("front".as_ref()), CameraChoice::Named("front".into()));
+        assert_eq!(parse_camera("a.JSON".as_ref()), CameraChoice::File("a.JSON".into()));
+        assert_eq!(parse_camera("front".as_ref()), CameraChoice::Named("front".into()));
         assert!(aov("depth").is_ok() && aov("z").is_err());
         assert!(positive("0").is_err() && positive("nan").is_err() && not_negative("0").is_ok());
     }

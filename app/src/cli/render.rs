@@ -1,9 +1,9 @@
 //! `focus-brush render`.
 
 use super::arguments::{BackendName, EstimatorName, ExposureName, RenderArguments, SamplerName};
-use super::console::{Console, path_text, path_texts, say_json};
+use super::console::{Console, path_text, path_texts, print_json};
 use super::failure::Failure;
-use super::shot::{check_picture_output, opened, shot};
+use super::shot::{camera_and_focus, check_picture_output, open_input};
 use lens::Exposure;
 use project::{ColorSpace, Compression, PictureOptions, write_picture};
 use serde_json::json;
@@ -20,12 +20,12 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure
     let renderer = arguments.renderer;
     let gpu = gpu(arguments)?;
     let card = gpu.as_ref().map(|gpu| gpu.name().to_owned());
-    check_output(arguments)?;
+    check_options(arguments)?;
 
     let start = Instant::now();
-    let input = opened(&arguments.file, &arguments.shot.scene_look, console)?;
+    let input = open_input(&arguments.file, &arguments.shot.appearance, console)?;
     console.warn(&input.warnings);
-    let (camera, focus) = shot(&input, &arguments.shot, console)?;
+    let (camera, focus) = camera_and_focus(&input, &arguments.shot, console)?;
     let open_seconds = start.elapsed().as_secs_f64();
 
     let options = options(arguments, &input, gpu)?;
@@ -45,12 +45,12 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure
         console.note("the GPU does not hold this picture, or was lost: it was summed on the processor");
     }
 
-    let writing = Instant::now();
-    let written = PictureOptions { attributes, ..written(arguments, exposure) };
-    let files = write_picture(&arguments.output, &picture, &layers, &written)?;
-    let write_seconds = writing.elapsed().as_secs_f64();
+    let write_start = Instant::now();
+    let file_options = PictureOptions { attributes, ..picture_options(arguments, exposure) };
+    let files = write_picture(&arguments.output, &picture, &layers, &file_options)?;
+    let write_seconds = write_start.elapsed().as_secs_f64();
     if arguments.json {
-        say_json(&json!({
+        print_json(&json!({
             "input": path_text(&arguments.file),
             "files": path_texts(&files),
             "renderer": renderer.name(),
@@ -96,42 +96,42 @@ pub fn options(
     input: &Input,
     gpu: Option<Gpu>,
 ) -> Result<RenderOptions, Failure> {
-    let usual = arguments.tolerance.map_or_else(RenderOptions::default, RenderOptions::at_tolerance);
+    let defaults = arguments.tolerance.map_or_else(RenderOptions::default, RenderOptions::at_tolerance);
     let cells_a_side = match (&input.salf, arguments.cells) {
         (Some(_), Some(cells)) if cells > 1 => {
             let what = "is baked already, a cell a pixel (leave out --cells, or give the scene or project)";
-            return Err(Failure::bad(format!("{}: {what}", arguments.file.display())));
+            return Err(Failure::bad_input(format!("{}: {what}", arguments.file.display())));
         }
         (Some(_), _) => 1,
-        (None, cells) => cells.unwrap_or(usual.cells_a_side),
+        (None, cells) => cells.unwrap_or(defaults.cells_a_side),
     };
     if input.salf.is_some() && arguments.light.light_passes > 0 {
         let what =
             "is baked already, with its light (leave out --light-passes, or give the scene or project)";
-        return Err(Failure::bad(format!("{}: {what}", arguments.file.display())));
+        return Err(Failure::bad_input(format!("{}: {what}", arguments.file.display())));
     }
     if input.salf.is_some() && arguments.overscan > 0 {
         let what = "is baked for the frame alone (leave out --overscan, or give the scene or project)";
-        return Err(Failure::bad(format!("{}: {what}", arguments.file.display())));
+        return Err(Failure::bad_input(format!("{}: {what}", arguments.file.display())));
     }
     Ok(RenderOptions {
         cells_a_side,
-        light: arguments.light.quality(),
+        light: arguments.light.light_quality(),
         gpu,
         renderer: arguments.renderer,
-        truth: truth_options(arguments),
+        truth: ground_truth_options(arguments),
         layered: LayeredOptions { layers: arguments.layers },
         views: ViewsOptions { views_a_side: arguments.views, ..ViewsOptions::default() },
         scatter: ScatterOptions { rays_a_sample: arguments.rays, seed: arguments.seed },
         aovs: arguments.aov.clone(),
         coc: arguments.coc_convention,
         overscan: arguments.overscan,
-        ..usual
+        ..defaults
     })
 }
 
 /// How the picture is written; what its layers have to say is not yet there.
-pub fn written(arguments: &RenderArguments, exposure: Exposure) -> PictureOptions {
+pub fn picture_options(arguments: &RenderArguments, exposure: Exposure) -> PictureOptions {
     PictureOptions {
         exposure,
         half: arguments.half,
@@ -153,13 +153,13 @@ pub fn exposure(arguments: &RenderArguments, input: &Input) -> Exposure {
 
 /// The graphics card to sum on; none for the processor.
 pub fn gpu(arguments: &RenderArguments) -> Result<Option<Gpu>, Failure> {
-    let is_asked_for = arguments.backend == BackendName::Gpu || arguments.adapter.is_some();
+    let requires_gpu = arguments.backend == BackendName::Gpu || arguments.adapter.is_some();
     if arguments.renderer != Renderer::Splat {
         let message = format!(
             "--renderer {} has no GPU backend (use --backend cpu or auto)",
             arguments.renderer.name()
         );
-        return if is_asked_for { Err(SessionError::GpuAbsent(message).into()) } else { Ok(None) };
+        return if requires_gpu { Err(SessionError::GpuAbsent(message).into()) } else { Ok(None) };
     }
     open_gpu(arguments.backend, arguments.adapter.as_deref())
 }
@@ -170,7 +170,7 @@ pub fn open_gpu(backend: BackendName, adapter: Option<&str>) -> Result<Option<Gp
     Ok(opened.map_err(|absent| SessionError::GpuAbsent(absent.to_string()))?)
 }
 
-fn truth_options(arguments: &RenderArguments) -> TruthOptions {
+fn ground_truth_options(arguments: &RenderArguments) -> TruthOptions {
     TruthOptions {
         samples_per_pixel: arguments.spp,
         seed: arguments.seed,
@@ -187,39 +187,39 @@ fn truth_options(arguments: &RenderArguments) -> TruthOptions {
 }
 
 /// What would only be noticed after the work.
-pub fn check_output(arguments: &RenderArguments) -> Result<(), Failure> {
+pub fn check_options(arguments: &RenderArguments) -> Result<(), Failure> {
     if arguments.aov.contains(&Aov::StandardError) && arguments.renderer != Renderer::Truth {
         let what = "--aov stderr: only the ground truth knows its standard error (use --renderer truth)";
-        return Err(Failure::usage(what));
+        return Err(Failure::wrong_usage(what));
     }
     if arguments.light.light_passes > 0 && arguments.renderer == Renderer::Truth {
         let what = "--light-passes: the ground truth keeps no light that could be refined (leave it out, or use --spp)";
-        return Err(Failure::usage(what));
+        return Err(Failure::wrong_usage(what));
     }
-    let needs_paths = |aov: &&Aov| aov.needs_paths() && !arguments.renderer.tells_paths();
+    let needs_paths = |aov: &&Aov| aov.needs_paths() && !arguments.renderer.resolves_paths();
     if let Some((name, _)) = arguments.aov.iter().find(needs_paths).and_then(Aov::entry) {
         let what = format!(
             "--aov {name}: --renderer {} does not know it (use splat or truth)",
             arguments.renderer.name()
         );
-        return Err(Failure::usage(what));
+        return Err(Failure::wrong_usage(what));
     }
     if arguments.aov.contains(&Aov::Crypto) && !arguments.compression.is_lossless() {
         let what = "--compression dwaa: Cryptomatte does not survive loss (use zips, zip or piz, or write crypto to another file)";
-        return Err(Failure::usage(what));
+        return Err(Failure::wrong_usage(what));
     }
     check_picture_output(&arguments.output)?;
     let is_exr = arguments.output.extension().is_some_and(|e| e.eq_ignore_ascii_case("exr"));
-    let of_exr = [
+    let exr_only = [
         ("--half", arguments.half),
         ("--overscan", arguments.overscan > 0),
         ("--compression", arguments.compression != Compression::default()),
         ("--color-space", arguments.color_space != ColorSpace::default()),
     ];
-    match of_exr.into_iter().find(|(_, is_asked)| *is_asked && !is_exr) {
+    match exr_only.into_iter().find(|(_, is_set)| *is_set && !is_exr) {
         Some((option, _)) => {
             let what = format!("{}: {option} is of EXR alone (name an .exr)", arguments.output.display());
-            Err(Failure::usage(what))
+            Err(Failure::wrong_usage(what))
         }
         None => Ok(()),
     }

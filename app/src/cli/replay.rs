@@ -1,7 +1,7 @@
 //! `focus-brush replay`.
 
 use super::arguments::ReplayArguments;
-use super::console::{Console, path_text, say_json};
+use super::console::{Console, path_text, print_json};
 use super::failure::Failure;
 use super::new::check_project_name;
 use super::shot::{check_folder, unwrap_options};
@@ -16,23 +16,23 @@ pub fn run(arguments: &ReplayArguments, console: &Console) -> Result<(), Failure
     check_folder(&arguments.output)?;
     let steps = project::read_strokes(&arguments.strokes)?;
     let unwrap = unwrap_options(None);
-    let mut document = match InputKind::of(&arguments.file)? {
-        InputKind::Scene => Document::begin(&arguments.file, &Default::default(), &unwrap, console)?,
+    let mut document = match InputKind::from_path(&arguments.file)? {
+        InputKind::Scene => Document::create(&arguments.file, &Default::default(), &unwrap, console)?,
         _ => Document::open_saved(&arguments.file, &unwrap, console)?,
     };
     console.warn(&document.warnings);
     let start = Instant::now();
     let painted = replay(&mut document, &steps)
-        .map_err(|error| Failure::bad(format!("{}: {error}", arguments.strokes.display())))?;
+        .map_err(|error| Failure::bad_input(format!("{}: {error}", arguments.strokes.display())))?;
     let seconds = start.elapsed().as_secs_f64();
     document.to_project().save(&arguments.output)?;
     if arguments.json {
-        say_json(&json!({
+        print_json(&json!({
             "input": path_text(&arguments.file),
             "files": [path_text(&arguments.output)],
             "steps": steps.len(),
             "painted": painted,
-            "points": steps.iter().map(points).sum::<usize>(),
+            "points": steps.iter().map(point_count).sum::<usize>(),
             "seconds": { "paint": seconds },
         }));
     } else {
@@ -46,7 +46,7 @@ pub fn run(arguments: &ReplayArguments, console: &Console) -> Result<(), Failure
 }
 
 /// Points of a stroke.
-fn points(step: &RecordedStep) -> usize {
+fn point_count(step: &RecordedStep) -> usize {
     match step {
         RecordedStep::Stroke(stroke) => stroke.points.len(),
         _ => 0,

@@ -1,10 +1,10 @@
 //! `focus-brush report`.
 
 use super::arguments::{BackendName, ReportArguments};
-use super::console::{Console, path_texts, say_json};
+use super::console::{Console, path_texts, print_json};
 use super::failure::Failure;
 use super::render::open_gpu;
-use super::shot::{unwrap_options, world};
+use super::shot::{read_world, unwrap_options};
 use crate::window::demo;
 use report::{ReportOptions, SceneRequest};
 use serde_json::json;
@@ -15,33 +15,34 @@ use std::path::PathBuf;
 
 /// Measures, and writes the report.
 pub fn run(arguments: &ReportArguments, console: &Console) -> Result<(), Failure> {
-    let usual_spp = match (arguments.engine, arguments.quick) {
+    let default_spp = match (arguments.engine, arguments.quick) {
         (true, _) => ReportOptions::ENGINE_REFERENCE_SPP,
         (false, true) => ReportOptions::QUICK_REFERENCE_SPP,
         (false, false) => ReportOptions::REFERENCE_SPP,
     };
     let options = ReportOptions {
         size: arguments.shot.size,
-        reference_spp: arguments.spp.unwrap_or(usual_spp),
+        reference_spp: arguments.spp.unwrap_or(default_spp),
         is_quick: arguments.quick,
         with_hard_cases: arguments.hard,
-        build: build()?,
+        build: program_checksum()?,
         unwrap: unwrap_options(None),
     };
     let note = |line: &str| console.note(line);
     if arguments.engine {
         return run_engine(arguments, &options, console);
     }
-    let report = report::run(&requests(arguments)?, &options, &arguments.output, console, &note)?;
-    let wrong = report.hard.iter().flatten().filter(|outcome| !(outcome.pass && outcome.control_fails));
-    let failed: Vec<&str> = wrong.map(|outcome| outcome.case.as_str()).collect();
+    let report = report::run(&scene_requests(arguments)?, &options, &arguments.output, console, &note)?;
+    let failed_cases =
+        report.hard.iter().flatten().filter(|outcome| !(outcome.pass && outcome.control_fails));
+    let failed_names: Vec<&str> = failed_cases.map(|outcome| outcome.case.as_str()).collect();
     if arguments.json {
-        say_json(&json!({
+        print_json(&json!({
             "files": path_texts(&report.files),
             "measurements": report.measured.len(),
             "new": report.new,
             "hard_cases": report.hard.as_ref().map(Vec::len),
-            "hard_cases_failed": failed,
+            "hard_cases_failed": failed_names,
             "machine": report.machine,
             "seconds": report.seconds,
         }));
@@ -50,10 +51,13 @@ pub fn run(arguments: &ReportArguments, console: &Console) -> Result<(), Failure
         console.note(&format!("{all} measurements, {new} of them new, in {:.0} s", report.seconds));
         report.files.iter().for_each(|file| console.note(&format!("wrote {}", file.display())));
     }
-    if !failed.is_empty() {
+    if !failed_names.is_empty() {
         let table = arguments.output.join("hard.json");
-        let what = format!("hard cases that do not come out as they must: {}", failed.join("; "));
-        return Err(Failure::partly(format!("{}: {what} (see its `expected` and `found`)", table.display())));
+        let what = format!("hard cases that do not come out as they must: {}", failed_names.join("; "));
+        return Err(Failure::partly_done(format!(
+            "{}: {what} (see its `expected` and `found`)",
+            table.display()
+        )));
     }
     Ok(())
 }
@@ -66,11 +70,11 @@ fn run_engine(
 ) -> Result<(), Failure> {
     let note = |line: &str| console.note(line);
     let backends = backends(arguments)?;
-    let requests = requests(arguments)?;
+    let requests = scene_requests(arguments)?;
     let report = report::run_engine(&requests, options, &backends, &arguments.output, console, &note)?;
     let broken: Vec<_> = report.checks.iter().filter(|check| !check.holds).collect();
     if arguments.json {
-        say_json(&json!({
+        print_json(&json!({
             "files": path_texts(&report.files),
             "measurements": report.records.len(),
             "checks": report.checks,
@@ -84,7 +88,7 @@ fn run_engine(
         Some(check) => {
             let about = arguments.output.join("about.json");
             let what = format!("{}: does not hold: {}", check.scene, check.what);
-            Err(Failure::partly(format!("{}: {what} (see its `checks`)", about.display())))
+            Err(Failure::partly_done(format!("{}: {what} (see its `checks`)", about.display())))
         }
     }
 }
@@ -102,18 +106,18 @@ fn backends(arguments: &ReportArguments) -> Result<Vec<Option<Gpu>>, Failure> {
 }
 
 /// The scenes that were named; without any the demo, unless the hard cases were asked for.
-fn requests(arguments: &ReportArguments) -> Result<Vec<SceneRequest>, Failure> {
+fn scene_requests(arguments: &ReportArguments) -> Result<Vec<SceneRequest>, Failure> {
     let shot = &arguments.shot;
-    let world = world(&shot.scene_look)?;
+    let world = read_world(&shot.appearance)?;
     let request = |file: &PathBuf| SceneRequest {
         file: file.clone(),
         camera: shot.camera.clone(),
         focus: shot.focus.clone(),
-        back_faces: shot.scene_look.back_faces,
-        variant: shot.scene_look.variant(),
+        back_faces: shot.appearance.back_faces,
+        variant: shot.appearance.variant(),
         world: world.clone(),
-        single_scattering: shot.scene_look.single_scattering,
-        photo_lookup: shot.scene_look.photos,
+        single_scattering: shot.appearance.single_scattering,
+        photo_lookup: shot.appearance.photos,
     };
     if !arguments.scenes.is_empty() {
         return Ok(arguments.scenes.iter().map(request).collect());
@@ -121,21 +125,22 @@ fn requests(arguments: &ReportArguments) -> Result<Vec<SceneRequest>, Failure> {
     if arguments.hard {
         return Ok(Vec::new());
     }
-    let demo = demo::project()
-        .ok_or_else(|| Failure::bad("assets/demo: the demo is not installed (name a scene)"))?;
+    let demo = demo::demo_project()
+        .ok_or_else(|| Failure::bad_input("assets/demo: the demo is not installed (name a scene)"))?;
     Ok(vec![request(&demo)])
 }
 
 /// What tells this build of the program from another: the checksum of the program itself.
-fn build() -> Result<String, Failure> {
-    let unread = |error: std::io::Error| {
+fn program_checksum() -> Result<String, Failure> {
+    let read_failure = |error: std::io::Error| {
         Failure::try_again(format!("the running program cannot be read: {error} (start it by another path)"))
     };
-    let mut program = std::fs::File::open(std::env::current_exe().map_err(unread)?).map_err(unread)?;
+    let mut program =
+        std::fs::File::open(std::env::current_exe().map_err(read_failure)?).map_err(read_failure)?;
     let mut sum = Sha256::new();
     let mut block = vec![0; 1 << 20];
     loop {
-        let length = program.read(&mut block).map_err(unread)?;
+        let length = program.read(&mut block).map_err(read_failure)?;
         if length == 0 {
             return Ok(sum.finalize().iter().map(|byte| format!("{byte:02x}")).collect());
         }

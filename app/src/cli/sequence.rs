@@ -1,10 +1,10 @@
 //! `focus-brush render --frame` and `--frames`.
 
 use super::arguments::RenderArguments;
-use super::console::{Console, path_text, say_json};
+use super::console::{Console, path_text, print_json};
 use super::failure::Failure;
-use super::render::{check_output, exposure, gpu, options, written};
-use super::shot::{opened, shot};
+use super::render::{check_options, exposure, gpu, options, picture_options};
+use super::shot::{camera_and_focus, open_input};
 use super::stopping;
 use focus::LensMotion;
 use project::{PictureOptions, read_keys, seal_picture, write_picture};
@@ -18,59 +18,60 @@ use std::time::Instant;
 
 /// Renders frames.
 pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure> {
-    let asked = &arguments.sequence;
-    stopping::heed()?;
+    let sequence_arguments = &arguments.sequence;
+    stopping::install_handler()?;
     let gpu = gpu(arguments)?;
-    check_output(arguments)?;
+    check_options(arguments)?;
     let (files, frames) = files_and_frames(arguments)?;
-    let keys = asked.keys.as_deref().map(read_keys).transpose()?;
+    let keys = sequence_arguments.keys.as_deref().map(read_keys).transpose()?;
 
     let start = Instant::now();
-    let input = opened(&arguments.file, &arguments.shot.scene_look, console)?;
+    let input = open_input(&arguments.file, &arguments.shot.appearance, console)?;
     console.warn(&input.warnings);
-    let (camera, focus) = shot(&input, &arguments.shot, console)?;
+    let (camera, focus) = camera_and_focus(&input, &arguments.shot, console)?;
     let render = options(arguments, &input, gpu)?;
-    let written = written(arguments, exposure(arguments, &input));
-    let of_project =
+    let file_options = picture_options(arguments, exposure(arguments, &input));
+    let project_motion =
         || input.project.as_ref().map_or_else(LensMotion::default, |project| project.lens_motion.clone());
     let take = TakeOptions {
-        frames_per_second: asked.fps,
-        animation: asked.animation.clone(),
-        lens: keys.unwrap_or_else(of_project),
+        frames_per_second: sequence_arguments.fps,
+        animation: sequence_arguments.animation.clone(),
+        lens: keys.unwrap_or_else(project_motion),
         has_layers: arguments.shot.focus.is_none(),
         overscan: arguments.overscan,
     };
     let take = Take::new(&input, camera, &focus, take, console)?;
     let write = |file: &Path, rendered: &Rendered, plan: [u8; 32]| -> Result<Vec<PathBuf>, SessionError> {
-        let written = PictureOptions { attributes: rendered.attributes.clone(), ..written.clone() };
-        let files = write_picture(file, &rendered.picture, &rendered.layers, &written)?;
+        let frame_options =
+            PictureOptions { attributes: rendered.attributes.clone(), ..file_options.clone() };
+        let files = write_picture(file, &rendered.picture, &rendered.layers, &frame_options)?;
         seal_picture(&files, &plan)?;
         Ok(files)
     };
     let sequence = SequenceOptions {
         render,
         files,
-        written: format!("{written:?} {}", extension(&arguments.output)),
+        written: format!("{file_options:?} {}", extension(&arguments.output)),
         write: &write,
-        tell: &|frame| tell(console, frame),
+        on_frame: &|frame| report_frame(console, frame),
         progress: console,
     };
     let report = render_frames(&take, &frames, &sequence, console)?;
     console.warn(&report.warnings);
-    conclude(arguments, console, &report, start)
+    summarize(arguments, console, &report, start)
 }
 
 /// Where which frames are written.
 fn files_and_frames(arguments: &RenderArguments) -> Result<(FrameFiles, Vec<u32>), Failure> {
-    let asked = &arguments.sequence;
-    let frames = asked.frames.clone().or(asked.frame.map(FrameList::of));
+    let sequence_arguments = &arguments.sequence;
+    let frames = sequence_arguments.frames.clone().or(sequence_arguments.frame.map(FrameList::single));
     let frames = frames.as_ref().map_or(&[][..], FrameList::numbers);
     let files = match FrameFiles::new(&arguments.output) {
-        Err(_) if asked.frame.is_some() => FrameFiles::of_one(&arguments.output),
-        files => files.map_err(Failure::usage)?,
+        Err(_) if sequence_arguments.frame.is_some() => FrameFiles::single(&arguments.output),
+        files => files.map_err(Failure::wrong_usage)?,
     };
-    let shard = asked.shard.unwrap_or(Shard::WHOLE);
-    let own = frames.iter().enumerate().filter(|(piece, _)| shard.has(*piece)).map(|(_, frame)| *frame);
+    let shard = sequence_arguments.shard.unwrap_or(Shard::WHOLE);
+    let own = frames.iter().enumerate().filter(|(piece, _)| shard.contains(*piece)).map(|(_, frame)| *frame);
     Ok((files, own.collect()))
 }
 
@@ -79,7 +80,7 @@ fn extension(file: &Path) -> String {
 }
 
 /// Tells of a frame.
-fn tell(console: &Console, report: &FrameReport) {
+fn report_frame(console: &Console, report: &FrameReport) {
     let FrameReport { frame, seconds, file, outcome, took_seconds } = report;
     let what = match outcome {
         Outcome::Written => format!("wrote {} ({took_seconds:.1} s)", file.display()),
@@ -100,7 +101,7 @@ fn tell(console: &Console, report: &FrameReport) {
 }
 
 /// Tells what was done, and how it went.
-fn conclude(
+fn summarize(
     arguments: &RenderArguments,
     console: &Console,
     report: &SequenceReport,
@@ -109,17 +110,17 @@ fn conclude(
     let written = report.count(|outcome| *outcome == Outcome::Written);
     let skipped = report.count(|outcome| *outcome == Outcome::Skipped);
     let failed = report.frames.len() - written - skipped;
-    let Baking { baked, kept, scenes, seconds, light_seconds } = report.baking;
+    let Baking { baked, reused, scenes, seconds, light_seconds } = report.baking;
     let saved = report.saved_seconds();
     if arguments.json {
         let frame = |frame: &FrameReport| json!({ "frame": frame.frame, "file": path_text(&frame.file), "state": frame.outcome.name() });
-        say_json(&json!({
+        print_json(&json!({
             "input": path_text(&arguments.file),
             "frames": report.frames.iter().map(frame).collect::<Vec<_>>(),
             "written": written,
             "skipped": skipped,
             "failed": failed,
-            "light_fields": { "baked": baked, "kept": kept, "seconds": seconds, "saved_seconds": saved },
+            "light_fields": { "baked": baked, "kept": reused, "seconds": seconds, "saved_seconds": saved },
             "light": { "scenes": scenes, "seconds": light_seconds },
             "seconds": start.elapsed().as_secs_f64(),
             "warnings": report.warnings,
@@ -131,10 +132,11 @@ fn conclude(
     }
     if baked > 0 {
         line += &format!("; light of {scenes} scenes in {light_seconds:.1} s");
-        line +=
-            &format!("; {baked} light fields baked in {seconds:.1} s, {kept} frames used one that was there");
+        line += &format!(
+            "; {baked} light fields baked in {seconds:.1} s, {reused} frames used one that was there"
+        );
     }
-    if kept > 0 {
+    if reused > 0 {
         line += &format!(" (about {saved:.1} s saved)");
     }
     console.note(&line);
@@ -142,7 +144,7 @@ fn conclude(
     match first {
         None => Ok(()),
         Some(error) if written + skipped > 0 => {
-            Err(Failure::partly(format!("{failed} of {} frames failed: {error}", report.frames.len())))
+            Err(Failure::partly_done(format!("{failed} of {} frames failed: {error}", report.frames.len())))
         }
         Some(error) => Err(error.clone().into()),
     }

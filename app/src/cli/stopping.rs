@@ -6,26 +6,26 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
-static IS_ASKED_FOR: OnceLock<Arc<AtomicBool>> = OnceLock::new();
+static REQUESTED: OnceLock<Arc<AtomicBool>> = OnceLock::new();
 
 /// How often it is looked whether the signal came.
-const EVERY: Duration = Duration::from_millis(100);
+const POLL_INTERVAL: Duration = Duration::from_millis(100);
 
 /// Work that has not stopped by itself after this is ended: farms kill what has not gone within some seconds. Files are replaced whole,
 /// so that nothing is cut.
-const PATIENCE: Duration = Duration::from_secs(3);
+const GRACE_PERIOD: Duration = Duration::from_secs(3);
 
 /// Heeds the signal from now on.
-pub fn heed() -> Result<(), Failure> {
-    let is_asked_for = IS_ASKED_FOR.get_or_init(Arc::default).clone();
-    signal_hook::flag::register(SIGTERM, is_asked_for)
+pub fn install_handler() -> Result<(), Failure> {
+    let flag = REQUESTED.get_or_init(Arc::default).clone();
+    signal_hook::flag::register(SIGTERM, flag)
         .map_err(|error| Failure::try_again(format!("no signal can be heeded: {error} (try again)")))?;
     let watch = || {
-        while !self::is_asked_for() {
-            std::thread::sleep(EVERY);
+        while !self::is_requested() {
+            std::thread::sleep(POLL_INTERVAL);
         }
-        std::thread::sleep(PATIENCE);
-        eprintln!("error: {}", Failure::stopped().message);
+        std::thread::sleep(GRACE_PERIOD);
+        eprintln!("error: {}", Failure::terminated().message);
         std::process::exit(TRY_AGAIN.into());
     };
     let thread = std::thread::Builder::new().name("signals".into()).spawn(watch);
@@ -35,6 +35,6 @@ pub fn heed() -> Result<(), Failure> {
 }
 
 /// Whether the signal came.
-pub fn is_asked_for() -> bool {
-    IS_ASKED_FOR.get().is_some_and(|flag| flag.load(Ordering::Relaxed))
+pub fn is_requested() -> bool {
+    REQUESTED.get().is_some_and(|flag| flag.load(Ordering::Relaxed))
 }

@@ -9,10 +9,10 @@ use super::shot::check_folder;
 pub fn run(arguments: &ThumbnailArguments, console: &Console) -> Result<(), Failure> {
     let ThumbnailArguments { file, output, size } = arguments;
     check_folder(output)?;
-    let thumbnail = session::thumbnail(file, &*session::Steps::begin(console, "drawing"))?;
-    let smaller = thumbnail.of_side(*size);
-    let smaller = smaller.map_err(|what| {
-        Failure::bad(format!("{}: its picture is damaged: {what} (save it anew)", file.display()))
+    let thumbnail = session::read_thumbnail(file, &*session::Steps::begin(console, "drawing"))?;
+    let reduced = thumbnail.reduced_to(*size);
+    let smaller = reduced.map_err(|what| {
+        Failure::bad_input(format!("{}: its picture is damaged: {what} (save it anew)", file.display()))
     })?;
     Ok(smaller.write(output)?)
 }

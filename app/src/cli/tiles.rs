@@ -1,10 +1,10 @@
 //! `focus-brush render --tiles`.
 
 use super::arguments::{BackendName, RenderArguments};
-use super::console::{Console, path_text, say_json};
+use super::console::{Console, path_text, print_json};
 use super::failure::Failure;
-use super::render::{check_output, exposure, options, written};
-use super::shot::{opened, shot};
+use super::render::{check_options, exposure, options, picture_options};
+use super::shot::{camera_and_focus, open_input};
 use super::stopping;
 use serde_json::json;
 use session::{Outcome, Renderer, TileGrid, TileOptions, TileReport, TilesReport, render_tiles};
@@ -13,60 +13,60 @@ use std::time::Instant;
 
 /// Draws a picture in tiles, or a share of its tiles.
 pub fn run(arguments: &RenderArguments, grid: TileGrid, console: &Console) -> Result<(), Failure> {
-    stopping::heed()?;
-    check(arguments)?;
-    check_output(arguments)?;
+    stopping::install_handler()?;
+    check_supported(arguments)?;
+    check_options(arguments)?;
     let start = Instant::now();
-    let input = opened(&arguments.file, &arguments.shot.scene_look, console)?;
+    let input = open_input(&arguments.file, &arguments.shot.appearance, console)?;
     if input.salf.is_some() {
         let what =
             "is baked already, for the whole picture (leave out --tiles, or give the scene or project)";
-        return Err(Failure::usage(format!("{}: {what}", arguments.file.display())));
+        return Err(Failure::wrong_usage(format!("{}: {what}", arguments.file.display())));
     }
     console.warn(&input.warnings);
-    let (camera, focus) = shot(&input, &arguments.shot, console)?;
+    let (camera, focus) = camera_and_focus(&input, &arguments.shot, console)?;
     let camera = camera.overscanned(arguments.overscan);
     if let Err(what) = grid.tiles([camera.width, camera.height]) {
-        return Err(Failure::usage(format!("--tiles: {what}")));
+        return Err(Failure::wrong_usage(format!("--tiles: {what}")));
     }
     let tiles = TileOptions {
         render: options(arguments, &input, None)?,
         grid,
         shard: arguments.sequence.shard,
         output: arguments.output.clone(),
-        written: written(arguments, exposure(arguments, &input)),
+        written: picture_options(arguments, exposure(arguments, &input)),
         integers: arguments.integers.unwrap_or_default(),
-        tell: &|tile| tell(console, tile),
+        on_tile: &|tile| report_tile(console, tile),
         progress: console,
     };
     let report = render_tiles(&input, &camera, &focus, &tiles, console)?;
-    conclude(arguments, console, &report, start)
+    summarize(arguments, console, &report, start)
 }
 
 /// What cannot be drawn in tiles.
-fn check(arguments: &RenderArguments) -> Result<(), Failure> {
+fn check_supported(arguments: &RenderArguments) -> Result<(), Failure> {
     if arguments.renderer != Renderer::Splat {
         let name = arguments.renderer.name();
-        return Err(Failure::usage(format!("--tiles: --renderer {name} draws no tiles (use splat)")));
+        return Err(Failure::wrong_usage(format!("--tiles: --renderer {name} draws no tiles (use splat)")));
     }
     if arguments.backend == BackendName::Gpu || arguments.adapter.is_some() {
         let what = "--tiles: tiles are summed on the processor (leave out --backend gpu and --adapter; the picture is the same)";
-        return Err(Failure::usage(what));
+        return Err(Failure::wrong_usage(what));
     }
-    check_exr(&arguments.output)
+    check_exr_output(&arguments.output)
 }
 
 /// Tiles are merged to an EXR alone.
-pub fn check_exr(output: &Path) -> Result<(), Failure> {
+pub fn check_exr_output(output: &Path) -> Result<(), Failure> {
     if output.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("exr")) {
         return Ok(());
     }
-    Err(Failure::usage(format!("{}: tiles are merged to an EXR (name an .exr)", output.display())))
+    Err(Failure::wrong_usage(format!("{}: tiles are merged to an EXR (name an .exr)", output.display())))
 }
 
 /// Tells of a tile.
-fn tell(console: &Console, report: &TileReport) {
-    let TileReport { tile, of, file, outcome, took_seconds } = report;
+fn report_tile(console: &Console, report: &TileReport) {
+    let TileReport { tile, tile_count: of, file, outcome, took_seconds } = report;
     let what = match outcome {
         Outcome::Written => format!("wrote {} ({took_seconds:.1} s)", file.display()),
         Outcome::Skipped => format!("{} is finished", file.display()),
@@ -86,7 +86,7 @@ fn tell(console: &Console, report: &TileReport) {
 }
 
 /// Tells what was done, and how it went.
-fn conclude(
+fn summarize(
     arguments: &RenderArguments,
     console: &Console,
     report: &TilesReport,
@@ -99,7 +99,7 @@ fn conclude(
     console.warn(warnings);
     if arguments.json {
         let tile = |tile: &TileReport| json!({ "tile": tile.tile, "file": path_text(&tile.file), "state": tile.outcome.name() });
-        say_json(&json!({
+        print_json(&json!({
             "input": path_text(&arguments.file),
             "file": merged.as_ref().map(|_| path_text(&arguments.output)),
             "width": merged.as_ref().map(|merged| merged.size[0]),
@@ -124,7 +124,7 @@ fn conclude(
     match first {
         None => Ok(()),
         Some(error) if written + skipped > 0 => {
-            Err(Failure::partly(format!("{failed} of {} tiles failed: {error}", tiles.len())))
+            Err(Failure::partly_done(format!("{failed} of {} tiles failed: {error}", tiles.len())))
         }
         Some(error) => Err(error.clone().into()),
     }

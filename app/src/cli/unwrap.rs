@@ -1,7 +1,7 @@
 //! `focus-brush unwrap`.
 
 use super::arguments::UnwrapArguments;
-use super::console::{Console, path_text, say_json};
+use super::console::{Console, path_text, print_json};
 use super::failure::Failure;
 use super::shot::{check_folder, unwrap_options};
 use serde_json::json;
@@ -10,9 +10,9 @@ use std::time::Instant;
 
 /// Unwraps a scene and writes it with the atlas.
 pub fn run(arguments: &UnwrapArguments, console: &Console) -> Result<(), Failure> {
-    if InputKind::of(&arguments.scene)? != InputKind::Scene {
+    if InputKind::from_path(&arguments.scene)? != InputKind::Scene {
         let what = "is no scene (give a .glb or .gltf; `export --glb` writes that of a project)";
-        return Err(Failure::bad(format!("{}: {what}", arguments.scene.display())));
+        return Err(Failure::bad_input(format!("{}: {what}", arguments.scene.display())));
     }
     check_folder(&arguments.output)?;
     let start = Instant::now();
@@ -24,7 +24,7 @@ pub fn run(arguments: &UnwrapArguments, console: &Console) -> Result<(), Failure
     let unwrap_seconds = unwrapping.elapsed().as_secs_f64();
     write_unwrapped(&arguments.output, &input.scene, &atlas, None, console)?;
     if arguments.json {
-        say_json(&json!({
+        print_json(&json!({
             "input": path_text(&arguments.scene),
             "files": [path_text(&arguments.output)],
             "triangles": input.scene.triangles.len(),

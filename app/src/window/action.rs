@@ -11,7 +11,7 @@ pub enum Action {
     /// A command of the table.
     Run(CommandId),
     /// Straight to the session.
-    Do(Box<Command>),
+    Apply(Box<Command>),
     /// Opens a file, after asking about unsaved changes.
     Open(PathBuf),
     /// Asks for the picture of an aperture mask, then uses it.
@@ -23,16 +23,16 @@ pub enum Action {
     /// The next point of a rack focus.
     RackPoint(SurfaceHit),
     /// Puts a panel elsewhere.
-    Place(Pane, Placing),
+    Place(Pane, PanelCommand),
     /// Something with a preset.
-    Preset(PresetWish),
+    Preset(PresetAction),
     /// A sentence for the user: something cannot be done.
-    Complain(String),
+    ShowError(String),
 }
 
 /// What is done with a preset.
 #[derive(Clone, Debug)]
-pub enum PresetWish {
+pub enum PresetAction {
     /// Brush or camera become as it says.
     Use(Box<Preset>),
     /// The user's own preset of a file, with its name, gets another name.
@@ -43,15 +43,15 @@ pub enum PresetWish {
     Export(Box<Preset>),
 }
 
-impl From<PresetWish> for Action {
-    fn from(wish: PresetWish) -> Self {
-        Self::Preset(wish)
+impl From<PresetAction> for Action {
+    fn from(preset_action: PresetAction) -> Self {
+        Self::Preset(preset_action)
     }
 }
 
 /// What is done with a panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Placing {
+pub enum PanelCommand {
     /// Over all others, or back.
     Enlarge,
     /// Afloat, or back.
@@ -62,7 +62,7 @@ pub enum Placing {
 
 impl From<Command> for Action {
     fn from(command: Command) -> Self {
-        Self::Do(Box::new(command))
+        Self::Apply(Box::new(command))
     }
 }
 

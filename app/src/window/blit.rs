@@ -31,7 +31,7 @@ pub struct Drawable {
     texture: wgpu::Texture,
     place: wgpu::Buffer,
     /// By filter.
-    bound: [wgpu::BindGroup; 2],
+    bind_groups: [wgpu::BindGroup; 2],
 }
 
 impl Drawable {
@@ -127,7 +127,7 @@ impl Blitter {
             mapped_at_creation: false,
         });
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
-        let bound = [0, 1].map(|filter| {
+        let bind_groups = [0, 1].map(|filter| {
             self.device.create_bind_group(&wgpu::BindGroupDescriptor {
                 label: Some("picture"),
                 layout: &self.layout,
@@ -141,7 +141,7 @@ impl Blitter {
                 ],
             })
         });
-        Drawable { size: [texture.width(), texture.height()], texture, place, bound }
+        Drawable { size: [texture.width(), texture.height()], texture, place, bind_groups }
     }
 
     /// Writes a rectangle of a picture, columns and rows within it, from all of its pixels, row by row.
@@ -177,37 +177,37 @@ impl Blitter {
     pub fn paint(&self, painter: &Painter, drawn: &Drawable, image: Rect, filter: Filter) {
         // On whole pixels of the screen, as the viewport will be.
         let scale = painter.ctx().pixels_per_point();
-        let seen = on_pixels(image.intersect(painter.clip_rect()), scale);
-        if !seen.is_positive() || !image.is_positive() {
+        let visible = snapped_to_pixels(image.intersect(painter.clip_rect()), scale);
+        if !visible.is_positive() || !image.is_positive() {
             return;
         }
         let share = |at: egui::Pos2| (at - image.min) / image.size();
-        let (min, max) = (share(seen.min), share(seen.max));
-        let call = Call {
+        let (min, max) = (share(visible.min), share(visible.max));
+        let call = DrawCallback {
             pipeline: self.pipeline.clone(),
-            bound: drawn.bound[filter as usize].clone(),
+            bind_group: drawn.bind_groups[filter as usize].clone(),
             place: drawn.place.clone(),
             corners: [min.x, min.y, max.x, max.y],
         };
-        painter.add(Callback::new_paint_callback(seen, call));
+        painter.add(Callback::new_paint_callback(visible, call));
     }
 }
 
 /// A rectangle, in points, with its edges between pixels of a screen that has `scale` of them a point.
-pub fn on_pixels(rect: Rect, scale: f32) -> Rect {
+pub fn snapped_to_pixels(rect: Rect, scale: f32) -> Rect {
     let rounded = |at: egui::Pos2| ((at.to_vec2() * scale).round() / scale).to_pos2();
     Rect::from_min_max(rounded(rect.min), rounded(rect.max))
 }
 
 /// One picture at one place.
-struct Call {
+struct DrawCallback {
     pipeline: wgpu::RenderPipeline,
-    bound: wgpu::BindGroup,
+    bind_group: wgpu::BindGroup,
     place: wgpu::Buffer,
     corners: [f32; 4],
 }
 
-impl CallbackTrait for Call {
+impl CallbackTrait for DrawCallback {
     fn prepare(
         &self,
         _device: &wgpu::Device,
@@ -227,7 +227,7 @@ impl CallbackTrait for Call {
         _resources: &CallbackResources,
     ) {
         pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, &self.bound, &[]);
+        pass.set_bind_group(0, &self.bind_group, &[]);
         pass.draw(0..4, 0..1);
     }
 }

@@ -23,20 +23,20 @@ pub fn rows(ui: &mut Ui, id: &str, add: impl FnOnce(&mut Ui)) {
 }
 
 /// Ends the run of edits of a control when it is let go, so that a drag is one step of undo.
-pub fn finish(response: &Response, actions: &mut Vec<Action>) {
+pub fn finish_edit(response: &Response, actions: &mut Vec<Action>) {
     if response.drag_stopped() || response.lost_focus() {
         actions.push(Command::FinishEdit.into());
     }
 }
 
 /// A number that changes in proportion to itself when dragged: for lengths and f-numbers.
-pub fn proportional<'a>(value: &'a mut f64, range: std::ops::RangeInclusive<f64>) -> DragValue<'a> {
+pub fn proportional_value<'a>(value: &'a mut f64, range: std::ops::RangeInclusive<f64>) -> DragValue<'a> {
     let speed = value.abs().clamp(1e-6, 1e9) * 0.01;
     DragValue::new(value).speed(speed).range(range)
 }
 
 /// Names a control that has no label of its own, for screen readers and tests.
-pub fn named(response: &Response, name: &str) {
+pub fn set_accessible_name(response: &Response, name: &str) {
     response.ctx.accesskit_node_builder(response.id, |node| node.set_label(name));
 }
 
@@ -47,12 +47,12 @@ pub fn list_row(ui: &mut Ui, chosen: bool, text: &str) -> Response {
 }
 
 /// A length with three significant digits, for labels.
-pub fn length(metres: f64) -> String {
-    if metres.is_infinite() { "∞".into() } else { format!("{} m", significant(metres)) }
+pub fn length_text(metres: f64) -> String {
+    if metres.is_infinite() { "∞".into() } else { format!("{} m", significant_digits(metres)) }
 }
 
 /// A number with three significant digits.
-pub fn significant(value: f64) -> String {
+pub fn significant_digits(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value}");
     }
@@ -63,40 +63,40 @@ pub fn significant(value: f64) -> String {
 
 /// Three significant digits in a control, without trailing zeros; egui keeps more while typing.
 pub fn format_number(value: f64, _decimals: std::ops::RangeInclusive<usize>) -> String {
-    let text = significant(value);
+    let text = significant_digits(value);
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_string() } else { text }
 }
 
 /// Bytes for people.
-pub fn bytes(count: usize) -> String {
+pub fn bytes_text(count: usize) -> String {
     match count {
         0..1_000 => format!("{count} B"),
-        1_000..1_000_000 => format!("{} kB", significant(count as f64 / 1e3)),
-        1_000_000..1_000_000_000 => format!("{} MB", significant(count as f64 / 1e6)),
-        _ => format!("{} GB", significant(count as f64 / 1e9)),
+        1_000..1_000_000 => format!("{} kB", significant_digits(count as f64 / 1e3)),
+        1_000_000..1_000_000_000 => format!("{} MB", significant_digits(count as f64 / 1e6)),
+        _ => format!("{} GB", significant_digits(count as f64 / 1e9)),
     }
 }
 
 /// A count for people.
-pub fn count(n: usize) -> String {
+pub fn count_text(n: usize) -> String {
     match n {
         0..10_000 => n.to_string(),
-        10_000..1_000_000 => format!("{} k", significant(n as f64 / 1e3)),
-        _ => format!("{} M", significant(n as f64 / 1e6)),
+        10_000..1_000_000 => format!("{} k", significant_digits(n as f64 / 1e3)),
+        _ => format!("{} M", significant_digits(n as f64 / 1e6)),
     }
 }
 
 /// A duration for people.
-pub fn seconds(seconds: f64) -> String {
+pub fn seconds_text(seconds: f64) -> String {
     if seconds < 1.0 {
-        format!("{} ms", significant(seconds * 1e3))
+        format!("{} ms", significant_digits(seconds * 1e3))
     } else {
-        format!("{} s", significant(seconds))
+        format!("{} s", significant_digits(seconds))
     }
 }
 
 /// How long something will still take, for people: no finer than such a guess is.
-pub fn time_left(seconds: u32) -> String {
+pub fn time_left_text(seconds: u32) -> String {
     match seconds {
         0..10 => format!("{seconds} s left"),
         10..90 => format!("{} s left", seconds.div_ceil(5) * 5),
@@ -105,20 +105,20 @@ pub fn time_left(seconds: u32) -> String {
 }
 
 /// A signed circle of confusion in words: `near 12 px`, `sharp`, `far 3.1 px`.
-pub fn circle(px: f64) -> String {
+pub fn circle_text(px: f64) -> String {
     match px {
         _ if px.abs() < 0.05 => "sharp".into(),
-        _ if px < 0.0 => format!("near {} px", significant(-px)),
-        _ => format!("far {} px", significant(px)),
+        _ if px < 0.0 => format!("near {} px", significant_digits(-px)),
+        _ => format!("far {} px", significant_digits(px)),
     }
 }
 
 /// The same as an amount: `12 px of near blur`, `no blur`.
-pub fn circle_amount(px: f64) -> String {
+pub fn circle_amount_text(px: f64) -> String {
     match px {
         _ if px.abs() < 0.05 => "no blur".into(),
-        _ if px < 0.0 => format!("{} px of near blur", significant(-px)),
-        _ => format!("{} px of far blur", significant(px)),
+        _ if px < 0.0 => format!("{} px of near blur", significant_digits(-px)),
+        _ => format!("{} px of far blur", significant_digits(px)),
     }
 }
 
@@ -128,16 +128,16 @@ mod tests {
 
     #[test]
     fn numbers_read_well() {
-        assert_eq!(significant(0.012345), "0.0123");
-        assert_eq!(significant(1234.5), "1234");
-        assert_eq!(significant(1.0), "1.00");
+        assert_eq!(significant_digits(0.012345), "0.0123");
+        assert_eq!(significant_digits(1234.5), "1234");
+        assert_eq!(significant_digits(1.0), "1.00");
         assert_eq!(format_number(1.4, 0..=3), "1.4");
         assert_eq!(format_number(100.0, 0..=3), "100");
-        assert_eq!(length(f64::INFINITY), "∞");
-        assert_eq!(bytes(12_300_000), "12.3 MB");
-        assert_eq!(count(1_900_000), "1.90 M");
-        assert_eq!(seconds(0.021), "21.0 ms");
-        assert_eq!(circle(-12.0), "near 12.0 px");
-        assert_eq!(circle(0.0), "sharp");
+        assert_eq!(length_text(f64::INFINITY), "∞");
+        assert_eq!(bytes_text(12_300_000), "12.3 MB");
+        assert_eq!(count_text(1_900_000), "1.90 M");
+        assert_eq!(seconds_text(0.021), "21.0 ms");
+        assert_eq!(circle_text(-12.0), "near 12.0 px");
+        assert_eq!(circle_text(0.0), "sharp");
     }
 }

@@ -3,7 +3,7 @@
 use egui::{Color32, Painter, Pos2, Shape, Stroke};
 
 /// Pieces that the curve between two points is drawn with.
-const PIECES: usize = 24;
+const SEGMENTS_PER_SPAN: usize = 24;
 
 /// The points of a curve that is being laid out.
 #[derive(Default)]
@@ -28,11 +28,11 @@ impl CurveStroke {
 
     /// Forgets the points, and gives the way through them.
     pub fn finish(&mut self) -> Vec<Pos2> {
-        way(&std::mem::take(&mut self.points))
+        interpolated_curve(&std::mem::take(&mut self.points))
     }
 
     /// Forgets the points.
-    pub fn give_up(&mut self) {
+    pub fn cancel(&mut self) {
         self.points.clear();
     }
 
@@ -41,7 +41,7 @@ impl CurveStroke {
         if self.is_empty() {
             return;
         }
-        let line = way(&self.points.iter().copied().chain(pointer).collect::<Vec<_>>());
+        let line = interpolated_curve(&self.points.iter().copied().chain(pointer).collect::<Vec<_>>());
         painter.add(Shape::line(line.clone(), Stroke::new(3.0, Color32::from_black_alpha(150))));
         painter.add(Shape::line(line, Stroke::new(1.0, Color32::WHITE)));
         for point in &self.points {
@@ -52,23 +52,23 @@ impl CurveStroke {
 
 /// The curve through points: a cubic between two points whose slope at each is half the way
 /// between its neighbours (Catmull and Rom 1974).
-fn way(points: &[Pos2]) -> Vec<Pos2> {
+fn interpolated_curve(points: &[Pos2]) -> Vec<Pos2> {
     let at = |k: isize| points[k.clamp(0, points.len() as isize - 1) as usize].to_vec2();
-    let mut way: Vec<Pos2> = points.first().copied().into_iter().collect();
+    let mut curve: Vec<Pos2> = points.first().copied().into_iter().collect();
     for k in 0..points.len().saturating_sub(1) as isize {
         let [before, a, b, after] = [k - 1, k, k + 1, k + 2].map(at);
         let (slope_a, slope_b) = ((b - before) / 2.0, (after - a) / 2.0);
-        for piece in 1..=PIECES {
-            let s = piece as f32 / PIECES as f32;
+        for piece in 1..=SEGMENTS_PER_SPAN {
+            let s = piece as f32 / SEGMENTS_PER_SPAN as f32;
             let (s2, s3) = (s * s, s * s * s);
             let place = a * (2.0 * s3 - 3.0 * s2 + 1.0)
                 + slope_a * (s3 - 2.0 * s2 + s)
                 + b * (3.0 * s2 - 2.0 * s3)
                 + slope_b * (s3 - s2);
-            way.push(place.to_pos2());
+            curve.push(place.to_pos2());
         }
     }
-    way
+    curve
 }
 
 #[cfg(test)]
@@ -79,15 +79,15 @@ mod tests {
     #[test]
     fn goes_through_its_points_and_straight_points_give_a_straight_way() {
         let points = [pos2(0.0, 0.0), pos2(10.0, 20.0), pos2(30.0, 20.0), pos2(40.0, 0.0)];
-        let found = way(&points);
+        let curve = interpolated_curve(&points);
         for point in points {
-            assert!(found.iter().any(|at| at.distance(point) < 1e-3), "{point}");
+            assert!(curve.iter().any(|at| at.distance(point) < 1e-3), "{point}");
         }
-        let highest = found.iter().map(|at| at.y).fold(0.0, f32::max);
+        let highest = curve.iter().map(|at| at.y).fold(0.0, f32::max);
         assert!(highest > 20.5, "round between the upper two: {highest}");
-        let straight = way(&[pos2(0.0, 5.0), pos2(10.0, 5.0), pos2(20.0, 5.0)]);
-        assert!(straight.iter().all(|at| (at.y - 5.0).abs() < 1e-4));
-        assert_eq!(way(&[]).len(), 0);
+        let straight_curve = interpolated_curve(&[pos2(0.0, 5.0), pos2(10.0, 5.0), pos2(20.0, 5.0)]);
+        assert!(straight_curve.iter().all(|at| (at.y - 5.0).abs() < 1e-4));
+        assert_eq!(interpolated_curve(&[]).len(), 0);
         let mut curve = CurveStroke::default();
         assert!(curve.add(pos2(1.0, 1.0)) && !curve.add(pos2(2.0, 1.0)), "a double click is one point");
     }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 /// The demo's project. None where it is not installed.
-pub fn project() -> Option<PathBuf> {
+pub fn demo_project() -> Option<PathBuf> {
     let program = std::env::current_exe().ok();
     let beside = program.as_deref().and_then(Path::parent);
     let folders = [
@@ -25,12 +25,12 @@ mod tests {
 
     #[test]
     fn the_demo_is_painted_and_fits_its_scene() {
-        let file = project().expect("assets/demo/demo.fbrush is there");
+        let file = demo_project().expect("assets/demo/demo.fbrush is there");
         let input = Input::open(&file, &Unwatched).unwrap();
         assert_eq!(input.warnings, Vec::<String>::new(), "made for the scene beside it");
         let atlas = input.atlas(&Default::default(), &Unwatched).unwrap();
         let stage =
-            Stage::of(std::sync::Arc::new(trace::Tracer::new(input.scene.clone())), atlas, &Unwatched)
+            Stage::new(std::sync::Arc::new(trace::Tracer::new(input.scene.clone())), atlas, &Unwatched)
                 .unwrap();
         let map = input.project.unwrap().focus_map.expect("it is painted");
         let sharp = stage.canvas.texels().iter().filter(|t| map.at(t.x, t.y) == lens::FocusOffset::SHARP);

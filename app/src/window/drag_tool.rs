@@ -3,13 +3,13 @@
 use super::tool_settings::ToolSettings;
 use super::{Action, Tool};
 use egui::{Color32, Modifiers, Painter, Pos2, Shape, Stroke};
-use focus::{Combine, Gradient, GradientLine, ViewFrame};
+use focus::{CombineMode, Gradient, GradientLine, ViewFrame};
 use glam::DVec2;
 use project::SelectionShape;
-use session::{Command, Session, SurfaceHit, rectangle, view_ray};
+use session::{Command, Session, SurfaceHit, rectangle_outline, view_ray};
 
 /// Less than this is a click and no drag, points.
-const LEAST_WAY: f32 = 3.0;
+const MIN_DRAG_POINTS: f32 = 3.0;
 
 /// How far depths of one plane may be apart by rounding, as a share of them: positions in files are 32-bit floats.
 const DEPTH_ROUNDING: f64 = 1e-6;
@@ -17,8 +17,8 @@ const DEPTH_ROUNDING: f64 = 1e-6;
 /// A drag that goes on.
 pub struct Drag {
     tool: Tool,
-    combine: Combine,
-    way: Vec<Pos2>,
+    combine: CombineMode,
+    path: Vec<Pos2>,
     /// The surfaces at both ends, where the tool asks for them.
     hits: [Option<SurfaceHit>; 2],
 }
@@ -37,7 +37,7 @@ impl Drag {
     /// Begins at a place.
     pub fn begin(tool: Tool, modifiers: Modifiers, at: Pos2, session: &Session, view: &DragView<'_>) -> Self {
         let hit = session.pick(&view_ray(&view.frame, (view.position)(at)));
-        Self { tool, combine: combine(modifiers), way: vec![at], hits: [hit; 2] }
+        Self { tool, combine: combine(modifiers), path: vec![at], hits: [hit; 2] }
     }
 
     /// Goes on to another place.
@@ -48,17 +48,17 @@ impl Drag {
         settings: &ToolSettings,
         view: &DragView<'_>,
     ) -> Option<Action> {
-        if self.way.last() == Some(&at) {
+        if self.path.last() == Some(&at) {
             return None;
         }
-        if self.follows_pointer() || self.way.len() < 2 {
-            self.way.push(at);
+        if self.follows_pointer() || self.path.len() < 2 {
+            self.path.push(at);
         } else {
-            self.way[1] = at;
+            self.path[1] = at;
         }
         let hit = session.pick(&view_ray(&view.frame, (view.position)(at)));
         self.hits[1] = hit.or(self.hits[1]);
-        if self.tool != Tool::Gradient || self.length() < LEAST_WAY {
+        if self.tool != Tool::Gradient || self.length() < MIN_DRAG_POINTS {
             return None;
         }
         let line = match (settings.gradient.in_world, self.hits) {
@@ -68,7 +68,7 @@ impl Drag {
         };
         let document = session.document()?;
         let from = document.brush.target;
-        let to = settings.gradient.to().map(|to| to.with_gloss(from.gloss));
+        let to = settings.gradient.end_focus().map(|to| to.with_gloss(from.gloss));
         let symmetry = document.symmetry_at(self.hits[0].as_ref());
         let gradient = Gradient { shape: settings.gradient.shape, line, from, to, symmetry };
         gradient.is_valid().then(|| Command::DragGradient(gradient).into())
@@ -80,15 +80,15 @@ impl Drag {
         if let Some(repair) = self.tool.depth_repair() {
             let document = session.document()?;
             let pick = |at: &Pos2| session.pick(&view_ray(&frame, (view.position)(*at)));
-            let hits: Vec<SurfaceHit> = self.way.iter().filter_map(pick).collect();
+            let hits: Vec<SurfaceHit> = self.path.iter().filter_map(pick).collect();
             return document.depth_stroke(repair, &hits).map(|stroke| Command::RepairDepth(stroke).into());
         }
         let shape = match self.tool {
             Tool::Gradient => return Some(Command::CommitStroke.into()),
-            _ if self.length() < LEAST_WAY => return None,
-            Tool::SelectBox => rectangle(frame, self.ends().map(view.position), through),
+            _ if self.length() < MIN_DRAG_POINTS => return None,
+            Tool::SelectBox => rectangle_outline(frame, self.ends().map(view.position), through),
             Tool::SelectLasso => {
-                let points = self.way.iter().map(|&at| (view.position)(at)).collect();
+                let points = self.path.iter().map(|&at| (view.position)(at)).collect();
                 SelectionShape::Outline { view: frame, points, through }
             }
             Tool::SelectDepth => {
@@ -117,10 +117,10 @@ impl Drag {
                     painter.rect_stroke(egui::Rect::from_two_pos(a, b), 0.0, stroke, kind);
                 }
                 Tool::SelectLasso => {
-                    painter.add(Shape::closed_line(self.way.clone(), stroke));
+                    painter.add(Shape::closed_line(self.path.clone(), stroke));
                 }
                 _ if self.follows_pointer() => {
-                    painter.add(Shape::line(self.way.clone(), stroke));
+                    painter.add(Shape::line(self.path.clone(), stroke));
                 }
                 _ => {
                     painter.line_segment([a, b], stroke);
@@ -139,21 +139,21 @@ impl Drag {
     }
 
     fn ends(&self) -> [Pos2; 2] {
-        [self.way[0], self.way[self.way.len() - 1]]
+        [self.path[0], self.path[self.path.len() - 1]]
     }
 
     /// The farthest that it has been from its start.
     fn length(&self) -> f32 {
-        self.way.iter().map(|at| at.distance(self.way[0])).fold(0.0, f32::max)
+        self.path.iter().map(|at| at.distance(self.path[0])).fold(0.0, f32::max)
     }
 }
 
 /// How a selection made with these keys held joins what was selected.
-pub fn combine(modifiers: Modifiers) -> Combine {
+pub fn combine(modifiers: Modifiers) -> CombineMode {
     match (modifiers.shift, modifiers.command) {
-        (true, true) => Combine::Intersect,
-        (true, false) => Combine::Add,
-        (false, true) => Combine::Subtract,
-        (false, false) => Combine::Replace,
+        (true, true) => CombineMode::Intersect,
+        (true, false) => CombineMode::Add,
+        (false, true) => CombineMode::Subtract,
+        (false, false) => CombineMode::Replace,
     }
 }

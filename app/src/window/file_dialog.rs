@@ -9,9 +9,9 @@ use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
 /// A dialog that ends sooner than a person could have cancelled it has failed.
-const FASTEST_PERSON: Duration = Duration::from_millis(400);
+const MIN_HUMAN_RESPONSE: Duration = Duration::from_millis(400);
 /// Entries of a folder that are listed below the typed path.
-const LISTED: usize = 200;
+const MAX_LISTED: usize = 200;
 
 /// What a file is wanted for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -98,7 +98,7 @@ impl Purpose {
     }
 
     /// Whether a file is written.
-    pub fn writes(self) -> bool {
+    pub fn is_output(self) -> bool {
         matches!(
             self,
             Self::SaveAs
@@ -115,7 +115,7 @@ impl Purpose {
         match self {
             Self::Open | Self::OpenCapture => "Open",
             Self::SaveAs => "Save",
-            _ if self.writes() => "Export",
+            _ if self.is_output() => "Export",
             Self::ImportFocusMap | Self::ImportPreset => "Import",
             _ => "Choose",
         }
@@ -127,12 +127,12 @@ enum State {
     /// The system's dialog is open.
     System { answer: mpsc::Receiver<Option<PathBuf>>, since: Instant },
     /// The path is being typed.
-    Typed { text: String, wish: Wish },
+    Typed { text: String, focus_request: FocusRequest },
 }
 
 /// What the path field is to do with the keyboard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Wish {
+enum FocusRequest {
     /// Take it; what is typed replaces the suggestion (of a file to write, its name without the extension).
     Replace,
     /// Take it; what is typed goes to the end.
@@ -144,7 +144,7 @@ enum Wish {
 /// The question for a file. One at a time; a new one replaces the old.
 pub struct FileDialog {
     system: bool,
-    asking: Option<(Purpose, PathBuf, State)>,
+    pending: Option<(Purpose, PathBuf, State)>,
     /// What is to be known before answering.
     note: Option<String>,
 }
@@ -152,17 +152,17 @@ pub struct FileDialog {
 impl FileDialog {
     /// No question yet. `system` is whether the system's dialogs are asked for.
     pub fn new(system: bool) -> Self {
-        Self { system, asking: None, note: None }
+        Self { system, pending: None, note: None }
     }
 
     /// Asks for a file; `suggestion` is where to begin (a file name with its folder).
-    pub fn ask(&mut self, purpose: Purpose, suggestion: PathBuf, context: &Context) {
-        let answer = self.system.then(|| system_dialog(purpose, &suggestion, context)).flatten();
+    pub fn open(&mut self, purpose: Purpose, suggestion: PathBuf, context: &Context) {
+        let answer = self.system.then(|| open_system_dialog(purpose, &suggestion, context)).flatten();
         let state = match answer {
             Some(answer) => State::System { answer, since: Instant::now() },
-            None => typed(purpose, &suggestion),
+            None => typed_state(purpose, &suggestion),
         };
-        self.asking = Some((purpose, suggestion, state));
+        self.pending = Some((purpose, suggestion, state));
         self.note = None;
     }
 
@@ -173,36 +173,38 @@ impl FileDialog {
 
     /// Whether a question is open.
     pub fn is_open(&self) -> bool {
-        self.asking.is_some()
+        self.pending.is_some()
     }
 
     /// Draws the question and returns the answer once it is there.
     pub fn show(&mut self, context: &Context) -> Option<(Purpose, PathBuf)> {
-        let (purpose, suggestion, state) = self.asking.as_mut()?;
+        let (purpose, suggestion, state) = self.pending.as_mut()?;
         let purpose = *purpose;
         let step = match state {
             State::System { answer, since } => match answer.try_recv() {
                 Ok(Some(path)) => Step::Answer(path),
-                Ok(None) if since.elapsed() < FASTEST_PERSON => Step::Type,
+                Ok(None) if since.elapsed() < MIN_HUMAN_RESPONSE => Step::Type,
                 Ok(None) => Step::Cancel,
                 Err(mpsc::TryRecvError::Disconnected) => Step::Type,
-                Err(mpsc::TryRecvError::Empty) => waiting(context, purpose),
+                Err(mpsc::TryRecvError::Empty) => waiting_dialog(context, purpose),
             },
-            State::Typed { text, wish } => typed_dialog(context, (purpose, self.note.as_deref()), text, wish),
+            State::Typed { text, focus_request } => {
+                typed_dialog(context, (purpose, self.note.as_deref()), text, focus_request)
+            }
         };
         match step {
             Step::Wait => None,
             Step::Type => {
-                *state = typed(purpose, suggestion);
+                *state = typed_state(purpose, suggestion);
                 context.request_repaint();
                 None
             }
             Step::Cancel => {
-                self.asking = None;
+                self.pending = None;
                 None
             }
             Step::Answer(path) => {
-                self.asking = None;
+                self.pending = None;
                 Some((purpose, with_extension(purpose, path)))
             }
         }
@@ -217,7 +219,7 @@ enum Step {
 }
 
 /// Opens the system's dialog, if there is one to open.
-fn system_dialog(
+fn open_system_dialog(
     purpose: Purpose,
     suggestion: &Path,
     context: &Context,
@@ -232,14 +234,14 @@ fn system_dialog(
     if let Some(folder) = suggestion.parent().filter(|folder| folder.is_dir()) {
         dialog = dialog.set_directory(folder);
     }
-    if let Some(name) = suggestion.file_name().filter(|_| purpose.writes()) {
+    if let Some(name) = suggestion.file_name().filter(|_| purpose.is_output()) {
         dialog = dialog.set_file_name(name.to_string_lossy());
     }
     let (sender, receiver) = mpsc::channel();
     let context = context.clone();
     // Some systems want the dialog made on this thread; none minds where it is waited for.
     let waiting: std::pin::Pin<Box<dyn Future<Output = Option<rfd::FileHandle>> + Send>> = match () {
-        () if purpose.writes() => Box::pin(dialog.save_file()),
+        () if purpose.is_output() => Box::pin(dialog.save_file()),
         () if purpose.is_folder() => Box::pin(dialog.pick_folder()),
         () => Box::pin(dialog.pick_file()),
     };
@@ -254,7 +256,7 @@ fn system_dialog(
 }
 
 /// The small window beside the system's dialog: the way out if that never shows.
-fn waiting(context: &Context, purpose: Purpose) -> Step {
+fn waiting_dialog(context: &Context, purpose: Purpose) -> Step {
     let mut step = Step::Wait;
     let window =
         egui::Window::new(purpose.title()).id(Id::unique("file dialog")).collapsible(false).resizable(false);
@@ -272,16 +274,16 @@ fn waiting(context: &Context, purpose: Purpose) -> Step {
     step
 }
 
-fn typed(purpose: Purpose, suggestion: &Path) -> State {
+fn typed_state(purpose: Purpose, suggestion: &Path) -> State {
     let mut text = suggestion.display().to_string();
-    if !purpose.writes() {
+    if !purpose.is_output() {
         let folder = if suggestion.is_dir() { Some(suggestion) } else { suggestion.parent() };
         text = folder.map_or_else(String::new, |folder| folder.display().to_string());
         if !text.is_empty() && !text.ends_with(std::path::MAIN_SEPARATOR) {
             text.push(std::path::MAIN_SEPARATOR);
         }
     }
-    State::Typed { text, wish: Wish::Replace }
+    State::Typed { text, focus_request: FocusRequest::Replace }
 }
 
 /// The path field, what lies in its folder, and the two buttons.
@@ -289,7 +291,7 @@ fn typed_dialog(
     context: &Context,
     (purpose, note): (Purpose, Option<&str>),
     text: &mut String,
-    wish: &mut Wish,
+    focus_request: &mut FocusRequest,
 ) -> Step {
     let mut step = Step::Wait;
     let frame = egui::Frame::popup(&context.global_style()).inner_margin(14.0);
@@ -303,11 +305,11 @@ fn typed_dialog(
             .desired_width(f32::INFINITY);
         let output = edit.show(ui);
         let response = output.response.response;
-        super::controls::named(&response, "Path");
-        let selection = match std::mem::replace(wish, Wish::Nothing) {
-            Wish::Replace => Some(replaceable(purpose, text)),
-            Wish::Append => Some([text.chars().count(); 2]),
-            Wish::Nothing => None,
+        super::controls::set_accessible_name(&response, "Path");
+        let selection = match std::mem::replace(focus_request, FocusRequest::Nothing) {
+            FocusRequest::Replace => Some(replaceable_range(purpose, text)),
+            FocusRequest::Append => Some([text.chars().count(); 2]),
+            FocusRequest::Nothing => None,
         };
         if let Some([start, end]) = selection.map(|range| range.map(egui::text::CCursor::new)) {
             response.request_focus();
@@ -321,7 +323,7 @@ fn typed_dialog(
         }
         ui.add_space(4.0);
         egui::ScrollArea::vertical().auto_shrink([false; 2]).max_height(240.0).show(ui, |ui| {
-            let entries = entries(purpose, text);
+            let entries = matching_entries(purpose, text);
             if entries.is_empty() {
                 ui.weak(if purpose.is_folder() {
                     "No folders in here."
@@ -339,7 +341,7 @@ fn typed_dialog(
                     *text = entry.display().to_string();
                     if folder {
                         text.push(std::path::MAIN_SEPARATOR);
-                        *wish = Wish::Append;
+                        *focus_request = FocusRequest::Append;
                     }
                 }
                 if button.double_clicked() && !folder {
@@ -350,12 +352,12 @@ fn typed_dialog(
         ui.add_space(6.0);
         let path = PathBuf::from(text.trim());
         let target = with_extension(purpose, path.clone());
-        let problem = problem(purpose, &path);
+        let problem = path_problem(purpose, &path);
         ui.horizontal(|ui| {
             let accept = ui.add_enabled(problem.is_none(), egui::Button::new(purpose.verb()));
             let entered = ui.input(|input| input.key_pressed(Key::Enter));
             if entered && problem.is_some() {
-                *wish = Wish::Append;
+                *focus_request = FocusRequest::Append;
             }
             if accept.clicked() || (entered && problem.is_none()) {
                 chosen = Some(path.clone());
@@ -367,7 +369,7 @@ fn typed_dialog(
                 Some(problem) if !text.trim().is_empty() => {
                     ui.weak(problem);
                 }
-                None if purpose.writes() && target.exists() => {
+                None if purpose.is_output() && target.exists() => {
                     ui.colored_label(ui.visuals().warn_fg_color, "This file exists and will be replaced.");
                 }
                 _ => {}
@@ -401,9 +403,9 @@ fn format_row(ui: &mut egui::Ui, purpose: Purpose, text: &mut String) {
 }
 
 /// The characters of a suggestion that typing replaces.
-fn replaceable(purpose: Purpose, text: &str) -> [usize; 2] {
+fn replaceable_range(purpose: Purpose, text: &str) -> [usize; 2] {
     let count = text.chars().count();
-    if !purpose.writes() {
+    if !purpose.is_output() {
         return [0, count];
     }
     let path = Path::new(text);
@@ -414,7 +416,7 @@ fn replaceable(purpose: Purpose, text: &str) -> [usize; 2] {
 }
 
 /// Why the path cannot be used yet.
-fn problem(purpose: Purpose, path: &Path) -> Option<&'static str> {
+fn path_problem(purpose: Purpose, path: &Path) -> Option<&'static str> {
     if path.as_os_str().is_empty() {
         return Some("Type a path.");
     }
@@ -424,7 +426,7 @@ fn problem(purpose: Purpose, path: &Path) -> Option<&'static str> {
     if path.is_dir() {
         return Some("This is a folder.");
     }
-    if !purpose.writes() {
+    if !purpose.is_output() {
         return (!path.exists()).then_some("There is no such file.");
     }
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
@@ -433,8 +435,10 @@ fn problem(purpose: Purpose, path: &Path) -> Option<&'static str> {
 
 /// The path with the first of the purpose's extensions, unless it has one of them.
 fn with_extension(purpose: Purpose, path: PathBuf) -> PathBuf {
-    let has = path.extension().and_then(|e| e.to_str()).map(str::to_lowercase);
-    if !purpose.writes() || has.is_some_and(|extension| purpose.extensions().contains(&extension.as_str())) {
+    let extension = path.extension().and_then(|e| e.to_str()).map(str::to_lowercase);
+    if !purpose.is_output()
+        || extension.is_some_and(|extension| purpose.extensions().contains(&extension.as_str()))
+    {
         return path;
     }
     let mut name = path.into_os_string();
@@ -444,7 +448,7 @@ fn with_extension(purpose: Purpose, path: PathBuf) -> PathBuf {
 }
 
 /// Folders and fitting files whose name begins with what is typed.
-fn entries(purpose: Purpose, text: &str) -> Vec<PathBuf> {
+fn matching_entries(purpose: Purpose, text: &str) -> Vec<PathBuf> {
     let typed = Path::new(text);
     let (folder, start) = if text.is_empty() || text.ends_with(['/', std::path::MAIN_SEPARATOR]) {
         (typed, String::new())
@@ -457,14 +461,15 @@ fn entries(purpose: Purpose, text: &str) -> Vec<PathBuf> {
     let fits = |path: &PathBuf| {
         let name = path.file_name().map(|name| name.to_string_lossy().to_lowercase()).unwrap_or_default();
         let extension = path.extension().and_then(|e| e.to_str()).map(str::to_lowercase).unwrap_or_default();
-        let known = path.is_dir() || purpose.extensions().contains(&extension.as_str());
+        let is_supported = path.is_dir() || purpose.extensions().contains(&extension.as_str());
         let shown = !name.starts_with('.') || start.starts_with('.');
-        known && shown && (name.starts_with(&start) || purpose.writes())
+        is_supported && shown && (name.starts_with(&start) || purpose.is_output())
     };
-    let mut found: Vec<_> = listing.filter_map(|entry| Some(entry.ok()?.path())).filter(fits).collect();
-    found.sort_by_key(|path| (!path.is_dir(), path.file_name().map(|n| n.to_string_lossy().to_lowercase())));
-    found.truncate(LISTED);
-    found
+    let mut matches: Vec<_> = listing.filter_map(|entry| Some(entry.ok()?.path())).filter(fits).collect();
+    matches
+        .sort_by_key(|path| (!path.is_dir(), path.file_name().map(|n| n.to_string_lossy().to_lowercase())));
+    matches.truncate(MAX_LISTED);
+    matches
 }
 
 #[cfg(test)]
@@ -481,7 +486,7 @@ mod tests {
         let at = |text: &str| {
             let text = format!("{}/{text}", folder.path().display());
             let name = |path: &PathBuf| path.file_name().unwrap().to_string_lossy().into_owned();
-            entries(Purpose::Open, &text).iter().map(name).collect::<Vec<_>>()
+            matching_entries(Purpose::Open, &text).iter().map(name).collect::<Vec<_>>()
         };
         assert_eq!(at(""), ["deep", "a.glb", "b.GLTF"], "folders first, nothing that cannot be opened");
         assert_eq!(at("B"), ["b.GLTF"]);
@@ -498,16 +503,16 @@ mod tests {
 
     #[test]
     fn typing_replaces_the_name_that_is_suggested() {
-        assert_eq!(replaceable(Purpose::SaveAs, "/a/häuser.fbrush"), [3, 9]);
-        assert_eq!(replaceable(Purpose::Open, "/a/b/"), [0, 5]);
+        assert_eq!(replaceable_range(Purpose::SaveAs, "/a/häuser.fbrush"), [3, 9]);
+        assert_eq!(replaceable_range(Purpose::Open, "/a/b/"), [0, 5]);
     }
 
     #[test]
     fn a_path_is_checked_before_it_is_used() {
         let folder = tempfile::tempdir().unwrap();
-        assert!(problem(Purpose::Open, folder.path()).is_some());
-        assert!(problem(Purpose::Open, &folder.path().join("none.glb")).is_some());
-        assert!(problem(Purpose::SaveAs, &folder.path().join("none/x.fbrush")).is_some());
-        assert_eq!(problem(Purpose::SaveAs, &folder.path().join("x.fbrush")), None);
+        assert!(path_problem(Purpose::Open, folder.path()).is_some());
+        assert!(path_problem(Purpose::Open, &folder.path().join("none.glb")).is_some());
+        assert!(path_problem(Purpose::SaveAs, &folder.path().join("none/x.fbrush")).is_some());
+        assert_eq!(path_problem(Purpose::SaveAs, &folder.path().join("x.fbrush")), None);
     }
 }

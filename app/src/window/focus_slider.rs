@@ -17,7 +17,7 @@ pub fn focus_slider(ui: &mut Ui, circle_px: &mut f64, width: f32) -> Response {
     let old = *circle_px;
     if let Some(pointer) = response.interact_pointer_pos() {
         let place = 2.0 * ((pointer.x - track.left()) / track.width()) as f64 - 1.0;
-        *circle_px = snapped(place);
+        *circle_px = snapped_circle_px(place);
         response.request_focus();
     }
     if response.has_focus() {
@@ -27,7 +27,7 @@ pub fn focus_slider(ui: &mut Ui, circle_px: &mut f64, width: f32) -> Response {
         let pressed = |key| ui.input(|input| input.num_presses(key)) as f64;
         let steps = pressed(Key::ArrowRight) - pressed(Key::ArrowLeft);
         if steps != 0.0 {
-            *circle_px = snapped(false_colour::position(*circle_px) + steps * KEY_STEP);
+            *circle_px = snapped_circle_px(false_colour::position(*circle_px) + steps * KEY_STEP);
         }
     }
     if *circle_px != old {
@@ -45,7 +45,7 @@ pub fn focus_slider(ui: &mut Ui, circle_px: &mut f64, width: f32) -> Response {
 }
 
 /// The circle of confusion of a place on the track, sharp near the middle.
-fn snapped(place: f64) -> f64 {
+fn snapped_circle_px(place: f64) -> f64 {
     if place.abs() < SNAP { 0.0 } else { false_colour::circle_px(place.clamp(-1.0, 1.0)) }
 }
 

@@ -4,13 +4,13 @@ use splat::{BackendChoice, Gpu};
 use std::sync::Arc;
 
 /// A device with the adapter's own limits of texture and buffer size: atlases and scenes are larger than the defaults.
-pub fn graphics() -> egui_wgpu::WgpuConfiguration {
+pub fn wgpu_configuration() -> egui_wgpu::WgpuConfiguration {
     #[cfg(target_os = "linux")]
-    if let Some(existing) = behind_the_sums() {
+    if let Some(existing) = low_priority_software_device() {
         return egui_wgpu::WgpuConfiguration { wgpu_setup: existing.into(), ..Default::default() };
     }
     let mut setup = egui_wgpu::WgpuSetupCreateNew::without_display_handle();
-    setup.device_descriptor = Arc::new(descriptor);
+    setup.device_descriptor = Arc::new(device_descriptor);
     egui_wgpu::WgpuConfiguration { wgpu_setup: setup.into(), ..Default::default() }
 }
 
@@ -19,24 +19,24 @@ pub fn graphics() -> egui_wgpu::WgpuConfiguration {
 ///
 /// # Errors
 /// Why it cannot be used, where it was asked for.
-pub fn summing(state: &egui_wgpu::RenderState, choice: BackendChoice) -> Result<Option<Gpu>, String> {
+pub fn splat_device(state: &egui_wgpu::RenderState, choice: BackendChoice) -> Result<Option<Gpu>, String> {
     let info = state.adapter.get_info();
-    let is_wanted = match choice {
+    let is_suitable = match choice {
         BackendChoice::Auto => info.device_type != wgpu::DeviceType::Cpu && info.backend != wgpu::Backend::Gl,
         BackendChoice::Gpu => true,
         BackendChoice::Cpu => false,
     };
-    if !is_wanted {
+    if !is_suitable {
         return Ok(None);
     }
-    match Gpu::of(state.device.clone(), state.queue.clone(), info.name.clone()) {
+    match Gpu::from_device(state.device.clone(), state.queue.clone(), info.name.clone()) {
         Ok(gpu) => Ok(Some(gpu)),
         Err(why) if choice == BackendChoice::Gpu => Err(why.replace('\n', " ")),
         Err(_) => Ok(None),
     }
 }
 
-fn descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
+fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
     let mut limits = adapter.limits();
     if adapter.get_info().backend != wgpu::Backend::Gl {
         let max_texture_dimension_2d = limits.max_texture_dimension_2d;
@@ -52,13 +52,13 @@ fn descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
 
 /// By how much the threads of an adapter in software stand back behind those that sum pictures: as far as work that has time.
 #[cfg(target_os = "linux")]
-const STANDS_BACK: i32 = 5;
+const NICENESS: i32 = 5;
 
 /// A device of an adapter in software, if the machine has no graphics card: its threads stand back, so that what is painted
 /// is summed first and drawn then. Threads inherit that from the one that makes the device.
 #[cfg(target_os = "linux")]
-fn behind_the_sums() -> Option<egui_wgpu::WgpuSetupExisting> {
-    if Gpu::may_be_there() {
+fn low_priority_software_device() -> Option<egui_wgpu::WgpuSetupExisting> {
+    if Gpu::may_be_available() {
         return None;
     }
     let make = || {
@@ -68,8 +68,9 @@ fn behind_the_sums() -> Option<egui_wgpu::WgpuSetupExisting> {
         let adapters = pollster::block_on(instance.enumerate_adapters(backends));
         let is_software = |adapter: &wgpu::Adapter| adapter.get_info().device_type == wgpu::DeviceType::Cpu;
         let adapter = adapters.into_iter().find(is_software)?;
-        rustix::process::nice(STANDS_BACK).ok()?;
-        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor(&adapter))).ok()?;
+        rustix::process::nice(NICENESS).ok()?;
+        let (device, queue) =
+            pollster::block_on(adapter.request_device(&device_descriptor(&adapter))).ok()?;
         Some(egui_wgpu::WgpuSetupExisting { instance, adapter, device, queue })
     };
     let thread = std::thread::Builder::new().name("graphics".into()).spawn(make);

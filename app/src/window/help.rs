@@ -36,15 +36,15 @@ impl Help {
         let shortcuts = shortcuts.pivot(Align2::CENTER_CENTER).default_pos(middle);
         shortcuts.collapsible(false).show(context, |ui| {
             ScrollArea::vertical().auto_shrink([false; 2]).show(ui, |ui| {
-                let map = keys::map(ui.ctx());
+                let map = keys::key_map(ui.ctx());
                 ui.label(format!("Keys and mouse as in {} (View menu).", map.name()));
                 let gestures = GESTURES.into_iter().chain(navigation::gestures(map));
-                table(ui, "Mouse and pen", gestures.map(|(key, what)| (key.to_string(), what)));
+                shortcut_table(ui, "Mouse and pen", gestures.map(|(key, what)| (key.to_string(), what)));
                 for menu in Menu::ALL {
                     let rows = COMMANDS.iter().filter(|info| info.menu == menu);
                     let rows =
                         rows.filter_map(|info| Some((map.shortcut(info.id)?.to_string(), info.tooltip)));
-                    table(ui, menu.title(), rows);
+                    shortcut_table(ui, menu.title(), rows);
                 }
             });
         });
@@ -60,7 +60,7 @@ impl Help {
     }
 }
 
-fn table(ui: &mut egui::Ui, title: &str, rows: impl Iterator<Item = (String, &'static str)>) {
+fn shortcut_table(ui: &mut egui::Ui, title: &str, rows: impl Iterator<Item = (String, &'static str)>) {
     let rows: Vec<_> = rows.collect();
     if rows.is_empty() {
         return;

@@ -6,23 +6,23 @@ use egui::{Context, Id, Key, KeyboardShortcut, Modifiers};
 use session::{COMMANDS, CommandId, KeyMap, Shortcut};
 
 /// Obeys a key map from now on.
-pub fn obey(context: &Context, map: KeyMap) {
+pub fn set_key_map(context: &Context, map: KeyMap) {
     context.data_mut(|data| data.insert_temp(Id::unique("key map"), map));
 }
 
 /// The key map that is obeyed.
-pub fn map(context: &Context) -> KeyMap {
+pub fn key_map(context: &Context) -> KeyMap {
     context.data(|data| data.get_temp(Id::unique("key map"))).unwrap_or_default()
 }
 
 /// The key of a command as a person reads it; empty if it has none.
-pub fn text(context: &Context, id: CommandId) -> String {
-    map(context).shortcut(id).map(|key| key.to_string()).unwrap_or_default()
+pub fn shortcut_text(context: &Context, id: CommandId) -> String {
+    key_map(context).shortcut(id).map(|key| key.to_string()).unwrap_or_default()
 }
 
 /// What a command does, with its key.
-pub fn tip(context: &Context, id: CommandId) -> String {
-    let key = map(context).shortcut(id).map(|key| format!(" ({key})")).unwrap_or_default();
+pub fn command_tooltip(context: &Context, id: CommandId) -> String {
+    let key = key_map(context).shortcut(id).map(|key| format!(" ({key})")).unwrap_or_default();
     format!("{}{key}", id.info().tooltip)
 }
 
@@ -36,9 +36,9 @@ fn keyboard_shortcut(shortcut: Shortcut) -> Option<KeyboardShortcut> {
 }
 
 /// The commands whose keys were pressed. Keys without Ctrl belong to a text field while one is typed into.
-pub fn pressed(context: &Context) -> Vec<CommandId> {
-    let (typing, map) = (context.text_edit_focused(), map(context));
-    let mut found = Vec::new();
+pub fn pressed_commands(context: &Context) -> Vec<CommandId> {
+    let (typing, map) = (context.text_edit_focused(), key_map(context));
+    let mut commands = Vec::new();
     // Those with more modifiers first: Ctrl+Shift+Z is not Ctrl+Z.
     let mut rows: Vec<_> =
         COMMANDS.iter().filter_map(|info| Some((info.id, map.shortcut(info.id)?))).collect();
@@ -46,19 +46,19 @@ pub fn pressed(context: &Context) -> Vec<CommandId> {
     context.input_mut(|input| {
         for (id, shortcut) in rows {
             let Some(key) = keyboard_shortcut(shortcut) else { continue };
-            if typing && (!shortcut.command || belongs_to_text(key.logical_key)) {
+            if typing && (!shortcut.command || is_text_editing_key(key.logical_key)) {
                 continue;
             }
             if input.consume_shortcut(&key) {
-                found.push(id);
+                commands.push(id);
             }
         }
     });
-    found
+    commands
 }
 
 /// Whether a text field has its own use for Ctrl and this key.
-fn belongs_to_text(key: Key) -> bool {
+fn is_text_editing_key(key: Key) -> bool {
     matches!(key, Key::A | Key::C | Key::V | Key::X | Key::Z | Key::Y)
 }
 

@@ -10,45 +10,45 @@ const PERIOD_SECONDS: f64 = 4.0;
 
 /// Whether a point runs, and where it is.
 #[derive(Default)]
-pub struct LookingRound {
-    run: Option<Run>,
+pub struct ApertureOrbit {
+    orbit: Option<Orbit>,
 }
 
 /// A point that runs.
-struct Run {
+struct Orbit {
     /// When it was at angle 0, in the window's time.
-    since: f64,
+    start: f64,
     /// Where it was last.
     point: Option<DVec2>,
 }
 
-impl LookingRound {
+impl ApertureOrbit {
     /// Lets it run, or not.
     pub fn toggle(&mut self, session: &mut Session, context: &Context) -> Result<(), SessionError> {
-        if self.run.is_some() {
+        if self.orbit.is_some() {
             return self.stop(session);
         }
-        self.run = Some(Run { since: context.input(|input| input.time), point: None });
+        self.orbit = Some(Orbit { start: context.input(|input| input.time), point: None });
         Ok(())
     }
 
     /// The picture shows all of the aperture again.
     pub fn stop(&mut self, session: &mut Session) -> Result<(), SessionError> {
-        self.run = None;
-        session.apply(Command::LookThrough(None))
+        self.orbit = None;
+        session.apply(Command::SetSubAperture(None))
     }
 
     /// Moves it on, as fast as the picture can follow; ends where another point was chosen meanwhile.
-    pub fn go_on(&mut self, session: &mut Session, context: &Context) -> Result<(), SessionError> {
-        let (Some(run), Some(document)) = (&mut self.run, session.document()) else { return Ok(()) };
-        if run.point.is_some() && run.point != session.looked_through() {
-            self.run = None;
+    pub fn advance(&mut self, session: &mut Session, context: &Context) -> Result<(), SessionError> {
+        let (Some(orbit), Some(document)) = (&mut self.orbit, session.document()) else { return Ok(()) };
+        if orbit.point.is_some() && orbit.point != session.sub_aperture_point() {
+            self.orbit = None;
             return Ok(());
         }
         context.request_repaint();
-        let seconds = context.input(|input| input.time) - run.since;
+        let seconds = context.input(|input| input.time) - orbit.start;
         let point = document.camera.aperture.rim(TAU * seconds / PERIOD_SECONDS);
-        run.point = Some(point);
-        session.apply(Command::LookThrough(Some(point)))
+        orbit.point = Some(point);
+        session.apply(Command::SetSubAperture(Some(point)))
     }
 }

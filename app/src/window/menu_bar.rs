@@ -6,7 +6,7 @@ use egui::{Button, Ui};
 use session::{COMMANDS, CommandId, CommandInfo, Document, Menu};
 
 /// Height of the menu bar and of the rim of an open menu, points.
-const ROOM_AROUND_MENU: f32 = 48.0;
+const MENU_MARGIN: f32 = 48.0;
 
 /// What the menus need to know.
 pub struct MenuState<'a> {
@@ -15,7 +15,7 @@ pub struct MenuState<'a> {
     /// What can be toggled.
     pub settings: &'a ViewSettings,
     /// Whether anything runs that Stop would stop.
-    pub working: bool,
+    pub has_jobs: bool,
 }
 
 /// Draws the menu bar.
@@ -25,7 +25,7 @@ pub fn menu_bar(ui: &mut Ui, state: &MenuState<'_>, actions: &mut Vec<Action>) {
             ui.menu_button(menu.title(), |ui| {
                 ui.set_min_width(230.0);
                 // Only in a low window a long menu scrolls.
-                let height = ui.ctx().content_rect().height() - ROOM_AROUND_MENU;
+                let height = ui.ctx().content_rect().height() - MENU_MARGIN;
                 let scrolled = egui::ScrollArea::vertical().max_height(height).min_scrolled_height(height);
                 scrolled.show(ui, |ui| entries(ui, menu, state, actions));
             });
@@ -38,9 +38,9 @@ fn entries(ui: &mut Ui, menu: Menu, state: &MenuState<'_>, actions: &mut Vec<Act
         if begins_group(info.id) {
             ui.separator();
         }
-        item(ui, info, state, actions);
+        command_item(ui, info, state, actions);
         if info.id == CommandId::Open {
-            recent(ui, state.settings, actions);
+            recent_files_menu(ui, state.settings, actions);
         }
     }
 }
@@ -76,14 +76,14 @@ fn begins_group(id: CommandId) -> bool {
     )
 }
 
-fn item(ui: &mut Ui, info: &CommandInfo, state: &MenuState<'_>, actions: &mut Vec<Action>) {
+fn command_item(ui: &mut Ui, info: &CommandInfo, state: &MenuState<'_>, actions: &mut Vec<Action>) {
     let name = match (info.id, state.document) {
-        (CommandId::Undo, Some(document)) => with_what(info.name, document.undo_name()),
-        (CommandId::Redo, Some(document)) => with_what(info.name, document.redo_name()),
+        (CommandId::Undo, Some(document)) => with_step_name(info.name, document.undo_name()),
+        (CommandId::Redo, Some(document)) => with_step_name(info.name, document.redo_name()),
         _ => info.name.to_string(),
     };
     let mut button = Button::new(name);
-    let key = keys::text(ui.ctx(), info.id);
+    let key = keys::shortcut_text(ui.ctx(), info.id);
     if !key.is_empty() {
         button = button.shortcut_text(key);
     }
@@ -94,7 +94,7 @@ fn item(ui: &mut Ui, info: &CommandInfo, state: &MenuState<'_>, actions: &mut Ve
     }
 }
 
-fn with_what(name: &str, what: Option<&str>) -> String {
+fn with_step_name(name: &str, what: Option<&str>) -> String {
     what.map_or_else(|| name.to_string(), |what| format!("{name}: {what}"))
 }
 
@@ -110,7 +110,7 @@ pub fn is_possible(id: CommandId, state: &MenuState<'_>) -> bool {
         }
         Undo => state.document.is_some_and(|document| document.undo_name().is_some()),
         Redo => state.document.is_some_and(|document| document.redo_name().is_some()),
-        Stop => state.working,
+        Stop => state.has_jobs,
         RemoveLayer | RaiseLayer | LowerLayer | LayerAbove | LayerBelow | AddMask | RemoveMask => {
             state.document.is_some_and(|document| is_layer_command_possible(id, document))
         }
@@ -122,7 +122,7 @@ pub fn is_possible(id: CommandId, state: &MenuState<'_>) -> bool {
     }
 }
 
-fn recent(ui: &mut Ui, settings: &ViewSettings, actions: &mut Vec<Action>) {
+fn recent_files_menu(ui: &mut Ui, settings: &ViewSettings, actions: &mut Vec<Action>) {
     ui.add_enabled_ui(!settings.recent.is_empty(), |ui| {
         ui.menu_button("Open recent", |ui| {
             ui.set_max_width(480.0);

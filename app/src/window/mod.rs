@@ -62,7 +62,7 @@ pub use drawer::Drawer;
 pub use layout::{Layout, Pane};
 pub use options::WindowOptions;
 pub use paint_view::PaintView;
-pub use picture_view::{PictureView, Shown};
+pub use picture_view::{DisplayedPicture, PictureView};
 pub use shell::Shell;
 pub use toasts::Severity;
 pub use tool::Tool;
@@ -78,7 +78,7 @@ pub fn run(options: WindowOptions) -> anyhow::Result<()> {
             .with_icon(icon)
             .with_inner_size([1440.0, 860.0])
             .with_min_inner_size([800.0, 500.0]),
-        wgpu_options: graphics::graphics(),
+        wgpu_options: graphics::wgpu_configuration(),
         persist_window: options.remember,
         // For gradients that the window does not have, every pixel would be worked on.
         dithering: false,

@@ -37,18 +37,18 @@ fn motion(map: KeyMap, button: PointerButton, modifiers: Modifiers, space: bool)
 }
 
 /// Whether Space is held for moving the view, and not typed.
-fn holds_space(context: &Context) -> bool {
+fn is_space_held(context: &Context) -> bool {
     !context.text_edit_focused() && context.input(|input| input.key_down(Key::Space))
 }
 
 /// Whether the left button would move a view now, and not paint.
 pub fn claims_primary(context: &Context, modifiers: Modifiers) -> bool {
-    motion(super::keys::map(context), PointerButton::Primary, modifiers, holds_space(context)).is_some()
+    motion(super::keys::key_map(context), PointerButton::Primary, modifiers, is_space_held(context)).is_some()
 }
 
 /// How a view is being dragged, and by how much since the last frame.
-pub fn dragged(ui: &Ui, response: &Response) -> Option<(Motion, Vec2)> {
-    let (map, space) = (super::keys::map(ui.ctx()), holds_space(ui.ctx()));
+pub fn view_drag(ui: &Ui, response: &Response) -> Option<(Motion, Vec2)> {
+    let (map, space) = (super::keys::key_map(ui.ctx()), is_space_held(ui.ctx()));
     let modifiers = ui.input(|input| input.modifiers);
     let buttons = [PointerButton::Middle, PointerButton::Secondary, PointerButton::Primary];
     let held = buttons.into_iter().find(|button| response.dragged_by(*button))?;
@@ -85,12 +85,13 @@ mod tests {
             for modifiers in [Modifiers::NONE, Modifiers::SHIFT, Modifiers::COMMAND] {
                 assert_eq!(motion(map, PointerButton::Primary, modifiers, false), None, "{map:?}");
             }
-            for wanted in [Motion::Orbit, Motion::Slide, Motion::Nearer] {
+            for expected in [Motion::Orbit, Motion::Slide, Motion::Nearer] {
                 let reach = |space: bool| {
-                    let mut found = combinations.iter();
-                    found.any(|&keys| motion(map, PointerButton::Primary, keys, space) == Some(wanted))
+                    let mut combinations_left = combinations.iter();
+                    combinations_left
+                        .any(|&keys| motion(map, PointerButton::Primary, keys, space) == Some(expected))
                 };
-                assert!(reach(true), "{map:?} {wanted:?} by Space and one button");
+                assert!(reach(true), "{map:?} {expected:?} by Space and one button");
             }
             assert_eq!(motion(map, PointerButton::Primary, Modifiers::ALT, false), Some(Motion::Orbit));
         }

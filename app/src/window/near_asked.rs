@@ -2,24 +2,24 @@
 
 use super::false_colour::nearness_color;
 use egui::{Button, ColorImage, Context, Id, Image, TextureHandle, TextureOptions, vec2};
-use session::NearQuestion;
+use session::DepthPolarityRequest;
 
 /// Width of a picture, points.
 const WIDTH: f32 = 240.0;
 
 /// The question, when it is open.
 #[derive(Default)]
-pub struct NearAsked {
-    asked: Option<(NearQuestion, [TextureHandle; 2])>,
+pub struct DepthPolarityDialog {
+    pending: Option<(DepthPolarityRequest, [TextureHandle; 2])>,
 }
 
 /// The answers: what `--near` calls them, what they are called here, and whether white is near.
 const ANSWERS: [(&str, &str, bool); 2] =
     [("white", "White is near", true), ("black", "Black is near", false)];
 
-impl NearAsked {
+impl DepthPolarityDialog {
     /// Asks.
-    pub fn ask(&mut self, question: NearQuestion, context: &Context) {
+    pub fn open(&mut self, question: DepthPolarityRequest, context: &Context) {
         let textures = ANSWERS.map(|(name, _, is_white)| {
             let share = |nearness: f32| if is_white { nearness } else { 1.0 - nearness };
             let pixels = question.nearness.iter().map(|&nearness| {
@@ -29,19 +29,19 @@ impl NearAsked {
             let image = ColorImage::new(question.size, pixels.collect());
             context.load_texture(name, image, TextureOptions::LINEAR)
         });
-        self.asked = Some((question, textures));
+        self.pending = Some((question, textures));
     }
 
     /// Whether it is open.
     pub fn is_open(&self) -> bool {
-        self.asked.is_some()
+        self.pending.is_some()
     }
 
     /// Draws it. Once it is answered: what was asked, and which end is near, as `--near` says it.
-    pub fn show(&mut self, context: &Context) -> Option<(NearQuestion, &'static str)> {
-        let (question, textures) = self.asked.as_ref()?;
+    pub fn show(&mut self, context: &Context) -> Option<(DepthPolarityRequest, &'static str)> {
+        let (question, textures) = self.pending.as_ref()?;
         let mut answer = None;
-        let mut is_given_up = false;
+        let mut is_cancelled = false;
         let frame = egui::Frame::popup(&context.global_style()).inner_margin(14.0);
         let modal = egui::Modal::new(Id::unique("which end is near")).frame(frame).show(context, |ui| {
             ui.heading("Which picture is right?");
@@ -66,12 +66,12 @@ impl NearAsked {
                 }
             });
             ui.add_space(8.0);
-            is_given_up = ui.button("Cancel").on_hover_text("Open nothing.").clicked();
+            is_cancelled = ui.button("Cancel").on_hover_text("Open nothing.").clicked();
         });
-        if answer.is_none() && !is_given_up && !modal.should_close() {
+        if answer.is_none() && !is_cancelled && !modal.should_close() {
             return None;
         }
-        let (question, _) = self.asked.take()?;
+        let (question, _) = self.pending.take()?;
         answer.map(|answer| (question, answer))
     }
 }

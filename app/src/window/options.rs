@@ -46,8 +46,8 @@ impl Default for WindowOptions {
             light_fields: None,
             backend: splat::BackendChoice::Auto,
             unwrap: atlas::UnwrapOptions::default(),
-            system_dialogs: system_dialogs(),
-            presets: project::PresetShelf::usual_folder(),
+            system_dialogs: system_dialogs_available(),
+            presets: project::PresetLibrary::default_folder(),
             replay: None,
             trace: None,
         }
@@ -56,8 +56,9 @@ impl Default for WindowOptions {
 
 /// Whether the system's file dialogs are worth asking: not without a session bus (no portal answers then), and not when
 /// `FOCUS_BRUSH_FILE_DIALOG=typed` says so.
-fn system_dialogs() -> bool {
-    let wants_typed = std::env::var_os("FOCUS_BRUSH_FILE_DIALOG").is_some_and(|value| value == "typed");
+fn system_dialogs_available() -> bool {
+    let prefers_typed_paths =
+        std::env::var_os("FOCUS_BRUSH_FILE_DIALOG").is_some_and(|value| value == "typed");
     let no_portal = cfg!(target_os = "linux") && std::env::var_os("DBUS_SESSION_BUS_ADDRESS").is_none();
-    !(wants_typed || no_portal)
+    !(prefers_typed_paths || no_portal)
 }

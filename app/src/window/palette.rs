@@ -27,7 +27,7 @@ impl Palette {
         if !self.open {
             return None;
         }
-        let found = matches(&self.query);
+        let matching = find_commands(&self.query);
         let mut run = None;
         context.input_mut(|input| {
             if input.consume_key(egui::Modifiers::NONE, Key::Escape) {
@@ -40,24 +40,24 @@ impl Palette {
                 self.chosen = self.chosen.saturating_sub(1);
             }
             if input.consume_key(egui::Modifiers::NONE, Key::Enter) {
-                run = found.get(self.chosen).map(|info| info.id);
+                run = matching.get(self.chosen).map(|info| info.id);
             }
         });
-        self.chosen = self.chosen.min(found.len().saturating_sub(1));
+        self.chosen = self.chosen.min(matching.len().saturating_sub(1));
         let window =
             egui::Window::new("Command palette").id(Id::unique("palette")).title_bar(false).resizable(false);
         window.anchor(Align2::CENTER_TOP, [0.0, 70.0]).fixed_size([460.0, 380.0]).show(context, |ui| {
             let edit = egui::TextEdit::singleline(&mut self.query);
             let hint = "Type part of a command's name";
             let response = ui.add(edit.hint_text(hint).desired_width(f32::INFINITY));
-            super::controls::named(&response, "Find a command");
+            super::controls::set_accessible_name(&response, "Find a command");
             response.request_focus();
             if response.changed() {
                 self.chosen = 0;
             }
             ui.add_space(4.0);
             egui::ScrollArea::vertical().auto_shrink([false; 2]).show(ui, |ui| {
-                for (index, info) in found.iter().enumerate() {
+                for (index, info) in matching.iter().enumerate() {
                     let chosen = index == self.chosen;
                     let response = row(ui, info, chosen);
                     if chosen
@@ -69,7 +69,7 @@ impl Palette {
                         run = Some(info.id);
                     }
                 }
-                if found.is_empty() {
+                if matching.is_empty() {
                     ui.weak("No command has that in its name.");
                 }
             });
@@ -82,7 +82,7 @@ impl Palette {
 }
 
 fn row(ui: &mut egui::Ui, info: &CommandInfo, chosen: bool) -> egui::Response {
-    let shortcut = super::keys::text(ui.ctx(), info.id);
+    let shortcut = super::keys::shortcut_text(ui.ctx(), info.id);
     let label = format!("{}: {}", info.menu.title(), info.name);
     let layout = egui::Layout::top_down_justified(egui::Align::LEFT);
     let button = egui::Button::selectable(chosen, label).right_text(RichText::new(shortcut).weak());
@@ -90,7 +90,7 @@ fn row(ui: &mut egui::Ui, info: &CommandInfo, chosen: bool) -> egui::Response {
 }
 
 /// The commands whose name or tooltip holds every word of the query; those whose name starts with it first.
-fn matches(query: &str) -> Vec<&'static CommandInfo> {
+fn find_commands(query: &str) -> Vec<&'static CommandInfo> {
     let query = query.trim().to_lowercase();
     let words: Vec<_> = query.split_whitespace().collect();
     let rank = |info: &CommandInfo| {
@@ -103,9 +103,9 @@ fn matches(query: &str) -> Vec<&'static CommandInfo> {
             _ => None,
         }
     };
-    let mut found: Vec<_> = COMMANDS.iter().filter_map(|info| Some((rank(info)?, info))).collect();
-    found.sort_by_key(|(rank, _)| *rank);
-    found.into_iter().map(|(_, info)| info).collect()
+    let mut ranked: Vec<_> = COMMANDS.iter().filter_map(|info| Some((rank(info)?, info))).collect();
+    ranked.sort_by_key(|(rank, _)| *rank);
+    ranked.into_iter().map(|(_, info)| info).collect()
 }
 
 #[cfg(test)]
@@ -114,10 +114,10 @@ mod tests {
 
     #[test]
     fn finds_by_start_by_words_and_by_what_it_does() {
-        assert_eq!(matches("").len(), COMMANDS.len());
-        assert_eq!(matches("und")[0].id, CommandId::Undo);
-        assert!(matches("focus map export").iter().any(|info| info.id == CommandId::ExportFocusMap));
-        assert!(matches("16-bit").iter().any(|info| info.id == CommandId::ExportFocusMap));
-        assert!(matches("no such thing").is_empty());
+        assert_eq!(find_commands("").len(), COMMANDS.len());
+        assert_eq!(find_commands("und")[0].id, CommandId::Undo);
+        assert!(find_commands("focus map export").iter().any(|info| info.id == CommandId::ExportFocusMap));
+        assert!(find_commands("16-bit").iter().any(|info| info.id == CommandId::ExportFocusMap));
+        assert!(find_commands("no such thing").is_empty());
     }
 }

@@ -15,13 +15,13 @@ const RADIUS: f32 = 6.0;
 /// The point of the plane in hand.
 #[derive(Default)]
 pub struct PlaneTool {
-    held: Option<usize>,
+    held_point: Option<usize>,
 }
 
 impl PlaneTool {
     /// Whether a point is in hand.
     pub fn is_holding(&self) -> bool {
-        self.held.is_some()
+        self.held_point.is_some()
     }
 
     /// Takes hold of the point at `at`, or puts one there in the place of the oldest.
@@ -32,15 +32,15 @@ impl PlaneTool {
             place.map_or(f32::INFINITY, |place| (view.screen)(place).distance(at))
         };
         let nearest = (0..3).min_by(|a, b| distance(a).total_cmp(&distance(b)));
-        self.held = nearest.filter(|k| distance(k) <= REACH);
-        if self.held.is_some() {
+        self.held_point = nearest.filter(|k| distance(k) <= REACH);
+        if self.held_point.is_some() {
             return None;
         }
         let hit = session.pick(&view_ray(&view.frame, (view.position)(at)))?;
         let [_, second, third] = plane.points;
-        self.held = Some(2);
+        self.held_point = Some(2);
         let moved = FocalPlane { points: [second, third, hit.position], ..plane.clone() };
-        Some(Command::Layer(LayerEdit::Plane(index, moved)).into())
+        Some(Command::EditLayers(LayerEdit::Plane(index, moved)).into())
     }
 
     /// Moves the point in hand over what lies at `at`.
@@ -48,14 +48,14 @@ impl PlaneTool {
         let (index, plane) = active_plane(session.document()?)?;
         let hit = session.pick(&view_ray(&view.frame, (view.position)(at)))?;
         let mut moved = plane.clone();
-        moved.points[self.held?] = hit.position;
+        moved.points[self.held_point?] = hit.position;
         // On the way through the line of the other two there is no plane.
-        moved.is_valid().then(|| Command::Layer(LayerEdit::Plane(index, moved)).into())
+        moved.is_valid().then(|| Command::EditLayers(LayerEdit::Plane(index, moved)).into())
     }
 
     /// Lets go: the next move is a step of undo of its own.
     pub fn release(&mut self) -> Action {
-        self.held = None;
+        self.held_point = None;
         Command::FinishEdit.into()
     }
 }

@@ -11,57 +11,57 @@ use session::{Command, PictureTimes, Session, SessionError, StrokePoint};
 use std::time::{Duration, Instant};
 
 /// Time between two points: a tablet's 125 reports a second.
-const POINT_EVERY: Duration = Duration::from_millis(8);
+const POINT_INTERVAL: Duration = Duration::from_millis(8);
 
 /// How many of the slowest points a trace tells of.
-const SLOWEST: usize = 12;
+const REPORTED_SLOWEST: usize = 12;
 
 /// A recording that is being played.
 pub struct Player {
     steps: Vec<RecordedStep>,
     next: usize,
-    stroke: Option<Played>,
+    stroke: Option<PlayingStroke>,
     /// What was painted and is not in any finished picture yet.
-    unseen: Vec<Painted>,
+    pending: Vec<PaintedPoint>,
     /// What was painted and when its picture stood finished.
-    seen: Vec<Seen>,
+    finished: Vec<PointLatency>,
     /// From one frame of the window to the next, while strokes were painted.
     frames: Vec<Duration>,
     last_frame: Option<Instant>,
 }
 
 /// A point that was painted.
-struct Painted {
+struct PaintedPoint {
     /// How many changes the map holds with it.
     serial: u64,
-    due: Instant,
-    told: Instant,
+    due_at: Instant,
+    event_at: Instant,
     /// When the map held it and the preview was told.
-    painted: Instant,
+    painted_at: Instant,
 }
 
 /// What comes between the window being told of a point and its picture: the brush's work on the map, with that of the
 /// points told before it in the same frame; waiting for the preview to be done with what came before; bringing the sum up to date; a
 /// snapshot of the picture and the pixels of the screen.
-const STEPS: [&str; 4] = ["painting", "waiting", "summing", "showing"];
+const STEP_NAMES: [&str; 4] = ["painting", "waiting", "summing", "showing"];
 
 /// A point that came to be seen.
-struct Seen {
+struct PointLatency {
     /// Which of all points that changed the map.
     point: usize,
     /// From when it fell due until the window was told.
-    late: Duration,
+    lateness: Duration,
     /// How long each of [`STEPS`] took.
     steps: [Duration; 4],
 }
 
-impl Seen {
-    fn new(point: usize, painted: &Painted, times: &PictureTimes) -> Self {
-        let begun = times.begun.max(painted.painted);
-        let instants = [painted.told, painted.painted, begun, times.summed, times.finished];
+impl PointLatency {
+    fn new(point: usize, painted: &PaintedPoint, times: &PictureTimes) -> Self {
+        let begun = times.begun.max(painted.painted_at);
+        let instants = [painted.event_at, painted.painted_at, begun, times.summed, times.finished];
         Self {
             point,
-            late: painted.told.saturating_duration_since(painted.due),
+            lateness: painted.event_at.saturating_duration_since(painted.due_at),
             steps: std::array::from_fn(|k| instants[k + 1].saturating_duration_since(instants[k])),
         }
     }
@@ -73,7 +73,7 @@ impl Seen {
 }
 
 /// The stroke that is being played.
-struct Played {
+struct PlayingStroke {
     step: usize,
     next_point: usize,
     began: Instant,
@@ -86,8 +86,8 @@ impl Player {
             steps,
             next: 0,
             stroke: None,
-            unseen: Vec::new(),
-            seen: Vec::new(),
+            pending: Vec::new(),
+            finished: Vec::new(),
             frames: Vec::new(),
             last_frame: None,
         }
@@ -98,7 +98,7 @@ impl Player {
         if session.document().is_none() {
             return Ok(true);
         }
-        self.look(session);
+        self.collect_latencies(session);
         let now = Instant::now();
         if self.stroke.is_some() {
             self.frames.extend(self.last_frame.map(|last| now - last));
@@ -124,9 +124,9 @@ impl Player {
                 };
                 session.apply(Command::ActivateLayer(layer))?;
                 session.apply(Command::SetBrush(stroke.brush.clone()))?;
-                self.stroke = Some(Played { step: self.next - 1, next_point: 0, began: now });
+                self.stroke = Some(PlayingStroke { step: self.next - 1, next_point: 0, began: now });
             }
-            step => session.apply(Command::Do(step.clone()))?,
+            step => session.apply(Command::ApplyRecordedStep(step.clone()))?,
         }
         Ok(true)
     }
@@ -136,11 +136,11 @@ impl Player {
         let Some(played) = &mut self.stroke else { return Ok(()) };
         let RecordedStep::Stroke(stroke) = &self.steps[played.step] else { return Ok(()) };
         while let Some(point) = stroke.points.get(played.next_point) {
-            let due = played.began + POINT_EVERY * played.next_point as u32;
-            if due > now {
+            let due_at = played.began + POINT_INTERVAL * played.next_point as u32;
+            if due_at > now {
                 return Ok(());
             }
-            let point = StrokePoint::recorded(&stroke.view, point);
+            let point = StrokePoint::from_recorded(&stroke.view, point);
             let before = session.map_serial();
             session.apply(match played.next_point {
                 0 => Command::BeginStroke(point),
@@ -149,8 +149,13 @@ impl Player {
             played.next_point += 1;
             // A point between two dabs changes nothing.
             if session.map_serial() != before {
-                let painted = Instant::now();
-                self.unseen.push(Painted { serial: session.map_serial(), due, told: now, painted });
+                let painted_at = Instant::now();
+                self.pending.push(PaintedPoint {
+                    serial: session.map_serial(),
+                    due_at,
+                    event_at: now,
+                    painted_at,
+                });
             }
         }
         self.stroke = None;
@@ -158,36 +163,37 @@ impl Player {
     }
 
     /// Notes which points have come to be seen.
-    fn look(&mut self, session: &Session) {
+    fn collect_latencies(&mut self, session: &Session) {
         for times in session.finished_pictures() {
-            let seen = self.unseen.partition_point(|painted| painted.serial <= times.map_serial);
-            for painted in self.unseen.drain(..seen) {
-                self.seen.push(Seen::new(self.seen.len(), &painted, times));
+            let finished_count = self.pending.partition_point(|painted| painted.serial <= times.map_serial);
+            for painted in self.pending.drain(..finished_count) {
+                self.finished.push(PointLatency::new(self.finished.len(), &painted, times));
             }
         }
     }
 
     /// What was measured, and how far the picture is from the exact one (which is rendered now, and takes its time).
-    pub fn trace(&self, session: &Session) -> Result<Value, SessionError> {
+    pub fn latency_report(&self, session: &Session) -> Result<Value, SessionError> {
         let (Some(document), Some(preview)) = (session.document(), session.preview()) else {
             return Err(SessionError::NothingOpen);
         };
         let exact = session.exact_picture()?;
         let what = "the graphics card that held the picture was lost (try again)";
-        let shown = preview.picture.bring().ok_or(SessionError::TryAgain(what.into()))?;
-        let [shown, exact] = [&*shown, &exact].map(|picture| LinearPicture::of(picture, document.exposure));
+        let shown = preview.picture.fetch().ok_or(SessionError::TryAgain(what.into()))?;
+        let [shown, exact] =
+            [&*shown, &exact].map(|picture| LinearPicture::from_picture(picture, document.exposure));
         let error = compare(&shown, &exact)?;
-        let all = |of: fn(&Seen) -> Duration| statistics(self.seen.iter().map(of));
-        let of_step = |k: usize| statistics(self.seen.iter().map(|seen| seen.steps[k]));
+        let all = |of: fn(&PointLatency) -> Duration| statistics(self.finished.iter().map(of));
+        let of_step = |k: usize| statistics(self.finished.iter().map(|latency| latency.steps[k]));
         let of_steps: serde_json::Map<_, _> =
-            (STEPS.iter().enumerate()).map(|(k, name)| (name.to_string(), of_step(k))).collect();
+            (STEP_NAMES.iter().enumerate()).map(|(k, name)| (name.to_string(), of_step(k))).collect();
         Ok(json!({
             "steps": self.steps.len(),
             "picture": { "width": preview.camera.width, "height": preview.camera.height },
-            "event_to_picture_ms": all(Seen::event_to_picture),
+            "event_to_picture_ms": all(PointLatency::event_to_picture),
             "of_which_ms": of_steps,
             "slowest": self.slowest(),
-            "due_to_picture_ms": all(|seen| seen.late + seen.event_to_picture()),
+            "due_to_picture_ms": all(|latency| latency.lateness + latency.event_to_picture()),
             "frame_ms": statistics(self.frames.iter().copied()),
             "error_against_exact": { "psnr": error.psnr, "signed_mean_error": error.signed_mean_error },
         }))
@@ -195,23 +201,23 @@ impl Player {
 
     /// The slowest points, and what each waited for, ms.
     fn slowest(&self) -> Vec<Value> {
-        let mut slowest: Vec<&Seen> = self.seen.iter().collect();
-        slowest.sort_by_key(|seen| std::cmp::Reverse(seen.event_to_picture()));
-        let told = |seen: &&Seen| {
-            let steps: Vec<f64> = seen.steps.iter().copied().map(ms).collect();
-            json!({ "point": seen.point, "ms": ms(seen.event_to_picture()), "steps_ms": steps })
+        let mut slowest: Vec<&PointLatency> = self.finished.iter().collect();
+        slowest.sort_by_key(|latency| std::cmp::Reverse(latency.event_to_picture()));
+        let entry = |latency: &&PointLatency| {
+            let steps: Vec<f64> = latency.steps.iter().copied().map(milliseconds).collect();
+            json!({ "point": latency.point, "ms": milliseconds(latency.event_to_picture()), "steps_ms": steps })
         };
-        slowest.iter().take(SLOWEST).map(told).collect()
+        slowest.iter().take(REPORTED_SLOWEST).map(entry).collect()
     }
 }
 
-fn ms(duration: Duration) -> f64 {
+fn milliseconds(duration: Duration) -> f64 {
     duration.as_secs_f64() * 1e3
 }
 
 /// Median, 99th percentile and greatest, ms.
 fn statistics(durations: impl Iterator<Item = Duration>) -> Value {
-    let mut ms: Vec<f64> = durations.map(ms).collect();
+    let mut ms: Vec<f64> = durations.map(milliseconds).collect();
     ms.sort_by(f64::total_cmp);
     let at = |share: f64| {
         let last = ms.len().checked_sub(1)?;
@@ -227,8 +233,8 @@ mod tests {
     #[test]
     fn percentiles_are_of_the_sorted_times() {
         let times: Vec<_> = (0..101).rev().map(Duration::from_millis).collect();
-        let found = statistics(times.into_iter());
-        assert_eq!(found, json!({ "count": 101, "median": 50.0, "p99": 99.0, "max": 100.0 }));
+        let summary = statistics(times.into_iter());
+        assert_eq!(summary, json!({ "count": 101, "median": 50.0, "p99": 99.0, "max": 100.0 }));
         assert_eq!(statistics(std::iter::empty())["median"], Value::Null);
     }
 }

@@ -4,7 +4,7 @@
 
 use super::curve_stroke::CurveStroke;
 use super::drag_tool::{Drag, DragView, combine};
-use super::hand::{Hand, click};
+use super::hand::{ActiveTool, click_action};
 use super::plane_tool::{self, PlaneTool};
 use super::{Action, Tool, navigation};
 use egui::{Event, Modifiers, PointerButton, Pos2, Response, Ui};
@@ -14,7 +14,7 @@ use project::SelectionShape;
 use session::{Command, Session, StrokePoint, StrokeTarget};
 
 /// How far apart the points of a straight line are told, screen points.
-const LINE_STEP: f32 = 4.0;
+const LINE_STEP_POINTS: f32 = 4.0;
 
 /// The stroke of one view.
 #[derive(Default)]
@@ -41,11 +41,11 @@ impl StrokeInput {
         ui: &Ui,
         response: &Response,
         session: &Session,
-        hand: &Hand,
+        active_tool: &ActiveTool,
         view: &DragView<'_>,
     ) -> Vec<Action> {
         let mut actions = Vec::new();
-        if session.document().is_none() || hand.is_busy {
+        if session.document().is_none() || active_tool.is_adjusting_brush {
             return actions;
         }
         // Place and modifiers of the press itself: a frame may hold more than one event, a whole click even.
@@ -61,7 +61,7 @@ impl StrokeInput {
         let down = ui.input(|input| input.pointer.primary_down());
         let pressure = ui.input(|input| pen_pressure(&input.events));
         let frame = view.frame;
-        let point = |at| StrokePoint { at: StrokeTarget::View(frame, (view.position)(at)), pressure };
+        let point = |at| StrokePoint { target: StrokeTarget::View(frame, (view.position)(at)), pressure };
         let dragged_to = || response.interact_pointer_pos().filter(|_| response.dragged());
         if self.plane.is_holding() {
             actions.extend(dragged_to().and_then(|at| self.plane.drag(session, view, at)));
@@ -74,31 +74,31 @@ impl StrokeInput {
                 return actions;
             }
             if let Some(at) = dragged_to() {
-                actions.extend(drag.extend(at, session, &hand.settings, view));
+                actions.extend(drag.extend(at, session, &active_tool.settings, view));
             }
             if !down && let Some(drag) = self.drag.take() {
-                actions.extend(drag.end(session, &hand.settings, view));
+                actions.extend(drag.end(session, &active_tool.settings, view));
             }
             return actions;
         }
-        if hand.tool == Tool::Curve {
+        if active_tool.tool == Tool::Curve {
             self.end_curve(ui, response, point, &mut actions);
         } else {
-            self.curve.give_up();
+            self.curve.cancel();
         }
         if self.painting && !session.is_painting() {
             // Taken back meanwhile, by Esc or undo: the rest of the drag paints nothing.
             self.painting = false;
         }
-        let own = |modifiers: &Modifiers| {
-            let picks = hand.tool.selects() || hand.tool == Tool::Clone;
-            !navigation::claims_primary(ui.ctx(), *modifiers) && (picks || !modifiers.command)
+        let is_for_tool = |modifiers: &Modifiers| {
+            let uses_command_key = active_tool.tool.selects() || active_tool.tool == Tool::Clone;
+            !navigation::claims_primary(ui.ctx(), *modifiers) && (uses_command_key || !modifiers.command)
         };
         let is_here = response.is_pointer_button_down_on() || response.clicked();
-        let start = pressed.filter(|(modifiers, _)| own(modifiers) && is_here);
+        let start = pressed.filter(|(modifiers, _)| is_for_tool(modifiers) && is_here);
         if let Some((modifiers, at)) = start {
             response.request_focus();
-            self.press(session, hand, (modifiers, at), view, point, &mut actions);
+            self.press(session, active_tool, (modifiers, at), view, point, &mut actions);
             return actions;
         }
         if !self.painting {
@@ -113,7 +113,7 @@ impl StrokeInput {
             input.events.iter().filter_map(moved).collect::<Vec<_>>()
         });
         for pointer in moves {
-            let at = pulled(self.brush, pointer, hand.string);
+            let at = pulled_by_string(self.brush, pointer, active_tool.stabiliser_points);
             if Some(at) != self.brush {
                 actions.push(Command::ExtendStroke(point(at)).into());
                 self.brush = Some(at);
@@ -133,15 +133,15 @@ impl StrokeInput {
     fn press(
         &mut self,
         session: &Session,
-        hand: &Hand,
+        active_tool: &ActiveTool,
         (modifiers, at): (Modifiers, Pos2),
         view: &DragView,
         point: impl Fn(Pos2) -> StrokePoint,
         actions: &mut Vec<Action>,
     ) {
         let Some(document) = session.document() else { return };
-        let tool = hand.tool;
-        let hit = || hand.hit(session, view, at);
+        let tool = active_tool.tool;
+        let hit = || active_tool.pick(session, view, at);
         if tool == Tool::Curve {
             self.curve.add(at);
         } else if tool == Tool::Clone && modifiers.command {
@@ -154,17 +154,19 @@ impl StrokeInput {
             }
             if tool == Tool::Clone && brush.clone_offset == [0.0; 3] {
                 let what = "Clone: nothing to paint yet (Ctrl+click takes the focus from a place first)";
-                actions.push(Action::Complain(what.into()));
+                actions.push(Action::ShowError(what.into()));
                 return;
             }
             if brush != document.brush {
                 actions.push(Command::SetBrush(brush).into());
             }
             let line = modifiers.shift;
-            let from =
-                self.last_end.filter(|(seen, _)| line && *seen == view.frame).map_or(at, |(_, end)| end);
+            let from = self
+                .last_end
+                .filter(|(last_frame, _)| line && *last_frame == view.frame)
+                .map_or(at, |(_, end)| end);
             actions.push(Command::BeginStroke(point(from)).into());
-            let steps = (from.distance(at) / LINE_STEP).ceil();
+            let steps = (from.distance(at) / LINE_STEP_POINTS).ceil();
             for k in 1..=steps as u32 {
                 let along = from.lerp(at, k as f32 / steps);
                 actions.push(Command::ExtendStroke(point(along)).into());
@@ -174,7 +176,7 @@ impl StrokeInput {
         } else if tool == Tool::FocalPlane {
             if plane_tool::active_plane(document).is_none() {
                 let what = "The layer is no focal plane: choose one in Layers, or add one there.";
-                actions.push(Action::Complain(what.into()));
+                actions.push(Action::ShowError(what.into()));
             }
             actions.extend(self.plane.press(session, view, at));
         } else if tool.drags() {
@@ -182,8 +184,9 @@ impl StrokeInput {
         } else if let Some(hit) = hit() {
             let target = document.brush.target;
             let front = document.scene().area_normal(hit.point.triangle).normalize_or_zero();
-            let facing = SelectionShape::Normal { normal: front, degrees: hand.settings.facing_degrees };
-            actions.extend(click(tool, hit, target, facing, combine(modifiers)));
+            let facing =
+                SelectionShape::Normal { normal: front, degrees: active_tool.settings.facing_degrees };
+            actions.extend(click_action(tool, hit, target, facing, combine(modifiers)));
         }
     }
 
@@ -197,19 +200,26 @@ impl StrokeInput {
     ) {
         let pressed = |key| ui.input(|input| input.key_pressed(key));
         if pressed(egui::Key::Escape) {
-            self.curve.give_up();
+            self.curve.cancel();
         }
         if !self.curve.is_empty() && (pressed(egui::Key::Enter) || response.double_clicked()) {
-            let way = self.curve.finish();
-            actions.extend(way.first().map(|&at| Command::BeginStroke(point(at)).into()));
-            actions.extend(way.iter().skip(1).map(|&at| Command::ExtendStroke(point(at)).into()));
+            let curve = self.curve.finish();
+            actions.extend(curve.first().map(|&at| Command::BeginStroke(point(at)).into()));
+            actions.extend(curve.iter().skip(1).map(|&at| Command::ExtendStroke(point(at)).into()));
             actions.push(Command::CommitStroke.into());
         }
     }
 
     /// Draws what the tool in hand has laid out.
-    pub fn paint(&self, ui: &Ui, clip: egui::Rect, session: &Session, hand: &Hand, view: &DragView<'_>) {
-        if let Some(document) = session.document().filter(|_| hand.tool == Tool::FocalPlane) {
+    pub fn paint(
+        &self,
+        ui: &Ui,
+        clip: egui::Rect,
+        session: &Session,
+        active_tool: &ActiveTool,
+        view: &DragView<'_>,
+    ) {
+        if let Some(document) = session.document().filter(|_| active_tool.tool == Tool::FocalPlane) {
             plane_tool::paint(&ui.painter_at(clip), document, view);
         }
         if let Some(drag) = &self.drag {
@@ -220,7 +230,7 @@ impl StrokeInput {
 }
 
 /// Where the brush comes to lie when the pointer pulls it by a string: it stays while the string is slack.
-fn pulled(brush: Option<Pos2>, pointer: Pos2, string: f32) -> Pos2 {
+fn pulled_by_string(brush: Option<Pos2>, pointer: Pos2, string: f32) -> Pos2 {
     let Some(brush) = brush.filter(|_| string > 0.0) else { return pointer };
     let toward = brush - pointer;
     let length = toward.length();
@@ -247,7 +257,7 @@ mod tests {
         let mut brush = Some(pos2(0.0, 0.0));
         let mut widest = 0.0f32;
         for (k, pointer) in trembling.enumerate() {
-            let at = pulled(brush, pointer, 30.0);
+            let at = pulled_by_string(brush, pointer, 30.0);
             assert!(at.distance(pointer) <= 30.001);
             if k > 100 {
                 widest = widest.max(at.y.abs());
@@ -256,7 +266,7 @@ mod tests {
         }
         assert!(widest < 1.0, "{widest}");
         assert!((brush.unwrap().x - 370.0).abs() < 2.0);
-        assert_eq!(pulled(Some(pos2(1.0, 1.0)), pos2(5.0, 5.0), 0.0), pos2(5.0, 5.0));
-        assert_eq!(pulled(Some(pos2(1.0, 1.0)), pos2(5.0, 5.0), 30.0), pos2(1.0, 1.0), "slack");
+        assert_eq!(pulled_by_string(Some(pos2(1.0, 1.0)), pos2(5.0, 5.0), 0.0), pos2(5.0, 5.0));
+        assert_eq!(pulled_by_string(Some(pos2(1.0, 1.0)), pos2(5.0, 5.0), 30.0), pos2(1.0, 1.0), "slack");
     }
 }

@@ -1,12 +1,12 @@
 //! The name of a preset, asked for.
 
 use egui::{Context, Id, Key, TextEdit};
-use project::{Preset, PresetContent, PresetShelf};
+use project::{Preset, PresetContent, PresetLibrary};
 use std::path::PathBuf;
 
 /// What is to be named.
 #[derive(Clone, Debug)]
-pub enum Naming {
+pub enum PresetNaming {
     /// A new preset.
     New(PresetContent),
     /// The user's own preset of this file.
@@ -15,34 +15,34 @@ pub enum Naming {
 
 /// The question, when it is open.
 #[derive(Default)]
-pub struct PresetName {
-    asked: Option<(Naming, String)>,
+pub struct PresetNameDialog {
+    pending: Option<(PresetNaming, String)>,
     /// Whether the keyboard is on the name already.
     focused: bool,
 }
 
-impl PresetName {
+impl PresetNameDialog {
     /// Asks for a name, beginning with `suggestion`.
-    pub fn ask(&mut self, naming: Naming, suggestion: String) {
-        *self = Self { asked: Some((naming, suggestion)), focused: false };
+    pub fn open(&mut self, naming: PresetNaming, suggestion: String) {
+        *self = Self { pending: Some((naming, suggestion)), focused: false };
     }
 
     /// Whether it is open.
     pub fn is_open(&self) -> bool {
-        self.asked.is_some()
+        self.pending.is_some()
     }
 
     /// Draws it and returns what was named, and how, once that is said.
-    pub fn show(&mut self, context: &Context, shelf: &PresetShelf) -> Option<(Naming, String)> {
-        let (naming, name) = self.asked.as_mut()?;
+    pub fn show(&mut self, context: &Context, shelf: &PresetLibrary) -> Option<(PresetNaming, String)> {
+        let (naming, name) = self.pending.as_mut()?;
         let mut accepted = false;
-        let mut given_up = false;
+        let mut cancelled = false;
         let frame = egui::Frame::popup(&context.global_style()).inner_margin(14.0);
         let modal = egui::Modal::new(Id::unique("preset name")).frame(frame).show(context, |ui| {
             ui.set_width(340.0);
             ui.heading(match naming {
-                Naming::New(_) => "Save preset",
-                Naming::Rename(_) => "Rename preset",
+                PresetNaming::New(_) => "Save preset",
+                PresetNaming::Rename(_) => "Rename preset",
             });
             ui.add_space(6.0);
             let label = ui.label("Name");
@@ -50,38 +50,39 @@ impl PresetName {
             if !std::mem::replace(&mut self.focused, true) {
                 field.request_focus();
             }
-            let note = note(naming, name, shelf);
+            let note = name_note(naming, name, shelf);
             ui.add_space(6.0);
             ui.horizontal(|ui| {
                 let is_possible = note.as_ref().is_none_or(|(is_possible, _)| *is_possible);
                 let entered = ui.input(|input| input.key_pressed(Key::Enter));
-                let verb = if matches!(naming, Naming::New(_)) { "Save" } else { "Rename" };
+                let verb = if matches!(naming, PresetNaming::New(_)) { "Save" } else { "Rename" };
                 let button = ui.add_enabled(is_possible, egui::Button::new(verb));
                 accepted = button.clicked() || (entered && is_possible);
-                given_up = ui.button("Cancel").clicked();
+                cancelled = ui.button("Cancel").clicked();
             });
             if let Some((_, note)) = note {
                 ui.weak(note);
             }
         });
-        if given_up || modal.should_close() {
-            self.asked = None;
+        if cancelled || modal.should_close() {
+            self.pending = None;
             return None;
         }
-        if accepted { self.asked.take() } else { None }
+        if accepted { self.pending.take() } else { None }
     }
 }
 
 /// What is to be known of a name, and whether it can be given all the same.
-fn note(naming: &Naming, name: &str, shelf: &PresetShelf) -> Option<(bool, String)> {
-    let Naming::New(content) = naming else {
+fn name_note(naming: &PresetNaming, name: &str, shelf: &PresetLibrary) -> Option<(bool, String)> {
+    let PresetNaming::New(content) = naming else {
         return name.trim().is_empty().then(|| (false, "Type a name.".to_string()));
     };
     let preset = match Preset::new(name, content.clone()) {
         Ok(preset) => preset,
         Err(problem) => return Some((false, format!("{problem}."))),
     };
-    let same: Vec<_> = shelf.of_kind(preset.kind()).filter(|entry| entry.name() == preset.name).collect();
+    let same: Vec<_> =
+        shelf.entries_of_kind(preset.kind()).filter(|entry| entry.name() == preset.name).collect();
     let note = match &same[..] {
         [] => return None,
         same if same.iter().any(|entry| entry.file.is_some()) => "Your preset of this name will be replaced.",

@@ -10,10 +10,10 @@ use rayon::prelude::*;
 use session::{Document, view_ray};
 
 /// Distance of the rays, points.
-const SPACING: f32 = 3.0;
+const RAY_SPACING_POINTS: f32 = 3.0;
 
 /// What is within the region, its outline, and what lies beneath the outline: so one sees it on white and on black.
-const WITHIN: Color32 = Color32::from_rgba_premultiplied(26, 26, 26, 26);
+const FILL: Color32 = Color32::from_rgba_premultiplied(26, 26, 26, 26);
 const OUTLINE: Stroke = Stroke { width: 1.5, color: Color32::from_rgba_premultiplied(235, 235, 235, 235) };
 const SHADOW: Stroke = Stroke { width: 3.5, color: Color32::from_rgba_premultiplied(0, 0, 0, 150) };
 
@@ -21,14 +21,14 @@ const SHADOW: Stroke = Stroke { width: 3.5, color: Color32::from_rgba_premultipl
 #[derive(Default)]
 pub struct RegionHighlight {
     /// The view in the last frame: it stands still once it is the same again.
-    last: Option<View>,
-    seen: Option<Seen>,
-    marked: Option<Marked>,
+    last_view: Option<HighlightView>,
+    hit_grid: Option<HitGrid>,
+    region: Option<OutlinedRegion>,
 }
 
 /// What is looked through, and where its whole is on screen.
 #[derive(Clone, Copy, PartialEq)]
-struct View {
+struct HighlightView {
     frame: ViewFrame,
     /// Of (0, 0) to (1, 1).
     image: Rect,
@@ -37,24 +37,24 @@ struct View {
 }
 
 /// What the rays met.
-struct Seen {
-    view: View,
+struct HitGrid {
+    view: HighlightView,
     columns: usize,
     /// Row by row: the triangle.
     triangles: Vec<Option<u32>>,
 }
 
 /// What is drawn of a region.
-struct Marked {
+struct OutlinedRegion {
     targets: Vec<FillTarget>,
     /// What lies within: runs of a row.
-    within: Vec<Rect>,
+    filled_runs: Vec<Rect>,
     outline: Vec<[Pos2; 2]>,
 }
 
 impl RegionHighlight {
     /// Another document.
-    pub fn forget(&mut self) {
+    pub fn clear(&mut self) {
         *self = Self::default();
     }
 
@@ -66,30 +66,30 @@ impl RegionHighlight {
         (frame, image, clip): (ViewFrame, Rect, Rect),
         targets: &[FillTarget],
     ) {
-        let view = View { frame, image, clip: clip.intersect(image) };
-        let stands = self.last.replace(view) == Some(view);
+        let view = HighlightView { frame, image, clip: clip.intersect(image) };
+        let is_still = self.last_view.replace(view) == Some(view);
         if targets.is_empty() || !view.clip.is_positive() {
             return;
         }
-        if self.seen.as_ref().is_none_or(|seen| seen.view != view) {
-            (self.seen, self.marked) = (None, None);
-            if !stands || ui.input(|input| input.pointer.any_down()) {
+        if self.hit_grid.as_ref().is_none_or(|grid| grid.view != view) {
+            (self.hit_grid, self.region) = (None, None);
+            if !is_still || ui.input(|input| input.pointer.any_down()) {
                 ui.ctx().request_repaint();
                 return;
             }
-            self.seen = Some(Seen::of(document, view));
+            self.hit_grid = Some(HitGrid::trace(document, view));
         }
-        let Some(seen) = &self.seen else { return };
-        if self.marked.as_ref().is_none_or(|marked| marked.targets != targets) {
-            self.marked = Some(seen.marked(document, targets));
+        let Some(hit_grid) = &self.hit_grid else { return };
+        if self.region.as_ref().is_none_or(|region| region.targets != targets) {
+            self.region = Some(hit_grid.outline_region(document, targets));
         }
-        let Some(marked) = &self.marked else { return };
+        let Some(region) = &self.region else { return };
         let painter = ui.painter_at(view.clip);
-        marked.within.iter().for_each(|rect| {
-            painter.rect_filled(*rect, 0.0, WITHIN);
+        region.filled_runs.iter().for_each(|rect| {
+            painter.rect_filled(*rect, 0.0, FILL);
         });
         for stroke in [SHADOW, OUTLINE] {
-            marked.outline.iter().for_each(|line| {
+            region.outline.iter().for_each(|line| {
                 painter.line_segment(*line, stroke);
             });
         }
@@ -97,19 +97,19 @@ impl RegionHighlight {
 
     /// How much of the view is within the region, in [0, 1]; none while nothing is highlighted.
     pub fn share(&self) -> Option<f32> {
-        let clip = self.seen.as_ref()?.view.clip;
-        let within = self.marked.as_ref()?.within.iter().map(|rect| rect.area());
+        let clip = self.hit_grid.as_ref()?.view.clip;
+        let within = self.region.as_ref()?.filled_runs.iter().map(|rect| rect.area());
         Some(within.sum::<f32>() / clip.area())
     }
 }
 
-impl Seen {
-    fn of(document: &Document, view: View) -> Self {
-        let size = (view.clip.size() / SPACING).ceil();
+impl HitGrid {
+    fn trace(document: &Document, view: HighlightView) -> Self {
+        let size = (view.clip.size() / RAY_SPACING_POINTS).ceil();
         let (columns, rows) = (size.x as usize, size.y as usize);
         let tracer = &document.stage.tracer;
         let triangle = |index: usize| {
-            let at = view.place(columns, index).center();
+            let at = view.cell_rect(columns, index).center();
             let share = (at - view.image.min) / view.image.size();
             let ray = view_ray(&view.frame, DVec2::new(share.x.into(), share.y.into()));
             tracer.first_hit(&ray).map(|hit| hit.point.triangle)
@@ -117,14 +117,16 @@ impl Seen {
         Self { view, columns, triangles: (0..columns * rows).into_par_iter().map(triangle).collect() }
     }
 
-    fn marked(&self, document: &Document, targets: &[FillTarget]) -> Marked {
-        let is_in = |triangle: &Option<u32>| {
-            triangle.is_some_and(|triangle| targets.iter().any(|target| covers(document, *target, triangle)))
+    fn outline_region(&self, document: &Document, targets: &[FillTarget]) -> OutlinedRegion {
+        let is_inside = |triangle: &Option<u32>| {
+            triangle.is_some_and(|triangle| {
+                targets.iter().any(|target| target_contains(document, *target, triangle))
+            })
         };
-        let inside: Vec<bool> = self.triangles.par_iter().map(is_in).collect();
+        let inside: Vec<bool> = self.triangles.par_iter().map(is_inside).collect();
         let mut within: Vec<Rect> = Vec::new();
         for (index, _) in inside.iter().enumerate().filter(|(_, inside)| **inside) {
-            let place = self.view.place(self.columns, index);
+            let place = self.view.cell_rect(self.columns, index);
             match within.last_mut() {
                 Some(run) if run.top() == place.top() && run.right() >= place.left() => {
                     run.max.x = place.right();
@@ -133,30 +135,30 @@ impl Seen {
             }
         }
         // From the middle of one ray's square to that of the next.
-        let first = self.view.clip.min + Vec2::splat(SPACING / 2.0);
-        let on_screen = |line: [[f32; 2]; 2]| line.map(|[x, y]| first + vec2(x, y) * SPACING);
+        let first = self.view.clip.min + Vec2::splat(RAY_SPACING_POINTS / 2.0);
+        let on_screen = |line: [[f32; 2]; 2]| line.map(|[x, y]| first + vec2(x, y) * RAY_SPACING_POINTS);
         let outline = outline(&inside, self.columns).into_iter().map(on_screen).collect();
-        Marked { targets: targets.to_vec(), within, outline }
+        OutlinedRegion { targets: targets.to_vec(), filled_runs: within, outline }
     }
 }
 
-impl View {
+impl HighlightView {
     /// The square of a ray on screen.
-    fn place(&self, columns: usize, index: usize) -> Rect {
-        let at = |k: usize, from: f32| from + SPACING * k as f32;
+    fn cell_rect(&self, columns: usize, index: usize) -> Rect {
+        let at = |k: usize, from: f32| from + RAY_SPACING_POINTS * k as f32;
         let corner: Pos2 = pos2(at(index % columns, self.clip.left()), at(index / columns, self.clip.top()));
-        Rect::from_min_size(corner, vec2(SPACING, SPACING))
+        Rect::from_min_size(corner, vec2(RAY_SPACING_POINTS, RAY_SPACING_POINTS))
     }
 }
 
 /// Whether a triangle belongs to a target.
-fn covers(document: &Document, target: FillTarget, triangle: u32) -> bool {
+fn target_contains(document: &Document, target: FillTarget, triangle: u32) -> bool {
     let scene = document.scene();
     let part = scene.triangles[triangle as usize].part;
     match target {
         FillTarget::Node(node) => scene.parts[part as usize].node == node,
         FillTarget::Material(material) => scene.parts[part as usize].material == material,
-        FillTarget::Part(wanted) => part == wanted,
+        FillTarget::Part(target_part) => part == target_part,
         FillTarget::Chart(chart) => document.stage.atlas.chart_of[triangle as usize] == chart,
         FillTarget::Everything => true,
         FillTarget::Background => false,

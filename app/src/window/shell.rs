@@ -13,7 +13,7 @@ mod keying;
 mod presets;
 mod views;
 
-use super::action::Placing;
+use super::action::PanelCommand;
 use super::blit::Blitter;
 use super::brush_gesture::BrushGesture;
 use super::drawer::Drawer;
@@ -21,23 +21,23 @@ use super::file_dialog::{FileDialog, Purpose};
 use super::help::Help;
 use super::inspector::Inspector;
 use super::layout::{Layout, Pane};
-use super::looking_round::LookingRound;
+use super::looking_round::ApertureOrbit;
 use super::menu_bar::{MenuState, is_possible, menu_bar};
-use super::near_asked::NearAsked;
+use super::near_asked::DepthPolarityDialog;
 use super::options::WindowOptions;
 use super::paint_view::PaintView;
 use super::palette::Palette;
-use super::picture_view::{PictureView, Shown};
+use super::picture_view::{DisplayedPicture, PictureView};
 use super::player::Player;
-use super::preset_name::PresetName;
+use super::preset_name::PresetNameDialog;
 use super::status_line::{StatusNotes, status_line};
 use super::toasts::{Severity, Toasts};
 use super::tool_bar::{largest_radius, tool_bar};
-use super::unsaved_question::{Next, UnsavedQuestion};
+use super::unsaved_question::{PendingAction, UnsavedChangesDialog};
 use super::{Action, Tool, ViewSettings, graphics, keys, soft_painter, theme};
 use eframe::{CreationContext, Frame, Storage};
 use egui::{CentralPanel, Context, Panel, Ui, ViewportCommand};
-use project::{Preset, PresetShelf};
+use project::{Preset, PresetLibrary};
 use session::{
     CameraEdit, Command, CommandId, Event, ReferenceKind, Session, SessionError, SessionOptions, SurfaceHit,
 };
@@ -56,7 +56,7 @@ pub struct Shell {
     settings: ViewSettings,
     layout: Layout,
     /// The panel that the pointer was over last.
-    pointed: Pane,
+    hovered_pane: Pane,
     paint: PaintView,
     picture: PictureView,
     inspector: Inspector,
@@ -65,18 +65,18 @@ pub struct Shell {
     palette: Palette,
     help: Help,
     gesture: BrushGesture,
-    looking_round: LookingRound,
-    dialog: FileDialog,
-    question: UnsavedQuestion,
-    near: NearAsked,
-    presets: PresetShelf,
-    preset_name: PresetName,
+    aperture_orbit: ApertureOrbit,
+    file_dialog: FileDialog,
+    unsaved_dialog: UnsavedChangesDialog,
+    depth_polarity: DepthPolarityDialog,
+    presets: PresetLibrary,
+    preset_name_dialog: PresetNameDialog,
     /// The preset that a file is asked for.
     exported_preset: Option<Preset>,
     /// The first point of a rack focus, until the second is clicked.
     rack_from: Option<SurfaceHit>,
     /// What waits for a save to end well.
-    after_save: Option<Next>,
+    after_save: Option<PendingAction>,
     /// Whether the window may close without a question.
     may_close: bool,
     title: String,
@@ -104,17 +104,17 @@ impl Shell {
             |key| creation.storage.filter(|_| options.remember).and_then(|storage| storage.get_string(key));
         let settings: ViewSettings =
             stored(SETTINGS_KEY).and_then(|text| serde_json::from_str(&text).ok()).unwrap_or_default();
-        let layout = stored(LAYOUT_KEY).and_then(|text| Layout::stored(&text)).unwrap_or_default();
+        let layout = stored(LAYOUT_KEY).and_then(|text| Layout::from_stored(&text)).unwrap_or_default();
         let context = creation.egui_ctx.clone();
-        let gpu = state.map_or(Ok(None), |state| graphics::summing(state, options.backend));
-        let instead = "the processor sums the picture, not the graphics card";
-        let unused = gpu.as_ref().err().map(|why| format!("{instead}: {why}"));
+        let gpu = state.map_or(Ok(None), |state| graphics::splat_device(state, options.backend));
+        let fallback_note = "the processor sums the picture, not the graphics card";
+        let gpu_error = gpu.as_ref().err().map(|why| format!("{fallback_note}: {why}"));
         let session = Session::new(SessionOptions {
             unwrap: options.unwrap,
             preview_size: options.preview_size.unwrap_or(settings.preview_size),
-            exact_after: options.exact_after,
+            exact_delay: options.exact_after,
             light_passes: options.light_passes,
-            light_fields: options.light_fields,
+            light_field_store: options.light_fields,
             gpu: gpu.ok().flatten(),
             waker: Arc::new(move || context.request_repaint()),
             ..SessionOptions::default()
@@ -125,7 +125,7 @@ impl Shell {
             tool: Tool::default(),
             settings,
             layout,
-            pointed: Pane::Picture,
+            hovered_pane: Pane::Picture,
             paint: PaintView::new(state, blitter.as_ref()),
             picture: PictureView::new(blitter),
             inspector: Inspector::default(),
@@ -135,12 +135,12 @@ impl Shell {
             palette: Palette::default(),
             help: Help::default(),
             gesture: BrushGesture::default(),
-            looking_round: LookingRound::default(),
-            dialog: FileDialog::new(options.system_dialogs),
-            question: UnsavedQuestion::default(),
-            near: NearAsked::default(),
-            presets: PresetShelf::open(options.presets),
-            preset_name: PresetName::default(),
+            aperture_orbit: ApertureOrbit::default(),
+            file_dialog: FileDialog::new(options.system_dialogs),
+            unsaved_dialog: UnsavedChangesDialog::default(),
+            depth_polarity: DepthPolarityDialog::default(),
+            presets: PresetLibrary::open(options.presets),
+            preset_name_dialog: PresetNameDialog::default(),
             exported_preset: None,
             after_save: None,
             may_close: false,
@@ -154,7 +154,7 @@ impl Shell {
             player: options.replay.map(Player::new),
             trace: options.trace,
         };
-        if let Some(what) = unused {
+        if let Some(what) = gpu_error {
             shell.toasts.error(what);
         }
         match options.file {
@@ -196,8 +196,8 @@ impl Shell {
     }
 
     /// Whether it asks which end of a depth map is near.
-    pub fn asks_which_end_is_near(&self) -> bool {
-        self.near.is_open()
+    pub fn depth_polarity_dialog_is_open(&self) -> bool {
+        self.depth_polarity.is_open()
     }
 
     /// The chosen tool.
@@ -220,34 +220,34 @@ impl Shell {
         let state = MenuState {
             document: self.session.document(),
             settings: &self.settings,
-            working: !self.session.jobs().is_empty(),
+            has_jobs: !self.session.jobs().is_empty(),
         };
         if is_possible(id, &state) {
-            self.carry_out(id, context);
+            self.execute(id, context);
         }
     }
 
     /// Sends a command to the session; a failure becomes a message.
     pub fn apply(&mut self, command: Command) {
         let applied = self.session.apply(command);
-        self.report(applied);
+        self.show_failure(applied);
     }
 
     /// Says what failed.
-    fn report(&mut self, done: Result<(), SessionError>) {
+    fn show_failure(&mut self, done: Result<(), SessionError>) {
         match done {
             Ok(()) | Err(SessionError::Cancelled) => {}
             Err(error) => self.toasts.error(error.to_string()),
         }
     }
 
-    fn use_mask(&mut self, path: PathBuf) {
+    fn use_aperture_mask(&mut self, path: PathBuf) {
         let Some(document) = self.session.document() else { return };
         let ratio = document.camera.aperture.ratio;
         match project::read_aperture_mask(&path, &path.display().to_string()) {
             Ok(mask) => {
                 let shape = lens::ApertureShape::Mask(Arc::new(mask));
-                self.apply(Command::Camera(CameraEdit::Aperture(lens::Aperture { shape, ratio })));
+                self.apply(Command::EditCamera(CameraEdit::Aperture(lens::Aperture { shape, ratio })));
                 self.apply(Command::FinishEdit);
             }
             Err(error) => self.toasts.error(error.to_string()),
@@ -255,7 +255,7 @@ impl Shell {
     }
 
     /// Takes up what happened in the session.
-    fn take_events(&mut self, context: &Context) {
+    fn handle_events(&mut self, context: &Context) {
         for event in self.session.poll() {
             match event {
                 Event::Opened => {
@@ -265,15 +265,15 @@ impl Shell {
                     }
                     self.document_opened(context);
                 }
-                Event::Glaring(stops) if self.settings.display_stops == 0.0 => {
+                Event::GlareDetected(stops) if self.settings.display_stops == 0.0 => {
                     (self.settings.display_stops, self.is_dimmed) = (stops.max(-10.0), true);
                     let stops = -stops;
                     self.toasts.notice(format!(
                         "Shown {stops} stops darker: its lights are that bright (Lens, Display)"
                     ));
                 }
-                Event::AsksNear(question) => self.near.ask(*question, context),
-                Event::Glaring(_) => {}
+                Event::DepthPolarityRequired(question) => self.depth_polarity.open(*question, context),
+                Event::GlareDetected(_) => {}
                 Event::SurfaceChanged => {
                     self.picture.surface_changed();
                     if let Some(document) = self.session.document() {
@@ -293,9 +293,9 @@ impl Shell {
                         self.paint.selection_changed(document);
                     }
                 }
-                Event::ReferenceReady(ReferenceKind::Truth) => self.picture.show(Shown::Truth),
-                Event::ReferenceReady(_) | Event::Verified => {}
-                Event::Written(path) => self.written(path, context),
+                Event::ReferenceReady(ReferenceKind::Truth) => self.picture.show(DisplayedPicture::Truth),
+                Event::ReferenceReady(_) | Event::VerificationUpdated => {}
+                Event::FileWritten(path) => self.file_written(path, context),
                 Event::Failed(text) => {
                     self.after_save = None;
                     self.toasts.error(text);
@@ -311,69 +311,69 @@ impl Shell {
     }
 
     /// Keys: Esc takes a stroke back; the rest is the command table's.
-    fn keys(&mut self, context: &Context, actions: &mut Vec<Action>) {
+    fn handle_keys(&mut self, context: &Context, actions: &mut Vec<Action>) {
         if self.palette.is_open()
-            || self.dialog.is_open()
-            || self.question.is_open()
-            || self.near.is_open()
-            || self.preset_name.is_open()
+            || self.file_dialog.is_open()
+            || self.unsaved_dialog.is_open()
+            || self.depth_polarity.is_open()
+            || self.preset_name_dialog.is_open()
         {
             return;
         }
         if self.gesture.has_input() {
-            self.set_up_brush(context);
+            self.update_brush_gesture(context);
             return;
         }
         let escape = context.input(|input| input.key_pressed(egui::Key::Escape));
         if escape && self.session.is_painting() {
             actions.push(Command::AbortStroke.into());
-        } else if escape && self.session.looked_through().is_some() {
-            self.look_through_all();
+        } else if escape && self.session.sub_aperture_point().is_some() {
+            self.use_full_aperture();
         }
-        actions.extend(keys::pressed(context).into_iter().map(Action::Run));
+        actions.extend(keys::pressed_commands(context).into_iter().map(Action::Run));
     }
 
     /// The picture shows all of the aperture again.
-    fn look_through_all(&mut self) {
-        let ended = self.looking_round.stop(&mut self.session);
-        self.report(ended);
+    fn use_full_aperture(&mut self) {
+        let ended = self.aperture_orbit.stop(&mut self.session);
+        self.show_failure(ended);
     }
 
     /// The pointer and the keys set a number of the brush.
-    fn set_up_brush(&mut self, context: &Context) {
+    fn update_brush_gesture(&mut self, context: &Context) {
         let Some(document) = self.session.document() else { return };
         if let Some(brush) = self.gesture.update(context, largest_radius(document)) {
             self.apply(Command::SetBrush(brush));
         }
     }
 
-    fn perform(&mut self, actions: Vec<Action>, context: &Context) {
+    fn perform_actions(&mut self, actions: Vec<Action>, context: &Context) {
         if !actions.is_empty() {
             context.request_repaint();
         }
         for action in actions {
             match action {
                 Action::Run(id) => self.run(id, context),
-                Action::Do(command) => self.apply(*command),
-                Action::Open(path) => self.ask_then(Next::Open(path), context),
-                Action::ChooseMask => self.ask_for(Purpose::ApertureMask, context),
-                Action::ChooseEnvironment => self.ask_for(Purpose::Environment, context),
+                Action::Apply(command) => self.apply(*command),
+                Action::Open(path) => self.confirm_then(PendingAction::Open(path), context),
+                Action::ChooseMask => self.open_file_dialog(Purpose::ApertureMask, context),
+                Action::ChooseEnvironment => self.open_file_dialog(Purpose::Environment, context),
                 Action::Inspect(hit) => {
                     self.drawer.inspect(hit);
                     self.layout.open(Pane::Aperture);
                 }
                 Action::RackPoint(hit) => self.rack_point(hit),
-                Action::Place(pane, Placing::Enlarge) => self.layout.toggle_enlarged(pane),
-                Action::Place(pane, Placing::Float) => self.layout.toggle_floating(pane),
-                Action::Place(pane, Placing::Close) => self.layout.close(pane),
-                Action::Preset(wish) => self.preset(wish, context),
-                Action::Complain(text) => self.toasts.error(text),
+                Action::Place(pane, PanelCommand::Enlarge) => self.layout.toggle_enlarged(pane),
+                Action::Place(pane, PanelCommand::Float) => self.layout.toggle_floating(pane),
+                Action::Place(pane, PanelCommand::Close) => self.layout.close(pane),
+                Action::Preset(preset_action) => self.apply_preset_action(preset_action, context),
+                Action::ShowError(text) => self.toasts.error(text),
             }
         }
     }
 
     /// Tells the session how the screen shows pictures.
-    fn show_display(&mut self) {
+    fn update_display(&mut self) {
         let display = self.settings.display();
         if self.session.display() != display {
             self.apply(Command::SetDisplay(display));
@@ -385,20 +385,20 @@ impl Shell {
     }
 
     /// Plays on what is being played.
-    fn play(&mut self, context: &Context) {
+    fn advance_playback(&mut self, context: &Context) {
         let Some(mut player) = self.player.take() else { return };
         context.request_repaint();
         match player.play(&mut self.session) {
             Ok(true) => self.player = Some(player),
-            Ok(false) => self.played(&player, context),
+            Ok(false) => self.finish_playback(&player, context),
             Err(error) => self.toasts.error(error.to_string()),
         }
     }
 
     /// All was played: its times are written, and the window closes, if that was asked for.
-    fn played(&mut self, player: &Player, context: &Context) {
+    fn finish_playback(&mut self, player: &Player, context: &Context) {
         let Some(file) = self.trace.take() else { return };
-        let text = player.trace(&self.session).map(|trace| format!("{trace:#}\n"));
+        let text = player.latency_report(&self.session).map(|trace| format!("{trace:#}\n"));
         let written = text
             .and_then(|text| std::fs::write(&file, text).map_err(|error| SessionError::io(&file, &error)));
         match written {
@@ -413,38 +413,39 @@ impl Shell {
 
 impl eframe::App for Shell {
     fn logic(&mut self, context: &Context, _frame: &mut Frame) {
-        self.show_display();
-        self.take_events(context);
-        self.play(context);
-        let gone_on = self.looking_round.go_on(&mut self.session, context);
-        self.report(gone_on);
-        self.guard_close(context);
+        self.update_display();
+        self.handle_events(context);
+        self.advance_playback(context);
+        let advanced = self.aperture_orbit.advance(&mut self.session, context);
+        self.show_failure(advanced);
+        self.confirm_close(context);
         self.update_title(context);
     }
 
     fn ui(&mut self, ui: &mut Ui, _frame: &mut Frame) {
         let context = ui.ctx().clone();
         let mut actions = Vec::new();
-        keys::obey(&context, self.settings.key_map);
-        theme::choose(&context, self.settings.light_theme, self.settings.scale);
-        self.dropped_files(&context);
-        self.keys(&context, &mut actions);
-        let bar = theme::bar(ui.style());
+        keys::set_key_map(&context, self.settings.key_map);
+        theme::apply_theme(&context, self.settings.light_theme, self.settings.scale);
+        self.open_dropped_file(&context);
+        self.handle_keys(&context, &mut actions);
+        let bar = theme::bar_frame(ui.style());
         Panel::top("menu").frame(bar).show(ui, |ui| {
             let working = !self.session.jobs().is_empty();
-            let state = MenuState { document: self.session.document(), settings: &self.settings, working };
+            let state =
+                MenuState { document: self.session.document(), settings: &self.settings, has_jobs: working };
             menu_bar(ui, &state, &mut actions);
         });
         Panel::top("tools")
             .frame(bar)
             .show(ui, |ui| tool_bar(ui, self.session.document(), self.tool, &mut actions));
-        let drawing = self.is_drawing_long(&context);
+        let drawing = self.is_drawing_noticeably(&context);
         Panel::bottom("status").frame(bar).show(ui, |ui| {
             let tip = self
                 .session
                 .document()
                 .map_or("Open a scene with Ctrl+O, or drop one here.", |_| self.tool.tip());
-            let notes = StatusNotes { hover: self.hover_numbers(), drawing, tip };
+            let notes = StatusNotes { hover: self.hover_numbers(), is_drawing: drawing, tip };
             status_line(ui, &self.session, notes, &mut actions);
         });
         // The panels fill all of it.
@@ -454,12 +455,12 @@ impl eframe::App for Shell {
             actions.push(id.into());
         }
         self.help.show(&context, &self.adapter);
-        self.answer_questions(&context);
-        self.take_preset_name(&context);
+        self.show_dialogs(&context);
+        self.show_preset_name_dialog(&context);
         self.toasts.show(&context);
-        self.perform(actions, &context);
+        self.perform_actions(actions, &context);
         // While work goes on, its progress is shown twice a second.
-        if !self.session.jobs().is_empty() || self.session.drawing_exactly().is_some() {
+        if !self.session.jobs().is_empty() || self.session.exact_picture_progress().is_some() {
             context.request_repaint_after_secs(0.5);
         }
     }

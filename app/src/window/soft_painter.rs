@@ -66,14 +66,14 @@ struct Frame {
     screen: Rect,
     corners: Vec<Corner>,
     indices: Vec<u32>,
-    parts: Vec<Part>,
+    parts: Vec<FramePart>,
 }
 
-enum Part {
+enum FramePart {
     /// Triangles, by what cuts them off.
     Run(Vec<(Rect, Range<u32>)>),
     /// For egui to draw.
-    Left(ClippedShape),
+    Passthrough(ClippedShape),
 }
 
 impl Frame {
@@ -82,7 +82,7 @@ impl Frame {
     }
 
     fn add(&mut self, ClippedPrimitive { clip_rect, primitive }: ClippedPrimitive) {
-        let left = |shape| Part::Left(ClippedShape::new(clip_rect, shape));
+        let passthrough = |shape| FramePart::Passthrough(ClippedShape::new(clip_rect, shape));
         match primitive {
             Primitive::Mesh(mesh) if mesh.texture_id == TextureId::default() => {
                 let (first, start) = (self.corners.len() as u32, self.indices.len() as u32);
@@ -98,12 +98,12 @@ impl Frame {
                 self.indices.extend(mesh.indices.iter().map(|index| first + index));
                 let range = start..self.indices.len() as u32;
                 match self.parts.last_mut() {
-                    Some(Part::Run(run)) => run.push((clip_rect, range)),
-                    _ => self.parts.push(Part::Run(vec![(clip_rect, range)])),
+                    Some(FramePart::Run(run)) => run.push((clip_rect, range)),
+                    _ => self.parts.push(FramePart::Run(vec![(clip_rect, range)])),
                 }
             }
-            Primitive::Mesh(mesh) => self.parts.push(left(Shape::Mesh(mesh.into()))),
-            Primitive::Callback(callback) => self.parts.push(left(Shape::Callback(callback))),
+            Primitive::Mesh(mesh) => self.parts.push(passthrough(Shape::Mesh(mesh.into()))),
+            Primitive::Callback(callback) => self.parts.push(passthrough(Shape::Callback(callback))),
         }
     }
 
@@ -116,9 +116,9 @@ impl Frame {
         let corners = buffer("corners", bytemuck::cast_slice(&self.corners), wgpu::BufferUsages::VERTEX);
         let indices = buffer("triangles", bytemuck::cast_slice(&self.indices), wgpu::BufferUsages::INDEX);
         let shape = |part| match part {
-            Part::Left(shape) => shape,
-            Part::Run(run) => {
-                let call = Call {
+            FramePart::Passthrough(shape) => shape,
+            FramePart::Run(run) => {
+                let call = RunCallback {
                     pipeline: painter.pipeline.clone(),
                     font: font.bound.clone(),
                     corners: corners.clone(),
@@ -134,7 +134,7 @@ impl Frame {
 }
 
 /// A run of triangles.
-struct Call {
+struct RunCallback {
     pipeline: wgpu::RenderPipeline,
     font: wgpu::BindGroup,
     corners: wgpu::Buffer,
@@ -142,7 +142,7 @@ struct Call {
     run: Vec<(Rect, Range<u32>)>,
 }
 
-impl CallbackTrait for Call {
+impl CallbackTrait for RunCallback {
     fn paint(
         &self,
         info: PaintCallbackInfo,

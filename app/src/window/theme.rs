@@ -27,18 +27,18 @@ pub fn prepare(context: &egui::Context) {
 
 /// The frame of a bar along the window's edge. It is not filled: the window is cleared with the colour of panels, and egui's
 /// shader takes its time on an adapter in software.
-pub fn bar(style: &egui::Style) -> egui::Frame {
+pub fn bar_frame(style: &egui::Style) -> egui::Frame {
     egui::Frame::side_top_panel(style).fill(Color32::TRANSPARENT)
 }
 
 /// Takes a theme and a size of text and controls.
-pub fn choose(context: &egui::Context, light: bool, scale: f32) {
+pub fn apply_theme(context: &egui::Context, light: bool, scale: f32) {
     context.set_theme(if light { Theme::Light } else { Theme::Dark });
     context.set_zoom_factor(scale.clamp(0.5, 3.0));
 }
 
 /// Greys from window to text, and the two colours of messages.
-struct Greys {
+struct GreyLevels {
     panel: u8,
     window: u8,
     inset: u8,
@@ -53,7 +53,7 @@ struct Greys {
 }
 
 fn dark() -> Visuals {
-    let greys = Greys {
+    let greys = GreyLevels {
         panel: 38,
         window: 44,
         inset: 24,
@@ -68,7 +68,7 @@ fn dark() -> Visuals {
 }
 
 fn light() -> Visuals {
-    let greys = Greys {
+    let greys = GreyLevels {
         panel: 214,
         window: 224,
         inset: 240,
@@ -82,7 +82,7 @@ fn light() -> Visuals {
     visuals(Visuals::light(), &greys)
 }
 
-fn visuals(mut visuals: Visuals, greys: &Greys) -> Visuals {
+fn visuals(mut visuals: Visuals, greys: &GreyLevels) -> Visuals {
     let grey = Color32::from_gray;
     visuals.panel_fill = grey(greys.panel);
     visuals.window_fill = grey(greys.window);

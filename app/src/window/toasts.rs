@@ -8,7 +8,7 @@ const NOTICE_SECONDS: f64 = 5.0;
 /// Seconds that an error stays: long enough to read a path.
 const ERROR_SECONDS: f64 = 20.0;
 /// Older ones give way.
-const MOST: usize = 5;
+const MAX_SHOWN: usize = 5;
 
 /// How serious a message is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,7 +52,7 @@ impl Toasts {
         // The same sentence again only stays longer.
         self.shown.retain(|toast| toast.text != text);
         self.shown.push(Toast { severity, text, until: None });
-        if self.shown.len() > MOST {
+        if self.shown.len() > MAX_SHOWN {
             self.shown.remove(0);
         }
     }
@@ -71,7 +71,7 @@ impl Toasts {
                 let stay = if toast.severity == Severity::Error { ERROR_SECONDS } else { NOTICE_SECONDS };
                 let until = *toast.until.get_or_insert(now + stay);
                 context.request_repaint_after_secs((until - now).max(0.05) as f32);
-                if toast_ui(ui, toast) {
+                if show_toast(ui, toast) {
                     closed = Some(index);
                 }
             }
@@ -83,7 +83,7 @@ impl Toasts {
 }
 
 /// Draws one; true when it was closed.
-fn toast_ui(ui: &mut egui::Ui, toast: &Toast) -> bool {
+fn show_toast(ui: &mut egui::Ui, toast: &Toast) -> bool {
     let mut closed = false;
     Frame::popup(ui.style()).inner_margin(8.0).show(ui, |ui| {
         ui.set_max_width(520.0);

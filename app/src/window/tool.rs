@@ -124,7 +124,7 @@ impl Tool {
     }
 
     /// The tool that a command chooses.
-    pub fn of(id: CommandId) -> Option<Self> {
+    pub fn for_command(id: CommandId) -> Option<Self> {
         Self::BAR.into_iter().flatten().copied().find(|tool| tool.command() == id)
     }
 

@@ -28,9 +28,9 @@ pub fn tool_bar(ui: &mut Ui, document: Option<&Document>, tool: Tool, actions: &
             brush.target = target;
         }
         let px = signed_circle_px(&optics, brush.target.t);
-        ui.label(controls::circle(px))
+        ui.label(controls::circle_text(px))
             .on_hover_text("The blur that the brush paints, on the full-size picture.");
-        push_brush(document, brush, actions);
+        push_brush_change(document, brush, actions);
     });
 }
 
@@ -38,16 +38,16 @@ pub fn tool_bar(ui: &mut Ui, document: Option<&Document>, tool: Tool, actions: &
 const FOCUS_WIDTH: f32 = 170.0;
 const CIRCLE_WIDTH: f32 = 90.0;
 /// Room that a slider of the brush takes with its name, points.
-const SLIDER_ROOM: f32 = 182.0;
+const SLIDER_WIDTH: f32 = 182.0;
 
 /// Size, strength and hardness, as many as there is room for: the inspector has them all.
 fn brush_sliders(ui: &mut Ui, brush: &mut Brush, largest: f64) {
-    let has_room = |ui: &Ui| ui.available_width() > FOCUS_WIDTH + CIRCLE_WIDTH + SLIDER_ROOM;
+    let has_room = |ui: &Ui| ui.available_width() > FOCUS_WIDTH + CIRCLE_WIDTH + SLIDER_WIDTH;
     if has_room(ui) {
         ui.label("Size").on_hover_text(SIZE_TIP);
         let size = egui::Slider::new(&mut brush.radius, largest * 1e-3..=largest);
         let size = size.logarithmic(true).show_value(false);
-        controls::named(&ui.add(size).on_hover_text(SIZE_TIP), "Brush size");
+        controls::set_accessible_name(&ui.add(size).on_hover_text(SIZE_TIP), "Brush size");
     }
     let shares = [
         (&mut brush.strength, "Strength", STRENGTH_TIP, "Brush strength"),
@@ -57,7 +57,7 @@ fn brush_sliders(ui: &mut Ui, brush: &mut Brush, largest: f64) {
         if has_room(ui) {
             ui.label(label).on_hover_text(tip);
             let slider = egui::Slider::new(share, 0.0..=1.0).show_value(false);
-            controls::named(&ui.add(slider).on_hover_text(tip), name);
+            controls::set_accessible_name(&ui.add(slider).on_hover_text(tip), name);
         }
     }
     ui.separator();
@@ -68,7 +68,7 @@ fn tool_button(ui: &mut Ui, family: &[Tool], tool: Tool, actions: &mut Vec<Actio
     let chosen = family.contains(&tool);
     let shown = if chosen { tool } else { family[0] };
     let response = ui.add(Button::selectable(chosen, shown.label()));
-    let tip = keys::tip(ui.ctx(), shown.command());
+    let tip = keys::command_tooltip(ui.ctx(), shown.command());
     let more = if family.len() > 1 { "\nRight click for others of its kind." } else { "" };
     let response = response.on_hover_text(format!("{tip}{more}"));
     if response.clicked() {
@@ -77,7 +77,7 @@ fn tool_button(ui: &mut Ui, family: &[Tool], tool: Tool, actions: &mut Vec<Actio
     if family.len() > 1 {
         response.context_menu(|ui| {
             for tool in family {
-                let key = keys::text(ui.ctx(), tool.command());
+                let key = keys::shortcut_text(ui.ctx(), tool.command());
                 let button = Button::new(tool.label()).shortcut_text(key);
                 if ui.add(button).on_hover_text(tool.command().info().tooltip).clicked() {
                     actions.push(tool.command().into());
@@ -89,7 +89,7 @@ fn tool_button(ui: &mut Ui, family: &[Tool], tool: Tool, actions: &mut Vec<Actio
 }
 
 /// Sends the brush if it changed.
-pub fn push_brush(document: &Document, brush: Brush, actions: &mut Vec<Action>) {
+pub fn push_brush_change(document: &Document, brush: Brush, actions: &mut Vec<Action>) {
     if brush != document.brush {
         actions.push(Command::SetBrush(brush).into());
     }

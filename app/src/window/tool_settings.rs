@@ -85,7 +85,7 @@ impl GradientEnd {
 
 impl GradientSettings {
     /// The focus at the end; none for what is there.
-    pub fn to(&self) -> Option<FocusOffset> {
+    pub fn end_focus(&self) -> Option<FocusOffset> {
         match self.end {
             GradientEnd::Fade => None,
             GradientEnd::Lens => Some(FocusOffset::STANDARD),

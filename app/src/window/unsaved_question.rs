@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 /// What was going to happen.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Next {
+pub enum PendingAction {
     /// The window closes.
     Quit,
     /// Another document is opened.
@@ -13,33 +13,33 @@ pub enum Next {
     /// The demo is opened.
     OpenDemo,
     /// A file to open is asked for.
-    AskOpen,
+    ChooseFile,
     /// The folder of a capture is.
-    AskCapture,
+    ChooseCapture,
 }
 
 /// What the user wants done with the changes.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Answer {
     /// Save them, then go on.
-    Save(Next),
+    Save(PendingAction),
     /// Forget them, and go on.
-    Discard(Next),
+    Discard(PendingAction),
     /// Stay.
     Stay,
 }
 
 /// The question, when it is open.
 #[derive(Default)]
-pub struct UnsavedQuestion {
-    next: Option<Next>,
+pub struct UnsavedChangesDialog {
+    next: Option<PendingAction>,
     /// Whether the keyboard is on Save already.
     focused: bool,
 }
 
-impl UnsavedQuestion {
+impl UnsavedChangesDialog {
     /// Asks before `next`.
-    pub fn ask(&mut self, next: Next) {
+    pub fn open(&mut self, next: PendingAction) {
         *self = Self { next: Some(next), focused: false };
     }
 

@@ -1,8 +1,8 @@
 //! The line above each panel: its name, how it shows things, and what can be done with it.
 
-use super::action::Placing;
-use super::layout::{Docked, Pane};
-use super::picture_view::{PictureView, Shown};
+use super::action::PanelCommand;
+use super::layout::{DockState, Pane};
+use super::picture_view::{DisplayedPicture, PictureView};
 use super::{Action, ViewSettings, controls, keys};
 use egui::{Button, Ui};
 use session::{CommandId, Session};
@@ -11,7 +11,7 @@ use session::{CommandId, Session};
 const WIDTH_WITH_PERCENT: f32 = 500.0;
 
 /// How much more it has to be where what both eyes look at is told, points.
-const WIDTH_OF_FIXATED: f32 = 80.0;
+const FIXATED_WIDTH: f32 = 80.0;
 
 /// Room for the panel's own menu, points.
 const MENU_WIDTH: f32 = 32.0;
@@ -21,7 +21,7 @@ pub struct ViewHeader<'a> {
     /// Whose it is.
     pub pane: Pane,
     /// Where that is.
-    pub docked: Docked,
+    pub docked: DockState,
     /// What is shown.
     pub session: &'a Session,
     /// How the paint view looks.
@@ -35,19 +35,19 @@ impl ViewHeader<'_> {
     pub fn show(self, ui: &mut Ui, actions: &mut Vec<Action>) -> bool {
         let (pane, docked) = (self.pane, self.docked);
         // All that the line of another panel than the views would say stands on its tab.
-        if pane.is_foldable() && docked == Docked::Tab {
+        if pane.is_foldable() && docked == DockState::Tab {
             return false;
         }
         let margin = egui::Margin::symmetric(8, 3);
         let frame = match docked {
-            Docked::Floats => egui::Frame::new().fill(ui.visuals().panel_fill),
+            DockState::Floating => egui::Frame::new().fill(ui.visuals().panel_fill),
             _ => egui::Frame::new(),
         };
         let frame = frame.inner_margin(margin);
         let line = |ui: &mut Ui| {
             let spacing = std::mem::take(&mut ui.spacing_mut().item_spacing.x);
             // The menu has its place at the right end, whatever wraps.
-            let menu_width = if docked == Docked::Tab { 0.0 } else { MENU_WIDTH };
+            let menu_width = if docked == DockState::Tab { 0.0 } else { MENU_WIDTH };
             let width = ui.available_width() - menu_width;
             let wrapped = |ui: &mut Ui| {
                 ui.set_width(width);
@@ -56,7 +56,7 @@ impl ViewHeader<'_> {
             };
             let layout = egui::Layout::top_down(egui::Align::Min);
             let is_dragged = ui.allocate_ui_with_layout(egui::vec2(width, 0.0), layout, wrapped).inner;
-            if docked != Docked::Tab {
+            if docked != DockState::Tab {
                 let layout = egui::Layout::right_to_left(egui::Align::Min);
                 ui.with_layout(layout, |ui| panel_menu(ui, pane, docked, actions));
             }
@@ -74,16 +74,16 @@ impl ViewHeader<'_> {
         ui.spacing_mut().item_spacing.x = 5.0;
         let title = egui::RichText::new(self.pane.title()).strong();
         let is_dragged = match self.docked {
-            Docked::Beside => {
+            DockState::Tiled => {
                 let name = egui::Label::new(title).selectable(false).sense(egui::Sense::drag());
                 let name = ui.add(name).on_hover_text("Drag to place this panel elsewhere, also into tabs.");
                 name.drag_started()
             }
-            Docked::Alone => {
+            DockState::Enlarged => {
                 ui.add(egui::Label::new(title).selectable(false));
                 false
             }
-            Docked::Tab | Docked::Floats => false,
+            DockState::Tab | DockState::Floating => false,
         };
         match self.pane {
             Pane::Paint => paint_header(ui, self.session, self.settings),
@@ -95,28 +95,32 @@ impl ViewHeader<'_> {
 }
 
 /// What can be done with a panel.
-pub fn panel_menu(ui: &mut Ui, pane: Pane, docked: Docked, actions: &mut Vec<Action>) {
+pub fn panel_menu(ui: &mut Ui, pane: Pane, docked: DockState, actions: &mut Vec<Action>) {
     let response = ui.menu_button("…", |ui| {
-        let mut entry = |ui: &mut Ui, name: &str, placing: Placing, tip: &str| {
+        let mut entry = |ui: &mut Ui, name: &str, placing: PanelCommand, tip: &str| {
             if ui.button(name).on_hover_text(tip).clicked() {
                 actions.push(Action::Place(pane, placing));
                 ui.close();
             }
         };
         match docked {
-            Docked::Alone => entry(ui, "All panels", Placing::Enlarge, "Show the other panels again."),
-            _ => entry(ui, "Enlarge", Placing::Enlarge, "Show this panel alone, over all others."),
+            DockState::Enlarged => {
+                entry(ui, "All panels", PanelCommand::Enlarge, "Show the other panels again.")
+            }
+            _ => entry(ui, "Enlarge", PanelCommand::Enlarge, "Show this panel alone, over all others."),
         }
         match docked {
-            Docked::Floats => entry(ui, "Dock", Placing::Float, "Put this panel back among the others."),
-            Docked::Alone => {}
-            _ => entry(ui, "Float", Placing::Float, "Let this panel float over the others."),
+            DockState::Floating => {
+                entry(ui, "Dock", PanelCommand::Float, "Put this panel back among the others.")
+            }
+            DockState::Enlarged => {}
+            _ => entry(ui, "Float", PanelCommand::Float, "Let this panel float over the others."),
         }
         if pane.is_foldable() {
-            entry(ui, "Close", Placing::Close, "Fold this panel away; the View menu shows it again.");
+            entry(ui, "Close", PanelCommand::Close, "Fold this panel away; the View menu shows it again.");
         }
     });
-    controls::named(&response.response, &format!("{} panel's menu", pane.title()));
+    controls::set_accessible_name(&response.response, &format!("{} panel's menu", pane.title()));
     response.response.on_hover_text("What can be done with this panel.");
 }
 
@@ -126,7 +130,7 @@ fn paint_header(ui: &mut Ui, session: &Session, settings: &mut ViewSettings) {
     let tip =
         "From the scene's own colours (V) to the colours of blur (C): near orange, sharp white, far blue.";
     ui.spacing_mut().slider_width = 70.0;
-    controls::named(&ui.add(mix).on_hover_text(tip), "Share of false colour");
+    controls::set_accessible_name(&ui.add(mix).on_hover_text(tip), "Share of false colour");
     ui.label("Blur").on_hover_text("The false colour of blur.");
     ui.checkbox(&mut settings.contours, "Contours")
         .on_hover_text("Lines where the blur is 1, 4 and 16 px wide.");
@@ -135,11 +139,11 @@ fn paint_header(ui: &mut Ui, session: &Session, settings: &mut ViewSettings) {
         ui.checkbox(&mut settings.depth, "Depth").on_hover_text(
             "How far everything is: near yellow, far dark blue. Drag the slider to Surface to see it alone; the tools behind Copy depth (U) mend it.",
         );
-        ui.checkbox(&mut settings.seeing, "Invented")
+        ui.checkbox(&mut settings.photograph_counts, "Invented")
             .on_hover_text("What no picture shows and was filled in from around: magenta. Drag the slider to Surface to see it alone.");
     }
     if !document.stage.scene.views.is_empty() {
-        ui.checkbox(&mut settings.seeing, "Photographs").on_hover_text(
+        ui.checkbox(&mut settings.photograph_counts, "Photographs").on_hover_text(
             "How many photographs see the surface: none magenta (its light is filled in from around), one dark blue, ten green, 32 and more \
              yellow. Drag the slider to Surface to see it alone.",
         );
@@ -147,50 +151,59 @@ fn paint_header(ui: &mut Ui, session: &Session, settings: &mut ViewSettings) {
 }
 
 /// A menu of the pictures that can be shown.
-fn choose_picture(ui: &mut Ui, session: &Session, name: &str, of: &[Shown], shown: &mut Shown) {
+fn choose_picture(
+    ui: &mut Ui,
+    session: &Session,
+    name: &str,
+    choices: &[DisplayedPicture],
+    shown: &mut DisplayedPicture,
+) {
     let combo = egui::ComboBox::from_id_salt(name).selected_text(shown.name()).width(104.0);
     let combo = combo.wrap_mode(egui::TextWrapMode::Truncate);
     let response = combo.show_ui(ui, |ui| {
-        for choice in of.iter().copied().filter(|choice| choice.is_of(session.document())) {
+        for choice in choices.iter().copied().filter(|choice| choice.exists_for(session.document())) {
             ui.selectable_value(shown, choice, choice.name()).on_hover_text(choice.tip());
         }
     });
-    controls::named(&response.response, name);
+    controls::set_accessible_name(&response.response, name);
     response.response.on_hover_text(shown.tip());
 }
 
 fn picture_header(ui: &mut Ui, session: &Session, picture: &mut PictureView, actions: &mut Vec<Action>) {
-    choose_picture(ui, session, "Shown picture", &Shown::ALL, &mut picture.shown);
+    choose_picture(ui, session, "Shown picture", &DisplayedPicture::ALL, &mut picture.displayed);
     let mut wiping = picture.wipe.is_on;
-    let tip = keys::tip(ui.ctx(), CommandId::Wipe);
+    let tip = keys::command_tooltip(ui.ctx(), CommandId::Wipe);
     if ui.checkbox(&mut wiping, "Compare").on_hover_text(tip).changed() {
         actions.push(CommandId::Wipe.into());
     }
     // Pictures for two eyes are compared with nothing: what can be said of them has its place.
-    if !picture.shown.is_pair() {
+    if !picture.displayed.is_pair() {
         ui.add_enabled_ui(wiping, |ui| {
-            let of: Vec<Shown> = Shown::ALL.into_iter().filter(|shown| !shown.is_pair()).collect();
-            choose_picture(ui, session, "Compared picture", &of, &mut picture.wipe.against)
+            let choices: Vec<DisplayedPicture> =
+                DisplayedPicture::ALL.into_iter().filter(|shown| !shown.is_pair()).collect();
+            choose_picture(ui, session, "Compared picture", &choices, &mut picture.wipe.against)
         });
     }
-    let is_fixated = matches!(picture.shown, Shown::Anaglyph | Shown::SideBySide) && session.is_fixating();
+    let is_fixated = matches!(picture.displayed, DisplayedPicture::Anaglyph | DisplayedPicture::SideBySide)
+        && session.is_fixating();
     if is_fixated {
         let response = ui.button("Fixated ×");
-        if response.on_hover_text(keys::tip(ui.ctx(), CommandId::FixateFocus)).clicked() {
+        if response.on_hover_text(keys::command_tooltip(ui.ctx(), CommandId::FixateFocus)).clicked() {
             actions.push(CommandId::FixateFocus.into());
         }
     }
     let response = ui.add(Button::selectable(picture.verify.is_selecting(), "Verify"));
-    if response.on_hover_text(keys::tip(ui.ctx(), CommandId::Verify)).clicked() {
+    if response.on_hover_text(keys::command_tooltip(ui.ctx(), CommandId::Verify)).clicked() {
         actions.push(CommandId::Verify.into());
     }
     for (id, label) in [(CommandId::PictureFit, "Fit"), (CommandId::PictureActualSize, "100 %")] {
-        if ui.add(Button::new(label)).on_hover_text(keys::tip(ui.ctx(), id)).clicked() {
+        if ui.add(Button::new(label)).on_hover_text(keys::command_tooltip(ui.ctx(), id)).clicked() {
             actions.push(id.into());
         }
     }
-    let with_percent = WIDTH_WITH_PERCENT + if is_fixated { WIDTH_OF_FIXATED } else { 0.0 };
-    if let Some(percent) = picture.percent(session, ui.ctx().pixels_per_point()).filter(|p| p.is_finite())
+    let with_percent = WIDTH_WITH_PERCENT + if is_fixated { FIXATED_WIDTH } else { 0.0 };
+    if let Some(percent) =
+        picture.scale_percent(session, ui.ctx().pixels_per_point()).filter(|p| p.is_finite())
         && ui.max_rect().width() > with_percent
     {
         ui.add(egui::Label::new(egui::RichText::new(format!("{percent:.0} %")).weak()).extend())

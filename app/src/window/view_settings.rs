@@ -1,6 +1,6 @@
 //! How things are shown. Kept between runs, not part of any document.
 
-use super::paint_view::SurfaceLook;
+use super::paint_view::SurfaceAppearance;
 use super::tool_settings::ToolSettings;
 use serde::{Deserialize, Serialize};
 use session::{Display, KeyMap, ToneCurve};
@@ -8,7 +8,7 @@ use splat::Tolerance;
 use std::path::{Path, PathBuf};
 
 /// Files that the Open recent menu remembers.
-const RECENT: usize = 8;
+const MAX_RECENT: usize = 8;
 
 /// The largest tolerance of the live picture, px: as wide as the circle of confusion.
 pub const LARGEST_TOLERANCE_PX: f64 = 16.0;
@@ -25,7 +25,8 @@ pub struct ViewSettings {
     /// Contour lines of blur.
     pub contours: bool,
     /// How many photographs see the surface of a capture, or what of it was invented.
-    pub seeing: bool,
+    #[serde(rename = "seeing")]
+    pub photograph_counts: bool,
     /// How far the surface of a picture is.
     pub depth: bool,
     /// The longest side that the preview is drawn at, px.
@@ -49,17 +50,18 @@ pub struct ViewSettings {
     /// Files opened lately, the latest first.
     pub recent: Vec<PathBuf>,
     /// Whether the hint of the first start was put away.
-    pub hint_seen: bool,
+    #[serde(rename = "hint_seen")]
+    pub hint_dismissed: bool,
 }
 
 impl Default for ViewSettings {
     fn default() -> Self {
-        let look = SurfaceLook::default();
+        let appearance = SurfaceAppearance::default();
         Self {
-            focus_share: look.focus_share,
-            contours: look.contours,
-            seeing: look.seeing,
-            depth: look.depth,
+            focus_share: appearance.focus_share,
+            contours: appearance.contours,
+            photograph_counts: appearance.photograph_counts,
+            depth: appearance.depth,
             preview_size: 960,
             tolerance_px: TOLERANCE_PX,
             display_stops: 0.0,
@@ -70,16 +72,16 @@ impl Default for ViewSettings {
             key_map: KeyMap::default(),
             tools: ToolSettings::default(),
             recent: Vec::new(),
-            hint_seen: false,
+            hint_dismissed: false,
         }
     }
 }
 
 impl ViewSettings {
     /// The paint view's look.
-    pub fn look(&self) -> SurfaceLook {
-        let Self { focus_share, contours, seeing, depth, .. } = *self;
-        SurfaceLook { focus_share, contours, seeing, depth }
+    pub fn surface_appearance(&self) -> SurfaceAppearance {
+        let Self { focus_share, contours, photograph_counts, depth, .. } = *self;
+        SurfaceAppearance { focus_share, contours, photograph_counts, depth }
     }
 
     /// How pictures are put on screen.
@@ -96,7 +98,7 @@ impl ViewSettings {
     pub fn remember(&mut self, path: &Path) {
         self.recent.retain(|recent| recent != path);
         self.recent.insert(0, path.to_path_buf());
-        self.recent.truncate(RECENT);
+        self.recent.truncate(MAX_RECENT);
     }
 }
 

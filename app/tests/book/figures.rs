@@ -22,11 +22,14 @@ fn split(command: &str) -> Vec<String> {
 /// What the records of `docs/figures` say was run.
 fn commands_of_records() -> Vec<String> {
     let entries = std::fs::read_dir(repository().join("docs/figures")).unwrap();
-    let files = entries.map(|entry| entry.unwrap().path()).filter(|file| file.extension().is_some_and(|e| e == "json"));
+    let files = entries
+        .map(|entry| entry.unwrap().path())
+        .filter(|file| file.extension().is_some_and(|e| e == "json"));
     let mut commands = Vec::new();
     for file in files {
         let json: serde_json::Value = serde_json::from_str(&std::fs::read_to_string(&file).unwrap()).unwrap();
-        let records = json.as_object().unwrap().values().filter_map(|set| set["records"].as_array()).flatten();
+        let records =
+            json.as_object().unwrap().values().filter_map(|set| set["records"].as_array()).flatten();
         commands.extend(records.map(|record| record["command"].as_str().unwrap().to_owned()));
     }
     commands.sort();
@@ -76,7 +79,8 @@ fn problem(command: &str) -> Option<String> {
 
 #[test]
 fn the_program_understands_every_command_of_the_figures() {
-    let commands: Vec<String> = commands_of_records().iter().chain(&commands_of_pages()).flat_map(|c| split(c)).collect();
+    let commands: Vec<String> =
+        commands_of_records().iter().chain(&commands_of_pages()).flat_map(|c| split(c)).collect();
     let mut commands = commands;
     commands.sort();
     commands.dedup();

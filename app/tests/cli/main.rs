@@ -377,7 +377,7 @@ fn lenses_and_bokeh_are_presets_by_name_or_file() {
     // The wider lens sees less, and blurs the wall as far as its own numbers say.
     let camera = project::read_camera(&place.path("camera.json"), &lens::Camera::default()).unwrap();
     let preset = project::Preset::read(&place.path("lens.json")).unwrap();
-    let with = preset.camera(&camera).unwrap().unwrap();
+    let with = preset.apply_to_camera(&camera).unwrap().unwrap();
     project::write_camera(&place.path("with.json"), &with).unwrap();
     place.done("render quads.glb --camera with.json --exposure conserve --bokeh Star -o same.exr");
     let [star, same, own] =
@@ -494,7 +494,7 @@ fn strokes_are_replayed_onto_a_new_project() {
     let project = ProjectFile::load(&place.path("quads.fbrush")).unwrap();
     assert!(project.focus_map.is_some() && project.cameras[0].camera.width == 96);
     let camera = &project.cameras[0].camera;
-    let view = focus::ViewFrame::of(camera);
+    let view = focus::ViewFrame::from_camera(camera);
     let brush = focus::Brush { radius: 0.3, target: lens::FocusOffset::new(1.4, 0.5), ..Default::default() };
     let points = (0..20).map(|k| [0.3 + 0.02 * k as f64, 0.5, 1.0]).collect();
     let stroke = project::RecordedStroke { layer: "Paint".into(), brush, view: view.into(), points };
@@ -518,7 +518,7 @@ fn file_managers_see_what_is_in_a_file() {
     let place = Workplace::new();
     let project = place.paint("painted.fbrush");
     place.fails("thumbnail painted.fbrush -o small.png", 3, &["painted.fbrush", "without a picture"]);
-    let shown = project::Thumbnail::of(640, 320, vec![[0.25, 0.5, 1.0]; 640 * 320]);
+    let shown = project::Thumbnail::from_linear(640, 320, vec![[0.25, 0.5, 1.0]; 640 * 320]);
     let saved = ProjectFile { thumbnail: Some(shown), ..ProjectFile::load(&project).unwrap() };
     saved.save(&project).unwrap();
     // They name the file as they like.

@@ -77,7 +77,7 @@ impl Workplace {
         let recipe = project::read_recipe(&self.path("recipe.json")).unwrap();
         let focus: Focus = recipe.evaluate(&loaded).unwrap();
         let map = focus.bake(&atlas.texel_map(&loaded));
-        let defaults = session::camera_of(&loaded.cameras[0], &Default::default());
+        let defaults = session::shot_camera_from(&loaded.cameras[0], &Default::default());
         let camera = project::read_camera(&self.path("camera.json"), &defaults).unwrap();
         let cameras = vec![NamedCamera { name: "shot".into(), camera }];
         let file = self.path(name);

@@ -82,7 +82,7 @@ impl Person {
     }
 
     pub fn picture(&self) -> Arc<Picture> {
-        self.shell().session().preview().expect("a picture").picture.bring().expect("its card is there")
+        self.shell().session().preview().expect("a picture").picture.fetch().expect("its card is there")
     }
 
     pub fn complaints(&self) -> Vec<String> {

@@ -4,7 +4,7 @@
 use crate::acting::Person;
 use crate::small_scene;
 use egui::{Key, Modifiers};
-use focus::{Combine, LayerEdit, LayerStack, Selection};
+use focus::{CombineMode, LayerEdit, LayerStack, Selection};
 use lens::{Camera, FocusOffset};
 use project::SelectionShape;
 use session::{COMMANDS, Command, CommandId, FillRegion};
@@ -42,7 +42,7 @@ fn steps(person: &Person) -> usize {
 fn prepare(person: &mut Person) {
     let shell = person.window.state_mut();
     for _ in 0..2 {
-        shell.apply(Command::Layer(LayerEdit::AddPaint));
+        shell.apply(Command::EditLayers(LayerEdit::AddPaint));
         shell.apply(Command::Fill(FillRegion::All, FocusOffset::new(1.1, 1.0)));
     }
     shell.apply(Command::ActivateLayer(1));
@@ -51,7 +51,7 @@ fn prepare(person: &mut Person) {
         session.pick(&session.picture_ray(glam::DVec2::new(0.25, 0.5)).unwrap()).unwrap()
     };
     let card = hit(shell);
-    shell.apply(Command::SelectRegion(FillRegion::Node(card), Combine::Replace));
+    shell.apply(Command::SelectRegion(FillRegion::Node(card), CombineMode::Replace));
 }
 
 #[test]
@@ -67,7 +67,7 @@ fn every_command_runs_and_is_undone_or_has_nothing_to_undo() {
         }
         // A mask that is there cannot be added.
         if id == CommandId::AddMask {
-            person.window.state_mut().apply(Command::Layer(LayerEdit::RemoveMask(1)));
+            person.window.state_mut().apply(Command::EditLayers(LayerEdit::RemoveMask(1)));
         }
         // From where the shot camera stands already it would not move.
         if id == CommandId::CameraFromView {
@@ -100,7 +100,7 @@ fn every_command_runs_and_is_undone_or_has_nothing_to_undo() {
         // Whatever it opened is closed again.
         person.presses(Modifiers::NONE, Key::Escape);
         if id == CommandId::AddMask {
-            person.window.state_mut().apply(Command::Layer(LayerEdit::AddMask(1)));
+            person.window.state_mut().apply(Command::EditLayers(LayerEdit::AddMask(1)));
         }
         let shell = person.window.state_mut();
         match id {
@@ -140,7 +140,7 @@ fn a_hundred_edits_are_undone_and_done_again_to_the_bit() {
                 let half =
                     SelectionShape::Depth { origin: glam::DVec3::ZERO, axis: normal, range: [-4.0, 9.0] };
                 let shape = if k % 10 == 3 { half } else { SelectionShape::Everything };
-                person.window.state_mut().apply(Command::Select(shape, Combine::Replace));
+                person.window.state_mut().apply(Command::Select(shape, CombineMode::Replace));
             }
             _ => {
                 let shell = person.window.state_mut();
@@ -155,7 +155,7 @@ fn a_hundred_edits_are_undone_and_done_again_to_the_bit() {
     assert!(done > 60, "{done} of the hundred changed something");
     while states.len() <= 100 {
         let opacity = 0.5 + 1e-3 * states.len() as f64;
-        person.window.state_mut().apply(Command::Layer(LayerEdit::Opacity(0, opacity)));
+        person.window.state_mut().apply(Command::EditLayers(LayerEdit::Opacity(0, opacity)));
         person.window.state_mut().apply(Command::FinishEdit);
         states.push(state(&person));
     }

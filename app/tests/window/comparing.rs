@@ -71,7 +71,7 @@ fn the_ray_traced_picture_is_shown_and_says_when_it_is_old() {
     person.presses(Modifiers::NONE, Key::F12);
     person.wait_until("it is traced", |shell| shell.session().is_reference_current(ReferenceKind::Truth));
     person.waits();
-    assert_eq!(person.shell().picture_view().shown, focus_brush::window::Shown::Truth);
+    assert_eq!(person.shell().picture_view().displayed, focus_brush::window::DisplayedPicture::Truth);
     person.window.state_mut().apply(Command::Fill(FillRegion::All, lens::FocusOffset::SHARP));
     person.waits();
     assert!(!person.shell().session().is_reference_current(ReferenceKind::Truth));
@@ -123,9 +123,9 @@ fn a_rectangle_is_checked_by_rays_better_and_better_and_can_be_closed() {
     assert!(person.window.query_by_label_contains("PSNR").is_some());
     // A control that fails: another picture is far off.
     let mut wrong = preview.clone();
-    let mut picture = (*wrong.picture.bring().unwrap()).clone();
+    let mut picture = (*wrong.picture.fetch().unwrap()).clone();
     picture.radiance.iter_mut().for_each(|rgb| *rgb = [0.5; 3]);
-    wrong.picture = session::LivePicture::Here(std::sync::Arc::new(picture));
+    wrong.picture = session::LivePicture::InMemory(std::sync::Arc::new(picture));
     let far = verification.error_of(&wrong, lens::Exposure::Normalise).unwrap().unwrap();
     assert!(far.psnr < error.psnr - 8.0, "{} {}", far.psnr, error.psnr);
 

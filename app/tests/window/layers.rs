@@ -4,7 +4,7 @@ use crate::acting::{Person, at, difference};
 use crate::small_scene::opened;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
-use focus::{Adjustment, Blend};
+use focus::{Adjustment, BlendMode};
 use focus_brush::window::Tool;
 use lens::FocusOffset;
 
@@ -115,7 +115,7 @@ fn the_reset_brush_uncovers_what_lies_beneath_and_layers_are_saved() {
     person.window.run_steps(3);
     person.window.get_by_label("Multiply blur").click();
     person.waits();
-    assert_eq!(person.document().layers.active().blend, Blend::MultiplyDefocus);
+    assert_eq!(person.document().layers.active().blend, BlendMode::MultiplyDefocus);
 
     let project = folder.path().join("wall.fbrush");
     person.presses(Modifiers::COMMAND, Key::S);
@@ -187,7 +187,7 @@ fn a_focal_plane_runs_through_three_places_that_are_clicked() {
 
     // Turned by hand: what is above comes nearer.
     person.scrolls_to("Tilt");
-    let tilt = plane(&person).turn(&person.document().camera)[0];
+    let tilt = plane(&person).tilt_and_swing(&person.document().camera)[0];
     assert!(tilt.abs() < 1.5);
     person.scrolls_to("Place by three points");
     assert!(person.window.query_by_label("Curvature").is_some());

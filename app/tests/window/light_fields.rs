@@ -125,7 +125,7 @@ fn two_eyes_look_where_one_clicks() {
     person.wait_until("they look at the focus again", current(of(StereoForm::SideBySide)));
     assert_eq!(focused(&person, of(StereoForm::SideBySide)).1, lens);
     person.presses(Modifiers::ALT, Key::S);
-    assert_eq!(person.shell().picture_view().shown, focus_brush::window::Shown::Painted);
+    assert_eq!(person.shell().picture_view().displayed, focus_brush::window::DisplayedPicture::Painted);
     assert_eq!(person.complaints(), [""; 0]);
 }
 
@@ -140,7 +140,7 @@ fn a_depth_map_that_does_not_say_which_end_is_near_is_asked_about() {
     image::GrayImage::from_fn(width, height, level).save(folder.path().join("card_depth.png")).unwrap();
     let mut person = Person::starts(None);
     person.drops(&picture);
-    person.wait_until("it asks", |shell| shell.asks_which_end_is_near());
+    person.wait_until("it asks", |shell| shell.depth_polarity_dialog_is_open());
     person.window.run_steps(3);
     person.window.get_by_label("Black is near").click();
     person.wait_until("it is open", |shell| shell.session().document().is_some());

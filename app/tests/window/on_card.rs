@@ -69,7 +69,7 @@ fn a_picture_on_the_card_is_shown_as_the_processors_is() {
     small_scene::write(&file);
     let mut here = Person::watches(&file, BackendChoice::Cpu);
     let mut there = Person::watches(&file, BackendChoice::Gpu);
-    if matches!(there.live(), LivePicture::Here(_)) {
+    if matches!(there.live(), LivePicture::InMemory(_)) {
         eprintln!("SKIPPED: the window's device does not sum");
         return;
     }
@@ -82,7 +82,7 @@ fn a_picture_on_the_card_is_shown_as_the_processors_is() {
     // A stroke, in one rectangle of it.
     stroke(&mut here);
     stroke(&mut there);
-    assert!(matches!(there.live(), LivePicture::There(_)));
+    assert!(matches!(there.live(), LivePicture::OnCard(_)));
     assert_eq!(difference(&there.picture(), &here.picture()), 0.0);
     let (painted, there_painted) = (here.sees(), there.sees());
     assert!(apart(&before, &painted).0 > 20, "the stroke shows");
@@ -120,7 +120,7 @@ fn the_exact_picture_comes_from_the_card_and_a_stroke_goes_over_it() {
         shell.session().preview().is_some_and(|preview| preview.quality == Quality::Exact)
     };
     person.wait_until("the exact picture", exact);
-    if matches!(person.live(), LivePicture::Here(_)) {
+    if matches!(person.live(), LivePicture::InMemory(_)) {
         eprintln!("SKIPPED: the window's device does not sum");
         return;
     }

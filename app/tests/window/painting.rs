@@ -35,7 +35,7 @@ fn a_stroke_in_the_paint_view_shows_while_it_goes_on_and_can_be_undone() {
     assert!(person.shell().session().is_painting());
     assert_ne!(person.document().map, map, "the map follows the stroke");
     person.wait_until("the picture follows the stroke", |shell| {
-        let now = shell.session().preview().and_then(|preview| preview.picture.bring());
+        let now = shell.session().preview().and_then(|preview| preview.picture.fetch());
         now.is_some_and(|now| difference(&now, &picture) > 0.05)
     });
     assert!(person.shell().session().is_painting(), "all that before the button is let go");

@@ -100,7 +100,7 @@ fn the_atlas_is_painted_on_in_2d() {
     let mut steps = project::read_strokes(&strokes).unwrap();
     let begun = || {
         let scene = folder.path().join("wall.glb");
-        session::Document::begin(&scene, &Default::default(), &Default::default(), &progress::Unwatched)
+        session::Document::create(&scene, &Default::default(), &Default::default(), &progress::Unwatched)
             .unwrap()
     };
     let mut again = begun();
@@ -127,7 +127,7 @@ fn the_aperture_as_a_point_sees_it() {
     person.window.run_steps(20);
     let image = person.shell().drawer().aperture_image().expect("the card's").clone();
     assert_eq!(image.visible_share(), 1.0, "nothing stands before the card");
-    let kept = image.kept.expect("a sample of the light field");
+    let kept = image.baked.expect("a sample of the light field");
     assert_eq!((kept.side, kept.visible_share()), (1, 1.0), "and the light field keeps it open");
     assert!((image.depth - 2.0).abs() < 1e-6 && image.circle_px < 0.0, "nearer than the focus");
     // A disc: its corners are closed.
@@ -144,10 +144,10 @@ fn the_aperture_as_a_point_sees_it() {
     let shares: Vec<f64> = images.iter().map(|image| image.visible_share()).collect();
     // What the light field keeps, over the whole square, is what rays find there.
     let by_rays = |image: &session::ApertureImage| {
-        image.cells.iter().filter(|cell| cell.is_seen).count() as f64 / image.cells.len() as f64
+        image.cells.iter().filter(|cell| cell.is_visible).count() as f64 / image.cells.len() as f64
     };
     let differences =
-        images.iter().filter_map(|image| Some((image.kept.as_ref()?.visible_share(), by_rays(image))));
+        images.iter().filter_map(|image| Some((image.baked.as_ref()?.visible_share(), by_rays(image))));
     let differences: Vec<(f64, f64)> = differences.collect();
     assert!(differences.len() > 50 && differences.iter().any(|(kept, _)| *kept < 0.8 && *kept > 0.2));
     let mean = |off: &dyn Fn(&(f64, f64)) -> f64| {
@@ -266,13 +266,13 @@ fn a_drag_over_the_aperture_looks_through_it() {
     let beside = middle + egui::vec2(20.0, 0.0);
     person.drags(&[middle, beside]);
     person.waits();
-    let point = person.shell().session().looked_through().expect("the drag chose a point");
+    let point = person.shell().session().sub_aperture_point().expect("the drag chose a point");
     assert!(point.x > 0.1 && point.y.abs() < 0.9, "{point}");
     assert!(person.picture().radiance != before, "the card is out of focus: it moved");
     assert!(person.window.query_by_label_contains("through one point of the aperture").is_some());
     person.lets_go(beside);
     person.waits();
-    assert_eq!(person.shell().session().looked_through(), None);
+    assert_eq!(person.shell().session().sub_aperture_point(), None);
     assert_eq!(person.picture().radiance, before);
 
     // It runs round until Esc.
@@ -280,13 +280,13 @@ fn a_drag_over_the_aperture_looks_through_it() {
     let mut points = Vec::new();
     for _ in 0..20 {
         person.window.step();
-        points.extend(person.shell().session().looked_through());
+        points.extend(person.shell().session().sub_aperture_point());
     }
     assert!(points.iter().any(|point| point.distance(points[0]) > 0.05), "it runs: {points:?}");
     assert!(points.iter().all(|point| (point.length() - 15.0 / 16.0).abs() < 0.02), "on the rim");
     person.presses(Modifiers::NONE, Key::Escape);
     person.waits();
-    assert_eq!(person.shell().session().looked_through(), None);
+    assert_eq!(person.shell().session().sub_aperture_point(), None);
     assert_eq!(person.picture().radiance, before);
     assert!(person.complaints().is_empty(), "{:?}", person.complaints());
 }

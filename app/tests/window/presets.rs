@@ -6,7 +6,7 @@ use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use focus_brush::window::WindowOptions;
 use lens::ApertureShape;
-use project::{PresetKind, PresetShelf};
+use project::{PresetKind, PresetLibrary};
 use session::CommandId;
 use std::path::Path;
 
@@ -44,9 +44,9 @@ fn presets_are_chosen_saved_exported_and_imported() {
         (camera.camera_to_world, camera.focus_distance),
         (before.camera_to_world, before.focus_distance)
     );
-    let shelf = PresetShelf::open(None);
-    let listed = shelf.named(PresetKind::Lens, "Full frame 85 mm f/1.4").unwrap();
-    assert!(listed.is_of_camera(&camera) && !listed.is_of_camera(&before));
+    let shelf = PresetLibrary::open(None);
+    let listed = shelf.find(PresetKind::Lens, "Full frame 85 mm f/1.4").unwrap();
+    assert!(listed.matches_camera(&camera) && !listed.matches_camera(&before));
     person.presses(Modifiers::COMMAND, Key::Z);
     person.waits();
     assert_eq!(person.document().camera, before);

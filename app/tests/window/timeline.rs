@@ -59,7 +59,7 @@ fn keys_are_set_gone_to_moved_and_saved() {
     let (mut person, folder) = opened();
     person.presses(Modifiers::NONE, Key::F4);
     let distance = |person: &mut Person, distance: f64| {
-        person.window.state_mut().apply(Command::Camera(CameraEdit::FocusDistance(distance)));
+        person.window.state_mut().apply(Command::EditCamera(CameraEdit::FocusDistance(distance)));
         person.waits();
     };
     distance(&mut person, 2.0);
@@ -112,7 +112,7 @@ fn a_layer_fades_as_its_keys_say() {
     person.window.state_mut().apply(Command::Fill(region, lens::FocusOffset::new(1.2, 1.0)));
     let opacity = |person: &mut Person, opacity: f64| {
         let index = person.document().layers.active_index();
-        person.window.state_mut().apply(Command::Layer(focus::LayerEdit::Opacity(index, opacity)));
+        person.window.state_mut().apply(Command::EditLayers(focus::LayerEdit::Opacity(index, opacity)));
         person.presses(Modifiers::SHIFT, Key::Y);
     };
     opacity(&mut person, 1.0);

@@ -41,8 +41,10 @@ impl Atlas {
             return Err(wrong(&format!("{width}×{height} is no size of an atlas")));
         }
         if triangles as usize != scene.triangles.len() {
-            let of = scene.triangles.len();
-            return Err(wrong(&format!("it is of another scene: {triangles} triangles instead of {of}")));
+            let expected = scene.triangles.len();
+            return Err(wrong(&format!(
+                "it is of another scene: {triangles} triangles instead of {expected}"
+            )));
         }
         if !(density > 0.0 && density.is_finite()) {
             return Err(wrong("its density is no number above zero"));
@@ -89,15 +91,20 @@ impl<'a> Reader<'a> {
 
     fn numbers<T, const BYTES: usize, const COUNT: usize>(
         &mut self,
-        of: fn([u8; BYTES]) -> T,
+        decode: fn([u8; BYTES]) -> T,
     ) -> Result<[T; COUNT], &'static str> {
         let bytes = self.take(BYTES * COUNT)?;
-        Ok(std::array::from_fn(|i| of(std::array::from_fn(|k| bytes[i * BYTES + k]))))
+        Ok(std::array::from_fn(|i| decode(std::array::from_fn(|k| bytes[i * BYTES + k]))))
     }
 
-    fn list<T>(&mut self, count: u32, size: usize, of: impl Fn(&[u8]) -> T) -> Result<Vec<T>, &'static str> {
+    fn list<T>(
+        &mut self,
+        count: u32,
+        size: usize,
+        decode: impl Fn(&[u8]) -> T,
+    ) -> Result<Vec<T>, &'static str> {
         let bytes = (count as usize).checked_mul(size).ok_or("it ends too early")?;
-        Ok(self.take(bytes)?.chunks_exact(size).map(of).collect())
+        Ok(self.take(bytes)?.chunks_exact(size).map(decode).collect())
     }
 }
 

@@ -4,7 +4,7 @@ use glam::{DMat2, DVec2, DVec3};
 
 /// A flattened piece of surface. Its triangles run from x to y (positive area) and do not overlap.
 #[derive(Clone, Debug)]
-pub(crate) struct LooseChart {
+pub(crate) struct UnpackedChart {
     /// The part.
     pub part: u32,
     /// Scene triangles.
@@ -12,11 +12,11 @@ pub(crate) struct LooseChart {
     /// Their corners in the plane, world lengths.
     pub corners: Vec<[DVec2; 3]>,
     /// Whether the packer may turn it by any angle (an artist's island keeps its axes).
-    pub turnable: bool,
+    pub can_rotate: bool,
 }
 
 /// A triangle laid into the plane without distortion, a at the origin and b on the x axis.
-pub(crate) fn flatten([a, b, c]: [DVec3; 3]) -> [DVec2; 3] {
+pub(crate) fn flatten_triangle([a, b, c]: [DVec3; 3]) -> [DVec2; 3] {
     let (ab, ac) = (b - a, c - a);
     let length = ab.length();
     if length == 0.0 {
@@ -27,28 +27,28 @@ pub(crate) fn flatten([a, b, c]: [DVec3; 3]) -> [DVec2; 3] {
 }
 
 /// Signed area.
-pub(crate) fn area([a, b, c]: [DVec2; 3]) -> f64 {
+pub(crate) fn signed_area([a, b, c]: [DVec2; 3]) -> f64 {
     0.5 * (b - a).perp_dot(c - a)
 }
 
-impl LooseChart {
+impl UnpackedChart {
     /// A chart of one triangle, true to shape.
-    pub fn of_triangle(part: u32, triangle: u32, corners: [DVec3; 3]) -> Self {
-        Self { part, triangles: vec![triangle], corners: vec![flatten(corners)], turnable: true }
+    pub fn from_triangle(part: u32, triangle: u32, corners: [DVec3; 3]) -> Self {
+        Self { part, triangles: vec![triangle], corners: vec![flatten_triangle(corners)], can_rotate: true }
     }
 
     /// Brings a flattening of any scale to world lengths: the linear map that makes its mean metric that of the
     /// surface (undoing any stretch all its triangles share), then the scale that makes the areas equal.
     /// `worlds` are the triangles' corners in the world. Fails where the flattening has no area.
     pub fn scale_to_world(&mut self, worlds: &[[DVec3; 3]]) -> Option<()> {
-        if self.corners.iter().map(|&c| area(c)).sum::<f64>() < 0.0 {
+        if self.corners.iter().map(|&c| signed_area(c)).sum::<f64>() < 0.0 {
             self.corners.iter_mut().flatten().for_each(|c| c.x = -c.x);
         }
         // The metric G = Jᵀ·J of each triangle's map plane → surface, weighted by its area in the plane.
         let (mut metric, mut weight) = (DMat2::ZERO, 0.0);
         for (&plane, &world) in self.corners.iter().zip(worlds) {
             let edges = DMat2::from_cols(plane[1] - plane[0], plane[2] - plane[0]);
-            let flat = flatten(world);
+            let flat = flatten_triangle(world);
             let determinant = edges.determinant();
             if determinant > 0.0 {
                 let jacobian = DMat2::from_cols(flat[1] - flat[0], flat[2] - flat[0]) * edges.inverse();
@@ -58,8 +58,8 @@ impl LooseChart {
         }
         let root = square_root(metric * (1.0 / weight))?;
         self.corners.iter_mut().flatten().for_each(|c| *c = root * *c);
-        let flat: f64 = self.corners.iter().map(|&c| area(c)).sum();
-        let world: f64 = worlds.iter().map(|&w| area(flatten(w))).sum();
+        let flat: f64 = self.corners.iter().map(|&c| signed_area(c)).sum();
+        let world: f64 = worlds.iter().map(|&w| signed_area(flatten_triangle(w))).sum();
         let scale = (world / flat).sqrt();
         self.corners.iter_mut().flatten().for_each(|c| *c *= scale);
         let finite = self.corners.iter().flatten().all(|c| c.is_finite());
@@ -86,7 +86,7 @@ mod tests {
         let stretch = DMat2::from_cols(DVec2::new(0.1, 0.02), DVec2::new(-0.3, 5.0));
         let plane = [world, other].map(|t| t.map(|p| stretch * p.truncate()));
         let mut chart =
-            LooseChart { part: 0, triangles: vec![0, 1], corners: plane.to_vec(), turnable: true };
+            UnpackedChart { part: 0, triangles: vec![0, 1], corners: plane.to_vec(), can_rotate: true };
         chart.scale_to_world(&[world, other]).unwrap();
         for (flat, world) in chart.corners.iter().zip([world, other]) {
             for k in 0..3 {

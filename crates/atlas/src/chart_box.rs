@@ -1,19 +1,19 @@
 //! A chart turned into its smallest box, ready for the packer.
 
-use crate::chart::LooseChart;
+use crate::chart::UnpackedChart;
 use glam::DVec2;
 
 /// A chart turned into its smallest box, which starts at 0 and is at least as wide as high.
-pub(crate) struct Boxed {
+pub(crate) struct BoxedChart {
     corners: Vec<[DVec2; 3]>,
     /// Its extent, world lengths.
     pub size: DVec2,
 }
 
-impl Boxed {
+impl BoxedChart {
     /// Turns a chart into its box.
-    pub fn new(chart: &LooseChart) -> Self {
-        let axis = if chart.turnable { smallest_box_axis(&chart.corners) } else { DVec2::X };
+    pub fn new(chart: &UnpackedChart) -> Self {
+        let axis = if chart.can_rotate { smallest_box_axis(&chart.corners) } else { DVec2::X };
         let turn = |c: DVec2| DVec2::new(c.dot(axis), axis.perp_dot(c));
         let mut corners: Vec<[DVec2; 3]> = chart.corners.iter().map(|t| t.map(turn)).collect();
         let low = corners.iter().flatten().fold(DVec2::INFINITY, |low, &c| low.min(c));
@@ -33,7 +33,7 @@ impl Boxed {
     }
 
     /// Its triangles in texels after quarter turns, starting at 0.
-    pub fn turned(&self, density: f64, turns: u32) -> impl Iterator<Item = [DVec2; 3]> + Clone {
+    pub fn rotated(&self, density: f64, turns: u32) -> impl Iterator<Item = [DVec2; 3]> + Clone {
         let scale = self.scale(density);
         let size = self.size * scale;
         let turn = move |c: DVec2| match turns {

@@ -9,7 +9,7 @@
 //! `session` that reads a clock.
 
 use crate::engine::Engine;
-use crate::flattening::{Flattened, Patch};
+use crate::flattening::{FlattenedPatch, SurfacePatch};
 use progress::{Cancelled, Progress};
 use std::ffi::OsString;
 use std::fs::File;
@@ -19,33 +19,33 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 /// The hidden first argument that makes a program a child.
-const WORD: &str = "--unwrap-child";
+const CHILD_ARGUMENT: &str = "--unwrap-child";
 
 /// What a child says first. Without it the program is none that knows the word.
-const HELLO: &[u8; 8] = b"unwrap 1";
+const GREETING: &[u8; 8] = b"unwrap 1";
 
 /// How often the parent looks at its children.
-const POLL: Duration = Duration::from_millis(4);
+const POLL_INTERVAL: Duration = Duration::from_millis(4);
 
 /// How much longer than its deadline an orphaned child lives.
-const ORPHAN: Duration = Duration::from_secs(5);
+const ORPHAN_GRACE: Duration = Duration::from_secs(5);
 
 /// Triangles or vertices of a patch that a child takes; more is a broken request.
-const LARGEST_PATCH: u32 = 1 << 26;
+const MAX_PATCH_TRIANGLES: u32 = 1 << 26;
 
 /// Call this first in `main`: in a child it does the work and ends the process; otherwise it does nothing.
-pub fn run_if_asked() {
+pub fn run_if_child() {
     let arguments: Vec<OsString> = std::env::args_os().collect();
-    if arguments.get(1).is_none_or(|word| word != WORD) {
+    if arguments.get(1).is_none_or(|word| word != CHILD_ARGUMENT) {
         return;
     }
     let word = |n: usize| arguments.get(n).and_then(|a| a.to_str());
-    let engine = word(2).and_then(Engine::from_word);
+    let engine = word(2).and_then(Engine::from_name);
     let deadline = word(3).and_then(|ms| ms.parse().ok()).map(Duration::from_millis);
     let (Some(engine), Some(deadline)) = (engine, deadline) else { std::process::exit(2) };
     // If the parent dies, nobody kills a child that hangs.
     std::thread::spawn(move || {
-        std::thread::sleep(deadline.saturating_add(ORPHAN));
+        std::thread::sleep(deadline.saturating_add(ORPHAN_GRACE));
         std::process::exit(124);
     });
     let done = serve(engine, &mut BufReader::new(io::stdin().lock()), &mut io::stdout().lock());
@@ -54,11 +54,11 @@ pub fn run_if_asked() {
 
 /// Flattens patch after patch; every answer is out before the next patch may crash.
 fn serve(engine: Engine, input: &mut impl Read, output: &mut impl Write) -> io::Result<()> {
-    output.write_all(HELLO)?;
+    output.write_all(GREETING)?;
     output.flush()?;
     let count = read_u32(input)?;
     for _ in 0..count {
-        let patch = Patch::read(input)?;
+        let patch = SurfacePatch::read(input)?;
         let flattened = engine.flatten(&patch);
         let mut answer = Vec::new();
         write_answer(flattened.as_ref(), &mut answer)?;
@@ -69,9 +69,9 @@ fn serve(engine: Engine, input: &mut impl Read, output: &mut impl Write) -> io::
 }
 
 /// What came of a batch of patches.
-pub(crate) struct Answers {
+pub(crate) struct ChildResults {
     /// For each patch its flattening, or nothing.
-    pub flattened: Vec<Option<Flattened>>,
+    pub flattened: Vec<Option<FlattenedPatch>>,
     /// How many children crashed or were killed at their deadline.
     pub lost: usize,
 }
@@ -86,7 +86,7 @@ pub(crate) enum ChildError {
 }
 
 /// A child at work on `first..first + count` of the patches.
-struct Running {
+struct RunningChild {
     process: Child,
     output: File,
     first: usize,
@@ -94,7 +94,7 @@ struct Running {
     started: Instant,
 }
 
-impl Drop for Running {
+impl Drop for RunningChild {
     fn drop(&mut self) {
         // Both fail only for a process that has already ended.
         let _ = self.process.kill();
@@ -103,18 +103,18 @@ impl Drop for Running {
 }
 
 /// Flattens patches with several children side by side, each working on at most about `batch` triangles.
-pub(crate) fn flatten(
+pub(crate) fn flatten_in_children(
     program: &Path,
     engine: Engine,
-    patches: &[&Patch],
+    patches: &[&SurfacePatch],
     batch: usize,
     deadline: Duration,
     progress: &dyn Progress,
-) -> Result<Answers, ChildError> {
+) -> Result<ChildResults, ChildError> {
     let slots = std::thread::available_parallelism().map_or(1, usize::from);
-    let mut answers = Answers { flattened: vec![None; patches.len()], lost: 0 };
-    let mut waiting = batches(patches, batch).into_iter();
-    let mut running: Vec<Running> = Vec::new();
+    let mut answers = ChildResults { flattened: vec![None; patches.len()], lost: 0 };
+    let mut waiting = split_batches(patches, batch).into_iter();
+    let mut running: Vec<RunningChild> = Vec::new();
     let mut done = 0;
     loop {
         while running.len() < slots
@@ -125,7 +125,7 @@ pub(crate) fn flatten(
         if running.is_empty() {
             return Ok(answers);
         }
-        std::thread::sleep(POLL);
+        std::thread::sleep(POLL_INTERVAL);
         progress.check()?;
         let mut still = Vec::new();
         for mut child in running {
@@ -155,7 +155,7 @@ impl From<Cancelled> for ChildError {
 }
 
 /// Runs of patches of about so many triangles: first and count.
-fn batches(patches: &[&Patch], triangles: usize) -> Vec<(usize, usize)> {
+fn split_batches(patches: &[&SurfacePatch], triangles: usize) -> Vec<(usize, usize)> {
     let mut result: Vec<(usize, usize)> = Vec::new();
     let mut size = usize::MAX;
     for (i, patch) in patches.iter().enumerate() {
@@ -174,11 +174,11 @@ fn batches(patches: &[&Patch], triangles: usize) -> Vec<(usize, usize)> {
 fn start(
     program: &Path,
     engine: Engine,
-    patches: &[&Patch],
+    patches: &[&SurfacePatch],
     first: usize,
     count: usize,
     deadline: Duration,
-) -> io::Result<Running> {
+) -> io::Result<RunningChild> {
     let mut input = BufWriter::new(tempfile::tempfile()?);
     input.write_all(&(count as u32).to_le_bytes())?;
     patches[first..first + count].iter().try_for_each(|patch| patch.write(&mut input))?;
@@ -186,23 +186,23 @@ fn start(
     input.rewind()?;
     let output = tempfile::tempfile()?;
     let process = Command::new(program)
-        .args([WORD, engine.word(), &deadline.as_millis().to_string()])
+        .args([CHILD_ARGUMENT, engine.name(), &deadline.as_millis().to_string()])
         .stdin(Stdio::from(input))
         .stdout(Stdio::from(output.try_clone()?))
         .stderr(Stdio::null())
         .spawn()?;
-    Ok(Running { process, output, first, count, started: Instant::now() })
+    Ok(RunningChild { process, output, first, count, started: Instant::now() })
 }
 
 /// Ends a child and takes the answers it gave. Fails where it is no child of ours.
-fn collect(child: &mut Running, flattened: &mut [Option<Flattened>]) -> io::Result<()> {
+fn collect(child: &mut RunningChild, flattened: &mut [Option<FlattenedPatch>]) -> io::Result<()> {
     // An error means that it has ended by itself.
     let _ = child.process.kill();
     child.process.wait()?;
     child.output.rewind()?;
     let mut output = BufReader::new(&child.output);
-    let mut hello = [0; HELLO.len()];
-    if output.read_exact(&mut hello).is_err() || hello != *HELLO {
+    let mut hello = [0; GREETING.len()];
+    if output.read_exact(&mut hello).is_err() || hello != *GREETING {
         return Err(io::Error::other("does not answer as an unwrapping child"));
     }
     for place in &mut flattened[child.first..child.first + child.count] {
@@ -213,7 +213,7 @@ fn collect(child: &mut Running, flattened: &mut [Option<Flattened>]) -> io::Resu
     Ok(())
 }
 
-impl Patch {
+impl SurfacePatch {
     fn write(&self, output: &mut impl Write) -> io::Result<()> {
         output.write_all(&(self.positions.len() as u32).to_le_bytes())?;
         output.write_all(&(self.corners.len() as u32).to_le_bytes())?;
@@ -236,7 +236,7 @@ impl Patch {
 }
 
 /// The number of triangles (0: the engine refused the patch), charts, corners.
-fn write_answer(flattened: Option<&Flattened>, output: &mut impl Write) -> io::Result<()> {
+fn write_answer(flattened: Option<&FlattenedPatch>, output: &mut impl Write) -> io::Result<()> {
     let Some(flattened) = flattened else { return output.write_all(&0u32.to_le_bytes()) };
     output.write_all(&(flattened.chart.len() as u32).to_le_bytes())?;
     flattened.chart.iter().try_for_each(|x| output.write_all(&x.to_le_bytes()))?;
@@ -244,12 +244,12 @@ fn write_answer(flattened: Option<&Flattened>, output: &mut impl Write) -> io::R
     corners.iter().try_for_each(|x| output.write_all(&x.to_le_bytes()))
 }
 
-fn read_answer(input: &mut impl Read) -> io::Result<Option<Flattened>> {
+fn read_answer(input: &mut impl Read) -> io::Result<Option<FlattenedPatch>> {
     let triangles = read_count(input)?;
     if triangles == 0 {
         return Ok(None);
     }
-    let mut flattened = Flattened::unplaced(triangles);
+    let mut flattened = FlattenedPatch::unplaced(triangles);
     for chart in &mut flattened.chart {
         *chart = read_u32(input)?;
     }
@@ -261,7 +261,7 @@ fn read_answer(input: &mut impl Read) -> io::Result<Option<Flattened>> {
 
 fn read_count(input: &mut impl Read) -> io::Result<usize> {
     let count = read_u32(input)?;
-    if count > LARGEST_PATCH {
+    if count > MAX_PATCH_TRIANGLES {
         return Err(io::Error::new(io::ErrorKind::InvalidData, "a patch too large"));
     }
     Ok(count as usize)
@@ -283,7 +283,7 @@ mod tests {
 
     #[test]
     fn a_request_and_its_answer_survive_the_wire() {
-        let patch = Patch {
+        let patch = SurfacePatch {
             positions: vec![[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [2.0, 2.0, 0.5]],
             corners: vec![[0, 1, 2], [2, 1, 3]],
         };
@@ -291,19 +291,19 @@ mod tests {
         patch.write(&mut request).unwrap();
         let mut output = Vec::new();
         serve(Engine::Uvunwrap, &mut request.as_slice(), &mut output).unwrap();
-        let answer = read_answer(&mut &output[HELLO.len()..]).unwrap();
+        let answer = read_answer(&mut &output[GREETING.len()..]).unwrap();
         assert_eq!(answer, Engine::Uvunwrap.flatten(&patch));
         assert!(answer.is_some());
         assert!(
-            read_answer(&mut &output[HELLO.len()..output.len() - 1]).is_err(),
+            read_answer(&mut &output[GREETING.len()..output.len() - 1]).is_err(),
             "a torn answer is no answer"
         );
     }
 
     #[test]
     fn batches_hold_at_least_one_patch() {
-        let patch = |n| Patch { positions: Vec::new(), corners: vec![[0; 3]; n] };
+        let patch = |n| SurfacePatch { positions: Vec::new(), corners: vec![[0; 3]; n] };
         let patches = [patch(50), patch(3), patch(4), patch(90), patch(1)];
-        assert_eq!(batches(&patches.iter().collect::<Vec<_>>(), 10), [(0, 1), (1, 2), (3, 1), (4, 1)]);
+        assert_eq!(split_batches(&patches.iter().collect::<Vec<_>>(), 10), [(0, 1), (1, 2), (3, 1), (4, 1)]);
     }
 }

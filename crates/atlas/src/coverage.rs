@@ -43,7 +43,7 @@ struct Cell {
     centroid: DVec2,
 }
 
-const NOTHING: Cell =
+const EMPTY_CELL: Cell =
     Cell { area: 0.0, moment: DVec2::ZERO, largest: 0.0, triangle: u32::MAX, centroid: DVec2::ZERO };
 
 impl Atlas {
@@ -70,7 +70,7 @@ impl<'a> Bands<'a> {
     fn new(atlas: &'a Atlas, scene: &'a Scene) -> Self {
         let count = atlas.height.div_ceil(BAND_ROWS).max(1) as usize;
         let ranges: Vec<(u32, u32)> =
-            atlas.corners.par_iter().map(|corners| rows_of(corners, count)).collect();
+            atlas.corners.par_iter().map(|corners| band_range(corners, count)).collect();
         let mut start = vec![0u32; count + 1];
         for &(first, last) in &ranges {
             for band in first..=last {
@@ -95,9 +95,9 @@ impl<'a> Bands<'a> {
         let width = self.atlas.width;
         let top = band as u32 * BAND_ROWS;
         let rows = BAND_ROWS.min(self.atlas.height.saturating_sub(top));
-        let mut cells = vec![NOTHING; (rows * width) as usize];
+        let mut cells = vec![EMPTY_CELL; (rows * width) as usize];
         for &triangle in &self.triangles[self.start[band] as usize..self.start[band + 1] as usize] {
-            self.add(triangle, top, rows, &mut cells);
+            self.add_triangle(triangle, top, rows, &mut cells);
         }
         let covered = cells.iter().enumerate().filter(|(_, cell)| cell.area > 0.0);
         covered
@@ -109,7 +109,7 @@ impl<'a> Bands<'a> {
     }
 
     /// Adds the pieces of a triangle that lie in rows `top..top + rows`.
-    fn add(&self, triangle: u32, top: u32, rows: u32, cells: &mut [Cell]) {
+    fn add_triangle(&self, triangle: u32, top: u32, rows: u32, cells: &mut [Cell]) {
         let world_area = 0.5 * self.scene.area_normal(triangle).length();
         // NaN and infinite areas too are set aside here.
         if !(world_area > 0.0 && world_area.is_finite()) {
@@ -183,7 +183,7 @@ fn add_piece(cell: &mut Cell, triangle: u32, area: f64, centroid: DVec2, x: u32,
 }
 
 /// The first and last band that a triangle touches.
-fn rows_of(corners: &[Vec2; 3], bands: usize) -> (u32, u32) {
+fn band_range(corners: &[Vec2; 3], bands: usize) -> (u32, u32) {
     let low = corners[0].y.min(corners[1].y).min(corners[2].y) as u32 / BAND_ROWS;
     let high = corners[0].y.max(corners[1].y).max(corners[2].y) as u32 / BAND_ROWS;
     let last = bands as u32 - 1;

@@ -1,6 +1,6 @@
 //! The engines that flatten a patch.
 
-use crate::flattening::{Flattened, Patch, UNPLACED};
+use crate::flattening::{FlattenedPatch, SurfacePatch, UNPLACED};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// What flattens patches.
@@ -14,7 +14,7 @@ pub(crate) enum Engine {
 
 impl Engine {
     /// Its name on the child's command line.
-    pub fn word(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
             Engine::Xatlas => "xatlas",
             Engine::Uvunwrap => "uvunwrap",
@@ -22,21 +22,24 @@ impl Engine {
     }
 
     /// The engine of a name.
-    pub fn from_word(word: &str) -> Option<Self> {
-        [Engine::Xatlas, Engine::Uvunwrap].into_iter().find(|engine| engine.word() == word)
+    pub fn from_name(word: &str) -> Option<Self> {
+        [Engine::Xatlas, Engine::Uvunwrap].into_iter().find(|engine| engine.name() == word)
     }
 
     /// Flattens a patch; `None` where it cannot.
-    pub fn flatten(self, patch: &Patch) -> Option<Flattened> {
+    pub fn flatten(self, patch: &SurfacePatch) -> Option<FlattenedPatch> {
         match self {
-            Engine::Xatlas => crate::xatlas::flatten(patch),
-            Engine::Uvunwrap => uvunwrap(patch, &|| false),
+            Engine::Xatlas => crate::xatlas::flatten_with_xatlas(patch),
+            Engine::Uvunwrap => flatten_with_uvunwrap(patch, &|| false),
         }
     }
 }
 
 /// Flattens a patch with uvunwrap, until `cancelled`. A panic of the library counts as failure.
-pub(crate) fn uvunwrap(patch: &Patch, cancelled: &(dyn Fn() -> bool + Sync)) -> Option<Flattened> {
+pub(crate) fn flatten_with_uvunwrap(
+    patch: &SurfacePatch,
+    cancelled: &(dyn Fn() -> bool + Sync),
+) -> Option<FlattenedPatch> {
     let mesh = uvunwrap::MeshInput::new(&patch.positions, patch.corners.as_flattened());
     // Its packing is not used: the fastest will do, with charts large enough that f32 keeps their shape.
     let options = uvunwrap::Options {
@@ -49,7 +52,7 @@ pub(crate) fn uvunwrap(patch: &Patch, cancelled: &(dyn Fn() -> bool + Sync)) -> 
     let atlas = catch_unwind(AssertUnwindSafe(unwrap)).ok()?.ok()?;
     let size = [atlas.width as f32, atlas.height as f32];
     let mesh = atlas.meshes.first()?;
-    let mut flattened = Flattened::unplaced(patch.corners.len());
+    let mut flattened = FlattenedPatch::unplaced(patch.corners.len());
     for (triangle, corners) in mesh.indices.chunks_exact(3).enumerate().take(patch.corners.len()) {
         let [a, b, c] = [0, 1, 2].map(|k| mesh.vertices.get(corners[k] as usize));
         let (a, b, c) = (a?, b?, c?);

@@ -9,10 +9,10 @@
 //! ```
 
 use crate::glb_document::GlbDocument;
-use crate::placed_meshes::{self, Stop};
+use crate::placed_meshes::{self, PlacementStop};
 use crate::{Atlas, AtlasError};
 use progress::{Progress, Stage};
-use scene::{LoadOptions, Scene, SceneError, Source};
+use scene::{GltfSource, LoadOptions, Scene, SceneError};
 use serde_json::{Map, Value};
 use std::io::Write;
 use std::path::Path;
@@ -47,11 +47,11 @@ pub fn write_amended_glb(
 ) -> Result<(), AtlasError> {
     let bytes = amended_glb_bytes(scene, atlas, amend, progress)?;
     progress.check()?;
-    write_whole(path, &bytes)
+    write_atomically(path, &bytes)
 }
 
 /// Writes a file whole: one that is there is replaced only when the new one is complete.
-pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), AtlasError> {
+pub(crate) fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), AtlasError> {
     let write = || {
         let mut file = atomic_write_file::AtomicWriteFile::open(path)?;
         file.write_all(bytes)?;
@@ -77,23 +77,23 @@ fn amended_glb_bytes(
     let reading = Stage::new(progress, 0.0, READING_SHARE);
     let placing = Stage::new(progress, READING_SHARE, 1.0);
     scene::with_source(&scene.path, &LoadOptions::default(), &reading, |source| {
-        if !is_read_from(scene, source) {
+        if !matches_source(scene, source) {
             return Err(AtlasError::SceneChanged { path: scene.path.clone() });
         }
-        let stopped = |stop: Stop| match stop {
-            Stop::Fault(fault) => SceneError::Bad { file: scene.path.clone(), fault }.into(),
-            Stop::OtherFile => AtlasError::SceneChanged { path: scene.path.clone() },
-            Stop::Cancelled => AtlasError::Cancelled,
+        let stopped = |stop: PlacementStop| match stop {
+            PlacementStop::Fault(fault) => SceneError::Bad { file: scene.path.clone(), fault }.into(),
+            PlacementStop::SourceMismatch => AtlasError::SceneChanged { path: scene.path.clone() },
+            PlacementStop::Cancelled => AtlasError::Cancelled,
         };
-        let mut glb = GlbDocument::of(source).map_err(|fault| stopped(fault.into()))?;
-        placed_meshes::place(&mut glb, source, atlas, &placing).map_err(stopped)?;
+        let mut glb = GlbDocument::from_source(source).map_err(|fault| stopped(fault.into()))?;
+        placed_meshes::place_meshes(&mut glb, source, atlas, &placing).map_err(stopped)?;
         amend(glb.root_mut());
         glb.into_bytes()
     })?
 }
 
 /// Whether the scene is what the file still holds.
-fn is_read_from(scene: &Scene, source: &Source<'_>) -> bool {
+fn matches_source(scene: &Scene, source: &GltfSource<'_>) -> bool {
     let file = &source.scene;
     scene.triangles == file.triangles
         && scene.positions == file.positions

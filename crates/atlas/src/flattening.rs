@@ -9,7 +9,7 @@ pub(crate) const UNPLACED: u32 = u32::MAX;
 
 /// A connected mesh in f32, centred and scaled to a mean triangle area of 1 (engines have absolute limits).
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Patch {
+pub(crate) struct SurfacePatch {
     /// Vertex positions.
     pub positions: Vec<[f32; 3]>,
     /// Triangles.
@@ -18,21 +18,21 @@ pub(crate) struct Patch {
 
 /// A patch in the plane, in any scale.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Flattened {
+pub(crate) struct FlattenedPatch {
     /// The chart of each triangle, or [`UNPLACED`].
     pub chart: Vec<u32>,
     /// The corners of each triangle.
     pub corners: Vec<[[f32; 2]; 3]>,
 }
 
-impl Flattened {
+impl FlattenedPatch {
     /// No triangle has a place yet.
     pub fn unplaced(triangles: usize) -> Self {
         Self { chart: vec![UNPLACED; triangles], corners: vec![[[0.0; 2]; 3]; triangles] }
     }
 }
 
-impl Patch {
+impl SurfacePatch {
     /// Some triangles of a mesh.
     pub fn new(mesh: &PartMesh, triangles: &[u32]) -> Self {
         let area: f64 = triangles.iter().map(|&t| 0.5 * mesh.area_normal(t).length()).sum();

@@ -4,7 +4,7 @@
 //! files of their own come along, as a GLB may be carried elsewhere.
 
 use crate::AtlasError;
-use scene::{Fault, LoadOptions, Source};
+use scene::{Fault, GltfSource, LoadOptions};
 use serde_json::{Map, Value, json};
 
 /// Alignment of everything in the chunk: that of the largest component.
@@ -22,12 +22,12 @@ pub(crate) struct GlbDocument {
 
 impl GlbDocument {
     /// The document of a file; its buffers and the images beside it become the chunk.
-    pub fn of(source: &Source<'_>) -> Result<Self, Fault> {
+    pub fn from_source(source: &GltfSource<'_>) -> Result<Self, Fault> {
         let root = source.document().as_object().cloned().unwrap_or_default();
         let mut glb = Self { root, chunk: Vec::new() };
-        glb.take_buffers(source)?;
+        glb.join_buffers(source)?;
         for index in 0..glb.entries("images").len() {
-            glb.take_image(source, index);
+            glb.embed_image(source, index);
         }
         Ok(glb)
     }
@@ -43,31 +43,31 @@ impl GlbDocument {
     }
 
     /// Joins the buffers. One whose data cannot be had stays what it was, behind the joint one.
-    fn take_buffers(&mut self, source: &Source<'_>) -> Result<(), Fault> {
-        let mut joint = None;
-        let mut apart = Vec::new();
+    fn join_buffers(&mut self, source: &GltfSource<'_>) -> Result<(), Fault> {
+        let mut joined = None;
+        let mut separate = Vec::new();
         let mut moved = Vec::new();
         for (index, mut buffer) in self.entries("buffers").to_vec().into_iter().enumerate() {
             let Ok(Some(bytes)) = source.buffer(index) else {
-                apart.push(buffer);
-                moved.push(Moved { buffer: apart.len(), byte: 0 });
+                separate.push(buffer);
+                moved.push(MovedBuffer { buffer: separate.len(), byte: 0 });
                 continue;
             };
-            let declared = member(&buffer, "byteLength").unwrap_or(0).max(bytes.len());
+            let declared = index_member(&buffer, "byteLength").unwrap_or(0).max(bytes.len());
             if (declared - bytes.len()) as u64 > LoadOptions::default().max_memory {
                 let what = format!("declares {declared} bytes, but there are {}", bytes.len());
                 return Err(Fault::Malformed { place: format!("/buffers/{index}/byteLength"), what });
             }
-            moved.push(Moved { buffer: 0, byte: self.append(bytes) });
+            moved.push(MovedBuffer { buffer: 0, byte: self.append(bytes) });
             // What is missing must not become what comes behind it.
             self.chunk.resize(self.chunk.len() + declared - bytes.len(), 0);
             if let Some(buffer) = buffer.as_object_mut() {
                 buffer.remove("uri");
             }
-            joint.get_or_insert(buffer);
+            joined.get_or_insert(buffer);
         }
-        let joint = joint.unwrap_or_else(|| json!({}));
-        self.root.insert("buffers".into(), std::iter::once(joint).chain(apart).collect());
+        let joined = joined.unwrap_or_else(|| json!({}));
+        self.root.insert("buffers".into(), std::iter::once(joined).chain(separate).collect());
         for view in self.root.get_mut("bufferViews").and_then(Value::as_array_mut).into_iter().flatten() {
             move_view(view, &moved);
             // Extensions that pack views have a buffer of their own for each.
@@ -78,7 +78,7 @@ impl GlbDocument {
     }
 
     /// Takes an image in that lies in a file of its own; one that cannot be had stays outside.
-    fn take_image(&mut self, source: &Source<'_>, index: usize) {
+    fn embed_image(&mut self, source: &GltfSource<'_>, index: usize) {
         let uri = self.entries("images")[index].get("uri").and_then(Value::as_str);
         if uri.is_none_or(|uri| uri.get(..5).is_some_and(|scheme| scheme.eq_ignore_ascii_case("data:"))) {
             return;
@@ -140,14 +140,14 @@ impl GlbDocument {
     }
 
     /// Appends elements of `size` bytes as a vertex attribute, each of which must begin aligned; the index of their view.
-    pub fn add_vertex_view(&mut self, elements: &[u8], size: usize) -> usize {
-        let stride = size.next_multiple_of(ALIGNMENT);
-        if stride == size {
+    pub fn add_vertex_view(&mut self, elements: &[u8], element_size: usize) -> usize {
+        let stride = element_size.next_multiple_of(ALIGNMENT);
+        if stride == element_size {
             return self.add_view(elements, Some(ARRAY_BUFFER));
         }
-        let mut padded = vec![0; elements.len() / size * stride];
-        for (to, from) in padded.chunks_exact_mut(stride).zip(elements.chunks_exact(size)) {
-            to[..size].copy_from_slice(from);
+        let mut padded = vec![0; elements.len() / element_size * stride];
+        for (to, from) in padded.chunks_exact_mut(stride).zip(elements.chunks_exact(element_size)) {
+            to[..element_size].copy_from_slice(from);
         }
         let view = self.add_view(&padded, Some(ARRAY_BUFFER));
         self.list("bufferViews")[view]["byteStride"] = stride.into();
@@ -155,9 +155,9 @@ impl GlbDocument {
     }
 
     /// Takes an extension that nothing in the document has any more from the lists of those it uses.
-    pub fn forget_extension(&mut self, name: &str) {
+    pub fn remove_unused_extension(&mut self, name: &str) {
         const LISTS: [&str; 2] = ["extensionsUsed", "extensionsRequired"];
-        if self.root.iter().any(|(key, value)| !LISTS.contains(&key.as_str()) && has_key(value, name)) {
+        if self.root.iter().any(|(key, value)| !LISTS.contains(&key.as_str()) && contains_key(value, name)) {
             return;
         }
         for key in LISTS {
@@ -196,37 +196,39 @@ impl GlbDocument {
 }
 
 /// Where a buffer of the file went.
-struct Moved {
+struct MovedBuffer {
     buffer: usize,
     /// Where it begins there.
     byte: usize,
 }
 
 /// Lets a view, or an object like one, find its buffer where it is now.
-fn move_view(view: &mut Value, moved: &[Moved]) {
-    let Some(Moved { buffer, byte }) = member(view, "buffer").and_then(|buffer| moved.get(buffer)) else {
+fn move_view(view: &mut Value, moved: &[MovedBuffer]) {
+    let Some(MovedBuffer { buffer, byte }) =
+        index_member(view, "buffer").and_then(|buffer| moved.get(buffer))
+    else {
         return;
     };
     view["buffer"] = (*buffer).into();
     if *byte > 0 {
-        view["byteOffset"] = (member(view, "byteOffset").unwrap_or(0) + byte).into();
+        view["byteOffset"] = (index_member(view, "byteOffset").unwrap_or(0) + byte).into();
     }
 }
 
-fn member(object: &Value, key: &str) -> Option<usize> {
-    number(object.get(key)?)
+fn index_member(object: &Value, key: &str) -> Option<usize> {
+    as_index(object.get(key)?)
 }
 
 /// A whole number, which may be written as 2.0.
-pub(crate) fn number(value: &Value) -> Option<usize> {
+pub(crate) fn as_index(value: &Value) -> Option<usize> {
     let float = || value.as_f64().filter(|x| x.fract() == 0.0 && (0.0..9e15).contains(x)).map(|x| x as u64);
     usize::try_from(value.as_u64().or_else(float)?).ok()
 }
 
-fn has_key(value: &Value, name: &str) -> bool {
+fn contains_key(value: &Value, name: &str) -> bool {
     match value {
-        Value::Object(members) => members.iter().any(|(key, value)| key == name || has_key(value, name)),
-        Value::Array(list) => list.iter().any(|value| has_key(value, name)),
+        Value::Object(members) => members.iter().any(|(key, value)| key == name || contains_key(value, name)),
+        Value::Array(list) => list.iter().any(|value| contains_key(value, name)),
         _ => false,
     }
 }

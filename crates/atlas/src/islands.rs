@@ -1,54 +1,56 @@
 //! An artist's own texture coordinates, kept where they are sound.
 
-use crate::chart::{LooseChart, area};
-use crate::overlap::overlaps;
+use crate::chart::{UnpackedChart, signed_area};
+use crate::overlap::has_overlaps;
 use crate::part_mesh::CheckedPart;
 use glam::{DVec2, DVec3, Vec2};
 use scene::Scene;
 use std::collections::HashMap;
 
 /// How far outside [0, 1] coordinates may lie: rounding of exporters.
-const OUTSIDE: f32 = 1e-4;
+const UV_TOLERANCE: f32 = 1e-4;
 
 /// A triangle is badly stretched where some direction on it has less than this share of the mean density.
-const LEAST_DENSITY: f64 = 0.25;
+const MIN_DENSITY: f64 = 0.25;
 
 /// A flattening is bad if more than this share of its area is badly stretched.
-const STRETCHED_SHARE: f64 = 0.02;
+const MAX_STRETCHED_SHARE: f64 = 0.02;
 
 /// The islands of a part's first sound UV set as charts.
-pub(crate) fn kept(scene: &Scene, part: u32, checked: &CheckedPart) -> Option<Vec<LooseChart>> {
+pub(crate) fn reusable_charts(scene: &Scene, part: u32, checked: &CheckedPart) -> Option<Vec<UnpackedChart>> {
     let triangles: Vec<u32> = checked.meshes.iter().flat_map(|m| m.triangles.iter().copied()).collect();
     if triangles.is_empty() {
         return None;
     }
     let has_uv = scene.parts[part as usize].has_uv;
-    (0..2u8).filter(|&set| has_uv[set as usize]).find_map(|set| islands(scene, part, &triangles, set))
+    (0..2u8)
+        .filter(|&set| has_uv[set as usize])
+        .find_map(|set| charts_of_uv_set(scene, part, &triangles, set))
 }
 
-fn islands(scene: &Scene, part: u32, triangles: &[u32], set: u8) -> Option<Vec<LooseChart>> {
-    let within = -OUTSIDE..=1.0 + OUTSIDE;
+fn charts_of_uv_set(scene: &Scene, part: u32, triangles: &[u32], set: u8) -> Option<Vec<UnpackedChart>> {
+    let within = -UV_TOLERANCE..=1.0 + UV_TOLERANCE;
     let uv: Vec<[Vec2; 3]> = triangles.iter().map(|&t| scene.corner_uv(t, set)).collect();
     // NaN is in no range.
     if !uv.iter().flatten().all(|c| within.contains(&c.x) && within.contains(&c.y)) {
         return None;
     }
     let plane: Vec<[DVec2; 3]> = uv.iter().map(|t| t.map(Vec2::as_dvec2)).collect();
-    if plane.iter().any(|&t| area(t) == 0.0) || overlaps(&plane) {
+    if plane.iter().any(|&t| signed_area(t) == 0.0) || has_overlaps(&plane) {
         return None;
     }
     let mut charts = Vec::new();
     let (mut total, mut stretched) = (0.0, 0.0);
-    for island in connected(scene, triangles, &uv) {
+    for island in connected_components(scene, triangles, &uv) {
         let worlds: Vec<[DVec3; 3]> = island.iter().map(|&i| scene.corners(triangles[i])).collect();
-        let mut chart = LooseChart {
+        let mut chart = UnpackedChart {
             part,
             triangles: island.iter().map(|&i| triangles[i]).collect(),
             corners: island.iter().map(|&i| plane[i]).collect(),
-            turnable: false,
+            can_rotate: false,
         };
         chart.scale_to_world(&worlds)?;
-        if chart.corners.iter().any(|&c| area(c) <= 0.0) {
+        if chart.corners.iter().any(|&c| signed_area(c) <= 0.0) {
             return None;
         }
         let (chart_total, chart_stretched) = stretched_area(&chart, &worlds);
@@ -56,21 +58,21 @@ fn islands(scene: &Scene, part: u32, triangles: &[u32], set: u8) -> Option<Vec<L
         stretched += chart_stretched;
         charts.push(chart);
     }
-    (stretched <= STRETCHED_SHARE * total).then_some(charts)
+    (stretched <= MAX_STRETCHED_SHARE * total).then_some(charts)
 }
 
 /// Whether too much of a chart in world lengths is badly stretched.
-pub(crate) fn is_badly_stretched(chart: &LooseChart, worlds: &[[DVec3; 3]]) -> bool {
+pub(crate) fn is_badly_stretched(chart: &UnpackedChart, worlds: &[[DVec3; 3]]) -> bool {
     let (total, stretched) = stretched_area(chart, worlds);
-    stretched > STRETCHED_SHARE * total
+    stretched > MAX_STRETCHED_SHARE * total
 }
 
 /// World area of a chart in world lengths, and how much of it is badly stretched.
-fn stretched_area(chart: &LooseChart, worlds: &[[DVec3; 3]]) -> (f64, f64) {
+fn stretched_area(chart: &UnpackedChart, worlds: &[[DVec3; 3]]) -> (f64, f64) {
     let (mut total, mut stretched) = (0.0, 0.0);
     for (&plane, &world) in chart.corners.iter().zip(worlds) {
-        let flat = crate::chart::flatten(world);
-        let world_area = area(flat);
+        let flat = crate::chart::flatten_triangle(world);
+        let world_area = signed_area(flat);
         total += world_area;
         // The map surface → plane; its smaller singular value is the least density.
         let edges = glam::DMat2::from_cols(flat[1] - flat[0], flat[2] - flat[0]);
@@ -79,9 +81,9 @@ fn stretched_area(chart: &LooseChart, worlds: &[[DVec3; 3]]) -> (f64, f64) {
         let determinant = map.determinant();
         let largest =
             (0.5 * (squares + (squares * squares - 4.0 * determinant * determinant).max(0.0).sqrt())).sqrt();
-        let least = determinant.abs() / largest;
+        let smallest_stretch = determinant.abs() / largest;
         // Not a number: a needle whose shape rounding has eaten.
-        if least.is_nan() || least < LEAST_DENSITY {
+        if smallest_stretch.is_nan() || smallest_stretch < MIN_DENSITY {
             stretched += world_area;
         }
     }
@@ -89,7 +91,7 @@ fn stretched_area(chart: &LooseChart, worlds: &[[DVec3; 3]]) -> (f64, f64) {
 }
 
 /// Indices of the triangles that hang together by corners of the same position and coordinates.
-fn connected(scene: &Scene, triangles: &[u32], uv: &[[Vec2; 3]]) -> Vec<Vec<usize>> {
+fn connected_components(scene: &Scene, triangles: &[u32], uv: &[[Vec2; 3]]) -> Vec<Vec<usize>> {
     let mut parent: Vec<usize> = (0..triangles.len()).collect();
     fn root(parent: &mut [usize], mut i: usize) -> usize {
         while parent[i] != i {

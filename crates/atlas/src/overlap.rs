@@ -14,11 +14,11 @@ const CELLS_PER_TRIANGLE: usize = 256;
 
 /// Whether any two of the triangles share more than a border. May also say yes of a layout so crowded that
 /// looking would take too long.
-pub(crate) fn overlaps(triangles: &[[DVec2; 3]]) -> bool {
+pub(crate) fn has_overlaps(triangles: &[[DVec2; 3]]) -> bool {
     if triangles.len() < 2 {
         return false;
     }
-    let total: f64 = triangles.iter().map(|&t| crate::chart::area(t).abs()).sum();
+    let total: f64 = triangles.iter().map(|&t| crate::chart::signed_area(t).abs()).sum();
     let tolerance = TOLERANCE * (total / triangles.len() as f64).sqrt();
     let boxes: Vec<(DVec2, DVec2)> = triangles.iter().map(|t| bounds(t)).collect();
     let Some(grid) = Grid::new(&boxes) else { return true };
@@ -38,7 +38,7 @@ pub(crate) fn overlaps(triangles: &[[DVec2; 3]]) -> bool {
                 if low.x > high.x || low.y > high.y || grid.cell_of(low) != cell {
                     continue;
                 }
-                if reach(&triangles[first as usize], &triangles[second as usize]) > tolerance {
+                if penetration_depth(&triangles[first as usize], &triangles[second as usize]) > tolerance {
                     return true;
                 }
             }
@@ -48,7 +48,7 @@ pub(crate) fn overlaps(triangles: &[[DVec2; 3]]) -> bool {
 }
 
 /// How deep two triangles reach into each other: the least push that parts them, ≤ 0 where they are apart.
-fn reach(a: &[DVec2; 3], b: &[DVec2; 3]) -> f64 {
+fn penetration_depth(a: &[DVec2; 3], b: &[DVec2; 3]) -> f64 {
     let mut least = f64::INFINITY;
     for triangle in [a, b] {
         for k in 0..3 {
@@ -148,15 +148,15 @@ mod tests {
             triangles.push([v(x, y), v(x + 1.0, y), v(x, y + 1.0)]);
             triangles.push([v(x + 1.0, y), v(x + 1.0, y + 1.0), v(x, y + 1.0)]);
         }
-        assert!(!overlaps(&triangles));
+        assert!(!has_overlaps(&triangles));
         let copy = triangles[77].map(|c| c + v(0.05, 0.03));
         triangles.push(copy);
-        assert!(overlaps(&triangles));
+        assert!(has_overlaps(&triangles));
     }
 
     #[test]
     fn two_triangles_that_cross_without_corners_inside_overlap() {
-        assert!(overlaps(&[
+        assert!(has_overlaps(&[
             [v(0.0, 0.0), v(9.0, 0.0), v(4.0, 1.0)],
             [v(4.0, -4.0), v(5.0, 4.0), v(4.0, 4.0)]
         ]));

@@ -6,10 +6,10 @@
 //! for by packing a few times.
 
 use crate::AtlasError;
-use crate::chart::LooseChart;
-use crate::chart_box::Boxed;
+use crate::chart::UnpackedChart;
+use crate::chart_box::BoxedChart;
 use crate::options::{Density, MAX_SIDE, MIN_GUTTER};
-use crate::shape::Shape;
+use crate::shape::ChartOutline;
 use crate::skyline::Skyline;
 use glam::{DVec2, Vec2};
 use progress::Progress;
@@ -25,10 +25,10 @@ const AUTO_TEXELS_PER_TRIANGLE: f64 = 100.0;
 const TRIALS: usize = 6;
 
 /// A layout this full of its side is good enough.
-const FULL_ENOUGH: f64 = 0.95;
+const TARGET_FILL: f64 = 0.95;
 
 /// The charts in their places.
-pub(crate) struct Packed {
+pub(crate) struct PackedCharts {
     pub width: u32,
     pub height: u32,
     pub density: f64,
@@ -39,7 +39,7 @@ pub(crate) struct Packed {
 
 /// Where a chart lies: the atlas column and row of its grown outline, and its quarter turns.
 #[derive(Clone, Copy, Default)]
-struct Place {
+struct ChartPlacement {
     x: u32,
     y: u32,
     turns: u32,
@@ -49,17 +49,17 @@ struct Layout {
     width: u32,
     height: u32,
     density: f64,
-    places: Vec<Place>,
+    places: Vec<ChartPlacement>,
 }
 
 /// Packs the charts.
 pub(crate) fn pack(
-    charts: &[LooseChart],
+    charts: &[UnpackedChart],
     density: Density,
     gutter: u32,
     progress: &dyn Progress,
-) -> Result<Packed, AtlasError> {
-    let boxed: Vec<Boxed> = charts.par_iter().map(Boxed::new).collect();
+) -> Result<PackedCharts, AtlasError> {
+    let boxed: Vec<BoxedChart> = charts.par_iter().map(BoxedChart::new).collect();
     let mut notes = Vec::new();
     let mut packer = Packer { boxed: &boxed, margin: gutter.max(MIN_GUTTER).div_ceil(2), progress };
     let layout = loop {
@@ -80,14 +80,14 @@ pub(crate) fn pack(
     let corners = boxed.par_iter().zip(&layout.places).map(|(chart, place)| {
         let origin = DVec2::new(f64::from(place.x) + margin, f64::from(place.y) + margin);
         let put = |corners: [DVec2; 3]| corners.map(|c| (origin + c).as_vec2().clamp(Vec2::ZERO, size));
-        chart.turned(layout.density, place.turns).map(put).collect()
+        chart.rotated(layout.density, place.turns).map(put).collect()
     });
     let corners = corners.collect();
-    Ok(Packed { width: layout.width, height: layout.height, density: layout.density, corners, notes })
+    Ok(PackedCharts { width: layout.width, height: layout.height, density: layout.density, corners, notes })
 }
 
 struct Packer<'a> {
-    boxed: &'a [Boxed],
+    boxed: &'a [BoxedChart],
     /// Half of the gutter, which every chart has around it.
     margin: u32,
     progress: &'a dyn Progress,
@@ -98,7 +98,7 @@ impl Packer<'_> {
     fn layout(
         &self,
         density: Density,
-        charts: &[LooseChart],
+        charts: &[UnpackedChart],
         notes: &mut Vec<String>,
     ) -> Result<Option<Layout>, AtlasError> {
         let side = match density {
@@ -113,7 +113,7 @@ impl Packer<'_> {
                 {
                     return Ok(Some(layout));
                 }
-                let fitted = self.fit(MAX_SIDE)?;
+                let fitted = self.fit_square(MAX_SIDE)?;
                 if let Some(layout) = &fitted {
                     notes.push(format!(
                         "{density} texels per unit would exceed {MAX_SIDE}×{MAX_SIDE} texels: {:.3} were used",
@@ -127,10 +127,10 @@ impl Packer<'_> {
                 self.auto_side(charts)
             }
         };
-        if let Some(layout) = self.fit(side)? {
+        if let Some(layout) = self.fit_square(side)? {
             return Ok(Some(layout));
         }
-        let fitted = if side < MAX_SIDE { self.fit(MAX_SIDE)? } else { None };
+        let fitted = if side < MAX_SIDE { self.fit_square(MAX_SIDE)? } else { None };
         if let Some(layout) = &fitted {
             notes.push(format!(
                 "{} separate pieces of surface do not fit {side}×{side} texels: the atlas is {}×{}",
@@ -142,24 +142,25 @@ impl Packer<'_> {
         Ok(fitted)
     }
 
-    fn auto_side(&self, charts: &[LooseChart]) -> u32 {
+    fn auto_side(&self, charts: &[UnpackedChart]) -> u32 {
         let triangles: usize = charts.iter().map(|c| c.triangles.len()).sum();
-        let wanted = (triangles as f64 * AUTO_TEXELS_PER_TRIANGLE).sqrt().clamp(AUTO_SIDES[0], AUTO_SIDES[1]);
+        let target_side =
+            (triangles as f64 * AUTO_TEXELS_PER_TRIANGLE).sqrt().clamp(AUTO_SIDES[0], AUTO_SIDES[1]);
         // Charts of two texels with their gutters should not take more than half of it.
         let chart = f64::from(2 * self.margin + 2).powi(2);
         let needed = (2.0 * chart * charts.len() as f64).sqrt();
-        (wanted.max(needed).ceil() as u32).next_multiple_of(64).min(MAX_SIDE)
+        (target_side.max(needed).ceil() as u32).next_multiple_of(64).min(MAX_SIDE)
     }
 
     /// About how many texels the charts take at a density, gutters and gaps included.
     fn texels_at(&self, density: f64) -> f64 {
         let margin = f64::from(2 * self.margin);
-        let padded = |b: &Boxed| (b.size * b.scale(density)).ceil() + DVec2::splat(margin);
+        let padded = |b: &BoxedChart| (b.size * b.scale(density)).ceil() + DVec2::splat(margin);
         1.1 * self.boxed.iter().map(|b| padded(b).element_product()).sum::<f64>()
     }
 
     /// The densest layout found within a square.
-    fn fit(&self, side: u32) -> Result<Option<Layout>, AtlasError> {
+    fn fit_square(&self, side: u32) -> Result<Option<Layout>, AtlasError> {
         let longest = self.boxed.iter().map(|b| b.size.x).fold(0.0, f64::max);
         // One chart may be as wide as the side, and all fall to a texel at the other end.
         let mut fits = if longest > 0.0 { 0.5 / longest } else { 1.0 };
@@ -178,7 +179,7 @@ impl Packer<'_> {
                     let fill = f64::from(layout.height) / f64::from(side);
                     fits = density;
                     best = Some(layout);
-                    if fill >= FULL_ENOUGH {
+                    if fill >= TARGET_FILL {
                         break;
                     }
                     let grown = density * fill.recip().sqrt() * 0.995;
@@ -209,25 +210,27 @@ impl Packer<'_> {
             3_000..15_000 => &[0, 1],
             _ => &[0],
         };
-        let grown: Vec<Vec<Shape>> = self
+        let grown: Vec<Vec<ChartOutline>> = self
             .boxed
             .par_iter()
-            .map(|b| turns.iter().map(|&t| Shape::new(b.turned(density, t)).grown(self.margin)).collect())
+            .map(|b| {
+                turns.iter().map(|&t| ChartOutline::new(b.rotated(density, t)).grown(self.margin)).collect()
+            })
             .collect();
         let mut order: Vec<usize> = (0..grown.len()).collect();
         order.sort_by_key(|&i| (std::cmp::Reverse((grown[i][0].width(), grown[i][0].height)), i));
         let mut skyline = Skyline::new(width);
-        let mut places = vec![Place::default(); grown.len()];
+        let mut places = vec![ChartPlacement::default(); grown.len()];
         for (n, &chart) in order.iter().enumerate() {
             if n % 256 == 0 {
                 self.progress.check()?;
             }
-            let Some((x, y, turn)) = skyline.best(&grown[chart]) else { return Ok(None) };
-            skyline.put(&grown[chart][turn], x, y);
+            let Some((x, y, turn)) = skyline.best_position(&grown[chart]) else { return Ok(None) };
+            skyline.place(&grown[chart][turn], x, y);
             if skyline.height > max_height {
                 return Ok(None);
             }
-            places[chart] = Place { x, y, turns: turns[turn] };
+            places[chart] = ChartPlacement { x, y, turns: turns[turn] };
         }
         Ok(Some(Layout { width: skyline.width_used, height: skyline.height, density, places }))
     }

@@ -35,7 +35,7 @@ pub(crate) struct CheckedPart {
     /// Its layers.
     pub meshes: Vec<PartMesh>,
     /// Scene triangles without area or with corners that are not finite.
-    pub set_aside: Vec<u32>,
+    pub degenerate: Vec<u32>,
 }
 
 impl CheckedPart {
@@ -49,7 +49,7 @@ impl CheckedPart {
             let positions = scene.corners(triangle);
             let area = scene.area_normal(triangle).length();
             if !(positions.iter().all(|p| p.is_finite()) && area > 0.0 && area.is_finite()) {
-                checked.set_aside.push(triangle);
+                checked.degenerate.push(triangle);
                 continue;
             }
             let corners = positions.map(|p| welder.vertex(p));
@@ -125,7 +125,7 @@ impl PartMesh {
 
     /// The connected pieces of a set of triangles, each in the order it was walked, the pieces in the order of their
     /// first triangle. A piece grows only to triangles that `joins(first, triangle)` allows it.
-    pub fn pieces(&self, triangles: &[u32], joins: impl Fn(u32, u32) -> bool) -> Vec<Vec<u32>> {
+    pub fn connected_pieces(&self, triangles: &[u32], joins: impl Fn(u32, u32) -> bool) -> Vec<Vec<u32>> {
         // A set, not flags over the mesh: this is called for many small pieces of a large mesh.
         let mut waiting: HashSet<u32> = triangles.iter().copied().collect();
         let mut pieces = Vec::new();

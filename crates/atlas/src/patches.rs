@@ -14,13 +14,13 @@ use std::collections::BinaryHeap;
 pub(crate) const PATCH_TRIANGLES: usize = 1500;
 
 /// Growths: one from the first seeds, the others after moving them.
-const ROUNDS: usize = 3;
+const RELAXATION_ROUNDS: usize = 3;
 
 /// How much farther a step seems that turns the normal against the patch's by 90°.
 const TURN_COST: f64 = 3.0;
 
 /// Cuts a connected piece of a mesh. One of up to twice [`PATCH_TRIANGLES`] stays whole.
-pub(crate) fn cut(mesh: &PartMesh, piece: Vec<u32>) -> Vec<Vec<u32>> {
+pub(crate) fn cut_into_patches(mesh: &PartMesh, piece: Vec<u32>) -> Vec<Vec<u32>> {
     if piece.len() <= 2 * PATCH_TRIANGLES {
         return vec![piece];
     }
@@ -28,47 +28,47 @@ pub(crate) fn cut(mesh: &PartMesh, piece: Vec<u32>) -> Vec<Vec<u32>> {
     // The piece is listed in the order of its walk, so that equal steps in it are spread out.
     let mut seeds: Vec<u32> = (0..count).map(|i| piece[(2 * i + 1) * piece.len() / (2 * count)]).collect();
     let mut patches = Vec::new();
-    for _ in 0..ROUNDS {
-        patches = grow(mesh, &piece, &seeds);
+    for _ in 0..RELAXATION_ROUNDS {
+        patches = grow_patches(mesh, &piece, &seeds);
         seeds = patches.iter().map(|patch| middle_of(mesh, patch)).collect();
     }
     patches
 }
 
 /// A triangle reached by a patch, nearest first in a heap.
-struct Reached {
+struct FrontEntry {
     distance: f64,
     triangle: u32,
     patch: u32,
 }
 
-impl Ord for Reached {
+impl Ord for FrontEntry {
     fn cmp(&self, other: &Self) -> Ordering {
         let key = other.distance.total_cmp(&self.distance);
         key.then(other.triangle.cmp(&self.triangle)).then(other.patch.cmp(&self.patch))
     }
 }
-impl PartialOrd for Reached {
+impl PartialOrd for FrontEntry {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
-impl PartialEq for Reached {
+impl PartialEq for FrontEntry {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other) == Ordering::Equal
     }
 }
-impl Eq for Reached {}
+impl Eq for FrontEntry {}
 
-fn grow(mesh: &PartMesh, piece: &[u32], seeds: &[u32]) -> Vec<Vec<u32>> {
+fn grow_patches(mesh: &PartMesh, piece: &[u32], seeds: &[u32]) -> Vec<Vec<u32>> {
     const UNREACHED: u32 = u32::MAX;
     let mut owner = vec![UNREACHED; mesh.triangles.len()];
     let normals: Vec<DVec3> = seeds.iter().map(|&s| normal_around(mesh, s)).collect();
     let seeds = seeds.iter().enumerate();
-    let mut heap: BinaryHeap<Reached> =
-        seeds.map(|(i, &triangle)| Reached { distance: 0.0, triangle, patch: i as u32 }).collect();
+    let mut heap: BinaryHeap<FrontEntry> =
+        seeds.map(|(i, &triangle)| FrontEntry { distance: 0.0, triangle, patch: i as u32 }).collect();
     let mut patches = vec![Vec::new(); heap.len()];
-    while let Some(Reached { distance, triangle, patch }) = heap.pop() {
+    while let Some(FrontEntry { distance, triangle, patch }) = heap.pop() {
         if owner[triangle as usize] != UNREACHED {
             continue;
         }
@@ -80,7 +80,7 @@ fn grow(mesh: &PartMesh, piece: &[u32], seeds: &[u32]) -> Vec<Vec<u32>> {
             }
             let turn = 1.0 - mesh.area_normal(neighbour).normalize_or_zero().dot(normals[patch as usize]);
             let step = (mesh.middle(neighbour) - mesh.middle(triangle)).length() * (1.0 + TURN_COST * turn);
-            heap.push(Reached { distance: distance + step, triangle: neighbour, patch });
+            heap.push(FrontEntry { distance: distance + step, triangle: neighbour, patch });
         }
     }
     debug_assert_eq!(patches.iter().map(Vec::len).sum::<usize>(), piece.len());

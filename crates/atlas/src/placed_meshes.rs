@@ -9,7 +9,7 @@ use crate::split_vertices::{Corner, SplitVertices};
 use crate::{Atlas, placed_primitive, uv_set};
 use glam::Vec2;
 use progress::{Cancelled, Progress};
-use scene::{Fault, PartSource, Scene, Source};
+use scene::{Fault, GltfSource, PartSource, Scene};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
@@ -17,34 +17,34 @@ use std::collections::BTreeMap;
 const INSTANCING: &str = "EXT_mesh_gpu_instancing";
 
 /// Why a mesh was not placed.
-pub(crate) enum Stop {
+pub(crate) enum PlacementStop {
     /// Something is wrong with the file.
     Fault(Fault),
     /// It is not the file that the scene was read from.
-    OtherFile,
+    SourceMismatch,
     /// Nobody wants it any more.
     Cancelled,
 }
 
-impl From<Fault> for Stop {
+impl From<Fault> for PlacementStop {
     fn from(fault: Fault) -> Self {
         Self::Fault(fault)
     }
 }
 
-impl From<Cancelled> for Stop {
+impl From<Cancelled> for PlacementStop {
     fn from(_: Cancelled) -> Self {
         Self::Cancelled
     }
 }
 
 /// Gives every mesh that the scene shows its place in the atlas.
-pub(crate) fn place(
+pub(crate) fn place_meshes(
     glb: &mut GlbDocument,
-    source: &Source<'_>,
+    source: &GltfSource<'_>,
     atlas: &Atlas,
     progress: &dyn Progress,
-) -> Result<(), Stop> {
+) -> Result<(), PlacementStop> {
     let mut is_taken = vec![false; glb.entries("meshes").len()];
     let mut instances: BTreeMap<usize, Vec<Value>> = BTreeMap::new();
     let mut first = 0;
@@ -53,10 +53,10 @@ pub(crate) fn place(
         progress.check()?;
         progress.report(first as f32 / source.parts.len() as f32);
         let mut file = MeshFile { glb, source, atlas };
-        let mesh = file.placed(parts, first)?;
+        let mesh = file.place_mesh(parts, first)?;
         first += parts.len();
         let PartSource { node, instance, mesh: index, .. } = &parts[0];
-        let Some(is_taken) = is_taken.get_mut(*index) else { return Err(Stop::OtherFile) };
+        let Some(is_taken) = is_taken.get_mut(*index) else { return Err(PlacementStop::SourceMismatch) };
         let index = match std::mem::replace(is_taken, true) {
             false => {
                 glb.list("meshes")[*index] = mesh;
@@ -73,16 +73,16 @@ pub(crate) fn place(
         }
     }
     let has_instances = !instances.is_empty();
-    instances.into_iter().for_each(|(node, children)| become_parent(glb, node, children));
+    instances.into_iter().for_each(|(node, children)| replace_instances(glb, node, children));
     if has_instances {
-        glb.forget_extension(INSTANCING);
+        glb.remove_unused_extension(INSTANCING);
     }
-    glb.forget_extension(placed_primitive::DRACO);
+    glb.remove_unused_extension(placed_primitive::DRACO);
     Ok(())
 }
 
 /// The node gives its mesh to children, one an instance, before those that it has.
-fn become_parent(glb: &mut GlbDocument, node: usize, mut children: Vec<Value>) {
+fn replace_instances(glb: &mut GlbDocument, node: usize, mut children: Vec<Value>) {
     let Some(parent) = glb.list("nodes")[node].as_object_mut() else { return };
     parent.remove("mesh");
     let weights = parent.remove("weights");
@@ -107,29 +107,30 @@ fn become_parent(glb: &mut GlbDocument, node: usize, mut children: Vec<Value>) {
 /// A mesh of the file on its way.
 struct MeshFile<'a> {
     glb: &'a mut GlbDocument,
-    source: &'a Source<'a>,
+    source: &'a GltfSource<'a>,
     atlas: &'a Atlas,
 }
 
 impl MeshFile<'_> {
     /// The mesh of these parts of the scene, the first of which is part `first`.
-    fn placed(&mut self, parts: &[PartSource], first: usize) -> Result<Value, Stop> {
+    fn place_mesh(&mut self, parts: &[PartSource], first: usize) -> Result<Value, PlacementStop> {
         let file = self.source.document().pointer(&format!("/meshes/{}", parts[0].mesh));
-        let mut mesh = file.cloned().ok_or(Stop::OtherFile)?;
-        let primitives = mesh.get_mut("primitives").and_then(Value::as_array_mut).ok_or(Stop::OtherFile)?;
+        let mut mesh = file.cloned().ok_or(PlacementStop::SourceMismatch)?;
+        let primitives =
+            mesh.get_mut("primitives").and_then(Value::as_array_mut).ok_or(PlacementStop::SourceMismatch)?;
         let shown = parts.iter().filter_map(|part| primitives.get(part.primitive));
         let set = uv_set::atlas_set(shown, self.glb.entries("materials"));
         for (part, index) in parts.iter().zip(first..) {
             let triangles = self.triangles(part, index)?;
             let split = SplitVertices::new(&triangles, self.source.vertex_count(part.mesh, part.primitive)?);
-            let primitive = primitives.get_mut(part.primitive).ok_or(Stop::OtherFile)?;
-            placed_primitive::place(primitive, self.glb, self.source, &split, set)?;
+            let primitive = primitives.get_mut(part.primitive).ok_or(PlacementStop::SourceMismatch)?;
+            placed_primitive::place_primitive(primitive, self.glb, self.source, &split, set)?;
         }
         Ok(mesh)
     }
 
     /// All triangles of the primitive of a part, and where the corners lie of those that the scene has.
-    fn triangles(&self, part: &PartSource, index: usize) -> Result<Vec<[Corner; 3]>, Stop> {
+    fn triangles(&self, part: &PartSource, index: usize) -> Result<Vec<[Corner; 3]>, PlacementStop> {
         let scene = &self.source.scene;
         let mut shown = shown_triangles(scene, part, index, self.atlas).into_iter().peekable();
         let all = self.source.triangles(part.mesh, part.primitive)?;
@@ -138,15 +139,15 @@ impl MeshFile<'_> {
             shown.next_if(is_shown).unwrap_or_else(|| triangle.map(|element| (element, None)))
         });
         let placed: Vec<_> = placed.collect();
-        if shown.next().is_some() { Err(Stop::OtherFile) } else { Ok(placed) }
+        if shown.next().is_some() { Err(PlacementStop::SourceMismatch) } else { Ok(placed) }
     }
 }
 
 /// The corners of a part's triangles, in the order of the file.
 fn shown_triangles(scene: &Scene, part: &PartSource, index: usize, atlas: &Atlas) -> Vec<[Corner; 3]> {
     let size = Vec2::new(atlas.width as f32, atlas.height as f32);
-    let of_scene = &scene.parts[index];
-    let triangles = of_scene.triangles.clone();
+    let scene_part = &scene.parts[index];
+    let triangles = scene_part.triangles.clone();
     // A part's vertices follow one another, and the first is one of a triangle's.
     let vertices = || scene.triangles[triangles.start as usize..triangles.end as usize].iter();
     let base = vertices().flat_map(|triangle| triangle.vertices).min().unwrap_or(0);
@@ -155,7 +156,11 @@ fn shown_triangles(scene: &Scene, part: &PartSource, index: usize, atlas: &Atlas
         let places = atlas.corners[triangle as usize];
         let corner = |k: usize| (part.vertices[(vertices[k] - base) as usize], Some(places[k] / size));
         // A mirrored part runs the other way round in the scene.
-        if of_scene.mirrored { [corner(0), corner(2), corner(1)] } else { [corner(0), corner(1), corner(2)] }
+        if scene_part.mirrored {
+            [corner(0), corner(2), corner(1)]
+        } else {
+            [corner(0), corner(1), corner(2)]
+        }
     };
     triangles.clone().map(corners).collect()
 }

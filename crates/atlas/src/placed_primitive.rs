@@ -8,7 +8,7 @@ use crate::split_vertices::SplitVertices;
 use crate::uv_set;
 use crate::vertex_attributes::{VertexAttributes, add_indices, add_uv};
 use glam::Vec2;
-use scene::{Fault, Source};
+use scene::{Fault, GltfSource};
 use serde_json::Value;
 
 /// A packed form that knows nothing of the new set and numbers vertices in its own way. A file that opens has the plain
@@ -16,16 +16,16 @@ use serde_json::Value;
 pub(crate) const DRACO: &str = "KHR_draco_mesh_compression";
 
 /// Gives `primitive` the atlas as UV set `set`: its vertices become those of `split`.
-pub(crate) fn place(
+pub(crate) fn place_primitive(
     primitive: &mut Value,
     glb: &mut GlbDocument,
-    source: &Source<'_>,
+    source: &GltfSource<'_>,
     split: &SplitVertices,
     set: u64,
 ) -> Result<(), Fault> {
     let read = uv_set::sets_read(primitive, glb.entries("materials"));
     let mut attributes = primitive.get("attributes").and_then(Value::as_object).cloned().unwrap_or_default();
-    if !split.are_as_before {
+    if !split.is_unchanged {
         let mut vertices = VertexAttributes::new(source, &split.elements);
         attributes = vertices.rewrite(glb, &attributes)?;
         for target in primitive.get_mut("targets").and_then(Value::as_array_mut).into_iter().flatten() {
@@ -35,22 +35,22 @@ pub(crate) fn place(
         }
         primitive["indices"] = add_indices(glb, &split.indices).into();
         // A primitive that does not say is a list of triangles.
-        remove(primitive, "mode");
+        remove_key(primitive, "mode");
     }
     let atlas = add_uv(glb, &split.places);
     let zeros = || add_uv(glb, &vec![Vec2::ZERO; split.places.len()]);
-    uv_set::insert(&mut attributes, set, &read, atlas, zeros);
+    uv_set::insert_atlas_set(&mut attributes, set, &read, atlas, zeros);
     primitive["attributes"] = attributes.into();
     if let Some(extensions) = primitive.get_mut("extensions").filter(|all| all.get(DRACO).is_some()) {
-        remove(extensions, DRACO);
+        remove_key(extensions, DRACO);
         if extensions.as_object().is_none_or(|extensions| extensions.is_empty()) {
-            remove(primitive, "extensions");
+            remove_key(primitive, "extensions");
         }
     }
     Ok(())
 }
 
-fn remove(object: &mut Value, key: &str) {
+fn remove_key(object: &mut Value, key: &str) {
     if let Some(object) = object.as_object_mut() {
         object.remove(key);
     }

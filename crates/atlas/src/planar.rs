@@ -3,8 +3,8 @@
 //! It cannot fail: a piece that does not project well is halved, and a single triangle is laid out true to shape.
 //! Used for flat pieces, where it is exact, and for whatever the engines could not do.
 
-use crate::chart::{LooseChart, area};
-use crate::overlap::overlaps;
+use crate::chart::{UnpackedChart, signed_area};
+use crate::overlap::has_overlaps;
 use crate::part_mesh::PartMesh;
 use glam::{DVec2, DVec3};
 
@@ -12,40 +12,40 @@ use glam::{DVec2, DVec3};
 const GROW_COSINE: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 /// A piece counts as flat where every normal is this close to the mean one: 1 − cos of 0.5°.
-const FLAT: f64 = 4e-5;
+const MAX_FLATNESS_ERROR: f64 = 4e-5;
 
 /// Charts of these triangles of a mesh.
-pub(crate) fn charts(mesh: &PartMesh, triangles: &[u32]) -> Vec<LooseChart> {
+pub(crate) fn planar_charts(mesh: &PartMesh, triangles: &[u32]) -> Vec<UnpackedChart> {
     let mut charts = Vec::new();
     let normal = |t: u32| mesh.area_normal(t).normalize_or_zero();
-    for piece in mesh.pieces(triangles, |first, t| normal(first).dot(normal(t)) > GROW_COSINE) {
+    for piece in mesh.connected_pieces(triangles, |first, t| normal(first).dot(normal(t)) > GROW_COSINE) {
         split_until_sound(mesh, piece, &mut charts);
     }
     charts
 }
 
 /// The chart of a connected piece if it is flat (and, projected, free of overlap).
-pub(crate) fn flat_chart(mesh: &PartMesh, triangles: &[u32]) -> Option<LooseChart> {
+pub(crate) fn flat_chart(mesh: &PartMesh, triangles: &[u32]) -> Option<UnpackedChart> {
     let normal = mean_normal(mesh, triangles)?;
-    let flat = |&t: &u32| mesh.area_normal(t).normalize_or_zero().dot(normal) > 1.0 - FLAT;
+    let flat = |&t: &u32| mesh.area_normal(t).normalize_or_zero().dot(normal) > 1.0 - MAX_FLATNESS_ERROR;
     if !triangles.iter().all(flat) {
         return None;
     }
-    project(mesh, triangles)
+    project_to_plane(mesh, triangles)
 }
 
-fn split_until_sound(mesh: &PartMesh, piece: Vec<u32>, charts: &mut Vec<LooseChart>) {
+fn split_until_sound(mesh: &PartMesh, piece: Vec<u32>, charts: &mut Vec<UnpackedChart>) {
     let mut pieces = vec![piece];
     while let Some(piece) = pieces.pop() {
         if let [single] = piece[..] {
             let corners = mesh.corner_positions(single);
-            charts.push(LooseChart::of_triangle(mesh.part, mesh.triangles[single as usize], corners));
-        } else if let Some(chart) = project(mesh, &piece) {
+            charts.push(UnpackedChart::from_triangle(mesh.part, mesh.triangles[single as usize], corners));
+        } else if let Some(chart) = project_to_plane(mesh, &piece) {
             charts.push(chart);
         } else {
             for half in halves(mesh, piece) {
                 // A half need not hang together; a chart must.
-                pieces.extend(mesh.pieces(&half, |_, _| true));
+                pieces.extend(mesh.connected_pieces(&half, |_, _| true));
             }
         }
     }
@@ -69,7 +69,7 @@ fn mean_normal(mesh: &PartMesh, triangles: &[u32]) -> Option<DVec3> {
 }
 
 /// The projection along the mean normal, if every triangle faces it and none overlap.
-fn project(mesh: &PartMesh, triangles: &[u32]) -> Option<LooseChart> {
+fn project_to_plane(mesh: &PartMesh, triangles: &[u32]) -> Option<UnpackedChart> {
     let normal = mean_normal(mesh, triangles)?;
     let (x, y) = normal.any_orthonormal_pair();
     let origin = mesh.middle(triangles[0]);
@@ -77,11 +77,11 @@ fn project(mesh: &PartMesh, triangles: &[u32]) -> Option<LooseChart> {
     let worlds: Vec<_> = triangles.iter().map(|&t| mesh.corner_positions(t)).collect();
     let corners: Vec<_> = worlds.iter().map(|w| w.map(flat)).collect();
     // The pair (x, y, normal) is right-handed, so that front faces run from x to y.
-    if !corners.iter().all(|&c| area(c) > 0.0) || overlaps(&corners) {
+    if !corners.iter().all(|&c| signed_area(c) > 0.0) || has_overlaps(&corners) {
         return None;
     }
     let scene_triangles = triangles.iter().map(|&t| mesh.triangles[t as usize]).collect();
-    let mut chart = LooseChart { part: mesh.part, triangles: scene_triangles, corners, turnable: true };
+    let mut chart = UnpackedChart { part: mesh.part, triangles: scene_triangles, corners, can_rotate: true };
     chart.scale_to_world(&worlds)?;
     Some(chart)
 }

@@ -4,18 +4,18 @@ use glam::DVec2;
 
 /// For each column of a chart, the lowest and highest row that it touches, as a half-open range; its gutter is not in it.
 #[derive(Clone, Debug)]
-pub(crate) struct Shape {
+pub(crate) struct ChartOutline {
     /// Rows touched a column.
     pub columns: Vec<(u32, u32)>,
     /// Rows in all.
     pub height: u32,
 }
 
-impl Shape {
+impl ChartOutline {
     /// The outline of triangles in texel units whose coordinates start at 0.
     pub fn new(triangles: impl Iterator<Item = [DVec2; 3]> + Clone) -> Self {
         let high = triangles.clone().flatten().fold(DVec2::ZERO, DVec2::max);
-        let (width, height) = (texels(high.x), texels(high.y));
+        let (width, height) = (texel_extent(high.x), texel_extent(high.y));
         let mut columns = vec![(u32::MAX, 0); width as usize];
         for triangle in triangles {
             for k in 0..3 {
@@ -31,7 +31,7 @@ impl Shape {
     }
 
     /// The outline with a gutter of `margin` texels all round; it starts `margin` left of and above the chart.
-    pub fn grown(&self, margin: u32) -> Shape {
+    pub fn grown(&self, margin: u32) -> ChartOutline {
         let m = margin as usize;
         let columns = (0..self.columns.len() + 2 * m).map(|column| {
             let from = column.saturating_sub(2 * m);
@@ -42,12 +42,12 @@ impl Shape {
             // Chart row r is grown row r + margin, and its gutter reaches margin further both ways.
             if low < high { (low, high + 2 * margin) } else { none }
         });
-        Shape { columns: columns.collect(), height: self.height + 2 * margin }
+        ChartOutline { columns: columns.collect(), height: self.height + 2 * margin }
     }
 }
 
 /// Texels that a length from 0 touches, at least one.
-pub(crate) fn texels(length: f64) -> u32 {
+pub(crate) fn texel_extent(length: f64) -> u32 {
     (length.ceil() as u32).max(1)
 }
 
@@ -84,7 +84,7 @@ mod tests {
     #[test]
     fn a_triangle_has_a_sloped_outline() {
         let triangle = [DVec2::ZERO, DVec2::new(3.0, 0.0), DVec2::new(0.0, 2.9)];
-        let shape = Shape::new(std::iter::once(triangle));
+        let shape = ChartOutline::new(std::iter::once(triangle));
         assert_eq!((shape.columns.as_slice(), shape.height), ([(0, 3), (0, 2), (0, 1)].as_slice(), 3));
         let grown = shape.grown(1);
         assert_eq!(grown.columns, [(0, 5), (0, 5), (0, 5), (0, 4), (0, 3)]);

@@ -1,6 +1,6 @@
 //! How far down an atlas is filled, column by column, and where an outline comes to rest in it.
 
-use crate::shape::Shape;
+use crate::shape::ChartOutline;
 
 /// How far down every column is filled.
 pub(crate) struct Skyline {
@@ -18,7 +18,7 @@ impl Skyline {
     }
 
     /// The column, row and index of the outline that ends highest up, the one leaving the least gap among equals.
-    pub fn best(&self, outlines: &[Shape]) -> Option<(u32, u32, usize)> {
+    pub fn best_position(&self, outlines: &[ChartOutline]) -> Option<(u32, u32, usize)> {
         let mut best = None;
         let mut best_score = (u32::MAX, u64::MAX);
         for (turn, outline) in outlines.iter().enumerate() {
@@ -27,7 +27,7 @@ impl Skyline {
             let step = (outline.columns.len() / 16).max(1);
             for x in (0..=last).step_by(step) {
                 let limit = best_score.0.saturating_sub(outline.height);
-                let Some((y, gap)) = self.rest(outline, x, limit) else { continue };
+                let Some((y, gap)) = self.resting_height(outline, x, limit) else { continue };
                 let score = (y + outline.height, gap);
                 if score < best_score {
                     best_score = score;
@@ -39,7 +39,7 @@ impl Skyline {
     }
 
     /// The row at which an outline comes to rest and the gap under it, if the row is at most `limit`.
-    fn rest(&self, outline: &Shape, x: usize, limit: u32) -> Option<(u32, u64)> {
+    fn resting_height(&self, outline: &ChartOutline, x: usize, limit: u32) -> Option<(u32, u64)> {
         let mut y = 0;
         let rows = &self.rows[x..x + outline.columns.len()];
         for (&filled, &(low, high)) in rows.iter().zip(&outline.columns) {
@@ -57,7 +57,7 @@ impl Skyline {
     }
 
     /// Fills what lies under an outline.
-    pub fn put(&mut self, outline: &Shape, x: u32, y: u32) {
+    pub fn place(&mut self, outline: &ChartOutline, x: u32, y: u32) {
         for (filled, &(low, high)) in self.rows[x as usize..].iter_mut().zip(&outline.columns) {
             if low < high {
                 *filled = (*filled).max(y + high);
@@ -75,14 +75,14 @@ mod tests {
     #[test]
     fn an_outline_rests_on_what_is_there() {
         let mut skyline = Skyline::new(4);
-        let low = Shape { columns: vec![(0, 1); 2], height: 1 };
-        let hook = Shape { columns: vec![(2, 3), (2, 3), (0, 3)], height: 3 };
-        skyline.put(&low, 0, 0);
+        let low = ChartOutline { columns: vec![(0, 1); 2], height: 1 };
+        let hook = ChartOutline { columns: vec![(2, 3), (2, 3), (0, 3)], height: 3 };
+        skyline.place(&low, 0, 0);
         // Its arm reaches over the low one, its leg goes down beside it.
-        assert_eq!(skyline.best(std::slice::from_ref(&hook)), Some((0, 0, 0)));
-        skyline.put(&hook, 0, 0);
+        assert_eq!(skyline.best_position(std::slice::from_ref(&hook)), Some((0, 0, 0)));
+        skyline.place(&hook, 0, 0);
         assert_eq!((skyline.width_used, skyline.height), (3, 3));
-        assert_eq!(skyline.best(&[low]), Some((0, 3, 0)));
-        assert_eq!(skyline.best(&[Shape { columns: vec![(0, 1); 5], height: 1 }]), None);
+        assert_eq!(skyline.best_position(&[low]), Some((0, 3, 0)));
+        assert_eq!(skyline.best_position(&[ChartOutline { columns: vec![(0, 1); 5], height: 1 }]), None);
     }
 }

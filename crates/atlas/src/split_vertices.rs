@@ -20,7 +20,7 @@ pub(crate) struct SplitVertices {
     /// The triangles.
     pub indices: Vec<u32>,
     /// Whether the vertices are the elements as they were.
-    pub are_as_before: bool,
+    pub is_unchanged: bool,
 }
 
 impl SplitVertices {
@@ -38,7 +38,7 @@ impl SplitVertices {
         };
         let base = elements.len();
         let mut split =
-            Self { places: vec![Vec2::ZERO; base], elements, indices: Vec::new(), are_as_before: false };
+            Self { places: vec![Vec2::ZERO; base], elements, indices: Vec::new(), is_unchanged: false };
         let mut is_placed = vec![false; base];
         let mut copies: HashMap<(u32, [u32; 2]), u32> = HashMap::new();
         for &(element, place) in corners() {
@@ -51,9 +51,9 @@ impl SplitVertices {
                 is_placed[slot as usize] = true;
                 split.places[slot as usize] = place;
             }
-            let is_own = split.places[slot as usize].to_array().map(f32::to_bits)
+            let has_same_place = split.places[slot as usize].to_array().map(f32::to_bits)
                 == place.to_array().map(f32::to_bits);
-            let vertex = match is_own {
+            let vertex = match has_same_place {
                 true => slot,
                 false => *copies.entry((slot, place.to_array().map(f32::to_bits))).or_insert_with(|| {
                     split.elements.push(element);
@@ -63,7 +63,7 @@ impl SplitVertices {
             };
             split.indices.push(vertex);
         }
-        split.are_as_before = keeps_all && split.elements.len() == base;
+        split.is_unchanged = keeps_all && split.elements.len() == base;
         split
     }
 }
@@ -84,7 +84,7 @@ mod tests {
     fn vertices_with_one_place_each_stay() {
         let quad = [placed([(0, A), (1, B), (2, C)]), placed([(2, C), (1, B), (4, A)])];
         let split = SplitVertices::new(&quad, 5);
-        assert!(split.are_as_before);
+        assert!(split.is_unchanged);
         assert_eq!(split.elements, [0, 1, 2, 3, 4]);
         assert_eq!(split.places, [A, B, C, Vec2::ZERO, A]);
         assert_eq!(split.indices, [0, 1, 2, 2, 1, 4]);
@@ -98,7 +98,7 @@ mod tests {
             placed([(0, A), (3, B), (1, A)]),
         ];
         let split = SplitVertices::new(&seam, 4);
-        assert!(!split.are_as_before);
+        assert!(!split.is_unchanged);
         assert_eq!(split.elements, [0, 1, 2, 3, 1]);
         assert_eq!(split.places, [A, B, C, B, A]);
         assert_eq!(split.indices, [0, 1, 2, 2, 4, 3, 0, 3, 4]);
@@ -107,7 +107,7 @@ mod tests {
     #[test]
     fn of_large_accessors_only_what_occurs_is_taken() {
         let split = SplitVertices::new(&[placed([(70, A), (5000, B), (8, C)])], 1 << 20);
-        assert!(!split.are_as_before);
+        assert!(!split.is_unchanged);
         assert_eq!((split.elements, split.places), (vec![8, 70, 5000], vec![C, A, B]));
         assert_eq!(split.indices, [1, 2, 0]);
     }
@@ -116,7 +116,7 @@ mod tests {
     fn triangles_outside_the_atlas_take_no_place_from_others() {
         let hidden = [(0, None), (1, None), (2, None)];
         let split = SplitVertices::new(&[hidden, placed([(0, A), (2, B), (3, C)])], 4);
-        assert!(split.are_as_before);
+        assert!(split.is_unchanged);
         assert_eq!(split.places, [A, Vec2::ZERO, B, C]);
         assert_eq!(split.indices, [0, 1, 2, 0, 2, 3]);
     }

@@ -1,7 +1,7 @@
 //! A surface that no glTF file tells of (a scan, a surface made from depth) as a GLB by itself: its mesh, its atlas as the first UV set, and
 //! one texture that lies in the atlas and is shown as it is (KHR_materials_unlit).
 
-use crate::export_glb::write_whole;
+use crate::export_glb::write_atomically;
 use crate::glb_document::GlbDocument;
 use crate::{Atlas, AtlasError};
 use glam::Vec2;
@@ -54,7 +54,7 @@ pub fn write_surface_glb(
     amend(glb.root_mut());
     let bytes = glb.into_bytes()?;
     progress.check()?;
-    write_whole(path, &bytes)?;
+    write_atomically(path, &bytes)?;
     progress.report(1.0);
     Ok(())
 }

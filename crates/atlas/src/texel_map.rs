@@ -30,7 +30,7 @@ pub struct TexelMap {
 
 impl TexelMap {
     /// The covered texel at a column and row.
-    pub fn at(&self, x: u32, y: u32) -> Option<&AtlasTexel> {
+    pub fn texel_at(&self, x: u32, y: u32) -> Option<&AtlasTexel> {
         if x >= self.width || y >= self.height {
             return None;
         }

@@ -1,12 +1,12 @@
 //! From a scene to its atlas.
 
-use crate::chart::{LooseChart, area};
+use crate::chart::{UnpackedChart, signed_area};
 use crate::child::{self, ChildError};
-use crate::engine::{Engine, uvunwrap};
-use crate::flattening::{Flattened, Patch, UNPLACED};
+use crate::engine::{Engine, flatten_with_uvunwrap};
+use crate::flattening::{FlattenedPatch, SurfacePatch, UNPLACED};
 use crate::islands::is_badly_stretched;
-use crate::overlap::overlaps;
-use crate::pack::{Packed, pack};
+use crate::overlap::has_overlaps;
+use crate::pack::{PackedCharts, pack};
 use crate::part_mesh::{CheckedPart, PartMesh};
 use crate::patches::PATCH_TRIANGLES;
 use crate::{Atlas, AtlasError, UnwrapOptions, UvPolicy, islands, patches, planar};
@@ -46,10 +46,10 @@ impl Atlas {
         charts.extend(parts.iter().flat_map(|part| part.charts.iter().cloned()));
         // A part of which nothing has area gets a chart of one point.
         for (part, prepared) in parts.iter().enumerate() {
-            if prepared.meshes.is_empty() && !prepared.set_aside.is_empty() {
-                let triangles = prepared.set_aside.clone();
+            if prepared.meshes.is_empty() && !prepared.degenerate.is_empty() {
+                let triangles = prepared.degenerate.clone();
                 let corners = vec![[DVec2::ZERO; 3]; triangles.len()];
-                charts.push(LooseChart { part: part as u32, triangles, corners, turnable: false });
+                charts.push(UnpackedChart { part: part as u32, triangles, corners, can_rotate: false });
             }
         }
         charts.sort_by_key(|chart| (chart.part, chart.triangles[0]));
@@ -66,8 +66,8 @@ impl Atlas {
 /// A part on its way: what needs no engine is a chart already.
 struct PreparedPart {
     meshes: Vec<PartMesh>,
-    set_aside: Vec<u32>,
-    charts: Vec<LooseChart>,
+    degenerate: Vec<u32>,
+    charts: Vec<UnpackedChart>,
     /// Pieces for the engines: the mesh and its triangles.
     patches: Vec<(usize, Vec<u32>)>,
 }
@@ -75,27 +75,27 @@ struct PreparedPart {
 impl PreparedPart {
     fn new(scene: &Scene, part: u32, policy: UvPolicy) -> Self {
         let checked = CheckedPart::new(scene, part);
-        let kept = match policy {
-            UvPolicy::Auto => islands::kept(scene, part, &checked),
+        let reused = match policy {
+            UvPolicy::Auto => islands::reusable_charts(scene, part, &checked),
             UvPolicy::Ignore => None,
         };
-        let CheckedPart { meshes, set_aside } = checked;
-        let mut prepared = Self { meshes, set_aside, charts: Vec::new(), patches: Vec::new() };
-        match kept {
+        let CheckedPart { meshes, degenerate } = checked;
+        let mut prepared = Self { meshes, degenerate, charts: Vec::new(), patches: Vec::new() };
+        match reused {
             Some(charts) => prepared.charts = charts,
-            None => prepared.cut(),
+            None => prepared.cut_patches(),
         }
         prepared
     }
 
     /// Flat pieces become charts; the others patches.
-    fn cut(&mut self) {
+    fn cut_patches(&mut self) {
         for (index, mesh) in self.meshes.iter().enumerate() {
             let all: Vec<u32> = (0..mesh.triangles.len() as u32).collect();
-            for piece in mesh.pieces(&all, |_, _| true) {
+            for piece in mesh.connected_pieces(&all, |_, _| true) {
                 if let [single] = piece[..] {
                     let triangle = mesh.triangles[single as usize];
-                    self.charts.push(LooseChart::of_triangle(
+                    self.charts.push(UnpackedChart::from_triangle(
                         mesh.part,
                         triangle,
                         mesh.corner_positions(single),
@@ -103,7 +103,9 @@ impl PreparedPart {
                 } else if let Some(chart) = planar::flat_chart(mesh, &piece) {
                     self.charts.push(chart);
                 } else {
-                    self.patches.extend(patches::cut(mesh, piece).into_iter().map(|patch| (index, patch)));
+                    self.patches.extend(
+                        patches::cut_into_patches(mesh, piece).into_iter().map(|patch| (index, patch)),
+                    );
                 }
             }
         }
@@ -116,7 +118,7 @@ fn flatten_patches(
     options: &UnwrapOptions,
     progress: &dyn Progress,
     notes: &mut Vec<String>,
-) -> Result<Vec<LooseChart>, AtlasError> {
+) -> Result<Vec<UnpackedChart>, AtlasError> {
     let work: Vec<(&PartMesh, &[u32])> = parts
         .iter()
         .flat_map(|part| part.patches.iter().map(|(mesh, patch)| (&part.meshes[*mesh], patch.as_slice())))
@@ -124,16 +126,17 @@ fn flatten_patches(
     if work.is_empty() {
         return Ok(Vec::new());
     }
-    let requests: Vec<Patch> = work.par_iter().map(|(mesh, triangles)| Patch::new(mesh, triangles)).collect();
+    let requests: Vec<SurfacePatch> =
+        work.par_iter().map(|(mesh, triangles)| SurfacePatch::new(mesh, triangles)).collect();
     let flattened = run_engines(&requests, options, progress, notes)?;
-    let charts: Vec<Vec<LooseChart>> = work
+    let charts: Vec<Vec<UnpackedChart>> = work
         .par_iter()
         .zip(&flattened)
         .map(|(&(mesh, triangles), flattened)| {
             progress.check()?;
             Ok(match flattened {
                 Some(flattened) => sound_charts(mesh, triangles, flattened),
-                None => planar::charts(mesh, triangles),
+                None => planar::planar_charts(mesh, triangles),
             })
         })
         .collect::<Result<_, AtlasError>>()?;
@@ -148,13 +151,13 @@ fn flatten_patches(
 }
 
 fn run_engines(
-    patches: &[Patch],
+    patches: &[SurfacePatch],
     options: &UnwrapOptions,
     progress: &dyn Progress,
     notes: &mut Vec<String>,
-) -> Result<Vec<Option<Flattened>>, AtlasError> {
-    let mut flattened: Vec<Option<Flattened>> = vec![None; patches.len()];
-    let open = |flattened: &[Option<Flattened>]| -> Vec<usize> {
+) -> Result<Vec<Option<FlattenedPatch>>, AtlasError> {
+    let mut flattened: Vec<Option<FlattenedPatch>> = vec![None; patches.len()];
+    let open = |flattened: &[Option<FlattenedPatch>]| -> Vec<usize> {
         (0..patches.len()).filter(|&i| flattened[i].is_none()).collect()
     };
     if let Some(program) = &options.child {
@@ -163,8 +166,8 @@ fn run_engines(
             if waiting.is_empty() {
                 return Ok(flattened);
             }
-            let requests: Vec<&Patch> = waiting.iter().map(|&i| &patches[i]).collect();
-            match child::flatten(
+            let requests: Vec<&SurfacePatch> = waiting.iter().map(|&i| &patches[i]).collect();
+            match child::flatten_in_children(
                 program,
                 engine,
                 &requests,
@@ -176,7 +179,7 @@ fn run_engines(
                     if answers.lost > 0 {
                         notes.push(format!(
                             "{} failed on {} batches of patches",
-                            engine.word(),
+                            engine.name(),
                             answers.lost
                         ));
                     }
@@ -199,7 +202,7 @@ fn run_engines(
     let waiting = open(&flattened);
     for (n, &i) in waiting.iter().enumerate() {
         progress.check()?;
-        flattened[i] = uvunwrap(&patches[i], &|| progress.cancelled());
+        flattened[i] = flatten_with_uvunwrap(&patches[i], &|| progress.cancelled());
         progress.report((n + 1) as f32 / waiting.len() as f32);
     }
     progress.check()?;
@@ -207,14 +210,14 @@ fn run_engines(
 }
 
 /// Triangles of a child's batch: enough that starting it does not count, few enough that all cores stay busy.
-fn batch_size(patches: &[&Patch]) -> usize {
+fn batch_size(patches: &[&SurfacePatch]) -> usize {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let triangles: usize = patches.iter().map(|p| p.corners.len()).sum();
     (triangles / (3 * cores)).clamp(PATCH_TRIANGLES, 4 * PATCH_TRIANGLES)
 }
 
 /// An engine's charts, checked: whatever folds, overlaps or is badly stretched is projected instead.
-fn sound_charts(mesh: &PartMesh, triangles: &[u32], flattened: &Flattened) -> Vec<LooseChart> {
+fn sound_charts(mesh: &PartMesh, triangles: &[u32], flattened: &FlattenedPatch) -> Vec<UnpackedChart> {
     let mut by_chart: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
     for (i, &chart) in flattened.chart.iter().enumerate() {
         by_chart.entry(chart).or_default().push(i);
@@ -227,9 +230,9 @@ fn sound_charts(mesh: &PartMesh, triangles: &[u32], flattened: &Flattened) -> Ve
             continue;
         }
         let plane = |i: usize| flattened.corners[i].map(|[x, y]| DVec2::new(x.into(), y.into()));
-        let orientation = members.iter().map(|&i| area(plane(i))).sum::<f64>().signum();
+        let orientation = members.iter().map(|&i| signed_area(plane(i))).sum::<f64>().signum();
         members.retain(|&i| {
-            let sound = area(plane(i)) * orientation > 0.0;
+            let sound = signed_area(plane(i)) * orientation > 0.0;
             if !sound {
                 left.push(triangles[i]);
             }
@@ -239,27 +242,27 @@ fn sound_charts(mesh: &PartMesh, triangles: &[u32], flattened: &Flattened) -> Ve
             continue;
         }
         let worlds: Vec<[DVec3; 3]> = members.iter().map(|&i| mesh.corner_positions(triangles[i])).collect();
-        let mut chart = LooseChart {
+        let mut chart = UnpackedChart {
             part: mesh.part,
             triangles: members.iter().map(|&i| mesh.triangles[triangles[i] as usize]).collect(),
             corners: members.iter().map(|&i| plane(i)).collect(),
-            turnable: true,
+            can_rotate: true,
         };
         let sound = chart.scale_to_world(&worlds).is_some()
             && !is_badly_stretched(&chart, &worlds)
-            && !overlaps(&chart.corners);
+            && !has_overlaps(&chart.corners);
         if sound {
             charts.push(chart);
         } else {
             left.extend(members.iter().map(|&i| triangles[i]));
         }
     }
-    charts.extend(planar::charts(mesh, &left));
+    charts.extend(planar::planar_charts(mesh, &left));
     charts
 }
 
 /// Puts the packed charts and what was set aside into the atlas.
-fn assemble(scene: &Scene, charts: &[LooseChart], packed: Packed, parts: &[PreparedPart]) -> Atlas {
+fn assemble(scene: &Scene, charts: &[UnpackedChart], packed: PackedCharts, parts: &[PreparedPart]) -> Atlas {
     let mut corners = vec![[Vec2::ZERO; 3]; scene.triangles.len()];
     let mut chart_of = vec![0; scene.triangles.len()];
     let mut placed = vec![false; scene.triangles.len()];
@@ -270,7 +273,7 @@ fn assemble(scene: &Scene, charts: &[LooseChart], packed: Packed, parts: &[Prepa
             placed[triangle as usize] = true;
         }
     }
-    for prepared in parts.iter().filter(|part| !part.meshes.is_empty() && !part.set_aside.is_empty()) {
+    for prepared in parts.iter().filter(|part| !part.meshes.is_empty() && !part.degenerate.is_empty()) {
         // A triangle without area lies in a corner of a neighbour, or else of the part's first triangle.
         let mut at_vertex: HashMap<u32, (Vec2, u32)> = HashMap::new();
         for &triangle in prepared.meshes.iter().flat_map(|mesh| &mesh.triangles) {
@@ -281,7 +284,7 @@ fn assemble(scene: &Scene, charts: &[LooseChart], packed: Packed, parts: &[Prepa
         }
         let first = prepared.meshes[0].triangles[0] as usize;
         let fallback = (corners[first][0], chart_of[first]);
-        for &triangle in prepared.set_aside.iter().filter(|&&t| !placed[t as usize]) {
+        for &triangle in prepared.degenerate.iter().filter(|&&t| !placed[t as usize]) {
             let vertices = scene.triangles[triangle as usize].vertices;
             let (place, chart) = vertices.iter().find_map(|v| at_vertex.get(v).copied()).unwrap_or(fallback);
             corners[triangle as usize] = [place; 3];

@@ -8,7 +8,7 @@ use serde_json::{Map, Value};
 use std::collections::BTreeSet;
 
 /// The lowest set that the atlas may be.
-const FIRST: u64 = 1;
+const FIRST_CANDIDATE: u64 = 1;
 
 /// The name of a set among a primitive's attributes.
 pub(crate) fn attribute_name(set: u64) -> String {
@@ -24,7 +24,7 @@ pub(crate) fn atlas_set<'a>(primitives: impl Iterator<Item = &'a Value> + Clone,
             !has && !sets_read(primitive, materials).contains(set)
         })
     };
-    (FIRST..).find(is_free).unwrap_or(FIRST)
+    (FIRST_CANDIDATE..).find(is_free).unwrap_or(FIRST_CANDIDATE)
 }
 
 /// The sets that the textures of a primitive are looked up in: of its material, of those that it has in other variants,
@@ -32,7 +32,7 @@ pub(crate) fn atlas_set<'a>(primitives: impl Iterator<Item = &'a Value> + Clone,
 pub(crate) fn sets_read(primitive: &Value, materials: &[Value]) -> BTreeSet<u64> {
     let mut users = vec![primitive.get("material")];
     let extensions = primitive.get("extensions");
-    collect(extensions, "", &mut |key, value| {
+    visit_values(extensions, "", &mut |key, value| {
         if key == "material" {
             users.push(Some(value));
         }
@@ -41,7 +41,7 @@ pub(crate) fn sets_read(primitive: &Value, materials: &[Value]) -> BTreeSet<u64>
     let read = users.into_iter().filter_map(|user| materials.get(index(user)?));
     let mut sets = BTreeSet::new();
     for value in read.chain(extensions) {
-        collect(Some(value), "", &mut |key, value| {
+        visit_values(Some(value), "", &mut |key, value| {
             if key == "texCoord" {
                 sets.extend(value.as_u64());
             } else if key.to_ascii_lowercase().ends_with("texture") && value.get("texCoord").is_none() {
@@ -53,18 +53,20 @@ pub(crate) fn sets_read(primitive: &Value, materials: &[Value]) -> BTreeSet<u64>
 }
 
 /// Shows every member of every object inside.
-fn collect<'a>(value: Option<&'a Value>, key: &'a str, show: &mut impl FnMut(&'a str, &'a Value)) {
+fn visit_values<'a>(value: Option<&'a Value>, key: &'a str, visit: &mut impl FnMut(&'a str, &'a Value)) {
     let Some(value) = value else { return };
-    show(key, value);
+    visit(key, value);
     match value {
-        Value::Object(members) => members.iter().for_each(|(key, value)| collect(Some(value), key, show)),
-        Value::Array(list) => list.iter().for_each(|value| collect(Some(value), "", show)),
+        Value::Object(members) => {
+            members.iter().for_each(|(key, value)| visit_values(Some(value), key, visit))
+        }
+        Value::Array(list) => list.iter().for_each(|value| visit_values(Some(value), "", visit)),
         _ => {}
     }
 }
 
 /// Gives the attributes of a primitive the atlas as `set`, and what is missing below.
-pub(crate) fn insert(
+pub(crate) fn insert_atlas_set(
     attributes: &mut Map<String, Value>,
     set: u64,
     read: &BTreeSet<u64>,
@@ -115,7 +117,7 @@ mod tests {
     fn sets_have_no_gaps_and_what_is_read_stays_zero() {
         let filled = |sets: &[u64], read: &[u64]| {
             let mut attributes = primitive(sets, None)["attributes"].as_object().unwrap().clone();
-            insert(&mut attributes, 2, &read.iter().copied().collect(), 5, || 6);
+            insert_atlas_set(&mut attributes, 2, &read.iter().copied().collect(), 5, || 6);
             [0, 1, 2].map(|set| attributes[&attribute_name(set)].as_u64().unwrap())
         };
         assert_eq!(filled(&[0, 1], &[0]), [9, 9, 5]);

@@ -1,8 +1,8 @@
 //! Vertex attributes written anew: other elements of the accessors, each as it was stored.
 
-use crate::glb_document::{GlbDocument, number};
+use crate::glb_document::{GlbDocument, as_index};
 use glam::Vec2;
-use scene::{Fault, Source, StoredElements};
+use scene::{Fault, GltfSource, StoredElements};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 
@@ -16,17 +16,17 @@ const FLOAT: u32 = 5126;
 
 /// Attributes of other vertices.
 pub(crate) struct VertexAttributes<'a> {
-    source: &'a Source<'a>,
+    source: &'a GltfSource<'a>,
     /// For each vertex, the element of the accessors of the file that it is.
     elements: &'a [u32],
     /// New accessors by those of the file: several attributes may be one.
-    known: BTreeMap<usize, usize>,
+    rewritten: BTreeMap<usize, usize>,
 }
 
 impl<'a> VertexAttributes<'a> {
     /// Of vertices that are these elements.
-    pub fn new(source: &'a Source<'a>, elements: &'a [u32]) -> Self {
-        Self { source, elements, known: BTreeMap::new() }
+    pub fn new(source: &'a GltfSource<'a>, elements: &'a [u32]) -> Self {
+        Self { source, elements, rewritten: BTreeMap::new() }
     }
 
     /// The attributes with new accessors. One that is malformed is left out, as it is when the file is read.
@@ -35,23 +35,23 @@ impl<'a> VertexAttributes<'a> {
         glb: &mut GlbDocument,
         attributes: &Map<String, Value>,
     ) -> Result<Map<String, Value>, Fault> {
-        let mut anew = Map::new();
+        let mut rewritten_attributes = Map::new();
         for (name, index) in attributes {
-            let Some(index) = number(index) else { continue };
-            let accessor = match self.known.get(&index) {
-                Some(known) => Ok(*known),
+            let Some(index) = as_index(index) else { continue };
+            let accessor = match self.rewritten.get(&index) {
+                Some(accessor) => Ok(*accessor),
                 None => self.accessor(glb, index, name == "POSITION"),
             };
             match accessor {
                 Ok(accessor) => {
-                    self.known.insert(index, accessor);
-                    anew.insert(name.clone(), accessor.into());
+                    self.rewritten.insert(index, accessor);
+                    rewritten_attributes.insert(name.clone(), accessor.into());
                 }
                 Err(fault @ Fault::TooBig { .. }) => return Err(fault),
                 Err(_) => {}
             }
         }
-        Ok(anew)
+        Ok(rewritten_attributes)
     }
 
     /// What accessor `index` of the file is for these vertices.

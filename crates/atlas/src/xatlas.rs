@@ -5,14 +5,14 @@
 //! the `Xatlas` value; `face_ignore_data` is mistyped and the progress closure is called from threads it was
 //! not made for, so neither is used.
 
-use crate::flattening::{Flattened, Patch, UNPLACED};
+use crate::flattening::{FlattenedPatch, SurfacePatch, UNPLACED};
 use xatlas_rs_v2::{ChartOptions, IndexData, MeshData, MeshDecl, PackOptions, Xatlas};
 
 /// Texels a unit of length for xatlas's packing; a mean triangle has an area of 1.
 const TEXELS_PER_UNIT: f32 = 8.0;
 
 /// Flattens a patch; `None` where xatlas refuses it.
-pub(crate) fn flatten(patch: &Patch) -> Option<Flattened> {
+pub(crate) fn flatten_with_xatlas(patch: &SurfacePatch) -> Option<FlattenedPatch> {
     let indices = patch.corners.as_flattened();
     let declaration = MeshDecl {
         vertex_position_data: MeshData::Contiguous(patch.positions.as_flattened()),
@@ -37,7 +37,7 @@ pub(crate) fn flatten(patch: &Patch) -> Option<Flattened> {
     }
     let meshes = atlas.meshes();
     let mesh = meshes.first()?;
-    let mut flattened = Flattened::unplaced(patch.corners.len());
+    let mut flattened = FlattenedPatch::unplaced(patch.corners.len());
     for (triangle, corners) in mesh.index_array.chunks_exact(3).enumerate().take(patch.corners.len()) {
         let [a, b, c] = [0, 1, 2].map(|k| mesh.vertex_array.get(corners[k] as usize));
         let (a, b, c) = (a?, b?, c?);

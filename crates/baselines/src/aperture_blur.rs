@@ -6,7 +6,7 @@ use progress::{Cancelled, Progress};
 use rayon::prelude::*;
 
 /// Most rows that an aperture is cut to; wider blurs have rows of more than a pixel.
-const MOST_ROWS: f64 = 4096.0;
+const MAX_ROWS: f64 = 4096.0;
 
 /// A run of the aperture's image: source pixels of one row, seen from the pixel that they are summed to.
 struct Run {
@@ -30,7 +30,7 @@ impl ApertureBlur {
         if radius_px.abs() <= 0.5 {
             return Ok(None);
         }
-        let count = (2.0 * radius_px.abs()).ceil().clamp(8.0, MOST_ROWS) as usize;
+        let count = (2.0 * radius_px.abs()).ceil().clamp(8.0, MAX_ROWS) as usize;
         let rows = aperture.rows(count);
         let (open_area, row_height) = (rows.open_area(), 2.0 / count as f64);
         if open_area <= 0.0 {
@@ -70,7 +70,7 @@ impl ApertureBlur {
         progress: &dyn Progress,
     ) -> Result<Vec<[f32; 4]>, Cancelled> {
         let height = source.len() / width;
-        let integrals: Vec<_> = source.par_chunks(width).map(RowIntegral::of).collect();
+        let integrals: Vec<_> = source.par_chunks(width).map(RowIntegral::new).collect();
         let rows: Result<Vec<_>, Cancelled> = (0..height)
             .into_par_iter()
             .map(|y| {
@@ -82,7 +82,7 @@ impl ApertureBlur {
                         let scale = run.share / (run.span[1] - run.span[0]);
                         for (x, sum) in sums.iter_mut().enumerate() {
                             let center = x as f64 + 0.5;
-                            let [from, to] = run.span.map(|offset| integral.up_to(center + offset));
+                            let [from, to] = run.span.map(|offset| integral.integral_to(center + offset));
                             (0..4).for_each(|c| sum[c] += (to[c] - from[c]) * scale);
                         }
                     }
@@ -104,7 +104,7 @@ struct RowIntegral {
 
 impl RowIntegral {
     /// `None` for a row of nothing but 0.
-    fn of(row: &[[f32; 4]]) -> Option<Self> {
+    fn new(row: &[[f32; 4]]) -> Option<Self> {
         if row.iter().all(|pixel| *pixel == [0.0; 4]) {
             return None;
         }
@@ -121,7 +121,7 @@ impl RowIntegral {
 
     /// From the row's start to `x` px.
     #[inline(always)]
-    fn up_to(&self, x: f64) -> [f64; 4] {
+    fn integral_to(&self, x: f64) -> [f64; 4] {
         let width = self.sums.len() - 1;
         if x <= 0.0 {
             return self.first.map(|c| c * x);

@@ -22,10 +22,10 @@ pub enum BaselineError {
         must: &'static str,
     },
     /// The pinhole picture, or the light field, is of another camera.
-    #[error("made for {found:?} px, the camera has {camera:?} (make it again for this camera)")]
+    #[error("made for {actual:?} px, the camera has {camera:?} (make it again for this camera)")]
     OtherCamera {
         /// Columns and rows of what was given.
-        found: [u32; 2],
+        actual: [u32; 2],
         /// Columns and rows of the camera.
         camera: [u32; 2],
     },
@@ -70,7 +70,7 @@ pub(crate) fn check_hits(hits: &FirstHits, camera: &Camera) -> Result<(), Baseli
 }
 
 /// An error unless something of `found` pixels has the camera's size.
-pub(crate) fn check_size(found: [u32; 2], camera: &Camera) -> Result<(), BaselineError> {
+pub(crate) fn check_size(actual: [u32; 2], camera: &Camera) -> Result<(), BaselineError> {
     let camera = [camera.width, camera.height];
-    if found == camera { Ok(()) } else { Err(BaselineError::OtherCamera { found, camera }) }
+    if actual == camera { Ok(()) } else { Err(BaselineError::OtherCamera { actual, camera }) }
 }

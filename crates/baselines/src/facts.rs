@@ -3,7 +3,7 @@
 
 use crate::test_light::*;
 use crate::test_scene::scene_of;
-use crate::{LayeredOptions, gather, layered};
+use crate::{LayeredOptions, gather_blur, layered_blur};
 use glam::DVec2;
 use lens::{Camera, Picture};
 use progress::Unwatched;
@@ -18,12 +18,17 @@ fn segment(c: f64) -> f64 {
 }
 
 fn gathered(scene: &Arc<Scene>, camera: &Camera) -> Picture {
-    gather(&first_hits(scene, camera, &unpainted(scene)), camera, &Unwatched).unwrap()
+    gather_blur(&first_hits(scene, camera, &unpainted(scene)), camera, &Unwatched).unwrap()
 }
 
 fn cut_to_layers(scene: &Arc<Scene>, camera: &Camera) -> Picture {
-    layered(&first_hits(scene, camera, &unpainted(scene)), camera, &LayeredOptions::default(), &Unwatched)
-        .unwrap()
+    layered_blur(
+        &first_hits(scene, camera, &unpainted(scene)),
+        camera,
+        &LayeredOptions::default(),
+        &Unwatched,
+    )
+    .unwrap()
 }
 
 /// A spot at depth 9 in the middle of the picture, and a black card at depth 1.5 that is open to the right of x = `edge`.
@@ -47,9 +52,9 @@ fn a_half_occluded_point_dims_accordingly() {
         energy(&splatted(&half_hidden(&camera, None), &camera, &unpainted(&half_hidden(&camera, None))));
     for edge in [-0.09, -0.03, 0.0, 0.05, 0.1] {
         let scene = half_hidden(&camera, Some(edge));
-        let found = energy(&splatted(&scene, &camera, &unpainted(&scene))) / free;
+        let measured = energy(&splatted(&scene, &camera, &unpainted(&scene))) / free;
         let expected = visible_share(&camera, edge);
-        assert!((found - expected).abs() < 0.025, "edge at {edge}: {found}, expected {expected}");
+        assert!((measured - expected).abs() < 0.025, "edge at {edge}: {measured}, expected {expected}");
     }
 }
 
@@ -76,13 +81,13 @@ fn a_light_outside_the_frame_shows_within_its_circle_of_confusion() {
     let radius = optics.splat_radius_px(optics.standard_kappa(1.0 / 9.0));
     for outside in [2.5, 5.0, radius - 4.0] {
         let scene = scene_of(&[(spot(&camera, DVec2::new(-outside, 48.0), 2.0, 9.0), paint([8.0; 3]))]);
-        let found = energy(&splatted(&scene, &camera, &unpainted(&scene)));
+        let measured = energy(&splatted(&scene, &camera, &unpainted(&scene)));
         // Of the spot's 4 px² of radiance 8, the part of the circles of its points that reaches in.
         let reaching = |k: u32| segment((outside - 1.0 + (f64::from(k) + 0.5) / 8.0) / radius);
         let expected = 32.0 * (0..16).map(reaching).sum::<f64>() / 16.0;
         assert!(
-            (found - expected).abs() < 0.015 * 32.0,
-            "{outside} px outside: {found}, expected {expected}"
+            (measured - expected).abs() < 0.015 * 32.0,
+            "{outside} px outside: {measured}, expected {expected}"
         );
         assert_eq!(energy(&gathered(&scene, &camera)), 0.0);
         assert_eq!(energy(&cut_to_layers(&scene, &camera)), 0.0);
@@ -109,7 +114,7 @@ fn fenced(camera: &Camera) -> Arc<Scene> {
 }
 
 /// The share of the aperture that a wall point at `x` sees between the slats: a disc less its strips.
-fn seen_between_slats(camera: &Camera, x: f64) -> f64 {
+fn visible_between_slats(camera: &Camera, x: f64) -> f64 {
     let (depth, period, slat) = FENCE;
     let z = camera.focus_distance;
     // Where the disc of rays passes the fence.
@@ -125,14 +130,14 @@ fn seen_between_slats(camera: &Camera, x: f64) -> f64 {
 fn a_fence_close_to_the_lens_becomes_see_through() {
     let camera = camera(96);
     let scene = fenced(&camera);
-    let found = splatted(&scene, &camera, &unpainted(&scene));
+    let picture = splatted(&scene, &camera, &unpainted(&scene));
     let blurred = gathered(&scene, &camera);
     let pixel = pixel_at(&camera, camera.focus_distance);
     let (mut worst, mut worst_blurred) = (0.0f64, 0.0f64);
     for x in 4..92 {
         let place = (x as f64 + 0.5 - 48.0) * pixel;
-        let (green, red) = (found.radiance[48 * 96 + x][1], found.radiance[48 * 96 + x][0]);
-        let expected = seen_between_slats(&camera, place);
+        let (green, red) = (picture.radiance[48 * 96 + x][1], picture.radiance[48 * 96 + x][0]);
+        let expected = visible_between_slats(&camera, place);
         worst = worst.max((f64::from(green) - expected).abs());
         worst_blurred = worst_blurred.max((f64::from(blurred.radiance[48 * 96 + x][1]) - expected).abs());
         // The stripe behind the fence is green all along, but for the pixels of its edges.

@@ -64,10 +64,10 @@ impl FirstHits {
             progress.check()?;
             for x in 0..row_length {
                 let pixel = corner + DVec2::new(x as f64, y as f64) + 0.5;
-                let ray = Ray::of_pinhole(camera, DVec2::ZERO, pixel);
+                let ray = Ray::pinhole(camera, DVec2::ZERO, pixel);
                 let (rgb, depth, offset) = match tracer.first_hit(&ray) {
-                    Some(hit) => (radiance.toward(hit.point, ray.origin), hit.t, focus.at(hit.point)),
-                    None => (radiance.from_infinity(ray.direction), f64::INFINITY, focus.at_infinity()),
+                    Some(hit) => (radiance.total_outgoing(hit.point, ray.origin), hit.t, focus.at(hit.point)),
+                    None => (radiance.environment(ray.direction), f64::INFINITY, focus.at_infinity()),
                 };
                 radiances[x] = rgb.to_array();
                 depths[x] = depth as f32;

@@ -12,16 +12,20 @@ use rayon::prelude::*;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Most points a side of the grid over the aperture's square that a pixel gathers from: bounds the time.
-const MOST_TAPS_A_SIDE: f64 = 64.0;
+const MAX_TAPS_PER_SIDE: f64 = 64.0;
 
 /// Blurs the pinhole picture `hits` by each pixel's circle of confusion, painted or not. Coverage is 1.
-pub fn gather(hits: &FirstHits, camera: &Camera, progress: &dyn Progress) -> Result<Picture, BaselineError> {
+pub fn gather_blur(
+    hits: &FirstHits,
+    camera: &Camera,
+    progress: &dyn Progress,
+) -> Result<Picture, BaselineError> {
     check_hits(hits, camera)?;
     let (width, height) = (camera.width as usize, camera.height as usize);
     let optics = camera.optics();
     let widest = hits.kappa.iter().map(|&kappa| optics.splat_radius_px(kappa).abs()).fold(0.0, f64::max);
     // One point a pixel of the widest circle.
-    let taps = aperture_taps(camera, (2.0 * widest).ceil().clamp(4.0, MOST_TAPS_A_SIDE) as usize);
+    let taps = aperture_taps(camera, (2.0 * widest).ceil().clamp(4.0, MAX_TAPS_PER_SIDE) as usize);
     let total: f32 = taps.iter().map(|tap| tap.2).sum();
     let done = AtomicU32::new(0);
     let rows: Result<Vec<Vec<[f32; 3]>>, Cancelled> = (0..height)
@@ -81,11 +85,11 @@ mod tests {
         let kappa = camera.optics().kappa_for_circle_px(10.0).unwrap();
         let mut hits = FirstHits::background(41, 41);
         hits.radiance[20 * 41 + 20] = [1.0; 3];
-        let sharp = gather(&hits, &camera, &Unwatched).unwrap();
+        let sharp = gather_blur(&hits, &camera, &Unwatched).unwrap();
         assert_eq!(sharp.radiance, hits.radiance);
 
         hits.kappa.fill(kappa);
-        let blurred = gather(&hits, &camera, &Unwatched).unwrap();
+        let blurred = gather_blur(&hits, &camera, &Unwatched).unwrap();
         let lit = blurred.radiance.iter().filter(|rgb| rgb[0] > 0.0).count() as f64;
         let disc = std::f64::consts::PI * 25.0;
         assert!((lit / disc - 1.0).abs() < 0.15, "{lit} pixels are lit, a disc has {disc}");
@@ -99,7 +103,7 @@ mod tests {
         let mut hits = FirstHits::background(20, 20);
         hits.radiance.fill([0.5, 0.25, 2.0]);
         hits.kappa.fill(camera.optics().kappa_for_circle_px(-9.0).unwrap());
-        let found = gather(&hits, &camera, &Unwatched).unwrap();
+        let found = gather_blur(&hits, &camera, &Unwatched).unwrap();
         for rgb in found.radiance {
             (0..3).for_each(|c| assert!((rgb[c] - [0.5, 0.25, 2.0][c]).abs() < 1e-5, "{rgb:?}"));
         }
@@ -109,11 +113,11 @@ mod tests {
     fn what_cannot_be_is_refused_and_what_is_unwanted_stops() {
         let camera = Camera { width: 8, height: 8, ..Camera::default() };
         let hits = FirstHits::background(8, 9);
-        let found = gather(&hits, &camera, &Unwatched);
-        assert_eq!(found, Err(BaselineError::OtherCamera { found: [8, 9], camera: [8, 8] }));
+        let found = gather_blur(&hits, &camera, &Unwatched);
+        assert_eq!(found, Err(BaselineError::OtherCamera { actual: [8, 9], camera: [8, 8] }));
         let incomplete = FirstHits { kappa: vec![0.0; 3], ..FirstHits::background(8, 8) };
-        assert!(matches!(gather(&incomplete, &camera, &Unwatched), Err(BaselineError::Option { .. })));
+        assert!(matches!(gather_blur(&incomplete, &camera, &Unwatched), Err(BaselineError::Option { .. })));
         let hits = FirstHits::background(8, 8);
-        assert_eq!(gather(&hits, &camera, &crate::test_light::Unwanted), Err(BaselineError::Cancelled));
+        assert_eq!(gather_blur(&hits, &camera, &crate::test_light::Unwanted), Err(BaselineError::Cancelled));
     }
 }

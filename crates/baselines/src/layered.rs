@@ -40,7 +40,7 @@ struct Layer {
 }
 
 /// Blurs the pinhole picture `hits` layer by layer. See the module for what its coverage means.
-pub fn layered(
+pub fn layered_blur(
     hits: &FirstHits,
     camera: &Camera,
     options: &LayeredOptions,
@@ -96,7 +96,7 @@ fn back_to_front(hits: &FirstHits, camera: &Camera, slices: u32) -> Vec<Layer> {
     let by_paint = Slices::new(&painted, slices);
     let mut cut: BTreeMap<[u32; 2], Vec<u32>> = BTreeMap::new();
     for k in 0..painted.len() {
-        let slice = [by_depth.of(inverse_depths[k]), by_paint.of(painted[k])];
+        let slice = [by_depth.slice_of(inverse_depths[k]), by_paint.slice_of(painted[k])];
         cut.entry(slice).or_default().push(k as u32);
     }
     let mut layers: Vec<Layer> = cut
@@ -126,7 +126,7 @@ impl Slices {
         Self { low, high, count }
     }
 
-    fn of(&self, value: f64) -> u32 {
+    fn slice_of(&self, value: f64) -> u32 {
         if self.high <= self.low {
             return 0;
         }

@@ -31,8 +31,8 @@ mod views;
 
 pub use error::BaselineError;
 pub use first_hits::FirstHits;
-pub use gather::gather;
+pub use gather::gather_blur;
 pub use ghosting::{beyond_ghosting_bound, copies_apart_px, ghost_free_depths, ghosting_bounds};
-pub use layered::{LayeredOptions, layered};
-pub use scatter::{ScatterOptions, scatter};
+pub use layered::{LayeredOptions, layered_blur};
+pub use scatter::{ScatterOptions, scatter_rays};
 pub use views::{ViewsOptions, shift_and_add};

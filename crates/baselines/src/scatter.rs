@@ -52,7 +52,7 @@ struct SampleRay {
 
 /// Throws the rays of `salf`. `camera` may differ from the baked one in focus distance, aperture shape and a smaller
 /// aperture radius, nothing else.
-pub fn scatter(
+pub fn scatter_rays(
     salf: &Salf,
     camera: &Camera,
     focus: &dyn SurfaceField<FocusOffset>,
@@ -68,9 +68,9 @@ pub fn scatter(
     }
     let stop = if baked_radius > 0.0 { optics.aperture_radius / baked_radius } else { 1.0 };
     let sets = ray_sets(camera, options);
-    let focus = SampleFocus::of(focus);
+    let focus = SampleFocus::new(focus);
     let radius_px = |sample: &Sample| {
-        let offset = focus.at(sample.address());
+        let offset = focus.offset(sample.address());
         optics.splat_radius_px(optics.kappa(f64::from(sample.inverse_depth), offset))
     };
     let samples = salf.samples.to_vec();
@@ -129,7 +129,7 @@ impl Thrown<'_> {
                 continue;
             }
             let u = ray.u * stop;
-            if !sees(&sample.visibility, u) {
+            if !is_visible_from(&sample.visibility, u) {
                 continue;
             }
             let x = (center.x + ray.start.x * half_size.x + ray.u.x * radius_px).floor() as i64;
@@ -141,7 +141,7 @@ impl Thrown<'_> {
 
 /// Whether the aperture point u in [−1, 1]² is visible.
 #[inline(always)]
-fn sees(visibility: &Visibility, u: DVec2) -> bool {
+fn is_visible_from(visibility: &Visibility, u: DVec2) -> bool {
     match visibility {
         Visibility::Open => true,
         Visibility::Cells { words, .. } => {

@@ -8,16 +8,16 @@ use progress::{Progress, Unwatched};
 use salf::{BakeOptions, Salf};
 use scene::{Material, Scene, SurfaceField, SurfacePoint};
 use std::sync::Arc;
-use trace::{Leaving, Radiance, Tracer};
+use trace::{OutgoingRadiance, Radiance, Tracer};
 
 /// Every surface sends its material's base colour; the background is black.
 pub struct BaseColor(pub Arc<Scene>);
 
 impl Radiance for BaseColor {
-    fn leaving(&self, point: SurfacePoint, _eye: DVec3) -> Leaving {
-        Leaving::own(self.0.base_color(point).truncate())
+    fn outgoing(&self, point: SurfacePoint, _eye: DVec3) -> OutgoingRadiance {
+        OutgoingRadiance::from_own(self.0.base_color(point).truncate())
     }
-    fn from_infinity(&self, _direction: DVec3) -> Vec3 {
+    fn environment(&self, _direction: DVec3) -> Vec3 {
         Vec3::ZERO
     }
 }

@@ -167,11 +167,11 @@ impl<'a> View<'a> {
         for index in 0..self.rays_a_pixel {
             // Apart in every pixel: a grid would round all edges of a view in the same direction.
             let within = [0, 1].map(|axis| f64::from(sobol_burley::sample(index, axis, seed)));
-            let ray = Ray::of_pinhole(self.camera, self.u, corner + DVec2::from_array(within));
+            let ray = Ray::pinhole(self.camera, self.u, corner + DVec2::from_array(within));
             let hit = tracer.first_hit(&ray);
             let (rgb, offset) = match &hit {
-                Some(hit) => (radiance.toward(hit.point, ray.origin), focus.at(hit.point)),
-                None => (radiance.from_infinity(ray.direction), focus.at_infinity()),
+                Some(hit) => (radiance.total_outgoing(hit.point, ray.origin), focus.at(hit.point)),
+                None => (radiance.environment(ray.direction), focus.at_infinity()),
             };
             let [r, g, b] = rgb.to_array().map(|c| f64::from(c) * share);
             let light = [r, g, b, share];

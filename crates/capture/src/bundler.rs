@@ -11,7 +11,7 @@
 //! The camera's axes are glTF's (x right, y up, looks down −z); pixels are counted from the picture's middle. Points are not read.
 
 use crate::CaptureError;
-use crate::pose::{Axes, of_camera_to_world};
+use crate::pose::{Axes, from_camera_to_world};
 use crate::shot::{Focal, Shot, ShotLens, Shots};
 use crate::text::{Lines, count, numbers};
 use glam::{DMat3, DMat4, DVec3};
@@ -43,7 +43,7 @@ pub(crate) fn read(bundle: &Path, list: &Path) -> Result<Shots, CaptureError> {
         }
         let from_camera = DMat3::from_cols_array_2d(&rows);
         let camera_to_world = DMat4::from_mat3_translation(from_camera, from_camera * -translation);
-        let Some(camera_to_world) = of_camera_to_world(camera_to_world, Axes::Gltf) else {
+        let Some(camera_to_world) = from_camera_to_world(camera_to_world, Axes::Gltf) else {
             return Err(lines.malformed(format!("picture {name:?}: its R is no rotation")));
         };
         let focal = Focal::Pixels(focal);

@@ -1,11 +1,11 @@
 //! What kind of capture a path is.
 
 use crate::depth_picture::{InFolder, has_depth, in_folder};
-use crate::folder::{Folder, Found, extension};
-use crate::foreign::foreign;
+use crate::folder::{EntryKind, Folder, extension};
+use crate::foreign::unsupported_format_error;
 use crate::light_field::find_views;
-use crate::mosaic::pitch_of;
-use crate::picture_header::header;
+use crate::mosaic::detect_pitch;
+use crate::picture_header::read_header;
 use crate::picture_names::EXTENSIONS;
 use crate::{CaptureError, layout};
 use scene::LoadOptions;
@@ -28,8 +28,8 @@ impl CaptureKind {
         [("photographs", Self::Photographs), ("lightfield", Self::LightField), ("depth", Self::Depth)];
 
     /// The one with this name.
-    pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.iter().find(|(known, _)| *known == name).map(|(_, kind)| *kind)
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.iter().find(|(candidate, _)| *candidate == name).map(|(_, kind)| *kind)
     }
 }
 
@@ -47,11 +47,11 @@ pub fn may_be_picture(path: &Path) -> bool {
 ///
 /// # Errors
 /// It is none: a sentence that says what there is to give. [`CaptureError::Foreign`] of files that another program has to export first.
-pub fn capture_kind(path: &Path) -> Result<CaptureKind, CaptureError> {
+pub fn detect_capture_kind(path: &Path) -> Result<CaptureKind, CaptureError> {
     let options = LoadOptions::default();
-    let none = |found: &str| Err(CaptureError::NoCapture { path: path.into(), found: found.into() });
+    let none = |detail: &str| Err(CaptureError::NoCapture { path: path.into(), found: detail.into() });
     if !path.is_dir() {
-        if let Some(error) = foreign(path) {
+        if let Some(error) = unsupported_format_error(path) {
             return Err(error);
         }
         if has_depth(path, &options) {
@@ -60,13 +60,13 @@ pub fn capture_kind(path: &Path) -> Result<CaptureKind, CaptureError> {
         if extension(path) == "exr" {
             return none(": an EXR without a channel of depth");
         }
-        if let Err(why) = header(path) {
+        if let Err(why) = read_header(path) {
             return Err(match std::fs::metadata(path) {
                 Err(source) => CaptureError::unreadable(path, source),
                 Ok(_) => CaptureError::malformed(path, "picture", why),
             });
         }
-        return match pitch_of(path, &options) {
+        return match detect_pitch(path, &options) {
             Some(_) => Ok(CaptureKind::LightField),
             None => none(": a picture alone"),
         };
@@ -89,8 +89,8 @@ pub fn capture_kind(path: &Path) -> Result<CaptureKind, CaptureError> {
         }
         InFolder::None => {}
     }
-    let files = folder.entries(path).into_iter().filter(|(_, found)| *found == Found::File);
-    match files.take(1000).find_map(|(file, _)| foreign(&file)) {
+    let files = folder.entries(path).into_iter().filter(|(_, entry)| *entry == EntryKind::File);
+    match files.take(1000).find_map(|(file, _)| unsupported_format_error(&file)) {
         Some(error) => Err(error),
         None => none(""),
     }

@@ -44,11 +44,12 @@ impl Model {
         for image in images {
             let place = format!("{}: picture {:?}", image.place, image.name);
             let Some(lens) = cameras.get(&image.camera) else {
-                let of = self.cameras.file_name().unwrap_or_default().to_string_lossy();
-                let what = format!("its camera {} is not in {of}", image.camera);
+                let cameras_file = self.cameras.file_name().unwrap_or_default().to_string_lossy();
+                let what = format!("its camera {} is not in {cameras_file}", image.camera);
                 return Err(CaptureError::malformed(&self.images, place, what));
             };
-            let Some(camera_to_world) = pose::of_world_to_camera(image.quaternion, image.translation) else {
+            let Some(camera_to_world) = pose::from_world_to_camera(image.quaternion, image.translation)
+            else {
                 return Err(CaptureError::malformed(
                     &self.images,
                     place,

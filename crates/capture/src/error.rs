@@ -127,7 +127,7 @@ pub enum CaptureError {
     },
     /// Another program has to be asked first.
     #[error("{}: is {what} ({cure})", file.display())]
-    Foreign {
+    UnsupportedFormat {
         /// The file.
         file: PathBuf,
         /// What it is.

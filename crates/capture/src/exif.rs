@@ -21,7 +21,7 @@ impl Default for Exif {
 
 impl Exif {
     /// Of the raw data, a TIFF structure; what cannot be read is not there.
-    pub fn of(data: &[u8]) -> Self {
+    pub fn parse(data: &[u8]) -> Self {
         let data = data.strip_prefix(b"Exif\0\0").unwrap_or(data);
         let Ok(exif) = Reader::new().read_raw(data.to_vec()) else { return Self::default() };
         let value = |tag| exif.get_field(tag, In::PRIMARY).map(|field| &field.value);
@@ -68,7 +68,7 @@ mod tests {
 
     #[test]
     fn orientation_and_exposure() {
-        let exif = Exif::of(&data());
+        let exif = Exif::parse(&data());
         assert_eq!(exif.orientation, 6);
         let expected = (200.0f64 / 125.0 / 64.0).log2();
         assert!((exif.exposure.unwrap() - expected).abs() < 1e-12, "{exif:?}");
@@ -78,9 +78,9 @@ mod tests {
     fn what_is_broken_is_not_there() {
         let whole = data();
         for end in 0..whole.len() {
-            let exif = Exif::of(&whole[..end]);
+            let exif = Exif::parse(&whole[..end]);
             assert!(exif.exposure.is_none() || end > 88, "{end}");
         }
-        assert_eq!(Exif::of(b"nonsense"), Exif::default());
+        assert_eq!(Exif::parse(b"nonsense"), Exif::default());
     }
 }

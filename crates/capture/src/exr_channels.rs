@@ -35,11 +35,11 @@ pub(crate) fn exr_names(file: &Path, options: &LoadOptions) -> Result<Vec<String
 /// Reads the channels of these names, all of which must be there.
 pub(crate) fn read_exr(
     file: &Path,
-    wanted: &[&str],
+    channel_names: &[&str],
     options: &LoadOptions,
 ) -> Result<ExrChannels, CaptureError> {
     let bytes = whole_file(file, options.max_memory / 2)?;
-    guarded(file, || decode(&bytes, wanted, options))
+    guarded(file, || decode(&bytes, channel_names, options))
 }
 
 /// The decoder is not ours: should it panic on a damaged file, that is an error like any other.
@@ -77,7 +77,7 @@ fn full_name(part: usize, header: &Header, channel: &str) -> String {
     }
 }
 
-fn decode(bytes: &[u8], wanted: &[&str], options: &LoadOptions) -> Result<ExrChannels, String> {
+fn decode(bytes: &[u8], channel_names: &[&str], options: &LoadOptions) -> Result<ExrChannels, String> {
     let text = |error: exr::error::Error| error.to_string();
     let meta = meta(bytes)?;
     let display = meta.headers[0].shared_attributes.display_window;
@@ -95,24 +95,24 @@ fn decode(bytes: &[u8], wanted: &[&str], options: &LoadOptions) -> Result<ExrCha
     }
     // Where each wanted channel is: its part, and which of the part's it is.
     let mut places = Vec::new();
-    for name in wanted {
-        let found = meta.headers.iter().enumerate().find_map(|(part, header)| {
+    for name in channel_names {
+        let location = meta.headers.iter().enumerate().find_map(|(part, header)| {
             let of_name = |channel: &exr::meta::attribute::ChannelDescription| {
                 full_name(part, header, &channel.name.to_string()) == *name
             };
             header.channels.list.iter().position(of_name).map(|channel| (part, channel))
         });
-        let (part, channel) = found.ok_or_else(|| format!("has no channel {name}"))?;
+        let (part, channel) = location.ok_or_else(|| format!("has no channel {name}"))?;
         if meta.headers[part].channels.list[channel].sampling != Vec2(1, 1) {
             return Err(format!("its channel {name} is subsampled"));
         }
         places.push((part, channel));
     }
-    let mut channels = vec![vec![f32::NAN; width * height]; wanted.len()];
-    let is_wanted = |part: usize| places.iter().any(|(of, _)| *of == part);
+    let mut channels = vec![vec![f32::NAN; width * height]; channel_names.len()];
+    let is_needed = |part: usize| places.iter().any(|(index, _)| *index == part);
     let reader = exr::block::read(Cursor::new(bytes), false).map_err(text)?;
     let chunks = reader
-        .filter_chunks(false, |_, tile, block| is_wanted(block.layer) && tile.level_index == Vec2(0, 0))
+        .filter_chunks(false, |_, tile, block| is_needed(block.layer) && tile.level_index == Vec2(0, 0))
         .map_err(text)?;
     let read = chunks.decompress_sequential(false, |meta, block| {
         let header = &meta.headers[block.index.layer];
@@ -155,10 +155,10 @@ pub(crate) fn color_channels(names: &[String]) -> Option<[String; 3]> {
     };
     let rank = |layer: &String| {
         let last = layer.rsplit('.').next().unwrap_or_default().to_lowercase();
-        let known = PICTURES.iter().position(|picture| last == *picture).map(|rank| rank + 1);
-        if layer.is_empty() { Some(0) } else { known }
+        let layer_rank = PICTURES.iter().position(|picture| last == *picture).map(|rank| rank + 1);
+        if layer.is_empty() { Some(0) } else { layer_rank }
     };
-    let of = |layer: &String| {
+    let channels_in = |layer: &String| {
         let named = |channel: &str| {
             let full = if layer.is_empty() { channel.to_owned() } else { format!("{layer}.{channel}") };
             names.iter().find(|name| name.eq_ignore_ascii_case(&full)).cloned()
@@ -168,7 +168,7 @@ pub(crate) fn color_channels(names: &[String]) -> Option<[String; 3]> {
     let mut layers: Vec<_> =
         names.iter().filter_map(|name| layer(name)).filter(|layer| rank(layer).is_some()).collect();
     layers.sort_by_key(rank);
-    layers.iter().find_map(of)
+    layers.iter().find_map(channels_in)
 }
 
 /// The channel of depth: `Z`; `depth.Z`, `ViewLayer.Depth.Z`, `Depth.V` …; `depth`, `ZDepth`; none if there is none.

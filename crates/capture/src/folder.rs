@@ -14,7 +14,7 @@ pub(crate) struct Folder {
 
 /// What lies at a place.
 #[derive(Debug, PartialEq, Eq)]
-pub(crate) enum Found {
+pub(crate) enum EntryKind {
     File,
     Folder,
     /// A link that leads outside.
@@ -32,58 +32,58 @@ impl Folder {
     }
 
     /// What lies at a path below the folder as it was given.
-    pub fn find(&self, path: &Path) -> Option<Found> {
+    pub fn entry_kind(&self, path: &Path) -> Option<EntryKind> {
         let real = path.canonicalize().ok()?;
         match real.metadata().ok()? {
-            _ if !real.starts_with(&self.root) => Some(Found::Outside),
-            data if data.is_file() => Some(Found::File),
-            data if data.is_dir() => Some(Found::Folder),
+            _ if !real.starts_with(&self.root) => Some(EntryKind::Outside),
+            data if data.is_file() => Some(EntryKind::File),
+            data if data.is_dir() => Some(EntryKind::Folder),
             _ => None,
         }
     }
 
     /// Whether a regular file lies there, inside.
     pub fn has_file(&self, path: &Path) -> bool {
-        self.find(path) == Some(Found::File)
+        self.entry_kind(path) == Some(EntryKind::File)
     }
 
     /// The entries of a folder inside, sorted by name, with what each is; what leads outside included.
-    pub fn entries(&self, path: &Path) -> Vec<(PathBuf, Found)> {
+    pub fn entries(&self, path: &Path) -> Vec<(PathBuf, EntryKind)> {
         /// More are no folder of a capture.
-        const MOST: usize = 200_000;
+        const MAX_ENTRIES: usize = 200_000;
         let Ok(entries) = std::fs::read_dir(path) else { return Vec::new() };
         let of_entry = |entry: std::fs::DirEntry| {
             let (path, kind) = (entry.path(), entry.file_type().ok()?);
-            let found = match () {
-                () if kind.is_file() => Found::File,
-                () if kind.is_dir() => Found::Folder,
-                () => self.find(&path)?,
+            let entry_kind = match () {
+                () if kind.is_file() => EntryKind::File,
+                () if kind.is_dir() => EntryKind::Folder,
+                () => self.entry_kind(&path)?,
             };
-            Some((path, found))
+            Some((path, entry_kind))
         };
-        let mut entries: Vec<_> = entries.take(MOST).flatten().filter_map(of_entry).collect();
+        let mut entries: Vec<_> = entries.take(MAX_ENTRIES).flatten().filter_map(of_entry).collect();
         entries.sort_by(|(a, _), (b, _)| a.cmp(b));
         entries
     }
 
     /// All regular files below a path, not deeper than `depth` folders, at most `most`, folder by folder.
-    pub fn files(&self, path: &Path, depth: usize, most: usize) -> Vec<PathBuf> {
+    pub fn files(&self, path: &Path, depth: usize, max_files: usize) -> Vec<PathBuf> {
         let mut files = Vec::new();
         let mut folders = vec![(path.to_path_buf(), 0)];
         let mut next = 0;
         while let Some((folder, level)) = folders.get(next).cloned() {
             next += 1;
-            for (path, found) in self.entries(&folder) {
-                match found {
-                    Found::File if files.len() < most => files.push(path),
+            for (path, kind) in self.entries(&folder) {
+                match kind {
+                    EntryKind::File if files.len() < max_files => files.push(path),
                     // Links to folders could lead round and round.
-                    Found::Folder if level < depth && folders.len() < most && !path.is_symlink() => {
+                    EntryKind::Folder if level < depth && folders.len() < max_files && !path.is_symlink() => {
                         folders.push((path, level + 1));
                     }
                     _ => {}
                 }
             }
-            if files.len() >= most {
+            if files.len() >= max_files {
                 break;
             }
         }
@@ -101,21 +101,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn links_that_lead_outside_are_told_apart() {
+    fn links_that_lead_outside_are_distinguished() {
         let outside = tempfile::tempdir().unwrap();
         std::fs::write(outside.path().join("a"), "a").unwrap();
         let inside = tempfile::tempdir().unwrap();
         let folder = Folder::open(inside.path()).unwrap();
         std::fs::create_dir(inside.path().join("sub")).unwrap();
         std::fs::write(inside.path().join("sub/b"), "b").unwrap();
-        assert_eq!(folder.find(&inside.path().join("sub")), Some(Found::Folder));
-        assert_eq!(folder.find(&inside.path().join("sub/b")), Some(Found::File));
-        assert_eq!(folder.find(&inside.path().join("sub/c")), None);
-        assert_eq!(folder.find(&inside.path().join("../")), Some(Found::Outside));
+        assert_eq!(folder.entry_kind(&inside.path().join("sub")), Some(EntryKind::Folder));
+        assert_eq!(folder.entry_kind(&inside.path().join("sub/b")), Some(EntryKind::File));
+        assert_eq!(folder.entry_kind(&inside.path().join("sub/c")), None);
+        assert_eq!(folder.entry_kind(&inside.path().join("../")), Some(EntryKind::Outside));
         #[cfg(unix)]
         {
             std::os::unix::fs::symlink(outside.path(), inside.path().join("link")).unwrap();
-            assert_eq!(folder.find(&inside.path().join("link/a")), Some(Found::Outside));
+            assert_eq!(folder.entry_kind(&inside.path().join("link/a")), Some(EntryKind::Outside));
             std::os::unix::fs::symlink(inside.path(), inside.path().join("sub/round")).unwrap();
             assert_eq!(folder.files(inside.path(), 9, 100), [inside.path().join("sub/b")]);
         }

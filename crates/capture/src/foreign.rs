@@ -6,10 +6,10 @@ use crate::whole_file::head;
 use std::path::Path;
 
 /// Why a file cannot be opened as it is, if it is one of those.
-pub(crate) fn foreign(file: &Path) -> Option<CaptureError> {
+pub(crate) fn unsupported_format_error(file: &Path) -> Option<CaptureError> {
     let start = head(file, 64 << 10);
     let extension = extension(file);
-    let error = |what: String, cure| Some(CaptureError::Foreign { file: file.into(), what, cure });
+    let error = |what: String, cure| Some(CaptureError::UnsupportedFormat { file: file.into(), what, cure });
     if start.starts_with(b"\x89LFP") || ["lfp", "lfr", "lfx"].contains(&extension.as_str()) {
         let text = String::from_utf8_lossy(&start);
         let inside = match () {
@@ -30,7 +30,7 @@ pub(crate) fn foreign(file: &Path) -> Option<CaptureError> {
     }
     let is_heif = start.get(4..8) == Some(b"ftyp")
         && start.get(8..12).is_some_and(|brand| {
-            [b"heic", b"heix", b"mif1", b"msf1", b"avif"].iter().any(|known| brand == *known)
+            [b"heic", b"heix", b"mif1", b"msf1", b"avif"].iter().any(|heif_brand| brand == *heif_brand)
         });
     if is_heif || ["heic", "heif", "hif"].contains(&extension.as_str()) {
         return error(

@@ -2,7 +2,7 @@
 
 /// Whose cameras a capture has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Kind {
+pub enum CameraFormat {
     /// COLMAP: `cameras` and `images` as .bin or .txt.
     Colmap,
     /// nerfstudio or instant-ngp: `transforms.json`.
@@ -15,7 +15,7 @@ pub enum Kind {
     Metashape,
 }
 
-impl Kind {
+impl CameraFormat {
     /// The program's name.
     pub fn name(self) -> &'static str {
         match self {

@@ -1,15 +1,15 @@
 //! Where in a capture's folder the cameras lie.
 
-use crate::folder::{Folder, Found, extension};
+use crate::folder::{EntryKind, Folder, extension};
 use crate::shot::Shots;
-use crate::{CaptureError, Kind, bundler, colmap, metashape, nerfstudio, nvm};
+use crate::{CameraFormat, CaptureError, bundler, colmap, metashape, nerfstudio, nvm};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
 /// Whose capture a folder is, if it is one: by the names of some files in it, and the first lines of a few.
-pub fn recognise(path: &Path) -> Option<Kind> {
+pub fn recognise(path: &Path) -> Option<CameraFormat> {
     let folder = Folder::open(path).ok()?;
-    Cameras::find(&folder).first().map(Cameras::kind)
+    Cameras::find(&folder).first().map(Cameras::format)
 }
 
 /// Files that tell of cameras.
@@ -39,10 +39,10 @@ impl Cameras {
     /// All that there are, likelier ones first.
     pub fn find(folder: &Folder) -> Vec<Self> {
         let root = folder.shown.as_path();
-        let mut found: Vec<Self> = models(folder).into_iter().map(Self::Colmap).collect();
+        let mut cameras: Vec<Self> = models(folder).into_iter().map(Self::Colmap).collect();
         let names = ["transforms.json", "transforms_train.json"];
         let is_file = |path: &PathBuf| folder.has_file(path);
-        found.extend(names.map(|name| root.join(name)).into_iter().find(is_file).map(Self::Nerfstudio));
+        cameras.extend(names.map(|name| root.join(name)).into_iter().find(is_file).map(Self::Nerfstudio));
         for place in ["", "bundle"] {
             let place = root.join(place);
             let bundle = ["bundle.out", "bundle.rd.out", "bundler.out"]
@@ -51,15 +51,17 @@ impl Cameras {
                 .find(is_file);
             let lists = ["list.txt", "bundle.rd.out.list.txt", "bundle.out.list.txt", "bundle_list.txt"];
             let list = lists.iter().flat_map(|name| [place.join(name), root.join(name)]).find(is_file);
-            found.extend(bundle.zip(list).map(|(bundle, list)| Self::Bundler { bundle, list }));
+            cameras.extend(bundle.zip(list).map(|(bundle, list)| Self::Bundler { bundle, list }));
         }
         /// A folder has few files of these kinds; what is beyond is something else.
-        const MOST: usize = 20;
-        let files = |wanted: &'static str| {
+        const MAX_FILES: usize = 20;
+        let files = |target_extension: &'static str| {
             let entries = folder.entries(root).into_iter();
-            entries.filter(move |(path, found)| *found == Found::File && extension(path) == wanted).take(MOST)
+            entries
+                .filter(move |(path, kind)| *kind == EntryKind::File && extension(path) == target_extension)
+                .take(MAX_FILES)
         };
-        found.extend(
+        cameras.extend(
             files("nvm")
                 .filter(|(path, _)| head(path).starts_with("NVM_V3"))
                 .map(|(path, _)| Self::Nvm(path)),
@@ -68,20 +70,20 @@ impl Cameras {
             let head = head(path);
             head.contains("<document") && head.contains("<chunk")
         };
-        found.extend(
+        cameras.extend(
             files("xml").filter(|(path, _)| is_metashape(path)).map(|(path, _)| Self::Metashape(path)),
         );
-        found
+        cameras
     }
 
     /// Whose they are.
-    pub fn kind(&self) -> Kind {
+    pub fn format(&self) -> CameraFormat {
         match self {
-            Self::Colmap(_) => Kind::Colmap,
-            Self::Nerfstudio(_) => Kind::Nerfstudio,
-            Self::Bundler { .. } => Kind::Bundler,
-            Self::Nvm(_) => Kind::Nvm,
-            Self::Metashape(_) => Kind::Metashape,
+            Self::Colmap(_) => CameraFormat::Colmap,
+            Self::Nerfstudio(_) => CameraFormat::Nerfstudio,
+            Self::Bundler { .. } => CameraFormat::Bundler,
+            Self::Nvm(_) => CameraFormat::Nvm,
+            Self::Metashape(_) => CameraFormat::Metashape,
         }
     }
 
@@ -110,25 +112,26 @@ impl Cameras {
 /// first; then others.
 fn models(folder: &Folder) -> Vec<colmap::Model> {
     let root = folder.shown.as_path();
-    let mut apart: Vec<colmap::Model> = Vec::new();
+    let mut numbered: Vec<colmap::Model> = Vec::new();
     for below in ["sparse", "colmap/sparse"] {
         let below = root.join(below);
-        if folder.find(&below) != Some(Found::Folder) {
+        if folder.entry_kind(&below) != Some(EntryKind::Folder) {
             continue;
         }
-        for (path, found) in folder.entries(&below) {
+        for (path, kind) in folder.entries(&below) {
             let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            if found == Found::Folder && name.parse::<u32>().is_ok() {
-                apart.extend(colmap::Model::find(folder, &path));
+            if kind == EntryKind::Folder && name.parse::<u32>().is_ok() {
+                numbered.extend(colmap::Model::find(folder, &path));
             }
         }
     }
     let size = |model: &colmap::Model| std::fs::metadata(&model.images).map_or(0, |data| data.len());
-    apart.sort_by_key(|model| std::cmp::Reverse(size(model)));
-    let mut models: Vec<colmap::Model> = colmap::Model::find(folder, root).into_iter().chain(apart).collect();
+    numbered.sort_by_key(|model| std::cmp::Reverse(size(model)));
+    let mut models: Vec<colmap::Model> =
+        colmap::Model::find(folder, root).into_iter().chain(numbered).collect();
     for place in MODELS {
         let model = colmap::Model::find(folder, &root.join(place));
-        models.extend(model.filter(|model| models.iter().all(|known| known.images != model.images)));
+        models.extend(model.filter(|model| models.iter().all(|other| other.images != model.images)));
     }
     models
 }

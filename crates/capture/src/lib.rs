@@ -49,15 +49,15 @@ mod text;
 mod upright;
 mod whole_file;
 
-pub use capture_kind::{CaptureKind, capture_kind, may_be_picture};
-pub use depth_map::{DepthAs, DepthMap, DepthMeaning, NearEnd, read_depth_map};
+pub use capture_kind::{CaptureKind, detect_capture_kind, may_be_picture};
+pub use depth_map::{DepthMap, DepthMeaning, DepthQuantity, NearEnd, read_depth_map};
 pub use depth_picture::{DepthContainer, DepthPicture, DepthPictureOptions, open_depth_picture};
 pub use error::CaptureError;
-pub use kind::Kind;
+pub use kind::CameraFormat;
 pub use layout::recognise;
 pub use light_field::{
-    GivenDisparity, GridTurn, GridTurnFound, LightField, LightFieldOptions, Optics, SubAperture, ViewLayout,
-    grid_turn, open_light_field,
+    GridTurn, GridTurnEstimate, LightField, LightFieldOptions, Optics, SubAperture, ViewDisparity,
+    ViewLayout, estimate_grid_turn, open_light_field,
 };
 pub use mosaic::{Mosaic, micro_images};
 pub use open::{Capture, CaptureOptions, open};

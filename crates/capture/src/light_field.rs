@@ -19,7 +19,7 @@ mod view_list;
 
 pub use arrangement::ViewLayout;
 pub(crate) use finding::find_views;
-pub use light_field_type::{GivenDisparity, LightField, SubAperture};
+pub use light_field_type::{LightField, SubAperture, ViewDisparity};
 pub use optics::Optics;
-pub use parallax::{GridTurn, GridTurnFound, grid_turn};
+pub use parallax::{GridTurn, GridTurnEstimate, estimate_grid_turn};
 pub use reading::{LightFieldOptions, open_light_field};

@@ -1,6 +1,6 @@
 //! Which file of a capture is its surface, and reading it.
 
-use crate::folder::{Folder, Found, extension};
+use crate::folder::{EntryKind, Folder, extension};
 use crate::{CaptureError, Remark, obj, ply};
 use progress::Progress;
 use scene::{LoadOptions, Scene};
@@ -25,12 +25,12 @@ const NAMES: [&str; 14] = [
 ];
 
 /// How deep meshes lie in subfolders, and how many files are looked at.
-const DEEPEST: usize = 4;
-const MOST: usize = 100_000;
+const MAX_DEPTH: usize = 4;
+const MAX_FILES: usize = 100_000;
 
 /// The mesh that a capture is most likely about, and a remark if there are others.
-pub(crate) fn find(folder: &Folder, remarks: &mut Vec<Remark>) -> Result<PathBuf, CaptureError> {
-    let files = folder.files(&folder.shown, DEEPEST, MOST);
+pub(crate) fn find_mesh(folder: &Folder, remarks: &mut Vec<Remark>) -> Result<PathBuf, CaptureError> {
+    let files = folder.files(&folder.shown, MAX_DEPTH, MAX_FILES);
     let is_mesh = |file: &&PathBuf| matches!(extension(file).as_str(), "ply" | "obj" | "glb" | "gltf");
     let (meshes, points): (Vec<&PathBuf>, Vec<&PathBuf>) =
         files.iter().filter(is_mesh).partition(|file| extension(file) != "ply" || ply::may_have_faces(file));
@@ -38,7 +38,7 @@ pub(crate) fn find(folder: &Folder, remarks: &mut Vec<Remark>) -> Result<PathBuf
         let name = file.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
         let size = std::fs::metadata(file).map_or(0, |data| data.len());
         (
-            NAMES.iter().position(|known| **known == name).unwrap_or(NAMES.len()),
+            NAMES.iter().position(|candidate| **candidate == name).unwrap_or(NAMES.len()),
             file.iter().count(),
             u64::MAX - size,
         )
@@ -66,14 +66,14 @@ pub(crate) fn find(folder: &Folder, remarks: &mut Vec<Remark>) -> Result<PathBuf
 fn outside(folder: &Folder) -> Option<PathBuf> {
     let mut entries = folder.entries(&folder.shown).into_iter();
     entries
-        .find(|(path, found)| {
-            *found == Found::Outside && matches!(extension(path).as_str(), "ply" | "obj" | "glb")
+        .find(|(path, kind)| {
+            *kind == EntryKind::Outside && matches!(extension(path).as_str(), "ply" | "obj" | "glb")
         })
         .map(|(path, _)| path)
 }
 
 /// Reads a mesh.
-pub(crate) fn read(
+pub(crate) fn read_mesh(
     file: &Path,
     options: &LoadOptions,
     progress: &dyn Progress,
@@ -93,5 +93,5 @@ pub(crate) fn read(
         }
     };
     progress.check()?;
-    Ok(Scene::of_mesh(mesh, options)?)
+    Ok(Scene::from_mesh(mesh, options)?)
 }

@@ -9,7 +9,7 @@
 //! vision's, to its chunk's, and the chunk's, or its component's, to the world, in which meshes are exported, too.
 
 use crate::CaptureError;
-use crate::pose::{Axes, of_camera_to_world};
+use crate::pose::{Axes, from_camera_to_world};
 use crate::shot::{Shot, ShotLens, Shots};
 use crate::text::{number, quoted};
 use glam::{DMat3, DMat4, DVec3};
@@ -19,28 +19,28 @@ use std::collections::HashMap;
 use std::path::Path;
 
 /// The largest file that is read, and the most elements: parsed, each takes some hundred bytes.
-const LARGEST: u64 = 32 << 20;
-const MOST_NODES: u32 = 2_000_000;
+const MAX_BYTES: u64 = 32 << 20;
+const MAX_NODES: u32 = 2_000_000;
 /// The most attributes of an element: the parser compares each with each.
-const MOST_ATTRIBUTES: usize = 1000;
+const MAX_ATTRIBUTES: usize = 1000;
 
 /// The pictures of a file's first chunk that has any.
 pub(crate) fn read(file: &Path) -> Result<Shots, CaptureError> {
     let unreadable = |source| CaptureError::unreadable(file, source);
     let size = std::fs::metadata(file).map_err(unreadable)?.len();
-    if size > LARGEST {
-        let what = format!("has {} MiB, the limit is {} MiB", size >> 20, LARGEST >> 20);
+    if size > MAX_BYTES {
+        let what = format!("has {} MiB, the limit is {} MiB", size >> 20, MAX_BYTES >> 20);
         return Err(CaptureError::TooBig { file: file.into(), what });
     }
     let bytes = std::fs::read(file).map_err(unreadable)?;
     let text = String::from_utf8_lossy(&bytes);
     let text = text.trim_start_matches('\u{feff}');
     // An element's tag ends before the next begins.
-    if text.split('<').any(|tag| tag.bytes().filter(|byte| *byte == b'=').count() > MOST_ATTRIBUTES) {
-        let what = format!("has an element of more than {MOST_ATTRIBUTES} attributes");
+    if text.split('<').any(|tag| tag.bytes().filter(|byte| *byte == b'=').count() > MAX_ATTRIBUTES) {
+        let what = format!("has an element of more than {MAX_ATTRIBUTES} attributes");
         return Err(CaptureError::TooBig { file: file.into(), what });
     }
-    let options = ParsingOptions { nodes_limit: MOST_NODES, ..ParsingOptions::default() };
+    let options = ParsingOptions { nodes_limit: MAX_NODES, ..ParsingOptions::default() };
     let document = Document::parse_with_options(text, options).map_err(|error| {
         CaptureError::malformed(
             file,
@@ -117,7 +117,7 @@ impl Reader<'_> {
             let to_chunk = DMat4::from_cols_array(&rows).transpose();
             let of_component = camera.attribute("component_id").and_then(|id| components.get(id)).copied();
             let to_world = of_chunk.or(of_component).unwrap_or(DMat4::IDENTITY);
-            let pose = of_camera_to_world(to_world * to_chunk, Axes::Vision);
+            let pose = from_camera_to_world(to_world * to_chunk, Axes::Vision);
             let camera_to_world = pose.ok_or_else(|| wrong("its transform is no rigid motion"))?;
             let place = format!("camera {}", quoted(label));
             let lens = ShotLens::Calibrated(lens);

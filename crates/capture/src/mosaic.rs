@@ -11,4 +11,4 @@ mod png_rows;
 
 pub use micro_images::micro_images;
 pub use picture::Mosaic;
-pub(crate) use pitch::pitch_of;
+pub(crate) use pitch::detect_pitch;

@@ -1,7 +1,7 @@
 //! `transforms.json` of nerfstudio and instant-ngp: poses in OpenGL's axes, a lens for all pictures or one each.
 
 use crate::CaptureError;
-use crate::pose::{Axes, of_camera_to_world};
+use crate::pose::{Axes, from_camera_to_world};
 use crate::shot::{Focal, Shot, ShotLens, Shots};
 use crate::text::quoted;
 use glam::DMat4;
@@ -11,12 +11,12 @@ use std::io::Read;
 use std::path::Path;
 
 /// The largest file that is read, and the most objects and values in it: parsed, an object takes some 700 bytes, a value 64.
-const LARGEST: u64 = 32 << 20;
-const MOST_OBJECTS: usize = 200_000;
-const MOST_VALUES: usize = 4_000_000;
+const MAX_BYTES: u64 = 32 << 20;
+const MAX_OBJECTS: usize = 200_000;
+const MAX_VALUES: usize = 4_000_000;
 
 /// What a frame, or the file for all frames, may say of the lens.
-const OF_LENS: [&str; 21] = [
+const LENS_KEYS: [&str; 21] = [
     "camera_model",
     "is_fisheye",
     "fl_x",
@@ -40,7 +40,7 @@ const OF_LENS: [&str; 21] = [
     "orientation_override",
 ];
 /// What else is known, and is of no use here.
-const OTHERS: [&str; 24] = [
+const IGNORED_KEYS: [&str; 24] = [
     "frames",
     "applied_transform",
     "applied_scale",
@@ -82,7 +82,7 @@ pub(crate) fn read(file: &Path) -> Result<Shots, CaptureError> {
             return Err(malformed(&format!("{place}/file_path"), "is not the path of a picture".into()));
         };
         let matrix = frame.get("transform_matrix").and_then(matrix);
-        let Some(camera_to_world) = matrix.and_then(|matrix| of_camera_to_world(matrix, Axes::Gltf)) else {
+        let Some(camera_to_world) = matrix.and_then(|matrix| from_camera_to_world(matrix, Axes::Gltf)) else {
             let what =
                 format!("picture {}: is not the matrix of a rigid motion, 4 rows of 4 numbers", quoted(name));
             return Err(malformed(&format!("{place}/transform_matrix"), what));
@@ -97,8 +97,9 @@ pub(crate) fn read(file: &Path) -> Result<Shots, CaptureError> {
             "its world is COLMAP's, turned by applied_transform; a mesh has to be in the same, as nerfstudio exports it".into(),
         );
     }
-    let is_known = |key: &&String| !OF_LENS.contains(&key.as_str()) && !OTHERS.contains(&key.as_str());
-    let unknown: Vec<_> = root.keys().filter(is_known).take(5).map(|key| quoted(key)).collect();
+    let is_unknown =
+        |key: &&String| !LENS_KEYS.contains(&key.as_str()) && !IGNORED_KEYS.contains(&key.as_str());
+    let unknown: Vec<_> = root.keys().filter(is_unknown).take(5).map(|key| quoted(key)).collect();
     if !unknown.is_empty() {
         shots.notes.push(format!("does not know what to make of {}, and leaves it out", unknown.join(", ")));
     }
@@ -109,16 +110,16 @@ fn parsed(file: &Path) -> Result<Value, CaptureError> {
     let unreadable = |source| CaptureError::unreadable(file, source);
     let mut input = std::fs::File::open(file).map_err(unreadable)?;
     let size = input.metadata().map_err(unreadable)?.len();
-    if size > LARGEST {
-        let what = format!("has {} MiB, the limit is {} MiB", size >> 20, LARGEST >> 20);
+    if size > MAX_BYTES {
+        let what = format!("has {} MiB, the limit is {} MiB", size >> 20, MAX_BYTES >> 20);
         return Err(CaptureError::TooBig { file: file.into(), what });
     }
     let mut bytes = Vec::with_capacity(size as usize);
     (&mut input).take(size).read_to_end(&mut bytes).map_err(unreadable)?;
     let text = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(&bytes);
-    let number = |of: &[u8]| text.iter().filter(|byte| of.contains(byte)).count();
-    if number(b"{") > MOST_OBJECTS || number(b"[,") > MOST_VALUES {
-        let what = format!("has more than {MOST_OBJECTS} objects or {MOST_VALUES} values");
+    let number = |symbols: &[u8]| text.iter().filter(|byte| symbols.contains(byte)).count();
+    if number(b"{") > MAX_OBJECTS || number(b"[,") > MAX_VALUES {
+        let what = format!("has more than {MAX_OBJECTS} objects or {MAX_VALUES} values");
         return Err(CaptureError::TooBig { file: file.into(), what });
     }
     serde_json::from_slice(text).map_err(|error| {
@@ -165,7 +166,7 @@ impl Properties<'_> {
     }
 
     fn lens(&self) -> Result<ShotLens, String> {
-        let (projection, distortion) = self.flaws()?;
+        let (projection, distortion) = self.projection_and_distortion()?;
         let size = match (self.number("w")?, self.number("h")?) {
             (Some(width), Some(height)) => {
                 let side =
@@ -176,10 +177,10 @@ impl Properties<'_> {
             }
             _ => None,
         };
-        let said = |error: CameraError| error.to_string();
+        let message = |error: CameraError| error.to_string();
         if projection == Projection::Equirectangular {
             let size = size.ok_or("a panorama without w and h")?;
-            return CalibratedLens::panorama(size).map(ShotLens::Calibrated).map_err(said);
+            return CalibratedLens::panorama(size).map(ShotLens::Calibrated).map_err(message);
         }
         let angle = |key: &str| -> Result<Option<f64>, String> {
             let angle = self.number(key)?;
@@ -206,11 +207,11 @@ impl Properties<'_> {
         let principal_px =
             [self.number("cx")?.unwrap_or(0.5 * width), self.number("cy")?.unwrap_or(0.5 * height)];
         let intrinsics = Intrinsics { size_px, focal_px: [focal_x, focal_y], skew_px: 0.0, principal_px };
-        CalibratedLens::new(intrinsics, projection, distortion).map(ShotLens::Calibrated).map_err(said)
+        CalibratedLens::new(intrinsics, projection, distortion).map(ShotLens::Calibrated).map_err(message)
     }
 
     /// Projection and distortion. nerfstudio's `OPENCV` has k₃ and k₄ as further radial terms.
-    fn flaws(&self) -> Result<(Projection, Distortion), String> {
+    fn projection_and_distortion(&self) -> Result<(Projection, Distortion), String> {
         let term = |key: &str| self.number(key).map(Option::unwrap_or_default);
         let radial = [term("k1")?, term("k2")?, term("k3")?, term("k4")?];
         let tangential = [term("p1")?, term("p2")?];

@@ -10,7 +10,7 @@
 //! measured ([`lens::Projection::MeasuredRadial`]). Of several models the one with the most pictures counts. Points are not read.
 
 use crate::CaptureError;
-use crate::pose::of_center;
+use crate::pose::from_center;
 use crate::shot::{Focal, Shot, ShotLens, Shots};
 use crate::text::{Lines, count, numbers, quoted};
 use lens::{Distortion, Projection};
@@ -66,7 +66,7 @@ fn shot(lines: &Lines, line: &str) -> Result<Shot, CaptureError> {
         ));
     };
     let name = name.replace('"', " ");
-    let Some(camera_to_world) = of_center([w, x, y, z], [cx, cy, cz]) else {
+    let Some(camera_to_world) = from_center([w, x, y, z], [cx, cy, cz]) else {
         return Err(lines.malformed(format!("picture {}: its rotation is no unit quaternion", quoted(&name))));
     };
     let (focal, projection) = (Focal::Pixels(focal), Projection::MeasuredRadial { r });

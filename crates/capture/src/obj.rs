@@ -2,7 +2,7 @@
 //! photographs know better.
 
 use crate::CaptureError;
-use crate::fan::fan;
+use crate::fan::triangulate_fan;
 use crate::text::{Lines, number, quoted};
 use glam::{DVec3, Vec3, Vec4};
 use scene::{LoadOptions, SurfaceMesh, linear_from_srgb};
@@ -106,7 +106,7 @@ impl Reader {
             }
             corners.push(vertex);
         }
-        self.mesh.triangles.extend(fan(&corners));
+        self.mesh.triangles.extend(triangulate_fan(&corners));
         Ok(())
     }
 

@@ -2,9 +2,9 @@
 
 use crate::folder::Folder;
 use crate::layout::Cameras;
-use crate::picture_place::Source;
-use crate::upright::upright;
-use crate::{CaptureError, Kind, Remark, mesh_file, pictures};
+use crate::picture_place::PictureSearch;
+use crate::upright::estimate_upright;
+use crate::{CameraFormat, CaptureError, Remark, mesh_file, pictures};
 use glam::{DQuat, DVec2};
 use progress::{Progress, Stage};
 use scene::{LoadOptions, Scene, SurfacePoint, View};
@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 #[derive(Clone, Debug, Default)]
 pub struct CaptureOptions {
     /// Whose cameras to read where there are several; none: the first in the order of [`Kind`] whose pictures are there.
-    pub kind: Option<Kind>,
+    pub camera_format: Option<CameraFormat>,
     /// The folder of the pictures, wherever that is; none: looked for in the capture's folder.
     pub pictures: Option<PathBuf>,
     /// The mesh, wherever that is; none: looked for in the capture's folder.
@@ -29,7 +29,7 @@ pub struct CaptureOptions {
 #[derive(Clone, Debug)]
 pub struct Capture {
     /// Whose cameras they are.
-    pub kind: Kind,
+    pub camera_format: CameraFormat,
     /// The file that the cameras were read from.
     pub cameras: PathBuf,
     /// The file that the surface was read from.
@@ -51,14 +51,19 @@ pub struct Capture {
 /// It is no capture, a file of it is malformed or beyond the limits, none of its pictures is there, or there is no mesh.
 /// [`CaptureError::Cancelled`] if `progress` says so.
 pub fn open(path: &Path, options: &CaptureOptions, progress: &dyn Progress) -> Result<Capture, CaptureError> {
-    let (folder, within) = whole(path)?;
+    let (folder, within) = capture_folder(path)?;
     let mut candidates = Cameras::find(&folder);
-    candidates.retain(|cameras| options.kind.is_none_or(|kind| kind == cameras.kind()));
+    candidates.retain(|cameras| options.camera_format.is_none_or(|kind| kind == cameras.format()));
     // Who names a model's folder means that model.
     candidates.sort_by_key(|cameras| !cameras.file().starts_with(&within));
     let mut remarks = Vec::new();
-    let (cameras, views) =
-        views(&folder, &candidates, options, &Stage::named(progress, "pictures", 0.0, 0.5), &mut remarks)?;
+    let (cameras, views) = first_usable_views(
+        &folder,
+        &candidates,
+        options,
+        &Stage::named(progress, "pictures", 0.0, 0.5),
+        &mut remarks,
+    )?;
     let used = cameras.file();
     let others = candidates.iter().map(Cameras::file).filter(|file| *file != used);
     remarks.extend(Remark::about(others.map(|file| file.display().to_string()).collect(), false, |names| {
@@ -67,19 +72,27 @@ pub fn open(path: &Path, options: &CaptureOptions, progress: &dyn Progress) -> R
     }));
     let mesh = match &options.mesh {
         Some(mesh) => mesh.clone(),
-        None => mesh_file::find(&folder, &mut remarks)?,
+        None => mesh_file::find_mesh(&folder, &mut remarks)?,
     };
     let reading = Stage::named(progress, "surface", 0.5, 1.0);
-    let mut scene = mesh_file::read(&mesh, &options.load, &reading, &mut remarks)?;
-    let upright = upright(&views);
+    let mut scene = mesh_file::read_mesh(&mesh, &options.load, &reading, &mut remarks)?;
+    let upright = estimate_upright(&views);
     scene.set_upright(upright);
-    remarks.extend(unseen(&scene, &views, &mesh));
+    remarks.extend(remark_if_invisible(&scene, &views, &mesh));
     progress.report(1.0);
-    Ok(Capture { kind: cameras.kind(), cameras: cameras.file().into(), mesh, views, scene, upright, remarks })
+    Ok(Capture {
+        camera_format: cameras.format(),
+        cameras: cameras.file().into(),
+        mesh,
+        views,
+        scene,
+        upright,
+        remarks,
+    })
 }
 
 /// The folder of the whole capture, where `path` may be that of a model within it (`sparse/0`), and the folder that was meant.
-fn whole(path: &Path) -> Result<(Folder, PathBuf), CaptureError> {
+fn capture_folder(path: &Path) -> Result<(Folder, PathBuf), CaptureError> {
     let is_model = |path: &Path| {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         name.starts_with("sparse") || name.parse::<u32>().is_ok()
@@ -99,7 +112,7 @@ fn whole(path: &Path) -> Result<(Folder, PathBuf), CaptureError> {
 }
 
 /// The views of the first cameras whose pictures are there.
-fn views<'a>(
+fn first_usable_views<'a>(
     folder: &Folder,
     candidates: &'a [Cameras],
     options: &CaptureOptions,
@@ -110,7 +123,7 @@ fn views<'a>(
     for cameras in candidates {
         let shots = cameras.read()?;
         let mut own_remarks = Vec::new();
-        let source = Source { folder, cameras: cameras.file(), given: options.pictures.as_deref() };
+        let source = PictureSearch { folder, cameras: cameras.file(), pictures: options.pictures.as_deref() };
         match pictures::views(&source, shots, progress, &mut own_remarks) {
             Ok(views) => {
                 remarks.extend(own_remarks);
@@ -124,7 +137,7 @@ fn views<'a>(
 }
 
 /// A remark if no picture shows anything of the mesh: it is in another world than the cameras.
-fn unseen(scene: &Scene, views: &[View], mesh: &Path) -> Option<Remark> {
+fn remark_if_invisible(scene: &Scene, views: &[View], mesh: &Path) -> Option<Remark> {
     /// As many points of it tell, spread over its triangles.
     const SAMPLES: usize = 500;
     let triangles = scene.triangles.len();
@@ -138,9 +151,9 @@ fn unseen(scene: &Scene, views: &[View], mesh: &Path) -> Option<Remark> {
         (0..each).map(move |k| SurfacePoint { triangle: triangle as u32, barycentric: barycentric(k) })
     };
     let mut samples = (0..triangles).step_by(step).flat_map(of_triangle);
-    let is_seen =
+    let is_visible =
         |view: &View, point| view.project(point).is_some_and(|pixel| view.lens.is_in_picture(pixel));
-    let is_unseen = samples.all(|point| !views.iter().any(|view| is_seen(view, point.position(scene))));
+    let is_unseen = samples.all(|point| !views.iter().any(|view| is_visible(view, point.position(scene))));
     is_unseen.then(|| Remark {
         text: format!(
             "{}: no picture shows anything of it (its axes or scale are not those of the cameras; export both from one program)",

@@ -11,7 +11,7 @@ use std::io::{Cursor, Read};
 use std::path::Path;
 
 /// The size of a picture as it is stored, and its EXIF data.
-pub(crate) fn header(file: &Path) -> Result<([u32; 2], Exif), String> {
+pub(crate) fn read_header(file: &Path) -> Result<([u32; 2], Exif), String> {
     /// Enough for the EXIF data with their small picture and for profiles; what has more is read whole.
     const HEAD: u64 = 256 << 10;
     let mut bytes = Vec::new();
@@ -37,33 +37,36 @@ fn header_of(bytes: &[u8]) -> Result<([u32; 2], Exif), image::ImageError> {
     let mut decoder = reader.into_decoder()?;
     let (width, height) = decoder.dimensions();
     let exif = decoder.exif_metadata().ok().flatten();
-    Ok(([width, height], exif.map_or_else(Exif::default, |data| Exif::of(&data))))
+    Ok(([width, height], exif.map_or_else(Exif::default, |data| Exif::parse(&data))))
 }
 
 /// The lens scaled to a picture that is stored in this size, and how the picture is to be turned for it.
-pub(crate) fn fitted(
+pub(crate) fn fit_lens(
     lens: CalibratedLens,
     stored: [u32; 2],
     exif_orientation: u8,
 ) -> Result<(CalibratedLens, u8), String> {
-    let wanted = lens.size_px();
+    let expected = lens.size_px();
     let [width, height] = stored;
     let turned = [height, width];
     // From 5 on width and height change places.
     let may_turn = exif_orientation >= 5;
     let resized = |size| lens.resized(size).map_err(|error| error.to_string());
     match () {
-        () if stored == wanted => Ok((lens, 1)),
-        () if turned == wanted && may_turn => Ok((lens, exif_orientation)),
-        () if is_scaled(stored, wanted) => Ok((resized(stored)?, 1)),
-        () if is_scaled(turned, wanted) && may_turn => Ok((resized(turned)?, exif_orientation)),
-        () => Err(format!("it is {width} × {height} px, its camera is for {} × {} px", wanted[0], wanted[1])),
+        () if stored == expected => Ok((lens, 1)),
+        () if turned == expected && may_turn => Ok((lens, exif_orientation)),
+        () if is_scaled(stored, expected) => Ok((resized(stored)?, 1)),
+        () if is_scaled(turned, expected) && may_turn => Ok((resized(turned)?, exif_orientation)),
+        () => Err(format!(
+            "it is {width} × {height} px, its camera is for {} × {} px",
+            expected[0], expected[1]
+        )),
     }
 }
 
 /// Whether a size is another one scaled, up to a pixel of rounding.
-fn is_scaled(size: [u32; 2], of: [u32; 2]) -> bool {
-    let [width, height, of_width, of_height] = [size[0], size[1], of[0], of[1]].map(f64::from);
+fn is_scaled(size: [u32; 2], other: [u32; 2]) -> bool {
+    let [width, height, of_width, of_height] = [size[0], size[1], other[0], other[1]].map(f64::from);
     // A pixel more or less on either side.
     (width * of_height - height * of_width).abs() <= of_width.max(of_height).max(width).max(height)
 }
@@ -78,7 +81,7 @@ mod tests {
 
     #[test]
     fn pictures_are_turned_only_where_the_camera_says_so() {
-        let orientation = |stored, exif| fitted(lens(), stored, exif).map(|(_, orientation)| orientation);
+        let orientation = |stored, exif| fit_lens(lens(), stored, exif).map(|(_, orientation)| orientation);
         // As it is stored, whatever the EXIF data say: COLMAP since 3.7.
         assert_eq!(orientation([600, 400], 6), Ok(1));
         assert_eq!(orientation([600, 400], 3), Ok(1));
@@ -93,7 +96,7 @@ mod tests {
     #[test]
     fn lenses_follow_pictures_that_were_made_smaller() {
         let focal =
-            |stored, exif| fitted(lens(), stored, exif).map(|(lens, _)| lens.intrinsics().focal_px[0]);
+            |stored, exif| fit_lens(lens(), stored, exif).map(|(lens, _)| lens.intrinsics().focal_px[0]);
         assert_eq!(focal([300, 200], 1), Ok(250.0));
         assert_eq!(focal([200, 300], 6), Ok(250.0));
         // 1/7 is 85.7 × 57.1.

@@ -12,7 +12,7 @@ pub(crate) struct PictureFiles {
 }
 
 /// A way to read a name: what of a path it is compared by.
-type Reading = fn(&str) -> String;
+type KeyFunction = fn(&str) -> String;
 
 impl PictureFiles {
     /// The files of these paths.
@@ -23,38 +23,38 @@ impl PictureFiles {
     /// For each name the file that it means, an index of the paths, if there is one.
     pub fn resolve(&self, names: &[String]) -> Vec<Option<usize>> {
         let names: Vec<Vec<&str>> = names.iter().map(|name| parts(name)).collect();
-        let names = self.without_strange_folders(&names);
-        let mut found = vec![None; names.len()];
+        let names = self.without_foreign_folders(&names);
+        let mut matches = vec![None; names.len()];
         let mut is_taken = vec![false; self.paths.len()];
-        const READINGS: [Reading; 5] =
+        const KEY_FUNCTIONS: [KeyFunction; 5] =
             [str::to_owned, str::to_lowercase, without_extension, file_name, |path| {
                 without_extension(&file_name(path))
             }];
-        for reading in READINGS {
+        for key_of in KEY_FUNCTIONS {
             // Which file each key means; none if several.
             let mut by_key: HashMap<String, Option<usize>> = HashMap::new();
             for (file, path) in self.paths.iter().enumerate().filter(|(file, _)| !is_taken[*file]) {
-                by_key.entry(reading(path)).and_modify(|known| *known = None).or_insert(Some(file));
+                by_key.entry(key_of(path)).and_modify(|entry| *entry = None).or_insert(Some(file));
             }
-            let mut askers: HashMap<usize, Vec<usize>> = HashMap::new();
-            for (name, text) in names.iter().enumerate().filter(|(name, _)| found[*name].is_none()) {
-                if let Some(Some(file)) = by_key.get(&reading(text)) {
-                    askers.entry(*file).or_default().push(name);
+            let mut claimants: HashMap<usize, Vec<usize>> = HashMap::new();
+            for (name, text) in names.iter().enumerate().filter(|(name, _)| matches[*name].is_none()) {
+                if let Some(Some(file)) = by_key.get(&key_of(text)) {
+                    claimants.entry(*file).or_default().push(name);
                 }
             }
-            for (file, askers) in askers {
+            for (file, claimants) in claimants {
                 // Two names that only differ in what this reading leaves out are told apart by none.
-                if let [name] = askers[..] {
-                    found[name] = Some(file);
+                if let [name] = claimants[..] {
+                    matches[name] = Some(file);
                     is_taken[file] = true;
                 }
             }
         }
-        found
+        matches
     }
 
     /// The names without as many of the folders that all of them begin with as makes most of them paths that are there.
-    fn without_strange_folders(&self, names: &[Vec<&str>]) -> Vec<String> {
+    fn without_foreign_folders(&self, names: &[Vec<&str>]) -> Vec<String> {
         /// Folders of one path.
         const DEEPEST: usize = 32;
         let Some((first, others)) = names.split_first() else { return Vec::new() };

@@ -1,7 +1,7 @@
 //! Where a capture's pictures and masks lie.
 
 use crate::CaptureError;
-use crate::folder::{Folder, Found, extension};
+use crate::folder::{EntryKind, Folder, extension};
 use crate::picture_names::{EXTENSIONS, PictureFiles};
 use crate::shot::Shot;
 use std::path::{Path, PathBuf};
@@ -16,22 +16,22 @@ const OTHER_FOLDERS: [&str; 9] =
     ["masks", "mask", "depth", "depths", "depth_maps", "normals", "normal_maps", "stereo", "thumbnails"];
 
 /// How deep pictures lie in subfolders, and how many are looked at.
-const DEEPEST: usize = 8;
-const MOST: usize = 100_000;
+const MAX_DEPTH: usize = 8;
+const MAX_FILES: usize = 100_000;
 
 /// Where to look.
 #[derive(Clone, Copy)]
-pub(crate) struct Source<'a> {
+pub(crate) struct PictureSearch<'a> {
     /// The capture's folder.
     pub folder: &'a Folder,
     /// The file with the cameras.
     pub cameras: &'a Path,
     /// Where the pictures are, wherever that is, if somebody says so.
-    pub given: Option<&'a Path>,
+    pub pictures: Option<&'a Path>,
 }
 
 /// A folder of pictures, and which of them are those of some names.
-pub(crate) struct Place {
+pub(crate) struct PictureFolder {
     pub base: PathBuf,
     /// Whether it is a folder of pictures and of nothing else.
     is_named: bool,
@@ -41,20 +41,20 @@ pub(crate) struct Place {
     files: Vec<Option<usize>>,
 }
 
-impl Place {
+impl PictureFolder {
     /// The folder where most pictures of these names are.
-    pub fn find(source: &Source<'_>, names: &[String]) -> Result<Self, CaptureError> {
-        let Source { folder, cameras, given } = *source;
-        if let Some(given) = given {
-            return Ok(Self::of(&Folder::open(given)?, given.into(), true, names));
+    pub fn find(source: &PictureSearch<'_>, names: &[String]) -> Result<Self, CaptureError> {
+        let PictureSearch { folder, cameras, pictures } = *source;
+        if let Some(pictures) = pictures {
+            return Ok(Self::new(&Folder::open(pictures)?, pictures.into(), true, names));
         }
         let above = || cameras.ancestors().skip(1).take_while(|place| place.starts_with(&folder.shown));
         let (mut bases, mut outside) = (Vec::new(), None);
-        for (path, found) in above().flat_map(|place| picture_folders(folder, place)) {
-            match found {
-                Found::Folder => bases.push((path, true)),
-                Found::Outside => drop(outside.get_or_insert(path)),
-                Found::File => {}
+        for (path, kind) in above().flat_map(|place| picture_folders(folder, place)) {
+            match kind {
+                EntryKind::Folder => bases.push((path, true)),
+                EntryKind::Outside => drop(outside.get_or_insert(path)),
+                EntryKind::File => {}
             }
         }
         bases.extend(above().map(|place| (place.to_path_buf(), false)));
@@ -65,7 +65,7 @@ impl Place {
             files: vec![None; names.len()],
         };
         for (base, is_named) in bases {
-            let place = Self::of(folder, base, is_named, names);
+            let place = Self::new(folder, base, is_named, names);
             if place.hits() > best.hits() {
                 best = place;
             }
@@ -81,8 +81,8 @@ impl Place {
         }
     }
 
-    fn of(folder: &Folder, base: PathBuf, is_named: bool, names: &[String]) -> Self {
-        let paths = listed(folder, &base, &OTHER_FOLDERS);
+    fn new(folder: &Folder, base: PathBuf, is_named: bool, names: &[String]) -> Self {
+        let paths = list_pictures(folder, &base, &OTHER_FOLDERS);
         let files = PictureFiles::new(paths.clone()).resolve(names);
         Self { base, is_named, paths, files }
     }
@@ -106,40 +106,44 @@ impl Place {
 }
 
 /// The folders of pictures in a folder, likelier ones first.
-fn picture_folders(folder: &Folder, place: &Path) -> Vec<(PathBuf, Found)> {
+fn picture_folders(folder: &Folder, place: &Path) -> Vec<(PathBuf, EntryKind)> {
     let rank = |path: &Path| {
         let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
-        let known = PICTURE_FOLDERS.iter().position(|known| *known == name);
-        known.or(name.starts_with("images_").then_some(PICTURE_FOLDERS.len()))
+        let index = PICTURE_FOLDERS.iter().position(|folder_name| *folder_name == name);
+        index.or(name.starts_with("images_").then_some(PICTURE_FOLDERS.len()))
     };
     let entries = folder.entries(place).into_iter();
-    let mut ranked: Vec<_> = entries.filter_map(|(path, found)| Some((rank(&path)?, path, found))).collect();
+    let mut ranked: Vec<_> = entries.filter_map(|(path, kind)| Some((rank(&path)?, path, kind))).collect();
     ranked.sort_by_key(|(rank, ..)| *rank);
-    ranked.into_iter().map(|(_, path, found)| (path, found)).collect()
+    ranked.into_iter().map(|(_, path, kind)| (path, kind)).collect()
 }
 
 /// For each shot its mask, if it has one: what the file says, or what lies beside the pictures, called `NAME.png` as COLMAP has it,
 /// or like the picture.
-pub(crate) fn masks(source: &Source<'_>, place: &Place, shots: &[Shot]) -> Vec<Option<PathBuf>> {
-    let Source { folder, cameras, .. } = *source;
+pub(crate) fn masks(
+    source: &PictureSearch<'_>,
+    place: &PictureFolder,
+    shots: &[Shot],
+) -> Vec<Option<PathBuf>> {
+    let PictureSearch { folder, cameras, .. } = *source;
     let mut masks = vec![None; shots.len()];
     let mut resolve = |base: &Path, names: Vec<(usize, String)>| {
         let (indices, names): (Vec<usize>, Vec<String>) = names.into_iter().unzip();
-        if names.is_empty() || folder.find(base) != Some(Found::Folder) {
+        if names.is_empty() || folder.entry_kind(base) != Some(EntryKind::Folder) {
             return;
         }
-        let paths = listed(folder, base, &[]);
+        let paths = list_pictures(folder, base, &[]);
         for (index, file) in indices.into_iter().zip(PictureFiles::new(paths.clone()).resolve(&names)) {
             if let (None, Some(file)) = (&masks[index], file) {
                 masks[index] = Some(base.join(&paths[file]));
             }
         }
     };
-    let said =
+    let named_masks =
         shots.iter().enumerate().filter_map(|(index, shot)| Some((index, shot.mask.clone()?))).collect();
-    resolve(cameras.parent().unwrap_or(&folder.shown), said);
-    let beside = place.base.parent().into_iter().chain([place.base.as_path()]);
-    for base in beside.flat_map(|place| MASK_FOLDERS.map(|name| place.join(name))) {
+    resolve(cameras.parent().unwrap_or(&folder.shown), named_masks);
+    let parents = place.base.parent().into_iter().chain([place.base.as_path()]);
+    for base in parents.flat_map(|place| MASK_FOLDERS.map(|name| place.join(name))) {
         for ending in [".png", ""] {
             let names = place.files.iter().enumerate();
             let names =
@@ -151,7 +155,7 @@ pub(crate) fn masks(source: &Source<'_>, place: &Place, shots: &[Shot]) -> Vec<O
 }
 
 /// The paths of the pictures in a folder, relative to it, with `/`; of subfolders but for some.
-fn listed(folder: &Folder, base: &Path, without: &[&str]) -> Vec<String> {
+fn list_pictures(folder: &Folder, base: &Path, without: &[&str]) -> Vec<String> {
     let relative = |path: &PathBuf| -> Option<String> {
         let path = path.strip_prefix(base).ok()?;
         let parts: Vec<_> = path.iter().map(|part| part.to_string_lossy()).collect();
@@ -159,5 +163,5 @@ fn listed(folder: &Folder, base: &Path, without: &[&str]) -> Vec<String> {
         let is_other = folders.iter().any(|name| without.contains(&name.to_lowercase().as_str()));
         (!is_other && EXTENSIONS.contains(&extension(path).as_str())).then(|| parts.join("/"))
     };
-    folder.files(base, DEEPEST, MOST).iter().filter_map(relative).collect()
+    folder.files(base, MAX_DEPTH, MAX_FILES).iter().filter_map(relative).collect()
 }

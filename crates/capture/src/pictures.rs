@@ -1,7 +1,7 @@
 //! From what a program says of photographs to views, and remarks on what was incomplete.
 
-use crate::picture_header::{fitted, header};
-use crate::picture_place::{Place, Source, masks};
+use crate::picture_header::{fit_lens, read_header};
+use crate::picture_place::{PictureFolder, PictureSearch, masks};
 use crate::shot::{Shot, Shots};
 use crate::{CaptureError, Remark};
 use progress::Progress;
@@ -10,7 +10,7 @@ use std::path::PathBuf;
 
 /// The views of the shots that a file tells of, by name, and remarks on what is incomplete.
 pub(crate) fn views(
-    source: &Source<'_>,
+    source: &PictureSearch<'_>,
     shots: Shots,
     progress: &dyn Progress,
     remarks: &mut Vec<Remark>,
@@ -22,7 +22,7 @@ pub(crate) fn views(
         format!("{file}: no camera was found for {names} (they are left out)")
     }));
     let names: Vec<String> = shots.iter().map(|shot| shot.name.clone()).collect();
-    let place = Place::find(source, &names)?;
+    let place = PictureFolder::find(source, &names)?;
     let masks = masks(source, &place, &shots);
 
     let (mut views, mut wrong, mut turned, mut resized) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
@@ -79,9 +79,9 @@ pub(crate) fn views(
 
 /// The view of a shot whose picture is this file, called `name`.
 fn view(shot: &Shot, name: &str, picture: PathBuf, mask: Option<PathBuf>) -> Result<View, String> {
-    let (size, exif) = header(&picture)?;
+    let (size, exif) = read_header(&picture)?;
     let lens = shot.lens.for_size(size).map_err(|error| error.to_string())?;
-    let (lens, orientation) = fitted(lens, size, exif.orientation)?;
+    let (lens, orientation) = fit_lens(lens, size, exif.orientation)?;
     Ok(View {
         name: name.into(),
         picture,

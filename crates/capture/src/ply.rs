@@ -8,10 +8,10 @@ mod body;
 mod header;
 
 use crate::CaptureError;
-use crate::fan::fan;
+use crate::fan::triangulate_fan;
 use body::Body;
 use glam::{DVec3, Vec3, Vec4};
-use header::{Element, Header, Kind};
+use header::{DataType, Element, Header};
 use scene::{LoadOptions, SurfaceMesh, linear_from_srgb};
 use std::path::Path;
 
@@ -27,11 +27,11 @@ pub(crate) fn read(file: &Path, options: &LoadOptions) -> Result<SurfaceMesh, Ca
     let mut body = Body::new(file, header.format, rest);
     let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let mut mesh = SurfaceMesh { path: file.into(), name, ..SurfaceMesh::default() };
-    for (element, is_wanted) in header.until(&["vertex", "face"]) {
+    for (element, is_used) in header.until(&["vertex", "face"]) {
         body.check_count(element)?;
         match element.name.as_str() {
-            "vertex" if is_wanted => vertices(&mut mesh, element, &mut body, options)?,
-            "face" if is_wanted => faces(&mut mesh, element, &mut body, options)?,
+            "vertex" if is_used => vertices(&mut mesh, element, &mut body, options)?,
+            "face" if is_used => faces(&mut mesh, element, &mut body, options)?,
             _ => body.skip(element)?,
         }
     }
@@ -46,7 +46,7 @@ fn vertices(
 ) -> Result<(), CaptureError> {
     let columns = |names: [&str; 3]| {
         let columns = names.map(|name| element.properties.iter().position(|property| property.name == name));
-        let is_number = |column: usize| matches!(element.properties[column].kind, Kind::Scalar(_));
+        let is_number = |column: usize| matches!(element.properties[column].data_type, DataType::Scalar(_));
         match columns {
             [Some(x), Some(y), Some(z)] if [x, y, z].into_iter().all(is_number) => Some([x, y, z]),
             _ => None,
@@ -64,7 +64,7 @@ fn vertices(
     mesh.positions.reserve_exact(count);
     mesh.normals.reserve_exact(if normal.is_some() { count } else { 0 });
     mesh.colors.reserve_exact(if color.is_some() { count } else { 0 });
-    let whites = color.map(|columns| columns.map(|column| element.properties[column].kind.white()));
+    let whites = color.map(|columns| columns.map(|column| element.properties[column].data_type.white()));
     let mut row = vec![0.0; element.properties.len()];
     for _ in 0..count {
         body.row(element, &mut row, None)?;
@@ -87,8 +87,9 @@ fn faces(
     options: &LoadOptions,
 ) -> Result<(), CaptureError> {
     let is_list = |name: &str| {
-        let named =
-            |property: &header::Property| property.name == name && matches!(property.kind, Kind::List { .. });
+        let named = |property: &header::Property| {
+            property.name == name && matches!(property.data_type, DataType::List { .. })
+        };
         element.properties.iter().position(named)
     };
     let Some(column) = is_list("vertex_indices").or_else(|| is_list("vertex_index")) else {
@@ -104,7 +105,7 @@ fn faces(
         };
         indices.clear();
         indices.extend(corners.iter().map(index));
-        mesh.triangles.extend(fan(&indices));
+        mesh.triangles.extend(triangulate_fan(&indices));
         if mesh.triangles.len() as u64 > options.max_triangles {
             let what = format!("has more than {} triangles", options.max_triangles);
             return Err(CaptureError::TooBig { file: mesh.path.clone(), what });

@@ -12,7 +12,7 @@ pub struct Remark {
 }
 
 /// So many names are told in the sentence.
-const TOLD: usize = 5;
+const MAX_NAMES: usize = 5;
 
 impl Remark {
     /// Something that is good to know.
@@ -29,10 +29,10 @@ impl Remark {
         let shown = |name: &String| -> String {
             name.chars().map(|c| if c.is_control() { '?' } else { c }).collect()
         };
-        let told = names.iter().take(TOLD).map(shown).collect::<Vec<_>>().join(", ");
-        let rest = names.len().saturating_sub(TOLD);
-        let told = if rest > 0 { format!("{told} and {rest} more") } else { told };
-        (!names.is_empty()).then(|| Self { text: text(&told), names, is_incomplete })
+        let listed = names.iter().take(MAX_NAMES).map(shown).collect::<Vec<_>>().join(", ");
+        let rest = names.len().saturating_sub(MAX_NAMES);
+        let listed = if rest > 0 { format!("{listed} and {rest} more") } else { listed };
+        (!names.is_empty()).then(|| Self { text: text(&listed), names, is_incomplete })
     }
 }
 

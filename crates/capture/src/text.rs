@@ -120,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn lines_know_their_numbers() {
+    fn lines_have_numbers() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("a.txt");
         std::fs::write(&file, "\u{feff}# head\r\n\r\n  one  \n# two\nthree").unwrap();

@@ -15,7 +15,7 @@ const SHARE_OF_UP: f64 = 0.01;
 /// ```
 ///
 /// by inverse iteration from the mean of what was up. The identity if that is nothing.
-pub(crate) fn upright(views: &[View]) -> DQuat {
+pub(crate) fn estimate_upright(views: &[View]) -> DQuat {
     let outer = |axis: DVec3| DMat3::from_cols(axis * axis.x, axis * axis.y, axis * axis.z);
     let of_view = |view: &View| {
         let right = view.camera_to_world.x_axis.truncate();
@@ -40,8 +40,8 @@ mod tests {
     use lens::CalibratedLens;
 
     /// What is found to be up by cameras that look in these directions, level but for a roll (rad), where up is `world_up`.
-    fn found(world_up: DVec3, looks: &[(DVec3, f64)]) -> DVec3 {
-        let of = |&(forward, roll): &(DVec3, f64)| {
+    fn estimated_up(world_up: DVec3, directions: &[(DVec3, f64)]) -> DVec3 {
+        let view_from = |&(forward, roll): &(DVec3, f64)| {
             let forward = forward.normalize();
             let right = DQuat::from_axis_angle(forward, roll) * forward.cross(world_up).normalize();
             View {
@@ -55,27 +55,28 @@ mod tests {
                 exposure_hint: None,
             }
         };
-        upright(&looks.iter().map(of).collect::<Vec<_>>()).inverse() * DVec3::Y
+        estimate_upright(&directions.iter().map(view_from).collect::<Vec<_>>()).inverse() * DVec3::Y
     }
 
     #[test]
     fn cameras_that_look_down_from_some_sides() {
         let down = |angle: f64| (DVec3::new(-angle.sin(), -0.8, -angle.cos()), 0.0);
-        let up = found(DVec3::Y, &[0.0, 0.4, 0.8].map(down));
+        let up = estimated_up(DVec3::Y, &[0.0, 0.4, 0.8].map(down));
         assert!(up.y > 0.999, "{up}");
         // The mean of what was up for them would be off by their tilt.
     }
 
     #[test]
     fn cameras_that_look_one_way() {
-        let up = found(DVec3::Z, &[(DVec3::X, 0.05), (DVec3::X, -0.05), (DVec3::new(1.0, 0.02, 0.0), 0.0)]);
+        let up =
+            estimated_up(DVec3::Z, &[(DVec3::X, 0.05), (DVec3::X, -0.05), (DVec3::new(1.0, 0.02, 0.0), 0.0)]);
         assert!(up.z > 0.999, "{up}");
-        assert!(found(DVec3::NEG_Y, &[(DVec3::Z, 0.0)]).y < -0.999);
+        assert!(estimated_up(DVec3::NEG_Y, &[(DVec3::Z, 0.0)]).y < -0.999);
     }
 
     #[test]
     fn cameras_that_agree_on_nothing() {
-        let up = found(DVec3::Y, &[(DVec3::Z, 0.0), (DVec3::Z, std::f64::consts::PI)]);
+        let up = estimated_up(DVec3::Y, &[(DVec3::Z, 0.0), (DVec3::Z, std::f64::consts::PI)]);
         assert!(up.is_finite() && up.is_normalized(), "{up}");
     }
 }

@@ -2,7 +2,7 @@
 
 /// What is asked of a light field.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Asked {
+pub struct DisparityRequest {
     /// The view whose disparities are found first; the middle one has the most neighbours. Counted from 0.
     pub reference: usize,
     /// Other views whose disparities are wanted, consistent with the reference's; the outermost see most of what it does not.

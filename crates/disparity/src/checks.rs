@@ -1,24 +1,24 @@
 //! What a light field has to be, looked at before anything is computed.
 
-use crate::asked::Asked;
+use crate::asked::DisparityRequest;
 use crate::error::DisparityError;
-use crate::view::{SMALLEST, View};
+use crate::view::{MIN_SIDE_PX, View};
 
 /// Pixels that a view may have: what is computed for them stays below 4 GB.
-const MOST_PIXELS: usize = 64_000_000;
+const MAX_PIXELS: usize = 64_000_000;
 
 /// # Errors
 /// Whatever is wrong with the views, or with what is asked.
-pub fn check(views: &[View<'_>], asked: &Asked) -> Result<(), DisparityError> {
+pub fn validate(views: &[View<'_>], request: &DisparityRequest) -> Result<(), DisparityError> {
     if views.len() < 2 {
         return Err(DisparityError::TooFewViews { views: views.len() });
     }
-    for view in std::iter::once(&asked.reference).chain(&asked.others) {
+    for view in std::iter::once(&request.reference).chain(&request.others) {
         if *view >= views.len() {
             return Err(DisparityError::NoSuchView { view: *view, views: views.len() });
         }
     }
-    if let Some((low, high)) = asked.range {
+    if let Some((low, high)) = request.range {
         let why = if !(low.is_finite() && high.is_finite()) {
             "not finite numbers (give the least and the largest, or none)"
         } else if low >= high {
@@ -31,7 +31,7 @@ pub fn check(views: &[View<'_>], asked: &Asked) -> Result<(), DisparityError> {
         }
     }
     for (index, view) in views.iter().enumerate() {
-        check_view(index, view, &views[0])?;
+        validate_view(index, view, &views[0])?;
         if let Some(other) = views[..index].iter().position(|other| other.position == view.position) {
             let [column, row] = view.position;
             let what = format!("it is at column {column}, row {row}, as view {other} is");
@@ -41,15 +41,15 @@ pub fn check(views: &[View<'_>], asked: &Asked) -> Result<(), DisparityError> {
     Ok(())
 }
 
-fn check_view(index: usize, view: &View<'_>, first: &View<'_>) -> Result<(), DisparityError> {
+fn validate_view(index: usize, view: &View<'_>, first: &View<'_>) -> Result<(), DisparityError> {
     let picture = &view.picture;
     let (width, height) = (picture.width, picture.height);
     let size = |what: String| Err(DisparityError::Size { view: index, what });
-    if width.min(height) < SMALLEST {
+    if width.min(height) < MIN_SIDE_PX {
         return size(format!("{width} × {height} pixels are too few"));
     }
     match width.checked_mul(height) {
-        Some(pixels) if pixels > MOST_PIXELS => {
+        Some(pixels) if pixels > MAX_PIXELS => {
             return size(format!("{width} × {height} pixels are too many"));
         }
         Some(pixels) if pixels == picture.rgb.len() => {}

@@ -36,12 +36,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_parabola_is_found_between_labels() {
+    fn a_parabola_is_fitted_between_labels() {
         let labels = Labels { low: -1.0, step: 0.5, count: 6 };
         let costs: Vec<i16> = (0..6).map(|l| (100.0 * (l as f32 - 2.3) * (l as f32 - 2.3)) as i16).collect();
-        let found = choose(&costs, &labels);
-        assert!((found.disparity - labels.disparity(2.3)).abs() < 0.01, "{found:?}");
-        assert_eq!(found.lead, costs[4] - costs[2]);
+        let choice = choose(&costs, &labels);
+        assert!((choice.disparity - labels.disparity(2.3)).abs() < 0.01, "{choice:?}");
+        assert_eq!(choice.lead, costs[4] - costs[2]);
         // At the end of the range there is nothing to fit.
         assert_eq!(choose(&[0, 4, 9], &labels).disparity, -1.0);
     }

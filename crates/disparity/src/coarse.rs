@@ -1,9 +1,9 @@
 //! A first look at small pictures: which disparities there are, and where.
 
 use crate::labels::Labels;
-use crate::matching::matched;
+use crate::matching::match_labels;
 use crate::planes::Planes;
-use crate::sweep::{FULL_COST, Shifted};
+use crate::sweep::{FULL_COST, ShiftedView};
 use progress::{Cancelled, Progress};
 
 /// Pixels a side that are plenty for a first look.
@@ -29,12 +29,12 @@ const POPULATED: f32 = 0.003;
 const BIN: f32 = 2.0;
 
 /// By how much pictures are shrunk for a first look.
-pub fn shrinking(width: usize, height: usize) -> usize {
-    (width.max(height) / SIDE).clamp(1, width.min(height) / crate::SMALLEST)
+pub fn shrink_factor(width: usize, height: usize) -> usize {
+    (width.max(height) / SIDE).clamp(1, width.min(height) / crate::MIN_SIDE_PX)
 }
 
 /// Views spread evenly, the farthest first: enough for a first look, or all.
-pub fn spread(offsets: &[[f32; 2]]) -> Vec<usize> {
+pub fn select_spread_views(offsets: &[[f32; 2]]) -> Vec<usize> {
     let mut chosen: Vec<usize> = Vec::new();
     let mut clearance: Vec<f32> = offsets.iter().map(|o| o[0].hypot(o[1])).collect();
     while chosen.len() < VIEWS.min(offsets.len()) {
@@ -43,15 +43,15 @@ pub fn spread(offsets: &[[f32; 2]]) -> Vec<usize> {
         };
         chosen.push(next);
         for (other, clearance) in clearance.iter_mut().enumerate() {
-            let apart = (0..2).map(|k| (offsets[other][k] - offsets[next][k]).powi(2)).sum::<f32>().sqrt();
-            *clearance = clearance.min(apart);
+            let distance = (0..2).map(|k| (offsets[other][k] - offsets[next][k]).powi(2)).sum::<f32>().sqrt();
+            *clearance = clearance.min(distance);
         }
     }
     chosen
 }
 
 /// The first look.
-pub struct FirstLook {
+pub struct CoarseEstimate {
     /// Disparities of the small picture, in its own pixels.
     pub disparity: Vec<f32>,
     /// The range that holds all that is certain and a margin, in pixels of the small picture.
@@ -59,17 +59,17 @@ pub struct FirstLook {
 }
 
 /// Looks at small pictures for disparities in `range`, or as far as parallax is looked for.
-pub fn first_look(
+pub fn estimate_coarse(
     reference: &Planes,
-    others: &[Shifted<'_>],
+    others: &[ShiftedView<'_>],
     reach: f32,
     range: Option<(f32, f32)>,
     progress: &dyn Progress,
-) -> Result<FirstLook, Cancelled> {
+) -> Result<CoarseEstimate, Cancelled> {
     let farthest = SEARCH * reference.width() as f32 / reach;
     let (low, high) = range.unwrap_or((-farthest, farthest));
     let labels = Labels::covering(low, high, STEP_PX / reach);
-    let chosen = matched(reference, others, &labels, progress)?;
+    let chosen = match_labels(reference, others, &labels, progress)?;
     let lead = (LEAD * 8.0 * FULL_COST) as i16;
     let certain: Vec<f32> = chosen.iter().filter(|c| c.lead > lead).map(|c| c.disparity).collect();
     // Nothing is certain: what was looked at stays possible.
@@ -77,7 +77,7 @@ pub fn first_look(
     // Small pictures leave half a pixel open, and the ends of slanted surfaces.
     let margin = STEP_PX / reach + 0.06 * (range.1 - range.0);
     let range = ((range.0 - margin).max(low), (range.1 + margin).min(high));
-    Ok(FirstLook { disparity: chosen.iter().map(|c| c.disparity).collect(), range })
+    Ok(CoarseEstimate { disparity: chosen.iter().map(|c| c.disparity).collect(), range })
 }
 
 /// From the least to the largest disparity that is no stray one.
@@ -86,8 +86,8 @@ fn populated(certain: &[f32], labels: &Labels) -> Option<(f32, f32)> {
     let bin = |d: &f32| (((d - labels.low) / width).max(0.0) as usize).min(labels.count);
     let mut counts = vec![0u32; labels.count + 1];
     certain.iter().for_each(|d| counts[bin(d)] += 1);
-    let enough = (POPULATED * certain.len() as f32).max(2.0);
-    let inside = || certain.iter().copied().filter(|d| counts[bin(d)] as f32 >= enough);
+    let min_count = (POPULATED * certain.len() as f32).max(2.0);
+    let inside = || certain.iter().copied().filter(|d| counts[bin(d)] as f32 >= min_count);
     let low = inside().reduce(f32::min)?;
     Some((low, inside().reduce(f32::max)?))
 }
@@ -109,13 +109,13 @@ mod tests {
     }
 
     #[test]
-    fn views_of_a_first_look_are_far_apart() {
+    fn views_of_a_coarse_estimate_are_far_apart() {
         let offsets: Vec<[f32; 2]> =
             (0..81).filter(|i| *i != 40).map(|i| [(i % 9) as f32 - 4.0, (i / 9) as f32 - 4.0]).collect();
-        let chosen = spread(&offsets);
+        let chosen = select_spread_views(&offsets);
         assert_eq!(chosen.len(), VIEWS);
         let corners = chosen.iter().filter(|&&i| offsets[i].iter().all(|o| o.abs() == 4.0)).count();
         assert_eq!(corners, 4);
-        assert_eq!(spread(&offsets[..3]).len(), 3);
+        assert_eq!(select_spread_views(&offsets[..3]).len(), 3);
     }
 }

@@ -14,7 +14,7 @@ mod principal_curve;
 
 use crate::error::DisparityError;
 use crate::view::Picture;
-use monotone::Growth;
+use monotone::MonotoneFunction;
 use palette::Palette;
 use progress::Progress;
 use rayon::prelude::*;
@@ -42,11 +42,11 @@ pub struct Decoded {
 }
 
 /// Samples that are needed.
-pub const FEWEST_SAMPLES: usize = 40;
+pub const MIN_SAMPLES: usize = 40;
 
 /// A median residual above this share of the range is no code. Colours that tell nothing leave 0.12 and more (the median distance
 /// from the median of most distributions), noise of the samples a few hundredths.
-pub const LARGEST_RESIDUAL: f32 = 0.06;
+pub const MAX_RESIDUAL: f32 = 0.06;
 
 /// Half of the pixels have to be this near to the curve (of white, root of three squared channels). Compression leaves 0.01.
 const NEAR: f32 = 0.05;
@@ -71,13 +71,13 @@ pub fn decode(
     let refused = |residual: f32, why: &str| {
         Err(DisparityError::NotColourCoded { percent: 100.0 * residual, why: why.to_string() })
     };
-    let Some(start) = Palette::through(&first_idea(&colours)) else {
+    let Some(start) = Palette::through(&initial_curve(&colours)) else {
         return refused(1.0, "its colours do not change with the disparity");
     };
-    let palette = principal_curve::drawn_in(start, map.rgb);
+    let palette = principal_curve::fit_principal_curve(start, map.rgb);
     progress.check()?;
     let places: Vec<(f32, f32)> = colours.iter().map(|(c, d)| (palette.nearest(*c).place, *d)).collect();
-    let Some(growth) = Growth::fit(&places) else {
+    let Some(growth) = MonotoneFunction::fit(&places) else {
         return refused(1.0, "its colours tell one disparity only");
     };
     let mut residuals: Vec<f32> = places.iter().map(|(place, d)| (growth.at(*place) - d).abs()).collect();
@@ -93,7 +93,7 @@ pub fn decode(
     progress.check()?;
     let range = growth.at(1.0) - growth.at(0.0);
     let residual = median(&mut residuals) / range;
-    if residual.is_nan() || residual > LARGEST_RESIDUAL {
+    if residual.is_nan() || residual > MAX_RESIDUAL {
         return refused(residual, "its colours do not follow the disparities that are known");
     }
     if median(&mut read.iter().map(|r| r.1).collect::<Vec<_>>()) > NEAR {
@@ -115,7 +115,7 @@ fn check(map: &Picture<'_>, samples: &[Sample]) -> Result<(), DisparityError> {
     if let Some(pixel) = map.rgb.iter().position(|rgb| !rgb.iter().all(|value| value.is_finite())) {
         return Err(DisparityError::NotFinite { view: 0, x: pixel % width, y: pixel / width });
     }
-    if samples.len() < FEWEST_SAMPLES {
+    if samples.len() < MIN_SAMPLES {
         return Err(DisparityError::TooFewSamples { samples: samples.len() });
     }
     let usable = |s: &Sample| s.x < width && s.y < height && s.disparity.is_finite();
@@ -135,7 +135,7 @@ fn steady_colour(map: &Picture<'_>, sample: &Sample) -> [f32; 3] {
 }
 
 /// Colours in the order of their disparities: medians of overlapping parts.
-fn first_idea(colours: &[([f32; 3], f32)]) -> Vec<[f32; 3]> {
+fn initial_curve(colours: &[([f32; 3], f32)]) -> Vec<[f32; 3]> {
     let mut sorted = colours.to_vec();
     sorted.sort_by(|a, b| a.1.total_cmp(&b.1));
     let sorted: Vec<[f32; 3]> = sorted.into_iter().map(|(colour, _)| colour).collect();

@@ -20,7 +20,7 @@ pub enum DisparityError {
         views: usize,
     },
     /// A picture does not have the size that it says, or that the others have.
-    #[error("view {view}: {what} (all views need one size, {smallest} pixels a side or more)", smallest = crate::view::SMALLEST)]
+    #[error("view {view}: {what} (all views need one size, {smallest} pixels a side or more)", smallest = crate::view::MIN_SIDE_PX)]
     Size {
         /// The view.
         view: usize,

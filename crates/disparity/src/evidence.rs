@@ -11,9 +11,9 @@
 //! are known). The weights w are those of Geman and McClure. Noise has a gradient, too, that says nothing: it is taken off. An edge
 //! belongs to what is nearer: gradients do not reach across to what stands before the pixel.
 
-use crate::hiding::Hiding;
+use crate::hiding::OcclusionTest;
 use crate::planes::Planes;
-use crate::sweep::Shifted;
+use crate::sweep::ShiftedView;
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;
 
@@ -27,7 +27,7 @@ pub struct Evidence {
     /// The share of the views that see the point and show its colour, in [0, 1].
     pub agreement: f32,
     /// The share of the views that show its place from which nothing nearer hides it, in [0, 1].
-    pub seen: f32,
+    pub visibility: f32,
 }
 
 /// Where a squared residual counts as wrong: so many variances of noise,
@@ -40,55 +40,55 @@ const STEEP: f32 = 0.02;
 const NOISE_TAKEN_OFF: f32 = 3.0;
 
 /// The evidence for `asked` pixels of the reference at these disparities; for others none.
-pub fn evidence(
+pub fn collect_evidence(
     reference: &Planes,
-    others: &[Shifted<'_>],
+    others: &[ShiftedView<'_>],
     disparity: &[f32],
     noise: f32,
-    asked: &(impl Fn(usize) -> bool + Sync),
+    is_requested: &(impl Fn(usize) -> bool + Sync),
     progress: &dyn Progress,
 ) -> Result<Vec<Evidence>, Cancelled> {
     let width = reference.width();
     let offsets: Vec<_> = others.iter().map(|view| view.offset).collect();
-    let hiding = Hiding::new(disparity, width, &offsets);
-    let mut told = vec![Evidence::default(); disparity.len()];
-    told.par_chunks_mut(width).enumerate().try_for_each(|(y, told)| {
+    let occlusion = OcclusionTest::new(disparity, width, &offsets);
+    let mut evidence = vec![Evidence::default(); disparity.len()];
+    evidence.par_chunks_mut(width).enumerate().try_for_each(|(y, row)| {
         progress.check()?;
-        for (x, told) in told.iter_mut().enumerate().filter(|(x, _)| asked(y * width + x)) {
-            *told = at_pixel(reference, others, (x, y), disparity[y * width + x], noise, &hiding);
+        for (x, pixel) in row.iter_mut().enumerate().filter(|(x, _)| is_requested(y * width + x)) {
+            *pixel = pixel_evidence(reference, others, (x, y), disparity[y * width + x], noise, &occlusion);
         }
         Ok(())
     })?;
-    Ok(told)
+    Ok(evidence)
 }
 
-fn at_pixel(
+fn pixel_evidence(
     reference: &Planes,
-    others: &[Shifted<'_>],
+    others: &[ShiftedView<'_>],
     (x, y): (usize, usize),
     disparity: f32,
     noise: f32,
-    hiding: &Hiding<'_>,
+    occlusion: &OcclusionTest<'_>,
 ) -> Evidence {
     let own = reference.pixel(x, y);
-    let gradient = gradient(reference, hiding.not_before((x, y), disparity));
+    let gradient = gradient(reference, occlusion.unoccluded_neighbours((x, y), disparity));
     let steepness: f32 = gradient.iter().map(|g| g[0] * g[0] + g[1] * g[1]).sum();
     let cut = CUT * (6.0 * noise * noise + STEEP * steepness);
-    let nearest = hiding.nearest(x, y);
+    let nearest = occlusion.nearest_occluder(x, y);
     let (mut normal, mut right_side, mut lengths) = (0.0, 0.0, 0.0);
-    let (mut agreeing, mut seen, mut all) = (0.0, 0.0, 0.0);
+    let (mut agreeing, mut visible_weight, mut all) = (0.0, 0.0, 0.0);
     for view in others {
         let [u, v] = view.offset;
         let place = (x as f32 - disparity * u, y as f32 - disparity * v);
-        let Some(there) = view.planes.between(place.0, place.1) else { continue };
+        let Some(there) = view.planes.sample_bilinear(place.0, place.1) else { continue };
         all += view.weight;
-        if hiding.hides((x, y), disparity, nearest, view.offset) {
+        if occlusion.is_occluded((x, y), disparity, nearest, view.offset) {
             continue;
         }
         let residual: [f32; 3] = std::array::from_fn(|c| there[c] - own[c]);
         let robust = 1.0 / (1.0 + residual.iter().map(|r| r * r).sum::<f32>() / cut);
         let weight = robust * robust * view.weight;
-        seen += view.weight;
+        visible_weight += view.weight;
         agreeing += weight;
         lengths += weight * (u * u + v * v);
         for (gradient, residual) in gradient.iter().zip(residual) {
@@ -97,17 +97,17 @@ fn at_pixel(
             right_side += weight * along * residual;
         }
     }
-    if seen <= 0.0 {
+    if visible_weight <= 0.0 {
         return Evidence::default();
     }
-    let (agreement, seen) = (agreeing / seen, seen / all);
+    let (agreement, visibility) = (agreeing / visible_weight, visible_weight / all);
     // A central difference of noise has the variance σ²/2; three channels, half of the squared length along each axis.
     let by_noise = 0.75 * noise * noise * lengths;
     let signal = normal - NOISE_TAKEN_OFF * by_noise;
     if signal <= 0.0 {
-        return Evidence { step: 0.0, certainty: 0.0, agreement, seen };
+        return Evidence { step: 0.0, certainty: 0.0, agreement, visibility };
     }
-    Evidence { step: right_side / normal, certainty: signal / (3.0 * noise * noise), agreement, seen }
+    Evidence { step: right_side / normal, certainty: signal / (3.0 * noise * noise), agreement, visibility }
 }
 
 /// Differences of the three channels from first to last pixel, a pixel, along a row and along a column.

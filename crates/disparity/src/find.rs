@@ -1,19 +1,19 @@
 //! The road from views to disparities.
 
-use crate::asked::Asked;
-use crate::checks::check;
-use crate::coarse::{FirstLook, first_look, shrinking, spread};
+use crate::asked::DisparityRequest;
+use crate::checks::validate;
+use crate::coarse::{CoarseEstimate, estimate_coarse, select_spread_views, shrink_factor};
 use crate::error::DisparityError;
 use crate::evidence::Evidence;
 use crate::labels::Labels;
 use crate::map::DisparityMap;
-use crate::matching::matched;
-use crate::noise::noise;
-use crate::other_view::{filled, moved};
+use crate::matching::match_labels;
+use crate::noise::estimate_noise;
+use crate::other_view::{fill_holes, warp};
 use crate::planes::Planes;
 use crate::refinement::Refinement;
-use crate::strays::without_strays;
-use crate::sweep::Shifted;
+use crate::strays::remove_specks;
+use crate::sweep::ShiftedView;
 use crate::view::View;
 use crate::vignetting::Gain;
 use progress::{Cancelled, Progress, Stage};
@@ -23,29 +23,29 @@ use rayon::prelude::*;
 const STEP_PX: f32 = 0.3;
 
 /// Labels that are tried at most: 0.3 pixels of a parallax of 75; wider ranges are tried in wider steps.
-const MOST_LABELS: usize = 250;
+const MAX_LABELS: usize = 250;
 
 /// Standard deviation, in pixels of the farthest view, at which a pixel is told half.
-const HALF_TOLD_PX: f32 = 0.15;
+const HALF_CONFIDENCE_PX: f32 = 0.15;
 
 /// The disparities of the reference, then of the other views that are asked for, in that order.
 ///
 /// # Errors
 /// When the views are fewer than two, differ in size, share a place or hold what is no number; when a view or range that is asked
 /// for does not exist; when `progress` cancels.
-pub fn find(
+pub fn estimate_disparities(
     views: &[View<'_>],
-    asked: &Asked,
+    request: &DisparityRequest,
     progress: &dyn Progress,
 ) -> Result<Vec<DisparityMap>, DisparityError> {
-    check(views, asked)?;
-    let field = even_field(views, asked, &Stage::new(progress, 0.0, 0.15))?;
-    let reference = asked.reference;
-    let share = if asked.others.is_empty() { 1.0 } else { 0.5 };
+    validate(views, request)?;
+    let field = prepare_field(views, request, &Stage::new(progress, 0.0, 0.15))?;
+    let reference = request.reference;
+    let share = if request.others.is_empty() { 1.0 } else { 0.5 };
     let first = field.reference_map(reference, &Stage::new(progress, 0.15, share))?;
     let mut maps = vec![first];
-    for (k, &view) in asked.others.iter().enumerate() {
-        let part = |k: usize| share + (1.0 - share) * k as f32 / asked.others.len() as f32;
+    for (k, &view) in request.others.iter().enumerate() {
+        let part = |k: usize| share + (1.0 - share) * k as f32 / request.others.len() as f32;
         let stage = Stage::new(progress, part(k), part(k + 1));
         let map =
             if view == reference { maps[0].clone() } else { field.other_map(&maps[0], view, &stage)? };
@@ -56,7 +56,7 @@ pub fn find(
 }
 
 /// Views that are evened out, and the labels that are tried.
-struct EvenField {
+struct PreparedField {
     planes: Vec<Planes>,
     places: Vec<[f64; 2]>,
     weights: Vec<f32>,
@@ -67,14 +67,19 @@ struct EvenField {
 }
 
 /// Evens the views out and finds the range of disparities, on small pictures.
-fn even_field(views: &[View<'_>], asked: &Asked, progress: &dyn Progress) -> Result<EvenField, Cancelled> {
-    let mut planes: Vec<Planes> = views.par_iter().map(|view| Planes::of(&view.picture)).collect();
+fn prepare_field(
+    views: &[View<'_>],
+    request: &DisparityRequest,
+    progress: &dyn Progress,
+) -> Result<PreparedField, Cancelled> {
+    let mut planes: Vec<Planes> = views.par_iter().map(|view| Planes::from_picture(&view.picture)).collect();
     let places: Vec<[f64; 2]> = views.iter().map(|view| view.position).collect();
-    let offsets: Vec<[f32; 2]> = places.iter().map(|place| offset(places[asked.reference], *place)).collect();
+    let offsets: Vec<[f32; 2]> =
+        places.iter().map(|place| offset(places[request.reference], *place)).collect();
     let reach = offsets.iter().flatten().fold(0.0f32, |reach, o| reach.max(o.abs()));
-    let factor = shrinking(planes[0].width(), planes[0].height());
+    let factor = shrink_factor(planes[0].width(), planes[0].height());
     let mut small: Vec<Planes> = planes.par_iter().map(|planes| planes.shrunk(factor)).collect();
-    let reference = small[asked.reference].clone();
+    let reference = small[request.reference].clone();
     progress.report(0.3);
     progress.check()?;
 
@@ -86,36 +91,36 @@ fn even_field(views: &[View<'_>], asked: &Asked, progress: &dyn Progress) -> Res
     let rough = coarse(None, &small);
     let rough_weights: Vec<f32> =
         small.par_iter_mut().zip(&rough).map(|(view, gain)| gain.apply(view)).collect();
-    let others: Vec<usize> = (0..views.len()).filter(|view| *view != asked.reference).collect();
+    let others: Vec<usize> = (0..views.len()).filter(|view| *view != request.reference).collect();
     let other_offsets: Vec<[f32; 2]> = others.iter().map(|&view| offsets[view]).collect();
-    let shifted: Vec<Shifted<'_>> = spread(&other_offsets)
+    let shifted: Vec<ShiftedView<'_>> = select_spread_views(&other_offsets)
         .into_iter()
         .map(|k| others[k])
-        .map(|view| Shifted { planes: &small[view], offset: offsets[view], weight: rough_weights[view] })
+        .map(|view| ShiftedView { planes: &small[view], offset: offsets[view], weight: rough_weights[view] })
         .collect();
     let scale = 1.0 / factor as f32;
-    let range = asked.range.map(|(low, high)| (low * scale, high * scale));
-    let FirstLook { disparity, range: seen } =
-        first_look(&reference, &shifted, reach, range, &Stage::new(progress, 0.3, 0.8))?;
+    let range = request.range.map(|(low, high)| (low * scale, high * scale));
+    let CoarseEstimate { disparity, range: estimated_range } =
+        estimate_coarse(&reference, &shifted, reach, range, &Stage::new(progress, 0.3, 0.8))?;
     let fine = coarse(Some(&disparity), &small);
     let mut weights: Vec<f32> = planes
         .par_iter_mut()
         .zip(rough.par_iter().zip(&fine))
         .map(|(view, (rough, fine))| rough.apply(view) * fine.apply(view))
         .collect();
-    weights[asked.reference] = 1.0;
+    weights[request.reference] = 1.0;
 
     // A range that is given is kept; one that is found ends where the first look does.
-    let (low, high) = asked.range.unwrap_or((seen.0 / scale, seen.1 / scale));
-    let step = (STEP_PX / reach).max((high - low) / (MOST_LABELS - 1) as f32);
+    let (low, high) = request.range.unwrap_or((estimated_range.0 / scale, estimated_range.1 / scale));
+    let step = (STEP_PX / reach).max((high - low) / (MAX_LABELS - 1) as f32);
     let labels = Labels::covering(low, high, step);
-    Ok(EvenField { planes, places, weights, labels, reach, noise: std::sync::OnceLock::new() })
+    Ok(PreparedField { planes, places, weights, labels, reach, noise: std::sync::OnceLock::new() })
 }
 
 /// Some views of many, spread evenly.
-fn spread_out<'a>(views: &[Shifted<'a>]) -> Vec<Shifted<'a>> {
+fn spread_views<'a>(views: &[ShiftedView<'a>]) -> Vec<ShiftedView<'a>> {
     let offsets: Vec<_> = views.iter().map(|view| view.offset).collect();
-    spread(&offsets).into_iter().map(|k| views[k]).collect()
+    select_spread_views(&offsets).into_iter().map(|k| views[k]).collect()
 }
 
 /// From one place to another.
@@ -123,12 +128,12 @@ fn offset(from: [f64; 2], to: [f64; 2]) -> [f32; 2] {
     std::array::from_fn(|k| (to[k] - from[k]) as f32)
 }
 
-impl EvenField {
+impl PreparedField {
     /// All other views as one sees them.
-    fn shifted(&self, reference: usize) -> Vec<Shifted<'_>> {
+    fn shifted(&self, reference: usize) -> Vec<ShiftedView<'_>> {
         (0..self.planes.len())
             .filter(|view| *view != reference)
-            .map(|view| Shifted {
+            .map(|view| ShiftedView {
                 planes: &self.planes[view],
                 offset: offset(self.places[reference], self.places[view]),
                 weight: self.weights[view],
@@ -138,24 +143,24 @@ impl EvenField {
 
     fn reference_map(&self, view: usize, progress: &dyn Progress) -> Result<DisparityMap, Cancelled> {
         let (picture, others) = (&self.planes[view], self.shifted(view));
-        let few = spread_out(&others);
-        let chosen = matched(picture, &others, &self.labels, &Stage::new(progress, 0.0, 0.5))?;
+        let subset = spread_views(&others);
+        let chosen = match_labels(picture, &others, &self.labels, &Stage::new(progress, 0.0, 0.5))?;
         let labelled: Vec<f32> = chosen.iter().map(|choice| choice.disparity).collect();
         // What belongs to one surface differs by three labels at most.
         let same = 3.0 * self.labels.step;
-        let mut disparity = without_strays(&labelled, picture.width(), same);
-        let noise = *self.noise.get_or_init(|| noise(picture, &others, &disparity));
+        let mut disparity = remove_specks(&labelled, picture.width(), same);
+        let noise = *self.noise.get_or_init(|| estimate_noise(picture, &others, &disparity));
         let refinement = Refinement {
             reference: picture,
             others: &others,
-            few: &few,
+            subset: &subset,
             labels: self.labels,
             noise,
             reach: self.reach,
         };
-        let told = refinement.run(&mut disparity, &|_| false, &Stage::new(progress, 0.5, 1.0))?;
-        let disparity = without_strays(&disparity, picture.width(), same);
-        let confidence = told.iter().map(|told| self.confidence(told)).collect();
+        let evidence = refinement.run(&mut disparity, &|_| false, &Stage::new(progress, 0.5, 1.0))?;
+        let disparity = remove_specks(&disparity, picture.width(), same);
+        let confidence = evidence.iter().map(|pixel| self.confidence(pixel)).collect();
         Ok(DisparityMap { view, width: picture.width(), height: picture.height(), disparity, confidence })
     }
 
@@ -167,32 +172,35 @@ impl EvenField {
     ) -> Result<DisparityMap, Cancelled> {
         let (picture, others) = (&self.planes[view], self.shifted(view));
         let from = offset(self.places[reference.view], self.places[view]);
-        let there = moved(&reference.disparity, &reference.confidence, reference.width, from);
-        let chosen = spread_out(&others);
+        let warped = warp(&reference.disparity, &reference.confidence, reference.width, from);
+        let chosen = spread_views(&others);
         let noise = self.noise.get().copied().unwrap_or_default();
         let refinement = Refinement {
             reference: picture,
             others: &chosen,
-            few: &chosen,
+            subset: &chosen,
             labels: self.labels,
             noise,
             reach: self.reach,
         };
-        let (disparity, told) = filled(&refinement, &there.disparity, &chosen, progress)?;
-        let disparity = without_strays(&disparity, picture.width(), 3.0 * self.labels.step);
-        let confidence =
-            (0..disparity.len())
-                .map(|i| {
-                    if there.disparity[i].is_nan() { self.confidence(&told[i]) } else { there.confidence[i] }
-                })
-                .collect();
+        let (disparity, evidence) = fill_holes(&refinement, &warped.disparity, &chosen, progress)?;
+        let disparity = remove_specks(&disparity, picture.width(), 3.0 * self.labels.step);
+        let confidence = (0..disparity.len())
+            .map(|i| {
+                if warped.disparity[i].is_nan() {
+                    self.confidence(&evidence[i])
+                } else {
+                    warped.confidence[i]
+                }
+            })
+            .collect();
         Ok(DisparityMap { view, width: picture.width(), height: picture.height(), disparity, confidence })
     }
 
     /// Agreement of the views that see a point, how many they are, and how sharply they tell its place.
-    fn confidence(&self, told: &Evidence) -> f32 {
-        let half = (self.reach / HALF_TOLD_PX).powi(2);
-        let sharpness = told.certainty / (told.certainty + half);
-        (told.agreement * told.agreement * told.seen * sharpness).clamp(0.0, 1.0)
+    fn confidence(&self, evidence: &Evidence) -> f32 {
+        let half = (self.reach / HALF_CONFIDENCE_PX).powi(2);
+        let sharpness = evidence.certainty / (evidence.certainty + half);
+        (evidence.agreement * evidence.agreement * evidence.visibility * sharpness).clamp(0.0, 1.0)
     }
 }

@@ -21,7 +21,7 @@ pub struct Halves {
 
 impl Halves {
     /// The halves of views at these offsets from the reference (which is not among them).
-    pub fn of(offsets: &[[f32; 2]]) -> Self {
+    pub fn from_offsets(offsets: &[[f32; 2]]) -> Self {
         let reach = offsets.iter().map(|o| o[0].hypot(o[1])).fold(0.0, f32::max);
         let signature = |offset: &[f32; 2]| -> Vec<bool> {
             (0..DIRECTIONS)
@@ -67,14 +67,14 @@ mod tests {
 
     #[test]
     fn a_row_has_two_halves() {
-        let halves = Halves::of(&grid(4, 0));
+        let halves = Halves::from_offsets(&grid(4, 0));
         assert_eq!(halves.groups, 2);
         assert_eq!(halves.halves, [vec![0, 1], vec![1], vec![0]]);
     }
 
     #[test]
     fn a_grid_has_eight_halves_of_nine_groups_of_sixteen() {
-        let halves = Halves::of(&grid(4, 4));
+        let halves = Halves::from_offsets(&grid(4, 4));
         assert_eq!((halves.groups, halves.halves.len()), (16, 9));
         assert!(halves.halves[1..].iter().all(|half| half.len() == 9));
     }
@@ -83,7 +83,7 @@ mod tests {
     fn every_view_of_a_hexagon_is_in_a_half_without_the_opposite_one() {
         let hexagon: Vec<[f32; 2]> =
             (0..6).map(|k| std::f32::consts::TAU * k as f32 / 6.0).map(|a| [a.cos(), a.sin()]).collect();
-        let halves = Halves::of(&hexagon);
+        let halves = Halves::from_offsets(&hexagon);
         for view in 0..6 {
             let (own, opposite) = (halves.group_of[view], halves.group_of[(view + 3) % 6]);
             assert!(halves.halves.iter().any(|half| half.contains(&own) && !half.contains(&opposite)));

@@ -8,7 +8,7 @@
 const TILE: usize = 8;
 
 /// The disparities of a picture, to ask what hides what.
-pub struct Hiding<'a> {
+pub struct OcclusionTest<'a> {
     disparity: &'a [f32],
     width: usize,
     height: usize,
@@ -19,7 +19,7 @@ pub struct Hiding<'a> {
     margin: f32,
 }
 
-impl<'a> Hiding<'a> {
+impl<'a> OcclusionTest<'a> {
     /// For views at these offsets.
     pub fn new(disparity: &'a [f32], width: usize, offsets: &[[f32; 2]]) -> Self {
         let height = disparity.len() / width;
@@ -51,18 +51,22 @@ impl<'a> Hiding<'a> {
     }
 
     /// The largest disparity that could hide the pixel.
-    pub fn nearest(&self, x: usize, y: usize) -> f32 {
+    pub fn nearest_occluder(&self, x: usize, y: usize) -> f32 {
         self.nearest[y / TILE * self.tiles_across + x / TILE]
     }
 
     /// Neighbours that do not stand before the pixel at this disparity, or the pixel itself: columns to the left and right and the row,
     /// rows above and below and the column.
-    pub fn not_before(&self, (x, y): (usize, usize), disparity: f32) -> [(usize, usize, usize); 2] {
-        let most = disparity + self.margin;
+    pub fn unoccluded_neighbours(
+        &self,
+        (x, y): (usize, usize),
+        disparity: f32,
+    ) -> [(usize, usize, usize); 2] {
+        let limit = disparity + self.margin;
         // The next but one counts, too: an edge is blurred over two pixels.
         let side = |own: usize, last: usize, step: isize, at: &dyn Fn(usize) -> usize| {
             let next = |k: isize| (own as isize + k * step).clamp(0, last as isize) as usize;
-            if [1, 2].iter().all(|k| self.disparity[at(next(*k))] <= most) { next(1) } else { own }
+            if [1, 2].iter().all(|k| self.disparity[at(next(*k))] <= limit) { next(1) } else { own }
         };
         let in_row = |x: usize| y * self.width + x;
         let in_column = |y: usize| y * self.width + x;
@@ -74,7 +78,13 @@ impl<'a> Hiding<'a> {
     }
 
     /// Whether the pixel, at this disparity, is hidden from the view at `offset`; `nearest` is what [`Hiding::nearest`] says.
-    pub fn hides(&self, (x, y): (usize, usize), disparity: f32, nearest: f32, offset: [f32; 2]) -> bool {
+    pub fn is_occluded(
+        &self,
+        (x, y): (usize, usize),
+        disparity: f32,
+        nearest: f32,
+        offset: [f32; 2],
+    ) -> bool {
         if nearest - disparity <= self.margin {
             return false;
         }
@@ -118,14 +128,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_post_hides_what_is_beside_it_and_views_look_past_it() {
+    fn a_post_occludes_what_is_beside_it_and_views_see_past_it() {
         // A post of four columns, two pixels a step nearer than the wall.
         let (width, height) = (64, 16);
         let disparity: Vec<f32> =
             (0..width * height).map(|i| if (30..34).contains(&(i % width)) { 2.0 } else { 0.0 }).collect();
         let offsets: Vec<[f32; 2]> = (-4..=4).filter(|u| *u != 0).map(|u| [u as f32, 0.0]).collect();
-        let hiding = Hiding::new(&disparity, width, &offsets);
-        let hidden = |x: usize, u: f32| hiding.hides((x, 8), 0.0, hiding.nearest(x, 8), [u, 0.0]);
+        let occlusion = OcclusionTest::new(&disparity, width, &offsets);
+        let hidden =
+            |x: usize, u: f32| occlusion.is_occluded((x, 8), 0.0, occlusion.nearest_occluder(x, 8), [u, 0.0]);
         for x in (4..60).filter(|x| !(30..34).contains(x)) {
             for offset in &offsets {
                 // In view u the post lies at 30 − 2u … 33 − 2u, and the wall does not move.
@@ -134,9 +145,14 @@ mod tests {
             }
         }
         // Its edges are not the wall's.
-        assert_eq!(hiding.not_before((28, 8), 0.0)[0], (27, 28, 8));
-        assert_eq!(hiding.not_before((28, 8), 2.0), [(27, 29, 8), (7, 9, 28)]);
+        assert_eq!(occlusion.unoccluded_neighbours((28, 8), 0.0)[0], (27, 28, 8));
+        assert_eq!(occlusion.unoccluded_neighbours((28, 8), 2.0), [(27, 29, 8), (7, 9, 28)]);
         // The post itself is hidden from nowhere.
-        assert!(offsets.iter().all(|o| !hiding.hides((31, 8), 2.0, hiding.nearest(31, 8), *o)));
+        assert!(offsets.iter().all(|o| !occlusion.is_occluded(
+            (31, 8),
+            2.0,
+            occlusion.nearest_occluder(31, 8),
+            *o
+        )));
     }
 }

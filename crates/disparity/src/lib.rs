@@ -42,11 +42,11 @@ mod sweep;
 mod view;
 mod vignetting;
 
-pub use asked::Asked;
+pub use asked::DisparityRequest;
 pub use error::DisparityError;
-pub use find::find;
+pub use find::estimate_disparities;
 pub use map::DisparityMap;
-pub use view::{Picture, SMALLEST, View};
+pub use view::{MIN_SIDE_PX, Picture, View};
 
 /// Changes whenever what is found does: of maps that are kept.
 pub const VERSION: u32 = 2;

@@ -21,17 +21,17 @@ pub struct Bonds {
 
 impl Bonds {
     /// The bonds that `of` tells for pairs of indices.
-    pub fn new(width: usize, height: usize, of: impl Fn(usize, usize) -> f32 + Sync) -> Self {
+    pub fn new(width: usize, height: usize, bond_between: impl Fn(usize, usize) -> f32 + Sync) -> Self {
         let mut along_rows = vec![0.0; width * height];
         along_rows.par_chunks_mut(width).enumerate().for_each(|(y, bonds)| {
             for (x, bond) in bonds[..width - 1].iter_mut().enumerate() {
-                *bond = of(y * width + x, y * width + x + 1);
+                *bond = bond_between(y * width + x, y * width + x + 1);
             }
         });
         let mut along_columns = vec![0.0; width * height];
         along_columns.par_chunks_mut(height).enumerate().for_each(|(x, bonds)| {
             for (y, bond) in bonds[..height - 1].iter_mut().enumerate() {
-                *bond = of(y * width + x, (y + 1) * width + x);
+                *bond = bond_between(y * width + x, (y + 1) * width + x);
             }
         });
         Self { width, along_rows, along_columns }
@@ -40,19 +40,25 @@ impl Bonds {
     /// Finds values near the minimum that [`Bonds::relax`] goes to, wherever they start: first those of every second pixel of every
     /// second line, and so on. What is left out counts as far as it hangs together with what stays, so that thin things and what lies
     /// behind them are not taken for one.
-    pub fn settle(&self, values: &mut Vec<f32>, certainty: &[f32], target: &[f32], rounds: usize) {
+    pub fn solve_coarse_to_fine(
+        &self,
+        values: &mut Vec<f32>,
+        certainty: &[f32],
+        target: &[f32],
+        rounds: usize,
+    ) {
         let (width, height) = (self.width, values.len() / self.width);
         let is_coarsest = width.min(height) < 2 * COARSEST;
         if !is_coarsest {
             let coarse = self.halved(height);
             let [columns, rows] = [width.div_ceil(2), height.div_ceil(2)];
-            let (known, towards): (Vec<f32>, Vec<f32>) = (0..columns * rows)
+            let (coarse_certainty, coarse_target): (Vec<f32>, Vec<f32>) = (0..columns * rows)
                 .into_par_iter()
-                .map(|at| self.together([at % columns * 2, at / columns * 2], height, certainty, target))
+                .map(|at| self.pooled([at % columns * 2, at / columns * 2], height, certainty, target))
                 .unzip();
             let mut start: Vec<f32> =
                 (0..columns * rows).map(|at| values[at / columns * 2 * width + at % columns * 2]).collect();
-            coarse.settle(&mut start, &known, &towards, rounds);
+            coarse.solve_coarse_to_fine(&mut start, &coarse_certainty, &coarse_target, rounds);
             values.par_chunks_mut(width).enumerate().for_each(|(y, values)| {
                 let row = &start[y / 2 * columns..][..columns];
                 values.iter_mut().enumerate().for_each(|(x, value)| *value = row[x / 2]);
@@ -63,12 +69,12 @@ impl Bonds {
     }
 
     /// What a pixel and those to the right, below and between know: the others through their bonds with it.
-    fn together(&self, [x, y]: [usize; 2], height: usize, certainty: &[f32], target: &[f32]) -> (f32, f32) {
+    fn pooled(&self, [x, y]: [usize; 2], height: usize, certainty: &[f32], target: &[f32]) -> (f32, f32) {
         let (mut sum, mut towards) = (0.0, 0.0);
         let mut add = |at: usize, bond: f32| {
-            let known = series(certainty[at], bond);
-            sum += known;
-            towards += known * target[at];
+            let weight = series(certainty[at], bond);
+            sum += weight;
+            towards += weight * target[at];
         };
         let at = y * self.width + x;
         add(at, f32::INFINITY);
@@ -219,13 +225,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_known_at_two_sides_is_a_ramp_between() {
+    fn values_fixed_at_two_sides_ramp_between() {
         let (width, height) = (6, 5);
         let bonds = Bonds::new(width, height, |_, _| 1.0);
-        let known = |i: usize| [0, width - 1].contains(&(i % width));
-        let certainty: Vec<f32> = (0..width * height).map(|i| if known(i) { 1e6 } else { 1e-9 }).collect();
+        let is_fixed = |i: usize| [0, width - 1].contains(&(i % width));
+        let certainty: Vec<f32> = (0..width * height).map(|i| if is_fixed(i) { 1e6 } else { 1e-9 }).collect();
         let target: Vec<f32> =
-            (0..width * height).map(|i| (i % width) as f32 / 5.0 * f32::from(known(i))).collect();
+            (0..width * height).map(|i| (i % width) as f32 / 5.0 * f32::from(is_fixed(i))).collect();
         let mut values = vec![0.0; width * height];
         bonds.relax(&mut values, &certainty, &target, 60);
         for (i, value) in values.iter().enumerate() {
@@ -234,7 +240,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_hardly_known_is_still_a_number() {
+    fn what_is_hardly_certain_is_still_a_number() {
         // One pixel is known, bonds of all sizes: differences of nearly equal numbers would be divided by.
         let (width, height) = (40, 3);
         let bonds = Bonds::new(width, height, |a, b| if (a + b) % 3 == 0 { 1e-12 } else { 1e4 });
@@ -253,7 +259,7 @@ mod tests {
         let target: Vec<f32> = (0..width * height).map(|i| f32::from(line(i))).collect();
         let certainty: Vec<f32> = (0..width * height).map(|i| f32::from(line(i) || i % width == 0)).collect();
         let mut values = vec![0.7; width * height];
-        bonds.settle(&mut values, &certainty, &target, 24);
+        bonds.solve_coarse_to_fine(&mut values, &certainty, &target, 24);
         for (i, value) in values.iter().enumerate() {
             assert!((value - f32::from(line(i))).abs() < 0.3, "{}, {}: {value}", i % width, i / width);
         }

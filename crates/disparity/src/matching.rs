@@ -4,7 +4,7 @@ use crate::choice::{Choice, choose};
 use crate::labels::Labels;
 use crate::planes::Planes;
 use crate::semi_global::{Penalties, aggregate};
-use crate::sweep::{Shifted, sweep};
+use crate::sweep::{ShiftedView, plane_sweep};
 use progress::{Cancelled, Progress, Stage};
 use rayon::prelude::*;
 
@@ -15,9 +15,9 @@ const COSTS: usize = 40_000_000;
 const OVERLAP: usize = 32;
 
 /// The choice for every pixel of the reference.
-pub fn matched(
+pub fn match_labels(
     reference: &Planes,
-    others: &[Shifted<'_>],
+    others: &[ShiftedView<'_>],
     labels: &Labels,
     progress: &dyn Progress,
 ) -> Result<Vec<Choice>, Cancelled> {
@@ -30,7 +30,7 @@ pub fn matched(
         let strip = top.saturating_sub(OVERLAP)..(end + OVERLAP).min(height);
         let share = |y: usize| y as f32 / height as f32;
         let stage = Stage::new(progress, share(top), share(end));
-        let volume = sweep(reference, others, labels, strip.clone(), &stage)?;
+        let volume = plane_sweep(reference, others, labels, strip.clone(), &stage)?;
         stage.report(0.85);
         let sums = aggregate(&volume, reference, &Penalties::default(), &stage)?;
         let own = (top - strip.start) * width * labels.count..(end - strip.start) * width * labels.count;

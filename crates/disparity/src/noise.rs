@@ -1,14 +1,14 @@
 //! How noisy the views are: from how the nearest of them differ where they show the same.
 
 use crate::planes::Planes;
-use crate::sweep::Shifted;
+use crate::sweep::ShiftedView;
 
 /// What 8 bits and a renderer without noise leave; certainties are counted in it.
-const LEAST: f32 = 0.003;
+const MIN_NOISE: f32 = 0.003;
 
 /// The standard deviation of the noise of a value, from the median of the differences to the nearest views.
-pub fn noise(reference: &Planes, others: &[Shifted<'_>], disparity: &[f32]) -> f32 {
-    let length = |view: &Shifted<'_>| view.offset[0].hypot(view.offset[1]);
+pub fn estimate_noise(reference: &Planes, others: &[ShiftedView<'_>], disparity: &[f32]) -> f32 {
+    let length = |view: &ShiftedView<'_>| view.offset[0].hypot(view.offset[1]);
     let nearest = others.iter().map(length).fold(f32::MAX, f32::min);
     let width = reference.width();
     let mut sizes = Vec::new();
@@ -17,18 +17,18 @@ pub fn noise(reference: &Planes, others: &[Shifted<'_>], disparity: &[f32]) -> f
         for index in (0..disparity.len()).step_by(7) {
             let (x, y, d) = (index % width, index / width, disparity[index]);
             let place = (x as f32 - d * view.offset[0], y as f32 - d * view.offset[1]);
-            let Some(there) = view.planes.between(place.0, place.1) else { continue };
+            let Some(there) = view.planes.sample_bilinear(place.0, place.1) else { continue };
             let own = reference.pixel(x, y);
-            let mut apart: [f32; 3] = std::array::from_fn(|c| (there[c] - own[c]).abs());
-            apart.sort_unstable_by(f32::total_cmp);
-            sizes.push(apart[1]);
+            let mut differences: [f32; 3] = std::array::from_fn(|c| (there[c] - own[c]).abs());
+            differences.sort_unstable_by(f32::total_cmp);
+            sizes.push(differences[1]);
         }
     }
     if sizes.is_empty() {
-        return LEAST;
+        return MIN_NOISE;
     }
     let middle = sizes.len() / 2;
     let median = *sizes.select_nth_unstable_by(middle, f32::total_cmp).1;
     // A difference of two values, one of them a mean of up to four: √(1 + 4/9) = 1.2 standard deviations.
-    (median / 0.6745 / 1.2).max(LEAST)
+    (median / 0.6745 / 1.2).max(MIN_NOISE)
 }

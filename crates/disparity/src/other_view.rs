@@ -11,14 +11,14 @@ use crate::labels::Labels;
 use crate::planes::Planes;
 use crate::refinement::Refinement;
 use crate::semi_global::{Penalties, aggregate};
-use crate::sweep::{FULL_COST, Shifted, Volume, sweep};
+use crate::sweep::{CostVolume, FULL_COST, ShiftedView, plane_sweep};
 use progress::{Cancelled, Progress, Stage};
 
 /// Neighbours whose disparities differ so that they part by more than this in the other view are two surfaces, pixels.
 const PARTING_PX: f32 = 0.7;
 
 /// What moved from the reference: disparity and confidence; NaN where nothing did.
-pub struct Moved {
+pub struct WarpedMap {
     /// Disparities.
     pub disparity: Vec<f32>,
     /// Confidences.
@@ -26,10 +26,10 @@ pub struct Moved {
 }
 
 /// Moves a map to the view at `offset` from its own.
-pub fn moved(disparity: &[f32], confidence: &[f32], width: usize, offset: [f32; 2]) -> Moved {
+pub fn warp(disparity: &[f32], confidence: &[f32], width: usize, offset: [f32; 2]) -> WarpedMap {
     let height = disparity.len() / width;
-    let mut there =
-        Moved { disparity: vec![f32::NAN; disparity.len()], confidence: vec![0.0; disparity.len()] };
+    let mut warped =
+        WarpedMap { disparity: vec![f32::NAN; disparity.len()], confidence: vec![0.0; disparity.len()] };
     let reach = offset[0].abs().max(offset[1].abs());
     for y in 0..height {
         for x in 0..width {
@@ -40,15 +40,23 @@ pub fn moved(disparity: &[f32], confidence: &[f32], width: usize, offset: [f32; 
                 if (d - own).abs() * reach > PARTING_PX { own } else { d }
             };
             let slopes = [corner(x + 1, y) - own, corner(x, y + 1) - own];
-            draw(&mut there, width, [x as f32, y as f32], own, slopes, offset, confidence[y * width + x]);
+            draw_pixel(
+                &mut warped,
+                width,
+                [x as f32, y as f32],
+                own,
+                slopes,
+                offset,
+                confidence[y * width + x],
+            );
         }
     }
-    there
+    warped
 }
 
 /// Draws what one pixel covers in the other view: the half pixel around it, as a plane of disparities.
-fn draw(
-    there: &mut Moved,
+fn draw_pixel(
+    warped: &mut WarpedMap,
     width: usize,
     [x, y]: [f32; 2],
     own: f32,
@@ -56,7 +64,7 @@ fn draw(
     [u, v]: [f32; 2],
     confidence: f32,
 ) {
-    let height = there.disparity.len() / width;
+    let height = warped.disparity.len() / width;
     // x′ = x − d u with d = own + slopes · (x − x₀): the pixel's square becomes a parallelogram.
     let place = [x - own * u, y - own * v];
     let across = [1.0 - slopes[0] * u, -slopes[0] * v];
@@ -77,10 +85,10 @@ fn draw(
         if a.abs() <= edge && b.abs() <= edge {
             let d = own + slopes[0] * a + slopes[1] * b;
             let at = row * width + column;
-            let covered = there.disparity[at];
+            let covered = warped.disparity[at];
             if covered.is_nan() || d > covered {
-                there.disparity[at] = d;
-                there.confidence[at] = confidence;
+                warped.disparity[at] = d;
+                warped.confidence[at] = confidence;
             }
         }
     }
@@ -94,24 +102,24 @@ fn pixels(place: f32, half: f32, length: usize) -> std::ops::Range<usize> {
 }
 
 /// Fills what did not move by matching, in the view `picture` with its own `others`; returns the evidence there.
-pub fn filled(
+pub fn fill_holes(
     refinement: &Refinement<'_>,
-    moved: &[f32],
-    chosen: &[Shifted<'_>],
+    warped: &[f32],
+    chosen: &[ShiftedView<'_>],
     progress: &dyn Progress,
 ) -> Result<(Vec<f32>, Vec<Evidence>), Cancelled> {
     let (picture, labels) = (refinement.reference, refinement.labels);
     let width = picture.width();
-    let mut disparity = moved.to_vec();
-    let step = strips(picture, &labels);
+    let mut disparity = warped.to_vec();
+    let step = strip_rows(picture, &labels);
     for top in (0..picture.height()).step_by(step) {
         let end = (top + step).min(picture.height());
-        let holes = moved[top * width..end * width].iter().any(|d| d.is_nan());
-        if !holes {
+        let has_holes = warped[top * width..end * width].iter().any(|d| d.is_nan());
+        if !has_holes {
             continue;
         }
-        let mut volume = sweep(picture, chosen, &labels, top..end, progress)?;
-        pin(&mut volume, &labels, &moved[top * width..end * width]);
+        let mut volume = plane_sweep(picture, chosen, &labels, top..end, progress)?;
+        pin_costs(&mut volume, &labels, &warped[top * width..end * width]);
         let sums = aggregate(&volume, picture, &Penalties::default(), progress)?;
         for (index, costs) in sums.chunks(labels.count).enumerate() {
             let d = &mut disparity[top * width + index];
@@ -121,18 +129,18 @@ pub fn filled(
         }
     }
     let stage = Stage::new(progress, 0.5, 1.0);
-    let told = refinement.run(&mut disparity, &|index| !moved[index].is_nan(), &stage)?;
-    Ok((disparity, told))
+    let evidence = refinement.run(&mut disparity, &|index| !warped[index].is_nan(), &stage)?;
+    Ok((disparity, evidence))
 }
 
 /// Rows whose costs are held at once.
-fn strips(picture: &Planes, labels: &Labels) -> usize {
+fn strip_rows(picture: &Planes, labels: &Labels) -> usize {
     (40_000_000 / (picture.width() * labels.count)).clamp(96.min(picture.height()), picture.height())
 }
 
 /// Lets pixels whose disparity is known cost nothing there and everything elsewhere.
-fn pin(volume: &mut Volume, labels: &Labels, moved: &[f32]) {
-    for (costs, d) in volume.costs.chunks_mut(labels.count).zip(moved) {
+fn pin_costs(volume: &mut CostVolume, labels: &Labels, warped: &[f32]) {
+    for (costs, d) in volume.costs.chunks_mut(labels.count).zip(warped) {
         if !d.is_nan() {
             let label = ((d - labels.low) / labels.step).round().clamp(0.0, (labels.count - 1) as f32);
             costs.fill(FULL_COST as i16);
@@ -153,8 +161,8 @@ mod tests {
                 |i| if (10..20).contains(&(i % width)) && (8..18).contains(&(i / width)) { 3.0 } else { 0.0 },
             )
             .collect();
-        let there = moved(&disparity, &vec![1.0; width * height], width, [1.0, 0.0]);
-        for (i, d) in there.disparity.iter().enumerate() {
+        let warped = warp(&disparity, &vec![1.0; width * height], width, [1.0, 0.0]);
+        for (i, d) in warped.disparity.iter().enumerate() {
             let (x, y) = (i % width, i / width);
             let rows = (8..18).contains(&y);
             if rows && (7..17).contains(&x) {
@@ -173,8 +181,8 @@ mod tests {
         let disparity: Vec<f32> = (0..width * height).map(|i| 0.15 * (i % width) as f32).collect();
         // x′ = x − 0.15 x u: with u = −1 stretched by 1.15, with u = 1 squeezed by 0.85.
         for (u, scale) in [(-1.0, 1.15), (1.0, 0.85)] {
-            let there = moved(&disparity, &vec![1.0; width * height], width, [u, 0.0]);
-            for (i, d) in there.disparity.iter().enumerate().filter(|(i, _)| i % width < 40) {
+            let warped = warp(&disparity, &vec![1.0; width * height], width, [u, 0.0]);
+            for (i, d) in warped.disparity.iter().enumerate().filter(|(i, _)| i % width < 40) {
                 let true_d = 0.15 * (i % width) as f32 / scale;
                 assert!((d - true_d).abs() < 1e-3, "{u}: {i}: {d} instead of {true_d}");
             }

@@ -16,12 +16,12 @@ pub struct Planes {
 
 impl Planes {
     /// The planes of `picture`.
-    pub fn of(picture: &Picture<'_>) -> Self {
-        Self::filled(picture.width, picture.height, |x, y| picture.rgb[y * picture.width + x])
+    pub fn from_picture(picture: &Picture<'_>) -> Self {
+        Self::from_fn(picture.width, picture.height, |x, y| picture.rgb[y * picture.width + x])
     }
 
     /// The planes whose pixels `colour` tells.
-    pub fn filled(width: usize, height: usize, colour: impl Fn(usize, usize) -> [f32; 3]) -> Self {
+    pub fn from_fn(width: usize, height: usize, colour: impl Fn(usize, usize) -> [f32; 3]) -> Self {
         let stride = width + 1;
         let mut channels: [Vec<f32>; 3] = std::array::from_fn(|_| vec![0.0; stride * (height + 1)]);
         for y in 0..=height {
@@ -58,7 +58,7 @@ impl Planes {
     }
 
     /// The colour between pixels, bilinearly; `None` beyond the centres of the outermost ones.
-    pub fn between(&self, x: f32, y: f32) -> Option<[f32; 3]> {
+    pub fn sample_bilinear(&self, x: f32, y: f32) -> Option<[f32; 3]> {
         let (right, bottom) = ((self.width - 1) as f32, (self.height - 1) as f32);
         if !(x >= 0.0 && y >= 0.0 && x <= right && y <= bottom) {
             return None;
@@ -81,7 +81,7 @@ impl Planes {
     /// is dropped.
     pub fn shrunk(&self, factor: usize) -> Self {
         let share = 1.0 / (factor * factor) as f32;
-        Self::filled(self.width / factor, self.height / factor, |x, y| {
+        Self::from_fn(self.width / factor, self.height / factor, |x, y| {
             let mut sum = [0.0; 3];
             for row in y * factor..(y + 1) * factor {
                 for column in x * factor..(x + 1) * factor {

@@ -5,11 +5,11 @@
 //! differences). Before the first round plain surfaces, where a label says nothing, are filled from what is certain around them, from
 //! the farther of it: thin things before a plain wall do not draw it to them.
 
-use crate::evidence::{Evidence, evidence};
+use crate::evidence::{Evidence, collect_evidence};
 use crate::labels::Labels;
 use crate::lines::Bonds;
 use crate::planes::Planes;
-use crate::sweep::Shifted;
+use crate::sweep::ShiftedView;
 use progress::{Cancelled, Progress, Stage};
 
 /// Rounds of evidence and smoothing.
@@ -45,13 +45,13 @@ const MEMBRANE_POWER: i32 = 3;
 const LEAST_MEMBRANE_BOND: f32 = 1e-8;
 
 /// The membrane is taken where so much of the views sees it,
-const SEEN: f32 = 0.5;
+const MIN_VISIBILITY: f32 = 0.5;
 
 /// and where they agree no less than this below what they did.
-const LOSS: f32 = 0.1;
+const MAX_AGREEMENT_LOSS: f32 = 0.1;
 
 /// Certainties below this share of the smoothness' own hold no membrane: noise alone hardly ever reaches it.
-const FILLING: f32 = 0.3;
+const MIN_MEMBRANE_CERTAINTY: f32 = 0.3;
 
 /// A pixel that counts less than this beside its neighbours takes the membrane whether views agree or not.
 const OPEN: f32 = 0.05;
@@ -67,9 +67,9 @@ pub struct Refinement<'a> {
     /// The picture whose disparities they are.
     pub reference: &'a Planes,
     /// The others.
-    pub others: &'a [Shifted<'a>],
+    pub others: &'a [ShiftedView<'a>],
     /// A part of them, spread evenly: enough for all rounds but the last.
-    pub few: &'a [Shifted<'a>],
+    pub subset: &'a [ShiftedView<'a>],
     /// The labels they come from: their range is kept.
     pub labels: Labels,
     /// Standard deviation of the noise of a value.
@@ -83,41 +83,41 @@ impl Refinement<'_> {
     pub fn run(
         &self,
         disparity: &mut Vec<f32>,
-        known: &(impl Fn(usize) -> bool + Sync),
+        is_fixed: &(impl Fn(usize) -> bool + Sync),
         progress: &dyn Progress,
     ) -> Result<Vec<Evidence>, Cancelled> {
-        let asked = |index: usize| !known(index);
-        let mut told = Vec::new();
+        let is_free = |index: usize| !is_fixed(index);
+        let mut evidence = Vec::new();
         let part = |k: usize| k as f32 / (ROUNDS + 2) as f32;
-        self.fill(disparity, known, &Stage::new(progress, 0.0, part(2)))?;
+        self.fill_open_areas(disparity, is_fixed, &Stage::new(progress, 0.0, part(2)))?;
         for round in 0..ROUNDS {
             let stage = Stage::new(progress, part(round + 2), part(round + 3));
-            let views = if round + 1 < ROUNDS { self.few } else { self.others };
-            told = evidence(self.reference, views, disparity, self.noise, &asked, &stage)?;
-            let (certainty, target) = self.data(disparity, &told, known);
+            let views = if round + 1 < ROUNDS { self.subset } else { self.others };
+            evidence = collect_evidence(self.reference, views, disparity, self.noise, &is_free, &stage)?;
+            let (certainty, target) = self.data_term(disparity, &evidence, is_fixed);
             self.bonds(disparity).relax(disparity, &certainty, &target, 6);
         }
-        Ok(told)
+        Ok(evidence)
     }
 
     /// How certain every pixel is of which disparity.
-    fn data(
+    fn data_term(
         &self,
         disparity: &[f32],
-        told: &[Evidence],
-        known: &impl Fn(usize) -> bool,
+        evidence: &[Evidence],
+        is_fixed: &impl Fn(usize) -> bool,
     ) -> (Vec<f32>, Vec<f32>) {
         let best = (self.reach / BEST_PX).powi(2);
         let (low, high) = (self.labels.low, self.labels.disparity((self.labels.count - 1) as f32));
-        let pixels = disparity.iter().zip(told).enumerate();
+        let pixels = disparity.iter().zip(evidence).enumerate();
         pixels
-            .map(|(index, (d, told))| {
-                if known(index) {
+            .map(|(index, (d, own))| {
+                if is_fixed(index) {
                     return (best, *d);
                 }
                 // A step is only right nearby: no more than a label at once.
-                let step = told.step.clamp(-self.labels.step, self.labels.step);
-                let certainty = told.certainty * told.agreement.powi(AGREEMENT_POWER);
+                let step = own.step.clamp(-self.labels.step, self.labels.step);
+                let certainty = own.certainty * own.agreement.powi(AGREEMENT_POWER);
                 (certainty.min(best), (d + step).clamp(low, high))
             })
             .unzip()
@@ -139,31 +139,32 @@ impl Refinement<'_> {
 
     /// Takes what is not certain to a membrane over what is, and what is certain, too, where views agree as well with that: beside an
     /// edge, a plain surface may stand where the edge does, or anywhere behind it.
-    fn fill(
+    fn fill_open_areas(
         &self,
         disparity: &mut [f32],
-        known: &(impl Fn(usize) -> bool + Sync),
+        is_fixed: &(impl Fn(usize) -> bool + Sync),
         progress: &dyn Progress,
     ) -> Result<(), Cancelled> {
-        let asked = |index: usize| !known(index);
+        let is_free = |index: usize| !is_fixed(index);
         let evidence_at = |disparity: &[f32], from: f32, to: f32| {
             let stage = Stage::new(progress, from, to);
-            evidence(self.reference, self.few, disparity, self.noise, &asked, &stage)
+            collect_evidence(self.reference, self.subset, disparity, self.noise, &is_free, &stage)
         };
-        let told = evidence_at(disparity, 0.0, 0.4)?;
-        let (certainty, target) = self.data(disparity, &told, known);
+        let evidence = evidence_at(disparity, 0.0, 0.4)?;
+        let (certainty, target) = self.data_term(disparity, &evidence, is_fixed);
         let membrane = self.membrane(&certainty, &target);
-        let there = evidence_at(&membrane, 0.6, 1.0)?;
+        let membrane_evidence = evidence_at(&membrane, 0.6, 1.0)?;
         let jump = self.jump();
-        for index in (0..disparity.len()).filter(|index| asked(*index)) {
+        for index in (0..disparity.len()).filter(|index| is_free(*index)) {
             let own = certainty[index] / (certainty[index] + self.smoothness());
             let (target, membrane) = (target[index], membrane[index]);
             if (membrane - target).abs() < jump {
                 disparity[index] = own * target + (1.0 - own) * membrane;
                 continue;
             }
-            let agrees = own < OPEN || there[index].agreement > told[index].agreement - LOSS;
-            if agrees && there[index].seen > SEEN {
+            let agrees = own < OPEN
+                || membrane_evidence[index].agreement > evidence[index].agreement - MAX_AGREEMENT_LOSS;
+            if agrees && membrane_evidence[index].visibility > MIN_VISIBILITY {
                 disparity[index] = membrane;
             }
         }
@@ -178,10 +179,10 @@ impl Refinement<'_> {
         let bonds = Bonds::new(self.reference.width(), self.reference.height(), |a, b| {
             smoothness * (self.likeness(a, b).powi(MEMBRANE_POWER) + LEAST_MEMBRANE_BOND)
         });
-        let held = |c: f32| if c < FILLING * smoothness { 0.0 } else { c.min(smoothness) };
+        let held = |c: f32| if c < MIN_MEMBRANE_CERTAINTY * smoothness { 0.0 } else { c.min(smoothness) };
         let held: Vec<f32> = certainty.iter().map(|c| held(*c)).collect();
         let mut membrane = target.to_vec();
-        bonds.settle(&mut membrane, &held, target, SETTLING);
+        bonds.solve_coarse_to_fine(&mut membrane, &held, target, SETTLING);
         for round in 0..BEHIND + ATTACHED {
             let counted = |nearer: f32| match nearer > 0.0 {
                 true if round < BEHIND => LIFT,
@@ -191,7 +192,7 @@ impl Refinement<'_> {
             let pixels = held.iter().zip(target.iter().zip(&membrane));
             let weights: Vec<f32> =
                 pixels.map(|(held, (target, membrane))| held * counted(target - membrane)).collect();
-            bonds.settle(&mut membrane, &weights, target, SETTLING);
+            bonds.solve_coarse_to_fine(&mut membrane, &weights, target, SETTLING);
         }
         membrane
     }
@@ -205,8 +206,8 @@ impl Refinement<'_> {
     fn bonds(&self, disparity: &[f32]) -> Bonds {
         let (smoothness, jump) = (self.smoothness(), self.jump());
         Bonds::new(self.reference.width(), self.reference.height(), |a, b| {
-            let apart = (disparity[a] - disparity[b]) / jump;
-            smoothness * (self.likeness(a, b) + LEAST_BOND) / (1.0 + apart * apart).powi(2)
+            let difference = (disparity[a] - disparity[b]) / jump;
+            smoothness * (self.likeness(a, b) + LEAST_BOND) / (1.0 + difference * difference).powi(2)
         })
     }
 }

@@ -11,7 +11,7 @@
 //! Four of the directions come from above or the left, four from below or the right: two passes that run side by side.
 
 use crate::planes::Planes;
-use crate::sweep::{FULL_COST, Volume};
+use crate::sweep::{CostVolume, FULL_COST};
 use progress::{Cancelled, Progress};
 
 /// What steps between labels cost.
@@ -33,14 +33,14 @@ impl Default for Penalties {
 
 /// The joint costs of a volume: the sum of eight directions, as `volume.costs` is laid out.
 pub fn aggregate(
-    volume: &Volume,
+    volume: &CostVolume,
     guide: &Planes,
     penalties: &Penalties,
     progress: &dyn Progress,
 ) -> Result<Vec<i16>, Cancelled> {
     let (down, up) = rayon::join(
-        || pass(volume, guide, penalties, Way::Down, progress),
-        || pass(volume, guide, penalties, Way::Up, progress),
+        || pass(volume, guide, penalties, PassDirection::Down, progress),
+        || pass(volume, guide, penalties, PassDirection::Up, progress),
     );
     let (mut down, up) = (down?, up?);
     down.iter_mut().zip(&up).for_each(|(sum, other)| *sum += other);
@@ -48,7 +48,7 @@ pub fn aggregate(
 }
 
 #[derive(Clone, Copy, PartialEq)]
-enum Way {
+enum PassDirection {
     Down,
     Up,
 }
@@ -58,10 +58,10 @@ const WALL: i16 = 12_000;
 
 /// The sum of four directions: along the row, and from the row before straight and from both sides.
 fn pass(
-    volume: &Volume,
+    volume: &CostVolume,
     guide: &Planes,
     penalties: &Penalties,
-    way: Way,
+    direction: PassDirection,
     progress: &dyn Progress,
 ) -> Result<Vec<i16>, Cancelled> {
     let (width, height, labels) = (volume.width, volume.rows.len(), volume.labels);
@@ -74,7 +74,7 @@ fn pass(
     // The least of each path, beside it.
     let mut least_before = [vec![0i16; width], vec![0i16; width], vec![0i16; width]];
     let mut least_now = least_before.clone();
-    let step: isize = if way == Way::Down { 1 } else { -1 };
+    let step: isize = if direction == PassDirection::Down { 1 } else { -1 };
     let small = (penalties.small * FULL_COST) as i16;
     let large = |a: [f32; 3], b: [f32; 3]| {
         let difference: f32 = (0..3).map(|c| (a[c] - b[c]).abs()).sum();
@@ -82,10 +82,10 @@ fn pass(
     };
     for row in 0..height {
         progress.check()?;
-        let y = if way == Way::Down { row } else { height - 1 - row };
+        let y = if direction == PassDirection::Down { row } else { height - 1 - row };
         let mut least_along = 0;
         for column in 0..width {
-            let x = if way == Way::Down { column } else { width - 1 - column };
+            let x = if direction == PassDirection::Down { column } else { width - 1 - column };
             let at = (y * width + x) * labels;
             let costs = &volume.costs[at..at + labels];
             let sums = &mut sums[at..at + labels];
@@ -94,8 +94,8 @@ fn pass(
             if column == 0 {
                 least_along = begin(costs, sums, new);
             } else {
-                let beside = guide.pixel((x as isize - step) as usize, volume.rows.start + y);
-                least_along = extend(costs, sums, old, least_along, new, small, large(here, beside));
+                let neighbour = guide.pixel((x as isize - step) as usize, volume.rows.start + y);
+                least_along = extend(costs, sums, old, least_along, new, small, large(here, neighbour));
             }
             std::mem::swap(old, new);
             for (k, side) in [-1isize, 0, 1].into_iter().enumerate() {

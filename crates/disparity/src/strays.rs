@@ -1,10 +1,10 @@
 //! Single pixels on no surface: taken to those around them.
 
 /// Pixels of the eight around that belong to the same surface, at least: even a line one pixel wide has two.
-const COMPANY: usize = 2;
+const MIN_COMPANIONS: usize = 2;
 
 /// Replaces every disparity that fewer than two neighbours share to within `same` by the median of its neighbours.
-pub fn without_strays(disparity: &[f32], width: usize, same: f32) -> Vec<f32> {
+pub fn remove_specks(disparity: &[f32], width: usize, same: f32) -> Vec<f32> {
     let height = disparity.len() / width;
     let mut cleaned = disparity.to_vec();
     for y in 0..height {
@@ -20,7 +20,7 @@ pub fn without_strays(disparity: &[f32], width: usize, same: f32) -> Vec<f32> {
                 count += 1;
             }
             let values = &mut values[..count];
-            if values.iter().filter(|value| (**value - own).abs() <= same).count() < COMPANY {
+            if values.iter().filter(|value| (**value - own).abs() <= same).count() < MIN_COMPANIONS {
                 cleaned[y * width + x] = *values.select_nth_unstable_by(count / 2, f32::total_cmp).1;
             }
         }
@@ -36,9 +36,9 @@ mod tests {
     fn a_speck_goes_and_a_line_stays() {
         let (width, height) = (9, 7);
         let line: Vec<f32> = (0..width * height).map(|i| if i % width == 6 { 2.0 } else { 0.0 }).collect();
-        assert_eq!(without_strays(&line, width, 0.1)[10..50], line[10..50]);
+        assert_eq!(remove_specks(&line, width, 0.1)[10..50], line[10..50]);
         let mut speck = line.clone();
         speck[3 * width + 3] = -5.0;
-        assert_eq!(without_strays(&speck, width, 0.1)[10..50], line[10..50]);
+        assert_eq!(remove_specks(&speck, width, 0.1)[10..50], line[10..50]);
     }
 }

@@ -28,7 +28,7 @@ const BAND: usize = 8;
 
 /// A view that is shifted.
 #[derive(Clone, Copy)]
-pub struct Shifted<'a> {
+pub struct ShiftedView<'a> {
     /// Its pixels, evened out.
     pub planes: &'a Planes,
     /// Its place relative to the reference, steps of the grid.
@@ -38,7 +38,7 @@ pub struct Shifted<'a> {
 }
 
 /// Costs of some rows of the reference: for each pixel, all labels.
-pub struct Volume {
+pub struct CostVolume {
     /// Pixels a row.
     pub width: usize,
     /// The rows of the picture that are told.
@@ -50,16 +50,16 @@ pub struct Volume {
 }
 
 /// The costs of `labels` in `rows` of the reference.
-pub fn sweep(
+pub fn plane_sweep(
     reference: &Planes,
-    others: &[Shifted<'_>],
+    others: &[ShiftedView<'_>],
     labels: &Labels,
     rows: Range<usize>,
     progress: &dyn Progress,
-) -> Result<Volume, Cancelled> {
+) -> Result<CostVolume, Cancelled> {
     let width = reference.width();
     let offsets: Vec<_> = others.iter().map(|view| view.offset).collect();
-    let halves = Halves::of(&offsets);
+    let halves = Halves::from_offsets(&offsets);
     let mut costs = vec![0i16; rows.len() * width * labels.count];
     costs.par_chunks_mut(BAND * width * labels.count).enumerate().try_for_each(|(band, costs)| {
         let top = rows.start + band * BAND;
@@ -72,7 +72,7 @@ pub fn sweep(
         }
         Ok(())
     })?;
-    Ok(Volume { width, rows, labels: labels.count, costs })
+    Ok(CostVolume { width, rows, labels: labels.count, costs })
 }
 
 /// Sums of differences of one label over a band of rows, a group of views each.
@@ -96,7 +96,7 @@ impl Sums {
     fn add_up(
         &mut self,
         reference: &Planes,
-        others: &[Shifted<'_>],
+        others: &[ShiftedView<'_>],
         halves: &Halves,
         disparity: f32,
         top: usize,
@@ -163,9 +163,9 @@ impl Sums {
                 weights.iter_mut().zip(&self.weights[own]).for_each(|(sum, w)| *sum += w);
             }
             // Less than half of a half tells little; it may only be compared where nothing else is left.
-            let enough = 0.45 * half.iter().map(|&g| self.whole[g]).sum::<f32>();
+            let min_weight = 0.45 * half.iter().map(|&g| self.whole[g]).sum::<f32>();
             for ((best, d), w) in best.iter_mut().zip(&differences).zip(&weights) {
-                let mean = if *w >= enough { d / w } else { TRUNCATION };
+                let mean = if *w >= min_weight { d / w } else { TRUNCATION };
                 *best = best.min(mean);
             }
             if whole.is_empty() {
@@ -184,7 +184,7 @@ fn add_differences(
     sums: &mut [f32],
     reference: &Planes,
     (x, y): (usize, usize),
-    view: &Shifted<'_>,
+    view: &ShiftedView<'_>,
     (column, row): (usize, usize),
     [fx, fy]: [f32; 2],
 ) {

@@ -1,7 +1,7 @@
 //! A view as the caller has it: a picture, and where in the grid it was taken.
 
 /// Pixels a side that a view needs.
-pub const SMALLEST: usize = 16;
+pub const MIN_SIDE_PX: usize = 16;
 
 /// A picture that is only looked at.
 #[derive(Clone, Copy, Debug)]

@@ -17,10 +17,10 @@ const DARK: f32 = 0.03;
 const PLACES: usize = 3000;
 
 /// Pixels that are needed for a fit.
-const ENOUGH: usize = 60;
+const MIN_QUOTIENTS: usize = 60;
 
 /// The natural logarithm below which a gain is none.
-const NOTHING: f32 = 0.002;
+const NEGLIGIBLE_LOG_GAIN: f32 = 0.002;
 
 /// What a view has to be multiplied by to look as the reference does.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,7 +40,7 @@ impl Gain {
             let (x, y) = ((index % width) as f32, (index / width) as f32);
             let d = disparity.map_or(0.0, |d| d[index]);
             let place = [x - d * offset[0], y - d * offset[1]];
-            let Some(there) = view.between(place[0], place[1]) else { continue };
+            let Some(there) = view.sample_bilinear(place[0], place[1]) else { continue };
             let own = reference.pixel(index % width, index / width);
             let terms = terms(place[0] / width as f32, place[1] / height as f32);
             for c in 0..3 {
@@ -64,14 +64,14 @@ impl Gain {
     }
 
     /// Whether the gain is 1 within what can be told.
-    pub fn is_nothing(&self) -> bool {
+    pub fn is_negligible(&self) -> bool {
         let places = (0..25).map(|k| ((k % 5) as f32 / 4.0, (k / 5) as f32 / 4.0));
-        places.flat_map(|(x, y)| self.at(x, y)).all(|gain| gain.ln().abs() < NOTHING)
+        places.flat_map(|(x, y)| self.at(x, y)).all(|gain| gain.ln().abs() < NEGLIGIBLE_LOG_GAIN)
     }
 
     /// Brightens a view; returns how much it counts: 1 / mean gain², as its noise has grown, at most 1.
     pub fn apply(&self, view: &mut Planes) -> f32 {
-        if !self.is_nothing() {
+        if !self.is_negligible() {
             let (width, height) = (view.width() as f32, view.height() as f32);
             view.scale(|x, y| self.at(x as f32 / width, y as f32 / height));
         }
@@ -89,15 +89,15 @@ fn terms(x: f32, y: f32) -> [f64; TERMS] {
 
 /// Iteratively reweighted least squares.
 fn fit_robustly(quotients: &[(f64, [f64; TERMS])]) -> Option<[f64; TERMS]> {
-    if quotients.len() < ENOUGH {
+    if quotients.len() < MIN_QUOTIENTS {
         return None;
     }
     let mut all: Vec<f64> = quotients.iter().map(|q| q.0).collect();
     let middle = median(&mut all);
-    let mut found = [middle, 0.0, 0.0, 0.0, 0.0, 0.0];
+    let mut coefficients = [middle, 0.0, 0.0, 0.0, 0.0, 0.0];
     for _ in 0..8 {
         let residual = |(value, terms): &(f64, [f64; TERMS])| {
-            value - found.iter().zip(terms).map(|(a, b)| a * b).sum::<f64>()
+            value - coefficients.iter().zip(terms).map(|(a, b)| a * b).sum::<f64>()
         };
         let mut sizes: Vec<f64> = quotients.iter().map(|q| residual(q).abs()).collect();
         // Tukey's 4.685 standard deviations; a median of 0 (equal pictures) leaves the values' own steps.
@@ -116,9 +116,9 @@ fn fit_robustly(quotients: &[(f64, [f64; TERMS])]) -> Option<[f64; TERMS]> {
                 row[TERMS] += weight * quotient.1[i] * quotient.0;
             }
         }
-        found = solve(system)?;
+        coefficients = solve(system)?;
     }
-    Some(found)
+    Some(coefficients)
 }
 
 /// Gauss's elimination with pivots; `None` if the places of the quotients tell no polynomial.
@@ -151,14 +151,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_vignette_is_found_though_a_quarter_shows_something_else() {
+    fn a_vignette_is_fitted_though_a_quarter_shows_something_else() {
         let colour = |x: usize, y: usize| {
             let wave = |k: f32| 0.5 + 0.2 * ((x as f32 * 0.7 * k).sin() + (y as f32 * 0.9 / k).cos());
             [wave(1.0), wave(1.3), wave(0.7)]
         };
-        let reference = Planes::filled(60, 40, colour);
+        let reference = Planes::from_fn(60, 40, colour);
         let vignette = |x: f32, y: f32| 0.8 - 0.3 * (x - 0.6).powi(2) - 0.2 * (y - 0.4).powi(2);
-        let view = Planes::filled(60, 40, |x, y| {
+        let view = Planes::from_fn(60, 40, |x, y| {
             let other = x < 20 && y > 10;
             let dark = vignette(x as f32 / 60.0, y as f32 / 40.0);
             colour(x, y).map(|v| if other { 0.35 } else { v * dark })
@@ -168,7 +168,7 @@ mod tests {
             let error = gain.at(x, y)[1] * vignette(x, y) - 1.0;
             assert!(error.abs() < 0.02, "({x}, {y}): {error}");
         }
-        assert!(Gain::fit(&reference, &reference, [1.0, 0.0], None).is_nothing());
-        assert!(!gain.is_nothing());
+        assert!(Gain::fit(&reference, &reference, [1.0, 0.0], None).is_negligible());
+        assert!(!gain.is_negligible());
     }
 }

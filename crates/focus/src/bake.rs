@@ -1,6 +1,6 @@
 //! From any focus to a map that can be painted on.
 
-use crate::focus_map::texel_of;
+use crate::focus_map::to_texel;
 use crate::{Focus, FocusMap};
 use atlas::TexelMap;
 use lens::FocusOffset;
@@ -17,7 +17,7 @@ impl Focus {
         let mut map = FocusMap::new(width, height, FocusOffset::STANDARD);
         map.background = self.background;
         for (texel, value) in texels.texels.iter().zip(values) {
-            map.set(texel.x, texel.y, texel_of(value));
+            map.set(texel.x, texel.y, to_texel(value));
             map.set_gloss(texel.x, texel.y, value.gloss as f32);
         }
         for gutter in &texels.dilations {

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 /// changes. Symbols as in the optics: κ = (t − 1)/d + t(1 − a)(1/s − 1/z).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Blend {
+pub enum BlendMode {
     /// t, anchor and gloss each move toward the layer's.
     #[default]
     Set,
@@ -19,12 +19,12 @@ pub enum Blend {
     MultiplyDefocus,
 }
 
-impl Blend {
+impl BlendMode {
     /// All, as a menu offers them.
     pub const ALL: [Self; 4] = [Self::Set, Self::Mix, Self::Add, Self::MultiplyDefocus];
 
     /// Joins a layer's [t, anchor] to those beneath.
-    pub fn join(self, beneath: [f32; 2], layer: [f32; 2], w: f32) -> [f32; 2] {
+    pub fn blend(self, beneath: [f32; 2], layer: [f32; 2], w: f32) -> [f32; 2] {
         if w <= 0.0 {
             return beneath;
         }
@@ -46,7 +46,7 @@ impl Blend {
     }
 
     /// Joins a layer's gloss to that beneath.
-    pub fn join_gloss(self, beneath: f32, layer: f32, w: f32) -> f32 {
+    pub fn blend_gloss(self, beneath: f32, layer: f32, w: f32) -> f32 {
         match self {
             _ if w <= 0.0 => beneath,
             Self::Set | Self::Mix if w >= 1.0 => layer,
@@ -79,13 +79,13 @@ mod tests {
 
     #[test]
     fn nothing_changes_nothing() {
-        for blend in Blend::ALL {
-            assert_eq!(blend.join([1.2, 0.3], [0.7, 0.9], 0.0), [1.2, 0.3]);
+        for blend in BlendMode::ALL {
+            assert_eq!(blend.blend([1.2, 0.3], [0.7, 0.9], 0.0), [1.2, 0.3]);
         }
-        assert_eq!(Blend::Add.join([1.2, 0.3], [1.0, 0.0], 0.7), [1.2, 0.3]);
-        assert_eq!(Blend::MultiplyDefocus.join([1.2, 0.3], [1.0, 0.5], 0.7), [1.2, 0.3]);
-        for blend in [Blend::Set, Blend::Mix] {
-            assert_eq!(blend.join([1.2, 0.3], [0.7, 0.9], 1.0), [0.7, 0.9]);
+        assert_eq!(BlendMode::Add.blend([1.2, 0.3], [1.0, 0.0], 0.7), [1.2, 0.3]);
+        assert_eq!(BlendMode::MultiplyDefocus.blend([1.2, 0.3], [1.0, 0.5], 0.7), [1.2, 0.3]);
+        for blend in [BlendMode::Set, BlendMode::Mix] {
+            assert_eq!(blend.blend([1.2, 0.3], [0.7, 0.9], 1.0), [0.7, 0.9]);
         }
     }
 
@@ -94,8 +94,8 @@ mod tests {
         let (below, above) = ([1.0, 0.0], [1.04, 1.0]);
         let (k0, k1) = (kappas(below), kappas(above));
         let half = [0, 1, 2, 3].map(|k| (k0[k] + k1[k]) / 2.0);
-        assert!(near(kappas(Blend::Mix.join(below, above, 0.5)), half));
-        assert!(!near(kappas(Blend::Set.join(below, above, 0.5)), half));
+        assert!(near(kappas(BlendMode::Mix.blend(below, above, 0.5)), half));
+        assert!(!near(kappas(BlendMode::Set.blend(below, above, 0.5)), half));
     }
 
     #[test]
@@ -103,11 +103,11 @@ mod tests {
         let below = [1.03, 0.4];
         for (t, w, factor) in [(0.0, 1.0, 0.0), (0.5, 1.0, 0.5), (0.0, 0.25, 0.75)] {
             let scaled = kappas(below).map(|kappa| factor * kappa);
-            assert!(near(kappas(Blend::MultiplyDefocus.join(below, [t, 1.0], w)), scaled));
+            assert!(near(kappas(BlendMode::MultiplyDefocus.blend(below, [t, 1.0], w)), scaled));
         }
-        let doubled = Blend::MultiplyDefocus.join([1.03, 1.0], [2.0, 1.0], 1.0);
+        let doubled = BlendMode::MultiplyDefocus.blend([1.03, 1.0], [2.0, 1.0], 1.0);
         assert!(near(kappas(doubled), kappas([1.03, 1.0]).map(|kappa| 2.0 * kappa)));
-        let [_, anchor] = Blend::MultiplyDefocus.join([1.0, 0.0], [2.0, 1.0], 1.0);
+        let [_, anchor] = BlendMode::MultiplyDefocus.blend([1.0, 0.0], [2.0, 1.0], 1.0);
         assert_eq!(anchor, 0.0, "the lens's own blur cannot grow");
     }
 }

@@ -96,7 +96,7 @@ pub enum Channels {
 
 impl Channels {
     /// Whether t, the anchor, gloss and the mask are touched. Whoever paints a layer paints its mask too.
-    pub fn touches(self) -> [bool; 4] {
+    pub fn write_flags(self) -> [bool; 4] {
         let [t, anchor, gloss] =
             [Self::T, Self::Anchor, Self::Gloss].map(|own| self == own || self == Self::All);
         [t, anchor, gloss, true]
@@ -193,7 +193,7 @@ impl Brush {
         if distance > 1.0 {
             0.0
         } else if let Some(curve) = &self.drawn_falloff {
-            curve.at(distance)
+            curve.evaluate(distance)
         } else if distance <= self.hardness {
             1.0
         } else {
@@ -218,18 +218,18 @@ impl Brush {
     }
 
     /// Whether it says something that programs which only know the world's axes do not understand.
-    pub fn has_own_axes(&self) -> bool {
-        self.mirror_by_object || !self.symmetry().is_along_world()
+    pub fn has_custom_axes(&self) -> bool {
+        self.mirror_by_object || !self.symmetry().has_world_axes()
     }
 
     /// The radius of a dab at a pen pressure.
     pub fn radius_at(&self, pen: PenSample) -> f64 {
-        self.radius * response(self.pressure_to_radius, pen)
+        self.radius * pressure_response(self.pressure_to_radius, pen)
     }
 
     /// The strength of a dab at a pen pressure.
     pub fn strength_at(&self, pen: PenSample) -> f64 {
-        self.strength * response(self.pressure_to_strength, pen)
+        self.strength * pressure_response(self.pressure_to_strength, pen)
     }
 }
 
@@ -239,7 +239,7 @@ fn is_falloff(curve: &Curve) -> bool {
 }
 
 /// 1 at full pressure, 1 − `share` at none.
-fn response(share: f64, pen: PenSample) -> f64 {
+fn pressure_response(share: f64, pen: PenSample) -> f64 {
     1.0 - share * (1.0 - pen.pressure.clamp(0.0, 1.0))
 }
 

@@ -1,7 +1,7 @@
 //! The surface behind the texels of a focus map, found by world position.
 
 use crate::texel_tree::TexelTree;
-use crate::{Changed, FocusMap};
+use crate::{ChangedTexels, FocusMap};
 use atlas::{Atlas, AtlasTexel};
 use glam::{DVec3, Vec3};
 use lens::FocusOffset;
@@ -50,7 +50,7 @@ impl Canvas {
     /// The canvas of an atlas: its covered texels and, for each gutter texel, the covered texel that it
     /// copies (both as [x, y]).
     pub fn new(scene: &Scene, atlas: &Atlas, texels: &[AtlasTexel], gutters: &[[[u32; 2]; 2]]) -> Self {
-        let seen = |texel: &AtlasTexel| {
+        let canvas_texel = |texel: &AtlasTexel| {
             let triangle = texel.centroid.triangle;
             CanvasTexel {
                 x: texel.x,
@@ -62,10 +62,10 @@ impl Canvas {
                 chart: atlas.chart_of[triangle as usize],
             }
         };
-        let part_owners = owners(scene);
+        let part_owners = part_owners(scene);
         Self::from_texels(
             [atlas.width, atlas.height],
-            texels.iter().map(seen).collect(),
+            texels.iter().map(canvas_texel).collect(),
             gutters,
             part_owners,
         )
@@ -92,8 +92,8 @@ impl Canvas {
     }
 
     /// The same surface in other materials: `scene` has the triangles and parts that the canvas was made of.
-    pub fn with_owners_of(&self, scene: &Scene) -> Self {
-        Self { part_owners: owners(scene), ..self.clone() }
+    pub fn with_part_owners(&self, scene: &Scene) -> Self {
+        Self { part_owners: part_owners(scene), ..self.clone() }
     }
 
     /// Columns and rows of the map that it belongs to.
@@ -122,7 +122,7 @@ impl Canvas {
     }
 
     /// A map with these values of the texels, in their order.
-    pub(crate) fn map_of(&self, values: &[[f32; 2]], background: FocusOffset) -> FocusMap {
+    pub(crate) fn map_from_values(&self, values: &[[f32; 2]], background: FocusOffset) -> FocusMap {
         let [width, height] = self.size();
         let mut map = FocusMap::new(width, height, FocusOffset::STANDARD);
         map.background = background;
@@ -137,9 +137,9 @@ impl Canvas {
 
     /// Calls `visit` with the index and distance of every texel whose centroid is at most `radius` from
     /// `center`.
-    pub(crate) fn within(&self, center: DVec3, radius: f64, mut visit: impl FnMut(usize, f32)) {
+    pub(crate) fn visit_within(&self, center: DVec3, radius: f64, mut visit: impl FnMut(usize, f32)) {
         let center = (center - self.origin).as_vec3();
-        self.tree.within(center, radius as f32, &mut |index, squared| visit(index, squared.sqrt()));
+        self.tree.visit_within(center, radius as f32, &mut |index, squared| visit(index, squared.sqrt()));
     }
 
     /// The texel nearest to `center` among those that `accept` lets through, if its centroid is no further
@@ -155,9 +155,9 @@ impl Canvas {
     pub(crate) fn nearest_within(&self, center: DVec3, guess: f64, radius: f64) -> Option<usize> {
         let mut reach = guess.max(radius * 1e-3).min(radius);
         loop {
-            let found = self.nearest_where(center, reach, |_, _| true);
-            if found.is_some() || reach >= radius {
-                return found;
+            let nearest = self.nearest_where(center, reach, |_, _| true);
+            if nearest.is_some() || reach >= radius {
+                return nearest;
             }
             reach = (2.0 * reach).min(radius);
         }
@@ -170,7 +170,7 @@ impl Canvas {
         accept: impl Fn(&CanvasTexel, f32) -> bool,
     ) -> Option<usize> {
         let mut best: Option<(f32, usize)> = None;
-        self.within(center, radius, |index, distance| {
+        self.visit_within(center, radius, |index, distance| {
             let nearer = best.is_none_or(|(least, _)| distance < least);
             if nearer && accept(&self.texels[index], distance) {
                 best = Some((distance, index));
@@ -230,25 +230,25 @@ impl Canvas {
         changed: &mut Vec<[u32; 2]>,
     ) {
         let now = self.value(map, index);
-        let kept = [0, 1, 2, 3].map(|k| if touches[k] { value[k] } else { now[k] });
-        if kept != now {
-            self.write(map, index, kept, changed);
+        let merged = [0, 1, 2, 3].map(|k| if touches[k] { value[k] } else { now[k] });
+        if merged != now {
+            self.write(map, index, merged, changed);
         }
     }
 
     /// Copies every covered texel into its gutters.
-    pub fn dilate(&self, map: &mut FocusMap) -> Changed {
+    pub fn dilate(&self, map: &mut FocusMap) -> ChangedTexels {
         let mut changed = Vec::new();
         for index in 0..self.texels.len() {
             let value = self.value(map, index);
             self.write(map, index, value, &mut changed);
         }
-        Changed::new(changed)
+        ChangedTexels::new(changed)
     }
 }
 
 /// Node and material of each part.
-fn owners(scene: &Scene) -> Vec<[u32; 2]> {
+fn part_owners(scene: &Scene) -> Vec<[u32; 2]> {
     scene.parts.iter().map(|part| [part.node, part.material]).collect()
 }
 
@@ -265,11 +265,11 @@ fn gutters_by_texel(
     for (index, texel) in (0..).zip(texels) {
         index_at[address([texel.x, texel.y])] = index;
     }
-    let index_of = |&[gutter, source]: &[[u32; 2]; 2]| {
+    let covered_gutter = |&[gutter, source]: &[[u32; 2]; 2]| {
         let index = index_at[address(source)];
         (index != NOT_COVERED).then_some((index, gutter))
     };
-    let mut sorted: Vec<(u32, [u32; 2])> = gutters.iter().filter_map(index_of).collect();
+    let mut sorted: Vec<(u32, [u32; 2])> = gutters.iter().filter_map(covered_gutter).collect();
     sorted.sort_unstable();
     let mut starts = vec![0; texels.len() + 1];
     for (index, _) in &sorted {

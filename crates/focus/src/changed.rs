@@ -8,12 +8,12 @@ use std::ops::Range;
 ///
 /// The map is sampled bilinearly, so what lies within one texel of these has changed too.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Changed {
+pub struct ChangedTexels {
     /// Column and row of each.
     pub texels: Vec<[u32; 2]>,
 }
 
-impl Changed {
+impl ChangedTexels {
     /// The given texels, put in order.
     pub(crate) fn new(mut texels: Vec<[u32; 2]>) -> Self {
         texels.sort_unstable_by_key(|[x, y]| (*y, *x));
@@ -31,15 +31,16 @@ impl Changed {
     pub fn rectangles(&self) -> BTreeMap<[u32; 2], [Range<u32>; 2]> {
         let mut rectangles = BTreeMap::new();
         for &[x, y] in &self.texels {
-            let own = [x..x + 1, y..y + 1];
-            let rectangle = rectangles.entry([x / TILE_SIDE, y / TILE_SIDE]).or_insert_with(|| own.clone());
-            *rectangle = union(rectangle, &own);
+            let texel_rectangle = [x..x + 1, y..y + 1];
+            let rectangle =
+                rectangles.entry([x / TILE_SIDE, y / TILE_SIDE]).or_insert_with(|| texel_rectangle.clone());
+            *rectangle = rectangle_union(rectangle, &texel_rectangle);
         }
         rectangles
     }
 
     /// Adds the texels of another edit.
-    pub fn extend(&mut self, other: Changed) {
+    pub fn extend(&mut self, other: ChangedTexels) {
         let mut texels = std::mem::take(&mut self.texels);
         texels.extend(other.texels);
         *self = Self::new(texels);
@@ -47,6 +48,6 @@ impl Changed {
 }
 
 /// The least rectangle around two, columns and rows.
-pub fn union(a: &[Range<u32>; 2], b: &[Range<u32>; 2]) -> [Range<u32>; 2] {
+pub fn rectangle_union(a: &[Range<u32>; 2], b: &[Range<u32>; 2]) -> [Range<u32>; 2] {
     [0, 1].map(|axis| a[axis].start.min(b[axis].start)..a[axis].end.max(b[axis].end))
 }

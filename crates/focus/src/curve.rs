@@ -16,7 +16,7 @@ pub struct Curve {
 
 impl Curve {
     /// Points that a curve may have.
-    pub const MOST_POINTS: usize = 64;
+    pub const MAX_POINTS: usize = 64;
 
     /// The curve through `points`, sorted by x; of points at one x the last counts. `None` without points, with too
     /// many, or with numbers that are not finite.
@@ -35,7 +35,7 @@ impl Curve {
 
     /// Whether it is a curve: [`Self::new`] makes no other, but a file may hold one.
     pub fn is_valid(&self) -> bool {
-        (1..=Self::MOST_POINTS).contains(&self.points.len())
+        (1..=Self::MAX_POINTS).contains(&self.points.len())
             && self.points.as_flattened().iter().all(|number| number.is_finite())
             && self.points.windows(2).all(|pair| pair[0][0] < pair[1][0])
     }
@@ -46,7 +46,7 @@ impl Curve {
     }
 
     /// y at x.
-    pub fn at(&self, x: f64) -> f64 {
+    pub fn evaluate(&self, x: f64) -> f64 {
         let next = self.points.partition_point(|p| p[0] <= x);
         let (Some(after), Some(before)) = (self.points.get(next), next.checked_sub(1)) else {
             let nearest = next.saturating_sub(1).min(self.points.len() - 1);
@@ -85,13 +85,13 @@ mod tests {
         let points = [[0.0, 1.0], [1.0, 1.0], [2.0, 5.0], [2.5, 5.2], [4.0, -1.0]];
         let curve = Curve::new(points).unwrap();
         for [x, y] in points {
-            assert!((curve.at(x) - y).abs() < 1e-12);
+            assert!((curve.evaluate(x) - y).abs() < 1e-12);
         }
         for pair in points.windows(2) {
             let mut last = pair[0][1];
             for k in 0..=100 {
                 let x = pair[0][0] + (pair[1][0] - pair[0][0]) * k as f64 / 100.0;
-                let y = curve.at(x);
+                let y = curve.evaluate(x);
                 assert!(
                     (y - last) * (pair[1][1] - pair[0][1]) >= -1e-12,
                     "monotone between {pair:?}: {last} then {y}"
@@ -99,15 +99,15 @@ mod tests {
                 last = y;
             }
         }
-        assert_eq!(curve.at(0.5), 1.0, "level between equal points");
-        assert_eq!((curve.at(-9.0), curve.at(9.0)), (1.0, -1.0));
+        assert_eq!(curve.evaluate(0.5), 1.0, "level between equal points");
+        assert_eq!((curve.evaluate(-9.0), curve.evaluate(9.0)), (1.0, -1.0));
     }
 
     #[test]
     fn a_straight_row_of_points_is_straight_inside() {
         let curve = Curve::new((0..6).map(|k| [k as f64, 2.0 * k as f64])).unwrap();
         for x in [1.25, 2.5, 3.75] {
-            assert!((curve.at(x) - 2.0 * x).abs() < 1e-12);
+            assert!((curve.evaluate(x) - 2.0 * x).abs() < 1e-12);
         }
     }
 

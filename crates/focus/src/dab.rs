@@ -21,7 +21,7 @@ const NORMAL_ROUNDING: f32 = 1e-5;
 
 impl Dab {
     /// Whether the texel's side of the surface is painted.
-    pub fn faces(&self, brush: &Brush, texel: &CanvasTexel) -> bool {
+    pub fn accepts_normal(&self, brush: &Brush, texel: &CanvasTexel) -> bool {
         match self.normal {
             Some(normal) if texel.normal != Vec3::ZERO => {
                 let least = brush.normal_limit_degrees.to_radians().cos() as f32;
@@ -33,7 +33,7 @@ impl Dab {
 
     /// Texels under the dab (indices into the canvas) and the brush's falloff at each, in (0, 1]. A dab smaller
     /// than the texels takes the one that it lies in.
-    pub fn covered(
+    pub fn covered_texels(
         &self,
         brush: &Brush,
         canvas: &Canvas,
@@ -42,8 +42,8 @@ impl Dab {
         let mut covered = Vec::new();
         let mut any_within = false;
         let is_selected = |index: usize| selection.is_none_or(|selection| selection.contains(index));
-        canvas.within(self.center, self.radius, |index, distance| {
-            if self.faces(brush, &canvas.texels()[index]) {
+        canvas.visit_within(self.center, self.radius, |index, distance| {
+            if self.accepts_normal(brush, &canvas.texels()[index]) {
                 any_within = true;
                 let share = brush.falloff(distance as f64 / self.radius);
                 if share > 0.0 && is_selected(index) {
@@ -52,7 +52,7 @@ impl Dab {
             }
         });
         if !any_within {
-            let texel = canvas.nearest(self.center, |texel| self.faces(brush, texel));
+            let texel = canvas.nearest(self.center, |texel| self.accepts_normal(brush, texel));
             covered.extend(texel.filter(|&index| is_selected(index)).map(|index| (index, 1.0)));
         }
         covered

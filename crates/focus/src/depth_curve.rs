@@ -30,8 +30,8 @@ impl DepthCurve {
     }
 
     /// The focus at a depth: infinite is beyond the last point; what lies behind the camera is as near as can be.
-    pub fn at(&self, depth: f64) -> FocusOffset {
-        FocusOffset::new(self.curve.at(depth.max(f64::MIN_POSITIVE).ln()), self.anchor)
+    pub fn at_depth(&self, depth: f64) -> FocusOffset {
+        FocusOffset::new(self.curve.evaluate(depth.max(f64::MIN_POSITIVE).ln()), self.anchor)
     }
 
     /// The focus of every texel of a canvas, by its depth in `camera`.
@@ -39,8 +39,10 @@ impl DepthCurve {
         let values: Vec<[f32; 2]> = canvas
             .texels()
             .par_iter()
-            .map(|texel| crate::focus_map::texel_of(self.at(camera.camera_from_world(texel.position).z)))
+            .map(|texel| {
+                crate::focus_map::to_texel(self.at_depth(camera.camera_from_world(texel.position).z))
+            })
             .collect();
-        canvas.map_of(&values, self.at(f64::INFINITY))
+        canvas.map_from_values(&values, self.at_depth(f64::INFINITY))
     }
 }

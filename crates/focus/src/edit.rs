@@ -1,7 +1,7 @@
 //! One undoable change of a focus map: its tiles before and after.
 
 use crate::tile_grid::{Tile, TileGrid};
-use crate::{Changed, FocusMap};
+use crate::{ChangedTexels, FocusMap};
 use lens::FocusOffset;
 use std::sync::Arc;
 
@@ -21,7 +21,7 @@ type TileChange<T> = (usize, Arc<Tile<T>>, Arc<Tile<T>>);
 
 /// Which end of a change.
 #[derive(Clone, Copy)]
-enum End {
+enum EditSide {
     Before,
     After,
 }
@@ -30,13 +30,13 @@ impl Edit {
     /// What turns `before` into `after`, two maps of one size that both have a mask or both have none; `None` if
     /// they are equal. Cheap where `after` was made from a clone of `before`: only tiles that were written are
     /// looked at.
-    pub fn between(name: impl Into<String>, before: &FocusMap, after: &FocusMap) -> Option<Self> {
+    pub fn from_difference(name: impl Into<String>, before: &FocusMap, after: &FocusMap) -> Option<Self> {
         debug_assert_eq!(before.size(), after.size());
         debug_assert_eq!(before.mask.is_some(), after.mask.is_some());
-        let values = changes(&before.texels, &after.texels);
-        let gloss = changes(&before.gloss, &after.gloss);
+        let values = tile_changes(&before.texels, &after.texels);
+        let gloss = tile_changes(&before.gloss, &after.gloss);
         let masks = before.mask.as_ref().zip(after.mask.as_ref());
-        let mask = masks.map_or(Vec::new(), |(before, after)| changes(before, after));
+        let mask = masks.map_or(Vec::new(), |(before, after)| tile_changes(before, after));
         let background = [before, after].map(|map| (map.background, map.background_mask));
         let empty =
             values.is_empty() && gloss.is_empty() && mask.is_empty() && background[0] == background[1];
@@ -51,7 +51,7 @@ impl Edit {
     /// Memory that it keeps alive: in a history each tile is shared with the neighbouring edit or the map, so
     /// an edit counts one of its two.
     pub fn bytes(&self) -> usize {
-        size_of::<Self>() + bytes_of(&self.values) + bytes_of(&self.gloss) + bytes_of(&self.mask)
+        size_of::<Self>() + change_bytes(&self.values) + change_bytes(&self.gloss) + change_bytes(&self.mask)
     }
 
     /// Whether the background's focus is part of it.
@@ -60,28 +60,28 @@ impl Edit {
     }
 
     /// Makes the change. Returns what changed.
-    pub fn apply(&self, map: &mut FocusMap) -> Changed {
-        self.replace(map, End::After)
+    pub fn apply(&self, map: &mut FocusMap) -> ChangedTexels {
+        self.replace(map, EditSide::After)
     }
 
     /// Takes the change back, to the same bits. Returns what changed.
-    pub fn revert(&self, map: &mut FocusMap) -> Changed {
-        self.replace(map, End::Before)
+    pub fn revert(&self, map: &mut FocusMap) -> ChangedTexels {
+        self.replace(map, EditSide::Before)
     }
 
-    fn replace(&self, map: &mut FocusMap, end: End) -> Changed {
+    fn replace(&self, map: &mut FocusMap, end: EditSide) -> ChangedTexels {
         let mut changed = replace_tiles(&self.values, &mut map.texels, end);
         changed.extend(replace_tiles(&self.gloss, &mut map.gloss, end));
         if let Some(mask) = &mut map.mask {
             changed.extend(replace_tiles(&self.mask, mask, end));
         }
         (map.background, map.background_mask) = self.background[end as usize];
-        Changed::new(changed)
+        ChangedTexels::new(changed)
     }
 }
 
 /// The tiles in which two grids differ.
-fn changes<T: Copy + PartialEq>(before: &TileGrid<T>, after: &TileGrid<T>) -> Vec<TileChange<T>> {
+fn tile_changes<T: Copy + PartialEq>(before: &TileGrid<T>, after: &TileGrid<T>) -> Vec<TileChange<T>> {
     let pairs = before.tiles().iter().zip(after.tiles()).enumerate();
     let differ = pairs.filter(|(_, (a, b))| !Arc::ptr_eq(a, b) && a != b);
     differ.map(|(index, (a, b))| (index, a.clone(), b.clone())).collect()
@@ -90,20 +90,20 @@ fn changes<T: Copy + PartialEq>(before: &TileGrid<T>, after: &TileGrid<T>) -> Ve
 fn replace_tiles<T: Copy + PartialEq>(
     changes: &[TileChange<T>],
     grid: &mut TileGrid<T>,
-    end: End,
+    end: EditSide,
 ) -> Vec<[u32; 2]> {
     let mut changed = Vec::new();
     for (index, before, after) in changes {
-        changed.extend(grid.differing(*index, before, after));
+        changed.extend(grid.differing_texels(*index, before, after));
         let tile = match end {
-            End::Before => before,
-            End::After => after,
+            EditSide::Before => before,
+            EditSide::After => after,
         };
         grid.set_tile(*index, tile.clone());
     }
     changed
 }
 
-fn bytes_of<T>(changes: &[TileChange<T>]) -> usize {
+fn change_bytes<T>(changes: &[TileChange<T>]) -> usize {
     changes.len() * (size_of::<Tile<T>>() + size_of::<TileChange<T>>())
 }

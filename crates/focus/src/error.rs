@@ -47,7 +47,7 @@ pub enum FocusError {
         problem: &'static str,
     },
     /// One layer more than there may be.
-    #[error("layers: there are {} already (remove one first)", crate::LayerStack::MOST_LAYERS)]
+    #[error("layers: there are {} already (remove one first)", crate::LayerStack::MAX_LAYERS)]
     TooManyLayers,
     /// The map belongs to another atlas.
     #[error("the focus map has {}×{} texels, the atlas {}×{} (bake the focus again for this atlas)", map[0], map[1], canvas[0], canvas[1])]

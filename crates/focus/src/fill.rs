@@ -1,7 +1,7 @@
 //! The same value over a whole piece of the scene.
 
-use crate::focus_map::numbers_of;
-use crate::{Canvas, CanvasTexel, Changed, Channels, FocusError, FocusMap, Selection};
+use crate::focus_map::to_numbers;
+use crate::{Canvas, CanvasTexel, ChangedTexels, Channels, FocusError, FocusMap, Selection};
 use lens::FocusOffset;
 use serde::{Deserialize, Serialize};
 
@@ -45,7 +45,7 @@ pub fn fill(
     target: FillTarget,
     value: FocusOffset,
     channels: Channels,
-) -> Result<Changed, FocusError> {
+) -> Result<ChangedTexels, FocusError> {
     fill_selected(map, canvas, &[target], (value, channels), None)
 }
 
@@ -57,14 +57,14 @@ pub fn fill_selected(
     targets: &[FillTarget],
     (value, channels): (FocusOffset, Channels),
     selection: Option<&Selection>,
-) -> Result<Changed, FocusError> {
+) -> Result<ChangedTexels, FocusError> {
     if !value.is_valid() {
         return Err(FocusError::BadValue { entry: "fill".to_string() });
     }
     if map.size() != canvas.size() {
         return Err(FocusError::SizesDiffer { map: map.size(), canvas: canvas.size() });
     }
-    let touches = channels.touches();
+    let touches = channels.write_flags();
     if targets.contains(&FillTarget::Background) {
         let [t, anchor, gloss, _] = touches;
         map.background_mask = 1.0;
@@ -72,7 +72,7 @@ pub fn fill_selected(
         map.background.anchor = if anchor { value.anchor } else { map.background.anchor };
         map.background.gloss = if gloss { value.gloss } else { map.background.gloss };
     }
-    let [t, anchor, gloss] = numbers_of(value);
+    let [t, anchor, gloss] = to_numbers(value);
     let mut changed = Vec::new();
     for (index, texel) in canvas.texels().iter().enumerate() {
         let is_inside = targets.iter().any(|target| target.contains(canvas, texel));
@@ -80,5 +80,5 @@ pub fn fill_selected(
             canvas.write_channels(map, index, [t, anchor, gloss, 1.0], touches, &mut changed);
         }
     }
-    Ok(Changed::new(changed))
+    Ok(ChangedTexels::new(changed))
 }

@@ -30,10 +30,10 @@ pub struct FocalPlane {
 }
 
 /// Larger offsets are taken as this large: a plane seen edge-on blurs everything beside it without bound.
-const LARGEST_OFFSET: f64 = 1e9;
+const MAX_OFFSET: f64 = 1e9;
 
 /// Angles between a plane and the picture stay below a right angle by this, rad.
-const STEEPEST: f64 = 1e-3;
+const MIN_GRAZING_ANGLE: f64 = 1e-3;
 
 impl FocalPlane {
     /// The plane through three points. `None` where they lie in one line, or are no numbers.
@@ -54,11 +54,11 @@ impl FocalPlane {
     /// Whether it can be used.
     pub fn is_valid(&self) -> bool {
         /// Sine of the angle between two edges below which three points are one line: positions in files are 32-bit floats.
-        const NARROWEST: f64 = 1e-5;
+        const MIN_SPREAD: f64 = 1e-5;
         let [a, b] = self.edges();
         let spread = a.cross(b).length() / (a.length() * b.length());
         let is_finite = self.points.iter().all(|point| point.is_finite()) && self.curvature.is_finite();
-        is_finite && spread > NARROWEST
+        is_finite && spread > MIN_SPREAD
     }
 
     fn edges(&self) -> [DVec3; 2] {
@@ -78,17 +78,17 @@ impl FocalPlane {
 
     /// How it is turned against the picture, rad: tilt about the camera's x axis (above 0 its upper part is nearer), and
     /// swing about its y axis (above 0 its right part is nearer). Within a right angle either way.
-    pub fn turn(&self, camera: &Camera) -> [f64; 2] {
+    pub fn tilt_and_swing(&self, camera: &Camera) -> [f64; 2] {
         let normal = self.normal(camera);
         [normal.y.atan2(normal.z), normal.x.atan2(normal.z)]
     }
 
     /// Turned so about its points' middle; see [`Self::turn`].
-    pub fn turned(&self, camera: &Camera, turn: [f64; 2]) -> Self {
-        let steepest = std::f64::consts::FRAC_PI_2 - STEEPEST;
-        let [tilt, swing] = turn.map(|angle| angle.clamp(-steepest, steepest).tan());
-        let wanted = camera.world_direction(DVec3::new(swing, tilt, 1.0).normalize());
-        let rotation = DQuat::from_rotation_arc(camera.world_direction(self.normal(camera)), wanted);
+    pub fn with_tilt_and_swing(&self, camera: &Camera, tilt_and_swing: [f64; 2]) -> Self {
+        let steepest = std::f64::consts::FRAC_PI_2 - MIN_GRAZING_ANGLE;
+        let [tilt, swing] = tilt_and_swing.map(|angle| angle.clamp(-steepest, steepest).tan());
+        let target_normal = camera.world_direction(DVec3::new(swing, tilt, 1.0).normalize());
+        let rotation = DQuat::from_rotation_arc(camera.world_direction(self.normal(camera)), target_normal);
         let middle = self.middle();
         Self { points: self.points.map(|point| middle + rotation * (point - middle)), ..self.clone() }
     }
@@ -100,34 +100,36 @@ impl FocalPlane {
     }
 
     /// Moved along the camera's axis to meet it at this depth; as it is where it runs along the axis.
-    pub fn at_depth_on_axis(&self, camera: &Camera, depth: f64) -> Self {
-        let way = depth - self.depth_on_axis(camera);
-        let way = if way.is_finite() { camera.world_direction(DVec3::Z) * way } else { DVec3::ZERO };
-        Self { points: self.points.map(|point| point + way), ..self.clone() }
+    pub fn with_depth_on_axis(&self, camera: &Camera, depth: f64) -> Self {
+        let shift = depth - self.depth_on_axis(camera);
+        let shift = if shift.is_finite() { camera.world_direction(DVec3::Z) * shift } else { DVec3::ZERO };
+        Self { points: self.points.map(|point| point + shift), ..self.clone() }
     }
 
     /// The focus of a camera-space point: see the type. Behind the camera, where nothing is seen, the ordinary lens's.
-    fn at(&self, seen: &SeenPlane, point: DVec3) -> FocusOffset {
+    fn offset_at(&self, plane: &CameraSpacePlane, point: DVec3) -> FocusOffset {
         if point.z <= 0.0 {
             return FocusOffset::STANDARD;
         }
-        seen.focus(point / point.z, 1.0 / point.z)
+        plane.offset_toward(point / point.z, 1.0 / point.z)
     }
 
     /// The focus of every texel of a canvas, as `camera` sees it. The background's is that of the picture's middle.
     pub fn evaluate(&self, canvas: &Canvas, camera: &Camera) -> FocusMap {
-        let seen = SeenPlane::of(self, camera);
+        let plane = CameraSpacePlane::new(self, camera);
         let values: Vec<[f32; 2]> = canvas
             .texels()
             .par_iter()
-            .map(|texel| crate::focus_map::texel_of(self.at(&seen, camera.camera_from_world(texel.position))))
+            .map(|texel| {
+                crate::focus_map::to_texel(self.offset_at(&plane, camera.camera_from_world(texel.position)))
+            })
             .collect();
-        canvas.map_of(&values, seen.focus(DVec3::Z, 0.0))
+        canvas.map_from_values(&values, plane.offset_toward(DVec3::Z, 0.0))
     }
 }
 
 /// A focal plane as a camera sees it.
-struct SeenPlane {
+struct CameraSpacePlane {
     /// n/c in camera space: the plane is where its product with a point is 1.
     plane: DVec3,
     /// curvature/tan²θ.
@@ -135,8 +137,8 @@ struct SeenPlane {
     image_distance: f64,
 }
 
-impl SeenPlane {
-    fn of(plane: &FocalPlane, camera: &Camera) -> Self {
+impl CameraSpacePlane {
+    fn new(plane: &FocalPlane, camera: &Camera) -> Self {
         let optics = camera.optics();
         let normal = plane.normal(camera);
         Self {
@@ -147,11 +149,11 @@ impl SeenPlane {
     }
 
     /// The focus of what is seen in `direction` (of depth 1) at the reciprocal of its depth.
-    fn focus(&self, direction: DVec3, inverse_depth: f64) -> FocusOffset {
+    fn offset_toward(&self, direction: DVec3, inverse_depth: f64) -> FocusOffset {
         let surface = self.plane.dot(direction) + self.curvature * direction.truncate().length_squared();
         let t = 1.0 + self.image_distance * (surface - inverse_depth);
         // A camera in the plane divides by 0, and in its own plane 0 by 0: that direction is in focus at every depth.
-        let t = if t.is_nan() { 1.0 } else { t.clamp(-LARGEST_OFFSET, LARGEST_OFFSET) };
+        let t = if t.is_nan() { 1.0 } else { t.clamp(-MAX_OFFSET, MAX_OFFSET) };
         FocusOffset::new(t, 1.0)
     }
 }

@@ -24,8 +24,8 @@ impl FocusImage {
     pub fn sample(&self, uv: DVec2, wrap: [Wrap; 2]) -> FocusOffset {
         let p = uv * DVec2::new(self.width as f64, self.height as f64) - DVec2::splat(0.5);
         let low = p.floor();
-        let [x0, x1] = [low.x, low.x + 1.0].map(|x| wrapped(x, self.width, wrap[0]));
-        let [y0, y1] = [low.y, low.y + 1.0].map(|y| wrapped(y, self.height, wrap[1]));
+        let [x0, x1] = [low.x, low.x + 1.0].map(|x| wrap_index(x, self.width, wrap[0]));
+        let [y0, y1] = [low.y, low.y + 1.0].map(|y| wrap_index(y, self.height, wrap[1]));
         let corners = [[x0, y0], [x1, y0], [x0, y1], [x1, y1]].map(|[x, y]| y * self.width as usize + x);
         let [t, anchor] = bilinear(corners.map(|index| self.texels[index]), p - low);
         let gloss =
@@ -39,17 +39,18 @@ impl FocusImage {
         let indices = |axis: usize, count: u32| {
             let [first, last] = box_texels.map(|corner| corner[axis]);
             // Two rounds show every texel, however the picture goes on; what is not a number may be any.
-            let some = last - first < 2.0 * f64::from(count);
-            let (start, steps) = if some { (first, (last - first) as u32 + 1) } else { (0.0, 2 * count) };
-            (0..steps).map(move |k| wrapped(start + f64::from(k), count, wrap[axis]))
+            let is_partial = last - first < 2.0 * f64::from(count);
+            let (start, steps) =
+                if is_partial { (first, (last - first) as u32 + 1) } else { (0.0, 2 * count) };
+            (0..steps).map(move |k| wrap_index(start + f64::from(k), count, wrap[axis]))
         };
         let columns: Vec<usize> = indices(0, self.width).collect();
         let rows = indices(1, self.height);
-        bounds(rows.flat_map(|y| columns.iter().map(move |x| self.at(y * self.width as usize + x))))
+        bounds(rows.flat_map(|y| columns.iter().map(move |x| self.offset_at(y * self.width as usize + x))))
     }
 
     /// The value of a texel.
-    fn at(&self, index: usize) -> FocusOffset {
+    fn offset_at(&self, index: usize) -> FocusOffset {
         let [t, anchor] = self.texels[index].map(f64::from);
         FocusOffset { t, anchor, gloss: self.gloss.as_ref().map_or(0.0, |gloss| f64::from(gloss[index])) }
     }
@@ -62,7 +63,7 @@ impl FocusImage {
 }
 
 /// The texel that stands for texel `i`, a whole number, of `count`.
-fn wrapped(i: f64, count: u32, wrap: Wrap) -> usize {
+fn wrap_index(i: f64, count: u32, wrap: Wrap) -> usize {
     let n = count as f64;
     let folded = match wrap {
         Wrap::Repeat => i.rem_euclid(n),
@@ -76,7 +77,7 @@ fn wrapped(i: f64, count: u32, wrap: Wrap) -> usize {
 }
 
 /// The texture coordinates of a point with the given corner weights.
-pub(crate) fn interpolate(corners: [Vec2; 3], [wa, wb, wc]: [f64; 3]) -> DVec2 {
+pub(crate) fn interpolate_uv(corners: [Vec2; 3], [wa, wb, wc]: [f64; 3]) -> DVec2 {
     let [a, b, c] = corners.map(Vec2::as_dvec2);
     a * wa + b * wb + c * wc
 }

@@ -29,13 +29,13 @@ pub struct FocusMap {
 impl FocusMap {
     /// A map of one value, the background included. Both sides must be above 0.
     pub fn new(width: u32, height: u32, value: FocusOffset) -> Self {
-        let texels = TileGrid::new(width, height, texel_of(value));
+        let texels = TileGrid::new(width, height, to_texel(value));
         let gloss = TileGrid::new(width, height, value.gloss as f32).with_blank_tiles();
         Self { texels, gloss, mask: None, background: value, background_mask: 1.0 }
     }
 
     /// A map of the ordinary lens whose mask is 0: nothing of it counts yet.
-    pub fn clear(width: u32, height: u32) -> Self {
+    pub fn transparent(width: u32, height: u32) -> Self {
         let mut map = Self::new(width, height, FocusOffset::STANDARD);
         map.mask = Some(TileGrid::new(width, height, 0.0));
         map.background_mask = 0.0;
@@ -44,7 +44,7 @@ impl FocusMap {
 
     /// A map of the given texels, [t, anchor] each and without gloss, row 0 on top. `None` unless there are width × height.
     pub fn from_rows(width: u32, height: u32, texels: &[[f32; 2]], background: FocusOffset) -> Option<Self> {
-        let texels = TileGrid::from_rows(width, height, texels, texel_of(FocusOffset::STANDARD))?;
+        let texels = TileGrid::from_rows(width, height, texels, to_texel(FocusOffset::STANDARD))?;
         let gloss = TileGrid::blank(width, height);
         Some(Self { texels, gloss, mask: None, background, background_mask: 1.0 })
     }
@@ -170,7 +170,7 @@ impl FocusMap {
     /// (i + ½, j + ½)), bilinear; outside the map its border goes on. Between equal texels it is exactly
     /// their value.
     pub fn sample(&self, position: DVec2) -> FocusOffset {
-        let (corners, share) = self.around(position);
+        let (corners, share) = self.bilinear_corners(position);
         let [t, anchor] = bilinear(corners.map(|[x, y]| self.texel(x, y)), share);
         let gloss = match self.gloss.is_blank_at(corners.into_iter()) {
             true => 0.0,
@@ -181,12 +181,12 @@ impl FocusMap {
 
     /// The same of the mask: how much the map counts as a layer there, in [0, 1].
     pub fn sample_mask(&self, position: DVec2) -> f32 {
-        let (corners, share) = self.around(position);
+        let (corners, share) = self.bilinear_corners(position);
         bilinear(corners.map(|[x, y]| [self.mask_at(x, y)]), share)[0] as f32
     }
 
     /// The four texels around a position, and where it lies between them.
-    fn around(&self, position: DVec2) -> ([[u32; 2]; 4], DVec2) {
+    fn bilinear_corners(&self, position: DVec2) -> ([[u32; 2]; 4], DVec2) {
         let last = UVec2::from(self.size()) - UVec2::ONE;
         let p = (position - DVec2::splat(0.5)).clamp(DVec2::ZERO, last.as_dvec2());
         let low = p.as_uvec2();
@@ -198,7 +198,7 @@ impl FocusMap {
     /// The least and the greatest t, anchor and gloss of the texels of a box, the first and the last column and row;
     /// outside the map its border goes on.
     pub fn bounds(&self, box_texels: [DVec2; 2]) -> [FocusOffset; 2] {
-        let within = |axis: usize, count: u32| {
+        let texel_range = |axis: usize, count: u32| {
             let [first, last] = box_texels.map(|corner| corner[axis]);
             let greatest = f64::from(count - 1);
             // Not `clamp`, which keeps what is not a number: that may be anywhere.
@@ -207,8 +207,8 @@ impl FocusMap {
             first as u32..=last as u32
         };
         let [width, height] = self.size();
-        let columns = within(0, width);
-        bounds(within(1, height).flat_map(|y| columns.clone().map(move |x| self.at(x, y))))
+        let columns = texel_range(0, width);
+        bounds(texel_range(1, height).flat_map(|y| columns.clone().map(move |x| self.at(x, y))))
     }
 
     /// Whether this is a snapshot of another map, or the other way round, and neither was written since. Quick: where both
@@ -235,23 +235,23 @@ impl FocusMap {
 /// The least and the greatest t, anchor and gloss of some texels, at least one.
 pub(crate) fn bounds(texels: impl Iterator<Item = FocusOffset>) -> [FocusOffset; 2] {
     let all = |number: f64| FocusOffset { t: number, anchor: number, gloss: number };
-    let by = |pick: fn(f64, f64) -> f64, a: FocusOffset, b: FocusOffset| FocusOffset {
+    let componentwise = |pick: fn(f64, f64) -> f64, a: FocusOffset, b: FocusOffset| FocusOffset {
         t: pick(a.t, b.t),
         anchor: pick(a.anchor, b.anchor),
         gloss: pick(a.gloss, b.gloss),
     };
     texels.fold([all(f64::INFINITY), all(f64::NEG_INFINITY)], |[least, greatest], texel| {
-        [by(f64::min, least, texel), by(f64::max, greatest, texel)]
+        [componentwise(f64::min, least, texel), componentwise(f64::max, greatest, texel)]
     })
 }
 
 /// [t, anchor] of a value, as the map holds it.
-pub(crate) fn texel_of(value: FocusOffset) -> [f32; 2] {
+pub(crate) fn to_texel(value: FocusOffset) -> [f32; 2] {
     [value.t as f32, value.anchor as f32]
 }
 
 /// t, anchor and gloss of a value, as the map holds them.
-pub(crate) fn numbers_of(value: FocusOffset) -> [f32; 3] {
+pub(crate) fn to_numbers(value: FocusOffset) -> [f32; 3] {
     [value.t as f32, value.anchor as f32, value.gloss as f32]
 }
 

@@ -1,9 +1,9 @@
 //! Gradients: a focus that changes evenly along a line, over everything that may be painted.
 
 use crate::brush::FocusOffsetFields;
-use crate::focus_map::numbers_of;
-use crate::wash::over;
-use crate::{Canvas, Changed, Channels, FocusError, FocusMap, Selection, Symmetry, ViewFrame};
+use crate::focus_map::to_numbers;
+use crate::wash::paint_over;
+use crate::{Canvas, ChangedTexels, Channels, FocusError, FocusMap, Selection, Symmetry, ViewFrame};
 use glam::{DVec2, DVec3};
 use lens::FocusOffset;
 use rayon::prelude::*;
@@ -91,12 +91,12 @@ impl Gradient {
 
     /// How far along the gradient a world point lies: 0 at its start, 1 at its end, clamped; of several images the
     /// nearest to the start. A point behind the eye of the gradient's view lies at its end.
-    pub fn along(&self, point: DVec3) -> f64 {
+    pub fn position_along(&self, point: DVec3) -> f64 {
         let images = self.symmetry.images();
-        images.iter().map(|image| self.along_one(image.original(point))).fold(1.0, f64::min)
+        images.iter().map(|image| self.position_along_image(image.original(point))).fold(1.0, f64::min)
     }
 
-    fn along_one(&self, point: DVec3) -> f64 {
+    fn position_along_image(&self, point: DVec3) -> f64 {
         let (away, whole) = match self.line {
             GradientLine::World([a, b]) => (point - a, b - a),
             GradientLine::View(view, [a, b]) => {
@@ -120,26 +120,27 @@ pub fn draw_gradient(
     gradient: &Gradient,
     channels: Channels,
     selection: Option<&Selection>,
-) -> Result<Changed, FocusError> {
+) -> Result<ChangedTexels, FocusError> {
     if !gradient.is_valid() {
         return Err(FocusError::BadValue { entry: "gradient".to_string() });
     }
     if map.size() != canvas.size() {
         return Err(FocusError::SizesDiffer { map: map.size(), canvas: canvas.size() });
     }
-    let along: Vec<f64> = canvas.texels().par_iter().map(|texel| gradient.along(texel.position)).collect();
-    let from = numbers_of(gradient.from);
+    let positions: Vec<f64> =
+        canvas.texels().par_iter().map(|texel| gradient.position_along(texel.position)).collect();
+    let from = to_numbers(gradient.from);
     let mut changed = Vec::new();
-    for (index, along) in along.into_iter().enumerate() {
+    for (index, position) in positions.into_iter().enumerate() {
         if !selection.is_none_or(|selection| selection.contains(index)) {
             continue;
         }
         let value = match gradient.to {
-            None => over(canvas.value(map, index), from, (1.0 - along) as f32),
+            None => paint_over(canvas.value(map, index), from, (1.0 - position) as f32),
             Some(to) => {
-                let mix = |a: f64, b: f64| if along >= 1.0 { b } else { a + (b - a) * along };
+                let mix = |a: f64, b: f64| if position >= 1.0 { b } else { a + (b - a) * position };
                 let from = gradient.from;
-                let [t, anchor, gloss] = numbers_of(FocusOffset {
+                let [t, anchor, gloss] = to_numbers(FocusOffset {
                     t: mix(from.t, to.t),
                     anchor: mix(from.anchor, to.anchor),
                     gloss: mix(from.gloss, to.gloss),
@@ -147,7 +148,7 @@ pub fn draw_gradient(
                 [t, anchor, gloss, 1.0]
             }
         };
-        canvas.write_channels(map, index, value, channels.touches(), &mut changed);
+        canvas.write_channels(map, index, value, channels.write_flags(), &mut changed);
     }
-    Ok(Changed::new(changed))
+    Ok(ChangedTexels::new(changed))
 }

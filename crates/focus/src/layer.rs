@@ -1,6 +1,6 @@
 //! One layer of focus.
 
-use crate::{Adjustment, Blend, Canvas, FocusMap, LayerMotion};
+use crate::{Adjustment, BlendMode, Canvas, FocusMap, LayerMotion};
 use lens::Camera;
 
 /// A layer: its values, how much each counts, and how they join what lies beneath.
@@ -13,7 +13,7 @@ pub struct FocusLayer {
     /// How much it counts, in [0, 1].
     pub opacity: f64,
     /// How it joins what lies beneath.
-    pub blend: Blend,
+    pub blend: BlendMode,
     /// Its values and its mask. An adjustment layer has its values from its rule, for the shot camera that it was last
     /// evaluated for; only its mask is painted.
     pub map: FocusMap,
@@ -25,25 +25,30 @@ pub struct FocusLayer {
 
 impl FocusLayer {
     /// A layer of the values of a map.
-    pub fn painted(name: impl Into<String>, map: FocusMap) -> Self {
-        let (is_visible, opacity, blend) = (true, 1.0, Blend::Set);
+    pub fn from_map(name: impl Into<String>, map: FocusMap) -> Self {
+        let (is_visible, opacity, blend) = (true, 1.0, BlendMode::Set);
         let (adjustment, motion) = (None, LayerMotion::default());
         Self { name: name.into(), is_visible, opacity, blend, map, adjustment, motion }
     }
 
     /// An adjustment layer.
-    pub fn adjusted(name: impl Into<String>, rule: Adjustment, canvas: &Canvas, camera: &Camera) -> Self {
-        let map = rule.evaluate(canvas, camera);
-        Self { adjustment: Some(rule), ..Self::painted(name, map) }
+    pub fn from_adjustment(
+        name: impl Into<String>,
+        adjustment: Adjustment,
+        canvas: &Canvas,
+        camera: &Camera,
+    ) -> Self {
+        let map = adjustment.evaluate(canvas, camera);
+        Self { adjustment: Some(adjustment), ..Self::from_map(name, map) }
     }
 
     /// Whether it hides all that lies beneath it: then it alone counts.
     pub fn is_plain(&self) -> bool {
-        self.is_visible && self.opacity == 1.0 && self.blend == Blend::Set && !self.map.has_mask()
+        self.is_visible && self.opacity == 1.0 && self.blend == BlendMode::Set && !self.map.has_mask()
     }
 
     /// How much each texel of a tile counts, in [0, 1]: opacity times mask. `None` where none does.
-    pub(crate) fn shares(&self, tile: usize) -> Option<impl Fn(usize) -> f32> {
+    pub(crate) fn tile_shares(&self, tile: usize) -> Option<impl Fn(usize) -> f32> {
         let (opacity, mask) = (self.opacity as f32, self.map.mask.as_ref().map(|mask| &mask.tiles()[tile]));
         let is_empty = mask.is_some_and(|mask| mask.iter().all(|m| *m == 0.0));
         let counts = self.is_visible && !is_empty;
@@ -52,21 +57,21 @@ impl FocusLayer {
 
     /// Takes the values of its rule, if it has one, for a shot camera; the mask stays.
     pub fn evaluate(&mut self, canvas: &Canvas, camera: &Camera) {
-        if let Some(rule) = &self.adjustment {
-            let values = rule.evaluate(canvas, camera);
+        if let Some(adjustment) = &self.adjustment {
+            let values = adjustment.evaluate(canvas, camera);
             (self.map.texels, self.map.background) = (values.texels, values.background);
         }
     }
 
     /// The layer as it is at a time, without motion. What counts by depth is looked up where `canvas` says that the surface is, as
     /// `camera` sees it.
-    pub(crate) fn at(&self, seconds: f64, canvas: Option<&Canvas>, camera: &Camera) -> Self {
+    pub(crate) fn at_time(&self, seconds: f64, canvas: Option<&Canvas>, camera: &Camera) -> Self {
         let mut still = Self { motion: LayerMotion::default(), ..self.clone() };
-        if let Some(opacity) = self.motion.opacity.around(seconds) {
-            still.opacity = opacity.number();
+        if let Some(opacity) = self.motion.opacity.span_at(seconds) {
+            still.opacity = opacity.interpolate();
         }
         if let Some(canvas) = canvas {
-            self.motion.mask(seconds, &mut still.map, canvas, camera);
+            self.motion.apply_mask(seconds, &mut still.map, canvas, camera);
             still.evaluate(canvas, camera);
         }
         still

@@ -1,7 +1,7 @@
 //! A change of the layers of focus.
 
 use crate::{
-    Adjustment, Blend, Canvas, DepthCurve, FocalPlane, FocusError, FocusLayer, FocusMap, LayerMotion,
+    Adjustment, BlendMode, Canvas, DepthCurve, FocalPlane, FocusError, FocusLayer, FocusMap, LayerMotion,
     LayerStack,
 };
 use lens::Camera;
@@ -29,7 +29,7 @@ pub enum LayerEdit {
     /// How much it counts, in [0, 1].
     Opacity(usize, f64),
     /// How it joins what lies beneath.
-    Blend(usize, Blend),
+    Blend(usize, BlendMode),
     /// To another place.
     Shift {
         /// From where.
@@ -76,7 +76,7 @@ impl LayerEdit {
 
     /// What is changed little by little: edits of the same thing in a row are one step of undo. `None` for an edit that is
     /// a step of its own.
-    pub fn dragged(&self) -> Option<(&'static str, usize)> {
+    pub fn drag_target(&self) -> Option<(&'static str, usize)> {
         match self {
             Self::Rename(index, _)
             | Self::Opacity(index, _)
@@ -92,26 +92,39 @@ impl LayerEdit {
         match self {
             Self::AddPaint => {
                 let [width, height] = layers.size();
-                let layer = FocusLayer::painted(free_name(layers, "Layer"), FocusMap::clear(width, height));
-                return inserted(layers, layer);
+                let layer =
+                    FocusLayer::from_map(unique_name(layers, "Layer"), FocusMap::transparent(width, height));
+                return insert_layer(layers, layer);
             }
             Self::AddCurve => {
-                let Some(curve) = first_curve(canvas, camera) else {
+                let Some(curve) = default_curve(canvas, camera) else {
                     return bad("nothing stands before the camera (turn it toward the scene)");
                 };
-                return adjusted(layers, "Depth curve", Adjustment::Curve(curve), canvas, camera);
+                return insert_adjustment_layer(
+                    layers,
+                    "Depth curve",
+                    Adjustment::Curve(curve),
+                    canvas,
+                    camera,
+                );
             }
             Self::AddPlane => {
-                let Some(plane) = first_plane(canvas, camera) else {
+                let Some(plane) = default_plane(canvas, camera) else {
                     return bad("nothing stands before the camera (turn it toward the scene)");
                 };
-                return adjusted(layers, "Focal plane", Adjustment::Plane(plane), canvas, camera);
+                return insert_adjustment_layer(
+                    layers,
+                    "Focal plane",
+                    Adjustment::Plane(plane),
+                    canvas,
+                    camera,
+                );
             }
             Self::Duplicate(index) => {
                 let Some(layer) = layers.layers().get(index) else { return bad("there is no such layer") };
-                let name = free_name(layers, &layer.name);
+                let name = unique_name(layers, &layer.name);
                 let copy = FocusLayer { name, ..layer.clone() };
-                return inserted(layers, copy);
+                return insert_layer(layers, copy);
             }
             Self::Remove(index) => {
                 if !layers.remove(index) {
@@ -120,7 +133,7 @@ impl LayerEdit {
                 return Ok(());
             }
             Self::Shift { from, to } => {
-                layers.shift(from, to);
+                layers.move_layer(from, to);
                 return Ok(());
             }
             Self::Opacity(_, opacity) if !(0.0..=1.0).contains(&opacity) => {
@@ -186,50 +199,50 @@ impl LayerEdit {
 }
 
 /// Puts an adjustment layer with a mask that counts everywhere above the active one.
-fn adjusted(
+fn insert_adjustment_layer(
     layers: &mut LayerStack,
-    wanted: &str,
-    rule: Adjustment,
+    base_name: &str,
+    adjustment: Adjustment,
     canvas: &Canvas,
     camera: &Camera,
 ) -> Result<(), FocusError> {
-    let mut layer = FocusLayer::adjusted(free_name(layers, wanted), rule, canvas, camera);
+    let mut layer = FocusLayer::from_adjustment(unique_name(layers, base_name), adjustment, canvas, camera);
     layer.map.add_mask();
-    inserted(layers, layer)
+    insert_layer(layers, layer)
 }
 
-fn inserted(layers: &mut LayerStack, layer: FocusLayer) -> Result<(), FocusError> {
+fn insert_layer(layers: &mut LayerStack, layer: FocusLayer) -> Result<(), FocusError> {
     if layers.insert(layer) { Ok(()) } else { Err(FocusError::TooManyLayers) }
 }
 
 /// `wanted`, with the first number that no layer has yet.
-fn free_name(layers: &LayerStack, wanted: &str) -> String {
-    let stem = wanted.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end();
-    let taken = |name: &str| layers.layers().iter().any(|layer| layer.name == name);
+fn unique_name(layers: &LayerStack, base_name: &str) -> String {
+    let stem = base_name.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end();
+    let is_taken = |name: &str| layers.layers().iter().any(|layer| layer.name == name);
     let numbered = (1..).map(|number| format!("{stem} {number}"));
-    numbered.into_iter().find(|name| !taken(name)).unwrap_or_else(|| stem.to_string())
+    numbered.into_iter().find(|name| !is_taken(name)).unwrap_or_else(|| stem.to_string())
 }
 
 /// The nearest and the farthest depth of anything before the camera; the first is infinite where there is nothing.
-fn depths(canvas: &Canvas, camera: &Camera) -> [f64; 2] {
+fn depth_range(canvas: &Canvas, camera: &Camera) -> [f64; 2] {
     let depths = canvas.texels().iter().map(|texel| camera.camera_from_world(texel.position).z);
     let before = depths.filter(|depth| *depth > 0.0);
     before.fold([f64::INFINITY, 0.0], |[near, far], depth| [depth.min(near), depth.max(far)])
 }
 
 /// Where the lens focuses, or at the farthest thing before it.
-fn first_plane(canvas: &Canvas, camera: &Camera) -> Option<FocalPlane> {
-    let [_, far] = depths(canvas, camera);
+fn default_plane(canvas: &Canvas, camera: &Camera) -> Option<FocalPlane> {
+    let [_, far] = depth_range(canvas, camera);
     let depth = camera.focus_distance.min(far);
     (depth > 0.0).then(|| FocalPlane::facing(camera, depth))
 }
 
 /// Sharp from the nearest to the farthest thing, with a point to take hold of where the lens focuses.
-fn first_curve(canvas: &Canvas, camera: &Camera) -> Option<DepthCurve> {
-    let [near, far] = depths(canvas, camera);
+fn default_curve(canvas: &Canvas, camera: &Camera) -> Option<DepthCurve> {
+    let [near, far] = depth_range(canvas, camera);
     let curve = DepthCurve::sharp_between(near, far)?;
     let focus = camera.focus_distance;
     let points = curve.curve.points().iter().copied();
-    let held = (focus > near * 1.05 && focus < far / 1.05).then_some([focus.ln(), 1.0]);
-    Some(DepthCurve { curve: crate::Curve::new(points.chain(held))?, ..curve })
+    let focus_point = (focus > near * 1.05 && focus < far / 1.05).then_some([focus.ln(), 1.0]);
+    Some(DepthCurve { curve: crate::Curve::new(points.chain(focus_point))?, ..curve })
 }

@@ -10,6 +10,6 @@ mod keys;
 mod layer_motion;
 mod lens_motion;
 
-pub use keys::{Between, Ease, Key, Keys};
+pub use keys::{Ease, Key, KeySpan, Keys};
 pub use layer_motion::LayerMotion;
 pub use lens_motion::{FocusTarget, LensMotion};

@@ -68,7 +68,7 @@ impl FocusRecipe {
                 RecipeEntry::Value(value) if value.is_valid() => Ok(FocusSource::Constant(*value)),
                 RecipeEntry::Value(_) => Err(FocusError::BadValue { entry: label }),
                 RecipeEntry::Map(image) if part.has_uv[0] => {
-                    Ok(FocusSource::Uv { image: image.clone(), wrap: surface_wrap(material) })
+                    Ok(FocusSource::Uv { image: image.clone(), wrap: material_wrap(material) })
                 }
                 RecipeEntry::Map(_) => Err(FocusError::NoTextureCoordinates {
                     entry: label,
@@ -94,7 +94,7 @@ impl FocusRecipe {
 
 /// The wrap of the texture that gives the material its colour: base colour, or emission where the base is
 /// black; without a texture it repeats.
-fn surface_wrap(material: &Material) -> [Wrap; 2] {
+fn material_wrap(material: &Material) -> [Wrap; 2] {
     let black = material.base_color.truncate() == glam::Vec3::ZERO;
     let (first, second) = (material.base_color_texture, material.emissive_texture);
     let texture = if black { second.or(first) } else { first.or(second) };
@@ -109,17 +109,19 @@ fn require_names<'a, Names: Iterator<Item = &'a str>>(
 ) -> Result<(), FocusError> {
     match entries.iter().find(|(name, _)| !names().any(|n| n == name)) {
         None => Ok(()),
-        Some((name, _)) => {
-            Err(FocusError::UnknownName { kind, name: name.clone(), hint: near_names(kind, name, names()) })
-        }
+        Some((name, _)) => Err(FocusError::UnknownName {
+            kind,
+            name: name.clone(),
+            hint: suggest_names(kind, name, names()),
+        }),
     }
 }
 
 /// The names nearest to a mistyped one, or, if none is near, some of those that there are.
-fn near_names<'a>(kind: &str, wanted: &str, names: impl Iterator<Item = &'a str>) -> String {
+fn suggest_names<'a>(kind: &str, unknown_name: &str, names: impl Iterator<Item = &'a str>) -> String {
     /// Names listed at most.
     const LISTED: usize = 5;
-    let lower = wanted.to_lowercase();
+    let lower = unknown_name.to_lowercase();
     let mut ranked: Vec<(usize, &str)> = names
         .map(|name| {
             let candidate = name.to_lowercase();
@@ -132,17 +134,17 @@ fn near_names<'a>(kind: &str, wanted: &str, names: impl Iterator<Item = &'a str>
     if ranked.is_empty() {
         return format!("the scene has no {kind}");
     }
-    let largest_typo = 1 + wanted.chars().count() / 3;
+    let largest_typo = 1 + unknown_name.chars().count() / 3;
     let near = ranked.iter().filter(|(distance, _)| *distance <= largest_typo);
     let near: Vec<_> = near.take(LISTED).map(|(_, name)| format!("\"{name}\"")).collect();
     if !near.is_empty() {
         return format!("did you mean {}?", near.join(" or "));
     }
     ranked.sort_by_key(|(_, name)| *name);
-    let some: Vec<_> = ranked.iter().take(LISTED).map(|(_, name)| format!("\"{name}\"")).collect();
+    let listed: Vec<_> = ranked.iter().take(LISTED).map(|(_, name)| format!("\"{name}\"")).collect();
     let more =
         if ranked.len() > LISTED { format!(" and {} more", ranked.len() - LISTED) } else { String::new() };
-    format!("there are {}{more}", some.join(", "))
+    format!("there are {}{more}", listed.join(", "))
 }
 
 /// Levenshtein's distance: insertions, deletions and replacements that turn one word into the other.

@@ -11,13 +11,13 @@ pub struct Selection {
     /// A bit a texel, in the canvas's order.
     words: Arc<[u64]>,
     count: usize,
-    of: usize,
+    texel_count: usize,
 }
 
 /// How a newly chosen set joins what was selected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Combine {
+pub enum CombineMode {
     /// Only the new.
     #[default]
     Replace,
@@ -29,20 +29,20 @@ pub enum Combine {
     Intersect,
 }
 
-impl Combine {
+impl CombineMode {
     /// All, as a menu offers them.
     pub const ALL: [Self; 4] = [Self::Replace, Self::Add, Self::Subtract, Self::Intersect];
 }
 
 impl Selection {
     /// The texels that `chosen` lets through.
-    pub fn of(canvas: &Canvas, chosen: impl Fn(&CanvasTexel) -> bool) -> SelectionResult {
-        Self::from_bits(canvas.texels().iter().map(chosen))
+    pub fn from_predicate(canvas: &Canvas, is_selected: impl Fn(&CanvasTexel) -> bool) -> SelectionResult {
+        Self::from_bits(canvas.texels().iter().map(is_selected))
     }
 
     fn from_bits(bits: impl ExactSizeIterator<Item = bool>) -> SelectionResult {
-        let of = bits.len();
-        let mut words = vec![0u64; of.div_ceil(64)];
+        let texel_count = bits.len();
+        let mut words = vec![0u64; texel_count.div_ceil(64)];
         let mut count = 0;
         for (index, bit) in bits.enumerate() {
             words[index / 64] |= u64::from(bit) << (index % 64);
@@ -50,8 +50,8 @@ impl Selection {
         }
         match count {
             0 => SelectionResult::Nothing,
-            _ if count == of => SelectionResult::Everything,
-            _ => SelectionResult::Some(Self { words: words.into(), count, of }),
+            _ if count == texel_count => SelectionResult::Everything,
+            _ => SelectionResult::Some(Self { words: words.into(), count, texel_count }),
         }
     }
 
@@ -67,7 +67,7 @@ impl Selection {
 
     /// All others.
     pub fn inverted(&self) -> SelectionResult {
-        Self::from_bits((0..self.of).map(|index| !self.contains(index)))
+        Self::from_bits((0..self.texel_count).map(|index| !self.contains(index)))
     }
 
     /// Memory, in bytes.
@@ -78,7 +78,7 @@ impl Selection {
 
 impl FocusMap {
     /// Gives the map a mask that counts where it is selected; not in the background.
-    pub fn mask_selected(&mut self, canvas: &Canvas, selection: &Selection) {
+    pub fn set_mask_from_selection(&mut self, canvas: &Canvas, selection: &Selection) {
         let [width, height] = self.size();
         let mut mask = TileGrid::new(width, height, 0.0);
         for (index, texel) in canvas.texels().iter().enumerate() {
@@ -104,7 +104,7 @@ pub enum SelectionResult {
 
 impl SelectionResult {
     /// Joins newly chosen texels to a selection (`None` is everything), on a canvas of `of` texels.
-    pub fn joined_to(self, before: Option<&Selection>, combine: Combine, of: usize) -> Self {
+    pub fn combine_with(self, before: Option<&Selection>, combine: CombineMode, texel_count: usize) -> Self {
         let new = |index: usize| match &self {
             Self::Nothing => false,
             Self::Everything => true,
@@ -112,12 +112,16 @@ impl SelectionResult {
         };
         let old = |index: usize| before.is_none_or(|selection| selection.contains(index));
         match combine {
-            Combine::Replace => self,
+            CombineMode::Replace => self,
             // Where nothing is frozen there is nothing to add to: one begins with the new.
-            Combine::Add if before.is_none() => self,
-            Combine::Add => Selection::from_bits((0..of).map(|index| old(index) || new(index))),
-            Combine::Subtract => Selection::from_bits((0..of).map(|index| old(index) && !new(index))),
-            Combine::Intersect => Selection::from_bits((0..of).map(|index| old(index) && new(index))),
+            CombineMode::Add if before.is_none() => self,
+            CombineMode::Add => Selection::from_bits((0..texel_count).map(|index| old(index) || new(index))),
+            CombineMode::Subtract => {
+                Selection::from_bits((0..texel_count).map(|index| old(index) && !new(index)))
+            }
+            CombineMode::Intersect => {
+                Selection::from_bits((0..texel_count).map(|index| old(index) && new(index)))
+            }
         }
     }
 }
@@ -136,17 +140,17 @@ mod tests {
         let SelectionResult::Some(old) = old else { panic!("some") };
         assert_eq!((old.count(), old.contains(1), old.contains(2)), (2, true, false));
         let new = || of([false, true, true, false]);
-        let join = |combine| new().joined_to(Some(&old), combine, 4);
-        assert_eq!(join(Combine::Replace), new());
-        assert_eq!(join(Combine::Add), of([true, true, true, false]));
-        assert_eq!(join(Combine::Subtract), of([true, false, false, false]));
-        assert_eq!(join(Combine::Intersect), of([false, true, false, false]));
+        let join = |combine| new().combine_with(Some(&old), combine, 4);
+        assert_eq!(join(CombineMode::Replace), new());
+        assert_eq!(join(CombineMode::Add), of([true, true, true, false]));
+        assert_eq!(join(CombineMode::Subtract), of([true, false, false, false]));
+        assert_eq!(join(CombineMode::Intersect), of([false, true, false, false]));
         assert_eq!(old.inverted(), of([false, false, true, true]));
-        assert_eq!(new().joined_to(None, Combine::Add, 4), new());
-        assert_eq!(new().joined_to(None, Combine::Subtract, 4), of([true, false, false, true]));
+        assert_eq!(new().combine_with(None, CombineMode::Add, 4), new());
+        assert_eq!(new().combine_with(None, CombineMode::Subtract, 4), of([true, false, false, true]));
         assert_eq!(of([true; 4]), SelectionResult::Everything);
         assert_eq!(
-            SelectionResult::Everything.joined_to(Some(&old), Combine::Subtract, 4),
+            SelectionResult::Everything.combine_with(Some(&old), CombineMode::Subtract, 4),
             SelectionResult::Nothing
         );
     }

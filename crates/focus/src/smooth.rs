@@ -13,7 +13,7 @@ use glam::{IVec3, Vec3};
 const CELLS_ALONG_RADIUS: f32 = 4.0;
 
 /// The means around a dab.
-pub(crate) struct Smoothed {
+pub(crate) struct SmoothedValues {
     /// The value that the sums are relative to.
     reference: [f32; 4],
     /// The least and the greatest of each number around the dab.
@@ -25,12 +25,12 @@ pub(crate) struct Smoothed {
     cells: Vec<[f64; 5]>,
 }
 
-impl Smoothed {
+impl SmoothedValues {
     /// Gathers the texels around `dab` that face as it does.
     pub fn new(dab: &Dab, brush: &Brush, canvas: &Canvas, map: &FocusMap) -> Self {
         let mut area = 0.0;
         let mut count = 0.0;
-        canvas.within(dab.center, dab.radius, |index, _| {
+        canvas.visit_within(dab.center, dab.radius, |index, _| {
             area += canvas.texels()[index].area;
             count += 1.0;
         });
@@ -43,9 +43,9 @@ impl Smoothed {
         let bounds = [[f32::INFINITY; 4], [f32::NEG_INFINITY; 4]];
         let mut smoothed = Self { reference: [0.0; 4], bounds, cell_side, side, cells: empty };
         let mut reference = None;
-        canvas.within(dab.center, reach as f64, |index, _| {
+        canvas.visit_within(dab.center, reach as f64, |index, _| {
             let texel = &canvas.texels()[index];
-            if !dab.faces(brush, texel) {
+            if !dab.accepts_normal(brush, texel) {
                 return;
             }
             let value = canvas.value(map, index);
@@ -55,7 +55,7 @@ impl Smoothed {
                 let [low, high] = &mut smoothed.bounds;
                 (low[k], high[k]) = (low[k].min(value), high[k].max(value));
             }
-            for (cell, share) in smoothed.around(canvas.offset_from(index, dab.center)) {
+            for (cell, share) in smoothed.cells_around(canvas.offset_from(index, dab.center)) {
                 let weight = share * texel.area;
                 let sums = &mut smoothed.cells[cell];
                 sums[0] += weight;
@@ -67,9 +67,9 @@ impl Smoothed {
     }
 
     /// The mean at a point given relative to the dab's centre; `otherwise` where no texel is near.
-    pub fn at(&self, offset: Vec3, otherwise: [f32; 4]) -> [f32; 4] {
+    pub fn value_at(&self, offset: Vec3, otherwise: [f32; 4]) -> [f32; 4] {
         let mut sums = [0.0; 5];
-        for (cell, share) in self.around(offset) {
+        for (cell, share) in self.cells_around(offset) {
             for (sum, value) in sums.iter_mut().zip(self.cells[cell]) {
                 *sum += share * value;
             }
@@ -87,7 +87,7 @@ impl Smoothed {
     }
 
     /// The eight cells around a point with its trilinear shares; those outside the grid are left out.
-    fn around(&self, offset: Vec3) -> impl Iterator<Item = (usize, f64)> + use<> {
+    fn cells_around(&self, offset: Vec3) -> impl Iterator<Item = (usize, f64)> + use<> {
         let side = self.side;
         let p = offset / self.cell_side + Vec3::splat(side as f32 / 2.0 - 0.5);
         let low = p.floor();

@@ -1,6 +1,6 @@
 //! Where the focus of a surface point comes from: a constant, a texture in the mesh's UV, or the painted atlas.
 
-use crate::focus_image::interpolate;
+use crate::focus_image::interpolate_uv;
 use crate::{FocusImage, FocusMap};
 use atlas::Atlas;
 use glam::DVec2;
@@ -48,7 +48,7 @@ impl Focus {
     }
 
     /// The painted map over the whole scene; it must have the atlas's size.
-    pub fn painted(scene: Arc<Scene>, atlas: Arc<Atlas>, map: Arc<FocusMap>) -> Self {
+    pub fn from_atlas_map(scene: Arc<Scene>, atlas: Arc<Atlas>, map: Arc<FocusMap>) -> Self {
         debug_assert_eq!([atlas.width, atlas.height], map.size());
         let background = map.background;
         let parts = vec![FocusSource::Atlas { atlas, map }; scene.parts.len()];
@@ -62,7 +62,7 @@ impl SurfaceField<FocusOffset> for Focus {
         match &self.parts[part as usize] {
             FocusSource::Constant(value) => *value,
             FocusSource::Uv { image, wrap } => {
-                let uv = interpolate(self.scene.corner_uv(point.triangle, 0), point.weights());
+                let uv = interpolate_uv(self.scene.corner_uv(point.triangle, 0), point.weights());
                 image.sample(uv, *wrap)
             }
             FocusSource::Atlas { atlas, map } => map.sample(atlas.position_of(point)),
@@ -73,14 +73,14 @@ impl SurfaceField<FocusOffset> for Focus {
         self.background
     }
 
-    fn concerns_carried(&self) -> bool {
+    fn affects_carried_light(&self) -> bool {
         // One map is most often that of all parts.
-        let mut looked_at = std::ptr::null();
+        let mut last_checked = std::ptr::null();
         let mut has_gloss = |source: &FocusSource| match source {
             FocusSource::Constant(value) => value.gloss != 0.0,
             FocusSource::Uv { image, .. } => image.gloss.is_some(),
             FocusSource::Atlas { map, .. } => {
-                std::mem::replace(&mut looked_at, Arc::as_ptr(map)) != Arc::as_ptr(map) && map.has_gloss()
+                std::mem::replace(&mut last_checked, Arc::as_ptr(map)) != Arc::as_ptr(map) && map.has_gloss()
             }
         };
         self.background.gloss != 0.0 || self.parts.iter().any(&mut has_gloss)

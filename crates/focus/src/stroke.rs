@@ -1,8 +1,8 @@
 //! A stroke: dabs along the pen's path, as one transaction.
 
 use crate::dab::Dab;
-use crate::wash::Wash;
-use crate::{Brush, Canvas, Changed, Edit, FocusError, FocusMap, PenSample, Selection, SymmetryImage};
+use crate::wash::StrokePainter;
+use crate::{Brush, Canvas, ChangedTexels, Edit, FocusError, FocusMap, PenSample, Selection, SymmetryImage};
 use glam::{DVec3, Vec3};
 use std::sync::Arc;
 
@@ -38,7 +38,7 @@ pub struct Stroke {
 }
 
 /// More dabs than this on one straight piece are not a pen's movement but a jump between two surfaces.
-const JUMP_DABS: f64 = 4096.0;
+const MAX_DABS_PER_STEP: f64 = 4096.0;
 
 impl Stroke {
     /// Begins a stroke on `map`, which must have the canvas's size.
@@ -56,20 +56,20 @@ impl Stroke {
     }
 
     /// The same stroke, painting only what is selected.
-    pub fn within(self, selection: Option<Selection>) -> Self {
+    pub fn with_selection(self, selection: Option<Selection>) -> Self {
         Self { selection, ..self }
     }
 
     /// Draws on to the next hit. Returns what changed.
-    pub fn extend(&mut self, map: &mut FocusMap, hit: SurfaceHit, pen: PenSample) -> Changed {
+    pub fn extend(&mut self, map: &mut FocusMap, hit: SurfaceHit, pen: PenSample) -> ChangedTexels {
         let mut changed = Vec::new();
         if !hit.position.is_finite() {
-            return Changed::default();
+            return ChangedTexels::default();
         }
         let from = self.last.replace((hit, pen));
         let length = from.map_or(0.0, |(last, _)| last.position.distance(hit.position));
         match from {
-            Some((last, last_pen)) if length <= JUMP_DABS * self.step(pen) => {
+            Some((last, last_pen)) if length <= MAX_DABS_PER_STEP * self.dab_spacing(pen) => {
                 let mut along = self.until_next_dab;
                 while along <= length {
                     // A segment without length has no dab on it: the one at its start is drawn already.
@@ -79,17 +79,17 @@ impl Stroke {
                     let position = last.position.lerp(hit.position, share);
                     let normal = last.normal.zip(hit.normal).map(|(a, b)| a.lerp(b, share as f32));
                     let normal = normal.and_then(Vec3::try_normalize).or(hit.normal);
-                    self.dab(map, SurfaceHit { position, normal }, pen, &mut changed);
-                    along += self.step(pen);
+                    self.paint_dab(map, SurfaceHit { position, normal }, pen, &mut changed);
+                    along += self.dab_spacing(pen);
                 }
                 self.until_next_dab = along - length;
             }
             _ => {
-                self.dab(map, hit, pen, &mut changed);
-                self.until_next_dab = self.step(pen);
+                self.paint_dab(map, hit, pen, &mut changed);
+                self.until_next_dab = self.dab_spacing(pen);
             }
         }
-        Changed::new(changed)
+        ChangedTexels::new(changed)
     }
 
     /// Takes the pen off the surface: the next hit starts a new path, without a line from the last one. For
@@ -100,14 +100,14 @@ impl Stroke {
 
     /// Ends the stroke. Nothing to undo: `None`.
     pub fn commit(self, map: &FocusMap) -> Option<Edit> {
-        Edit::between(self.brush.stroke_name(), &self.before, map)
+        Edit::from_difference(self.brush.stroke_name(), &self.before, map)
     }
 
     /// Takes the stroke back. Returns what changed.
-    pub fn abort(self, map: &mut FocusMap) -> Changed {
-        match Edit::between(self.brush.stroke_name(), map, &self.before) {
+    pub fn abort(self, map: &mut FocusMap) -> ChangedTexels {
+        match Edit::from_difference(self.brush.stroke_name(), map, &self.before) {
             Some(edit) => edit.apply(map),
-            None => Changed::default(),
+            None => ChangedTexels::default(),
         }
     }
 
@@ -117,13 +117,19 @@ impl Stroke {
     }
 
     /// Distance from one dab to the next.
-    fn step(&self, pen: PenSample) -> f64 {
+    fn dab_spacing(&self, pen: PenSample) -> f64 {
         // A vanishing radius would never get anywhere.
-        let radius = self.brush.radius_at(pen).max(self.brush.radius * LEAST_RADIUS_SHARE);
+        let radius = self.brush.radius_at(pen).max(self.brush.radius * MIN_RADIUS_SHARE);
         self.brush.spacing * radius
     }
 
-    fn dab(&mut self, map: &mut FocusMap, hit: SurfaceHit, pen: PenSample, changed: &mut Vec<[u32; 2]>) {
+    fn paint_dab(
+        &mut self,
+        map: &mut FocusMap,
+        hit: SurfaceHit,
+        pen: PenSample,
+        changed: &mut Vec<[u32; 2]>,
+    ) {
         for image in &self.images {
             let dab = Dab {
                 center: image.point(hit.position),
@@ -131,15 +137,15 @@ impl Stroke {
                 radius: self.brush.radius_at(pen),
                 strength: self.brush.strength_at(pen),
             };
-            let mut wash = Wash {
+            let mut wash = StrokePainter {
                 before: &self.before,
                 coverage: &mut self.coverage,
                 selection: self.selection.as_ref(),
             };
-            wash.paint(&dab, &self.brush, &self.canvas, map, changed);
+            wash.paint_dab(&dab, &self.brush, &self.canvas, map, changed);
         }
     }
 }
 
 /// Dabs lie no closer than those of this share of the brush's radius, however light the pen.
-const LEAST_RADIUS_SHARE: f64 = 0.05;
+const MIN_RADIUS_SHARE: f64 = 0.05;

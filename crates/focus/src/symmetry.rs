@@ -64,10 +64,10 @@ impl SymmetryImage {
 
 impl Symmetry {
     /// Images around the vertical that there may be.
-    pub const MOST_RADIAL: u32 = 64;
+    pub const MAX_RADIAL: u32 = 64;
 
     /// Whether it is along the world's own axes.
-    pub fn is_along_world(&self) -> bool {
+    pub fn has_world_axes(&self) -> bool {
         are_world_axes(&self.axes)
     }
 
@@ -81,14 +81,14 @@ impl Symmetry {
         let axes = DMat3::from_cols_array_2d(&self.axes);
         let are_square = (axes.transpose() * axes).abs_diff_eq(DMat3::IDENTITY, AXES_TOLERANCE);
         let is_center_finite = self.center.iter().all(|x| x.is_finite());
-        (1..=Self::MOST_RADIAL).contains(&self.radial) && is_center_finite && are_square
+        (1..=Self::MAX_RADIAL).contains(&self.radial) && is_center_finite && are_square
     }
 
     /// All images, the thing itself first.
     pub fn images(&self) -> Vec<SymmetryImage> {
         let center = DVec3::from_array(self.center);
         let axes = DMat3::from_cols_array_2d(&self.axes);
-        let turns = self.radial.clamp(1, Self::MOST_RADIAL);
+        let turns = self.radial.clamp(1, Self::MAX_RADIAL);
         let mut images: Vec<SymmetryImage> = Vec::new();
         for turn in 0..turns {
             let angle = std::f64::consts::TAU * turn as f64 / turns as f64;

@@ -43,13 +43,13 @@ impl TexelTree {
 
     /// Calls `visit` with the index (in the tree's order) and squared distance of every point at most
     /// `radius` from `center`, in order.
-    pub(crate) fn within(&self, center: Vec3, radius: f32, visit: &mut impl FnMut(usize, f32)) {
+    pub(crate) fn visit_within(&self, center: Vec3, radius: f32, visit: &mut impl FnMut(usize, f32)) {
         if !self.points.is_empty() {
-            self.within_node(0, 0..self.points.len(), center, radius * radius, visit);
+            self.visit_node(0, 0..self.points.len(), center, radius * radius, visit);
         }
     }
 
-    fn within_node(
+    fn visit_node(
         &self,
         node: usize,
         range: std::ops::Range<usize>,
@@ -71,8 +71,8 @@ impl TexelTree {
             return;
         }
         let middle = range.start + range.len() / 2;
-        self.within_node(node + 1, range.start..middle, center, radius_squared, visit);
-        self.within_node(right as usize, middle..range.end, center, radius_squared, visit);
+        self.visit_node(node + 1, range.start..middle, center, radius_squared, visit);
+        self.visit_node(right as usize, middle..range.end, center, radius_squared, visit);
     }
 }
 
@@ -141,21 +141,21 @@ mod tests {
         let (tree, order) = TexelTree::new(&points);
         for radius in [0.0, 0.02, 0.3, 3.0] {
             let center = Vec3::new(random(), random(), 0.05);
-            let mut found = Vec::new();
-            tree.within(center, radius, &mut |i, _| found.push(order[i]));
-            found.sort_unstable();
+            let mut visited = Vec::new();
+            tree.visit_within(center, radius, &mut |i, _| visited.push(order[i]));
+            visited.sort_unstable();
             let inside = |i: &u32| points[*i as usize].distance_squared(center) <= radius * radius;
-            assert_eq!(found, (0..5000).filter(inside).collect::<Vec<_>>());
+            assert_eq!(visited, (0..5000).filter(inside).collect::<Vec<_>>());
         }
     }
 
     #[test]
     fn empty_and_coincident_points() {
         let (tree, _) = TexelTree::new(&[]);
-        tree.within(Vec3::ZERO, 1.0, &mut |_, _| panic!("nothing to find"));
+        tree.visit_within(Vec3::ZERO, 1.0, &mut |_, _| panic!("nothing to find"));
         let (tree, _) = TexelTree::new(&[Vec3::ONE; 1000]);
         let mut count = 0;
-        tree.within(Vec3::ONE, 0.0, &mut |_, _| count += 1);
+        tree.visit_within(Vec3::ONE, 0.0, &mut |_, _| count += 1);
         assert_eq!(count, 1000);
     }
 }

@@ -9,7 +9,7 @@ const SIDE: u32 = 24;
 
 /// What changed between two maps of one size, in few cells over the atlas.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Thumbnail {
+pub struct EditThumbnail {
     /// Row by row, the top one first.
     cells: Box<[ThumbnailCell]>,
 }
@@ -23,12 +23,12 @@ pub struct ThumbnailCell {
     pub t: f32,
 }
 
-impl Thumbnail {
+impl EditThumbnail {
     /// Rows and columns of cells.
     pub const SIDE: usize = SIDE as usize;
 
     /// What changed from `before` to `after`. Only tiles that were written are looked at.
-    pub fn between(before: &FocusMap, after: &FocusMap) -> Self {
+    pub fn from_difference(before: &FocusMap, after: &FocusMap) -> Self {
         debug_assert_eq!(before.size(), after.size());
         let [width, height] = after.size();
         let mut sums = vec![[0.0f64; 2]; (SIDE * SIDE) as usize];
@@ -80,13 +80,13 @@ mod tests {
                 after.set(x, y, [1.5, 1.0]);
             }
         }
-        let picture = Thumbnail::between(&before, &after);
+        let picture = EditThumbnail::from_difference(&before, &after);
         for (k, cell) in picture.cells().iter().enumerate() {
-            let [x, y] = [k % Thumbnail::SIDE, k / Thumbnail::SIDE];
+            let [x, y] = [k % EditThumbnail::SIDE, k / EditThumbnail::SIDE];
             let expected = if x < 12 && y < 12 { (1.0, 1.5) } else { (0.0, 0.0) };
             assert_eq!((cell.changed, cell.t), expected, "{x} {y}");
         }
-        let nothing = Thumbnail::between(&after, &after.clone());
+        let nothing = EditThumbnail::from_difference(&after, &after.clone());
         assert!(nothing.cells().iter().all(|cell| cell.changed == 0.0));
     }
 }

@@ -32,7 +32,7 @@ impl<T: Copy + PartialEq> TileGrid<T> {
 
     /// A grid of the given texels, row 0 on top; what hangs over the border holds `over`. `None` unless there are
     /// width × height.
-    pub fn from_rows(width: u32, height: u32, texels: &[T], over: T) -> Option<Self> {
+    pub fn from_rows(width: u32, height: u32, texels: &[T], padding: T) -> Option<Self> {
         if texels.len() as u64 != width as u64 * height as u64 {
             return None;
         }
@@ -40,7 +40,7 @@ impl<T: Copy + PartialEq> TileGrid<T> {
         let tile_count = tiles_across * height.div_ceil(TILE_SIDE);
         let tiles = (0..tile_count).map(|index| {
             let [x0, y0] = [index % tiles_across * TILE_SIDE, index / tiles_across * TILE_SIDE];
-            let mut tile = [over; TILE_TEXELS];
+            let mut tile = [padding; TILE_TEXELS];
             for y in y0..(y0 + TILE_SIDE).min(height) {
                 let columns = (x0 + TILE_SIDE).min(width) - x0;
                 let from = y as usize * width as usize + x0 as usize;
@@ -68,13 +68,13 @@ impl<T: Copy + PartialEq> TileGrid<T> {
 
     /// The value of a texel, which must lie in the grid.
     pub fn at(&self, x: u32, y: u32) -> T {
-        let (tile, within) = self.place(x, y);
+        let (tile, within) = self.tile_and_texel(x, y);
         self.tiles[tile][within]
     }
 
     /// Sets a texel, which must lie in the grid. Copies its tile if a clone shares it.
     pub fn set(&mut self, x: u32, y: u32, value: T) {
-        let (tile, within) = self.place(x, y);
+        let (tile, within) = self.tile_and_texel(x, y);
         Arc::make_mut(&mut self.tiles[tile])[within] = value;
     }
 
@@ -94,20 +94,20 @@ impl<T: Copy + PartialEq> TileGrid<T> {
     }
 
     /// The position of a place in a tile, if it lies in the grid.
-    pub fn position(&self, tile: usize, within: usize) -> Option<[u32; 2]> {
+    pub fn position(&self, tile: usize, texel: usize) -> Option<[u32; 2]> {
         let across = self.width.div_ceil(TILE_SIDE);
-        let x = tile as u32 % across * TILE_SIDE + within as u32 % TILE_SIDE;
-        let y = tile as u32 / across * TILE_SIDE + within as u32 / TILE_SIDE;
+        let x = tile as u32 % across * TILE_SIDE + texel as u32 % TILE_SIDE;
+        let y = tile as u32 / across * TILE_SIDE + texel as u32 / TILE_SIDE;
         (x < self.width && y < self.height).then_some([x, y])
     }
 
     /// The tile of a texel.
     pub fn tile_of(&self, [x, y]: [u32; 2]) -> usize {
-        self.place(x, y).0
+        self.tile_and_texel(x, y).0
     }
 
     /// Where two tiles of one index differ: places that lie in the grid.
-    pub fn differing(&self, index: usize, a: &Arc<Tile<T>>, b: &Arc<Tile<T>>) -> Vec<[u32; 2]> {
+    pub fn differing_texels(&self, index: usize, a: &Arc<Tile<T>>, b: &Arc<Tile<T>>) -> Vec<[u32; 2]> {
         if Arc::ptr_eq(a, b) {
             return Vec::new();
         }
@@ -116,7 +116,7 @@ impl<T: Copy + PartialEq> TileGrid<T> {
     }
 
     /// The tile of a texel, and where in it.
-    fn place(&self, x: u32, y: u32) -> (usize, usize) {
+    fn tile_and_texel(&self, x: u32, y: u32) -> (usize, usize) {
         debug_assert!(x < self.width && y < self.height);
         let tile = y / TILE_SIDE * self.width.div_ceil(TILE_SIDE) + x / TILE_SIDE;
         (tile as usize, (y % TILE_SIDE * TILE_SIDE + x % TILE_SIDE) as usize)

@@ -24,7 +24,7 @@ fn is_zero(shift: &DVec2) -> bool {
 
 impl ViewFrame {
     /// What a camera shows.
-    pub fn of(camera: &Camera) -> Self {
+    pub fn from_camera(camera: &Camera) -> Self {
         let &Camera { camera_to_world, yfov, shift, .. } = camera;
         Self { camera_to_world, yfov, aspect: camera.aspect(), shift }
     }
@@ -84,7 +84,7 @@ mod tests {
             camera_to_world: pose,
             ..Camera::default()
         };
-        let view = ViewFrame::of(&camera);
+        let view = ViewFrame::from_camera(&camera);
         for at in [DVec2::ZERO, DVec2::new(0.3, 0.9), DVec2::new(1.4, -0.2)] {
             let (eye, direction) = view.ray(at);
             let found = view.position(eye + direction * 5.0).unwrap();

@@ -1,14 +1,14 @@
 //! What a dab does to the texels under it.
 
 use crate::dab::Dab;
-use crate::focus_map::numbers_of;
-use crate::smooth::Smoothed;
+use crate::focus_map::to_numbers;
+use crate::smooth::SmoothedValues;
 use crate::{Brush, BrushMode, Canvas, Channels, FocusMap, Selection};
 use glam::DVec3;
 use lens::FocusOffset;
 
 /// What a stroke knows of the texels: their values when it began, and how strongly they were painted since.
-pub(crate) struct Wash<'a> {
+pub(crate) struct StrokePainter<'a> {
     /// The map when the stroke began.
     pub before: &'a FocusMap,
     /// How strongly each texel of the canvas has been painted since.
@@ -17,9 +17,9 @@ pub(crate) struct Wash<'a> {
     pub selection: Option<&'a Selection>,
 }
 
-impl Wash<'_> {
+impl StrokePainter<'_> {
     /// Paints a dab; what changes is noted in `changed`.
-    pub fn paint(
+    pub fn paint_dab(
         &mut self,
         dab: &Dab,
         brush: &Brush,
@@ -27,8 +27,8 @@ impl Wash<'_> {
         map: &mut FocusMap,
         changed: &mut Vec<[u32; 2]>,
     ) {
-        let covered = dab.covered(brush, canvas, self.selection);
-        let touches = brush.channels.touches();
+        let covered = dab.covered_texels(brush, canvas, self.selection);
+        let touches = brush.channels.write_flags();
         let mut write = |map: &mut FocusMap, index, value| {
             canvas.write_channels(map, index, value, touches, changed);
         };
@@ -41,7 +41,7 @@ impl Wash<'_> {
                         let share = before + (ceiling - before) * brush.flow as f32;
                         self.coverage[index] = share;
                         let from = canvas.value(self.before, index);
-                        write(map, index, washed(brush, map.has_mask(), from, share));
+                        write(map, index, set_or_reset(brush, map.has_mask(), from, share));
                     }
                 }
             }
@@ -58,7 +58,7 @@ impl Wash<'_> {
                         let share = before + (ceiling - before) * brush.flow as f32;
                         self.coverage[index] = share;
                         let [from, to] = [index, source].map(|index| canvas.value(self.before, index));
-                        write(map, index, [0, 1, 2, 3].map(|k| toward(from[k], to[k], share)));
+                        write(map, index, [0, 1, 2, 3].map(|k| lerp_toward(from[k], to[k], share)));
                     }
                 }
             }
@@ -76,20 +76,20 @@ impl Wash<'_> {
                         let sum = (from[k] as f64 + step[k] * share as f64) as f32;
                         sum.clamp(low.min(from[k]), high.max(from[k]))
                     });
-                    write(map, index, [t, anchor, gloss, toward(from[3], 1.0, share)]);
+                    write(map, index, [t, anchor, gloss, lerp_toward(from[3], 1.0, share)]);
                 }
             }
             BrushMode::Smooth | BrushMode::Sharpen => {
-                let smoothed = Smoothed::new(dab, brush, canvas, map);
+                let smoothed = SmoothedValues::new(dab, brush, canvas, map);
                 let [low, high] = smoothed.bounds();
                 for (index, share) in covered {
                     let share = share * (dab.strength * brush.flow) as f32;
                     let from = canvas.value(map, index);
-                    let mean = smoothed.at(canvas.offset_from(index, dab.center), from);
+                    let mean = smoothed.value_at(canvas.offset_from(index, dab.center), from);
                     let moved = [0, 1, 2, 3].map(|k| match brush.mode {
                         // Away from the mean, but not beyond what is there: a ramp becomes a step, without a rim.
                         BrushMode::Sharpen => (from[k] + (from[k] - mean[k]) * share).clamp(low[k], high[k]),
-                        _ => toward(from[k], mean[k], share),
+                        _ => lerp_toward(from[k], mean[k], share),
                     });
                     write(map, index, moved);
                 }
@@ -103,25 +103,25 @@ impl Wash<'_> {
 /// On a map with a mask the paint lies over what is there (Porter and Duff's *over*): the mask grows to
 /// m + s(1 − m), and the value moves toward the target by the share that the new paint has of it. Reset then takes
 /// the mask away; without one it gives the ordinary lens back.
-fn washed(brush: &Brush, has_mask: bool, from: [f32; 4], share: f32) -> [f32; 4] {
+fn set_or_reset(brush: &Brush, has_mask: bool, from: [f32; 4], share: f32) -> [f32; 4] {
     let [t, anchor, gloss, mask] = from;
     let resets = brush.mode == BrushMode::Reset;
     if resets && (has_mask || brush.channels == Channels::Mask) {
-        return [t, anchor, gloss, toward(mask, 0.0, share)];
+        return [t, anchor, gloss, lerp_toward(mask, 0.0, share)];
     }
-    over(from, numbers_of(if resets { FocusOffset::STANDARD } else { brush.target }), share)
+    paint_over(from, to_numbers(if resets { FocusOffset::STANDARD } else { brush.target }), share)
 }
 
 /// [t, anchor, gloss, mask] of a texel that was `from`, with `share` of a focus laid over it (Porter and Duff's *over*).
-pub(crate) fn over([t, anchor, gloss, mask]: [f32; 4], target: [f32; 3], share: f32) -> [f32; 4] {
-    let grown = toward(mask, 1.0, share);
+pub(crate) fn paint_over([t, anchor, gloss, mask]: [f32; 4], target: [f32; 3], share: f32) -> [f32; 4] {
+    let grown = lerp_toward(mask, 1.0, share);
     let own = if grown > 0.0 { (share / grown).min(1.0) } else { 0.0 };
-    let [t, anchor, gloss] =
-        [(t, target[0]), (anchor, target[1]), (gloss, target[2])].map(|(from, to)| toward(from, to, own));
+    let [t, anchor, gloss] = [(t, target[0]), (anchor, target[1]), (gloss, target[2])]
+        .map(|(from, to)| lerp_toward(from, to, own));
     [t, anchor, gloss, grown]
 }
 
 /// `share` of the way from a to b; exactly b at 1, and exactly a where both are equal.
-fn toward(a: f32, b: f32, share: f32) -> f32 {
+fn lerp_toward(a: f32, b: f32, share: f32) -> f32 {
     if share >= 1.0 { b } else { a + (b - a) * share }
 }

@@ -33,7 +33,7 @@ fn before(camera: &Camera, x: f64, y: f64, depth: f64) -> DVec3 {
 }
 
 fn map_of(plane: &FocalPlane, places: &[DVec3], camera: &Camera) -> FocusMap {
-    let layer = FocusLayer::adjusted("p", Adjustment::Plane(plane.clone()), &canvas(places), camera);
+    let layer = FocusLayer::from_adjustment("p", Adjustment::Plane(plane.clone()), &canvas(places), camera);
     assert!(layer.is_valid());
     layer.map
 }
@@ -89,7 +89,7 @@ fn a_plane_across_the_axis_is_the_ordinary_lens_and_its_curvature_the_corners() 
     let optics = camera.optics();
     let plane = FocalPlane::facing(&camera, camera.focus_distance);
     assert!((plane.depth_on_axis(&camera) - 3.0).abs() < 1e-12);
-    assert!(plane.turn(&camera).iter().all(|angle| angle.abs() < 1e-12));
+    assert!(plane.tilt_and_swing(&camera).iter().all(|angle| angle.abs() < 1e-12));
     let tan = optics.tan_half_yfov;
     let places = [0.0, 0.5, 1.0].map(|y| before(&camera, 0.0, y * tan, 2.0));
     for curvature in [0.0, 1e-9, 0.2, -0.2] {
@@ -109,18 +109,18 @@ fn turned_and_moved_planes_are_where_they_were_put() {
     let camera = camera();
     let plane = FocalPlane::facing(&camera, 2.0);
     for turn in [[0.6, 0.0], [0.0, -0.9], [1.2, 0.7], [-1.5, 1.5]] {
-        let turned = plane.turned(&camera, turn);
-        let found = turned.turn(&camera);
+        let turned = plane.with_tilt_and_swing(&camera, turn);
+        let found = turned.tilt_and_swing(&camera);
         assert!((found[0] - turn[0]).abs() < 1e-9 && (found[1] - turn[1]).abs() < 1e-9, "{found:?}");
         assert!(turned.is_valid());
-        let moved = turned.at_depth_on_axis(&camera, 4.0);
+        let moved = turned.with_depth_on_axis(&camera, 4.0);
         assert!((moved.depth_on_axis(&camera) - 4.0).abs() < 1e-9);
-        assert!((moved.turn(&camera)[0] - turn[0]).abs() < 1e-9);
+        assert!((moved.tilt_and_swing(&camera)[0] - turn[0]).abs() < 1e-9);
     }
     // A right angle is as steep as can be.
-    assert!(plane.turned(&camera, [FRAC_PI_2, 0.0]).turn(&camera)[0] < FRAC_PI_2);
+    assert!(plane.with_tilt_and_swing(&camera, [FRAC_PI_2, 0.0]).tilt_and_swing(&camera)[0] < FRAC_PI_2);
     // Above 0, the upper part is nearer: what is there and behind it is far blurred.
-    let tilted = plane.turned(&camera, [0.5, 0.0]);
+    let tilted = plane.with_tilt_and_swing(&camera, [0.5, 0.0]);
     let map = map_of(&tilted, &[before(&camera, 0.0, 0.2, 2.0), before(&camera, 0.0, -0.2, 2.0)], &camera);
     assert!(map.at(0, 0).t > 1.0 && map.at(1, 0).t < 1.0);
 }

@@ -3,7 +3,7 @@
 mod strip;
 
 use focus::{
-    Blend, Brush, BrushMode, Channels, FillTarget, Focus, FocusLayer, FocusMap, FocusRecipe, Gradient,
+    BlendMode, Brush, BrushMode, Channels, FillTarget, Focus, FocusLayer, FocusMap, FocusRecipe, Gradient,
     GradientLine, GradientShape, LayerStack, PenSample, RecipeEntry, Stroke, Symmetry, draw_gradient, fill,
 };
 use glam::DVec3;
@@ -124,33 +124,33 @@ fn layers_join_it() {
         map
     };
     let joined = |blend, opacity| {
-        let mut layers = LayerStack::of(filled(0.4));
-        let above = FocusLayer { blend, opacity, ..FocusLayer::painted("above", filled(0.8)) };
+        let mut layers = LayerStack::from_map(filled(0.4));
+        let above = FocusLayer { blend, opacity, ..FocusLayer::from_map("above", filled(0.8)) };
         assert!(layers.insert(above));
         let map = layers.composite();
         assert!((map.gloss_at(3, 3) as f64 - map.background.gloss).abs() < 1e-6);
         map.background.gloss
     };
     let cases = [
-        (Blend::Set, 1.0, 0.8),
-        (Blend::Set, 0.5, 0.6),
-        (Blend::Mix, 0.25, 0.5),
-        (Blend::Add, 0.5, 0.8),
-        (Blend::Add, 1.0, 1.0),
-        (Blend::MultiplyDefocus, 1.0, 0.4),
+        (BlendMode::Set, 1.0, 0.8),
+        (BlendMode::Set, 0.5, 0.6),
+        (BlendMode::Mix, 0.25, 0.5),
+        (BlendMode::Add, 0.5, 0.8),
+        (BlendMode::Add, 1.0, 1.0),
+        (BlendMode::MultiplyDefocus, 1.0, 0.4),
     ];
     for (blend, opacity, expected) in cases {
         let found = joined(blend, opacity);
         assert!((found - expected).abs() < 1e-6, "{blend:?} {opacity}: {found}, not {expected}");
     }
     // A change of gloss alone is a change.
-    let mut layers = LayerStack::of(blank());
+    let mut layers = LayerStack::from_map(blank());
     let mut map = layers.composite();
     let brush = Brush { target: GLOSSY, channels: Channels::Gloss, ..brush(BrushMode::Set) };
     painted(&mut layers.active_mut().map, brush);
     let changed = layers.recomposite_all(&mut map);
     assert!(changed.texels.contains(&[2 + 16, 2 + 8]) && map == layers.active().map);
-    assert!(layers.insert(FocusLayer::painted("clear", FocusMap::clear(SIZE[0], SIZE[1]))));
+    assert!(layers.insert(FocusLayer::from_map("clear", FocusMap::transparent(SIZE[0], SIZE[1]))));
     assert_eq!(layers.composite(), map, "a layer that counts nowhere");
 }
 
@@ -160,12 +160,12 @@ fn a_recipe_concerns_carried_light_where_it_says_so() {
     let concerns = |gloss: f64| {
         let recipe =
             FocusRecipe { default: RecipeEntry::Value(GLOSSY.with_gloss(gloss)), ..FocusRecipe::default() };
-        recipe.evaluate(&scene).unwrap().concerns_carried()
+        recipe.evaluate(&scene).unwrap().affects_carried_light()
     };
     assert_eq!([0.0, 0.5].map(concerns), [false, true]);
     let error = FocusRecipe::constant(GLOSSY.with_gloss(2.0)).evaluate(&scene).map(|_| ()).unwrap_err();
     assert!(error.to_string().contains("gloss in [0, 1]"), "{error}");
-    assert!(!Focus::constant(scene, FocusOffset::SHARP).concerns_carried());
+    assert!(!Focus::constant(scene, FocusOffset::SHARP).affects_carried_light());
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Layers: painted with masks, blended, drawn as curves; what they make together.
 
 use focus::{
-    Adjustment, Blend, Brush, BrushMode, Canvas, CanvasTexel, Channels, Curve, DepthCurve, FillTarget,
+    Adjustment, BlendMode, Brush, BrushMode, Canvas, CanvasTexel, Channels, Curve, DepthCurve, FillTarget,
     FocusLayer, FocusMap, LayerStack, PenSample, Stroke, SurfaceHit, fill,
 };
 use glam::{DVec3, Vec3};
@@ -29,11 +29,11 @@ fn camera() -> Camera {
 }
 
 fn empty() -> FocusMap {
-    FocusMap::clear(SIZE[0], SIZE[1])
+    FocusMap::transparent(SIZE[0], SIZE[1])
 }
 
 fn stack() -> LayerStack {
-    LayerStack::of(FocusMap::new(SIZE[0], SIZE[1], FocusOffset::STANDARD))
+    LayerStack::from_map(FocusMap::new(SIZE[0], SIZE[1], FocusOffset::STANDARD))
 }
 
 fn hit(x: f64, depth: f64) -> SurfaceHit {
@@ -64,7 +64,7 @@ fn a_layer_paints_as_the_map_itself_would_and_leaves_what_lies_beneath() {
 
     let mut layers = stack();
     let below = layers.active().map.clone();
-    assert!(layers.insert(FocusLayer::painted("above", empty())));
+    assert!(layers.insert(FocusLayer::from_map("above", empty())));
     let mut map = layers.composite();
     stroke(&mut layers, &mut map, &canvas, &painter(BrushMode::Set, 1.2));
     assert_eq!(layers.layers()[0].map, below);
@@ -103,12 +103,12 @@ fn opacity_visibility_blending_and_order_count() {
         let mut map = empty();
         fill(&mut map, &canvas, FillTarget::Everything, focus, Channels::All).unwrap();
         fill(&mut map, &canvas, FillTarget::Background, focus, Channels::All).unwrap();
-        FocusLayer::painted(name, map)
+        FocusLayer::from_map(name, map)
     };
     let mut layers = stack();
     assert!(layers.insert(painted("far", value(1.1, 1.0))));
     assert!(layers.insert(painted("add", value(1.05, 0.0))));
-    layers.active_mut().blend = Blend::Add;
+    layers.active_mut().blend = BlendMode::Add;
     layers.active_mut().opacity = 0.5;
     let near = |a: FocusOffset, t: f64, anchor: f64| {
         assert!((a.t - t).abs() < 1e-6 && (a.anchor - anchor).abs() < 1e-6, "{a:?}, not {t} {anchor}");
@@ -122,11 +122,11 @@ fn opacity_visibility_blending_and_order_count() {
     near(layers.composite().at(20, 20), 1.025, 0.0);
     layers.layer_mut(1).unwrap().is_visible = true;
     layers.layer_mut(1).unwrap().opacity = 1.0;
-    layers.shift(2, 1);
+    layers.move_layer(2, 1);
     assert_eq!(layers.active_index(), 1, "the active layer moved along");
     near(layers.composite().at(20, 20), 1.1, 1.0);
     assert!(layers.remove(2) && layers.remove(1) && !layers.remove(0), "the last one stays");
-    assert!(layers.is_single());
+    assert!(layers.is_single_painted_layer());
     near(layers.composite().at(20, 20), 1.0, 0.0);
 }
 
@@ -137,7 +137,7 @@ fn a_depth_curve_gives_every_depth_its_blur_and_follows_the_camera() {
     let curve = DepthCurve { curve, anchor: 1.0 };
     let mut camera = camera();
     let mut layers = stack();
-    assert!(layers.insert(FocusLayer::adjusted(
+    assert!(layers.insert(FocusLayer::from_adjustment(
         "surface",
         Adjustment::Curve(curve.clone()),
         &canvas,
@@ -181,7 +181,7 @@ fn sharpening_makes_a_ramp_steeper_without_a_rim_and_flow_builds_up() {
     let rows: Vec<[f32; 2]> =
         (0..SIZE[0] * SIZE[1]).map(|k| [1.0 + ease((k % SIZE[0]) as f32), 0.5]).collect();
     let ramp = FocusMap::from_rows(SIZE[0], SIZE[1], &rows, FocusOffset::STANDARD).unwrap();
-    let mut layers = LayerStack::of(ramp.clone());
+    let mut layers = LayerStack::from_map(ramp.clone());
     let mut map = layers.composite();
     for _ in 0..4 {
         stroke(&mut layers, &mut map, &canvas, &painter(BrushMode::Sharpen, 1.0));

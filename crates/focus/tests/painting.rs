@@ -243,7 +243,7 @@ fn a_thousand_edits_undo_and_redo_to_the_bit() {
                 let target = [FillTarget::Chart(0), FillTarget::Node(1), FillTarget::Background];
                 fill(&mut map, &canvas, target[(random() * 3.0) as usize], brush.target, Channels::All)
                     .unwrap();
-                Edit::between("Fill", &before, &map)
+                Edit::from_difference("Fill", &before, &map)
             }
             _ => {
                 let path = [[4.0 * random(), random()], [4.0 * random(), random()]];

@@ -10,7 +10,7 @@ use scene::{Material, Node, Part, Scene, SurfaceField, SurfacePoint, Triangle};
 use std::sync::Arc;
 
 fn material(name: &str) -> Material {
-    Material { name: name.to_string(), ..Material::of_unlit() }
+    Material { name: name.to_string(), ..Material::unlit_white() }
 }
 
 fn node(name: &str) -> Node {
@@ -120,7 +120,7 @@ fn a_baked_recipe_gives_the_recipes_values() {
     let texels = atlas.texel_map(&scene);
     let baked = Arc::new(focus.bake(&texels));
     assert_eq!(baked.background, FocusOffset::new(0.3, 0.5));
-    let painted = Focus::painted(scene.clone(), atlas.clone(), baked.clone());
+    let painted = Focus::from_atlas_map(scene.clone(), atlas.clone(), baked.clone());
     for triangle in 0..4 {
         for i in 0..200 {
             let b =
@@ -142,7 +142,7 @@ fn a_baked_recipe_gives_the_recipes_values() {
     let canvas = Canvas::new(&scene, &atlas, &texels.texels, &gutters);
     let mut map = FocusMap::clone(&baked);
     focus::fill(&mut map, &canvas, FillTarget::Part(3), FocusOffset::SHARP, Channels::All).unwrap();
-    let painted = Focus::painted(scene, atlas, Arc::new(map));
+    let painted = Focus::from_atlas_map(scene, atlas, Arc::new(map));
     for barycentric in [DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::new(0.5, 0.5)] {
         assert_eq!(painted.at(SurfacePoint { triangle: 3, barycentric }), FocusOffset::SHARP);
         assert_eq!(painted.at(SurfacePoint { triangle: 1, barycentric }), FocusOffset::STANDARD);

@@ -22,7 +22,7 @@ fn t_at(canvas: &Canvas, map: &FocusMap, x: f64, y: f64) -> f64 {
 }
 
 fn selection(canvas: &Canvas, chosen: impl Fn(DVec3) -> bool) -> Selection {
-    match Selection::of(canvas, |texel| chosen(texel.position)) {
+    match Selection::from_predicate(canvas, |texel| chosen(texel.position)) {
         SelectionResult::Some(selection) => selection,
         other => panic!("some of it: {other:?}"),
     }
@@ -93,7 +93,7 @@ fn gradients_run_evenly_across_charts_in_world_and_on_screen() {
 #[test]
 fn on_a_layer_a_gradient_fades_by_its_mask() {
     let canvas = strip();
-    let mut map = FocusMap::clear(SIZE[0], SIZE[1]);
+    let mut map = FocusMap::transparent(SIZE[0], SIZE[1]);
     draw_gradient(&mut map, &canvas, &WORLD, Channels::All, None).unwrap();
     for texel in canvas.texels().iter().filter(|texel| texel.normal == Vec3::Z) {
         let along = ((texel.position.x - 1.0) / 2.0).clamp(0.0, 1.0);
@@ -119,7 +119,7 @@ fn what_is_not_selected_is_never_painted() {
     for mode in [BrushMode::Set, BrushMode::Add] {
         let mut map = blank();
         let stroke = Stroke::begin(&map, canvas.clone(), brush(mode)).unwrap();
-        let mut stroke = stroke.within(Some(left.clone()));
+        let mut stroke = stroke.with_selection(Some(left.clone()));
         for x in [0.2, 3.0] {
             stroke.extend(&mut map, hit(x, 0.5), PenSample::default());
         }
@@ -135,7 +135,7 @@ fn what_is_not_selected_is_never_painted() {
     // A dab smaller than a texel, on a frozen one.
     let tiny = Brush { radius: 1e-4, ..brush(BrushMode::Set) };
     let mut map = blank();
-    let mut stroke = Stroke::begin(&map, canvas.clone(), tiny).unwrap().within(Some(left));
+    let mut stroke = Stroke::begin(&map, canvas.clone(), tiny).unwrap().with_selection(Some(left));
     assert!(stroke.extend(&mut map, hit(2.0, 0.5), PenSample::default()).is_empty());
 }
 
@@ -169,7 +169,7 @@ fn a_drawn_falloff_is_followed_to_the_rim() {
     stroke.extend(&mut map, hit(1.0, 0.5), PenSample::default());
     for texel in canvas.texels().iter().filter(|texel| texel.normal == Vec3::Z) {
         let distance = texel.position.distance(DVec3::new(1.0, 0.5, 0.0)) / 0.4;
-        let expected = if distance <= 1.0 { 1.0 + 0.5 * ring.at(distance) } else { 1.0 };
+        let expected = if distance <= 1.0 { 1.0 + 0.5 * ring.evaluate(distance) } else { 1.0 };
         assert!((map.at(texel.x, texel.y).t - expected).abs() < 1e-5, "{distance}");
     }
     let beyond = focus::Curve::new([[0.0, 1.5]]);

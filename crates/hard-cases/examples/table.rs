@@ -27,7 +27,7 @@ fn main() {
         let cells = [
             &*outcome.case,
             &*outcome.expected,
-            &*outcome.found,
+            &*outcome.measured,
             sign(outcome.pass),
             sign(outcome.control_fails),
         ];

@@ -1,6 +1,6 @@
 //! Surfaces on, behind and across the aperture plane, and those that run to the horizon.
 
-use crate::case::{Case, Effort, Finding, UNTRIED};
+use crate::case::{Case, Effort, NOT_COMPUTED, Verdict};
 use crate::measure::{farthest_from, largest_difference, rms_difference, senseless, worst};
 use crate::scenery::{Mesh, scene_of};
 use crate::shot::{Shot, picture_of};
@@ -33,7 +33,7 @@ pub const CASES: &[Case] = &[
 const WHITE: [f32; 3] = [1.0; 3];
 
 fn camera(effort: Effort) -> Camera {
-    let (width, height) = effort.pick((96, 72), (48, 36));
+    let (width, height) = effort.choose((96, 72), (48, 36));
     Camera { width, height, yfov: 0.6, aperture_radius: 0.1, focus_distance: 3.0, ..Camera::default() }
 }
 
@@ -42,7 +42,7 @@ fn floor(height: f64, [from, to]: [f64; 2], half: f64) -> Mesh {
     Mesh::rectangle(DVec3::new(-half, height, -from), DVec3::X * 2.0 * half, DVec3::Z * (from - to))
 }
 
-fn behind(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+fn behind(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
     let wall = Mesh::wall(4.0, 1.0);
     let unseen = [
         Mesh::wall(-1.0, 3.0),
@@ -60,8 +60,8 @@ fn behind(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled>
         let pictures = |shot: &Shot| -> Result<[Picture; 2], Cancelled> {
             Ok([shot.splat(offset, progress)?, shot.truth(offset, 4, progress)?])
         };
-        let [expected, found] = [pictures(&alone)?, pictures(&both)?];
-        differences.extend((0..2).map(|k| largest_difference(&found[k], &expected[k])));
+        let [expected, actual] = [pictures(&alone)?, pictures(&both)?];
+        differences.extend((0..2).map(|k| largest_difference(&actual[k], &expected[k])));
     }
     let optics = camera.optics();
     let projected = unseen.iter().flat_map(|mesh| &mesh.positions).filter(|position| {
@@ -69,10 +69,10 @@ fn behind(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled>
         q.x.abs() <= camera.aspect() && q.y.abs() <= 1.0
     });
     let expected = "the picture without them, bit for bit, splatted and traced";
-    Ok(Finding::of(expected, [("difference", 0.0)], [worst(differences)], [projected.count() as f64]))
+    Ok(Verdict::new(expected, [("difference", 0.0)], [worst(differences)], [projected.count() as f64]))
 }
 
-fn straddling(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+fn straddling(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
     let meshes = [
         (floor(-0.4, [-3.0, 40.0], 30.0), [0.9, 0.6, 0.3]),
         // A wall beside the camera, edge-on to it.
@@ -80,7 +80,7 @@ fn straddling(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancel
     ];
     let camera = Camera { background: Some([0.05; 3]), ..camera(effort) };
     let shot = Shot::new(scene_of(meshes.iter().map(|(mesh, color)| (mesh, *color))), camera.clone());
-    let samples = effort.pick(256, 200);
+    let samples = effort.choose(256, 200);
     let culled = Shot::new(scene_of([]), camera);
     let mut right = [0.0f64; 2];
     let mut wrong = 0.0f64;
@@ -92,10 +92,10 @@ fn straddling(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancel
         wrong = wrong.max(rms_difference(&culled.splat(offset, progress)?, &truth));
     }
     let expected = "splat and ray tracing agree to 0.02 (RMS, radiances 0.05 … 0.9); no senseless number";
-    Ok(Finding::of(expected, [("RMS", 0.02), ("senseless", 0.0)], right, [wrong, UNTRIED]))
+    Ok(Verdict::new(expected, [("RMS", 0.02), ("senseless", 0.0)], right, [wrong, NOT_COMPUTED]))
 }
 
-fn grazing(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+fn grazing(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
     let camera = Camera { background: Some([1.0; 3]), ..camera(effort) };
     let (mut splatted, mut traced, mut untilted) = (Vec::new(), Vec::new(), Vec::new());
     for height in [-0.2, -0.4, -1.0, -20.0] {
@@ -111,5 +111,5 @@ fn grazing(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled
     }
     let limits = [("splat", 0.05), ("truth", 1e-6)];
     let expected = "1 ± 0.05 splatted, 1 traced, from floors 2 to 200 aperture radii below";
-    Ok(Finding::of(expected, limits, [worst(splatted), worst(traced)], [worst(untilted), UNTRIED]))
+    Ok(Verdict::new(expected, limits, [worst(splatted), worst(traced)], [worst(untilted), NOT_COMPUTED]))
 }

@@ -15,7 +15,7 @@ pub enum Effort {
 
 impl Effort {
     /// `full` or `reduced`, whichever applies.
-    pub(crate) fn pick<T>(self, full: T, reduced: T) -> T {
+    pub(crate) fn choose<T>(self, full: T, reduced: T) -> T {
         match self {
             Self::Full => full,
             Self::Reduced => reduced,
@@ -32,14 +32,14 @@ pub struct Case {
     pub reason: &'static str,
     /// What the negative control computes wrongly: a phrase.
     pub control: &'static str,
-    pub(crate) check: fn(Effort, &dyn Progress) -> Result<Finding, Cancelled>,
+    pub(crate) check: fn(Effort, &dyn Progress) -> Result<Verdict, Cancelled>,
 }
 
 impl Case {
     /// Computes it and its control.
     pub fn run(&self, effort: Effort, progress: &dyn Progress) -> Result<Outcome, Cancelled> {
-        let Finding { expected, found, pass, control_fails } = (self.check)(effort, progress)?;
-        Ok(Outcome { case: self.name.into(), expected, found, pass, control_fails })
+        let Verdict { expected, measured, pass, control_fails } = (self.check)(effort, progress)?;
+        Ok(Outcome { case: self.name.into(), expected, measured, pass, control_fails })
     }
 }
 
@@ -51,7 +51,7 @@ pub struct Outcome {
     /// What must come out.
     pub expected: String,
     /// What came out, and what the control made of it.
-    pub found: String,
+    pub measured: String,
     /// Whether that is what must come out.
     pub pass: bool,
     /// Whether the deliberately wrong computation fails the same check, as it must.
@@ -59,21 +59,21 @@ pub struct Outcome {
 }
 
 /// The value of a number that a control does not compute: it is within every limit.
-pub(crate) const UNTRIED: f64 = f64::NEG_INFINITY;
+pub(crate) const NOT_COMPUTED: f64 = f64::NEG_INFINITY;
 
 /// What a case found.
 #[derive(Clone, Debug)]
-pub(crate) struct Finding {
+pub(crate) struct Verdict {
     pub expected: String,
-    pub found: String,
+    pub measured: String,
     pub pass: bool,
     pub control_fails: bool,
 }
 
-impl Finding {
+impl Verdict {
     /// Numbers that must stay within limits: each of `limits` a name and the most it may be; `right` what the
     /// product makes, `wrong` what the control does ([`UNTRIED`] where it does not). NaN is never within a limit.
-    pub fn of<const N: usize>(
+    pub fn new<const N: usize>(
         expected: impl Into<String>,
         limits: [(&str, f64); N],
         right: [f64; N],
@@ -81,13 +81,13 @@ impl Finding {
     ) -> Self {
         let holds = |values: &[f64; N]| values.iter().zip(&limits).all(|(value, (_, most))| value <= most);
         let list = |values: &[f64; N]| {
-            let computed = values.iter().zip(&limits).filter(|(value, _)| **value != UNTRIED);
-            let entries = computed.map(|(value, (name, _))| format!("{name} {}", shown(*value)));
+            let computed = values.iter().zip(&limits).filter(|(value, _)| **value != NOT_COMPUTED);
+            let entries = computed.map(|(value, (name, _))| format!("{name} {}", format_value(*value)));
             entries.collect::<Vec<_>>().join(", ")
         };
         Self {
             expected: expected.into(),
-            found: format!("{} (control: {})", list(&right), list(&wrong)),
+            measured: format!("{} (control: {})", list(&right), list(&wrong)),
             pass: holds(&right),
             control_fails: !holds(&wrong),
         }
@@ -95,7 +95,7 @@ impl Finding {
 }
 
 /// A number as the table shows it: counts as they are, others with two digits.
-fn shown(value: f64) -> String {
+fn format_value(value: f64) -> String {
     if value.fract() == 0.0 && value.abs() < 1e9 {
         format!("{value}")
     } else if (0.01..1000.0).contains(&value.abs()) {
@@ -111,10 +111,10 @@ mod tests {
 
     #[test]
     fn not_a_number_passes_no_check() {
-        let finding = Finding::of("small", [("error", 1.0)], [f64::NAN], [2.0]);
+        let finding = Verdict::new("small", [("error", 1.0)], [f64::NAN], [2.0]);
         assert!(!finding.pass && finding.control_fails);
-        let finding = Finding::of("small", [("error", 1.0), ("leaks", 0.0)], [0.123, 0.0], [0.5, 0.0]);
+        let finding = Verdict::new("small", [("error", 1.0), ("leaks", 0.0)], [0.123, 0.0], [0.5, 0.0]);
         assert!(finding.pass && !finding.control_fails);
-        assert_eq!(finding.found, "error 0.123, leaks 0 (control: error 0.500, leaks 0)");
+        assert_eq!(finding.measured, "error 0.123, leaks 0 (control: error 0.500, leaks 0)");
     }
 }

@@ -1,6 +1,6 @@
 //! Light that single paths found: no disc of bokeh where there is no light.
 
-use crate::case::{Case, Effort, Finding};
+use crate::case::{Case, Effort, Verdict};
 use crate::scenery::{Mesh, scene_of};
 use crate::shot::picture_of;
 use focus::Focus;
@@ -9,7 +9,7 @@ use lens::{Camera, FocusOffset, Picture};
 use progress::{Cancelled, Progress};
 use salf::{BakeOptions, bake};
 use scene::SurfacePoint;
-use trace::{Leaving, Radiance, Tracer};
+use trace::{OutgoingRadiance, Radiance, Tracer};
 
 pub const CASES: &[Case] = &[Case {
     name: "paths that find a lamp by chance",
@@ -20,8 +20,8 @@ pub const CASES: &[Case] = &[Case {
 
 /// A wall that sends 1 and a little grain, and to which one point in `RARITY` sends `SPIKE` more, as a path does that comes to a lamp
 /// by way of two mirrors.
-struct Sparkling {
-    tells: bool,
+struct SparklingRadiance {
+    reports_chance: bool,
 }
 
 const RARITY: f64 = 4e-4;
@@ -34,38 +34,42 @@ fn hash(point: SurfacePoint) -> f64 {
     crate::random::Random(seed).unit()
 }
 
-impl Radiance for Sparkling {
-    fn leaving(&self, point: SurfacePoint, _eye: DVec3) -> Leaving {
+impl Radiance for SparklingRadiance {
+    fn outgoing(&self, point: SurfacePoint, _eye: DVec3) -> OutgoingRadiance {
         let u = hash(point);
         let spike = if u < RARITY { SPIKE } else { 0.0 };
         let by_chance = Vec3::splat(0.2 + 0.1 * u as f32 + spike);
-        let told = if self.tells { by_chance } else { Vec3::ZERO };
-        Leaving { own: Vec3::splat(0.8) + by_chance, by_chance: [told, Vec3::ZERO], ..Leaving::default() }
+        let reported = if self.reports_chance { by_chance } else { Vec3::ZERO };
+        OutgoingRadiance {
+            own: Vec3::splat(0.8) + by_chance,
+            noisy: [reported, Vec3::ZERO],
+            ..OutgoingRadiance::default()
+        }
     }
 
-    fn from_infinity(&self, _direction: DVec3) -> Vec3 {
+    fn environment(&self, _direction: DVec3) -> Vec3 {
         Vec3::ZERO
     }
 }
 
-fn discs(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
-    let (width, height) = effort.pick((192, 128), (96, 64));
+fn discs(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
+    let (width, height) = effort.choose((192, 128), (96, 64));
     let camera =
         Camera { width, height, yfov: 0.6, aperture_radius: 0.04, focus_distance: 1.5, ..Camera::default() };
     let scene = scene_of([(&Mesh::wall(4.0, 9.0), [1.0; 3])]);
     let tracer = Tracer::new(scene.clone());
     let focus = Focus::constant(scene, FocusOffset::STANDARD);
-    let picture = |tells: bool| {
+    let picture = |reports_chance: bool| {
         let options = BakeOptions::for_focus(&tracer, &camera, &focus);
-        let salf = bake(&tracer, &Sparkling { tells }, &camera, &options, progress)?;
+        let salf = bake(&tracer, &SparklingRadiance { reports_chance }, &camera, &options, progress)?;
         picture_of(salf, &focus, progress)
     };
     let [spread, left] = [picture(true)?, picture(false)?];
-    let loss = |of: &Picture| (mean(of) / mean(&left) - 1.0).abs();
+    let loss = |picture: &Picture| (mean(picture) / mean(&left) - 1.0).abs();
     // The control's own mean is right; what is wrong of it are its discs.
     let [right, wrong] = [&spread, &left].map(|picture| [brightest(picture), loss(picture)]);
     let limits = [("brightest, σ", 5.0), ("mean", 5e-3)];
-    Ok(Finding::of("no pixel beyond 5 σ of its picture's; mean kept to 0.5 %", limits, right, wrong))
+    Ok(Verdict::new("no pixel beyond 5 σ of its picture's; mean kept to 0.5 %", limits, right, wrong))
 }
 
 fn mean(picture: &Picture) -> f64 {

@@ -1,6 +1,6 @@
 //! κ where other forms of the formula have a pole.
 
-use crate::case::{Case, Effort, Finding, UNTRIED};
+use crate::case::{Case, Effort, NOT_COMPUTED, Verdict};
 use crate::light_field::{offset_of, picture_of_stars, star};
 use crate::measure::{energy, worst};
 use glam::DVec2;
@@ -45,27 +45,27 @@ fn small_camera() -> Camera {
     }
 }
 
-fn kappa_to_zero(_: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+fn kappa_to_zero(_: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
     let camera = small_camera();
-    let of = |kappa: f64| {
+    let splat_at = |kappa: f64| {
         let samples = vec![star(DVec2::splat(32.5), 0.5, 1.0)];
         picture_of_stars(&camera, samples, offset_of(kappa, &camera), progress)
     };
     let naive = |kappa: f64| Ok(naive_disc(&camera, camera.optics().splat_radius_px(kappa)));
     let expected = "mass 1 ± 1e-5; L1 distance from sharp ≤ 4r; P(−κ) is P(κ) turned, to 1e-3";
     let limits = [("mass", 1e-5), ("distance/4r", 1.0), ("turned", 1e-3)];
-    Ok(Finding::of(expected, limits, tends_to_sharp(&camera, of)?, tends_to_sharp(&camera, naive)?))
+    Ok(Verdict::new(expected, limits, tends_to_sharp(&camera, splat_at)?, tends_to_sharp(&camera, naive)?))
 }
 
 /// Largest error of the mass, L1 distance from the sharp picture over 4r, and difference between either sign's.
 fn tends_to_sharp(
     camera: &Camera,
-    of: impl Fn(f64) -> Result<Picture, Cancelled>,
+    picture_at: impl Fn(f64) -> Result<Picture, Cancelled>,
 ) -> Result<[f64; 3], Cancelled> {
-    let sharp = of(0.0)?;
+    let sharp = picture_at(0.0)?;
     let (mut mass, mut moved, mut turned) = (Vec::new(), Vec::new(), Vec::new());
     for kappa in SMALL_KAPPAS {
-        let [far, near] = [of(kappa)?, of(-kappa)?];
+        let [far, near] = [picture_at(kappa)?, picture_at(-kappa)?];
         let values =
             |picture: &Picture| picture.radiance.iter().map(|rgb| f64::from(rgb[1])).collect::<Vec<_>>();
         let (far_values, near_values, sharp) = (values(&far), values(&near), values(&sharp));
@@ -101,7 +101,7 @@ fn exact_optics() -> Optics {
     }
 }
 
-fn depth_of_the_focal_length(_: Effort, _: &dyn Progress) -> Result<Finding, Cancelled> {
+fn depth_of_the_focal_length(_: Effort, _: &dyn Progress) -> Result<Verdict, Cancelled> {
     let optics = exact_optics();
     let naive = |inverse_depth: f64, FocusOffset { t, anchor, .. }: FocusOffset| {
         let d = optics.image_distance;
@@ -111,7 +111,12 @@ fn depth_of_the_focal_length(_: Effort, _: &dyn Progress) -> Result<Finding, Can
     };
     let right = error_about_the_focal_length(&optics, |z, focus| optics.kappa(z, focus));
     let wrong = error_about_the_focal_length(&optics, naive);
-    Ok(Finding::of("κ = (a·t − 1)/d + t·(1 − a)·(1/f − 1/z), to 1e-14", [("error", 1e-14)], [right], [wrong]))
+    Ok(Verdict::new(
+        "κ = (a·t − 1)/d + t·(1 − a)·(1/f − 1/z), to 1e-14",
+        [("error", 1e-14)],
+        [right],
+        [wrong],
+    ))
 }
 
 /// The largest error of `kappa` relative to (1 + |t|)/d, from z = f/2 over f to 2f.
@@ -133,8 +138,8 @@ fn error_about_the_focal_length(optics: &Optics, kappa: impl Fn(f64, FocusOffset
     worst(errors)
 }
 
-fn infinite_distances(_: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
-    let of = |s: f64, z: f64| {
+fn infinite_distances(_: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
+    let circle_at = |s: f64, z: f64| {
         let camera = Camera { focus_distance: s, ..Camera::default() };
         camera.optics().kappa(1.0 / z, FocusOffset::STANDARD)
     };
@@ -158,10 +163,10 @@ fn infinite_distances(_: Effort, progress: &dyn Progress) -> Result<Finding, Can
     let painted = worst([-3.0, 0.0, 0.9, 1e6].map(|t| far_sensor.kappa(0.5, FocusOffset::new(t, 1.0))));
     let same_f = far_sensor.focal_length() * far_sensor.inverse_focus_distance - 1.0;
     let limits = [("κ", 0.0), ("star", 0.01), ("s = f", 0.0)];
-    let right = [error(&of), stars, worst([painted, same_f])];
+    let right = [error(&circle_at), stars, worst([painted, same_f])];
     let expected = "κ = 1/s − 1/z exactly; a star's radius 0 at s = ∞, else that of 1/s, to 1 %; paint on the conjugate of \
                     an infinitely far sensor leaves κ = 0";
-    Ok(Finding::of(expected, limits, right, [error(&naive), UNTRIED, UNTRIED]))
+    Ok(Verdict::new(expected, limits, right, [error(&naive), NOT_COMPUTED, NOT_COMPUTED]))
 }
 
 /// The radius of the disc, px, that a picture has the second moment of, its pixels' own taken off.

@@ -1,6 +1,6 @@
 //! Light is neither made nor lost.
 
-use crate::case::{Case, Effort, Finding, UNTRIED};
+use crate::case::{Case, Effort, NOT_COMPUTED, Verdict};
 use crate::light_field::{offset_of, picture_of_stars, star};
 use crate::measure::{energies, energy, worst};
 use crate::random::Random;
@@ -58,25 +58,25 @@ pub const CASES: &[Case] = &[
 /// The step of the splat's sums.
 const STEP: f64 = splat::QUANTUM;
 
-fn inside_and_outside(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+fn inside_and_outside(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
     const FRAME: u32 = 33;
     const BORDER: u32 = 48;
     let camera = |side: u32| Camera { width: side, height: side, aperture_radius: 0.1, ..Camera::default() };
     let (small, wide) = (camera(FRAME), camera(FRAME + 2 * BORDER));
-    let count = effort.pick(400, 60);
+    let count = effort.choose(400, 60);
     let mut random = Random(11);
     // On a grid that f32 holds exactly in either frame.
     let mut coordinate = || (random.unit() * f64::from(FRAME) * 256.0).floor() / 256.0;
     let places: Vec<_> = (0..count).map(|_| DVec2::new(coordinate(), coordinate())).collect();
     let (mut crop, mut lost, mut shares, mut cut) = (Vec::new(), Vec::new(), Vec::new(), f64::INFINITY);
     for radius in [-30.0, -3.0, 0.7, 11.0, 40.0] {
-        let of = |camera: &Camera, shift: f64| {
+        let crop_energy = |camera: &Camera, shift: f64| {
             let samples = places.iter().map(|&place| star(place + shift, 0.5, 1.0)).collect();
             // The same radius in px in both.
             let offset = offset_of(radius / camera.optics().splat_radius_px(1.0), camera);
             picture_of_stars(camera, samples, offset, progress)
         };
-        let (inner, outer) = (of(&small, 0.0)?, of(&wide, f64::from(BORDER))?);
+        let (inner, outer) = (crop_energy(&small, 0.0)?, crop_energy(&wide, f64::from(BORDER))?);
         crop.push(difference_to_crop(&inner, &outer, BORDER as usize));
         let lost_by_splat = (energy(&outer) - f64::from(count)) / f64::from(count);
         lost.push(lost_by_splat);
@@ -87,7 +87,12 @@ fn inside_and_outside(effort: Effort, progress: &dyn Progress) -> Result<Finding
     let limits = [("frame", 0.0), ("lost", 1e-5), ("quanta a splat and pixel", 1.0)];
     let expected = "the frame is a crop of the over-wide one, bit for bit; its sum the input's to 1e-5 and to a quantum \
                     a splat and pixel";
-    Ok(Finding::of(expected, limits, [worst(crop), worst(lost), worst(shares)], [UNTRIED, cut, cut / STEP]))
+    Ok(Verdict::new(
+        expected,
+        limits,
+        [worst(crop), worst(lost), worst(shares)],
+        [NOT_COMPUTED, cut, cut / STEP],
+    ))
 }
 
 /// The largest difference between a picture and the middle of a wider one.
@@ -101,7 +106,7 @@ fn difference_to_crop(inner: &Picture, outer: &Picture, border: usize) -> f64 {
 
 /// Two squares before a black background, the nearer one at `near_x`: 0 hides part of the farther one.
 fn squares(effort: Effort, near_x: f64) -> Shot {
-    let side = effort.pick(160, 96);
+    let side = effort.choose(160, 96);
     let camera = Camera {
         width: side,
         height: side,
@@ -139,7 +144,7 @@ fn normalised(picture: Picture) -> [f64; 3] {
     energies(&Picture { radiance: picture.exposed(Exposure::Normalise), ..picture })
 }
 
-fn invariant_to_paint(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+fn invariant_to_paint(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
     let shot = squares(effort, -0.9);
     let (mut splatted, mut divided, mut traced) = (Vec::new(), Vec::new(), Vec::new());
     for offset in OFFSETS {
@@ -150,7 +155,7 @@ fn invariant_to_paint(effort: Effort, progress: &dyn Progress) -> Result<Finding
     }
     // The traced sum's own uncertainty, from other random numbers.
     let mut others = Vec::new();
-    for seed in 2..effort.pick(10, 6) {
+    for seed in 2..effort.choose(10, 6) {
         let unpainted = shot.focus(FocusOffset::STANDARD);
         others.push(energy(&shot.truth_with(&unpainted, 16, seed, progress)?));
     }
@@ -160,10 +165,10 @@ fn invariant_to_paint(effort: Effort, progress: &dyn Progress) -> Result<Finding
     let limits = [("splat", 1e-4), ("truth, standard errors", 1.0)];
     let expected =
         "the same for every t and anchor, painted or not: to 0.01 % splatted, to a standard error traced";
-    Ok(Finding::of(expected, limits, [spread(&splatted), deviations], [spread(&divided), UNTRIED]))
+    Ok(Verdict::new(expected, limits, [spread(&splatted), deviations], [spread(&divided), NOT_COMPUTED]))
 }
 
-fn behind_an_occluder(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+fn behind_an_occluder(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
     let shot = squares(effort, -0.15);
     let salf = shot.salf(OFFSETS[0], progress)?;
     let open = |sample: &mut Sample| sample.visibility = Visibility::Open;
@@ -172,21 +177,22 @@ fn behind_an_occluder(effort: Effort, progress: &dyn Progress) -> Result<Finding
     let sums = |salf: &Salf| -> Result<Vec<[f64; 3]>, Cancelled> {
         OFFSETS.iter().map(|&offset| Ok(energies(&picture(salf, offset)?))).collect()
     };
-    let kept = normalised(picture(&salf, FocusOffset::new(1.0 + 1e-5, 0.0))?);
+    let picture_normalised = normalised(picture(&salf, FocusOffset::new(1.0 + 1e-5, 0.0))?);
     let (sums, blind) = (sums(&salf)?, sums(&blind)?);
     let traced = energies(&shot.truth(FocusOffset::STANDARD, 64, progress)?);
     let relative = |sums: &[f64; 3]| worst((0..3).map(|c| sums[c] / traced[c] - 1.0));
     let limits = [("splat", 1e-4), ("against truth", 0.01)];
     let right = [spread(&sums), worst(sums.iter().map(relative))];
-    let wrong = [spread(&[sums[0], kept]), blind.iter().map(relative).fold(f64::INFINITY, f64::min)];
+    let wrong =
+        [spread(&[sums[0], picture_normalised]), blind.iter().map(relative).fold(f64::INFINITY, f64::min)];
     let expected = "each colour's sum the same for every t and anchor, painted or not, to 0.01 %; that of the truth to 1 %";
-    Ok(Finding::of(expected, limits, right, wrong))
+    Ok(Verdict::new(expected, limits, right, wrong))
 }
 
 /// Slanted cards of growing depth, fanned out: each hides most of the next one, less than a pixel of parallax behind, and
 /// their outlines lie farther from each other than any parallax.
 fn fan(effort: Effort) -> Shot {
-    let side = effort.pick(240, 120);
+    let side = effort.choose(240, 120);
     let camera = Camera {
         width: side,
         height: side,
@@ -217,30 +223,30 @@ fn is_hidden_from_center(shot: &Shot, sample: &Sample) -> bool {
     shot.tracer.first_hit(&ray).is_some()
 }
 
-fn just_behind_one_another(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+fn just_behind_one_another(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
     let shot = fan(effort);
     let salf = shot.salf(OFFSETS[0], progress)?;
-    let seen = salf.samples.iter().filter(|sample| !is_hidden_from_center(&shot, sample));
-    let central = Salf { samples: seen.collect(), ..salf.clone() };
+    let unoccluded = salf.samples.iter().filter(|sample| !is_hidden_from_center(&shot, sample));
+    let central = Salf { samples: unoccluded.collect(), ..salf.clone() };
     let sums = |salf: &Salf| -> Result<Vec<[f64; 3]>, Cancelled> {
         let sum = |&offset| Ok(energies(&picture_of(salf.clone(), &shot.focus(offset), progress)?));
         OFFSETS.iter().map(sum).collect()
     };
     let (sums, central) = (sums(&salf)?, sums(&central)?);
-    let traced = energies(&shot.truth(FocusOffset::STANDARD, effort.pick(256, 64), progress)?);
-    let limits = [("splat", 1e-4), ("against truth", effort.pick(1e-3, 1.5e-3))];
-    let of = |sums: &[[f64; 3]]| {
+    let traced = energies(&shot.truth(FocusOffset::STANDARD, effort.choose(256, 64), progress)?);
+    let limits = [("splat", 1e-4), ("against truth", effort.choose(1e-3, 1.5e-3))];
+    let errors = |sums: &[[f64; 3]]| {
         let relative = |sums: &[f64; 3]| worst((0..3).map(|c| sums[c] / traced[c] - 1.0));
         [spread(sums), worst(sums.iter().map(relative))]
     };
     let expected = "each colour's sum the same for every t and anchor, painted or not, to 0.01 %; that of the truth to 0.1 % (with \
                     few pixels: 0.15 %)";
-    Ok(Finding::of(expected, limits, of(&sums), of(&central)))
+    Ok(Verdict::new(expected, limits, errors(&sums), errors(&central)))
 }
 
 /// Slanted cards in disorder that hide each other.
 fn heap(effort: Effort) -> Shot {
-    let side = effort.pick(160, 120);
+    let side = effort.choose(160, 120);
     let camera = Camera {
         width: side,
         height: side,
@@ -277,7 +283,7 @@ impl SurfaceField<FocusOffset> for EveryOther {
     }
 }
 
-fn partly_painted(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+fn partly_painted(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
     let shot = heap(effort);
     let salf = Arc::new(shot.salf(OFFSETS[0], progress)?);
     let sums = |is_live: bool| -> Result<Vec<[f64; 3]>, Cancelled> {
@@ -289,5 +295,5 @@ fn partly_painted(effort: Effort, progress: &dyn Progress) -> Result<Finding, Ca
         OFFSETS.iter().map(sum).collect()
     };
     let expected = "each colour's sum the same for every t and anchor of the paint, or none, to 0.002 %";
-    Ok(Finding::of(expected, [("splat", 2e-5)], [spread(&sums(false)?)], [spread(&sums(true)?)]))
+    Ok(Verdict::new(expected, [("splat", 2e-5)], [spread(&sums(false)?)], [spread(&sums(true)?)]))
 }

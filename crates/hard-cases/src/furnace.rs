@@ -1,6 +1,6 @@
 //! A scene of radiance 1 is 1.
 
-use crate::case::{Case, Effort, Finding, UNTRIED};
+use crate::case::{Case, Effort, NOT_COMPUTED, Verdict};
 use crate::light_field::offset_of;
 use crate::measure::{farthest_from, worst};
 use crate::sampling::{every_shape, mask};
@@ -19,15 +19,15 @@ pub const CASES: &[Case] = &[Case {
     check: furnace,
 }];
 
-fn furnace(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
-    let (width, height) = effort.pick((32, 24), (20, 15));
+fn furnace(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
+    let (width, height) = effort.choose((32, 24), (20, 15));
     let camera =
         Camera { width, height, yfov: 0.6, aperture_radius: 0.1, focus_distance: 3.0, ..Camera::default() };
     let shot = Shot::new(scene_of([(&Mesh::wall(3.0, 100.0), [1.0; 3])]), camera.clone());
     let per_kappa = camera.optics().splat_radius_px(1.0);
     let offset = |radius_px: f64| offset_of(radius_px / per_kappa, &camera);
     let every: &[f64] = &[-20.0, -7.3, -1.5, -0.6, -0.2, -1e-6, 0.0, 0.1, 0.37, 0.8, 2.0, 4.5, 11.0, 20.0];
-    let radii = effort.pick(every, &[-7.3, -0.2, 0.0, 4.5]);
+    let radii = effort.choose(every, &[-7.3, -0.2, 0.0, 4.5]);
 
     // Baked once, for the widest blur and the whole square; every aperture and focus is splatted from it.
     let salf = shot.salf(offset(20.0), progress)?;
@@ -58,7 +58,7 @@ fn furnace(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled
                 wrong = wrong.min(splat(&mut vignetted)?);
             }
         }
-        for radius in effort.pick(&[-7.3, 2.0][..], if index % 5 == 0 { &[4.5] } else { &[] }) {
+        for radius in effort.choose(&[-7.3, 2.0][..], if index % 5 == 0 { &[4.5] } else { &[] }) {
             traced.push(farthest_from(&with_aperture.truth(offset(*radius), 8, progress)?, 1.0));
         }
     }
@@ -68,5 +68,5 @@ fn furnace(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled
         traced.len()
     );
     let limits = [("splat", 1e-3), ("truth", 1e-3)];
-    Ok(Finding::of(expected, limits, [worst(splatted), worst(traced)], [wrong, UNTRIED]))
+    Ok(Verdict::new(expected, limits, [worst(splatted), worst(traced)], [wrong, NOT_COMPUTED]))
 }

@@ -86,7 +86,7 @@ pub fn run(filter: &str, effort: Effort, progress: &dyn Progress) -> Result<Vec<
     let count = chosen.len() as f32;
     let outcomes = chosen.iter().enumerate().map(|(index, case)| {
         progress.check()?;
-        let outcome = case.run(effort, &Unreported(progress))?;
+        let outcome = case.run(effort, &CancelOnly(progress))?;
         progress.report((index + 1) as f32 / count);
         Ok(outcome)
     });
@@ -94,9 +94,9 @@ pub fn run(filter: &str, effort: Effort, progress: &dyn Progress) -> Result<Vec<
 }
 
 /// Lets a case be cancelled, but not tell how far each of its pictures is.
-struct Unreported<'a>(&'a dyn Progress);
+struct CancelOnly<'a>(&'a dyn Progress);
 
-impl Progress for Unreported<'_> {
+impl Progress for CancelOnly<'_> {
     fn report(&self, _fraction: f32) {}
     fn cancelled(&self) -> bool {
         self.0.cancelled()

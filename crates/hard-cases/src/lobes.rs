@@ -1,6 +1,6 @@
 //! How a surface scatters light: all that comes goes, both ways alike, and as densely as it says.
 
-use crate::case::{Case, Effort, Finding};
+use crate::case::{Case, Effort, Verdict};
 use crate::measure::worst;
 use crate::random::Random;
 use glam::DVec3;
@@ -77,7 +77,7 @@ fn every() -> Vec<Surface> {
 
 /// How far from 1 the mean of what is sent is, of light 1 from everywhere.
 fn furnace(surface: &Surface, cos: f64, count: u32) -> f64 {
-    let interface = Interface::of_ior(surface.ior);
+    let interface = Interface::from_ior(surface.ior);
     let bsdf = Bsdf::new(surface, Frame::flat(DVec3::Z), &interface);
     // Roberts's sequence in three dimensions: it covers the cube far more evenly than chance does.
     const STEP: DVec3 = DVec3::new(0.819_172_513_396_164_4, 0.671_043_606_703_789_3, 0.549_700_477_901_970_3);
@@ -86,24 +86,27 @@ fn furnace(surface: &Surface, cos: f64, count: u32) -> f64 {
     sent.map(|scattered| scattered.weight.total().x).sum::<f64>() / f64::from(count) - 1.0
 }
 
-fn white_furnace(effort: Effort, _: &dyn Progress) -> Result<Finding, Cancelled> {
-    let count = effort.pick(400_000, 100_000);
+fn white_furnace(effort: Effort, _: &dyn Progress) -> Result<Verdict, Cancelled> {
+    let count = effort.choose(400_000, 100_000);
     let roughness = [0.05, 0.1, 0.2, 0.4, 0.6, 0.8, 1.0];
-    let of = |surface: &dyn Fn(f64) -> Surface| {
+    let worst_gain = |surface: &dyn Fn(f64) -> Surface| {
         let all = roughness.iter().flat_map(|&roughness| COSINES.map(|cos| (surface(roughness), cos)));
         worst(all.map(|(surface, cos)| furnace(&surface, cos, count)))
     };
-    let right = [of(&metal), of(&plastic)];
+    let right = [worst_gain(&metal), worst_gain(&plastic)];
     let single = |surface: Surface| Surface { scattering: Scattering::Single, ..surface };
-    let wrong = [of(&|roughness| single(metal(roughness))), of(&|roughness| single(plastic(roughness)))];
+    let wrong = [
+        worst_gain(&|roughness| single(metal(roughness))),
+        worst_gain(&|roughness| single(plastic(roughness))),
+    ];
     let limits = [("metal", 5e-3), ("plastic", 5e-3)];
-    Ok(Finding::of("1 ± 0.5 %, roughness 0.05 … 1, 5 directions each", limits, right, wrong))
+    Ok(Verdict::new("1 ± 0.5 %, roughness 0.05 … 1, 5 directions each", limits, right, wrong))
 }
 
-fn ball(effort: Effort, _: &dyn Progress) -> Result<Finding, Cancelled> {
-    let count = effort.pick(200_000, 40_000);
+fn ball(effort: Effort, _: &dyn Progress) -> Result<Verdict, Cancelled> {
+    let count = effort.choose(200_000, 40_000);
     let brightness = |surface: Surface| {
-        let interface = Interface::of_ior(surface.ior);
+        let interface = Interface::from_ior(surface.ior);
         let mut random = Random(7);
         let mut sum = 0.0;
         for _ in 0..count {
@@ -131,11 +134,11 @@ fn ball(effort: Effort, _: &dyn Progress) -> Result<Finding, Cancelled> {
     };
     let right = worst([0.1, 0.5, 1.0].map(|roughness| brightness(glass(roughness))));
     let wrong = brightness(Surface { scattering: Scattering::Single, ..glass(1.0) });
-    Ok(Finding::of("1 ± 1 %, roughness 0.1 … 1", [("brightness − 1", 0.01)], [right], [wrong.abs()]))
+    Ok(Verdict::new("1 ± 1 %, roughness 0.1 … 1", [("brightness − 1", 0.01)], [right], [wrong.abs()]))
 }
 
-fn reciprocity(effort: Effort, _: &dyn Progress) -> Result<Finding, Cancelled> {
-    let count = effort.pick(20_000, 2_000);
+fn reciprocity(effort: Effort, _: &dyn Progress) -> Result<Verdict, Cancelled> {
+    let count = effort.choose(20_000, 2_000);
     let worst_of = |value: &dyn Fn(DVec3, DVec3) -> DVec3, beyond: Option<f64>| {
         let mut random = Random(3);
         worst((0..count).map(|_| {
@@ -148,27 +151,27 @@ fn reciprocity(effort: Effort, _: &dyn Progress) -> Result<Finding, Cancelled> {
             if scale > 1e-9 { (there - back).abs().max_element() / scale } else { 0.0 }
         }))
     };
-    let of = |surface: &Surface| {
-        let interface = Interface::of_ior(surface.ior);
+    let worst_error = |surface: &Surface| {
+        let interface = Interface::from_ior(surface.ior);
         let bsdf = Bsdf::new(surface, Frame::flat(DVec3::Z), &interface);
         let value = |o: DVec3, i: DVec3| bsdf.evaluate(o, i).total();
         let eta2 = if surface.is_thin { 1.0 } else { interface.eta(true).powi(2) };
         worst_of(&value, None).max(worst_of(&value, Some(eta2)))
     };
-    let right = worst(every().iter().map(of));
+    let right = worst(every().iter().map(worst_error));
     let plastic = plastic(0.4);
-    let interface = Interface::of_ior(plastic.ior);
+    let interface = Interface::from_ior(plastic.ior);
     let bsdf = Bsdf::new(&plastic, Frame::flat(DVec3::Z), &interface);
     let mixed = |o: DVec3, i: DVec3| bsdf.evaluate(o, i).total() * (0.96 - 0.96 * (1.0 - o.z).powi(5));
     let expected = format!("alike to 1e-4, of {} materials", every().len());
-    Ok(Finding::of(expected, [("relative difference", 1e-4)], [right], [worst_of(&mixed, None)]))
+    Ok(Verdict::new(expected, [("relative difference", 1e-4)], [right], [worst_of(&mixed, None)]))
 }
 
 /// Bands of z and sectors of azimuth that directions are counted in.
 const SIDE: usize = 24;
 
-fn densities(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
-    let count = effort.pick(100_000, 20_000);
+fn densities(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
+    let count = effort.choose(100_000, 20_000);
     let (mut right, mut wrong) = (Vec::new(), f64::INFINITY);
     for surface in every() {
         for cos in COSINES {
@@ -181,12 +184,12 @@ fn densities(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancell
         }
     }
     let expected = format!("of {} lobes and directions, the worst below 5 standard deviations", right.len());
-    Ok(Finding::of(expected, [("deviations", 5.0)], [worst(right)], [wrong]))
+    Ok(Verdict::new(expected, [("deviations", 5.0)], [worst(right)], [wrong]))
 }
 
 /// χ² over its degrees of freedom, in standard deviations: of the density as it is, and tilted.
 fn deviations_of(surface: &Surface, cos: f64, count: u32) -> [f64; 2] {
-    let interface = Interface::of_ior(surface.ior);
+    let interface = Interface::from_ior(surface.ior);
     let bsdf = Bsdf::new(surface, Frame::flat(DVec3::Z), &interface);
     let outgoing = toward(cos, 0.3);
     let mut random = Random(11);
@@ -213,19 +216,19 @@ fn deviations_of(surface: &Surface, cos: f64, count: u32) -> [f64; 2] {
     let tilted: Vec<f64> = (0..SIDE * SIDE).map(|k| expected[k] * ((k / SIDE) as f64 + 0.5)).collect();
     let scale = expected.iter().sum::<f64>() / tilted.iter().sum::<f64>();
     let chi2 = |shares: &dyn Fn(usize) -> f64| {
-        let (mut chi2, mut cells, mut rest, mut rest_wanted) = (0.0, 0.0f64, 0.0, 0.0);
-        for (cell, found) in counts.iter().enumerate() {
-            let wanted = shares(cell) * f64::from(count);
-            if wanted < 10.0 {
-                (rest, rest_wanted) = (rest + found, rest_wanted + wanted);
+        let (mut chi2, mut cells, mut rest, mut rest_expected) = (0.0, 0.0f64, 0.0, 0.0);
+        for (cell, observed) in counts.iter().enumerate() {
+            let expected = shares(cell) * f64::from(count);
+            if expected < 10.0 {
+                (rest, rest_expected) = (rest + observed, rest_expected + expected);
             } else {
                 // The cell's own integral is known to a fifth of a percent only.
-                chi2 += (found - wanted).powi(2) / (wanted + (2e-3 * wanted).powi(2));
+                chi2 += (observed - expected).powi(2) / (expected + (2e-3 * expected).powi(2));
                 cells += 1.0;
             }
         }
-        if rest_wanted > 10.0 {
-            (chi2, cells) = (chi2 + (rest - rest_wanted).powi(2) / rest_wanted, cells + 1.0);
+        if rest_expected > 10.0 {
+            (chi2, cells) = (chi2 + (rest - rest_expected).powi(2) / rest_expected, cells + 1.0);
         }
         (chi2 - cells) / (2.0 * cells.max(1.0)).sqrt()
     };

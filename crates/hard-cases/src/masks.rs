@@ -1,6 +1,6 @@
 //! Aperture pictures without light, with little, with very many texels.
 
-use crate::case::{Case, Effort, Finding, UNTRIED};
+use crate::case::{Case, Effort, NOT_COMPUTED, Verdict};
 use crate::light_field::{offset_of, picture_of_stars, star};
 use crate::measure::{energy, largest_difference, worst};
 use crate::sampling::mask;
@@ -30,7 +30,7 @@ pub const CASES: &[Case] = &[
     },
 ];
 
-fn black(_: Effort, _: &dyn Progress) -> Result<Finding, Cancelled> {
+fn black(_: Effort, _: &dyn Progress) -> Result<Verdict, Cancelled> {
     let masks = [1, 2, 64].map(|side| Aperture::from(mask(side, |_| 0.0)));
     let accepted =
         |refuses: &dyn Fn(&Aperture) -> bool| masks.iter().filter(|mask| !refuses(mask)).count() as f64;
@@ -42,7 +42,7 @@ fn black(_: Effort, _: &dyn Progress) -> Result<Finding, Cancelled> {
         ApertureShape::Mask(mask) => !mask.transmission.iter().all(|t| (0.0..=1.0).contains(t)),
         _ => false,
     };
-    Ok(Finding::of(
+    Ok(Verdict::new(
         "refused, naming the mask",
         [("accepted", 0.0)],
         [accepted(&by_name)],
@@ -75,8 +75,8 @@ fn camera_with(aperture: Aperture) -> Camera {
     }
 }
 
-fn one_texel(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
-    let side = effort.pick(512, 128);
+fn one_texel(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
+    let side = effort.choose(512, 128);
     let half_texel = 1.0 / f64::from(side);
     // A texel in the upper right, off every coarser grid's symmetry.
     let open = DVec2::new(0.4, 0.7);
@@ -111,11 +111,11 @@ fn one_texel(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancell
     let to_square = largest_difference(&all_open, &picture_with(ApertureShape::Square)?);
     let limits = [("mass", 1e-6), ("centre, half cells", 1.0), ("1 × 1 − square", 1e-8)];
     let ([mass, place], [_, turned]) = (error(upright)?, error(turned)?);
-    Ok(Finding::of(expected, limits, [mass, place, to_square], [UNTRIED, turned, UNTRIED]))
+    Ok(Verdict::new(expected, limits, [mass, place, to_square], [NOT_COMPUTED, turned, NOT_COMPUTED]))
 }
 
-fn many_texels(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
-    let side = effort.pick(4096, 512);
+fn many_texels(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
+    let side = effort.choose(4096, 512);
     let texel = |u: f64| ((u + 1.0) / 2.0 * f64::from(side)) as u32;
     let aperture = Aperture::from(mask(side, |u| f32::from((texel(u.x) + texel(u.y)).is_multiple_of(2))));
     let areas = [8, 128].map(|rows| aperture.rows(rows).open_area() / 2.0 - 1.0);
@@ -125,13 +125,13 @@ fn many_texels(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cance
     let kappa = 20.0 / camera.optics().splat_radius_px(1.0);
     let picture = picture_of_stars(&camera, samples, offset_of(kappa, &camera), progress)?;
     let (mass, center) = centroid(&picture);
-    let asked = |k: u32| {
+    let center_transmission = |k: u32| {
         let u = DVec2::new(f64::from(k % 128) + 0.5, f64::from(k / 128) + 0.5) / 64.0 - 1.0;
         aperture.transmission(u)
     };
-    let asked_area = (0..128 * 128).map(asked).sum::<f64>() / f64::from(64 * 64) / 2.0 - 1.0;
+    let sampled_area = (0..128 * 128).map(center_transmission).sum::<f64>() / f64::from(64 * 64) / 2.0 - 1.0;
     let limits = [("area", 1e-6), ("mass", 1e-5), ("centre", 0.02)];
     let right = [worst(areas), mass - 1.0, center.length()].map(f64::abs);
     let expected = format!("{side}² texels: open area 2 to 1e-6; mass 1 to 1e-5; centred to 0.02 px");
-    Ok(Finding::of(expected, limits, right, [asked_area.abs(), UNTRIED, UNTRIED]))
+    Ok(Verdict::new(expected, limits, right, [sampled_area.abs(), NOT_COMPUTED, NOT_COMPUTED]))
 }

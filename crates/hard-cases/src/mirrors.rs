@@ -1,6 +1,6 @@
 //! What a mirror shows is the ordinary lens's picture of the mirrored scene, whatever is painted on the mirror.
 
-use crate::case::{Case, Effort, Finding};
+use crate::case::{Case, Effort, Verdict};
 use crate::measure::rms_difference;
 use crate::scenery::{Mesh, made_of};
 use crate::shot::{Shot, picture_of};
@@ -28,13 +28,13 @@ fn cards(is_mirrored: bool) -> Vec<(Mesh, Material)> {
             let place = if is_mirrored { 2.0 * MIRROR - z } else { z };
             let side = if x < -9.0 { 40.0 } else { 0.7 };
             let color = Vec4::new(bright, bright * 0.5, 0.3, 1.0);
-            let material = Material { base_color: color, ..Material::of_unlit() };
+            let material = Material { base_color: color, ..Material::unlit_white() };
             (Mesh::rectangle(DVec3::new(x, y, place), DVec3::X * side, DVec3::Y * side), material)
         })
         .into()
 }
 
-fn mirror(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+fn mirror(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
     let camera = Camera {
         width: 60,
         height: 40,
@@ -45,23 +45,26 @@ fn mirror(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled>
         ..Camera::default()
     };
     let silver = Material {
-        workflow: Workflow::MetallicRoughness { metallic: Scalar::plain(1.0), roughness: Scalar::plain(0.0) },
+        workflow: Workflow::MetallicRoughness {
+            metallic: Scalar::constant(1.0),
+            roughness: Scalar::constant(0.0),
+        },
         ..Material::default()
     };
     let mut meshes = cards(false);
     meshes.push((Mesh::wall(4.0, 20.0), silver));
-    let of = |meshes: Vec<(Mesh, Material)>| Shot::new(made_of(meshes), camera.clone());
-    let (shot, mirrored) = (of(meshes), of(cards(true)));
-    let wanted = mirrored.truth(FocusOffset::STANDARD, effort.pick(1024, 256), progress)?;
+    let shot_of = |meshes: Vec<(Mesh, Material)>| Shot::new(made_of(meshes), camera.clone());
+    let (shot, mirrored) = (shot_of(meshes), shot_of(cards(true)));
+    let expected = mirrored.truth(FocusOffset::STANDARD, effort.choose(1024, 256), progress)?;
     let paint = FocusOffset::new(1.06, 1.0);
     let focus: Focus = shot.focus(paint);
     let salf = shot.salf(paint, progress)?;
     let own = Salf { samples: salf.samples.changed(|sample| sample.is_carried = false), ..salf.clone() };
-    let splat = rms_difference(&picture_of(salf, &focus, progress)?, &wanted);
-    let traced = rms_difference(&shot.truth(paint, effort.pick(1024, 256), progress)?, &wanted);
-    let control = rms_difference(&picture_of(own, &focus, progress)?, &wanted);
+    let splat = rms_difference(&picture_of(salf, &focus, progress)?, &expected);
+    let traced = rms_difference(&shot.truth(paint, effort.choose(1024, 256), progress)?, &expected);
+    let control = rms_difference(&picture_of(own, &focus, progress)?, &expected);
     let limits = [("splat", 0.008), ("truth", 0.01)];
-    Ok(Finding::of(
+    Ok(Verdict::new(
         "painted, the mirrored scene's picture: RMS ≤ 0.008 of 0.3 … 0.9",
         limits,
         [splat, traced],

@@ -1,6 +1,6 @@
 //! Focus offsets that make no sense.
 
-use crate::case::{Case, Effort, Finding, UNTRIED};
+use crate::case::{Case, Effort, NOT_COMPUTED, Verdict};
 use crate::measure::{largest_difference, senseless, worst};
 use crate::scenery::{Mesh, scene_of};
 use crate::shot::Shot;
@@ -32,25 +32,25 @@ fn shot() -> Shot {
 
 const ANCHORS: [f64; 3] = [0.0, 0.5, 1.0];
 
-fn any_finite_offset(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+fn any_finite_offset(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
     let shot = shot();
     let every = [0.0, -1e-9, -1.0, -3.0, 1e6, -1e6, 1e30, 1e300, f64::MAX, f64::MIN];
     let (mut in_pictures, mut raw) = (0.0, 0.0);
     for (index, &t) in every.iter().enumerate() {
-        let anchors = effort.pick(&ANCHORS[..], &ANCHORS[index % 3..=index % 3]);
+        let anchors = effort.choose(&ANCHORS[..], &ANCHORS[index % 3..=index % 3]);
         for &anchor in anchors {
             let offset = FocusOffset::new(t, anchor);
             in_pictures += senseless(&shot.splat(offset, progress)?);
             raw += f64::from(!raw_kappa(&shot.camera, offset).is_finite());
         }
         // Wide blur is slow to trace.
-        if index % effort.pick(1, 4) == 0 {
+        if index % effort.choose(1, 4) == 0 {
             in_pictures += senseless(&shot.truth(FocusOffset::new(t, 0.5), 1, progress)?);
             in_pictures += senseless(&shot.truth_from_surfaces(FocusOffset::new(t, 0.5), 1, progress)?);
         }
     }
     let expected = "no number of any picture is NaN, infinite or negative";
-    Ok(Finding::of(expected, [("senseless", 0.0)], [in_pictures], [raw]))
+    Ok(Verdict::new(expected, [("senseless", 0.0)], [in_pictures], [raw]))
 }
 
 /// κ at depth 2 as it is written, without a guard.
@@ -59,7 +59,7 @@ fn raw_kappa(camera: &Camera, FocusOffset { t, anchor, .. }: FocusOffset) -> f64
     (t - 1.0) / optics.image_distance + t * (1.0 - anchor) * (optics.inverse_focus_distance - 0.5)
 }
 
-fn not_a_number(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+fn not_a_number(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
     let shot = shot();
     let offsets = [
         FocusOffset::new(f64::NAN, 0.0),
@@ -76,17 +76,17 @@ fn not_a_number(effort: Effort, progress: &dyn Progress) -> Result<Finding, Canc
     };
     let standard = pictures(FocusOffset::STANDARD)?;
     let (mut accepted, mut differences, mut raw) = (0.0, Vec::new(), Vec::new());
-    for offset in effort.pick(&offsets[..], &offsets[..3]) {
+    for offset in effort.choose(&offsets[..], &offsets[..3]) {
         let recipe = FocusRecipe { default: RecipeEntry::Value(*offset), ..FocusRecipe::default() };
         accepted += f64::from(recipe.evaluate(shot.tracer.scene()).is_ok());
         accepted += f64::from(Brush { target: *offset, ..Brush::default() }.problem().is_none());
         accepted += f64::from(FocusMap::new(4, 4, *offset).is_valid());
-        let found = pictures(*offset)?;
-        differences.extend((0..3).map(|k| largest_difference(&found[k], &standard[k])));
+        let actual = pictures(*offset)?;
+        differences.extend((0..3).map(|k| largest_difference(&actual[k], &standard[k])));
         let optics = shot.camera.optics();
         raw.push(raw_kappa(&shot.camera, *offset) - optics.standard_kappa(0.5));
     }
     let expected = "recipes, brushes and maps refuse it; given to the renderers (splat, rays from the sensor, rays from the surfaces), the unpainted picture bit for bit";
     let limits = [("accepted", 0.0), ("difference", 0.0)];
-    Ok(Finding::of(expected, limits, [accepted, worst(differences)], [UNTRIED, worst(raw)]))
+    Ok(Verdict::new(expected, limits, [accepted, worst(differences)], [NOT_COMPUTED, worst(raw)]))
 }

@@ -1,6 +1,6 @@
 //! Half there is half there: no grain, whatever stands behind what.
 
-use crate::case::{Case, Effort, Finding};
+use crate::case::{Case, Effort, Verdict};
 use crate::scenery::{Mesh, made_of};
 use crate::shot::Shot;
 use glam::Vec4;
@@ -25,11 +25,11 @@ pub const CASES: &[Case] = &[
 
 fn unlit([r, g, b]: [f32; 3], opacity: f32) -> Material {
     let alpha = if opacity < 1.0 { AlphaMode::Blend } else { AlphaMode::Opaque };
-    Material { base_color: Vec4::new(r, g, b, opacity), alpha, ..Material::of_unlit() }
+    Material { base_color: Vec4::new(r, g, b, opacity), alpha, ..Material::unlit_white() }
 }
 
 fn camera(effort: Effort) -> Camera {
-    let (width, height) = effort.pick((60, 40), (36, 24));
+    let (width, height) = effort.choose((60, 40), (36, 24));
     Camera { width, height, yfov: 0.6, aperture_radius: 0.05, focus_distance: 3.0, ..Camera::default() }
 }
 
@@ -49,7 +49,7 @@ fn middle(picture: &Picture) -> ([f64; 3], f64) {
     (mean, deviation.into_iter().fold(0.0, f64::max))
 }
 
-fn card(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+fn card(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
     let [wall, card] = [[0.8f32, 0.6, 0.4], [0.2, 0.3, 0.9]];
     let meshes = [(Mesh::wall(4.0, 9.0), unlit(wall, 1.0)), (Mesh::wall(2.0, 5.0), unlit(card, 0.5))];
     let shot = Shot::new(made_of(meshes), camera(effort));
@@ -62,10 +62,10 @@ fn card(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
     let right = off(&shot.splat(FocusOffset::STANDARD, progress)?);
     let wrong = off(&shot.truth(FocusOffset::STANDARD, 16, progress)?);
     let limits = [("mean", 2e-3), ("deviation", 3e-3)];
-    Ok(Finding::of("mean to 0.2 %, deviation of pixels ≤ 0.3 %", limits, right, wrong))
+    Ok(Verdict::new("mean to 0.2 %, deviation of pixels ≤ 0.3 %", limits, right, wrong))
 }
 
-fn stack(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+fn stack(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
     let panes: Vec<_> = (0..12u16)
         .map(|k| {
             let shade = f32::from(k) / 11.0;
@@ -73,7 +73,7 @@ fn stack(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> 
         })
         .collect();
     let ground = [0.5, 0.4, 0.9];
-    let wanted = |panes: &[([f32; 3], f32)]| {
+    let composited = |panes: &[([f32; 3], f32)]| {
         // From the back, each over what is behind it.
         panes.iter().rev().fold(ground.map(f64::from), |behind, (color, opacity)| {
             let opacity = f64::from(*opacity);
@@ -90,21 +90,21 @@ fn stack(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> 
         let scene = made_of(meshes.clone());
         Shot::new(scene, Camera { focus_distance, ..camera(effort) })
     };
-    let mut found = Vec::new();
+    let mut measured = Vec::new();
     for focus_distance in [3.0, 0.6, f64::INFINITY] {
-        found.push(middle(&shot(focus_distance).splat(FocusOffset::STANDARD, progress)?));
+        measured.push(middle(&shot(focus_distance).splat(FocusOffset::STANDARD, progress)?));
     }
-    let off = |wanted: [f64; 3]| {
-        let of = |(mean, _): &([f64; 3], f64)| {
-            (0..3).map(|c| (mean[c] / wanted[c] - 1.0).abs()).fold(0.0, f64::max)
+    let off = |expected: [f64; 3]| {
+        let deviation_of = |(mean, _): &([f64; 3], f64)| {
+            (0..3).map(|c| (mean[c] / expected[c] - 1.0).abs()).fold(0.0, f64::max)
         };
-        found.iter().map(of).fold(0.0, f64::max)
+        measured.iter().map(deviation_of).fold(0.0, f64::max)
     };
     let reversed: Vec<_> = panes.iter().rev().copied().collect();
-    let deviation = found.iter().map(|(_, deviation)| *deviation).fold(0.0, f64::max);
+    let deviation = measured.iter().map(|(_, deviation)| *deviation).fold(0.0, f64::max);
     let limits = [("mean", 3e-3), ("deviation", 5e-3)];
-    let (right, wrong) = (off(wanted(&panes)), off(wanted(&reversed)));
+    let (right, wrong) = (off(composited(&panes)), off(composited(&reversed)));
     let expected =
         "opacity 0.1 … 0.9 over a wall, in focus and not: mean to 0.3 %, deviation of pixels ≤ 0.5 %";
-    Ok(Finding::of(expected, limits, [right, deviation], [wrong, 0.0]))
+    Ok(Verdict::new(expected, limits, [right, deviation], [wrong, 0.0]))
 }

@@ -1,6 +1,6 @@
 //! The very bright beside the very dim, very many samples in one place, and blur wider than the picture.
 
-use crate::case::{Case, Effort, Finding, UNTRIED};
+use crate::case::{Case, Effort, NOT_COMPUTED, Verdict};
 use crate::light_field::{offset_of, picture_of_stars, star};
 use crate::measure::{energy, farthest_from, worst};
 use crate::random::Random;
@@ -44,7 +44,7 @@ fn camera(width: u32, height: u32) -> Camera {
     Camera { width, height, yfov: 0.6, aperture_radius: 0.1, focus_distance: 3.0, ..Camera::default() }
 }
 
-fn fireflies(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+fn fireflies(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
     let camera = camera(72, 48);
     let per_kappa = camera.optics().splat_radius_px(1.0);
     let middle = DVec2::new(36.0, 24.0);
@@ -60,13 +60,13 @@ fn fireflies(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancell
     for radius in [-9.0, 0.0, 0.4, 9.0] {
         // A splat: a pixel of the wall is the firefly.
         let stars = |firefly: f32| {
-            let of = |k: u32| {
+            let radiance = |k: u32| {
                 let center = DVec2::new(f64::from(k % 72) + 0.5, f64::from(k / 72) + 0.5);
                 star(center, 0.5, if k == 24 * 72 + 36 { firefly } else { WALL })
             };
             picture_of_stars(
                 &camera,
-                (0..72 * 48).map(of).collect(),
+                (0..72 * 48).map(radiance).collect(),
                 offset_of(radius / per_kappa, &camera),
                 progress,
             )
@@ -80,7 +80,7 @@ fn fireflies(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancell
         let shot =
             |light: f32| Shot::new(scene_of([(&lamp, [light; 3]), (&wall, [WALL; 3])]), camera.clone());
         let offset = offset_of(radius / per_kappa, &camera);
-        let samples = effort.pick(16, 4);
+        let samples = effort.choose(16, 4);
         let with = shot(FIREFLY).truth(offset, samples, progress)?;
         traced.push(largest_beyond(&with, &shot(WALL).truth(offset, samples, progress)?, f64::abs(radius)));
     }
@@ -90,15 +90,15 @@ fn fireflies(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancell
     let after = differences.iter().sum::<f32>();
     let expected = "not a bit changes beyond its reach, splatted and traced, radii 0 to 9 px";
     let limits = [("splat", 0.0), ("truth", 0.0)];
-    Ok(Finding::of(
+    Ok(Verdict::new(
         expected,
         limits,
         [worst(splatted), worst(traced)],
-        [f64::from((after - WALL).abs()), UNTRIED],
+        [f64::from((after - WALL).abs()), NOT_COMPUTED],
     ))
 }
 
-fn dim_samples(_: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+fn dim_samples(_: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
     const COUNT: usize = 10_000;
     let camera = camera(65, 65);
     let mut random = Random(9);
@@ -120,11 +120,11 @@ fn dim_samples(_: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled>
     let expected = "mass 1 to a quantum a sample and pixel, sharp and spread over up to 450 px";
     let limits = [("error", 0.01), ("of quanta", 1.0)];
     let most = STEP * COUNT as f64;
-    Ok(Finding::of(expected, limits, [worst(errors), worst(shares)], [rounded.abs(), rounded.abs() / most]))
+    Ok(Verdict::new(expected, limits, [worst(errors), worst(shares)], [rounded.abs(), rounded.abs() / most]))
 }
 
-fn wide_blur(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
-    let (width, height) = effort.pick((40, 30), (20, 15));
+fn wide_blur(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
+    let (width, height) = effort.choose((40, 30), (20, 15));
     let camera = camera(width, height);
     let shot = Shot::new(scene_of([(&Mesh::wall(3.0, 200.0), [1.0; 3])]), camera.clone());
     let offset = |heights: f64| {
@@ -149,5 +149,5 @@ fn wide_blur(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancell
     let limits = [("splat", 1e-3), ("truth", 1e-3), ("normalised", 1e-5)];
     let expected = "1 ± 0.1 % up to 2.5 picture heights; normalised 1 at 40";
     let right = [worst(splatted), worst(traced), worst(normalised)];
-    Ok(Finding::of(expected, limits, right, [without, UNTRIED, UNTRIED]))
+    Ok(Verdict::new(expected, limits, right, [without, NOT_COMPUTED, NOT_COMPUTED]))
 }

@@ -1,6 +1,6 @@
 //! Closed meshes and close shells.
 
-use crate::case::{Case, Effort, Finding, UNTRIED};
+use crate::case::{Case, Effort, NOT_COMPUTED, Verdict};
 use crate::measure::worst;
 use crate::random::Random;
 use crate::scenery::{Mesh, scene_of};
@@ -31,9 +31,9 @@ pub const CASES: &[Case] = &[
 /// Rays of one piece of parallel work.
 const CHUNK: u32 = 20_000;
 
-fn closed_meshes(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+fn closed_meshes(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
     let places = [DVec3::ZERO, DVec3::new(1e4, -1e4, 1e4)];
-    let total = effort.pick(10_000_000, 200_000);
+    let total = effort.choose(10_000_000, 200_000);
     let (mut leaks, mut naive_leaks) = (0, 0);
     for center in places {
         let scene = scene_of([(&Mesh::sphere(center, 1.0, 24), [1.0; 3])]);
@@ -54,7 +54,7 @@ fn closed_meshes(effort: Effort, progress: &dyn Progress) -> Result<Finding, Can
         naive_leaks += few.filter(|ray| !is_hit_in_f32(&scene, ray)).count();
     }
     let expected = format!("no leak among {total} rays at edges and vertices");
-    Ok(Finding::of(expected, [("leaks", 0.0)], [leaks as f64], [naive_leaks as f64]))
+    Ok(Verdict::new(expected, [("leaks", 0.0)], [leaks as f64], [naive_leaks as f64]))
 }
 
 /// Rays from inside a sphere about `center` at random edges and vertices of it.
@@ -82,9 +82,9 @@ fn is_hit_in_f32(scene: &Scene, ray: &Ray) -> bool {
     })
 }
 
-fn close_shells(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+fn close_shells(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
     // Seen: white before red; the camera at distance 1.
-    let (width, height) = effort.pick((48, 36), (24, 18));
+    let (width, height) = effort.choose((48, 36), (24, 18));
     let camera =
         Camera { width, height, yfov: 0.7, aperture_radius: 0.1, focus_distance: 2.0, ..Camera::default() };
     let center = DVec3::new(0.0, 0.0, -2.0);
@@ -97,18 +97,23 @@ fn close_shells(effort: Effort, progress: &dyn Progress) -> Result<Finding, Canc
     let in_pictures = worst(pictures.map(red));
 
     let mut random = Random(5);
-    let (mut seen, mut seen_by_offset) = (0, 0);
-    for _ in 0..effort.pick(200_000, 20_000) {
+    let (mut visible_count, mut visible_with_offset) = (0, 0);
+    for _ in 0..effort.choose(200_000, 20_000) {
         let triangle = (random.unit() * far.triangles.len() as f64) as u32;
         let point = SurfacePoint { triangle, barycentric: random.in_triangle() };
         let eye = center + random.direction() * 2.0;
-        seen += u32::from(!shot.tracer.occluded(point, eye));
+        visible_count += u32::from(!shot.tracer.is_occluded(point, eye));
         let origin = point.position(&scene);
         let direction = (eye - origin).normalize();
         let ray = Ray { origin, direction, t_min: 1e-4, t_max: f64::INFINITY, skip: None };
-        seen_by_offset += u32::from(!shot.tracer.any_hit(&ray));
+        visible_with_offset += u32::from(!shot.tracer.any_hit(&ray));
     }
     let expected = "nothing of the farther shell in any picture; every point of it occluded from every direction outside";
     let limits = [("seen", 0.0), ("radiance", 0.0)];
-    Ok(Finding::of(expected, limits, [f64::from(seen), in_pictures], [f64::from(seen_by_offset), UNTRIED]))
+    Ok(Verdict::new(
+        expected,
+        limits,
+        [f64::from(visible_count), in_pictures],
+        [f64::from(visible_with_offset), NOT_COMPUTED],
+    ))
 }

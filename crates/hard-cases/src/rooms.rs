@@ -1,6 +1,6 @@
 //! Light that goes to and fro between walls, what keeps it out, and a sky with a small sun.
 
-use crate::case::{Case, Effort, Finding};
+use crate::case::{Case, Effort, Verdict};
 use crate::measure::worst;
 use crate::random::spread;
 use crate::scenery::{Mesh, made_of};
@@ -46,7 +46,7 @@ pub const CASES: &[Case] = &[
 ];
 
 fn lambert(albedo: f32) -> Material {
-    Material { base_color: Vec3::splat(albedo).extend(1.0), ..Material::of_lambert() }
+    Material { base_color: Vec3::splat(albedo).extend(1.0), ..Material::lambertian_white() }
 }
 
 fn transport(scene: Arc<Scene>, world: World, paths: u32) -> Transport {
@@ -54,9 +54,14 @@ fn transport(scene: Arc<Scene>, world: World, paths: u32) -> Transport {
     Transport::new(Arc::new(Tracer::new(scene)), world, options)
 }
 
-fn kept(transport: Transport, effort: Effort, progress: &dyn Progress) -> Result<Transport, Cancelled> {
-    let options = IrradianceOptions { patches: 6000, rays: effort.pick(256, 96) };
-    Irradiance::solve(&transport, options, progress).map(|known| transport.with_irradiance(Arc::new(known)))
+fn with_cached_irradiance(
+    transport: Transport,
+    effort: Effort,
+    progress: &dyn Progress,
+) -> Result<Transport, Cancelled> {
+    let options = IrradianceOptions { patches: 6000, rays: effort.choose(256, 96) };
+    Irradiance::solve(&transport, options, progress)
+        .map(|irradiance| transport.with_irradiance(Arc::new(irradiance)))
 }
 
 /// The mean of what leaves points all over some triangles toward an eye.
@@ -68,47 +73,51 @@ fn mean(transport: &Transport, eye: DVec3, triangles: std::ops::Range<u32>) -> f
             SurfacePoint { triangle, barycentric }
         })
     });
-    let all: Vec<f64> = points.map(|point| f64::from(transport.toward(point, eye).y)).collect();
+    let all: Vec<f64> = points.map(|point| f64::from(transport.total_outgoing(point, eye).y)).collect();
     all.iter().sum::<f64>() / all.len() as f64
 }
 
-fn closed_room(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+fn closed_room(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
     let eye = DVec3::new(1.0, 0.5, 0.7);
     let room = Mesh::cuboid(DVec3::ZERO, DVec3::new(2.0, 1.0, 1.5)).turned();
-    let mut found = [Vec::new(), Vec::new(), Vec::new()];
+    let mut errors = [Vec::new(), Vec::new(), Vec::new()];
     for (albedo, glow) in [(0.5f32, 1.0f32), (0.8, 0.25)] {
         let wall = Material { emissive: Vec3::splat(glow), ..lambert(albedo) };
         let scene = made_of([(&room, wall)]);
         let expected = f64::from(glow / (1.0 - albedo));
         let world = World::uniform(Vec3::ZERO);
         let off = |transport: &Transport| mean(transport, eye, 0..12) / expected - 1.0;
-        let paths = effort.pick(128, 32);
-        found[0].push(off(&transport(scene.clone(), world.clone(), paths)));
-        found[1].push(off(&kept(transport(scene.clone(), world.clone(), 8), effort, progress)?));
+        let paths = effort.choose(128, 32);
+        errors[0].push(off(&transport(scene.clone(), world.clone(), paths)));
+        errors[1].push(off(&with_cached_irradiance(
+            transport(scene.clone(), world.clone(), 8),
+            effort,
+            progress,
+        )?));
         let cut = World { bounces: Some(1), ..world };
-        found[2].push(off(&transport(scene, cut, paths)));
+        errors[2].push(off(&transport(scene, cut, paths)));
     }
-    let [by_paths, kept, cut] = found.map(worst);
+    let [by_paths, by_cache, cut] = errors.map(worst);
     let limits = [("by paths", 0.01), ("kept", 0.01)];
-    Ok(Finding::of("L/(1 − ρ) ± 1 %, ρ 0.5 and 0.8", limits, [by_paths, kept], [cut, cut]))
+    Ok(Verdict::new("L/(1 − ρ) ± 1 %, ρ 0.5 and 0.8", limits, [by_paths, by_cache], [cut, cut]))
 }
 
-fn closed_box(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+fn closed_box(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
     let within = Mesh::cuboid(-DVec3::ONE, DVec3::ONE).turned();
     let without = Mesh::cuboid(DVec3::splat(-1.02), DVec3::splat(1.02));
     let sky = World::uniform(Vec3::splat(0.5));
     let scene = made_of([(&within, lambert(0.8)), (&without, lambert(0.8))]);
-    let closed = kept(transport(scene, sky.clone(), 4), effort, progress)?;
+    let closed = with_cached_irradiance(transport(scene, sky.clone(), 4), effort, progress)?;
     let outside = mean(&closed, DVec3::splat(9.0), 12..24);
     let inside = mean(&closed, DVec3::ZERO, 0..12) / outside;
     let mut open = within;
     open.triangles.truncate(10);
-    let open = kept(transport(made_of([(&open, lambert(0.8))]), sky, 4), effort, progress)?;
+    let open = with_cached_irradiance(transport(made_of([(&open, lambert(0.8))]), sky, 4), effort, progress)?;
     let control = mean(&open, DVec3::ZERO, 0..10) / outside;
-    Ok(Finding::of("dark to 0.1 % of its outside", [("inside", 1e-3)], [inside], [control]))
+    Ok(Verdict::new("dark to 0.1 % of its outside", [("inside", 1e-3)], [inside], [control]))
 }
 
-fn borders(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+fn borders(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
     let room = Mesh::cuboid(DVec3::ZERO, DVec3::new(2.0, 1.0, 1.5)).turned();
     let mut scene = (*made_of([(&room, lambert(0.7))])).clone();
     scene.lights.push(Light {
@@ -120,7 +129,7 @@ fn borders(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled
         range: f64::INFINITY,
     });
     let scene = Arc::new(scene);
-    let count = effort.pick(4000, 1000);
+    let count = effort.choose(4000, 1000);
     // Along both triangles of each wall, a little off their common side.
     let step = |transport: &Transport, count: u32| {
         let along = |triangle: u32| {
@@ -128,20 +137,20 @@ fn borders(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled
                 triangle,
                 barycentric: DVec2::new(0.03 + 0.9 * f64::from(k) / f64::from(count), 0.05),
             };
-            let light = |k| f64::from(transport.toward(at(k), DVec3::new(1.0, 0.5, 0.7)).y);
+            let light = |k| f64::from(transport.total_outgoing(at(k), DVec3::new(1.0, 0.5, 0.7)).y);
             let all: Vec<f64> = (0..count).map(light).collect();
             worst(all.windows(2).map(|pair| pair[1] / pair[0] - 1.0))
         };
         worst((0..12).map(along))
     };
     let world = World::uniform(Vec3::ZERO);
-    let kept = kept(transport(scene.clone(), world.clone(), 4), effort, progress)?;
+    let cached = with_cached_irradiance(transport(scene.clone(), world.clone(), 4), effort, progress)?;
     let control = step(&transport(scene, world, 4), 50);
     let expected = format!("≤ 1 % between neighbours of {count} points along each wall");
-    Ok(Finding::of(expected, [("step", 0.01)], [step(&kept, count)], [control]))
+    Ok(Verdict::new(expected, [("step", 0.01)], [step(&cached, count)], [control]))
 }
 
-fn refined(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+fn refined(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
     let room = Mesh::cuboid(DVec3::ZERO, DVec3::new(2.0, 1.0, 1.5)).turned();
     let block = Mesh::cuboid(DVec3::new(0.5, 0.0, 0.5), DVec3::new(0.9, 0.6, 0.9));
     let lamp = Mesh::cuboid(DVec3::new(1.3, 0.7, 0.6), DVec3::new(1.5, 0.8, 0.8));
@@ -150,30 +159,30 @@ fn refined(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled
     let dark = World::uniform(Vec3::ZERO);
     // So few patches that they are far off where surfaces meet.
     let options = IrradianceOptions { patches: 24, rays: 64 };
-    let known = Irradiance::solve(&transport(scene.clone(), dark.clone(), 1), options, progress)?;
-    let known = Arc::new(known);
+    let irradiance = Irradiance::solve(&transport(scene.clone(), dark.clone(), 1), options, progress)?;
+    let irradiance = Arc::new(irradiance);
     let light = |paths| transport(scene.clone(), dark.clone(), paths);
     let eye = DVec3::new(1.0, 0.5, 1.3);
-    let sent = |transport: &Transport| -> Vec<f64> {
+    let radiances = |transport: &Transport| -> Vec<f64> {
         let places = (0..48).map(|k| SurfacePoint { triangle: k % 12, barycentric: spread(k) * 0.5 });
-        places.map(|point| f64::from(transport.toward(point, eye).y)).collect()
+        places.map(|point| f64::from(transport.total_outgoing(point, eye).y)).collect()
     };
-    let paths = effort.pick(2048, 512);
-    let truth = sent(&light(8 * paths));
+    let paths = effort.choose(2048, 512);
+    let truth = radiances(&light(8 * paths));
     let mean = truth.iter().sum::<f64>() / truth.len() as f64;
     let off = |transport: &Transport| {
-        let squares = sent(transport).iter().zip(&truth).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
+        let squares = radiances(transport).iter().zip(&truth).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
         (squares / truth.len() as f64).sqrt() / mean
     };
-    let found = off(&light(paths).checking(known.clone()));
-    let control = off(&light(paths).with_irradiance(known));
-    let limit = effort.pick(0.022, 0.045);
+    let error = off(&light(paths).with_control_variate(irradiance.clone()));
+    let control = off(&light(paths).with_irradiance(irradiance));
+    let limit = effort.choose(0.022, 0.045);
     let expected =
         format!("RMS of {paths} paths a point within {:.1} % of theirs in the mean", 100.0 * limit);
-    Ok(Finding::of(expected, [("off", limit)], [found], [control]))
+    Ok(Verdict::new(expected, [("off", limit)], [error], [control]))
 }
 
-fn sun(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+fn sun(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
     const SIZE: [u32; 2] = [512, 256];
     let dim = 0.2f32;
     let (row, glare) = (40usize, 2e4f32);
@@ -191,13 +200,13 @@ fn sun(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
     let polar = (row as f64 + 0.5) / f64::from(SIZE[1]) * PI;
     let solid_angle = 5.0 * (PI / f64::from(SIZE[1])).powi(2) * polar.sin();
     let expected = f64::from(dim) + f64::from(glare - dim) * solid_angle * polar.cos() / PI;
-    let points: Vec<_> = (0..effort.pick(400, 100)).map(|k| spread(k) * 0.49).collect();
+    let points: Vec<_> = (0..effort.choose(400, 100)).map(|k| spread(k) * 0.49).collect();
     let off = |transport: &Transport| {
-        let of = |&barycentric: &DVec2| {
+        let value_at = |&barycentric: &DVec2| {
             let point = SurfacePoint { triangle: 0, barycentric };
-            f64::from(transport.toward(point, DVec3::new(0.3, 2.0, 0.4)).y) / expected - 1.0
+            f64::from(transport.total_outgoing(point, DVec3::new(0.3, 2.0, 0.4)).y) / expected - 1.0
         };
-        let all: Vec<f64> = points.iter().map(of).collect();
+        let all: Vec<f64> = points.iter().map(value_at).collect();
         let mean = all.iter().sum::<f64>() / all.len() as f64;
         [mean.abs(), worst(all.iter().map(|value| value - mean))]
     };
@@ -205,5 +214,5 @@ fn sun(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
     let right = off(&transport(scene.clone(), map(glare), 32));
     let wrong = off(&transport(scene, map(dim), 32));
     let limits = [("mean", 0.01), ("farthest from it", 0.2)];
-    Ok(Finding::of("mean right to 1 %, no point of 32 paths off by 20 %", limits, right, wrong))
+    Ok(Verdict::new("mean right to 1 %, no point of 32 paths off by 20 %", limits, right, wrong))
 }

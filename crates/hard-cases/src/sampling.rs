@@ -1,6 +1,6 @@
 //! Aperture points have the density of the transmission.
 
-use crate::case::{Case, Effort, Finding};
+use crate::case::{Case, Effort, Verdict};
 use crate::measure::worst;
 use crate::random::Random;
 use glam::DVec2;
@@ -50,8 +50,8 @@ pub fn every_shape() -> Vec<(&'static str, Aperture)> {
     ]
 }
 
-fn sampler(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
-    let count = effort.pick(1_000_000, 60_000);
+fn sampler(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
+    let count = effort.choose(1_000_000, 60_000);
     let (mut right, mut wrong) = (Vec::new(), f64::INFINITY);
     for (_, aperture) in every_shape() {
         progress.check()?;
@@ -68,7 +68,7 @@ fn sampler(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled
     }
     let expected =
         format!("of {} shapes, {count} points each, the worst below 4 standard deviations", right.len());
-    Ok(Finding::of(expected, [("deviations", 4.0)], [worst(right)], [wrong]))
+    Ok(Verdict::new(expected, [("deviations", 4.0)], [worst(right)], [wrong]))
 }
 
 /// Cells a side.
@@ -96,11 +96,11 @@ fn cell_shares(aperture: &Aperture) -> [f64; CELLS * CELLS] {
 /// normal (Wilson and Hilferty 1931). Cells that expect few points are counted as one.
 fn deviations(shares: &[f64], count: u32, mut draw: impl FnMut() -> DVec2) -> f64 {
     const FEW: f64 = 20.0;
-    let mut found = [0.0; CELLS * CELLS];
-    (0..count).for_each(|_| found[cell_of(draw())] += 1.0);
+    let mut observed = [0.0; CELLS * CELLS];
+    (0..count).for_each(|_| observed[cell_of(draw())] += 1.0);
     let expected = shares.iter().map(|share| share * f64::from(count));
-    let (many, few): (Vec<_>, Vec<_>) = expected.zip(found).partition(|(expected, _)| *expected > FEW);
-    let rest = few.iter().fold((0.0, 0.0), |(e, f), (expected, found)| (e + expected, f + found));
+    let (many, few): (Vec<_>, Vec<_>) = expected.zip(observed).partition(|(expected, _)| *expected > FEW);
+    let rest = few.iter().fold((0.0, 0.0), |(e, f), (expected, observed)| (e + expected, f + observed));
     let chi_squared: f64 = many.iter().map(|(e, f)| (f - e) * (f - e) / e).sum();
     let beside = (rest.1 - rest.0).powi(2) / rest.0.max(1.0);
     let freedom = many.len() as f64 - 1.0 + f64::from(rest.0 > 0.0);
@@ -125,7 +125,7 @@ mod tests {
         });
         let mut points =
             cells.map(|cell| DVec2::new((cell % 8) as f64 + 0.5, (cell / 8) as f64 + 0.5) / 4.0 - 1.0);
-        let found = deviations(&shares, count, || points.next().unwrap());
-        assert!((found - 3.09).abs() < 0.05, "{found}");
+        let deviation = deviations(&shares, count, || points.next().unwrap());
+        assert!((deviation - 3.09).abs() < 0.05, "{deviation}");
     }
 }

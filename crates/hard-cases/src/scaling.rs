@@ -1,6 +1,6 @@
 //! The same scene in other units.
 
-use crate::case::{Case, Effort, Finding};
+use crate::case::{Case, Effort, Verdict};
 use crate::measure::{largest_difference, rms_difference, worst};
 use crate::scenery::{Mesh, scene_of};
 use crate::shot::Shot;
@@ -33,7 +33,7 @@ fn shot(effort: Effort, factor: f64, aperture_factor: f64) -> Shot {
     let scene = scene_of([(&sphere, [0.9, 0.4, 0.1]), (&wall, [0.2, 0.3, 0.4]), (&floor, [0.5, 0.6, 0.5])]);
     let turn = DQuat::from_rotation_y(0.1) * DQuat::from_rotation_x(-0.05);
     let pose = DMat4::from_rotation_translation(turn, DVec3::new(0.1, 0.2, 0.3) * factor);
-    let (width, height) = effort.pick((64, 48), (40, 30));
+    let (width, height) = effort.choose((64, 48), (40, 30));
     let camera = Camera {
         width,
         height,
@@ -63,23 +63,23 @@ fn compared(
     let expected = pictures(&shot(effort, 1.0, 1.0), progress)?;
     let mut differences = [Vec::new(), Vec::new()];
     for &[factor, aperture_factor] in factors {
-        let found = pictures(&shot(effort, factor, aperture_factor), progress)?;
-        (0..2).for_each(|k| differences[k].push(difference(&found[k], &expected[k])));
+        let actual = pictures(&shot(effort, factor, aperture_factor), progress)?;
+        (0..2).for_each(|k| differences[k].push(difference(&actual[k], &expected[k])));
     }
     Ok(differences.map(worst))
 }
 
-fn by_powers_of_two(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+fn by_powers_of_two(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
     let [up, down] = [20.0, -20.0].map(f64::exp2);
     let right = compared(effort, &[[up, up], [down, down]], largest_difference, progress)?;
     let wrong = compared(effort, &[[up, 1.0]], largest_difference, progress)?;
-    Ok(Finding::of("the same bits, splatted and traced", [("splat", 0.0), ("truth", 0.0)], right, wrong))
+    Ok(Verdict::new("the same bits, splatted and traced", [("splat", 0.0), ("truth", 0.0)], right, wrong))
 }
 
-fn by_powers_of_ten(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+fn by_powers_of_ten(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
     let (up, down) = (1e6, 1e-6);
     let right = compared(effort, &[[up, up], [down, down]], rms_difference, progress)?;
     let wrong = compared(effort, &[[up, 1.0]], rms_difference, progress)?;
     let limits = [("splat", 1e-4), ("truth", 1e-4)];
-    Ok(Finding::of("the same to 1e-4 (RMS), splatted and traced", limits, right, wrong))
+    Ok(Verdict::new("the same to 1e-4 (RMS), splatted and traced", limits, right, wrong))
 }

@@ -90,7 +90,7 @@ impl Mesh {
 /// A scene in which each mesh is a part (and a node) of its own, unlit in its radiance and seen from both sides.
 pub fn scene_of<'a>(meshes: impl IntoIterator<Item = (&'a Mesh, [f32; 3])>) -> Arc<Scene> {
     let unlit =
-        |[r, g, b]: [f32; 3]| Material { base_color: Vec4::new(r, g, b, 1.0), ..Material::of_unlit() };
+        |[r, g, b]: [f32; 3]| Material { base_color: Vec4::new(r, g, b, 1.0), ..Material::unlit_white() };
     made_of(meshes.into_iter().map(|(mesh, radiance)| (mesh, unlit(radiance))))
 }
 

@@ -22,7 +22,7 @@ impl Shot {
     pub fn new(scene: Arc<Scene>, camera: Camera) -> Self {
         let tracer = Arc::new(Tracer::new(scene));
         let background = camera.background.map(|background| glam::DVec3::from(background).as_vec3());
-        let world = World::of_scene(tracer.scene(), background);
+        let world = World::from_scene(tracer.scene(), background);
         let radiance = Arc::new(Transport::new(tracer.clone(), world, TransportOptions::default()));
         Self { tracer, camera, radiance }
     }
@@ -72,8 +72,9 @@ impl Shot {
         let estimator = Estimator::Surface;
         let options = TruthOptions { samples_per_pixel: samples, estimator, ..TruthOptions::default() };
         let focus = self.focus(offset);
-        let found = truth::render(&self.tracer, &*self.radiance, &focus, &self.camera, &options, progress)?;
-        Ok(found.picture)
+        let rendered =
+            truth::render(&self.tracer, &*self.radiance, &focus, &self.camera, &options, progress)?;
+        Ok(rendered.picture)
     }
 
     /// The ray-traced picture with a focus of its own for every point, and chosen random numbers.
@@ -85,8 +86,8 @@ impl Shot {
         progress: &dyn Progress,
     ) -> Result<Picture, Cancelled> {
         let options = TruthOptions { samples_per_pixel: samples, seed, ..TruthOptions::default() };
-        let found = truth::render(&self.tracer, &*self.radiance, focus, &self.camera, &options, progress)?;
-        Ok(found.picture)
+        let rendered = truth::render(&self.tracer, &*self.radiance, focus, &self.camera, &options, progress)?;
+        Ok(rendered.picture)
     }
 
     fn salf_for(&self, focus: &Focus, progress: &dyn Progress) -> Result<Salf, Cancelled> {

@@ -1,6 +1,6 @@
 //! Texels whose centre lies beside their triangle, and paint at a seam.
 
-use crate::case::{Case, Effort, Finding, UNTRIED};
+use crate::case::{Case, Effort, NOT_COMPUTED, Verdict};
 use crate::light_field::offset_of;
 use crate::measure::worst;
 use crate::scenery::{Mesh, scene_of};
@@ -43,9 +43,9 @@ fn unwrapped(scene: &Scene, side: u32, progress: &dyn Progress) -> Result<Atlas,
     Atlas::unwrap(scene, &options, progress).map_err(|_| Cancelled)
 }
 
-fn covered_areas(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+fn covered_areas(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
     // Thousands of triangles below a texel, a fan of needles, and two without area.
-    let sphere = Mesh::sphere(DVec3::ZERO, 1.0, effort.pick(60, 24));
+    let sphere = Mesh::sphere(DVec3::ZERO, 1.0, effort.choose(60, 24));
     let mut fan = Mesh { positions: vec![DVec3::new(3.0, 0.0, 0.0)], triangles: Vec::new() };
     for k in 0..=200u32 {
         fan.positions.push(DVec3::new(5.0, 1e-3 * f64::from(k).powf(1.5), 0.0));
@@ -65,7 +65,7 @@ fn covered_areas(effort: Effort, progress: &dyn Progress) -> Result<Finding, Can
         wrong = wrong.min((centre_sampled_area(&atlas, &scene) / mesh_area - 1.0).abs());
     }
     let expected = format!("areas of {} triangles sum to the mesh's to 1e-6", scene.triangles.len());
-    Ok(Finding::of(expected, [("relative error", 1e-6)], [worst(right)], [wrong]))
+    Ok(Verdict::new(expected, [("relative error", 1e-6)], [worst(right)], [wrong]))
 }
 
 /// The world area of the texels whose centre lies in a triangle.
@@ -117,14 +117,14 @@ impl Seam {
         let mut map = FocusMap::new(self.atlas.width, self.atlas.height, FocusOffset::STANDARD);
         let canvas = Canvas::new(&self.scene, &self.atlas, &self.texels.texels, gutters);
         fill(&mut map, &canvas, FillTarget::Part(1), offset, Channels::All).ok()?;
-        Some(Focus::painted(self.scene.clone(), self.atlas.clone(), Arc::new(map)))
+        Some(Focus::from_atlas_map(self.scene.clone(), self.atlas.clone(), Arc::new(map)))
     }
 }
 
 /// Of the squares, which the camera of the picture focuses.
 const DEPTH: f64 = 3.0;
 
-fn seam(_: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+fn seam(_: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
     let seam = Seam::new(progress)?;
     let painted = FocusOffset::new(1.25, 0.5);
     let error = |gutters: &[[[u32; 2]; 2]]| {
@@ -137,7 +137,7 @@ fn seam(_: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
         worst(values)
     };
     let expected = "t and anchor exactly those of the point's own side, from on the seam to 0.1 off it";
-    Ok(Finding::of(expected, [("error", 0.0)], [error(&seam.gutters())], [error(&[])]))
+    Ok(Verdict::new(expected, [("error", 0.0)], [error(&seam.gutters())], [error(&[])]))
 }
 
 /// Points of either square on and by its edge at x = 0.
@@ -161,7 +161,7 @@ fn points_at_the_seam(scene: &Scene) -> Vec<SurfacePoint> {
     points
 }
 
-fn seam_in_the_picture(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+fn seam_in_the_picture(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
     let camera = Camera {
         width: 64,
         height: 16,
@@ -185,14 +185,14 @@ fn seam_in_the_picture(effort: Effort, progress: &dyn Progress) -> Result<Findin
         let Some(focus) = seam.painted(offset, &seam.gutters()) else { continue };
         let picture = shot.splat_with(&focus, progress)?;
         splatted.push(error(&picture));
-        traced.push(error(&shot.truth_with(&focus, effort.pick(256, 64), 1, progress)?));
+        traced.push(error(&shot.truth_with(&focus, effort.choose(256, 64), 1, progress)?));
         let white = picture.exposed(Exposure::Normalise);
         wrong = wrong.min(error(&Picture { radiance: white, ..picture }));
     }
     let limits = [("splat", 0.02), ("truth", 0.05)];
     let expected =
         "1 left and F(x/r) to both sides, so 1.5 | 0.5 at the seam: ± 0.02 splatted, ± 0.05 traced";
-    Ok(Finding::of(expected, limits, [worst(splatted), worst(traced)], [wrong, UNTRIED]))
+    Ok(Verdict::new(expected, limits, [worst(splatted), worst(traced)], [wrong, NOT_COMPUTED]))
 }
 
 /// What a pixel from x to x + 1 (px right of the seam) holds of a wall of radiance 1 that is sharp on the left and

@@ -1,6 +1,6 @@
 //! Triangles without area, needles, duplicates.
 
-use crate::case::{Case, Effort, Finding, UNTRIED};
+use crate::case::{Case, Effort, NOT_COMPUTED, Verdict};
 use crate::measure::{farthest_from, largest_difference, senseless, worst};
 use crate::scenery::{Mesh, scene_of};
 use crate::shot::{Shot, picture_of};
@@ -33,11 +33,11 @@ pub const CASES: &[Case] = &[
 const WHITE: [f32; 3] = [1.0; 3];
 
 fn camera(effort: Effort) -> Camera {
-    let (width, height) = effort.pick((64, 48), (32, 24));
+    let (width, height) = effort.choose((64, 48), (32, 24));
     Camera { width, height, yfov: 0.6, aperture_radius: 0.1, focus_distance: 3.0, ..Camera::default() }
 }
 
-fn without_area(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+fn without_area(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
     let wall = Mesh::wall(4.0, 20.0);
     let p = DVec3::new(0.1, -0.05, -2.0);
     let (along, third) = (DVec3::new(0.3, 0.1, -0.2), DVec3::new(1.0, 2.0, 3.0) / 3.0);
@@ -71,10 +71,10 @@ fn without_area(effort: Effort, progress: &dyn Progress) -> Result<Finding, Canc
     let undefined = divided.filter(|normal| !normal.is_finite()).count();
     let limits = [("difference", 0.0), ("undefined", 0.0)];
     let expected = "the picture without them, bit for bit, splatted and traced; no weight undefined";
-    Ok(Finding::of(expected, limits, [worst(differences), baked], [UNTRIED, undefined as f64]))
+    Ok(Verdict::new(expected, limits, [worst(differences), baked], [NOT_COMPUTED, undefined as f64]))
 }
 
-fn needles(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+fn needles(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
     let wall = Mesh::wall(4.0, 20.0);
     let widths = [1e-2, 1e-4, 1e-7, 1e-10];
     let needles: Vec<_> = widths
@@ -94,19 +94,19 @@ fn needles(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled
     let splatted = picture_of(salf, &focus, progress)?;
     let traced = shot.truth(FocusOffset::STANDARD, 16, progress)?;
     let right = [farthest_from(&splatted, 1.0), farthest_from(&traced, 1.0), senseless(&splatted)];
-    let wrong = [farthest_from(&picture_of(on_top, &focus, progress)?, 1.0), UNTRIED, UNTRIED];
+    let wrong = [farthest_from(&picture_of(on_top, &focus, progress)?, 1.0), NOT_COMPUTED, NOT_COMPUTED];
     let limits = [("splat", 0.03), ("truth", 1e-6), ("senseless", 0.0)];
     let expected = "1 ± 0.03 splatted, 1 traced, with needles of aspect 1e2 to 1e10";
-    Ok(Finding::of(expected, limits, right, wrong))
+    Ok(Verdict::new(expected, limits, right, wrong))
 }
 
-fn duplicates(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancelled> {
+fn duplicates(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
     let wall = Mesh::wall(4.0, 20.0);
     let facing = Mesh::wall(3.0, 0.4);
     let edge_on = Mesh::rectangle(DVec3::new(0.02, -0.3, -2.0), DVec3::Y * 0.6, DVec3::Z * -0.9);
     let copies = |count: usize| {
-        let of = |mesh: &Mesh| vec![mesh.clone(); count];
-        let meshes: Vec<_> = [vec![wall.clone()], of(&facing), of(&edge_on)].concat();
+        let copies = |mesh: &Mesh| vec![mesh.clone(); count];
+        let meshes: Vec<_> = [vec![wall.clone()], copies(&facing), copies(&edge_on)].concat();
         Shot::new(scene_of(meshes.iter().map(|mesh| (mesh, WHITE))), camera(effort))
     };
     let (once, thrice) = (copies(1), copies(3));
@@ -128,7 +128,7 @@ fn duplicates(effort: Effort, progress: &dyn Progress) -> Result<Finding, Cancel
         farthest_from(&thrice.truth(standard, 4, progress)?, 1.0),
     ];
     let doubled = picture_of(drawn, &focus, progress)?;
-    let wrong = [largest_difference(&doubled, &single), farthest_from(&doubled, 1.0), UNTRIED];
+    let wrong = [largest_difference(&doubled, &single), farthest_from(&doubled, 1.0), NOT_COMPUTED];
     let expected = "splatted as one copy to 1e-3, and 1 ± 0.03; traced 1";
-    Ok(Finding::of(expected, limits, right, wrong))
+    Ok(Verdict::new(expected, limits, right, wrong))
 }

@@ -16,7 +16,7 @@ const COSINES: usize = 48;
 /// Roughnesses, from 0 to 1, of isotropic surfaces, densely toward smooth ones, where grazing light tells them apart.
 const ROUGHNESSES: usize = 48;
 /// Of anisotropic ones, whose table has two axes more.
-const FEWER: usize = 12;
+const ANISOTROPIC_STEPS: usize = 12;
 /// Azimuths of the eye, from along the tangent to across.
 const AZIMUTHS: usize = 6;
 
@@ -34,39 +34,39 @@ fn cosine_at(k: usize) -> f64 {
 }
 
 /// The entry below x in [0, 1] of `count`, and how far beyond it x is.
-fn place(x: f64, count: usize) -> (usize, f64) {
-    let place = x.clamp(0.0, 1.0) * (count - 1) as f64;
-    let k = (place as usize).min(count.saturating_sub(2));
-    (k, place - k as f64)
+fn lerp_index(x: f64, count: usize) -> (usize, f64) {
+    let position = x.clamp(0.0, 1.0) * (count - 1) as f64;
+    let k = (position as usize).min(count.saturating_sub(2));
+    (k, position - k as f64)
 }
 
 impl Row {
-    fn of(ggx: &Ggx, azimuths: usize) -> Self {
+    fn new(ggx: &Ggx, azimuths: usize) -> Self {
         let azimuth =
             |k: usize| if azimuths > 1 { k as f64 / (azimuths - 1) as f64 * FRAC_PI_2 } else { 0.0 };
         let entry = |k: usize| integrate(ggx, cosine_at(k % COSINES), azimuth(k / COSINES));
         let entries = (0..azimuths * COSINES).map(entry).collect();
         let mut row = Self { entries, azimuths, mean: DVec2::ZERO };
-        row.mean = row.integrated();
+        row.mean = row.hemisphere_mean();
         row
     }
 
     /// At the root of a cosine and an azimuth as a share of a right angle.
     fn at(&self, root: f64, azimuth: f64) -> DVec2 {
-        let (c, beyond) = place(root, COSINES);
+        let (c, fraction) = lerp_index(root, COSINES);
         let line = |a: usize| {
             let entries = &self.entries[a * COSINES..(a + 1) * COSINES];
-            entries[c].lerp(entries[c + 1], beyond)
+            entries[c].lerp(entries[c + 1], fraction)
         };
         if self.azimuths == 1 {
             return line(0);
         }
-        let (a, beyond) = place(azimuth, self.azimuths);
-        line(a).lerp(line(a + 1), beyond)
+        let (a, fraction) = lerp_index(azimuth, self.azimuths);
+        line(a).lerp(line(a + 1), fraction)
     }
 
     /// (1/π)∫ … cos dω: with cos = x², dcos = 2x dx.
-    fn integrated(&self) -> DVec2 {
+    fn hemisphere_mean(&self) -> DVec2 {
         const STEPS: usize = 256;
         let around = if self.azimuths == 1 { 1 } else { 16 };
         let step = |k: usize| {
@@ -90,7 +90,7 @@ fn integrate(ggx: &Ggx, cos: f64, azimuth: f64) -> DVec2 {
                 return DVec2::ZERO;
             }
             let risen = rise(facing);
-            DVec2::new(1.0 - risen, risen) * (ggx.seen_from_both(o, i) / ggx.seen(o))
+            DVec2::new(1.0 - risen, risen) * (ggx.correlated_masking_shadowing(o, i) / ggx.masking(o))
         })
         .sum();
     sum / LATTICE as f64
@@ -101,7 +101,7 @@ fn isotropic() -> &'static [Row] {
     static ROWS: OnceLock<Vec<Row>> = OnceLock::new();
     ROWS.get_or_init(|| {
         let roughness = |k: usize| (k as f64 / (ROUGHNESSES - 1) as f64).powi(2).max(2e-3);
-        let row = |k: usize| Row::of(&Ggx::new(roughness(k), 0.0), 1);
+        let row = |k: usize| Row::new(&Ggx::new(roughness(k), 0.0), 1);
         (0..ROUGHNESSES).map(row).collect()
     })
 }
@@ -110,9 +110,14 @@ fn isotropic() -> &'static [Row] {
 fn anisotropic() -> &'static [Row] {
     static ROWS: OnceLock<Vec<Row>> = OnceLock::new();
     ROWS.get_or_init(|| {
-        let share = |k: usize| k as f64 / (FEWER - 1) as f64;
-        let row = |k: usize| Row::of(&Ggx::new(share(k % FEWER).max(0.02), share(k / FEWER)), AZIMUTHS);
-        (0..FEWER * FEWER).map(row).collect()
+        let share = |k: usize| k as f64 / (ANISOTROPIC_STEPS - 1) as f64;
+        let row = |k: usize| {
+            Row::new(
+                &Ggx::new(share(k % ANISOTROPIC_STEPS).max(0.02), share(k / ANISOTROPIC_STEPS)),
+                AZIMUTHS,
+            )
+        };
+        (0..ANISOTROPIC_STEPS * ANISOTROPIC_STEPS).map(row).collect()
     })
 }
 
@@ -138,15 +143,18 @@ impl Gloss {
         self.interpolated(|row| row.mean)
     }
 
-    fn interpolated(self, of: impl Fn(&Row) -> DVec2) -> DVec2 {
+    fn interpolated(self, value: impl Fn(&Row) -> DVec2) -> DVec2 {
         if self.anisotropy == 0.0 {
-            let (r, beyond) = place(self.roughness.max(0.0).sqrt(), ROUGHNESSES);
+            let (r, beyond) = lerp_index(self.roughness.max(0.0).sqrt(), ROUGHNESSES);
             let rows = isotropic();
-            return of(&rows[r]).lerp(of(&rows[r + 1]), beyond);
+            return value(&rows[r]).lerp(value(&rows[r + 1]), beyond);
         }
-        let ((r, rough), (a, stretched)) = (place(self.roughness, FEWER), place(self.anisotropy, FEWER));
+        let ((r, rough), (a, stretched)) =
+            (lerp_index(self.roughness, ANISOTROPIC_STEPS), lerp_index(self.anisotropy, ANISOTROPIC_STEPS));
         let rows = anisotropic();
-        let line = |a: usize| of(&rows[a * FEWER + r]).lerp(of(&rows[a * FEWER + r + 1]), rough);
+        let line = |a: usize| {
+            value(&rows[a * ANISOTROPIC_STEPS + r]).lerp(value(&rows[a * ANISOTROPIC_STEPS + r + 1]), rough)
+        };
         line(a).lerp(line(a + 1), stretched)
     }
 }
@@ -165,9 +173,12 @@ mod tests {
             for (cos, azimuth) in [(0.1, 0.2), (0.5, 0.9), (0.9, 1.5)] {
                 let o = DVec3::new(0.0, 0.0, cos)
                     + (1.0f64 - cos * cos).sqrt() * DVec3::new(f64::cos(azimuth), f64::sin(azimuth), 0.0);
-                let [told, found] = [gloss.shares(o), integrate(&ggx, cos, azimuth)];
-                let most = if anisotropy == 0.0 { 0.002 } else { 0.006 };
-                assert!(told.distance(found) < most, "{gloss:?} {cos}: {told}, not {found}");
+                let [tabulated, integrated] = [gloss.shares(o), integrate(&ggx, cos, azimuth)];
+                let tolerance = if anisotropy == 0.0 { 0.002 } else { 0.006 };
+                assert!(
+                    tabulated.distance(integrated) < tolerance,
+                    "{gloss:?} {cos}: {tabulated}, not {integrated}"
+                );
             }
         }
         // A mirror loses nothing.

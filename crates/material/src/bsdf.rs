@@ -5,7 +5,7 @@ mod glass;
 mod odds;
 pub(crate) mod toward;
 
-use odds::{Choice, Odds};
+use odds::{Lobe, LobeProbabilities};
 
 use crate::albedo::Gloss;
 use crate::coat_axes::CoatAxes;
@@ -79,7 +79,7 @@ pub struct Scattered {
 }
 
 /// Seen from where: the frame that faces the eye, and the eye in it.
-struct Seen {
+struct OutgoingFrame {
     frame: Frame,
     o: DVec3,
     side: Side,
@@ -125,12 +125,12 @@ impl<'a> Bsdf<'a> {
             true => DVec2::new(20.0, 1.0) / 21.0,
             false => self.gloss_table().mean_shares(),
         };
-        let kept = shares.element_sum();
+        let reflected = shares.element_sum();
         // F̄²Ē/(1 − F̄(1 − Ē)) (Kulla and Conty 2017).
         let multiple = [0, 1].map(|which| {
             let f90 = if which == 0 { DVec3::ONE } else { DVec3::splat(self.surface.specular) };
             let mean = self.mean_mirrored(which, f90);
-            mean * mean * kept / (DVec3::ONE - mean * (1.0 - kept))
+            mean * mean * reflected / (DVec3::ONE - mean * (1.0 - reflected))
         });
         let back =
             self.mean_f0(1) * shares.x + self.surface.specular * shares.y + multiple[1] * self.lost(shares);
@@ -156,30 +156,30 @@ impl<'a> Bsdf<'a> {
     }
 
     /// The mean of what `of` says of cosines over the cosine-weighted hemisphere.
-    fn mean_of(of: impl Fn(f64) -> DVec3) -> DVec3 {
+    fn hemisphere_mean(value_at: impl Fn(f64) -> DVec3) -> DVec3 {
         const STEPS: usize = 12;
         // cos² is even there.
-        (0..STEPS).map(|k| of(((k as f64 + 0.5) / STEPS as f64).sqrt())).sum::<DVec3>() / STEPS as f64
+        (0..STEPS).map(|k| value_at(((k as f64 + 0.5) / STEPS as f64).sqrt())).sum::<DVec3>() / STEPS as f64
     }
 
     fn mean_f0(&self, which: usize) -> DVec3 {
-        self.surface.film.map_or(self.f0[which], |_| Self::mean_of(|cos| self.f0_at(cos)[which]))
+        self.surface.film.map_or(self.f0[which], |_| Self::hemisphere_mean(|cos| self.f0_at(cos)[which]))
     }
 
     fn mean_mirrored(&self, which: usize, f90: DVec3) -> DVec3 {
         let f0 = self.f0[which];
         self.surface.film.map_or_else(
             || schlick_mean(f0, f90),
-            |film| Self::mean_of(|cos| schlick(film.f0(f0, cos), f90, cos)),
+            |film| Self::hemisphere_mean(|cos| schlick(film.f0(f0, cos), f90, cos)),
         )
     }
 
-    fn seen(&self, outgoing: DVec3) -> Seen {
+    fn outgoing_frame(&self, outgoing: DVec3) -> OutgoingFrame {
         let frame = self.frame.facing(outgoing);
         let from_front = self.frame.geometric.dot(outgoing) >= 0.0;
         let o = frame.local(outgoing);
-        let coat = CoatAxes::of(&frame);
-        Seen { o, side: self.side(o, &coat), frame, coat, from_front }
+        let coat = CoatAxes::new(&frame);
+        OutgoingFrame { o, side: self.side(o, &coat), frame, coat, from_front }
     }
 
     fn side(&self, w: DVec3, coat: &CoatAxes) -> Side {
@@ -196,14 +196,14 @@ impl<'a> Bsdf<'a> {
     /// Light sent toward `outgoing` for light from `incident`, 1/sr, without the cosine; mirrors and clear glass, which have
     /// no finite value, are left out.
     pub fn evaluate(&self, outgoing: DVec3, incident: DVec3) -> Split {
-        let seen = self.seen(outgoing);
-        self.value(&seen, incident)
+        let view = self.outgoing_frame(outgoing);
+        self.value(&view, incident)
     }
 
     /// The density, 1/sr, with which [`Self::sample`] finds `incident`.
     pub fn density(&self, outgoing: DVec3, incident: DVec3) -> f64 {
-        let seen = self.seen(outgoing);
-        self.density_of(&seen, &self.odds(&seen), incident)
+        let view = self.outgoing_frame(outgoing);
+        self.density_of(&view, &self.lobe_probabilities(&view), incident)
     }
 
     /// Draws where light comes from, by uniform numbers in [0, 1). `None` where the drawn way carries nothing.
@@ -211,27 +211,32 @@ impl<'a> Bsdf<'a> {
         self.toward(outgoing).sample(u)
     }
 
-    fn drawn(&self, seen: &Seen, odds: &Odds, u: [f64; 3]) -> Option<Scattered> {
-        if seen.o.z <= 0.0 {
+    fn sample_lobes(
+        &self,
+        view: &OutgoingFrame,
+        probabilities: &LobeProbabilities,
+        u: [f64; 3],
+    ) -> Option<Scattered> {
+        if view.o.z <= 0.0 {
             return None;
         }
         let place = DVec2::new(u[1], u[2]);
-        let (choice, rest) = odds.choose(u[0])?;
-        let o = seen.o;
-        let (i, crosses) = match choice {
-            Choice::Coat if self.coat.is_smooth() => {
-                return self.mirrored_by_coat(seen, odds.coat);
+        let (lobe, rest) = probabilities.select(u[0])?;
+        let o = view.o;
+        let (i, crosses) = match lobe {
+            Lobe::Coat if self.coat.is_smooth() => {
+                return self.mirrored_by_coat(view, probabilities.coat);
             }
-            Choice::Coat => (self.toward_coat(seen, place), false),
-            Choice::Gloss if self.ggx.is_smooth() => {
-                return self.mirrored(seen, self.gloss_mirror(seen) / odds.gloss);
+            Lobe::Coat => (self.sample_coat(view, place), false),
+            Lobe::Gloss if self.ggx.is_smooth() => {
+                return self.mirrored(view, self.gloss_mirror(view) / probabilities.gloss);
             }
-            Choice::Gloss => (mirror(o, self.ggx.visible_normal(o, place)), false),
-            Choice::Spread => (cosine_weighted(place), false),
-            Choice::Through => (-cosine_weighted(place), true),
-            Choice::Returned => self.come_back(seen, rest, place),
-            Choice::Glass => {
-                let eta = self.eta(seen);
+            Lobe::Gloss => (mirror(o, self.ggx.visible_normal(o, place)), false),
+            Lobe::Spread => (cosine_weighted(place), false),
+            Lobe::Through => (-cosine_weighted(place), true),
+            Lobe::Returned => self.sample_returned(view, rest, place),
+            Lobe::Glass => {
+                let eta = self.eta(view);
                 let is_clear = self.is_clear(eta);
                 let h = if is_clear { DVec3::Z } else { self.ggx.visible_normal(o, place) };
                 let crosses = rest >= dielectric_reflectance(o.dot(h), eta);
@@ -241,7 +246,7 @@ impl<'a> Bsdf<'a> {
                     (true, false) => refracted(o, h, eta)?,
                 };
                 if is_clear {
-                    return self.clear(seen, odds.glass, !crosses, i);
+                    return self.clear(view, probabilities.glass, !crosses, i);
                 }
                 (i, crosses)
             }
@@ -250,9 +255,9 @@ impl<'a> Bsdf<'a> {
         if crosses != (i.z < 0.0) {
             return None;
         }
-        let incident = seen.frame.world(i);
-        let density = self.density_of(seen, odds, incident);
-        let value = self.value(seen, incident);
+        let incident = view.frame.world(i);
+        let density = self.density_of(view, probabilities, incident);
+        let value = self.value(view, incident);
         let weight = value * (i.z.abs() / density);
         let is_something = density > 0.0 && density.is_finite() && value.total() != DVec3::ZERO;
         is_something.then_some(Scattered { incident, weight, density: Some(density), crosses: i.z < 0.0 })
@@ -260,11 +265,11 @@ impl<'a> Bsdf<'a> {
 
     /// What is sent toward `outgoing` of light from everywhere, at most 1: in closed form, from tables. Of both parts.
     pub fn albedo(&self, outgoing: DVec3) -> Split {
-        self.albedo_of(&self.seen(outgoing))
+        self.albedo_toward(&self.outgoing_frame(outgoing))
     }
 
-    fn albedo_of(&self, seen: &Seen) -> Split {
-        let (o, side) = (seen.o, &seen.side);
+    fn albedo_toward(&self, view: &OutgoingFrame) -> Split {
+        let (o, side) = (view.o, &view.side);
         if o.z <= 0.0 {
             return Split::default();
         }
@@ -285,7 +290,7 @@ impl<'a> Bsdf<'a> {
         let share = self.surface.diffuse_transmission;
         let color = self.surface.base_color * (1.0 - share) + self.surface.diffuse_transmission_color * share;
         all += Split::own(ground * color) * dielectric;
-        let mirrors = self.glass_mirrors(seen);
+        let mirrors = self.glass_mirrors(view);
         let tint = self.surface.base_color * (1.0 - mirrors);
         all += (Split::mirrored(DVec3::splat(mirrors), self.ggx.mean_alpha()) + Split::carried(tint)) * glass;
         all = all * under_sheen;
@@ -306,9 +311,9 @@ impl<'a> Bsdf<'a> {
         if own + carried > 0.0 { [own / (own + carried), carried / (own + carried)] } else { [1.0, 0.0] }
     }
 
-    fn eta(&self, seen: &Seen) -> f64 {
+    fn eta(&self, view: &OutgoingFrame) -> f64 {
         // A pane has the same medium on either side of it.
-        self.interface.eta(seen.from_front || self.surface.is_thin)
+        self.interface.eta(view.from_front || self.surface.is_thin)
     }
 
     fn gloss_table(&self) -> Gloss {
@@ -336,8 +341,8 @@ impl<'a> Bsdf<'a> {
 
     /// What single scattering loses of white light.
     fn lost(&self, shares: DVec2) -> f64 {
-        let is_kept = self.surface.scattering == Scattering::Single || self.ggx.is_smooth();
-        if is_kept { 0.0 } else { (1.0 - shares.element_sum()).max(0.0) }
+        let is_lossless = self.surface.scattering == Scattering::Single || self.ggx.is_smooth();
+        if is_lossless { 0.0 } else { (1.0 - shares.element_sum()).max(0.0) }
     }
 
     /// What of the lost light comes back from metal (0) or the dielectric (1).
@@ -356,32 +361,32 @@ impl<'a> Bsdf<'a> {
         (1.0 - o.coat).min(1.0 - i.coat) * (1.0 - o.sheen).min(1.0 - i.sheen)
     }
 
-    fn value(&self, seen: &Seen, incident: DVec3) -> Split {
-        let Parts { spread, sharp } = self.parts(seen, incident);
+    fn value(&self, view: &OutgoingFrame, incident: DVec3) -> Split {
+        let Parts { spread, sharp } = self.parts(view, incident);
         Split::own(spread) + sharp
     }
 
-    fn parts(&self, seen: &Seen, incident: DVec3) -> Parts {
-        let (o, i) = (seen.o, seen.frame.local(incident));
-        let same_side = seen.frame.geometric.dot(incident) > 0.0;
+    fn parts(&self, view: &OutgoingFrame, incident: DVec3) -> Parts {
+        let (o, i) = (view.o, view.frame.local(incident));
+        let same_side = view.frame.geometric.dot(incident) > 0.0;
         // No light from behind, whatever the shading normal says.
         if o.z <= 0.0 || i.z == 0.0 || same_side != (i.z > 0.0) {
             return Parts::default();
         }
-        let (eye, light) = (&seen.side, &self.side(i, &seen.coat));
+        let (eye, light) = (&view.side, &self.side(i, &view.coat));
         let beneath = self.beneath(eye, light);
         if !same_side {
-            let sharp = (self.across(seen, o, i) + self.diffuse_across(eye, light)) * beneath;
+            let sharp = (self.across(view, o, i) + self.diffuse_across(eye, light)) * beneath;
             return Parts { spread: DVec3::ZERO, sharp };
         }
         let mut spread = (self.multiple_value(eye, light) + self.diffuse(eye, light)) * beneath;
-        let mut sharp = (self.gloss(eye, light) + self.glass(seen, o, i)) * beneath;
+        let mut sharp = (self.gloss(eye, light) + self.glass(view, o, i)) * beneath;
         if let Some(cloth) = self.surface.sheen {
             let left = (1.0 - eye.coat).min(1.0 - light.coat);
             spread += cloth.color * sheen::value(o, i, cloth.roughness) * left;
         }
-        sharp += self.coated(seen, i);
-        let share = seen.frame.terminator(incident);
+        sharp += self.coated(view, i);
+        let share = view.frame.terminator(incident);
         Parts { spread: spread * share, sharp: sharp * share }
     }
 
@@ -407,11 +412,11 @@ impl<'a> Bsdf<'a> {
 
     /// D·G₂/(4 cos cos): what facets that mirror all send on.
     fn microfacets(&self, ggx: &Ggx, o: DVec3, i: DVec3, h: DVec3) -> f64 {
-        let seen = match self.surface.scattering {
-            Scattering::Multiple => ggx.seen_from_both(o, i),
-            Scattering::Single => ggx.seen_from_each(o, i),
+        let masking = match self.surface.scattering {
+            Scattering::Multiple => ggx.correlated_masking_shadowing(o, i),
+            Scattering::Single => ggx.uncorrelated_masking_shadowing(o, i),
         };
-        ggx.density_of_normals(h) * seen / (4.0 * o.z * i.z)
+        ggx.density_of_normals(h) * masking / (4.0 * o.z * i.z)
     }
 
     /// What facets of metal and dielectric mirror at an angle.
@@ -460,38 +465,38 @@ impl<'a> Bsdf<'a> {
         Split::own(self.surface.diffuse_transmission_color * self.coupled(eye, light)) * share
     }
 
-    fn gloss_mirror(&self, seen: &Seen) -> DVec3 {
-        let mirrored = self.side(mirror(seen.o, DVec3::Z), &seen.coat);
-        self.mirrored_at(seen.o.z) * self.beneath(&seen.side, &mirrored)
+    fn gloss_mirror(&self, view: &OutgoingFrame) -> DVec3 {
+        let mirrored = self.side(mirror(view.o, DVec3::Z), &view.coat);
+        self.mirrored_at(view.o.z) * self.beneath(&view.side, &mirrored)
     }
 
     /// A mirror's direction.
-    fn mirrored(&self, seen: &Seen, weight: DVec3) -> Option<Scattered> {
-        self.single(seen, mirror(seen.o, DVec3::Z), Split::carried(weight))
+    fn mirrored(&self, view: &OutgoingFrame, weight: DVec3) -> Option<Scattered> {
+        self.single(view, mirror(view.o, DVec3::Z), Split::carried(weight))
     }
 
-    fn single(&self, seen: &Seen, i: DVec3, weight: Split) -> Option<Scattered> {
-        let incident = seen.frame.world(i);
-        let same_side = seen.frame.geometric.dot(incident) > 0.0;
+    fn single(&self, view: &OutgoingFrame, i: DVec3, weight: Split) -> Option<Scattered> {
+        let incident = view.frame.world(i);
+        let same_side = view.frame.geometric.dot(incident) > 0.0;
         let is_there = same_side == (i.z > 0.0) && weight.total() != DVec3::ZERO;
         is_there.then_some(Scattered { incident, weight, density: None, crosses: i.z < 0.0 })
     }
 
-    fn odds(&self, seen: &Seen) -> Odds {
+    fn lobe_probabilities(&self, view: &OutgoingFrame) -> LobeProbabilities {
         let [metal, dielectric, glass] = self.shares;
         let mean = |color: DVec3| color.element_sum() / 3.0;
-        let Side { f0, shares, coat, sheen: cloth, .. } = seen.side;
+        let Side { f0, shares, coat, sheen: cloth, .. } = view.side;
         let lost = self.lost(shares);
         let beneath = (1.0 - coat) * (1.0 - cloth);
         let gloss = f0[0] * (metal * shares.x) + metal * shares.y;
         let gloss = gloss + (f0[1] * shares.x + self.surface.specular * shares.y) * dielectric;
         let multiple = (self.multiple(0) * metal + self.multiple(1) * dielectric) * lost;
-        let ground = seen.side.beneath * dielectric;
+        let ground = view.side.beneath * dielectric;
         let share = self.surface.diffuse_transmission;
         let on_this_side = mean(multiple + ground * self.surface.base_color * (1.0 - share));
         let beyond = mean(ground * self.surface.diffuse_transmission_color * share);
-        let glass_lost = self.glass_lost(seen).lost * glass;
-        Odds {
+        let glass_lost = self.glass_lost(view).lost * glass;
+        LobeProbabilities {
             coat,
             gloss: mean(gloss) * beneath,
             glass: (glass - glass_lost) * beneath,
@@ -499,36 +504,41 @@ impl<'a> Bsdf<'a> {
             through: beyond * beneath,
             returned: glass_lost * beneath,
         }
-        .shared()
+        .normalized()
     }
 
-    fn density_of(&self, seen: &Seen, odds: &Odds, incident: DVec3) -> f64 {
-        let (o, i) = (seen.o, seen.frame.local(incident));
+    fn density_of(&self, view: &OutgoingFrame, probabilities: &LobeProbabilities, incident: DVec3) -> f64 {
+        let (o, i) = (view.o, view.frame.local(incident));
         if o.z <= 0.0 {
             return 0.0;
         }
-        let eta = self.eta(seen);
+        let eta = self.eta(view);
         let is_clear = self.is_clear(eta);
-        let of_mirror = |ggx: &Ggx, h: DVec3| ggx.density_of_visible(o, h) / (4.0 * o.dot(h));
-        let returned =
-            if odds.returned > 0.0 { odds.returned * self.density_of_returned(seen, i) } else { 0.0 };
+        let mirror_density = |ggx: &Ggx, h: DVec3| ggx.density_of_visible(o, h) / (4.0 * o.dot(h));
+        let returned = if probabilities.returned > 0.0 {
+            probabilities.returned * self.density_of_returned(view, i)
+        } else {
+            0.0
+        };
         if i.z > 0.0 {
-            let mut density = odds.spread * i.z * FRAC_1_PI + returned;
-            if odds.coat > 0.0 {
-                density += odds.coat * self.density_of_coat(seen, i);
+            let mut density = probabilities.spread * i.z * FRAC_1_PI + returned;
+            if probabilities.coat > 0.0 {
+                density += probabilities.coat * self.density_of_coat(view, i);
             }
             let Some(h) = half(o, i) else { return density };
-            if odds.gloss > 0.0 && !self.ggx.is_smooth() {
-                density += odds.gloss * of_mirror(&self.ggx, h);
+            if probabilities.gloss > 0.0 && !self.ggx.is_smooth() {
+                density += probabilities.gloss * mirror_density(&self.ggx, h);
             }
-            if odds.glass > 0.0 && !is_clear {
-                density += odds.glass * dielectric_reflectance(o.dot(h), eta) * of_mirror(&self.ggx, h);
+            if probabilities.glass > 0.0 && !is_clear {
+                density += probabilities.glass
+                    * dielectric_reflectance(o.dot(h), eta)
+                    * mirror_density(&self.ggx, h);
             }
             return density;
         }
-        let mut density = odds.through * -i.z * FRAC_1_PI + returned;
-        if odds.glass > 0.0 && !is_clear {
-            density += odds.glass * self.density_across(seen, i);
+        let mut density = probabilities.through * -i.z * FRAC_1_PI + returned;
+        if probabilities.glass > 0.0 && !is_clear {
+            density += probabilities.glass * self.density_across(view, i);
         }
         density
     }

@@ -9,7 +9,7 @@ pub(crate) struct CoatAxes(Option<[DVec3; 3]>);
 
 impl CoatAxes {
     /// Of a frame that faces the eye.
-    pub fn of(frame: &Frame) -> Self {
+    pub fn new(frame: &Frame) -> Self {
         if frame.coat == frame.normal {
             return Self(None);
         }

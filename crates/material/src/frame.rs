@@ -46,12 +46,12 @@ impl Frame {
             let normal = normal * side;
             let turned = normal.dot(outgoing);
             // A direction in the geometric plane itself sees nothing, whichever normal is taken.
-            const LEAST: f64 = 1e-3;
-            if turned >= LEAST * toward || toward <= 0.0 {
+            const MIN_COSINE_RATIO: f64 = 1e-3;
+            if turned >= MIN_COSINE_RATIO * toward || toward <= 0.0 {
                 return normal;
             }
             // (1 − s)·turned + s·toward = LEAST·toward.
-            let share = (LEAST * toward - turned) / (toward - turned);
+            let share = (MIN_COSINE_RATIO * toward - turned) / (toward - turned);
             normal.lerp(geometric, share).normalize_or(geometric)
         });
         let is_bent = normal != self.normal * side;

@@ -44,7 +44,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn fresnel_has_its_known_values() {
+    fn fresnel_has_its_textbook_values() {
         assert!((dielectric_reflectance(1.0, 1.5) - 0.04).abs() < 1e-12);
         assert!((dielectric_reflectance(1.0, 1.0 / 1.5) - 0.04).abs() < 1e-12);
         assert_eq!(dielectric_reflectance(0.0, 1.5), 1.0, "grazing");

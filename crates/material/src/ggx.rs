@@ -49,23 +49,23 @@ impl Ggx {
     }
 
     /// The share of microfacets that is seen from `w`.
-    pub fn seen(&self, w: DVec3) -> f64 {
+    pub fn masking(&self, w: DVec3) -> f64 {
         1.0 / (1.0 + self.lambda(w))
     }
 
     /// The share that is seen from `o` and from `i`, correlated by height, both on one side.
-    pub fn seen_from_both(&self, o: DVec3, i: DVec3) -> f64 {
+    pub fn correlated_masking_shadowing(&self, o: DVec3, i: DVec3) -> f64 {
         1.0 / (1.0 + self.lambda(o) + self.lambda(i))
     }
 
     /// The same, not correlated: for directions on opposite sides (Walter et al. 2007), and in glTF's appendix B.
-    pub fn seen_from_each(&self, o: DVec3, i: DVec3) -> f64 {
-        self.seen(o) * self.seen(i)
+    pub fn uncorrelated_masking_shadowing(&self, o: DVec3, i: DVec3) -> f64 {
+        self.masking(o) * self.masking(i)
     }
 
     /// The density of visible normals from `o` (z > 0), 1/sr.
     pub fn density_of_visible(&self, o: DVec3, h: DVec3) -> f64 {
-        self.seen(o) * o.dot(h).max(0.0) * self.density_of_normals(h) / o.z
+        self.masking(o) * o.dot(h).max(0.0) * self.density_of_normals(h) / o.z
     }
 
     /// A normal that is seen from `o` (z > 0), by uniform numbers (Dupuy and Benyoub 2023: a cap of the sphere, uniformly).

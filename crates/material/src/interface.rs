@@ -49,7 +49,7 @@ pub(crate) struct RoughGlass {
 
 impl Interface {
     /// Between vacuum and a medium of this index of refraction.
-    pub fn of_ior(ior: f64) -> Self {
+    pub fn from_ior(ior: f64) -> Self {
         Self::between(1.0, ior)
     }
 
@@ -66,8 +66,9 @@ impl Interface {
     /// Glass of a roughness between the media.
     pub(crate) fn rough(&self, roughness: f64) -> RoughGlass {
         let tables = self.tables.get_or_init(|| {
-            let of = |k: usize| k as f64 / (ROUGHNESSES - 1) as f64;
-            [true, false].map(|front| (0..ROUGHNESSES).map(|k| entries(of(k), self.eta(front))).collect())
+            let roughness_at = |k: usize| k as f64 / (ROUGHNESSES - 1) as f64;
+            [true, false]
+                .map(|front| (0..ROUGHNESSES).map(|k| entries(roughness_at(k), self.eta(front))).collect())
         });
         let place = roughness.clamp(0.0, 1.0) * (ROUGHNESSES - 1) as f64;
         let r = (place as usize).min(ROUGHNESSES - 2);
@@ -82,18 +83,18 @@ impl Interface {
 
 impl RoughGlass {
     /// Seen from the front or the back.
-    pub fn from(&self, front: bool) -> &GlassRow {
+    pub fn side(&self, front: bool) -> &GlassRow {
         &self.rows[usize::from(!front)]
     }
 
     /// The share of what is lost that comes back on the eye's side. What crosses is chosen so that crossing is reciprocal:
     /// (1 − r)/((1 − Ē')n'²) is the same from both sides.
-    pub fn stays(&self, from_front: bool) -> f64 {
-        let of = |front: bool| {
-            let beyond = self.from(!front).mean_lost() * self.eta[usize::from(!front)].powi(2);
-            (1.0 - self.from(front).mean_mirrored, beyond)
+    pub fn returned_share(&self, from_front: bool) -> f64 {
+        let side_terms = |front: bool| {
+            let beyond = self.side(!front).mean_lost() * self.eta[usize::from(!front)].powi(2);
+            (1.0 - self.side(front).mean_mirrored, beyond)
         };
-        let ((own, beyond), (others, before)) = (of(from_front), of(!from_front));
+        let ((own, beyond), (others, before)) = (side_terms(from_front), side_terms(!from_front));
         // In units of n² before: what the other side sees beyond is in its own units.
         let eta2 = self.eta[usize::from(!from_front)].powi(2);
         let ratio = |a: f64, b: f64| if b > 0.0 { a / b } else { 0.0 };
@@ -118,9 +119,9 @@ fn entries(roughness: f64, eta: f64) -> Entries {
     let ggx = Ggx::new(alpha.sqrt(), 0.0);
     std::array::from_fn(|k| {
         // At the horizon itself nothing is seen; the first cosine is taken a little above.
-        let found = integrate(&ggx, cosine_at(alpha, k).max(1e-3 * alpha), eta);
+        let directional = integrate(&ggx, cosine_at(alpha, k).max(1e-3 * alpha), eta);
         // Integration is not exact: what is kept may come out a little above 1.
-        DVec2::new(found.x, (1.0 - found.element_sum()).max(0.0))
+        DVec2::new(directional.x, (1.0 - directional.element_sum()).max(0.0))
     })
 }
 
@@ -134,9 +135,9 @@ fn integral(from: f64, to: f64, at_from: f64, at_to: f64) -> f64 {
 impl GlassRow {
     fn new(roughness: f64, entries: Entries) -> Self {
         let alpha = alpha_of(roughness);
-        let cell = |k: usize, of: &dyn Fn(DVec2) -> f64| {
+        let cell = |k: usize, component: &dyn Fn(DVec2) -> f64| {
             let [from, to] = [k - 1, k].map(|k| cosine_at(alpha, k));
-            integral(from, to, of(entries[k - 1]), of(entries[k]))
+            integral(from, to, component(entries[k - 1]), component(entries[k]))
         };
         let mut lost_below = [0.0; COSINES];
         for k in 1..COSINES {
@@ -171,8 +172,8 @@ impl GlassRow {
 
     /// A cosine whose density over the hemisphere is lost·cos/(π · mean lost): where what was lost comes back from.
     pub fn cosine_of_lost(&self, u: f64) -> f64 {
-        let wanted = u.clamp(0.0, 1.0) * self.mean_lost();
-        let k = self.lost_below.partition_point(|below| *below <= wanted).clamp(1, COSINES - 1);
+        let target = u.clamp(0.0, 1.0) * self.mean_lost();
+        let k = self.lost_below.partition_point(|below| *below <= target).clamp(1, COSINES - 1);
         let [from, to] = [k - 1, k].map(|k| cosine_at(self.alpha, k));
         let end = |cos: f64| {
             let share = (cos - from) / (to - from);
@@ -182,7 +183,7 @@ impl GlassRow {
         let (mut low, mut high) = (from, to);
         for _ in 0..40 {
             let middle = (low + high) / 2.0;
-            if self.lost_below[k - 1] + end(middle) < wanted { low = middle } else { high = middle }
+            if self.lost_below[k - 1] + end(middle) < target { low = middle } else { high = middle }
         }
         (low + high) / 2.0
     }
@@ -197,9 +198,13 @@ fn integrate(ggx: &Ggx, cos: f64, eta: f64) -> DVec2 {
             let facing = o.dot(h);
             let mirrored = dielectric_reflectance(facing, eta);
             let i = 2.0 * facing * h - o;
-            let stays = if i.z > 0.0 { mirrored * ggx.seen_from_both(o, i) / ggx.seen(o) } else { 0.0 };
+            let stays = if i.z > 0.0 {
+                mirrored * ggx.correlated_masking_shadowing(o, i) / ggx.masking(o)
+            } else {
+                0.0
+            };
             let beyond = refracted(o, h, eta).filter(|i| i.z < 0.0);
-            DVec2::new(stays, beyond.map_or(0.0, |i| (1.0 - mirrored) * ggx.seen(i)))
+            DVec2::new(stays, beyond.map_or(0.0, |i| (1.0 - mirrored) * ggx.masking(i)))
         })
         .sum();
     sum / LATTICE as f64

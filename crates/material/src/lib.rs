@@ -26,7 +26,7 @@ mod points;
 mod sheen;
 mod surface;
 
-pub use bsdf::toward::Toward;
+pub use bsdf::toward::OutgoingBsdf;
 pub use bsdf::{Bsdf, Parts, Scattered};
 pub use film::Film;
 pub use frame::Frame;

@@ -97,7 +97,7 @@ impl Default for Surface {
 impl Surface {
     /// KHR_materials_pbrSpecularGlossiness: a diffuse colour under a reflection of `specular` (its F0). The largest of F0's
     /// channels is taken from the diffuse colour, as the extension has it.
-    pub fn of_specular_glossiness(diffuse: DVec3, specular: DVec3, glossiness: f64) -> Self {
+    pub fn from_specular_glossiness(diffuse: DVec3, specular: DVec3, glossiness: f64) -> Self {
         // F90 is 1 there, so the ior is the one whose F0 is that largest channel, tinted to `specular`.
         let largest = specular.max_element().clamp(0.0, 0.999_999);
         let root = largest.sqrt();
@@ -175,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn the_narrowest_lobe_that_carries_light_is_told() {
+    fn the_narrowest_lobe_that_carries_light_is_measured() {
         let width = |surface: Surface| surface.carried_width();
         let rough = Surface { metallic: 0.0, roughness: 0.5, ..Surface::default() };
         assert_eq!(width(rough), None, "α = 0.25 is all own");
@@ -190,7 +190,7 @@ mod tests {
 
     #[test]
     fn specular_glossiness_has_its_own_reflectance() {
-        let surface = Surface::of_specular_glossiness(DVec3::ONE, DVec3::new(0.2, 0.5, 0.1), 0.25);
+        let surface = Surface::from_specular_glossiness(DVec3::ONE, DVec3::new(0.2, 0.5, 0.1), 0.25);
         let f0 = crate::reflectance_of_ior(surface.ior) * surface.specular_color;
         assert!(f0.distance(DVec3::new(0.2, 0.5, 0.1)) < 1e-12, "{f0}");
         assert_eq!(surface.roughness, 0.75);

@@ -270,7 +270,7 @@ fn dangerous_inputs_give_numbers() {
     }
     let mut random = Random(4);
     for surface in surfaces {
-        for interface in [Interface::of_ior(surface.ior), Interface::between(surface.ior, 1.0)] {
+        for interface in [Interface::from_ior(surface.ior), Interface::between(surface.ior, 1.0)] {
             let frames = [
                 Frame::flat(DVec3::Z),
                 Frame::new(DVec3::Z, DVec3::new(5.0, 0.0, 1.0).normalize(), DVec3::Z),

@@ -73,19 +73,19 @@ impl<'a> Stage<'a> {
         Self { whole, start, end }
     }
 
-    fn of_whole(&self, fraction: f32) -> f32 {
+    fn to_whole(&self, fraction: f32) -> f32 {
         self.start + (self.end - self.start) * fraction.clamp(0.0, 1.0)
     }
 }
 
 impl Progress for Stage<'_> {
     fn report(&self, fraction: f32) {
-        self.whole.report(self.of_whole(fraction));
+        self.whole.report(self.to_whole(fraction));
     }
     fn cancelled(&self) -> bool {
         self.whole.cancelled()
     }
     fn begin_part(&self, part: &Part) {
-        self.whole.begin_part(&Part { from: self.of_whole(part.from), to: self.of_whole(part.to), ..*part });
+        self.whole.begin_part(&Part { from: self.to_whole(part.from), to: self.to_whole(part.to), ..*part });
     }
 }

@@ -3,7 +3,7 @@
 use crate::ProjectError;
 use crate::disk::extension;
 use crate::picture_file::read_picture;
-use crate::png_file::stored_rgb;
+use crate::png_file::read_stored_rgb;
 use lens::ApertureMask;
 use std::path::Path;
 
@@ -14,7 +14,7 @@ pub fn read_aperture_mask(file: &Path, name: &str) -> Result<ApertureMask, Proje
         let picture = read_picture(file)?;
         (picture.width, picture.height, picture.rgb)
     } else {
-        stored_rgb(file)?
+        read_stored_rgb(file)?
     };
     let mean = |rgb: &[f32; 3]| rgb.iter().map(|c| c.clamp(0.0, 1.0)).sum::<f32>() / 3.0;
     let transmission = texels.iter().map(mean).collect();

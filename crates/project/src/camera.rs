@@ -41,7 +41,7 @@ const DEFAULT_BLADES: u32 = 6;
 /// Reads a camera file. Fields that it lacks keep the value of `defaults`. Unknown fields are errors, as a
 /// misspelt one would otherwise go unnoticed. A mask is looked up beside the file.
 pub fn read_camera(file: &Path, defaults: &Camera) -> Result<Camera, ProjectError> {
-    from_json(file, &Json::read(file)?, defaults, &|path| {
+    camera_from_fields(file, &Json::read(file)?, defaults, &|path| {
         let mask = file.parent().unwrap_or(Path::new("")).join(path);
         read_aperture_mask(&mask, path)
     })
@@ -55,19 +55,19 @@ pub fn camera_from_json(
     defaults: &Camera,
     mask: &dyn Fn(&str) -> Result<ApertureMask, ProjectError>,
 ) -> Result<Camera, ProjectError> {
-    from_json(file, &Json::parse(file, text)?, defaults, mask)
+    camera_from_fields(file, &Json::parse(file, text)?, defaults, mask)
 }
 
-fn from_json(
+fn camera_from_fields(
     file: &Path,
     json: &Json,
     defaults: &Camera,
     mask: &dyn Fn(&str) -> Result<ApertureMask, ProjectError>,
 ) -> Result<Camera, ProjectError> {
     let fields = Field::root(file, json).object()?;
-    fields.only(&FIELDS)?;
+    fields.allow_only(&FIELDS)?;
     let number = |name, default| fields.get(name).map_or(Ok(default), |field| field.number());
-    let whole = |name, default| fields.get(name).map_or(Ok(default), |field| field.whole());
+    let whole = |name, default| fields.get(name).map_or(Ok(default), |field| field.whole_number());
     let camera = Camera {
         width: whole("width", defaults.width)?,
         height: whole("height", defaults.height)?,
@@ -116,7 +116,7 @@ pub(crate) fn aperture_from_json(
     fields: &Fields<'_>,
     mask: &dyn Fn(&str) -> Result<ApertureMask, ProjectError>,
 ) -> Result<Aperture, ProjectError> {
-    fields.only(&APERTURE_FIELDS)?;
+    fields.allow_only(&APERTURE_FIELDS)?;
     let number = |name, default| fields.get(name).map_or(Ok(default), |field| field.number());
     let ratio = number("ratio", 1.0)?;
     let name = fields.get("shape").map_or(Ok("disc"), |field| field.text())?;
@@ -124,7 +124,7 @@ pub(crate) fn aperture_from_json(
         ("disc", ..) => ApertureShape::Disc,
         ("square", ..) => ApertureShape::Square,
         ("polygon", ..) => ApertureShape::Polygon {
-            blades: fields.get("blades").map_or(Ok(DEFAULT_BLADES), |field| field.whole())?,
+            blades: fields.get("blades").map_or(Ok(DEFAULT_BLADES), |field| field.whole_number())?,
             rotation: number("rotation", 0.0)?,
             roundness: number("roundness", 0.0)?,
         },

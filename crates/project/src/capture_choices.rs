@@ -26,7 +26,7 @@ pub struct CaptureChoices {
 
 /// The same in a manifest.
 #[derive(Debug, Serialize, Deserialize)]
-pub(crate) struct CaptureRow {
+pub(crate) struct CaptureEntry {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     mesh: Option<ScenePath>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -43,7 +43,7 @@ pub(crate) struct CaptureRow {
     depth_strokes: Vec<DepthStroke>,
 }
 
-impl CaptureRow {
+impl CaptureEntry {
     /// Of a project that lies in `project`.
     pub fn new(choices: &CaptureChoices, project: &Path) -> Self {
         let path = |path: &Option<PathBuf>| path.as_ref().map(|path| ScenePath::new(path, project));
@@ -59,22 +59,22 @@ impl CaptureRow {
     }
 
     /// Whether depth was repaired.
-    pub fn repairs_depth(&self) -> bool {
+    pub fn has_depth_strokes(&self) -> bool {
         !self.depth_strokes.is_empty()
     }
 
     /// What is meant, from where the project lies; else what is wrong.
-    pub fn choices(&self, project: &Path) -> Result<CaptureChoices, &'static str> {
+    pub fn to_choices(&self, project: &Path) -> Result<CaptureChoices, &'static str> {
         if !self.depth_strokes.iter().all(DepthStroke::is_valid) {
             return Err("capture.depth_strokes has a stroke beyond all pictures");
         }
-        self.paths(project).ok_or("capture.mesh.path_bytes is not in hex")
+        self.with_absolute_paths(project).ok_or("capture.mesh.path_bytes is not in hex")
     }
 
     /// The same, `None` if what stands there is no path.
-    fn paths(&self, project: &Path) -> Option<CaptureChoices> {
+    fn with_absolute_paths(&self, project: &Path) -> Option<CaptureChoices> {
         let path = |path: &Option<ScenePath>| match path {
-            Some(path) => path.from(project).map(Some),
+            Some(path) => path.resolve(project).map(Some),
             None => Some(None),
         };
         Some(CaptureChoices {

@@ -20,8 +20,8 @@ impl ColorSpace {
     pub const ALL: [(&'static str, Self); 2] = [("rec709", Self::Rec709), ("acescg", Self::AcesCg)];
 
     /// The one of this name.
-    pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.iter().find(|(known, _)| *known == name).map(|(_, space)| *space)
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.iter().find(|(candidate, _)| *candidate == name).map(|(_, space)| *space)
     }
 
     /// What the Color Interop Forum calls it: the attribute `colorInteropID` of OpenEXR.
@@ -61,38 +61,39 @@ pub(crate) struct Chromaticities {
 }
 
 /// Files hold chromaticities as floats of 32 bits, often of three digits.
-const ALIKE: f64 = 1e-3;
+const CHROMATICITY_TOLERANCE: f64 = 1e-3;
 
 impl Chromaticities {
     /// Whether these are the same, as files have them.
-    pub fn is_like(&self, other: &Self) -> bool {
+    pub fn is_close_to(&self, other: &Self) -> bool {
         let [a, b] = [self, other].map(|c| [c.red, c.green, c.blue, c.white]);
-        a.iter().zip(b).all(|(a, b)| (*a - b).abs().max_element() <= ALIKE)
+        a.iter().zip(b).all(|(a, b)| (*a - b).abs().max_element() <= CHROMATICITY_TOLERANCE)
     }
 
     /// What makes linear RGB of `to` of linear RGB of these; `None` if either are those of no colour space.
-    pub fn to(&self, to: &Self) -> Option<DMat3> {
-        let adapt = adaptation(self.white, to.white);
+    pub fn matrix_to(&self, to: &Self) -> Option<DMat3> {
+        let adapt = chromatic_adaptation(self.white, to.white);
         let matrix = to.xyz_from_rgb()?.inverse() * adapt * self.xyz_from_rgb()?;
         matrix.is_finite().then_some(matrix)
     }
 
     /// White has Y = 1.
     fn xyz_from_rgb(&self) -> Option<DMat3> {
-        let primaries = DMat3::from_cols(xyz(self.red), xyz(self.green), xyz(self.blue));
-        let amounts = primaries.inverse() * xyz(self.white);
+        let primaries =
+            DMat3::from_cols(xyz_from_xy(self.red), xyz_from_xy(self.green), xyz_from_xy(self.blue));
+        let amounts = primaries.inverse() * xyz_from_xy(self.white);
         let matrix = primaries * DMat3::from_diagonal(amounts);
         (matrix.is_finite() && matrix.determinant() != 0.0).then_some(matrix)
     }
 }
 
 /// The colour of a chromaticity with Y = 1.
-fn xyz(at: DVec2) -> DVec3 {
+fn xyz_from_xy(at: DVec2) -> DVec3 {
     DVec3::new(at.x / at.y, 1.0, (1.0 - at.x - at.y) / at.y)
 }
 
 /// What makes a colour seen in the light of one white that seen in the light of another.
-fn adaptation(from: DVec2, to: DVec2) -> DMat3 {
+fn chromatic_adaptation(from: DVec2, to: DVec2) -> DMat3 {
     /// Cones' responses to X, Y and Z, by columns.
     const BRADFORD: DMat3 = DMat3::from_cols(
         DVec3::new(0.8951, -0.7502, 0.0389),
@@ -102,12 +103,12 @@ fn adaptation(from: DVec2, to: DVec2) -> DMat3 {
     if from == to {
         return DMat3::IDENTITY;
     }
-    let [from, to] = [from, to].map(|white| BRADFORD * xyz(white));
+    let [from, to] = [from, to].map(|white| BRADFORD * xyz_from_xy(white));
     BRADFORD.inverse() * DMat3::from_diagonal(to / from) * BRADFORD
 }
 
 /// Turns colours by a matrix.
-pub(crate) fn turn(matrix: &DMat3, rgb: &mut [[f32; 3]]) {
+pub(crate) fn transform_colors(matrix: &DMat3, rgb: &mut [[f32; 3]]) {
     for color in rgb {
         *color = (*matrix * DVec3::from_array(color.map(f64::from))).as_vec3().to_array();
     }
@@ -118,7 +119,7 @@ mod tests {
     use super::*;
 
     fn between(from: ColorSpace, to: ColorSpace) -> DMat3 {
-        from.chromaticities().to(&to.chromaticities()).expect("a colour space")
+        from.chromaticities().matrix_to(&to.chromaticities()).expect("a colour space")
     }
 
     #[test]
@@ -139,7 +140,7 @@ mod tests {
         assert!((there * DVec3::ONE - DVec3::ONE).length() < 1e-12);
         assert!((there * back).abs_diff_eq(DMat3::IDENTITY, 1e-12));
         let mut colors = [[0.25, 0.5, 4.0]];
-        turn(&there, &mut colors);
+        transform_colors(&there, &mut colors);
         assert!(colors[0][0] > 0.25, "a saturated blue has red of wider primaries: {colors:?}");
     }
 
@@ -148,8 +149,12 @@ mod tests {
         let rec709 = ColorSpace::Rec709.chromaticities();
         let flat = Chromaticities { green: rec709.red, ..rec709 };
         let empty = Chromaticities { red: DVec2::ZERO, ..rec709 };
-        assert!(flat.to(&rec709).is_none() && rec709.to(&flat).is_none() && empty.to(&rec709).is_none());
+        assert!(
+            flat.matrix_to(&rec709).is_none()
+                && rec709.matrix_to(&flat).is_none()
+                && empty.matrix_to(&rec709).is_none()
+        );
         let rounded = Chromaticities { white: DVec2::new(0.3128, 0.3291), ..rec709 };
-        assert!(rec709.is_like(&rounded) && !rec709.is_like(&ColorSpace::AcesCg.chromaticities()));
+        assert!(rec709.is_close_to(&rounded) && !rec709.is_close_to(&ColorSpace::AcesCg.chromaticities()));
     }
 }

@@ -9,7 +9,7 @@ use serde::Serialize;
 const RELATIVE_FLOOR: f64 = 1e-2;
 
 /// The PSNR of equal pictures: that of a mean square error of 1e-20.
-const HIGHEST_PSNR: f64 = 200.0;
+const MAX_PSNR: f64 = 200.0;
 
 /// How far a picture is from a reference. "Clipped": on linear values clipped to [0, 1].
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -50,15 +50,15 @@ pub struct ErrorMaps {
 
 /// The peak signal-to-noise ratio, dB, of a mean square error for a peak of 1: −10 log₁₀, at most 200.
 pub fn psnr(mean_square: f64) -> f64 {
-    if mean_square < 1e-20 { HIGHEST_PSNR } else { -10.0 * mean_square.log10() }
+    if mean_square < 1e-20 { MAX_PSNR } else { -10.0 * mean_square.log10() }
 }
 
 /// Compares `a` with the reference `b`. An error unless they have the same size. Pixels that are not finite
 /// make every number they enter not finite.
 pub fn compare(a: &LinearPicture, b: &LinearPicture) -> Result<Comparison, ProjectError> {
-    same_size(a, b)?;
+    check_same_size(a, b)?;
     let count = (a.rgb.len() * 3).max(1) as f64;
-    let mut sums = Sums::default();
+    let mut sums = ErrorSums::default();
     for (&a, &b) in a.rgb.iter().flatten().zip(b.rgb.iter().flatten()) {
         sums.add(a as f64, b as f64);
     }
@@ -84,13 +84,13 @@ pub fn compare(a: &LinearPicture, b: &LinearPicture) -> Result<Comparison, Proje
 
 /// Where `a` differs from the reference `b`. An error unless they have the same size.
 pub fn error_maps(a: &LinearPicture, b: &LinearPicture) -> Result<ErrorMaps, ProjectError> {
-    same_size(a, b)?;
+    check_same_size(a, b)?;
     let difference = |(a, b): (&[f32; 3], &[f32; 3])| [0, 1, 2].map(|k| (a[k] - b[k]).abs());
     let difference = a.rgb.iter().zip(&b.rgb).map(difference).collect();
     Ok(ErrorMaps { difference, flip: flip_image(a, b).to_vec() })
 }
 
-fn same_size(a: &LinearPicture, b: &LinearPicture) -> Result<(), ProjectError> {
+fn check_same_size(a: &LinearPicture, b: &LinearPicture) -> Result<(), ProjectError> {
     let (a, b) = ([a.width, a.height], [b.width, b.height]);
     if a == b { Ok(()) } else { Err(ProjectError::SizesDiffer { a, b }) }
 }
@@ -102,7 +102,7 @@ fn flip_image(a: &LinearPicture, b: &LinearPicture) -> nv_flip::FlipImageFloat {
 }
 
 #[derive(Default)]
-struct Sums {
+struct ErrorSums {
     square_clipped: f64,
     square: f64,
     relative_square: f64,
@@ -113,7 +113,7 @@ struct Sums {
     largest: f64,
 }
 
-impl Sums {
+impl ErrorSums {
     fn add(&mut self, a: f64, b: f64) {
         let difference = a - b;
         let clipped = a.clamp(0.0, 1.0) - b.clamp(0.0, 1.0);

@@ -7,7 +7,7 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipArchive, ZipWriter};
 
 /// Entries that a project may have.
-const MOST_ENTRIES: usize = 256;
+const MAX_ENTRIES: usize = 256;
 
 /// What to do about a damaged project.
 pub(crate) const DAMAGED_CURE: &str =
@@ -40,8 +40,8 @@ impl<'a> Container<'a> {
         let archive = ZipArchive::new(Cursor::new(bytes)).map_err(|error| {
             ProjectError::content(file, format!("is not a whole project file: {error}"), DAMAGED_CURE)
         })?;
-        if archive.len() > MOST_ENTRIES {
-            let problem = format!("has {} entries, more than {MOST_ENTRIES}", archive.len());
+        if archive.len() > MAX_ENTRIES {
+            let problem = format!("has {} entries, more than {MAX_ENTRIES}", archive.len());
             return Err(ProjectError::content(file, problem, DAMAGED_CURE));
         }
         Ok(Self { file, archive })

@@ -24,21 +24,21 @@ pub struct Cryptomatte {
     /// What the things are called; two of one name are one.
     pub names: Vec<String>,
     /// What each pixel shows most of, row by row; what it shows second most of; and so on. All of one length.
-    pub ranks: Vec<Vec<Ranked>>,
+    pub ranks: Vec<Vec<RankedCoverage>>,
 }
 
 /// A thing in a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ranked {
+pub struct RankedCoverage {
     /// Index into [`Cryptomatte::names`]; none where the pixel shows no further one.
-    pub thing: Option<u32>,
+    pub name_index: Option<u32>,
     /// The share of the pixel that it covers, in [0, 1].
     pub share: f32,
 }
 
-impl Ranked {
+impl RankedCoverage {
     /// Nothing more.
-    pub const NONE: Self = Self { thing: None, share: 0.0 };
+    pub const NONE: Self = Self { name_index: None, share: 0.0 };
 }
 
 impl Cryptomatte {
@@ -51,41 +51,44 @@ impl Cryptomatte {
     pub fn layers(&self) -> Vec<Layer> {
         /// Readers expect so many pairs.
         const PAIRS: usize = 3;
-        let ids: Vec<f32> = self.names.iter().map(|name| id(name)).collect();
+        let ids: Vec<f32> = self.names.iter().map(|name| cryptomatte_id(name)).collect();
         let pixels = self.ranks.first().map_or(0, Vec::len);
         let pairs = self.ranks.len().div_ceil(2).max(PAIRS);
-        let of_rank = |rank: usize| {
+        let rank_channels = |rank: usize| {
             let ranked = self.ranks.get(rank);
-            let id_of = |ranked: &Ranked| ranked.thing.map_or(0.0, |thing| ids[thing as usize]);
+            let id_of = |ranked: &RankedCoverage| ranked.name_index.map_or(0.0, |thing| ids[thing as usize]);
             let id_of = ranked.map_or(vec![0.0; pixels], |all| all.iter().map(id_of).collect());
             let share =
                 ranked.map_or(vec![0.0; pixels], |all| all.iter().map(|ranked| ranked.share).collect());
             [id_of, share]
         };
-        let of_pair = |pair: usize| {
-            let values = [of_rank(2 * pair), of_rank(2 * pair + 1)].into_iter().flatten();
+        let pair_layers = |pair: usize| {
+            let values = [rank_channels(2 * pair), rank_channels(2 * pair + 1)].into_iter().flatten();
             let name = move |channel| format!("{}{pair:02}.{channel}", self.name());
             ["R", "G", "B", "A"]
                 .into_iter()
                 .zip(values)
                 .map(move |(channel, values)| Layer { name: name(channel), values })
         };
-        (0..pairs).flat_map(of_pair).collect()
+        (0..pairs).flat_map(pair_layers).collect()
     }
 
     /// The attributes of a file that holds its layers.
     pub fn attributes(&self) -> BTreeMap<String, String> {
         let name = self.name();
-        let key = format!("{:08x}", murmur(&name));
-        let manifest: BTreeMap<_, _> =
-            self.names.iter().map(|name| (name, json!(format!("{:08x}", id(name).to_bits())))).collect();
-        let said = [
+        let key = format!("{:08x}", murmur3_hash(&name));
+        let manifest: BTreeMap<_, _> = self
+            .names
+            .iter()
+            .map(|name| (name, json!(format!("{:08x}", cryptomatte_id(name).to_bits()))))
+            .collect();
+        let metadata = [
             ("name", name),
             ("hash", "MurmurHash3_32".to_string()),
             ("conversion", "uint32_to_float32".to_string()),
-            ("manifest", ascii(&json!(manifest).to_string())),
+            ("manifest", escape_non_ascii(&json!(manifest).to_string())),
         ];
-        said.into_iter().map(|(what, said)| (format!("{METADATA}{}/{what}", &key[..7]), said)).collect()
+        metadata.into_iter().map(|(what, said)| (format!("{METADATA}{}/{what}", &key[..7]), said)).collect()
     }
 }
 
@@ -100,21 +103,21 @@ pub(crate) fn is_cryptomatte_metadata(attribute: &str) -> bool {
 }
 
 /// The id of what has this name.
-fn id(name: &str) -> f32 {
+fn cryptomatte_id(name: &str) -> f32 {
     /// The lowest bit of a float's exponent.
     const EXPONENT: u32 = 1 << 23;
-    let hash = murmur(name);
+    let hash = murmur3_hash(name);
     let exponent = hash >> 23 & 0xFF;
     // A subnormal number, or one that is not finite, may not come out as it went in.
     f32::from_bits(if exponent == 0 || exponent == 0xFF { hash ^ EXPONENT } else { hash })
 }
 
-fn murmur(name: &str) -> u32 {
+fn murmur3_hash(name: &str) -> u32 {
     murmur3::murmur3_32(&mut Cursor::new(name), 0).expect("bytes in memory can be read")
 }
 
 /// JSON without any character beyond ASCII, which text of OpenEXR has none for.
-fn ascii(json: &str) -> String {
+fn escape_non_ascii(json: &str) -> String {
     let mut escaped = String::with_capacity(json.len());
     for character in json.chars() {
         match character {
@@ -136,21 +139,22 @@ mod tests {
     #[test]
     fn ids_are_those_of_the_specification() {
         // MurmurHash3_x86_32 with seed 0, as `mmh3` of Python has them; of the second the exponent is all ones.
-        let bits = |name| id(name).to_bits();
-        assert_eq!(murmur("hello"), 0x248b_fa47);
+        let bits = |name| cryptomatte_id(name).to_bits();
+        assert_eq!(murmur3_hash("hello"), 0x248b_fa47);
         assert_eq!(bits("hello"), 0x248b_fa47);
-        let odd = (0..100_000).map(|k| format!("object {k}")).find(|name| murmur(name) >> 23 & 0xFF == 0xFF);
+        let odd =
+            (0..100_000).map(|k| format!("object {k}")).find(|name| murmur3_hash(name) >> 23 & 0xFF == 0xFF);
         let odd = odd.expect("one in 256");
-        assert_eq!(bits(&odd), murmur(&odd) ^ 1 << 23);
-        assert!((0..10_000).all(|k| id(&format!("object {k}")).is_normal()));
+        assert_eq!(bits(&odd), murmur3_hash(&odd) ^ 1 << 23);
+        assert!((0..10_000).all(|k| cryptomatte_id(&format!("object {k}")).is_normal()));
     }
 
     fn matte() -> Cryptomatte {
-        let ranked = |thing, share| Ranked { thing: Some(thing), share };
+        let ranked = |thing, share| RankedCoverage { name_index: Some(thing), share };
         Cryptomatte {
             kind: "Object".into(),
             names: vec!["card \"1\"\\ü\n🂡".into(), "wall".into()],
-            ranks: vec![vec![ranked(1, 0.75), ranked(0, 1.0)], vec![ranked(0, 0.25), Ranked::NONE]],
+            ranks: vec![vec![ranked(1, 0.75), ranked(0, 1.0)], vec![ranked(0, 0.25), RankedCoverage::NONE]],
         }
     }
 
@@ -159,9 +163,9 @@ mod tests {
         let layers = matte().layers();
         let of = |name: &str| &layers.iter().find(|layer| layer.name == name).expect("it is there").values;
         assert_eq!(layers.len(), 12);
-        assert_eq!(of("CryptoObject00.R"), &[id("wall"), id(&matte().names[0])]);
+        assert_eq!(of("CryptoObject00.R"), &[cryptomatte_id("wall"), cryptomatte_id(&matte().names[0])]);
         assert_eq!((of("CryptoObject00.G"), of("CryptoObject00.A")), (&vec![0.75, 1.0], &vec![0.25, 0.0]));
-        assert_eq!(of("CryptoObject00.B"), &[id(&matte().names[0]), 0.0]);
+        assert_eq!(of("CryptoObject00.B"), &[cryptomatte_id(&matte().names[0]), 0.0]);
         assert_eq!(of("CryptoObject02.A"), &[0.0, 0.0]);
     }
 
@@ -177,9 +181,9 @@ mod tests {
         assert!(manifest.is_ascii());
         let read: BTreeMap<String, String> = serde_json::from_str(&manifest).expect("JSON");
         for name in &matte().names {
-            assert_eq!(read[name], format!("{:08x}", id(name).to_bits()));
+            assert_eq!(read[name], format!("{:08x}", cryptomatte_id(name).to_bits()));
         }
         let key = attributes.keys().next().expect("one").split('/').nth(1).expect("a key");
-        assert_eq!(key, &format!("{:08x}", murmur("CryptoObject"))[..7]);
+        assert_eq!(key, &format!("{:08x}", murmur3_hash("CryptoObject"))[..7]);
     }
 }

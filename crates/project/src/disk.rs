@@ -7,19 +7,19 @@ use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 /// The largest file that is read, bytes.
-const LARGEST_FILE: u64 = 4 << 30;
+const MAX_FILE_BYTES: u64 = 4 << 30;
 
 /// The largest text file that is read, bytes.
-const LARGEST_TEXT: u64 = 64 << 20;
+const MAX_TEXT_BYTES: u64 = 64 << 20;
 
 /// The whole file.
 pub(crate) fn read_bytes(file: &Path) -> Result<Vec<u8>, ProjectError> {
-    read_limited(file, LARGEST_FILE)
+    read_limited(file, MAX_FILE_BYTES)
 }
 
 /// The whole file as text; a byte order mark is dropped.
 pub(crate) fn read_text(file: &Path) -> Result<String, ProjectError> {
-    let bytes = read_limited(file, LARGEST_TEXT)?;
+    let bytes = read_limited(file, MAX_TEXT_BYTES)?;
     let text = String::from_utf8(bytes)
         .map_err(|_| ProjectError::content(file, "is not text", "save it as UTF-8 JSON"))?;
     Ok(text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text))

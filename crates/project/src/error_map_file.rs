@@ -6,7 +6,7 @@
 use crate::compare::{ErrorMaps, error_maps};
 use crate::disk::{extension, write_bytes};
 use crate::exr_file::{ExrImage, write_exr};
-use crate::exr_form::ExrForm;
+use crate::exr_form::ExrOptions;
 use crate::layer::color_channels;
 use crate::png_file::encode_rgb8;
 use crate::{LinearPicture, ProjectError};
@@ -20,17 +20,16 @@ pub fn write_error_map(file: &Path, a: &LinearPicture, b: &LinearPicture) -> Res
     let (width, height) = (a.width, a.height);
     match extension(file).as_str() {
         "png" => {
-            let bytes =
-                encode_rgb8(width, height, &false_colours(width, height, &maps), &[]).map_err(|error| {
-                    ProjectError::Write { file: file.to_owned(), source: std::io::Error::other(error) }
-                })?;
+            let bytes = encode_rgb8(width, height, &false_color_bytes(width, height, &maps), &[]).map_err(
+                |error| ProjectError::Write { file: file.to_owned(), source: std::io::Error::other(error) },
+            )?;
             write_bytes(file, &bytes)
         }
         "exr" => {
             let mut channels: BTreeMap<_, _> = color_channels(&maps.difference).into();
             channels.insert("flip".to_string(), maps.flip);
             let image = ExrImage { width, height, channels, ..ExrImage::default() };
-            write_exr(file, image, ExrForm::default())
+            write_exr(file, image, ExrOptions::default())
         }
         _ => {
             Err(ProjectError::content(file, "error maps are not written in this form", "name a .png or .exr"))
@@ -40,11 +39,11 @@ pub fn write_error_map(file: &Path, a: &LinearPicture, b: &LinearPicture) -> Res
 
 /// Where `a` differs from the reference `b`, in the colours of [`write_error_map`]: 8-bit sRGB, interleaved, row 0 on
 /// top. An error unless they have the same size.
-pub fn error_colours(a: &LinearPicture, b: &LinearPicture) -> Result<Vec<u8>, ProjectError> {
-    Ok(false_colours(a.width, a.height, &error_maps(a, b)?))
+pub fn false_color_error_map(a: &LinearPicture, b: &LinearPicture) -> Result<Vec<u8>, ProjectError> {
+    Ok(false_color_bytes(a.width, a.height, &error_maps(a, b)?))
 }
 
 /// FLIP in the colours that its authors use, 8-bit sRGB, interleaved.
-fn false_colours(width: u32, height: u32, maps: &ErrorMaps) -> Vec<u8> {
+fn false_color_bytes(width: u32, height: u32, maps: &ErrorMaps) -> Vec<u8> {
     FlipImageFloat::with_data(width, height, &maps.flip).apply_color_lut(&nv_flip::magma_lut()).to_vec()
 }

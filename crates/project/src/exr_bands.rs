@@ -2,7 +2,7 @@
 
 use crate::ProjectError;
 use crate::exr_file::{ExrAttribute, all_attributes};
-use crate::exr_form::{ExrForm, half_of};
+use crate::exr_form::{ExrOptions, to_half};
 use crate::exr_header;
 use crate::replacement::replacement;
 use exr::block::BlockIndex;
@@ -25,7 +25,7 @@ pub(crate) struct ExrHead {
     /// The names of its channels.
     pub channels: BTreeSet<String>,
     pub attributes: BTreeMap<String, ExrAttribute>,
-    pub form: ExrForm,
+    pub form: ExrOptions,
 }
 
 /// Samples of some rows by channel name, row by row.
@@ -39,11 +39,12 @@ pub(crate) fn write_exr_in_bands<E: From<ProjectError> + Send>(
 ) -> Result<(), E> {
     let error = |source| ProjectError::Write { file: file.to_owned(), source };
     let other = |problem: String| error(std::io::Error::other(problem));
-    let (of_image, of_layer) = all_attributes(head.size, &head.attributes, &head.form).map_err(other)?;
-    let channels = Channels { head, source: Mutex::new(Source { band, failed: None }) };
+    let (image_attributes, layer_attributes) =
+        all_attributes(head.size, &head.attributes, &head.form).map_err(other)?;
+    let channels = BandChannels { head, source: Mutex::new(BandSource { band, failed: None }) };
     let size = (head.size[0] as usize, head.size[1] as usize);
-    let layer = ox::Layer::new(size, of_layer, head.form.compression.encoding(), channels);
-    let image = ox::Image::new(of_image, layer);
+    let layer = ox::Layer::new(size, layer_attributes, head.form.compression.encoding(), channels);
+    let image = ox::Image::new(image_attributes, layer);
     let mut new = replacement(file).map_err(error)?;
     let written = image.write().to_buffered(BufWriter::new(&mut *new));
     let source = image.layer_data.channel_data.source.into_inner().unwrap_or_else(PoisonError::into_inner);
@@ -61,10 +62,10 @@ pub(crate) fn write_exr_in_bands<E: From<ProjectError> + Send>(
 /// [`exr_header::sort_attributes`] in a file.
 fn sort_attributes(file: &mut (impl Read + Write + Seek)) -> std::io::Result<()> {
     /// A header is no longer: its longest attribute is a list of names.
-    const LONGEST_HEADER: u64 = 64 << 20;
+    const MAX_HEADER_BYTES: u64 = 64 << 20;
     file.seek(SeekFrom::Start(0))?;
     let mut bytes = Vec::new();
-    Read::by_ref(file).take(LONGEST_HEADER).read_to_end(&mut bytes)?;
+    Read::by_ref(file).take(MAX_HEADER_BYTES).read_to_end(&mut bytes)?;
     exr_header::sort_attributes(&mut bytes);
     file.seek(SeekFrom::Start(0))?;
     file.write_all(&bytes)?;
@@ -72,18 +73,18 @@ fn sort_attributes(file: &mut (impl Read + Write + Seek)) -> std::io::Result<()>
 }
 
 /// Channels whose samples are asked for band by band.
-struct Channels<'a, F, E> {
+struct BandChannels<'a, F, E> {
     head: &'a ExrHead,
-    source: Mutex<Source<F, E>>,
+    source: Mutex<BandSource<F, E>>,
 }
 
 /// Who tells the samples, and why that failed, if it did.
-struct Source<F, E> {
+struct BandSource<F, E> {
     band: F,
     failed: Option<E>,
 }
 
-impl<'slf, F, E> WritableChannels<'slf> for Channels<'_, F, E>
+impl<'slf, F, E> WritableChannels<'slf> for BandChannels<'_, F, E>
 where
     F: FnMut(Range<u32>) -> Result<Band, E> + Send + 'slf,
     E: Send + 'slf,
@@ -111,7 +112,7 @@ where
     }
 }
 
-impl<F, E> ChannelsWriter for &Channels<'_, F, E>
+impl<F, E> ChannelsWriter for &BandChannels<'_, F, E>
 where
     F: FnMut(Range<u32>) -> Result<Band, E> + Send,
     E: Send,
@@ -121,8 +122,8 @@ where
         let first = block.pixel_position.y() as u32;
         let mut bytes = Vec::with_capacity(width * rows * header.channels.bytes_per_pixel);
         let mut source = self.source.lock().unwrap_or_else(PoisonError::into_inner);
-        let Source { band, failed } = &mut *source;
-        let told = match failed {
+        let BandSource { band, failed } = &mut *source;
+        let band_values = match failed {
             Some(_) => Band::new(),
             None => band(first..first + rows as u32).unwrap_or_else(|error| {
                 *failed = Some(error);
@@ -133,14 +134,14 @@ where
             for channel in &header.channels.list {
                 let name = channel.name.to_string();
                 let Some(line) =
-                    told.get(&name).and_then(|samples| samples.get(row * width..(row + 1) * width))
+                    band_values.get(&name).and_then(|samples| samples.get(row * width..(row + 1) * width))
                 else {
                     bytes.resize(bytes.len() + width * channel.sample_type.bytes_per_sample(), 0);
                     continue;
                 };
                 // The encoder takes them as the machine has them.
                 if self.head.form.samples.is_half(&name) {
-                    bytes.extend(line.iter().flat_map(|value| half_of(*value).to_ne_bytes()));
+                    bytes.extend(line.iter().flat_map(|value| to_half(*value).to_ne_bytes()));
                 } else {
                     bytes.extend(line.iter().flat_map(|value| value.to_ne_bytes()));
                 }

@@ -3,7 +3,7 @@
 use crate::ProjectError;
 use crate::color_space::Chromaticities;
 use crate::disk::{read_bytes, write_bytes};
-use crate::exr_form::{ExrForm, half_of, stored, told};
+use crate::exr_form::{ExrOptions, from_stored_chromaticities, to_half, to_stored_chromaticities};
 use crate::exr_header;
 use crate::exr_window::Window;
 use exr::meta::attribute::{AttributeValue, Text};
@@ -15,14 +15,14 @@ use std::panic::AssertUnwindSafe;
 use std::path::Path;
 
 /// The widest and highest image that is read.
-const LARGEST_SIDE: usize = 32768;
+const MAX_SIDE: usize = 32768;
 
 /// The most samples of all channels together that are read: 4 GiB as floats.
-const MOST_SAMPLES: usize = 1 << 30;
+const MAX_SAMPLES: usize = 1 << 30;
 
 /// The most samples of all channels together that the display window has and the file does not: 1 GiB as floats, which
 /// a file of a few bytes can ask for.
-const MOST_ABSENT_SAMPLES: usize = 1 << 28;
+const MAX_ABSENT_SAMPLES: usize = 1 << 28;
 
 /// An image as OpenEXR holds it.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -57,7 +57,7 @@ pub(crate) fn read_exr(file: &Path, absent: fn(&str) -> f32) -> Result<ExrImage,
 }
 
 /// Writes an image.
-pub(crate) fn write_exr(file: &Path, image: ExrImage, form: ExrForm) -> Result<(), ProjectError> {
+pub(crate) fn write_exr(file: &Path, image: ExrImage, form: ExrOptions) -> Result<(), ProjectError> {
     let bytes = encode(image, form).map_err(|error| ProjectError::Write {
         file: file.to_owned(),
         source: std::io::Error::other(error),
@@ -81,14 +81,14 @@ fn decode_unguarded(bytes: &[u8], absent: fn(&str) -> f32) -> Result<ExrImage, S
     // Not in parallel: a panic on a worker thread could not be caught.
     let reader = ox::read().no_deep_data().largest_resolution_level().all_channels().all_layers();
     let read = reader.all_attributes().non_parallel().from_buffered(Cursor::new(bytes)).map_err(text)?;
-    let display = Window::of(read.attributes.display_window);
+    let display = Window::from_bounds(read.attributes.display_window);
     let [width, height] = display.size;
-    let chromaticities = read.attributes.chromaticities.map(told);
+    let chromaticities = read.attributes.chromaticities.map(from_stored_chromaticities);
     let (width, height) = (width as u32, height as u32);
     let mut image = ExrImage { width, height, chromaticities, ..ExrImage::default() };
-    let of_parts = read.layer_data.iter().flat_map(|part| &part.attributes.other);
-    for (name, value) in read.attributes.other.iter().chain(of_parts) {
-        if let Some(value) = attribute(value) {
+    let part_attributes = read.layer_data.iter().flat_map(|part| &part.attributes.other);
+    for (name, value) in read.attributes.other.iter().chain(part_attributes) {
+        if let Some(value) = readable_attribute(value) {
             image.attributes.entry(name.to_string()).or_insert(value);
         }
     }
@@ -103,18 +103,18 @@ fn decode_unguarded(bytes: &[u8], absent: fn(&str) -> f32) -> Result<ExrImage, S
                 return Err(format!("channel {} is incomplete", channel.name));
             }
             let name = match &part.attributes.layer_name {
-                Some(part) if index > 0 => full_name(&part.to_string(), &channel.name.to_string()),
+                Some(part) if index > 0 => full_channel_name(&part.to_string(), &channel.name.to_string()),
                 _ => channel.name.to_string(),
             };
             let absent = absent(&name);
-            image.channels.entry(name).or_insert_with(|| display.cut_out(data, values, absent));
+            image.channels.entry(name).or_insert_with(|| display.crop(data, values, absent));
         }
     }
     Ok(image)
 }
 
 /// The name of a part's channel among those of all parts. Some programs write it in full, others leave the part's out.
-fn full_name(part: &str, channel: &str) -> String {
+fn full_channel_name(part: &str, channel: &str) -> String {
     if channel.contains('.') { channel.to_string() } else { format!("{part}.{channel}") }
 }
 
@@ -122,13 +122,15 @@ fn full_name(part: &str, channel: &str) -> String {
 fn check_size(meta: &exr::meta::MetaData) -> Result<(), String> {
     let (mut samples, mut absent) = (0, 0);
     for header in &meta.headers {
-        let (data, display) =
-            (Window::of(header.data_window()), Window::of(header.shared_attributes.display_window));
+        let (data, display) = (
+            Window::from_bounds(header.data_window()),
+            Window::from_bounds(header.shared_attributes.display_window),
+        );
         for window in [data, display] {
             let [width, height] = window.size;
-            if width.max(height) > LARGEST_SIDE {
+            if width.max(height) > MAX_SIDE {
                 return Err(format!(
-                    "it has a window of {width}×{height} pixels, more than {LARGEST_SIDE} a side"
+                    "it has a window of {width}×{height} pixels, more than {MAX_SIDE} a side"
                 ));
             }
         }
@@ -139,16 +141,16 @@ fn check_size(meta: &exr::meta::MetaData) -> Result<(), String> {
         samples += channels.saturating_mul(data.area().max(display.area()));
         absent += channels.saturating_mul(display.area().saturating_sub(display.shared_area(data)));
     }
-    if samples > MOST_SAMPLES {
+    if samples > MAX_SAMPLES {
         return Err("it is larger than 4 GiB".to_string());
     }
-    if absent > MOST_ABSENT_SAMPLES {
+    if absent > MAX_ABSENT_SAMPLES {
         return Err("nearly all of its display window lies outside its data window".to_string());
     }
     Ok(())
 }
 
-fn attribute(value: &AttributeValue) -> Option<ExrAttribute> {
+fn readable_attribute(value: &AttributeValue) -> Option<ExrAttribute> {
     match value {
         AttributeValue::Text(text) => Some(ExrAttribute::Text(text.to_string())),
         AttributeValue::I32(number) => Some(ExrAttribute::Number(*number as f64)),
@@ -158,11 +160,11 @@ fn attribute(value: &AttributeValue) -> Option<ExrAttribute> {
     }
 }
 
-fn encode(image: ExrImage, form: ExrForm) -> Result<Vec<u8>, String> {
+fn encode(image: ExrImage, form: ExrOptions) -> Result<Vec<u8>, String> {
     let channel = |(name, values): (String, Vec<f32>)| {
         let data = match form.samples {
             samples if samples.is_half(&name) => {
-                ox::FlatSamples::F16(values.into_iter().map(half_of).collect())
+                ox::FlatSamples::F16(values.into_iter().map(to_half).collect())
             }
             _ => ox::FlatSamples::F32(values),
         };
@@ -170,11 +172,11 @@ fn encode(image: ExrImage, form: ExrForm) -> Result<Vec<u8>, String> {
     };
     let channels = ox::AnyChannels::sort(image.channels.into_iter().map(channel).collect());
     let size = [image.width, image.height];
-    let (of_image, of_layer) = all_attributes(size, &image.attributes, &form)?;
+    let (image_attributes, layer_attributes) = all_attributes(size, &image.attributes, &form)?;
     let size = (size[0] as usize, size[1] as usize);
-    let layer = ox::Layer::new(size, of_layer, form.compression.encoding(), channels);
+    let layer = ox::Layer::new(size, layer_attributes, form.compression.encoding(), channels);
     let mut bytes = Cursor::new(Vec::new());
-    let written = ox::Image::new(of_image, layer).write().to_buffered(&mut bytes);
+    let written = ox::Image::new(image_attributes, layer).write().to_buffered(&mut bytes);
     written.map_err(|error| error.to_string())?;
     let mut bytes = bytes.into_inner();
     exr_header::sort_attributes(&mut bytes);
@@ -184,19 +186,19 @@ fn encode(image: ExrImage, form: ExrForm) -> Result<Vec<u8>, String> {
 /// The attributes of an image of this width and height, and of its only part: those that are given, and what its form says.
 pub(crate) fn all_attributes(
     size: [u32; 2],
-    given: &BTreeMap<String, ExrAttribute>,
-    form: &ExrForm,
+    requested: &BTreeMap<String, ExrAttribute>,
+    form: &ExrOptions,
 ) -> Result<(ox::ImageAttributes, ox::LayerAttributes), String> {
-    let around = form.overscan as i32;
+    let overscan = form.overscan as i32;
     let mut attributes = ox::LayerAttributes {
         software_name: Some(Text::from("Focus Brush")),
-        layer_position: ox::Vec2(-around, -around),
+        layer_position: ox::Vec2(-overscan, -overscan),
         ..ox::LayerAttributes::default()
     };
     let mut write = |name: &str, value| attributes.other.insert(Text::from(name), value);
-    for (name, value) in given {
+    for (name, value) in requested {
         let value = match value {
-            ExrAttribute::Text(value) => AttributeValue::Text(text(name, value)?),
+            ExrAttribute::Text(value) => AttributeValue::Text(attribute_text(name, value)?),
             ExrAttribute::Number(number) => AttributeValue::F64(*number),
         };
         write(name, value);
@@ -205,13 +207,13 @@ pub(crate) fn all_attributes(
         write("colorInteropID", AttributeValue::Text(Text::from(space.interop_id())));
     }
     let frame = size.map(|side| side.saturating_sub(2 * form.overscan) as usize);
-    let chromaticities = form.color_space.map(|space| stored(space.chromaticities()));
-    let of_image =
+    let chromaticities = form.color_space.map(|space| to_stored_chromaticities(space.chromaticities()));
+    let image_attributes =
         ox::ImageAttributes { chromaticities, ..ox::ImageAttributes::with_size((frame[0], frame[1])) };
-    Ok((of_image, attributes))
+    Ok((image_attributes, attributes))
 }
 
 /// The value of an attribute, whose characters the format has bytes for.
-fn text(name: &str, value: &str) -> Result<Text, String> {
+fn attribute_text(name: &str, value: &str) -> Result<Text, String> {
     Text::new_or_none(value).ok_or_else(|| format!("attribute {name} has a character beyond U+00FF"))
 }

@@ -33,8 +33,8 @@ impl Compression {
     ];
 
     /// The one of this name.
-    pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.iter().find(|(known, _)| *known == name).map(|(_, compression)| *compression)
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.iter().find(|(candidate, _)| *candidate == name).map(|(_, compression)| *compression)
     }
 
     /// Whether pixels are read as they were written.
@@ -73,7 +73,7 @@ impl ExrSamples {
 
 /// How an image is written.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct ExrForm {
+pub(crate) struct ExrOptions {
     pub compression: Compression,
     pub samples: ExrSamples,
     /// How many pixels on each side lie around the picture: the data window is that much larger than the display window.
@@ -83,21 +83,21 @@ pub(crate) struct ExrForm {
 }
 
 /// As the encoder has them.
-pub(crate) fn stored(chromaticities: Chromaticities) -> StoredChromaticities {
+pub(crate) fn to_stored_chromaticities(chromaticities: Chromaticities) -> StoredChromaticities {
     let place = |at: DVec2| ox::Vec2(at.x as f32, at.y as f32);
     let Chromaticities { red, green, blue, white } = chromaticities;
     StoredChromaticities { red: place(red), green: place(green), blue: place(blue), white: place(white) }
 }
 
 /// As the decoder has them.
-pub(crate) fn told(stored: StoredChromaticities) -> Chromaticities {
+pub(crate) fn from_stored_chromaticities(stored: StoredChromaticities) -> Chromaticities {
     let place = |at: ox::Vec2<f32>| DVec2::new(at.0.into(), at.1.into());
     let StoredChromaticities { red, green, blue, white } = stored;
     Chromaticities { red: place(red), green: place(green), blue: place(blue), white: place(white) }
 }
 
 /// The nearest half; light that none holds is as bright as one can be.
-pub(crate) fn half_of(value: f32) -> f16 {
+pub(crate) fn to_half(value: f32) -> f16 {
     let most = f16::MAX.to_f32();
     f16::from_f32(if value.is_finite() { value.clamp(-most, most) } else { value })
 }

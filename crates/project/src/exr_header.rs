@@ -11,17 +11,17 @@
 const FIRST_ATTRIBUTE: usize = 8;
 
 /// Of the flags: there are several parts.
-const SEVERAL_PARTS: u32 = 1 << 12;
+const MULTIPART_FLAG: u32 = 1 << 12;
 
 /// The attributes of the parts, a list each; `None` if the bytes are cut short within them.
-fn parts(bytes: &[u8]) -> Option<Vec<Vec<&[u8]>>> {
+fn split_parts(bytes: &[u8]) -> Option<Vec<Vec<&[u8]>>> {
     let flags = u32::from_le_bytes(bytes.get(4..FIRST_ATTRIBUTE)?.try_into().ok()?);
     let mut rest = &bytes[FIRST_ATTRIBUTE..];
     let mut parts = Vec::new();
     loop {
         let mut attributes = Vec::new();
         while *rest.first()? != 0 {
-            let (attribute, after) = rest.split_at_checked(length(rest)?)?;
+            let (attribute, after) = rest.split_at_checked(attribute_length(rest)?)?;
             attributes.push(attribute);
             rest = after;
         }
@@ -30,14 +30,14 @@ fn parts(bytes: &[u8]) -> Option<Vec<Vec<&[u8]>>> {
         if !is_end {
             parts.push(attributes);
         }
-        if is_end || flags & SEVERAL_PARTS == 0 {
+        if is_end || flags & MULTIPART_FLAG == 0 {
             return Some(parts);
         }
     }
 }
 
 /// Bytes of the attribute that these begin with.
-fn length(bytes: &[u8]) -> Option<usize> {
+fn attribute_length(bytes: &[u8]) -> Option<usize> {
     let name = bytes.iter().position(|&byte| byte == 0)? + 1;
     let value = name + bytes.get(name..)?.iter().position(|&byte| byte == 0)? + 1 + 4;
     let length = i32::from_le_bytes(bytes.get(value - 4..value)?.try_into().ok()?);
@@ -45,21 +45,21 @@ fn length(bytes: &[u8]) -> Option<usize> {
 }
 
 /// Name, type, and length with value of an attribute.
-fn fields(attribute: &[u8]) -> impl Iterator<Item = &[u8]> {
+fn attribute_fields(attribute: &[u8]) -> impl Iterator<Item = &[u8]> {
     attribute.splitn(3, |&byte| byte == 0)
 }
 
-fn name(attribute: &[u8]) -> &[u8] {
-    fields(attribute).next().unwrap_or_default()
+fn attribute_name(attribute: &[u8]) -> &[u8] {
+    attribute_fields(attribute).next().unwrap_or_default()
 }
 
 /// Puts the attributes of each part in the order of their names: the encoder writes some of them as its hash map has
 /// them, which is another order each time.
 pub(crate) fn sort_attributes(bytes: &mut [u8]) {
-    let Some(mut parts) = parts(bytes) else { return };
+    let Some(mut parts) = split_parts(bytes) else { return };
     let mut sorted = Vec::new();
     for attributes in &mut parts {
-        attributes.sort_by_key(|attribute| name(attribute));
+        attributes.sort_by_key(|attribute| attribute_name(attribute));
         sorted.extend(attributes.concat());
         sorted.push(0);
     }
@@ -67,13 +67,13 @@ pub(crate) fn sort_attributes(bytes: &mut [u8]) {
 }
 
 /// Where the value of an attribute of the first part is, behind its length.
-pub(crate) fn value(bytes: &[u8], wanted: &str) -> Option<std::ops::Range<usize>> {
+pub(crate) fn attribute_value_range(bytes: &[u8], target: &str) -> Option<std::ops::Range<usize>> {
     let mut at = FIRST_ATTRIBUTE;
-    let parts = parts(bytes)?;
+    let parts = split_parts(bytes)?;
     for attribute in parts.first()? {
-        if name(attribute) == wanted.as_bytes() {
-            let kind = fields(attribute).nth(1)?;
-            return Some(at + wanted.len() + 1 + kind.len() + 1 + 4..at + attribute.len());
+        if attribute_name(attribute) == target.as_bytes() {
+            let kind = attribute_fields(attribute).nth(1)?;
+            return Some(at + target.len() + 1 + kind.len() + 1 + 4..at + attribute.len());
         }
         at += attribute.len();
     }
@@ -82,12 +82,12 @@ pub(crate) fn value(bytes: &[u8], wanted: &str) -> Option<std::ops::Range<usize>
 
 /// The file with a further attribute at the end of its first part, a text. The offsets of the chunks of pixels, which follow the header, are
 /// moved along.
-pub(crate) fn with_text(bytes: &[u8], name: &str, text: &[u8]) -> Option<Vec<u8>> {
-    let parts = parts(bytes)?;
+pub(crate) fn with_text_attribute(bytes: &[u8], name: &str, text: &[u8]) -> Option<Vec<u8>> {
+    let parts = split_parts(bytes)?;
     let length =
         |attributes: &Vec<&[u8]>| attributes.iter().map(|attribute| attribute.len()).sum::<usize>() + 1;
     let at = FIRST_ATTRIBUTE + length(parts.first()?) - 1;
-    let several = u32::from_le_bytes(bytes[4..FIRST_ATTRIBUTE].try_into().ok()?) & SEVERAL_PARTS != 0;
+    let several = u32::from_le_bytes(bytes[4..FIRST_ATTRIBUTE].try_into().ok()?) & MULTIPART_FLAG != 0;
     let table = FIRST_ATTRIBUTE + parts.iter().map(length).sum::<usize>() + usize::from(several);
     let size = i32::try_from(text.len()).ok()?.to_le_bytes();
     let attribute = [name.as_bytes(), b"\0string\0", &size, text].concat();
@@ -113,14 +113,15 @@ pub(crate) fn with_text(bytes: &[u8], name: &str, text: &[u8]) -> Option<Vec<u8>
 /// no pixel. The decoder takes it for one that is turned about.
 pub(crate) fn empty_window(bytes: &[u8]) -> Option<&'static str> {
     let windows = [("dataWindow", "data window"), ("displayWindow", "display window")];
-    let attributes = parts(bytes)?.into_iter().flatten();
+    let attributes = split_parts(bytes)?.into_iter().flatten();
     attributes
         .filter_map(|attribute| {
-            let (_, said) = windows.into_iter().find(|(window, _)| window.as_bytes() == name(attribute))?;
-            let (words, _) = fields(attribute).nth(2)?.as_chunks::<4>();
+            let (_, window_name) =
+                windows.into_iter().find(|(window, _)| window.as_bytes() == attribute_name(attribute))?;
+            let (words, _) = attribute_fields(attribute).nth(2)?.as_chunks::<4>();
             let [_length, left, top, right, bottom] = words else { return None };
             let [left, top, right, bottom] = [left, top, right, bottom].map(|word| i32::from_le_bytes(*word));
-            (left > right || top > bottom).then_some(said)
+            (left > right || top > bottom).then_some(window_name)
         })
         .next()
 }
@@ -151,39 +152,39 @@ mod tests {
         let mut one = file(0, &[&[c.clone(), a.clone(), b.clone()]]);
         sort_attributes(&mut one);
         assert_eq!(one, file(0, &[&[a.clone(), b.clone(), c.clone()]]));
-        let mut two = file(SEVERAL_PARTS, &[&[b.clone(), a.clone()], &[c.clone(), b.clone()]]);
+        let mut two = file(MULTIPART_FLAG, &[&[b.clone(), a.clone()], &[c.clone(), b.clone()]]);
         sort_attributes(&mut two);
-        assert_eq!(two, file(SEVERAL_PARTS, &[&[a, b.clone()], &[b, c]]));
+        assert_eq!(two, file(MULTIPART_FLAG, &[&[a, b.clone()], &[b, c]]));
     }
 
     #[test]
     fn a_text_is_put_in_and_found_and_chunks_move_along() {
         let [a, b] = [attribute("a", b"\0\0"), attribute("b", b"12")];
         for (flags, parts) in
-            [(0, vec![&[a.clone(), b.clone()][..]]), (SEVERAL_PARTS, vec![from_ref(&a), from_ref(&b)])]
+            [(0, vec![&[a.clone(), b.clone()][..]]), (MULTIPART_FLAG, vec![from_ref(&a), from_ref(&b)])]
         {
             let mut whole = file(flags, &parts);
             whole.truncate(whole.len() - b"pixels".len());
             let end = whole.len() as u64 + 16;
             whole.extend([end, end + 6].iter().flat_map(|offset| offset.to_le_bytes()));
             whole.extend(b"chunk1chunk2");
-            let longer = with_text(&whole, "told", b"so").unwrap();
-            assert_eq!(&longer[value(&longer, "told").unwrap()], b"so");
-            assert_eq!(value(&whole, "told"), None);
+            let longer = with_text_attribute(&whole, "told", b"so").unwrap();
+            assert_eq!(&longer[attribute_value_range(&longer, "told").unwrap()], b"so");
+            assert_eq!(attribute_value_range(&whole, "told"), None);
             let moved = (longer.len() - whole.len()) as u64;
             let table = longer.len() - 12 - 16;
             let offset = |at: usize| u64::from_le_bytes(longer[at..at + 8].try_into().unwrap());
             assert_eq!([offset(table), offset(table + 8)], [end + moved, end + 6 + moved]);
             assert_eq!(&longer[offset(table + 8) as usize..], b"chunk2");
             for length in 0..whole.len() - 12 {
-                assert_eq!(with_text(&whole[..length], "told", b"so"), None, "cut at {length}");
+                assert_eq!(with_text_attribute(&whole[..length], "told", b"so"), None, "cut at {length}");
             }
         }
     }
 
     #[test]
     fn bytes_that_are_cut_short_stay_as_they_are() {
-        let whole = file(SEVERAL_PARTS, &[&[window("dataWindow", [9, 0, 0, 9]), attribute("b", b"12")]]);
+        let whole = file(MULTIPART_FLAG, &[&[window("dataWindow", [9, 0, 0, 9]), attribute("b", b"12")]]);
         for length in 0..whole.len() - b"\0pixels".len() {
             let mut cut = whole[..length].to_vec();
             sort_attributes(&mut cut);
@@ -192,7 +193,7 @@ mod tests {
         }
         let mut endless = whole.clone();
         endless[FIRST_ATTRIBUTE + 16..][..4].copy_from_slice(&(-1i32).to_le_bytes());
-        assert!(parts(&endless).is_none());
+        assert!(split_parts(&endless).is_none());
     }
 
     #[test]

@@ -16,7 +16,7 @@ pub(crate) struct Window {
 
 impl Window {
     /// As the decoder has it.
-    pub fn of(bounds: IntegerBounds) -> Self {
+    pub fn from_bounds(bounds: IntegerBounds) -> Self {
         Self {
             corner: [bounds.position.x(), bounds.position.y()],
             size: [bounds.size.width(), bounds.size.height()],
@@ -30,18 +30,18 @@ impl Window {
 
     /// How many pixels it has in common with another.
     pub fn shared_area(&self, other: Self) -> usize {
-        (0..2).map(|axis| self.shared(other, axis).1).product()
+        (0..2).map(|axis| self.shared_span(other, axis).1).product()
     }
 
     /// The values of this window's pixels, row by row, of which `data` has `values`, and `absent` those it has not.
-    pub fn cut_out(&self, data: Self, values: Vec<f32>, absent: f32) -> Vec<f32> {
-        if *self == data {
+    pub fn crop(&self, data_window: Self, values: Vec<f32>, absent: f32) -> Vec<f32> {
+        if *self == data_window {
             return values;
         }
-        let [(columns, width), (rows, height)] = [0, 1].map(|axis| self.shared(data, axis));
+        let [(columns, width), (rows, height)] = [0, 1].map(|axis| self.shared_span(data_window, axis));
         let mut cut = vec![absent; self.area()];
         for row in 0..height {
-            let from = (rows[1] + row) * data.size[0] + columns[1];
+            let from = (rows[1] + row) * data_window.size[0] + columns[1];
             let to = (rows[0] + row) * self.size[0] + columns[0];
             cut[to..to + width].copy_from_slice(&values[from..from + width]);
         }
@@ -49,7 +49,7 @@ impl Window {
     }
 
     /// What the two have in common along an axis: where in each it begins, and how long it is.
-    fn shared(&self, other: Self, axis: usize) -> ([usize; 2], usize) {
+    fn shared_span(&self, other: Self, axis: usize) -> ([usize; 2], usize) {
         let [[start, end], [other_start, other_end]] = [*self, other].map(|window| {
             let start = i64::from(window.corner[axis]);
             [start, start + window.size[axis] as i64]
@@ -68,7 +68,7 @@ mod tests {
     use super::*;
 
     /// Values that tell where in the plane they lie.
-    fn told(window: Window) -> Vec<f32> {
+    fn values(window: Window) -> Vec<f32> {
         let pixel = |n: usize| {
             let (x, y) = (n % window.size[0], n / window.size[0]);
             (window.corner[0] as f32 + x as f32) * 1000.0 + window.corner[1] as f32 + y as f32
@@ -82,16 +82,16 @@ mod tests {
         for corner in [[-2, 3], [-9, -9], [0, 4], [-4, 5], [2, 6], [3, 3], [-2, 7], [i32::MAX / 4, 0]] {
             for size in [[5, 4], [1, 1], [2, 9], [30, 30]] {
                 let data = Window { corner, size };
-                let cut = display.cut_out(data, told(data), -1.0);
+                let cut = display.crop(data, values(data), -1.0);
                 let mut shared = 0;
-                for (n, (found, all)) in cut.iter().zip(told(display)).enumerate() {
+                for (n, (cropped, all)) in cut.iter().zip(values(display)).enumerate() {
                     let place = [n % 5, n / 5].map(|n| n as i64);
                     let is_in = (0..2).all(|k| {
                         let from_corner = i64::from(display.corner[k]) + place[k] - i64::from(data.corner[k]);
                         (0..data.size[k] as i64).contains(&from_corner)
                     });
                     shared += usize::from(is_in);
-                    assert_eq!(*found, if is_in { all } else { -1.0 }, "{data:?} {n}");
+                    assert_eq!(*cropped, if is_in { all } else { -1.0 }, "{data:?} {n}");
                 }
                 assert_eq!(display.shared_area(data), shared);
             }

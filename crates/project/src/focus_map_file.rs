@@ -12,7 +12,7 @@
 use crate::ProjectError;
 use crate::disk::{extension, with_suffix, write_bytes};
 use crate::exr_file::{ExrAttribute, ExrImage, read_exr, write_exr};
-use crate::exr_form::ExrForm;
+use crate::exr_form::ExrOptions;
 use crate::json::{Field, Json};
 use crate::png_file::{encode_rgb16, read_png16};
 use atlas::Atlas;
@@ -35,7 +35,7 @@ const GLOSS: &str = "focus.gloss";
 const PNG_UNIT_OFFSET: f64 = 32768.0;
 
 /// Green of anchor = 1, and the largest number of a channel.
-const PNG_LARGEST: f64 = 65535.0;
+const PNG_MAX: f64 = 65535.0;
 
 /// A focus map with what its file says about it.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,7 +52,7 @@ pub struct FocusMapFile {
 
 impl FocusMapFile {
     /// The map painted over `atlas`.
-    pub fn of_atlas(map: &FocusMap, atlas: &Atlas) -> Self {
+    pub fn from_atlas_map(map: &FocusMap, atlas: &Atlas) -> Self {
         let (width, height) = (map.width(), map.height());
         let image = FocusImage { width, height, texels: map.to_rows(), gloss: map.gloss_rows() };
         Self {
@@ -87,7 +87,7 @@ impl FocusMapFile {
     /// Reads an EXR or PNG focus map, by extension.
     pub fn read(file: &Path) -> Result<Self, ProjectError> {
         let map = match extension(file).as_str() {
-            "exr" => from_exr(file, read_exr(file, unpainted)?)?,
+            "exr" => from_exr(file, read_exr(file, default_channel_value)?)?,
             "png" => from_png(file)?,
             _ => {
                 return Err(ProjectError::content(
@@ -121,7 +121,7 @@ impl FocusMapFile {
 pub fn write_focus_map(file: &Path, map: &FocusMapFile) -> Result<Vec<String>, ProjectError> {
     match extension(file).as_str() {
         "exr" => {
-            write_exr(file, to_exr(map), ExrForm::default())?;
+            write_exr(file, to_exr(map), ExrOptions::default())?;
             Ok(Vec::new())
         }
         "png" => to_png(file, map),
@@ -133,7 +133,7 @@ pub fn write_focus_map(file: &Path, map: &FocusMapFile) -> Result<Vec<String>, P
     }
 }
 
-fn uv_set(map: &FocusMapFile) -> u32 {
+fn stored_uv_set(map: &FocusMapFile) -> u32 {
     u32::from(map.atlas_hash.is_some())
 }
 
@@ -144,24 +144,24 @@ fn to_exr(map: &FocusMapFile) -> ExrImage {
         channels.insert(GLOSS.to_string(), gloss.clone());
     }
     let mut attributes = BTreeMap::new();
-    let mut put = |name: &str, value| attributes.insert(format!("focusBrush.{name}"), value);
-    put("version", ExrAttribute::Number(VERSION as f64));
-    put("uvSet", ExrAttribute::Number(uv_set(map) as f64));
+    let mut insert = |name: &str, value| attributes.insert(format!("focusBrush.{name}"), value);
+    insert("version", ExrAttribute::Number(VERSION as f64));
+    insert("uvSet", ExrAttribute::Number(stored_uv_set(map) as f64));
     if let Some(hash) = &map.atlas_hash {
-        put("atlasHash", ExrAttribute::Text(hash.clone()));
+        insert("atlasHash", ExrAttribute::Text(hash.clone()));
     }
     if let Some(background) = map.background {
-        put("backgroundT", ExrAttribute::Number(background.t));
-        put("backgroundAnchor", ExrAttribute::Number(background.anchor));
+        insert("backgroundT", ExrAttribute::Number(background.t));
+        insert("backgroundAnchor", ExrAttribute::Number(background.anchor));
         if background.gloss != 0.0 {
-            put("backgroundGloss", ExrAttribute::Number(background.gloss));
+            insert("backgroundGloss", ExrAttribute::Number(background.gloss));
         }
     }
     ExrImage { width: map.image.width, height: map.image.height, channels, attributes, ..ExrImage::default() }
 }
 
 /// What a channel has where the file has no texel: the focus of the ordinary lens.
-fn unpainted(channel: &str) -> f32 {
+fn default_channel_value(channel: &str) -> f32 {
     let FocusOffset { t, anchor, gloss } = FocusOffset::STANDARD;
     match channel {
         T => t as f32,
@@ -172,9 +172,9 @@ fn unpainted(channel: &str) -> f32 {
 
 fn from_exr(file: &Path, mut exr: ExrImage) -> Result<FocusMapFile, ProjectError> {
     let mut channel = |name: &str| {
-        let found: Vec<_> = exr.channels.keys().cloned().collect();
+        let available: Vec<_> = exr.channels.keys().cloned().collect();
         exr.channels.remove(name).ok_or_else(|| {
-            let problem = format!("is no focus map: it has no channel {name}, only {}", found.join(", "));
+            let problem = format!("is no focus map: it has no channel {name}, only {}", available.join(", "));
             ProjectError::content(file, problem, "give an EXR with channels focus.t and focus.anchor")
         })
     };
@@ -209,8 +209,8 @@ fn from_exr(file: &Path, mut exr: ExrImage) -> Result<FocusMapFile, ProjectError
 
 fn to_png(file: &Path, map: &FocusMapFile) -> Result<Vec<String>, ProjectError> {
     let stored = |[t, anchor]: [f32; 2]| {
-        let red = (t as f64 * PNG_UNIT_OFFSET).round().clamp(0.0, PNG_LARGEST);
-        let green = (anchor as f64 * PNG_LARGEST).round().clamp(0.0, PNG_LARGEST);
+        let red = (t as f64 * PNG_UNIT_OFFSET).round().clamp(0.0, PNG_MAX);
+        let green = (anchor as f64 * PNG_MAX).round().clamp(0.0, PNG_MAX);
         [red as u16, green as u16, 0]
     };
     let rgb: Vec<u16> = map.image.texels.iter().flat_map(|&texel| stored(texel)).collect();
@@ -220,7 +220,7 @@ fn to_png(file: &Path, map: &FocusMapFile) -> Result<Vec<String>, ProjectError> 
     let mut sidecar = json!({
         "format": "focus-brush focus map",
         "version": VERSION,
-        "uv_set": uv_set(map),
+        "uv_set": stored_uv_set(map),
         "encoding": {"t": "red / 32768", "anchor": "green / 65535"},
     });
     if let Some(hash) = &map.atlas_hash {
@@ -232,26 +232,26 @@ fn to_png(file: &Path, map: &FocusMapFile) -> Result<Vec<String>, ProjectError> 
     let text = serde_json::to_string_pretty(&sidecar).expect("a JSON value has a text");
     write_bytes(&with_suffix(file, ".json"), (text + "\n").as_bytes())?;
     write_bytes(file, &bytes)?;
-    let outside = |t: f32| !(0.0..=PNG_LARGEST / PNG_UNIT_OFFSET).contains(&(t as f64));
+    let outside = |t: f32| !(0.0..=PNG_MAX / PNG_UNIT_OFFSET).contains(&(t as f64));
     let lost = map.image.texels.iter().filter(|[t, _]| outside(*t)).count();
-    let of_offsets = format!(
+    let offset_warning = format!(
         "{}: {lost} texels have t outside [0, 2), which 16-bit PNG cannot hold; they were clipped (write an .exr to keep them)",
         file.display()
     );
-    let of_gloss = format!(
+    let gloss_warning = format!(
         "{}: gloss obeys the paint in places, which a PNG cannot hold; it was left out (write an .exr to keep it)",
         file.display()
     );
     let background_gloss = map.background.is_some_and(|background| background.gloss != 0.0);
-    let warnings = [(lost > 0, of_offsets), (map.image.gloss.is_some() || background_gloss, of_gloss)];
+    let warnings =
+        [(lost > 0, offset_warning), (map.image.gloss.is_some() || background_gloss, gloss_warning)];
     Ok(warnings.into_iter().filter_map(|(is_lost, warning)| is_lost.then_some(warning)).collect())
 }
 
 fn from_png(file: &Path) -> Result<FocusMapFile, ProjectError> {
     let png = read_png16(file)?;
-    let value = |[red, green, _]: [u16; 3]| {
-        [(red as f64 / PNG_UNIT_OFFSET) as f32, (green as f64 / PNG_LARGEST) as f32]
-    };
+    let value =
+        |[red, green, _]: [u16; 3]| [(red as f64 / PNG_UNIT_OFFSET) as f32, (green as f64 / PNG_MAX) as f32];
     let texels = png.rgb.into_iter().map(value).collect();
     let image = FocusImage { width: png.width, height: png.height, texels, gloss: None };
     let mut warnings = Vec::new();
@@ -266,7 +266,7 @@ fn from_png(file: &Path) -> Result<FocusMapFile, ProjectError> {
     if sidecar.exists() {
         let json = Json::read(&sidecar)?;
         let fields = Field::root(&sidecar, &json).object()?;
-        if let Some(version) = fields.get("version").map(|field| field.whole()).transpose()?
+        if let Some(version) = fields.get("version").map(|field| field.whole_number()).transpose()?
             && version > VERSION
         {
             return Err(ProjectError::Newer {

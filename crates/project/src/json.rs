@@ -140,12 +140,12 @@ impl<'a> Field<'a> {
         ProjectError::Field { file: self.file.to_owned(), field, problem: problem.into(), cure: cure.into() }
     }
 
-    fn wants(&self, wanted: &str) -> ProjectError {
+    fn type_error(&self, expected: &str) -> ProjectError {
         let shown = match self.value {
             Json::Text(text) => format!("is the text \"{text}\""),
             other => format!("is {}", other.kind()),
         };
-        self.error(shown, format!("give {wanted}"))
+        self.error(shown, format!("give {expected}"))
     }
 
     /// The value as a finite number.
@@ -153,12 +153,12 @@ impl<'a> Field<'a> {
         match self.value {
             Json::Number(number) if number.is_finite() => Ok(*number),
             Json::Number(_) => Err(self.error("is not finite", "give a finite number")),
-            _ => Err(self.wants("a number")),
+            _ => Err(self.type_error("a number")),
         }
     }
 
     /// The value as a whole number that fits 32 bits.
-    pub fn whole(&self) -> Result<u32, ProjectError> {
+    pub fn whole_number(&self) -> Result<u32, ProjectError> {
         let number = self.number()?;
         if number.fract() == 0.0 && (0.0..=u32::MAX as f64).contains(&number) {
             Ok(number as u32)
@@ -171,14 +171,14 @@ impl<'a> Field<'a> {
     pub fn text(&self) -> Result<&'a str, ProjectError> {
         match self.value {
             Json::Text(text) => Ok(text),
-            _ => Err(self.wants("a text")),
+            _ => Err(self.type_error("a text")),
         }
     }
 
     /// The value as N finite numbers.
     pub fn numbers<const N: usize>(&self) -> Result<[f64; N], ProjectError> {
-        let wanted = || self.wants(&format!("a list of {N} numbers"));
-        let Json::List(list) = self.value else { return Err(wanted()) };
+        let wrong_type = || self.type_error(&format!("a list of {N} numbers"));
+        let Json::List(list) = self.value else { return Err(wrong_type()) };
         let numbers = list.iter().map(|value| Field { value, ..*self }.number());
         let numbers = numbers.collect::<Result<Vec<_>, _>>()?;
         numbers.try_into().map_err(|numbers: Vec<f64>| {
@@ -188,8 +188,8 @@ impl<'a> Field<'a> {
 
     /// The value as N lists of M finite numbers.
     pub fn rows<const N: usize, const M: usize>(&self) -> Result<[[f64; M]; N], ProjectError> {
-        let wanted = || self.wants(&format!("{N} rows of {M} numbers"));
-        let Json::List(list) = self.value else { return Err(wanted()) };
+        let wrong_type = || self.type_error(&format!("{N} rows of {M} numbers"));
+        let Json::List(list) = self.value else { return Err(wrong_type()) };
         let rows = list.iter().map(|value| Field { value, ..*self }.numbers());
         let rows = rows.collect::<Result<Vec<[f64; M]>, _>>()?;
         rows.try_into().map_err(|rows: Vec<[f64; M]>| {
@@ -201,7 +201,7 @@ impl<'a> Field<'a> {
     pub fn object(&self) -> Result<Fields<'a>, ProjectError> {
         match self.value {
             Json::Object(entries) => Ok(Fields { file: self.file, path: self.path(), entries }),
-            _ => Err(self.wants("an object: {…}")),
+            _ => Err(self.type_error("an object: {…}")),
         }
     }
 }
@@ -214,18 +214,18 @@ impl<'a> Fields<'a> {
     }
 
     /// All fields in order.
-    pub fn all(&'a self) -> impl Iterator<Item = (&'a str, Field<'a>)> {
+    pub fn iter(&'a self) -> impl Iterator<Item = (&'a str, Field<'a>)> {
         self.entries.iter().map(move |(name, value)| {
             (name.as_str(), Field { file: self.file, value, parent: Some(self), name })
         })
     }
 
     /// An error for a field that is not one of `known`.
-    pub fn only(&'a self, known: &[&str]) -> Result<(), ProjectError> {
-        match self.all().find(|(name, _)| !known.contains(name)) {
+    pub fn allow_only(&'a self, allowed: &[&str]) -> Result<(), ProjectError> {
+        match self.iter().find(|(name, _)| !allowed.contains(name)) {
             None => Ok(()),
             Some((_, field)) => {
-                Err(field.error("is not a known field", format!("known are {}", known.join(", "))))
+                Err(field.error("is not a known field", format!("known are {}", allowed.join(", "))))
             }
         }
     }

@@ -24,7 +24,7 @@ impl Layer {
     }
 
     /// Colours as three layers of this name.
-    pub fn of_colors(name: &str, rgb: &[[f32; 3]]) -> [Self; 3] {
+    pub fn from_colors(name: &str, rgb: &[[f32; 3]]) -> [Self; 3] {
         color_channels(rgb).map(|(channel, values)| Self { name: format!("{name}.{channel}"), values })
     }
 }

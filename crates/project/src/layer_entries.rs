@@ -6,34 +6,39 @@
 
 use crate::ProjectError;
 use crate::container::Container;
-use crate::layer_rows::{LayerRow, LayerRows};
+use crate::layer_rows::{LayerEntries, LayerEntry};
 use crate::manifest::{MANIFEST, Manifest, MapEntry};
-use crate::texel_bytes::{bytes_of, floats, pairs};
+use crate::texel_bytes::{bytes_from_floats, floats_from_bytes, pairs_from_bytes};
 use focus::{Adjustment, FocusLayer, FocusMap, LayerStack};
 use lens::FocusOffset;
 use std::path::Path;
 
 /// The manifest's rows for the layers; their entries are added to `entries`.
-pub(crate) fn write(layers: &LayerStack, entries: &mut Vec<(String, Vec<u8>)>) -> LayerRows {
-    let mut put = |name: String, bytes: Vec<u8>| {
+pub(crate) fn write(layers: &LayerStack, entries: &mut Vec<(String, Vec<u8>)>) -> LayerEntries {
+    let mut add_entry = |name: String, bytes: Vec<u8>| {
         entries.push((name.clone(), bytes));
         name
     };
     let row = |(index, layer): (usize, &FocusLayer)| {
         let values = layer.adjustment.is_none().then(|| {
             let bytes = layer.map.to_rows().iter().flatten().flat_map(|value| value.to_le_bytes()).collect();
-            put(format!("layers/{index}.f32"), bytes)
+            add_entry(format!("layers/{index}.f32"), bytes)
         });
-        let mask = layer.map.mask_rows().map(|mask| put(format!("layers/{index}.mask.f32"), bytes_of(&mask)));
-        let gloss =
-            layer.map.gloss_rows().map(|gloss| put(format!("layers/{index}.gloss.f32"), bytes_of(&gloss)));
+        let mask = layer
+            .map
+            .mask_rows()
+            .map(|mask| add_entry(format!("layers/{index}.mask.f32"), bytes_from_floats(&mask)));
+        let gloss = layer
+            .map
+            .gloss_rows()
+            .map(|gloss| add_entry(format!("layers/{index}.gloss.f32"), bytes_from_floats(&gloss)));
         let FocusOffset { t, anchor, gloss: background_gloss } = layer.map.background;
         let (curve, plane) = match layer.adjustment.clone() {
             Some(Adjustment::Curve(curve)) => (Some(curve), None),
             Some(Adjustment::Plane(plane)) => (None, Some(plane)),
             None => (None, None),
         };
-        LayerRow {
+        LayerEntry {
             name: layer.name.clone(),
             visible: layer.is_visible,
             opacity: layer.opacity,
@@ -48,13 +53,16 @@ pub(crate) fn write(layers: &LayerStack, entries: &mut Vec<(String, Vec<u8>)>) -
             motion: layer.motion.clone(),
         }
     };
-    LayerRows { active: layers.active_index(), layers: layers.layers().iter().enumerate().map(row).collect() }
+    LayerEntries {
+        active: layers.active_index(),
+        layers: layers.layers().iter().enumerate().map(row).collect(),
+    }
 }
 
 /// Reads the layers; `size` is the focus map's. The values of adjustment layers are still to be evaluated.
 pub(crate) fn read(
     file: &Path,
-    rows: &LayerRows,
+    rows: &LayerEntries,
     size: &MapEntry,
     manifest: &Manifest,
     container: &mut Container<'_>,
@@ -67,21 +75,21 @@ pub(crate) fn read(
         let wrong_size = "does not have the size that the manifest says";
         let mut map = match &row.values {
             Some(entry) => {
-                let bytes = manifest.entry(file, container, entry, texels * 8)?;
-                FocusMap::from_rows(size.width, size.height, &pairs(&bytes), background)
+                let bytes = manifest.read_entry(file, container, entry, texels * 8)?;
+                FocusMap::from_rows(size.width, size.height, &pairs_from_bytes(&bytes), background)
                     .ok_or_else(|| container.error(entry, wrong_size))?
             }
             None => FocusMap::new(size.width, size.height, FocusOffset::STANDARD),
         };
         if let Some(entry) = &row.gloss {
-            let bytes = manifest.entry(file, container, entry, texels * 4)?;
-            if !map.set_gloss_rows(&floats(&bytes)) {
+            let bytes = manifest.read_entry(file, container, entry, texels * 4)?;
+            if !map.set_gloss_rows(&floats_from_bytes(&bytes)) {
                 return Err(container.error(entry, wrong_size));
             }
         }
         if let Some(entry) = &row.mask {
-            let bytes = manifest.entry(file, container, entry, texels * 4)?;
-            if !map.set_mask_rows(Some(&floats(&bytes))) {
+            let bytes = manifest.read_entry(file, container, entry, texels * 4)?;
+            if !map.set_mask_rows(Some(&floats_from_bytes(&bytes))) {
                 return Err(container.error(entry, wrong_size));
             }
             map.background_mask = background_mask as f32;

@@ -1,6 +1,6 @@
 //! What the manifest of a project says of the layers of focus.
 
-use focus::{Adjustment, Blend, DepthCurve, FocalPlane, LayerMotion};
+use focus::{Adjustment, BlendMode, DepthCurve, FocalPlane, LayerMotion};
 use serde::{Deserialize, Serialize};
 
 /// Whether a number may be left out.
@@ -10,20 +10,20 @@ pub(crate) fn is_zero(number: &f64) -> bool {
 
 /// The layers' part of the manifest.
 #[derive(Debug, Serialize, Deserialize)]
-pub(crate) struct LayerRows {
+pub(crate) struct LayerEntries {
     /// Which one is painted on, counted from the bottom.
     pub active: usize,
     /// Bottom to top.
-    pub layers: Vec<LayerRow>,
+    pub layers: Vec<LayerEntry>,
 }
 
 /// A layer.
 #[derive(Debug, Serialize, Deserialize)]
-pub(crate) struct LayerRow {
+pub(crate) struct LayerEntry {
     pub name: String,
     pub visible: bool,
     pub opacity: f64,
-    pub blend: Blend,
+    pub blend: BlendMode,
     /// Of the background: t, anchor, mask.
     pub background: [f64; 3],
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -47,7 +47,7 @@ pub(crate) struct LayerRow {
     pub motion: LayerMotion,
 }
 
-impl LayerRow {
+impl LayerEntry {
     /// Whether gloss obeys the paint anywhere.
     pub fn has_gloss(&self) -> bool {
         self.background_gloss != 0.0 || self.gloss.is_some()

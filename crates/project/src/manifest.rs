@@ -1,9 +1,9 @@
 //! The format of a project: what its manifest says, and the versions of it.
 
 use crate::ProjectError;
-use crate::capture_choices::CaptureRow;
+use crate::capture_choices::CaptureEntry;
 use crate::container::{Container, DAMAGED_CURE};
-use crate::layer_rows::{LayerRow, LayerRows, is_zero};
+use crate::layer_rows::{LayerEntries, LayerEntry, is_zero};
 use crate::scene_path::{ScenePath, hex};
 use focus::{Brush, LensMotion};
 use serde::{Deserialize, Serialize};
@@ -34,7 +34,7 @@ const ALONG_WORLD_AXES: u64 = 2;
 const WITHOUT_LAYERS: u64 = 1;
 
 /// The largest manifest that is read, bytes.
-const LARGEST_MANIFEST: u64 = 16 << 20;
+const MAX_MANIFEST_BYTES: u64 = 16 << 20;
 
 /// The manifest. Unknown fields are let pass: a later program may have added some that do no harm.
 #[derive(Debug, Serialize, Deserialize)]
@@ -56,7 +56,7 @@ pub(crate) struct Manifest {
     pub variant: Option<String>,
     /// What was chosen of the capture, where the scene is one. An older program takes its folder for a file, and says so.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub capture: Option<CaptureRow>,
+    pub capture: Option<CaptureEntry>,
     /// What lies beyond all surfaces, where that was chosen: as in a world file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub world: Option<Value>,
@@ -70,7 +70,7 @@ pub(crate) struct Manifest {
     #[serde(default)]
     pub focus_map: Option<MapEntry>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub layers: Option<LayerRows>,
+    pub layers: Option<LayerEntries>,
     /// What may be painted, where that is not everything. A program that does not know it lets everything be painted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub selection: Option<MapEntry>,
@@ -118,19 +118,19 @@ impl Manifest {
     pub const VERSION: u64 = 7;
 
     /// The same in the oldest version that can say it all.
-    pub fn in_oldest_version(self) -> Self {
+    pub fn with_oldest_version(self) -> Self {
         let rows = self.layers.as_ref().map(|layers| &layers.layers);
-        let any_row = |of: fn(&LayerRow) -> bool| rows.is_some_and(|rows| rows.iter().any(of));
+        let any_row = |of: fn(&LayerEntry) -> bool| rows.is_some_and(|rows| rows.iter().any(of));
         let has_gloss = self.background_gloss != 0.0
             || self.brush.paints_gloss()
             || self.focus_map.as_ref().is_some_and(|map| map.gloss.is_some())
-            || any_row(LayerRow::has_gloss);
+            || any_row(LayerEntry::has_gloss);
         let version = match () {
-            _ if self.capture.as_ref().is_some_and(CaptureRow::repairs_depth) => Self::VERSION,
+            _ if self.capture.as_ref().is_some_and(CaptureEntry::has_depth_strokes) => Self::VERSION,
             _ if has_gloss => WITHOUT_DEPTH,
             _ if self.variant.is_some() => WITHOUT_GLOSS,
             _ if any_row(|row| row.plane.is_some()) => WITHOUT_VARIANT,
-            _ if self.brush.has_own_axes() => WITHOUT_PLANES,
+            _ if self.brush.has_custom_axes() => WITHOUT_PLANES,
             _ if rows.is_some() => ALONG_WORLD_AXES,
             _ => WITHOUT_LAYERS,
         };
@@ -145,7 +145,7 @@ impl Manifest {
             format: String,
             version: u64,
         }
-        let bytes = container.read(MANIFEST, LARGEST_MANIFEST)?;
+        let bytes = container.read(MANIFEST, MAX_MANIFEST_BYTES)?;
         let header: Header = serde_json::from_slice(&bytes)
             .map_err(|error| container.error(MANIFEST, format!("cannot be understood: {error}")))?;
         if header.format != Self::FORMAT {
@@ -164,7 +164,7 @@ impl Manifest {
     }
 
     /// An entry's bytes, checked against the manifest.
-    pub fn entry(
+    pub fn read_entry(
         &self,
         file: &Path,
         container: &mut Container<'_>,

@@ -13,12 +13,12 @@ use serde_json::{Value, json};
 use std::fmt::Write;
 
 /// Sides of a mask that is written, texels, at most: stencils are cut from fewer.
-const LARGEST_SIDE: u32 = 512;
+const MAX_SIDE: u32 = 512;
 
 /// Reads a mask.
 pub(crate) fn mask_from_json(field: &Field<'_>) -> Result<ApertureMask, ProjectError> {
     let fields = field.object()?;
-    fields.only(&["name", "rows"])?;
+    fields.allow_only(&["name", "rows"])?;
     let name = fields.get("name").map_or(Ok(""), |name| name.text())?;
     let Some(rows) = fields.get("rows") else {
         return Err(field.error("has no \"rows\"", "add them, a text of hexadecimal digits each"));
@@ -30,8 +30,8 @@ pub(crate) fn mask_from_json(field: &Field<'_>) -> Result<ApertureMask, ProjectE
     let mut width = 0;
     for (index, row) in list.iter().enumerate() {
         let Json::Text(digits) = row else { return Err(wrong(format!("row {index} is no text"))) };
-        let texels =
-            texels(digits).ok_or_else(|| wrong(format!("row {index} is not of hexadecimal digits")))?;
+        let texels = texels_from_hex(digits)
+            .ok_or_else(|| wrong(format!("row {index} is not of hexadecimal digits")))?;
         if index == 0 {
             width = texels.len();
         }
@@ -44,7 +44,7 @@ pub(crate) fn mask_from_json(field: &Field<'_>) -> Result<ApertureMask, ProjectE
     Ok(ApertureMask { width, height, transmission, file: name.to_string() })
 }
 
-fn texels(digits: &str) -> Option<Vec<f32>> {
+fn texels_from_hex(digits: &str) -> Option<Vec<f32>> {
     let pair = |pair: &[u8]| {
         let [high, low] = [pair[0], *pair.get(1)?].map(|digit| char::from(digit).to_digit(16));
         Some((high? * 16 + low?) as f32 / 255.0)
@@ -54,7 +54,7 @@ fn texels(digits: &str) -> Option<Vec<f32>> {
 
 /// Writes a mask, of at most 512 texels a side: larger ones are averaged.
 pub(crate) fn mask_to_json(mask: &ApertureMask) -> Value {
-    let [width, height] = [mask.width, mask.height].map(|side| side.min(LARGEST_SIDE));
+    let [width, height] = [mask.width, mask.height].map(|side| side.min(MAX_SIDE));
     let ends = |k: u32, count: u32| [k, k + 1].map(|k| 2.0 * f64::from(k) / f64::from(count) - 1.0);
     let rows = (0..height).map(|row| {
         let [low, high] = ends(height - 1 - row, height);

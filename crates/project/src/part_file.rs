@@ -25,7 +25,7 @@ const MAGIC: &[u8] = b"focus-brush part 1\n";
 const END: u64 = 8 + 32;
 
 /// A description is no longer, bytes.
-const LONGEST_DESCRIPTION: u64 = 64 << 20;
+const MAX_DESCRIPTION_BYTES: u64 = 64 << 20;
 
 /// Where numbers are in a part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,15 +49,15 @@ impl PartWriter {
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn begin(file: &Path) -> Result<Self, ProjectError> {
+    pub fn create(file: &Path) -> Result<Self, ProjectError> {
         let error = |source| ProjectError::Write { file: file.to_owned(), source };
         let out = BufWriter::new(replacement(file).map_err(error)?);
         let mut new = Self { file: file.to_owned(), out, hash: Sha256::new(), written: 0 };
-        new.put(MAGIC)?;
+        new.write_hashed(MAGIC)?;
         Ok(new)
     }
 
-    fn put(&mut self, bytes: &[u8]) -> Result<(), ProjectError> {
+    fn write_hashed(&mut self, bytes: &[u8]) -> Result<(), ProjectError> {
         self.hash.update(bytes);
         self.written += bytes.len() as u64;
         self.out.write_all(bytes).map_err(|source| ProjectError::Write { file: self.file.clone(), source })
@@ -67,26 +67,26 @@ impl PartWriter {
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn floats(&mut self, numbers: impl IntoIterator<Item = f32>) -> Result<Section, ProjectError> {
-        self.words(numbers.into_iter().map(f32::to_bits))
+    pub fn write_floats(&mut self, numbers: impl IntoIterator<Item = f32>) -> Result<Section, ProjectError> {
+        self.write_words(numbers.into_iter().map(f32::to_bits))
     }
 
     /// Adds integers; returns where.
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn words(&mut self, numbers: impl IntoIterator<Item = u32>) -> Result<Section, ProjectError> {
-        const TOGETHER: usize = 1 << 16;
+    pub fn write_words(&mut self, numbers: impl IntoIterator<Item = u32>) -> Result<Section, ProjectError> {
+        const BATCH_BYTES: usize = 1 << 16;
         let first = self.written;
-        let mut bytes = Vec::with_capacity(TOGETHER);
+        let mut bytes = Vec::with_capacity(BATCH_BYTES);
         for number in numbers {
             bytes.extend(number.to_le_bytes());
-            if bytes.len() == TOGETHER {
-                self.put(&bytes)?;
+            if bytes.len() == BATCH_BYTES {
+                self.write_hashed(&bytes)?;
                 bytes.clear();
             }
         }
-        self.put(&bytes)?;
+        self.write_hashed(&bytes)?;
         Ok(Section { first, count: (self.written - first) / 4 })
     }
 
@@ -94,12 +94,12 @@ impl PartWriter {
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn finish(mut self, what: &Value) -> Result<(), ProjectError> {
-        let text = what.to_string();
-        self.put(text.as_bytes())?;
-        self.put(&(text.len() as u64).to_le_bytes())?;
+    pub fn finish(mut self, description: &Value) -> Result<(), ProjectError> {
+        let text = description.to_string();
+        self.write_hashed(text.as_bytes())?;
+        self.write_hashed(&(text.len() as u64).to_le_bytes())?;
         let seal = self.hash.clone().finalize();
-        self.put(&seal)?;
+        self.write_hashed(&seal)?;
         let Self { file, out, .. } = self;
         let error = |source| ProjectError::Write { file: file.clone(), source };
         let out = out.into_inner().map_err(|failed| error(failed.into_error()))?;
@@ -113,7 +113,7 @@ pub struct PartFile {
     /// Where it is.
     pub file: PathBuf,
     /// What its sections are.
-    pub what: Value,
+    pub description: Value,
 }
 
 impl PartFile {
@@ -123,7 +123,7 @@ impl PartFile {
     /// It cannot be read, is something else, or is not whole.
     pub fn open(file: &Path) -> Result<Self, ProjectError> {
         let error = |source| ProjectError::Read { file: file.to_owned(), source };
-        let cut = || {
+        let damaged = || {
             let problem = "is cut short or damaged";
             ProjectError::content(file, problem, "render its tile again, or take another copy")
         };
@@ -136,54 +136,57 @@ impl PartFile {
             return Err(ProjectError::content(file, problem, "give what render --tiles --shard wrote"));
         }
         let sealed =
-            length.checked_sub(32).filter(|sealed| *sealed >= MAGIC.len() as u64 + 8).ok_or_else(cut)?;
+            length.checked_sub(32).filter(|sealed| *sealed >= MAGIC.len() as u64 + 8).ok_or_else(damaged)?;
         from.seek(SeekFrom::Start(0)).map_err(error)?;
         let mut hash = Sha256::new();
         let mut rest = BufReader::with_capacity(1 << 20, from.take(sealed));
-        std::io::copy(&mut rest, &mut HashOf(&mut hash)).map_err(error)?;
+        std::io::copy(&mut rest, &mut HashWriter(&mut hash)).map_err(error)?;
         let mut from = rest.into_inner().into_inner();
         let mut seal = [0; 32];
         from.seek(SeekFrom::Start(sealed)).and_then(|_| from.read_exact(&mut seal)).map_err(error)?;
         if hash.finalize()[..] != seal {
-            return Err(cut());
+            return Err(damaged());
         }
-        let mut of_text = [0; 8];
+        let mut text_length = [0; 8];
         let end = length - END;
-        from.seek(SeekFrom::Start(end)).and_then(|_| from.read_exact(&mut of_text)).map_err(error)?;
-        let of_text = u64::from_le_bytes(of_text);
-        let first = end.checked_sub(of_text).filter(|_| of_text <= LONGEST_DESCRIPTION).ok_or_else(cut)?;
-        let mut text = vec![0; of_text as usize];
+        from.seek(SeekFrom::Start(end)).and_then(|_| from.read_exact(&mut text_length)).map_err(error)?;
+        let text_length = u64::from_le_bytes(text_length);
+        let first = end
+            .checked_sub(text_length)
+            .filter(|_| text_length <= MAX_DESCRIPTION_BYTES)
+            .ok_or_else(damaged)?;
+        let mut text = vec![0; text_length as usize];
         from.seek(SeekFrom::Start(first)).and_then(|_| from.read_exact(&mut text)).map_err(error)?;
-        let what = serde_json::from_slice(&text).map_err(|_| cut())?;
-        Ok(Self { file: file.to_owned(), what })
+        let description = serde_json::from_slice(&text).map_err(|_| damaged())?;
+        Ok(Self { file: file.to_owned(), description })
     }
 
     /// Reads a section from its beginning on.
     ///
     /// # Errors
     /// The file cannot be read.
-    pub fn read(&self, section: Section) -> Result<Numbers, ProjectError> {
+    pub fn read(&self, section: Section) -> Result<NumberReader, ProjectError> {
         let error = |source| ProjectError::Read { file: self.file.clone(), source };
         let mut from = File::open(&self.file).map_err(error)?;
         from.seek(SeekFrom::Start(section.first)).map_err(error)?;
         let from = BufReader::with_capacity(1 << 16, from.take(section.count.saturating_mul(4)));
-        Ok(Numbers { file: self.file.clone(), from, bytes: Vec::new() })
+        Ok(NumberReader { file: self.file.clone(), from, bytes: Vec::new() })
     }
 }
 
 /// The numbers of a section, one after the other.
-pub struct Numbers {
+pub struct NumberReader {
     file: PathBuf,
     from: BufReader<std::io::Take<File>>,
     bytes: Vec<u8>,
 }
 
-impl Numbers {
+impl NumberReader {
     /// The next so many integers.
     ///
     /// # Errors
     /// There are fewer, or the file cannot be read.
-    pub fn words(&mut self, count: usize) -> Result<Vec<u32>, ProjectError> {
+    pub fn read_words(&mut self, count: usize) -> Result<Vec<u32>, ProjectError> {
         self.bytes.resize(4 * count, 0);
         self.from
             .read_exact(&mut self.bytes)
@@ -196,14 +199,14 @@ impl Numbers {
     ///
     /// # Errors
     /// There are fewer, or the file cannot be read.
-    pub fn floats(&mut self, count: usize) -> Result<Vec<f32>, ProjectError> {
-        Ok(self.words(count)?.into_iter().map(f32::from_bits).collect())
+    pub fn read_floats(&mut self, count: usize) -> Result<Vec<f32>, ProjectError> {
+        Ok(self.read_words(count)?.into_iter().map(f32::from_bits).collect())
     }
 }
 
-struct HashOf<'a>(&'a mut Sha256);
+struct HashWriter<'a>(&'a mut Sha256);
 
-impl Write for HashOf<'_> {
+impl Write for HashWriter<'_> {
     fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
         self.0.update(bytes);
         Ok(bytes.len())
@@ -222,18 +225,18 @@ mod tests {
     fn a_part_is_read_as_it_was_written_or_not_at_all() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("a.part");
-        let mut part = PartWriter::begin(&file).unwrap();
-        let floats = part.floats((0..70_000).map(|k| k as f32 * 0.5)).unwrap();
-        let words = part.words([7, u32::MAX, 0]).unwrap();
+        let mut part = PartWriter::create(&file).unwrap();
+        let floats = part.write_floats((0..70_000).map(|k| k as f32 * 0.5)).unwrap();
+        let words = part.write_words([7, u32::MAX, 0]).unwrap();
         assert!(!file.exists(), "it is not yet whole");
         part.finish(&json!({ "tile": 3 })).unwrap();
         let read = PartFile::open(&file).unwrap();
-        assert_eq!(read.what, json!({ "tile": 3 }));
+        assert_eq!(read.description, json!({ "tile": 3 }));
         let mut numbers = read.read(floats).unwrap();
-        assert_eq!(numbers.floats(3).unwrap(), [0.0, 0.5, 1.0]);
-        assert_eq!(numbers.floats(69_997).unwrap()[69_996], 69_999.0 * 0.5);
-        assert!(numbers.words(1).is_err(), "it has no more");
-        assert_eq!(read.read(words).unwrap().words(3).unwrap(), [7, u32::MAX, 0]);
+        assert_eq!(numbers.read_floats(3).unwrap(), [0.0, 0.5, 1.0]);
+        assert_eq!(numbers.read_floats(69_997).unwrap()[69_996], 69_999.0 * 0.5);
+        assert!(numbers.read_words(1).is_err(), "it has no more");
+        assert_eq!(read.read(words).unwrap().read_words(3).unwrap(), [7, u32::MAX, 0]);
         let whole = std::fs::read(&file).unwrap();
         for length in [0, 3, 40, whole.len() / 2, whole.len() - 1] {
             std::fs::write(&file, &whole[..length]).unwrap();

@@ -1,7 +1,7 @@
 //! Pictures as they are read.
 
 use crate::ProjectError;
-use crate::color_space::{ColorSpace, turn};
+use crate::color_space::{ColorSpace, transform_colors};
 use crate::cryptomatte::is_cryptomatte;
 use crate::disk::extension;
 use crate::exr_file::{ExrAttribute, ExrImage, read_exr};
@@ -33,7 +33,7 @@ pub struct LinearPicture {
 
 impl LinearPicture {
     /// A picture under an exposure, as [`write_picture`](crate::write_picture) followed by [`read_picture`] would give it.
-    pub fn of(picture: &Picture, exposure: Exposure) -> Self {
+    pub fn from_picture(picture: &Picture, exposure: Exposure) -> Self {
         let layers = [("coverage".to_string(), picture.coverage.clone())].into();
         let rgb = picture.exposed(exposure);
         Self { width: picture.width, height: picture.height, rgb, layers, exposure: Some(exposure) }
@@ -56,7 +56,7 @@ pub fn read_picture(file: &Path) -> Result<LinearPicture, ProjectError> {
             })
         }
         _ => {
-            let (width, height, stored) = crate::png_file::stored_rgb(file)?;
+            let (width, height, stored) = crate::png_file::read_stored_rgb(file)?;
             let rgb = stored.into_iter().map(|c| c.map(linear_from_srgb)).collect();
             Ok(LinearPicture { width, height, rgb, ..LinearPicture::default() })
         }
@@ -67,9 +67,9 @@ fn from_exr(file: &Path, mut exr: ExrImage) -> Result<LinearPicture, ProjectErro
     // R, G, B as they are, or of the first layer that has them.
     let has_colors =
         |prefix: &str| ["R", "G", "B"].iter().all(|c| exr.channels.contains_key(&format!("{prefix}{c}")));
-    let of_layers = exr.channels.keys().filter_map(|name| name.strip_suffix('R'));
-    let of_layers = of_layers.filter(|prefix| prefix.ends_with('.') && !is_cryptomatte(prefix));
-    let prefix = std::iter::once("").chain(of_layers).find(|prefix| has_colors(prefix));
+    let layer_prefixes = exr.channels.keys().filter_map(|name| name.strip_suffix('R'));
+    let layer_prefixes = layer_prefixes.filter(|prefix| prefix.ends_with('.') && !is_cryptomatte(prefix));
+    let prefix = std::iter::once("").chain(layer_prefixes).find(|prefix| has_colors(prefix));
     let prefix = prefix.map(str::to_owned);
     let grey = || ["Y", "V"].into_iter().find(|name| exr.channels.contains_key(*name)).map(str::to_owned);
     let single = || (exr.channels.len() == 1).then(|| exr.channels.keys().next().cloned()).flatten();
@@ -77,9 +77,11 @@ fn from_exr(file: &Path, mut exr: ExrImage) -> Result<LinearPicture, ProjectErro
         let [r, g, b] =
             ["R", "G", "B"].map(|c| exr.channels.remove(&format!("{prefix}{c}")).unwrap_or_default());
         let mut rgb: Vec<_> = r.into_iter().zip(g).zip(b).map(|((r, g), b)| [r, g, b]).collect();
-        let own = ColorSpace::Rec709.chromaticities();
-        if let Some(matrix) = exr.chromaticities.filter(|c| !c.is_like(&own)).and_then(|c| c.to(&own)) {
-            turn(&matrix, &mut rgb);
+        let rec709 = ColorSpace::Rec709.chromaticities();
+        if let Some(matrix) =
+            exr.chromaticities.filter(|c| !c.is_close_to(&rec709)).and_then(|c| c.matrix_to(&rec709))
+        {
+            transform_colors(&matrix, &mut rgb);
         }
         rgb
     } else if let Some(name) = grey().or_else(single) {

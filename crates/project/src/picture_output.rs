@@ -8,12 +8,12 @@
 //! it, `STEM.LAYER.exr`.
 
 use crate::ProjectError;
-use crate::color_space::{ColorSpace, turn};
+use crate::color_space::{ColorSpace, transform_colors};
 use crate::cryptomatte::{is_cryptomatte, is_cryptomatte_metadata};
 use crate::disk::{extension, write_bytes};
 use crate::exr_bands::{ExrHead, write_exr_in_bands};
 use crate::exr_file::{ExrAttribute, ExrImage, write_exr};
-use crate::exr_form::{Compression, ExrForm, ExrSamples};
+use crate::exr_form::{Compression, ExrOptions, ExrSamples};
 use crate::layer::{Layer, color_channels};
 use crate::png_file::encode_8bit;
 use lens::{Exposure, Picture};
@@ -48,11 +48,11 @@ pub(crate) const EXPOSURES: [(Exposure, &str); 2] =
 
 /// Whether a channel loses nothing that is seen as half, where no shares have to sum to alpha.
 fn half_suffices(channel: &str) -> bool {
-    channel == Layer::ALPHA || half_suffices_beside_mattes(channel)
+    channel == Layer::ALPHA || half_suffices_with_mattes(channel)
 }
 
 /// The same where they do.
-fn half_suffices_beside_mattes(channel: &str) -> bool {
+fn half_suffices_with_mattes(channel: &str) -> bool {
     let layer = channel.split('.').next().unwrap_or(channel);
     ["R", "G", "B", Layer::PINHOLE, "coverage", "seen"].contains(&layer)
 }
@@ -73,15 +73,15 @@ pub fn write_picture(
     let size = [picture.width, picture.height];
     match extension(file).as_str() {
         "exr" => {
-            let samples = samples(file, layers.iter().map(|layer| layer.name.as_str()), options)?;
+            let samples = sample_type(file, layers.iter().map(|layer| layer.name.as_str()), options)?;
             let image = ExrImage {
                 width: size[0],
                 height: size[1],
-                channels: channels(&rgb, layers, options),
-                attributes: attributes(options, Some(exposure)),
+                channels: to_channels(&rgb, layers, options),
+                attributes: to_attributes(options, Some(exposure)),
                 ..ExrImage::default()
             };
-            write_exr(file, image, form(options, samples))?;
+            write_exr(file, image, exr_options(options, samples))?;
             Ok(vec![file.to_owned()])
         }
         "png" => {
@@ -90,19 +90,23 @@ pub fn write_picture(
             let mut files = vec![file.to_owned()];
             let mut groups: BTreeMap<&str, BTreeMap<String, Vec<f32>>> = BTreeMap::new();
             for layer in layers.iter().filter(|layer| layer.name != Layer::ALPHA) {
-                groups.entry(group(layer)).or_default().insert(layer.name.clone(), layer.values.clone());
+                groups
+                    .entry(layer_group(layer))
+                    .or_default()
+                    .insert(layer.name.clone(), layer.values.clone());
             }
             for (group, channels) in groups {
-                let beside = file.with_extension(format!("{group}.exr"));
-                let attributes = if group == "crypto" { attributes(options, None) } else { BTreeMap::new() };
+                let layer_file = file.with_extension(format!("{group}.exr"));
+                let attributes =
+                    if group == "crypto" { to_attributes(options, None) } else { BTreeMap::new() };
                 let image =
                     ExrImage { width: size[0], height: size[1], channels, attributes, ..ExrImage::default() };
-                write_exr(&beside, image, ExrForm::default())?;
-                files.push(beside);
+                write_exr(&layer_file, image, ExrOptions::default())?;
+                files.push(layer_file);
             }
             Ok(files)
         }
-        _ => Err(unknown_form(file)),
+        _ => Err(unsupported_format(file)),
     }
 }
 
@@ -118,35 +122,35 @@ pub fn write_picture_in_bands<E: From<ProjectError> + Send>(
     options: &PictureOptions,
     mut band: impl FnMut(Range<u32>) -> Result<(Picture, Vec<Layer>), E> + Send,
 ) -> Result<(), E> {
-    let samples = samples(file, layers.iter().map(String::as_str), options)?;
+    let samples = sample_type(file, layers.iter().map(String::as_str), options)?;
     let colors = ["R", "G", "B"].map(String::from);
     let head = ExrHead {
         size: [width, height],
         channels: colors.into_iter().chain(layers.iter().cloned()).collect(),
-        attributes: attributes(options, Some(exposure_name(options.exposure))),
-        form: form(options, samples),
+        attributes: to_attributes(options, Some(exposure_name(options.exposure))),
+        form: exr_options(options, samples),
     };
     write_exr_in_bands(file, &head, |rows| {
         let (picture, layers) = band(rows)?;
-        Ok(channels(&picture.exposed(options.exposure), &layers, options))
+        Ok(to_channels(&picture.exposed(options.exposure), &layers, options))
     })
 }
 
 fn exposure_name(exposure: Exposure) -> &'static str {
-    EXPOSURES.iter().find(|(known, _)| *known == exposure).map_or("", |(_, name)| name)
+    EXPOSURES.iter().find(|(candidate, _)| *candidate == exposure).map_or("", |(_, name)| name)
 }
 
 /// The channels of an EXR.
-fn channels(rgb: &[[f32; 3]], layers: &[Layer], options: &PictureOptions) -> BTreeMap<String, Vec<f32>> {
+fn to_channels(rgb: &[[f32; 3]], layers: &[Layer], options: &PictureOptions) -> BTreeMap<String, Vec<f32>> {
     let named = |layer: &Layer| (layer.name.clone(), layer.values.clone());
     let mut channels: BTreeMap<_, _> = color_channels(rgb).into();
     channels.extend(layers.iter().map(named));
-    turn_colors(&mut channels, options.color_space);
+    convert_colors(&mut channels, options.color_space);
     channels
 }
 
 /// How the samples of an EXR with layers of these names are stored.
-fn samples<'a>(
+fn sample_type<'a>(
     file: &Path,
     mut layers: impl Iterator<Item = &'a str>,
     options: &PictureOptions,
@@ -163,21 +167,21 @@ fn samples<'a>(
     Ok(match (options.half, has_mattes) {
         (false, _) => ExrSamples::Float,
         (true, false) => ExrSamples::HalfIf(half_suffices),
-        (true, true) => ExrSamples::HalfIf(half_suffices_beside_mattes),
+        (true, true) => ExrSamples::HalfIf(half_suffices_with_mattes),
     })
 }
 
 /// The attributes of an EXR; without an exposure those of Cryptomatte alone.
-fn attributes(options: &PictureOptions, exposure: Option<&str>) -> BTreeMap<String, ExrAttribute> {
-    let of_all =
+fn to_attributes(options: &PictureOptions, exposure: Option<&str>) -> BTreeMap<String, ExrAttribute> {
+    let all_attributes =
         options.attributes.iter().filter(|(name, _)| exposure.is_some() || is_cryptomatte_metadata(name));
     let text = |(name, text): (&str, &str)| (name.to_string(), ExrAttribute::Text(text.to_string()));
-    let of_all = of_all.map(|(name, value)| (name.as_str(), value.as_str()));
-    of_all.chain(exposure.map(|exposure| (EXPOSURE, exposure))).map(text).collect()
+    let all_attributes = all_attributes.map(|(name, value)| (name.as_str(), value.as_str()));
+    all_attributes.chain(exposure.map(|exposure| (EXPOSURE, exposure))).map(text).collect()
 }
 
-fn form(options: &PictureOptions, samples: ExrSamples) -> ExrForm {
-    ExrForm {
+fn exr_options(options: &PictureOptions, samples: ExrSamples) -> ExrOptions {
+    ExrOptions {
         compression: options.compression,
         samples,
         overscan: options.overscan,
@@ -186,9 +190,10 @@ fn form(options: &PictureOptions, samples: ExrSamples) -> ExrForm {
 }
 
 /// Turns the picture's colours, and those of the pinhole, to a colour space.
-fn turn_colors(channels: &mut BTreeMap<String, Vec<f32>>, space: ColorSpace) {
-    let own = ColorSpace::Rec709;
-    let matrix = own.chromaticities().to(&space.chromaticities()).filter(|_| space != own);
+fn convert_colors(channels: &mut BTreeMap<String, Vec<f32>>, space: ColorSpace) {
+    let source_space = ColorSpace::Rec709;
+    let matrix =
+        source_space.chromaticities().matrix_to(&space.chromaticities()).filter(|_| space != source_space);
     let Some(matrix) = matrix else { return };
     for prefix in ["".to_string(), format!("{}.", Layer::PINHOLE)] {
         let names = ["R", "G", "B"].map(|channel| format!("{prefix}{channel}"));
@@ -199,7 +204,7 @@ fn turn_colors(channels: &mut BTreeMap<String, Vec<f32>>, space: ColorSpace) {
         };
         let mut rgb: Vec<_> =
             (0..values[0].len()).map(|k| [values[0][k], values[1][k], values[2][k]]).collect();
-        turn(&matrix, &mut rgb);
+        transform_colors(&matrix, &mut rgb);
         let turned = color_channels(&rgb).map(|(_, values)| values);
         channels.extend(names.into_iter().zip(turned));
     }
@@ -211,22 +216,22 @@ pub fn write_rgb(file: &Path, width: u32, height: u32, rgb: &[[f32; 3]]) -> Resu
         "exr" => {
             let channels = color_channels(rgb).into();
             let image = ExrImage { width, height, channels, ..ExrImage::default() };
-            write_exr(file, image, ExrForm::default())
+            write_exr(file, image, ExrOptions::default())
         }
         "png" => write_png(file, [width, height], rgb, None, &[]),
-        _ => Err(unknown_form(file)),
+        _ => Err(unsupported_format(file)),
     }
 }
 
 /// What a layer is part of, and written with beside a picture that has no place for it.
-fn group(layer: &Layer) -> &str {
+fn layer_group(layer: &Layer) -> &str {
     match layer.name.split('.').next() {
         Some(group) if !is_cryptomatte(group) => group,
         _ => "crypto",
     }
 }
 
-fn unknown_form(file: &Path) -> ProjectError {
+fn unsupported_format(file: &Path) -> ProjectError {
     ProjectError::content(file, "pictures are not written in this form", "name an .exr or .png")
 }
 
@@ -239,7 +244,7 @@ fn write_png(
 ) -> Result<(), ProjectError> {
     let bytes = match alpha {
         None => srgb_bytes(rgb),
-        Some(alpha) => straight_bytes(rgb, &alpha.values),
+        Some(alpha) => straight_alpha_bytes(rgb, &alpha.values),
     };
     let bytes = encode_8bit(size, &bytes, alpha.is_some(), text).map_err(|error| ProjectError::Write {
         file: file.to_owned(),
@@ -249,7 +254,7 @@ fn write_png(
 }
 
 /// Colours that are multiplied by alpha as 8-bit sRGB that is not, with alpha (linear), interleaved: as PNG has them.
-fn straight_bytes(rgb: &[[f32; 3]], alpha: &[f32]) -> Vec<u8> {
+fn straight_alpha_bytes(rgb: &[[f32; 3]], alpha: &[f32]) -> Vec<u8> {
     let pixel = |(color, &alpha): (&[f32; 3], &f32)| {
         let straight = if alpha > 0.0 { color.map(|c| c / alpha) } else { [0.0; 3] };
         let [r, g, b] = straight.map(srgb_byte);

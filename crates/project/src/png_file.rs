@@ -8,10 +8,10 @@ use std::io::Cursor;
 use std::path::Path;
 
 /// The widest and highest picture that is read.
-const LARGEST_SIDE: u32 = 32768;
+const MAX_SIDE: u32 = 32768;
 
 /// The most memory that decoding a picture may take, bytes.
-const MOST_MEMORY: u64 = 4 << 30;
+const MAX_MEMORY: u64 = 4 << 30;
 
 /// A decoded picture.
 pub(crate) fn read_image(file: &Path) -> Result<DynamicImage, ProjectError> {
@@ -32,9 +32,9 @@ pub(crate) fn decode(bytes: &[u8]) -> Result<DynamicImage, String> {
         let mut reader =
             ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| e.to_string())?;
         let mut limits = Limits::default();
-        limits.max_image_width = Some(LARGEST_SIDE);
-        limits.max_image_height = Some(LARGEST_SIDE);
-        limits.max_alloc = Some(MOST_MEMORY);
+        limits.max_image_width = Some(MAX_SIDE);
+        limits.max_image_height = Some(MAX_SIDE);
+        limits.max_alloc = Some(MAX_MEMORY);
         reader.limits(limits);
         reader.decode().map_err(|e| e.to_string())
     });
@@ -42,7 +42,7 @@ pub(crate) fn decode(bytes: &[u8]) -> Result<DynamicImage, String> {
 }
 
 /// Columns, rows and the stored red, green and blue of a picture, in [0, 1], not decoded from sRGB.
-pub(crate) fn stored_rgb(file: &Path) -> Result<(u32, u32, Vec<[f32; 3]>), ProjectError> {
+pub(crate) fn read_stored_rgb(file: &Path) -> Result<(u32, u32, Vec<[f32; 3]>), ProjectError> {
     let image = read_image(file)?;
     let (width, height) = (image.width(), image.height());
     let deep = image.color().bytes_per_pixel() / image.color().channel_count() > 1;
@@ -150,13 +150,13 @@ pub(crate) fn read_png16(file: &Path) -> Result<StoredPng, ProjectError> {
 
 /// `None` if it is not 16-bit RGB or RGBA.
 fn decode_png16(bytes: &[u8]) -> Result<Option<StoredPng>, String> {
-    let limits = png::Limits { bytes: MOST_MEMORY as usize };
+    let limits = png::Limits { bytes: MAX_MEMORY as usize };
     let decoder = png::Decoder::new_with_limits(Cursor::new(bytes), limits);
     let mut reader = decoder.read_info().map_err(|e| e.to_string())?;
     let info = reader.info();
     let (width, height) = (info.width, info.height);
-    if width > LARGEST_SIDE || height > LARGEST_SIDE {
-        return Err(format!("it has {width}×{height} pixels, more than {LARGEST_SIDE} a side"));
+    if width > MAX_SIDE || height > MAX_SIDE {
+        return Err(format!("it has {width}×{height} pixels, more than {MAX_SIDE} a side"));
     }
     let has_color_space = info.srgb.is_some() || info.gama_chunk.is_some() || info.icc_profile.is_some();
     let channels = match (info.bit_depth, info.color_type) {

@@ -18,14 +18,14 @@
 //! together, with its checksum, so that a change is noticed.
 
 use crate::camera::{camera_from_json, camera_to_json};
-use crate::capture_choices::{CaptureChoices, CaptureRow};
+use crate::capture_choices::{CaptureChoices, CaptureEntry};
 use crate::container::{Container, DAMAGED_CURE, pack};
 use crate::disk::{read_bytes, write_verified};
 use crate::layer_entries;
 use crate::manifest::{CameraEntry, MANIFEST, Manifest, MapEntry, SceneReference, sha256_hex};
 use crate::scene_checksum::scene_checksum;
 use crate::scene_path::ScenePath;
-use crate::texel_bytes::{bytes_of, floats, pairs};
+use crate::texel_bytes::{bytes_from_floats, floats_from_bytes, pairs_from_bytes};
 use crate::texel_set::TexelSet;
 use crate::thumbnail::{THUMBNAIL, Thumbnail};
 use crate::{ProjectError, WorldFile};
@@ -42,13 +42,13 @@ const FOCUS_GLOSS: &str = "focus.gloss.f32";
 const SELECTION: &str = "selection.bits";
 
 /// The largest atlas that is read, bytes.
-const LARGEST_ATLAS: u64 = 2 << 30;
+const MAX_ATLAS_BYTES: u64 = 2 << 30;
 
 /// The widest and highest focus map and mask that are read.
-const LARGEST_SIDE: u32 = 32768;
+const MAX_SIDE: u32 = 32768;
 
 /// The largest focus map and mask that are read, bytes.
-const LARGEST_MAP: u64 = 4 << 30;
+const MAX_MAP_BYTES: u64 = 4 << 30;
 
 /// A camera and what it is called.
 #[derive(Clone, Debug, PartialEq)]
@@ -164,7 +164,7 @@ impl ProjectFile {
         let bytes =
             self.to_bytes(file).map_err(|source| ProjectError::Write { file: file.to_owned(), source })?;
         write_verified(file, &bytes, |back| match Self::from_bytes(file, back) {
-            Ok(read) if self.is_same_paint(&read) => Ok(()),
+            Ok(read) if self.has_same_paint(&read) => Ok(()),
             Ok(_) => Err("its content differs".to_string()),
             Err(error) => Err(error.to_string()),
         })
@@ -176,7 +176,7 @@ impl ProjectFile {
     }
 
     /// Whether another has the same scene and paint. The values of adjustment layers are not looked at.
-    fn is_same_paint(&self, other: &Self) -> bool {
+    fn has_same_paint(&self, other: &Self) -> bool {
         let layers = |project: &Self| {
             project.layers.clone().map(|stack| {
                 let same = stack.layers().iter().map(|layer| {
@@ -229,7 +229,7 @@ impl ProjectFile {
                 let entry = format!("masks/{index}.f32");
                 value["aperture"]["mask"] = Value::from(entry.as_str());
                 value["aperture"]["mask_file"] = Value::from(mask.file.as_str());
-                entries.push((entry, mask_bytes(mask)));
+                entries.push((entry, mask_to_bytes(mask)));
             }
             cameras.push(CameraEntry { name: name.clone(), camera: value });
         }
@@ -244,7 +244,7 @@ impl ProjectFile {
             let bytes = texels.iter().flatten().flat_map(|value| value.to_le_bytes()).collect();
             entries.push((FOCUS_MAP.to_string(), bytes));
             let gloss = map.gloss_rows().map(|gloss| {
-                entries.push((FOCUS_GLOSS.to_string(), bytes_of(&gloss)));
+                entries.push((FOCUS_GLOSS.to_string(), bytes_from_floats(&gloss)));
                 FOCUS_GLOSS.to_string()
             });
             MapEntry { entry: FOCUS_MAP.to_string(), width: map.width(), height: map.height(), gloss }
@@ -273,7 +273,7 @@ impl ProjectFile {
             exposure: exposure_name(self.exposure).to_string(),
             back_faces: (self.back_faces != BackFaces::default()).then(|| self.back_faces.name().to_string()),
             variant: self.variant.clone(),
-            capture: self.capture.as_ref().map(|choices| CaptureRow::new(choices, file)),
+            capture: self.capture.as_ref().map(|choices| CaptureEntry::new(choices, file)),
             world: self.world.as_ref().map(|world| world.to_json(file)),
             background_focus: [background.t, background.anchor],
             background_gloss: background.gloss,
@@ -286,7 +286,7 @@ impl ProjectFile {
             checksums: entries.iter().map(|(name, bytes)| (name.clone(), sha256_hex(bytes))).collect(),
         };
         let manifest =
-            serde_json::to_vec_pretty(&manifest.in_oldest_version()).map_err(std::io::Error::other)?;
+            serde_json::to_vec_pretty(&manifest.with_oldest_version()).map_err(std::io::Error::other)?;
         entries.insert(0, (MANIFEST.to_string(), manifest));
         pack(&entries)
     }
@@ -318,7 +318,7 @@ impl ProjectFile {
         };
         let back_faces = match manifest.back_faces.as_deref() {
             None => BackFaces::default(),
-            Some(name) => BackFaces::named(name)
+            Some(name) => BackFaces::from_name(name)
                 .ok_or_else(|| error(format!("\"{name}\" says nothing of back faces")))?,
         };
         let world = manifest.world.as_ref().map(|world| WorldFile::from_value(file, world)).transpose()?;
@@ -334,11 +334,11 @@ impl ProjectFile {
             return Err(error("background_focus cannot be used".to_string()));
         }
         let atlas = match manifest.checksums.contains_key(ATLAS) {
-            true => Some(manifest.entry(file, &mut container, ATLAS, LARGEST_ATLAS)?),
+            true => Some(manifest.read_entry(file, &mut container, ATLAS, MAX_ATLAS_BYTES)?),
             false => None,
         };
         let surface = match manifest.checksums.contains_key(SURFACE) {
-            true => Some(manifest.entry(file, &mut container, SURFACE, LARGEST_ATLAS)?),
+            true => Some(manifest.read_entry(file, &mut container, SURFACE, MAX_ATLAS_BYTES)?),
             false => None,
         };
         let focus_map = match &manifest.focus_map {
@@ -362,9 +362,9 @@ impl ProjectFile {
             return Err(error("has a selection of another size than its focus map".to_string()));
         }
         let thumbnail = Thumbnail::from_container(file, &manifest, &mut container)?;
-        let scene = manifest.scene.path.from(file);
+        let scene = manifest.scene.path.resolve(file);
         let capture = match &manifest.capture {
-            Some(row) => Some(row.choices(file).map_err(|what| error(what.to_string()))?),
+            Some(row) => Some(row.to_choices(file).map_err(|what| error(what.to_string()))?),
             None => None,
         };
         Ok(Self {
@@ -410,7 +410,7 @@ fn read_camera(
     let mask_entry = json.pointer("/aperture/mask").and_then(Value::as_str).map(str::to_owned);
     let mask = match mask_entry {
         Some(entry) => {
-            let bytes = manifest.entry(file, container, &entry, LARGEST_MAP)?;
+            let bytes = manifest.read_entry(file, container, &entry, MAX_MAP_BYTES)?;
             Some(
                 mask_from_bytes(&bytes, mask_file)
                     .ok_or_else(|| container.error(&entry, "is no aperture mask"))?,
@@ -418,8 +418,9 @@ fn read_camera(
         }
         None => None,
     };
-    let found = |_: &str| mask.clone().ok_or_else(|| container.error(MANIFEST, "names no aperture mask"));
-    let camera = camera_from_json(file, &json.to_string(), &Camera::default(), &found)?;
+    let stored_mask =
+        |_: &str| mask.clone().ok_or_else(|| container.error(MANIFEST, "names no aperture mask"));
+    let camera = camera_from_json(file, &json.to_string(), &Camera::default(), &stored_mask)?;
     // Projects used to say black where nobody had chosen anything; who wants darkness chooses a world.
     let background = camera.background.filter(|color| *color != [0.0; 3]);
     Ok(Camera { background, ..camera })
@@ -433,19 +434,19 @@ fn read_focus_map(
     background: FocusOffset,
 ) -> Result<FocusMap, ProjectError> {
     let size = entry.width as u64 * entry.height as u64 * 8;
-    let sides = 1..=LARGEST_SIDE;
-    if !sides.contains(&entry.width) || !sides.contains(&entry.height) || size > LARGEST_MAP {
+    let sides = 1..=MAX_SIDE;
+    if !sides.contains(&entry.width) || !sides.contains(&entry.height) || size > MAX_MAP_BYTES {
         return Err(
             container.error(&entry.entry, format!("cannot have {}×{} texels", entry.width, entry.height))
         );
     }
-    let bytes = manifest.entry(file, container, &entry.entry, size)?;
+    let bytes = manifest.read_entry(file, container, &entry.entry, size)?;
     let wrong_size = "does not have the size that the manifest says";
-    let mut map = FocusMap::from_rows(entry.width, entry.height, &pairs(&bytes), background)
+    let mut map = FocusMap::from_rows(entry.width, entry.height, &pairs_from_bytes(&bytes), background)
         .ok_or_else(|| container.error(&entry.entry, wrong_size))?;
     if let Some(gloss) = &entry.gloss {
-        let bytes = manifest.entry(file, container, gloss, size / 2)?;
-        if !map.set_gloss_rows(&floats(&bytes)) {
+        let bytes = manifest.read_entry(file, container, gloss, size / 2)?;
+        if !map.set_gloss_rows(&floats_from_bytes(&bytes)) {
             return Err(container.error(gloss, wrong_size));
         }
     }
@@ -461,18 +462,18 @@ fn read_selection(
     manifest: &Manifest,
     container: &mut Container<'_>,
 ) -> Result<TexelSet, ProjectError> {
-    let sides = 1..=LARGEST_SIDE;
+    let sides = 1..=MAX_SIDE;
     if !sides.contains(&entry.width) || !sides.contains(&entry.height) {
         let problem = format!("cannot have {}×{} texels", entry.width, entry.height);
         return Err(container.error(&entry.entry, problem));
     }
     let size = (entry.width as u64 * entry.height as u64).div_ceil(8);
-    let bytes = manifest.entry(file, container, &entry.entry, size)?;
+    let bytes = manifest.read_entry(file, container, &entry.entry, size)?;
     TexelSet::from_bytes([entry.width, entry.height], bytes)
         .ok_or_else(|| container.error(&entry.entry, "does not have the size that the manifest says"))
 }
 
-fn mask_bytes(mask: &ApertureMask) -> Vec<u8> {
+fn mask_to_bytes(mask: &ApertureMask) -> Vec<u8> {
     let size = [mask.width, mask.height].into_iter().flat_map(u32::to_le_bytes);
     size.chain(mask.transmission.iter().flat_map(|t| t.to_le_bytes())).collect()
 }

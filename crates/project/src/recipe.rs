@@ -17,37 +17,37 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Maps that were read, by path: a recipe may name one many times.
-type Maps = HashMap<PathBuf, RecipeEntry>;
+type MapCache = HashMap<PathBuf, RecipeEntry>;
 
 /// Reads a recipe and the maps that it names.
 pub fn read_recipe(file: &Path) -> Result<FocusRecipe, ProjectError> {
     let json = Json::read(file)?;
     let fields = Field::root(file, &json).object()?;
-    fields.only(&["default", "background", "materials", "nodes"])?;
-    let mut maps = Maps::new();
+    fields.allow_only(&["default", "background", "materials", "nodes"])?;
+    let mut maps = MapCache::new();
     let default = match fields.get("default") {
-        Some(field) => entry(&field, &mut maps)?,
+        Some(field) => read_entry(&field, &mut maps)?,
         None => RecipeEntry::Value(FocusOffset::STANDARD),
     };
-    let background = fields.get("background").map(|field| entry(&field, &mut maps)).transpose()?;
-    let materials = named(&fields, "materials", &mut maps)?;
-    let nodes = named(&fields, "nodes", &mut maps)?;
+    let background = fields.get("background").map(|field| read_entry(&field, &mut maps)).transpose()?;
+    let materials = read_named_entries(&fields, "materials", &mut maps)?;
+    let nodes = read_named_entries(&fields, "nodes", &mut maps)?;
     Ok(FocusRecipe { default, background, materials, nodes })
 }
 
-fn named(
+fn read_named_entries(
     fields: &Fields<'_>,
     name: &str,
-    maps: &mut Maps,
+    maps: &mut MapCache,
 ) -> Result<Vec<(String, RecipeEntry)>, ProjectError> {
     let Some(field) = fields.get(name) else { return Ok(Vec::new()) };
     let object = field.object()?;
-    object.all().map(|(name, field)| Ok((name.to_string(), entry(&field, maps)?))).collect()
+    object.iter().map(|(name, field)| Ok((name.to_string(), read_entry(&field, maps)?))).collect()
 }
 
-fn entry(field: &Field<'_>, maps: &mut Maps) -> Result<RecipeEntry, ProjectError> {
+fn read_entry(field: &Field<'_>, maps: &mut MapCache) -> Result<RecipeEntry, ProjectError> {
     let fields = field.object()?;
-    fields.only(&["t", "anchor", "gloss", "map"])?;
+    fields.allow_only(&["t", "anchor", "gloss", "map"])?;
     let Some(map) = fields.get("map") else {
         let t = fields.get("t").map_or(Ok(1.0), |field| field.number())?;
         let share = |name| {

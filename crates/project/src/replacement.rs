@@ -13,7 +13,7 @@ pub(crate) fn replacement(file: &Path) -> Result<AtomicWriteFile> {
     if target.is_dir() {
         return Err(ErrorKind::IsADirectory.into());
     }
-    remove_left_overs(&target);
+    remove_abandoned(&target);
     // Another run may take one that is not yet locked for a left-over.
     const TRIES: usize = 16;
     for _ in 0..TRIES {
@@ -31,11 +31,11 @@ const SUFFIX: usize = 6;
 
 /// Removes what is beside `target`, is called as files that are to replace it are, and is written by no one: who writes holds a lock. Where
 /// there are no locks it stays.
-fn remove_left_overs(target: &Path) {
+fn remove_abandoned(target: &Path) {
     let (Some(folder), Some(name)) = (target.parent(), target.file_name()) else { return };
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let Ok(entries) = std::fs::read_dir(folder) else { return };
-    let left_over = entries.flatten().filter(|entry| is_to_replace(&entry.file_name(), name));
+    let left_over = entries.flatten().filter(|entry| is_replacement_name(&entry.file_name(), name));
     for path in left_over.map(|entry| entry.path()) {
         let opened = File::options().write(true).open(&path);
         if opened.is_ok_and(|file| file.try_lock().is_ok()) {
@@ -45,9 +45,9 @@ fn remove_left_overs(target: &Path) {
     }
 }
 
-fn is_to_replace(found: &OsStr, name: &OsStr) -> bool {
-    let (found, name) = (found.as_encoded_bytes(), name.as_encoded_bytes());
-    let Some(suffix) = found.strip_prefix(b".").and_then(|found| found.strip_prefix(name)) else {
+fn is_replacement_name(candidate: &OsStr, name: &OsStr) -> bool {
+    let (candidate, name) = (candidate.as_encoded_bytes(), name.as_encoded_bytes());
+    let Some(suffix) = candidate.strip_prefix(b".").and_then(|found| found.strip_prefix(name)) else {
         return false;
     };
     matches!(suffix, [b'.', random @ ..] if random.len() == SUFFIX && random.iter().all(u8::is_ascii_alphanumeric))

@@ -10,14 +10,14 @@ use std::io::Read;
 use std::path::Path;
 
 /// What tells of a capture's cameras and its surface, and so of what paint lies on; pictures are many, and nothing lies on them.
-const OF_CAPTURES: [&str; 12] =
+const CAPTURE_EXTENSIONS: [&str; 12] =
     ["txt", "bin", "json", "xml", "out", "nvm", "ply", "obj", "glb", "pfm", "cfg", "dat"];
 
 /// How deep such files lie in a capture's folder.
-const DEEPEST: usize = 3;
+const MAX_DEPTH: usize = 3;
 
 /// More files are no capture's.
-const MOST: usize = 1000;
+const MAX_FILES: usize = 1000;
 
 /// Hex SHA-256 of a scene file; of a capture's folder that of its cameras and meshes.
 pub(crate) fn scene_checksum(scene: &Path) -> Result<String, ProjectError> {
@@ -25,7 +25,7 @@ pub(crate) fn scene_checksum(scene: &Path) -> Result<String, ProjectError> {
         return Ok(sha256_hex(&read_bytes(scene)?));
     }
     let mut files = Vec::new();
-    visit(scene, DEEPEST, &mut files)?;
+    collect_files(scene, MAX_DEPTH, &mut files)?;
     files.sort();
     let mut hash = Sha256::new();
     for file in files {
@@ -47,18 +47,22 @@ pub(crate) fn scene_checksum(scene: &Path) -> Result<String, ProjectError> {
     Ok(hex(&hash.finalize()))
 }
 
-fn visit(folder: &Path, deeper: usize, files: &mut Vec<std::path::PathBuf>) -> Result<(), ProjectError> {
+fn collect_files(
+    folder: &Path,
+    depth_left: usize,
+    files: &mut Vec<std::path::PathBuf>,
+) -> Result<(), ProjectError> {
     let unreadable = |source| ProjectError::Read { file: folder.to_owned(), source };
     for entry in std::fs::read_dir(folder).map_err(unreadable)?.flatten() {
         let path = entry.path();
         // Links are not followed: they may lead anywhere, and round.
         let Ok(kind) = entry.file_type() else { continue };
-        if kind.is_dir() && deeper > 0 {
-            visit(&path, deeper - 1, files)?;
+        if kind.is_dir() && depth_left > 0 {
+            collect_files(&path, depth_left - 1, files)?;
         }
         let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
-        let counts = extension.is_some_and(|extension| OF_CAPTURES.contains(&extension.as_str()));
-        if kind.is_file() && counts && files.len() < MOST {
+        let counts = extension.is_some_and(|extension| CAPTURE_EXTENSIONS.contains(&extension.as_str()));
+        if kind.is_file() && counts && files.len() < MAX_FILES {
             files.push(path);
         }
     }

@@ -26,9 +26,9 @@ impl ScenePath {
     }
 
     /// The path that is meant, from where the project lies; `None` if what stands there is no path.
-    pub fn from(&self, project: &Path) -> Option<PathBuf> {
+    pub fn resolve(&self, project: &Path) -> Option<PathBuf> {
         let path = match &self.path_bytes {
-            Some(hex) => path_of_bytes(bytes(hex)?).unwrap_or_else(|| PathBuf::from(&self.path)),
+            Some(hex) => path_of_bytes(decode_hex(hex)?).unwrap_or_else(|| PathBuf::from(&self.path)),
             None => PathBuf::from(&self.path),
         };
         Some(absolute_path(&path, project))
@@ -75,7 +75,7 @@ pub(crate) fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-fn bytes(hex: &str) -> Option<Vec<u8>> {
+fn decode_hex(hex: &str) -> Option<Vec<u8>> {
     let digits = hex.chars().map(|digit| digit.to_digit(16)).collect::<Option<Vec<_>>>()?;
     let (pairs, rest) = digits.as_chunks::<2>();
     rest.is_empty().then(|| pairs.iter().map(|[high, low]| (high * 16 + low) as u8).collect())
@@ -102,9 +102,12 @@ mod tests {
     fn a_path_leads_from_the_project_to_the_scene_and_back() {
         let path = ScenePath::new("/a/geo/sc ene.glb".as_ref(), "/a/b/p.fbrush".as_ref());
         assert_eq!(path, ScenePath { path: "../geo/sc ene.glb".into(), path_bytes: None });
-        assert_eq!(path.from("/else/where/b/p.fbrush".as_ref()), Some("/else/where/geo/sc ene.glb".into()));
+        assert_eq!(
+            path.resolve("/else/where/b/p.fbrush".as_ref()),
+            Some("/else/where/geo/sc ene.glb".into())
+        );
         let far = ScenePath::new("/x/s.glb".as_ref(), "/a/p.fbrush".as_ref());
-        assert_eq!(far.from("/else/p.fbrush".as_ref()), Some("/x/s.glb".into()));
+        assert_eq!(far.resolve("/else/p.fbrush".as_ref()), Some("/x/s.glb".into()));
     }
 
     #[cfg(unix)]
@@ -116,21 +119,21 @@ mod tests {
         for project in ["/a/p.fbrush", "/b/p.fbrush"] {
             let path = ScenePath::new(scene, project.as_ref());
             assert!(path.path.ends_with("caf\u{fffd}/sc\u{fffd}ne \u{fffd}.glb"), "{path:?}");
-            assert_eq!(path.from(project.as_ref()).as_deref(), Some(scene));
+            assert_eq!(path.resolve(project.as_ref()).as_deref(), Some(scene));
             // Negative control: the text alone leads elsewhere.
             let text = ScenePath { path_bytes: None, ..path };
-            assert_ne!(text.from(project.as_ref()).as_deref(), Some(scene));
+            assert_ne!(text.resolve(project.as_ref()).as_deref(), Some(scene));
         }
         // A backslash is a character like any other here.
         let odd = ScenePath::new("/x/a\\b.glb".as_ref(), "/a/p.fbrush".as_ref());
-        assert_eq!(odd.from("/a/p.fbrush".as_ref()), Some("/x/a\\b.glb".into()));
+        assert_eq!(odd.resolve("/a/p.fbrush".as_ref()), Some("/x/a\\b.glb".into()));
     }
 
     #[test]
     fn bytes_that_are_none_are_refused() {
         for hex in ["0", "0g", "é"] {
             let path = ScenePath { path: "s.glb".into(), path_bytes: Some(hex.into()) };
-            assert_eq!(path.from("/a/p.fbrush".as_ref()), None, "{hex}");
+            assert_eq!(path.resolve("/a/p.fbrush".as_ref()), None, "{hex}");
         }
     }
 }

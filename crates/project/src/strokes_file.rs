@@ -18,7 +18,7 @@
 
 use crate::ProjectError;
 use crate::disk::{read_bytes, write_verified};
-use focus::{Brush, Combine, FillTarget, FocusOffsetFields, Gradient, LayerEdit, ViewFrame};
+use focus::{Brush, CombineMode, FillTarget, FocusOffsetFields, Gradient, LayerEdit, ViewFrame};
 use glam::{DVec2, DVec3};
 use lens::FocusOffset;
 use serde::{Deserialize, Serialize};
@@ -59,7 +59,7 @@ pub enum RecordedStep {
 impl RecordedStep {
     /// Memory that it takes, in bytes.
     pub fn bytes(&self) -> usize {
-        let own = match self {
+        let content_bytes = match self {
             Self::Stroke(stroke) => size_of_val(&*stroke.points) + stroke.layer.len(),
             Self::Fill(fill) => size_of_val(&*fill.targets) + fill.layer.len(),
             Self::Gradient(gradient) => gradient.layer.len(),
@@ -68,14 +68,14 @@ impl RecordedStep {
             }
             Self::Select(_) | Self::Layers(_) | Self::Mask | Self::Reset => 0,
         };
-        size_of::<Self>() + own
+        size_of::<Self>() + content_bytes
     }
 
     /// Whether it is mirrored or turned along other axes than the world's.
-    fn has_own_axes(&self) -> bool {
+    fn has_custom_axes(&self) -> bool {
         match self {
-            Self::Stroke(stroke) => stroke.brush.has_own_axes(),
-            Self::Gradient(drawn) => !drawn.gradient.symmetry.is_along_world(),
+            Self::Stroke(stroke) => stroke.brush.has_custom_axes(),
+            Self::Gradient(drawn) => !drawn.gradient.symmetry.has_world_axes(),
             _ => false,
         }
     }
@@ -171,7 +171,7 @@ pub struct RecordedSelection {
     /// What was chosen.
     pub shape: SelectionShape,
     /// How it joined what was selected.
-    pub combine: Combine,
+    pub combine: CombineMode,
 }
 
 /// A set of texels, by what they are or where they lie.
@@ -244,7 +244,7 @@ pub fn write_strokes(file: &Path, steps: &[RecordedStep]) -> Result<(), ProjectE
     let any = |of: fn(&RecordedStep) -> bool| steps.iter().any(of);
     let version = match () {
         _ if any(RecordedStep::paints_gloss) => VERSION,
-        _ if any(RecordedStep::has_own_axes) => WITHOUT_GLOSS,
+        _ if any(RecordedStep::has_custom_axes) => WITHOUT_GLOSS,
         _ => ALONG_WORLD_AXES,
     };
     let content = StrokesFile { format: FORMAT.into(), version, steps: steps.to_vec(), strokes: Vec::new() };

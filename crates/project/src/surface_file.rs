@@ -81,8 +81,8 @@ pub fn surface_from_bytes(bytes: &[u8]) -> Option<Scene> {
         .map(|at| origin + Vec3::from_slice(&[at[0], at[1], at[2]].map(f32::from_bits)).as_dvec3())
         .collect();
     let corners = words(take((*triangles as usize).checked_mul(12)?)?);
-    for (part, of) in scene.parts.iter().enumerate() {
-        for triangle in of.triangles.clone() {
+    for (part, scene_part) in scene.parts.iter().enumerate() {
+        for triangle in scene_part.triangles.clone() {
             let at = 3 * triangle as usize;
             let vertices = [corners[at], corners[at + 1], corners[at + 2]];
             scene.triangles.push(Triangle { vertices, part: part as u32 });

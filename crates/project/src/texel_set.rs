@@ -11,9 +11,9 @@ pub struct TexelSet {
 impl TexelSet {
     /// The set of `texels` (column and row) of a map of width and height `size`; those outside it are left out.
     pub fn new(size: [u32; 2], texels: impl Iterator<Item = [u32; 2]>) -> Self {
-        let mut set = Self { size, bytes: vec![0; bytes_of(size)] };
+        let mut set = Self { size, bytes: vec![0; byte_count(size)] };
         for texel in texels {
-            if let Some((byte, bit)) = set.place(texel) {
+            if let Some((byte, bit)) = set.bit_position(texel) {
                 set.bytes[byte] |= 1 << bit;
             }
         }
@@ -27,11 +27,11 @@ impl TexelSet {
 
     /// Whether a texel (column and row) is in it; none outside the map is.
     pub fn contains(&self, texel: [u32; 2]) -> bool {
-        self.place(texel).is_some_and(|(byte, bit)| self.bytes[byte] >> bit & 1 == 1)
+        self.bit_position(texel).is_some_and(|(byte, bit)| self.bytes[byte] >> bit & 1 == 1)
     }
 
     /// Byte and bit of a texel.
-    fn place(&self, [x, y]: [u32; 2]) -> Option<(usize, u32)> {
+    fn bit_position(&self, [x, y]: [u32; 2]) -> Option<(usize, u32)> {
         let [width, height] = self.size;
         let index = y as usize * width as usize + x as usize;
         (x < width && y < height).then_some((index / 8, (index % 8) as u32))
@@ -47,11 +47,11 @@ impl TexelSet {
         let texels = u64::from(size[0]) * u64::from(size[1]);
         let spare = (8 - texels % 8) % 8;
         let is_clean = bytes.last().is_none_or(|last| u32::from(*last) >> (8 - spare) == 0);
-        (bytes.len() == bytes_of(size) && is_clean).then_some(Self { size, bytes })
+        (bytes.len() == byte_count(size) && is_clean).then_some(Self { size, bytes })
     }
 }
 
-fn bytes_of(size: [u32; 2]) -> usize {
+fn byte_count(size: [u32; 2]) -> usize {
     (size[0] as usize * size[1] as usize).div_ceil(8)
 }
 
@@ -63,9 +63,9 @@ mod tests {
     fn texels_are_in_it_or_not_and_bytes_come_back() {
         let texels = [[0, 0], [4, 1], [2, 2], [9, 9]];
         let set = TexelSet::new([5, 3], texels.into_iter());
-        let found: Vec<_> =
+        let members: Vec<_> =
             (0..3).flat_map(|y| (0..5).map(move |x| [x, y])).filter(|t| set.contains(*t)).collect();
-        assert_eq!(found, &texels[..3]);
+        assert_eq!(members, &texels[..3]);
         assert!(!set.contains([5, 0]) && !set.contains([0, 3]));
         let bytes = set.to_bytes();
         assert_eq!(bytes.len(), 2);

@@ -14,7 +14,7 @@ use std::path::Path;
 pub(crate) const THUMBNAIL: &str = "thumbnail.png";
 
 /// The largest one that is read, bytes.
-pub(crate) const LARGEST: u64 = 4 << 20;
+pub(crate) const MAX_BYTES: u64 = 4 << 20;
 
 /// Its longer side, px, at most: the largest that file managers ask for.
 const SIDE_PX: u32 = 512;
@@ -28,16 +28,16 @@ impl Thumbnail {
     ///
     /// # Panics
     /// If it does not have as many pixels, or none.
-    pub fn of(width: u32, height: u32, shown: Vec<[f32; 3]>) -> Self {
-        Self::reduced(width, height, shown, SIDE_PX)
+    pub fn from_linear(width: u32, height: u32, pixels: Vec<[f32; 3]>) -> Self {
+        Self::encode_reduced(width, height, pixels, SIDE_PX)
     }
 
-    fn reduced(width: u32, height: u32, mut shown: Vec<[f32; 3]>, side_px: u32) -> Self {
-        assert_eq!(shown.len(), width as usize * height as usize);
+    fn encode_reduced(width: u32, height: u32, mut pixels: Vec<[f32; 3]>, side_px: u32) -> Self {
+        assert_eq!(pixels.len(), width as usize * height as usize);
         // A lamp of a million would be as wide as the mean is far.
-        shown.iter_mut().flatten().for_each(|value| *value = value.clamp(0.0, 1.0));
-        let whole = Photograph { width, height, pixels: shown };
-        let small = whole.reduced(width.max(height).div_ceil(side_px.max(1)).max(1));
+        pixels.iter_mut().flatten().for_each(|value| *value = value.clamp(0.0, 1.0));
+        let whole = Photograph { width, height, pixels };
+        let small = whole.downsampled(width.max(height).div_ceil(side_px.max(1)).max(1));
         let bytes = encode_rgb8(small.width, small.height, &srgb_bytes(&small.pixels), &[]);
         Self(bytes.expect("memory takes any PNG"))
     }
@@ -59,18 +59,18 @@ impl Thumbnail {
         container: &mut Container<'_>,
     ) -> Result<Option<Self>, ProjectError> {
         let is_there = manifest.checksums.contains_key(THUMBNAIL);
-        is_there.then(|| manifest.entry(file, container, THUMBNAIL, LARGEST).map(Self)).transpose()
+        is_there.then(|| manifest.read_entry(file, container, THUMBNAIL, MAX_BYTES).map(Self)).transpose()
     }
 
     /// The same, its longer side at most `side_px`; what is no picture is the error's sentence.
-    pub fn of_side(&self, side_px: u32) -> Result<Self, String> {
+    pub fn reduced_to(&self, side_px: u32) -> Result<Self, String> {
         let image = decode(&self.0)?.into_rgb8();
         let (width, height) = image.dimensions();
         if width.max(height) <= side_px {
             return Ok(self.clone());
         }
         let linear = |pixel: &image::Rgb<u8>| pixel.0.map(|value| linear_from_srgb(f32::from(value) / 255.0));
-        Ok(Self::reduced(width, height, image.pixels().map(linear).collect(), side_px))
+        Ok(Self::encode_reduced(width, height, image.pixels().map(linear).collect(), side_px))
     }
 
     /// Writes it as PNG, whatever the file is called.
@@ -96,18 +96,18 @@ mod tests {
     #[test]
     fn pictures_become_small_and_keep_their_mean() {
         let shown: Vec<[f32; 3]> = (0..1600 * 700).map(|k| [(k % 2) as f32 * 1e6, 0.5, 0.0]).collect();
-        let thumbnail = Thumbnail::of(1600, 700, shown);
+        let thumbnail = Thumbnail::from_linear(1600, 700, shown);
         assert_eq!(size(&thumbnail), (400, 175));
-        let smaller = thumbnail.of_side(128).unwrap();
+        let smaller = thumbnail.reduced_to(128).unwrap();
         assert_eq!(size(&smaller), (100, 44));
         let image = decode(smaller.png()).unwrap().into_rgb8();
         // Half the light of a white pixel, and grey of a half, are the same in sRGB's encoding.
         assert_eq!(image.get_pixel(50, 20).0, [188, 188, 0]);
-        assert_eq!(smaller.of_side(128).unwrap(), smaller, "small enough already");
+        assert_eq!(smaller.reduced_to(128).unwrap(), smaller, "small enough already");
     }
 
     #[test]
     fn what_is_no_picture_is_told() {
-        assert!(Thumbnail(b"no picture".to_vec()).of_side(64).is_err());
+        assert!(Thumbnail(b"no picture".to_vec()).reduced_to(64).is_err());
     }
 }

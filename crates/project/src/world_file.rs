@@ -70,10 +70,10 @@ impl WorldFile {
     }
 
     /// What says a world of `scene` that was read before.
-    pub fn of(world: &World, scene: &Scene) -> Self {
-        let own = scene.own_world.as_ref().map(|own| &own.environment);
+    pub fn from_world(world: &World, scene: &Scene) -> Self {
+        let embedded = scene.embedded_world.as_ref().map(|own| &own.environment);
         let environment = match &world.environment {
-            environment if Some(environment) == own => EnvironmentChoice::Scene,
+            environment if Some(environment) == embedded => EnvironmentChoice::Scene,
             Environment::Uniform(color) => EnvironmentChoice::Uniform(*color),
             environment if *environment == World::studio().environment => EnvironmentChoice::Studio,
             Environment::Map(map) => EnvironmentChoice::File(PathBuf::from(&map.name)),
@@ -88,7 +88,7 @@ impl WorldFile {
     }
 
     /// An environment's file alone, seen and lighting.
-    pub fn of_environment(file: &Path) -> Self {
+    pub fn from_environment_file(file: &Path) -> Self {
         Self { environment: EnvironmentChoice::File(file.into()), ..Self::default() }
     }
 
@@ -99,7 +99,7 @@ impl WorldFile {
     }
 
     fn from_fields(fields: &Fields<'_>) -> Result<Self, ProjectError> {
-        fields.only(&FIELDS)?;
+        fields.allow_only(&FIELDS)?;
         let mut world = Self::default();
         if let Some(field) = fields.get("environment") {
             world.environment = match field.value {
@@ -128,7 +128,7 @@ impl WorldFile {
             });
         }
         if let Some(field) = fields.get("bounces").filter(|field| *field.value != Json::Null) {
-            world.bounces = Some(field.whole()?);
+            world.bounces = Some(field.whole_number()?);
         }
         Ok(world)
     }
@@ -160,12 +160,12 @@ impl WorldFile {
     /// # Errors
     /// If the environment's file cannot be used, or the scene does not bring what is asked of it.
     pub fn load(&self, scene: &Scene) -> Result<World, ProjectError> {
-        let (environment, suits) = match &self.environment {
+        let (environment, default_backdrop) = match &self.environment {
             EnvironmentChoice::Studio => {
                 let studio = World::studio();
                 (studio.environment, studio.backdrop)
             }
-            EnvironmentChoice::Scene => match &scene.own_world {
+            EnvironmentChoice::Scene => match &scene.embedded_world {
                 Some(own) => (own.environment.clone(), own.backdrop),
                 None => {
                     let problem =
@@ -182,7 +182,7 @@ impl WorldFile {
             environment,
             rotation: self.rotation,
             strength: self.strength,
-            backdrop: self.backdrop.unwrap_or(suits),
+            backdrop: self.backdrop.unwrap_or(default_backdrop),
             bounces: self.bounces,
         })
     }
@@ -247,10 +247,10 @@ mod tests {
             .load(&Scene::default())
             .unwrap();
         assert_eq!((sky.radiance(glam::DVec3::X), sky.bounces), (Vec3::new(0.5, 1.0, 1.5), Some(2)));
-        assert_eq!(sky.seen(glam::DVec3::X), sky.radiance(glam::DVec3::X));
+        assert_eq!(sky.backdrop_radiance(glam::DVec3::X), sky.radiance(glam::DVec3::X));
         let before_red =
             read(r#"{"backdrop": [1, 0, 0], "bounces": null}"#).unwrap().load(&Scene::default()).unwrap();
-        assert_eq!((before_red.seen(glam::DVec3::X), before_red.bounces), (Vec3::X, None));
+        assert_eq!((before_red.backdrop_radiance(glam::DVec3::X), before_red.bounces), (Vec3::X, None));
     }
 
     #[test]
@@ -301,14 +301,17 @@ mod tests {
     fn what_the_scene_brings_is_told_as_such() {
         let map = EnvironmentMap { name: "light".into(), width: 2, height: 1, texels: vec![[2.0; 3]; 2] };
         let own = World { environment: Environment::Map(Arc::new(map)), ..World::uniform(Vec3::ZERO) };
-        let scene = Scene { own_world: Some(own.clone()), path: "lit.glb".into(), ..Scene::default() };
-        let asked = read(r#"{"environment": "scene", "strength": 3}"#).unwrap();
-        let world = asked.load(&scene).unwrap();
+        let scene = Scene { embedded_world: Some(own.clone()), path: "lit.glb".into(), ..Scene::default() };
+        let world_file = read(r#"{"environment": "scene", "strength": 3}"#).unwrap();
+        let world = world_file.load(&scene).unwrap();
         assert_eq!(world, World { strength: 3.0, ..own });
-        assert_eq!(WorldFile::of(&world, &scene).to_json(Path::new("x.fbrush"))["environment"], "scene");
-        assert_eq!(WorldFile::of(&World::studio(), &scene).environment, EnvironmentChoice::Studio);
+        assert_eq!(
+            WorldFile::from_world(&world, &scene).to_json(Path::new("x.fbrush"))["environment"],
+            "scene"
+        );
+        assert_eq!(WorldFile::from_world(&World::studio(), &scene).environment, EnvironmentChoice::Studio);
         let without = Scene { path: "dark.glb".into(), ..Scene::default() };
-        let error = asked.load(&without).unwrap_err().to_string();
+        let error = world_file.load(&without).unwrap_err().to_string();
         assert!(error.contains("dark.glb") && error.contains("EXT_lights_image_based"), "{error}");
     }
 
@@ -329,9 +332,9 @@ mod tests {
             channels: channels.collect(),
             ..Default::default()
         };
-        crate::exr_file::write_exr(&file, exr, crate::exr_form::ExrForm::default()).unwrap();
+        crate::exr_file::write_exr(&file, exr, crate::exr_form::ExrOptions::default()).unwrap();
         let World { environment: Environment::Map(map), .. } =
-            WorldFile::of_environment(&file).load(&Scene::default()).unwrap()
+            WorldFile::from_environment_file(&file).load(&Scene::default()).unwrap()
         else {
             panic!("no map")
         };

@@ -5,13 +5,13 @@ use lens::Exposure;
 use serde::Serialize;
 
 /// How many standard errors apart two estimates may be.
-const STANDARD_ERRORS: f64 = 3.0;
+const MAX_STANDARD_ERRORS: f64 = 3.0;
 
 /// How far apart two numbers may be by the rounding of floats alone, relative: 2⁻²³.
-const ROUNDING: f64 = 1.0 / (1 << 23) as f64;
+const RELATIVE_ROUNDING: f64 = 1.0 / (1 << 23) as f64;
 
 /// How a picture is told that it does not know its error.
-const UNKNOWN: &str = "has no finite standard errors";
+const NOT_FINITE: &str = "has no finite standard errors";
 
 /// Shares of what lies at most three standard errors apart, each standard error that of the difference: the root of
 /// the sum of both pictures' squares. Of two estimates that err by chance alone 99.73 % do.
@@ -47,39 +47,39 @@ pub fn z_test(a: &LinearPicture, b: &LinearPicture) -> Result<ZAgreement, Projec
         }
         (a, b) => a.or(b).unwrap_or(Exposure::Conserve),
     };
-    let known = [Estimated::of(a, exposure)?, Estimated::of(b, exposure)?];
-    if known.iter().all(|picture| picture.errors.is_none()) {
+    let estimates = [PictureEstimate::new(a, exposure)?, PictureEstimate::new(b, exposure)?];
+    if estimates.iter().all(|picture| picture.errors.is_none()) {
         return Err(ProjectError::Untestable("neither has standard errors".into()));
     }
-    Ok(agreement(&known, a.rgb.len()))
+    Ok(measure_agreement(&estimates, a.rgb.len()))
 }
 
 /// A picture's numbers with their errors.
-struct Estimated<'a> {
+struct PictureEstimate<'a> {
     rgb: &'a [[f32; 3]],
     /// As the model's sum; `None` of a normalised picture.
     coverage: Option<&'a [f32]>,
-    errors: Option<Errors<'a>>,
+    errors: Option<StandardErrors<'a>>,
 }
 
-struct Errors<'a> {
+struct StandardErrors<'a> {
     rgb: [&'a [f32]; 3],
     luminance: &'a [f32],
     coverage: Option<&'a [f32]>,
 }
 
-impl<'a> Estimated<'a> {
-    fn of(picture: &'a LinearPicture, exposure: Exposure) -> Result<Self, ProjectError> {
+impl<'a> PictureEstimate<'a> {
+    fn new(picture: &'a LinearPicture, exposure: Exposure) -> Result<Self, ProjectError> {
         let is_conserved = exposure == Exposure::Conserve;
         let group = if is_conserved { "stderr" } else { "stderr.normalised" };
         let layer = |name: &str| picture.layers.get(name).map(Vec::as_slice);
         let errors = |name: &str| layer(&format!("{group}.{name}"));
         let coverage = layer("coverage").filter(|_| is_conserved);
-        let found = ["R", "G", "B", "Y"].map(errors);
-        let errors = match found {
+        let layers = ["R", "G", "B", "Y"].map(errors);
+        let errors = match layers {
             [Some(r), Some(g), Some(b), Some(luminance)] => {
                 let coverage = errors("coverage").filter(|_| is_conserved);
-                Some(Errors { rgb: [r, g, b], luminance, coverage })
+                Some(StandardErrors { rgb: [r, g, b], luminance, coverage })
             }
             [None, None, None, None] => None,
             _ => {
@@ -89,13 +89,13 @@ impl<'a> Estimated<'a> {
         };
         let all = errors.iter().flat_map(|e| e.rgb.into_iter().chain([e.luminance]).chain(e.coverage));
         if all.flatten().any(|error| !(error.is_finite() && *error >= 0.0)) {
-            return Err(ProjectError::Untestable(format!("one {UNKNOWN}")));
+            return Err(ProjectError::Untestable(format!("one {NOT_FINITE}")));
         }
         Ok(Self { rgb: &picture.rgb, coverage, errors })
     }
 
     /// Red, green, blue and, if it has one, coverage of a pixel, each with its error.
-    fn numbers(&self, pixel: usize) -> [Option<[f64; 2]>; 4] {
+    fn channel_estimates(&self, pixel: usize) -> [Option<[f64; 2]>; 4] {
         let error = |channel: usize| self.errors.as_ref().map_or(0.0, |e| f64::from(e.rgb[channel][pixel]));
         let [r, g, b] = [0, 1, 2].map(|c| Some([f64::from(self.rgb[pixel][c]), error(c)]));
         // With errors, but not of its coverage, that of coverage is not known.
@@ -110,7 +110,7 @@ impl<'a> Estimated<'a> {
     }
 
     /// A pixel's luminance and its error.
-    fn luminance(&self, pixel: usize) -> [f64; 2] {
+    fn luminance_estimate(&self, pixel: usize) -> [f64; 2] {
         let [r, g, b] = self.rgb[pixel].map(f64::from);
         let error = self.errors.as_ref().map_or(0.0, |e| f64::from(e.luminance[pixel]));
         [0.2126 * r + 0.7152 * g + 0.0722 * b, error]
@@ -127,28 +127,29 @@ struct Distance {
 
 fn distance([a, error_a]: [f64; 2], [b, error_b]: [f64; 2]) -> Distance {
     let (apart, error) = ((a - b).abs(), error_a.hypot(error_b));
-    let agrees = apart <= STANDARD_ERRORS * error + ROUNDING * a.abs().max(b.abs());
+    let agrees = apart <= MAX_STANDARD_ERRORS * error + RELATIVE_ROUNDING * a.abs().max(b.abs());
     Distance { agrees, z_squared: (error > 0.0).then(|| (apart / error).powi(2)) }
 }
 
-fn agreement([a, b]: &[Estimated; 2], pixels: usize) -> ZAgreement {
-    let share = |agree: usize, of: usize| agree as f64 / of.max(1) as f64;
+fn measure_agreement([a, b]: &[PictureEstimate; 2], pixels: usize) -> ZAgreement {
+    let share = |agree: usize, total: usize| agree as f64 / total.max(1) as f64;
     let [mut numbers, mut agreeing, mut by_luminance, mut by_all, mut scattered] = [0usize; 5];
     let mut squares = 0.0;
     for pixel in 0..pixels {
-        let pairs = a.numbers(pixel).into_iter().zip(b.numbers(pixel));
+        let pairs = a.channel_estimates(pixel).into_iter().zip(b.channel_estimates(pixel));
         let mut all_agree = true;
-        for found in pairs.filter_map(|(a, b)| Some(distance(a?, b?))) {
+        for pair_distance in pairs.filter_map(|(a, b)| Some(distance(a?, b?))) {
             numbers += 1;
-            agreeing += usize::from(found.agrees);
-            all_agree &= found.agrees;
-            if let Some(z_squared) = found.z_squared {
+            agreeing += usize::from(pair_distance.agrees);
+            all_agree &= pair_distance.agrees;
+            if let Some(z_squared) = pair_distance.z_squared {
                 scattered += 1;
                 squares += z_squared;
             }
         }
         by_all += usize::from(all_agree);
-        by_luminance += usize::from(distance(a.luminance(pixel), b.luminance(pixel)).agrees);
+        by_luminance +=
+            usize::from(distance(a.luminance_estimate(pixel), b.luminance_estimate(pixel)).agrees);
     }
     ZAgreement {
         values: share(agreeing, numbers),
@@ -233,7 +234,7 @@ mod tests {
             z_test(&picture, &good).unwrap_err().to_string()
         };
         let unknown = broken(|p| p.layers.get_mut("stderr.G").unwrap()[7] = f32::INFINITY);
-        assert!(unknown.contains(UNKNOWN), "{unknown}");
+        assert!(unknown.contains(NOT_FINITE), "{unknown}");
         let some = broken(|p| drop(p.layers.remove("stderr.Y")));
         assert!(some.contains("only some"), "{some}");
         let exposure = broken(|p| p.exposure = Some(Exposure::Normalise));

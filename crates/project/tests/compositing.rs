@@ -75,7 +75,7 @@ fn colours_say_whose_they_are() {
     let file = folder.path().join("x.exr");
     let (mut picture, _) = picture();
     picture.radiance.fill([1.0, 0.0, 0.0]);
-    let layers = Layer::of_colors(Layer::PINHOLE, &picture.radiance);
+    let layers = Layer::from_colors(Layer::PINHOLE, &picture.radiance);
     for (space, red, white) in [
         (ColorSpace::Rec709, [1.0, 0.0, 0.0], ox::Vec2(0.3127, 0.329)),
         (ColorSpace::AcesCg, [0.613_097, 0.070_194, 0.020_616], ox::Vec2(0.32168, 0.33767)),

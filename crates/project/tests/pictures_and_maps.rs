@@ -199,7 +199,7 @@ fn a_map_goes_back_only_onto_its_own_atlas() {
     let file = std::path::Path::new("focus.exr");
     let map = map();
     let painted: FocusMap = map.clone().into_atlas_map(file, &atlas("0123abcd", 33)).unwrap();
-    assert_eq!(FocusMapFile::of_atlas(&painted, &atlas("0123abcd", 33)), map);
+    assert_eq!(FocusMapFile::from_atlas_map(&painted, &atlas("0123abcd", 33)), map);
     is_one_line(&map.clone().into_atlas_map(file, &atlas("other", 33)).unwrap_err().to_string(), file);
     is_one_line(&map.into_atlas_map(file, &atlas("0123abcd", 34)).unwrap_err().to_string(), file);
 }

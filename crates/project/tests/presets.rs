@@ -3,7 +3,7 @@
 use focus::{Brush, BrushMode};
 use glam::DVec2;
 use lens::{Aperture, ApertureMask, ApertureShape, Camera, FocusOffset};
-use project::{LensPreset, Preset, PresetContent, PresetKind, PresetShelf};
+use project::{LensPreset, Preset, PresetContent, PresetKind, PresetLibrary};
 use std::sync::Arc;
 
 fn brush() -> Brush {
@@ -22,37 +22,43 @@ fn brush() -> Brush {
 #[test]
 fn a_preset_is_saved_found_renamed_and_deleted_but_never_lost() {
     let folder = tempfile::tempdir().unwrap();
-    let mut shelf = PresetShelf::open(Some(folder.path().join("presets")));
-    let shipped = shelf.of_kind(PresetKind::Brush).count();
-    assert!(shipped >= 10 && shelf.of_kind(PresetKind::Brush).all(|entry| entry.file.is_none()));
+    let mut shelf = PresetLibrary::open(Some(folder.path().join("presets")));
+    let shipped = shelf.entries_of_kind(PresetKind::Brush).count();
+    assert!(shipped >= 10 && shelf.entries_of_kind(PresetKind::Brush).all(|entry| entry.file.is_none()));
 
     let preset = Preset::new(" Ärmel/../x ", PresetContent::Brush(Box::new(brush()))).unwrap();
     assert_eq!(preset.name, "Ärmel/../x");
     let file = shelf.save(&preset).unwrap();
     assert_eq!(file.parent().unwrap(), folder.path().join("presets/brush"), "whatever its name is");
-    assert_eq!(shelf.of_kind(PresetKind::Brush).count(), shipped + 1);
+    assert_eq!(shelf.entries_of_kind(PresetKind::Brush).count(), shipped + 1);
     // Size and symmetry stay those of the brush in hand.
     let current = Brush { radius: 0.3, ..Brush::default() };
     let mut wanted = Brush { radius: 0.3, mirror: [false; 3], ..brush() };
-    assert_eq!(shelf.named(PresetKind::Brush, "Ärmel/../x").unwrap().brush(&current), Some(wanted.clone()));
+    assert_eq!(
+        shelf.find(PresetKind::Brush, "Ärmel/../x").unwrap().apply_to_brush(&current),
+        Some(wanted.clone())
+    );
     // Saved again it takes its own place; one of another kind has another.
     wanted.strength = 0.5;
     let again = Preset::new("Ärmel/../x", PresetContent::Brush(Box::new(wanted))).unwrap();
     assert_eq!(shelf.save(&again).unwrap(), file);
-    let lens = PresetContent::Lens(LensPreset::of(&Camera::default()));
+    let lens = PresetContent::Lens(LensPreset::from_camera(&Camera::default()));
     shelf.save(&Preset::new("Ärmel/../x", lens).unwrap()).unwrap();
-    assert_eq!(shelf.named(PresetKind::Brush, "Ärmel/../x").unwrap().brush(&current).unwrap().strength, 0.5);
+    assert_eq!(
+        shelf.find(PresetKind::Brush, "Ärmel/../x").unwrap().apply_to_brush(&current).unwrap().strength,
+        0.5
+    );
 
     assert!(shelf.rename(&file, "Soft sharp").is_err(), "the name of a shipped one");
     assert!(shelf.rename(&file, "  ").is_err());
     shelf.rename(&file, "Mine").unwrap();
-    assert!(shelf.named(PresetKind::Brush, "Ärmel/../x").is_none());
+    assert!(shelf.find(PresetKind::Brush, "Ärmel/../x").is_none());
     let kept = shelf.delete(&file).unwrap();
     assert!(kept.is_file() && !file.exists());
-    assert_eq!(shelf.of_kind(PresetKind::Brush).count(), shipped);
+    assert_eq!(shelf.entries_of_kind(PresetKind::Brush).count(), shipped);
     // And back.
     assert_eq!(shelf.import(&kept).unwrap().name, "Mine");
-    assert_eq!(shelf.of_kind(PresetKind::Brush).count(), shipped + 1);
+    assert_eq!(shelf.entries_of_kind(PresetKind::Brush).count(), shipped + 1);
 }
 
 #[test]
@@ -66,7 +72,7 @@ fn a_mask_travels_within_the_file() {
     preset.write(&file).unwrap();
     let read = Preset::read(&file).unwrap();
     assert_eq!(read, preset);
-    assert_eq!(read.camera(&Camera::default()).unwrap().unwrap().aperture, aperture);
+    assert_eq!(read.apply_to_camera(&Camera::default()).unwrap().unwrap().aperture, aperture);
     // Large ones are averaged.
     let large = ApertureMask {
         width: 2048,
@@ -121,14 +127,14 @@ fn what_is_no_preset_is_refused_by_name_and_place_and_hides_no_other() {
     let own = folder.path().join("presets/bokeh");
     std::fs::create_dir_all(&own).unwrap();
     std::fs::copy(&file, own.join("odd.json")).unwrap();
-    let shelf = PresetShelf::open(Some(folder.path().join("presets")));
-    let odd = shelf.of_kind(PresetKind::Bokeh).last().unwrap();
+    let shelf = PresetLibrary::open(Some(folder.path().join("presets")));
+    let odd = shelf.entries_of_kind(PresetKind::Bokeh).last().unwrap();
     assert_eq!(odd.name(), "odd");
     assert!(odd.preset.as_ref().unwrap_err().contains("odd.json"));
-    assert!(shelf.named(PresetKind::Bokeh, "Heart").is_some());
+    assert!(shelf.find(PresetKind::Bokeh, "Heart").is_some());
     // Without a folder there are the shipped ones, and nothing can be saved.
-    let mut nowhere = PresetShelf::open(None);
-    let lens = PresetContent::Lens(LensPreset::of(&Camera::default()));
+    let mut nowhere = PresetLibrary::open(None);
+    let lens = PresetContent::Lens(LensPreset::from_camera(&Camera::default()));
     assert!(nowhere.save(&Preset::new("x", lens).unwrap()).is_err());
-    assert!(nowhere.of_kind(PresetKind::Lens).count() >= 10);
+    assert!(nowhere.entries_of_kind(PresetKind::Lens).count() >= 10);
 }

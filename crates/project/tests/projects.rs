@@ -49,7 +49,7 @@ fn document(folder: &Path) -> ProjectFile {
         surface: Some(b"a surface".to_vec()),
         background_focus: map.background,
         focus_map: Some(map),
-        thumbnail: Some(Thumbnail::of(2, 1, vec![[0.25; 3], [1.0, 0.0, 0.5]])),
+        thumbnail: Some(Thumbnail::from_linear(2, 1, vec![[0.25; 3], [1.0, 0.0, 0.5]])),
         ..ProjectFile::new(&scene, cameras.into()).unwrap()
     }
 }
@@ -85,7 +85,7 @@ fn layers_come_back_the_same_and_a_plain_document_stays_as_older_programs_know_i
     plain.save(&file).unwrap();
     assert_eq!((&manifest(&file)["version"], manifest(&file).get("layers")), (&1.into(), None));
 
-    let mut masked = FocusMap::clear(130, 70);
+    let mut masked = FocusMap::transparent(130, 70);
     masked.set(5, 6, [0.8, 0.25]);
     masked.background = FocusOffset::SHARP;
     let mut rows = masked.mask_rows().unwrap();
@@ -94,16 +94,16 @@ fn layers_come_back_the_same_and_a_plain_document_stays_as_older_programs_know_i
     masked.background_mask = 0.5;
     let curve = focus::DepthCurve::sharp_between(0.5, 20.0).unwrap();
     let layers = vec![
-        focus::FocusLayer::painted("Paint", plain.focus_map.clone().unwrap()),
+        focus::FocusLayer::from_map("Paint", plain.focus_map.clone().unwrap()),
         focus::FocusLayer {
             opacity: 0.3,
-            blend: focus::Blend::MultiplyDefocus,
+            blend: focus::BlendMode::MultiplyDefocus,
             is_visible: false,
-            ..focus::FocusLayer::painted("far \"lamp\"", masked)
+            ..focus::FocusLayer::from_map("far \"lamp\"", masked)
         },
         focus::FocusLayer {
             adjustment: Some(focus::Adjustment::Curve(curve)),
-            ..focus::FocusLayer::painted("surface", FocusMap::new(130, 70, FocusOffset::STANDARD))
+            ..focus::FocusLayer::from_map("surface", FocusMap::new(130, 70, FocusOffset::STANDARD))
         },
     ];
     let layers = focus::LayerStack::new(layers, 1).unwrap();
@@ -118,7 +118,7 @@ fn layers_come_back_the_same_and_a_plain_document_stays_as_older_programs_know_i
     let plane = focus::FocalPlane { curvature: -0.25, ..focus::FocalPlane::through(points).unwrap() };
     let plane = focus::FocusLayer {
         adjustment: Some(focus::Adjustment::Plane(plane)),
-        ..focus::FocusLayer::painted("plane", FocusMap::new(130, 70, FocusOffset::STANDARD))
+        ..focus::FocusLayer::from_map("plane", FocusMap::new(130, 70, FocusOffset::STANDARD))
     };
     let stack = focus::LayerStack::new(vec![layers.layers()[0].clone(), plane], 1).unwrap();
     let planar = ProjectFile { layers: Some(stack), ..layered.clone() };
@@ -143,7 +143,7 @@ fn layers_come_back_the_same_and_a_plain_document_stays_as_older_programs_know_i
     };
     let painted = in_map(&|map| map.set_gloss(100, 3, 0.25));
     let behind = in_map(&|map| map.background = glossy);
-    let layer = focus::FocusLayer::painted("glossy", painted.clone());
+    let layer = focus::FocusLayer::from_map("glossy", painted.clone());
     let stack = focus::LayerStack::new(vec![layers.layers()[0].clone(), layer], 1).unwrap();
     for glossy in [
         ProjectFile { focus_map: Some(painted), ..varied.clone() },
@@ -163,7 +163,7 @@ fn layers_come_back_the_same_and_a_plain_document_stays_as_older_programs_know_i
     layered.save(&file).unwrap();
 
     // What cannot be is refused, on saving and on opening.
-    let small = focus::LayerStack::of(FocusMap::new(4, 4, FocusOffset::STANDARD));
+    let small = focus::LayerStack::from_map(FocusMap::new(4, 4, FocusOffset::STANDARD));
     let error = ProjectFile { layers: Some(small), ..layered.clone() }.save(&file).unwrap_err();
     assert!(error.to_string().contains("layers"), "{error}");
     let broken = repack(&file, &|name, bytes| match name {
@@ -284,7 +284,7 @@ fn repaired_depth_is_kept_and_needs_a_program_that_knows_it() {
     let file = folder.path().join("work.fbrush");
     let stroke = DepthStroke {
         repair: DepthRepair::Spread,
-        way: vec![[12.5, 3.25], [40.0, -1.0]],
+        path: vec![[12.5, 3.25], [40.0, -1.0]],
         radius_px: 7.5,
         hardness: 0.5,
         strength: 1.0,

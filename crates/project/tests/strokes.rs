@@ -1,7 +1,7 @@
 //! Recorded strokes, written and read.
 
 use focus::{
-    Brush, Channels, Combine, FillTarget, Gradient, GradientLine, GradientShape, LayerEdit, Symmetry,
+    Brush, Channels, CombineMode, FillTarget, Gradient, GradientLine, GradientShape, LayerEdit, Symmetry,
     ViewFrame,
 };
 use glam::{DMat4, DVec2, DVec3};
@@ -56,14 +56,14 @@ fn what_is_written_is_read_to_the_bit_and_what_is_wrong_is_told() {
         }),
         RecordedStep::Gradient(RecordedGradient { layer: layer.clone(), gradient }),
         RecordedStep::Gradient(RecordedGradient { layer, gradient: fading }),
-        select(SelectionShape::Outline { view: view(), points, through: true }, Combine::Replace),
-        select(SelectionShape::Targets(vec![FillTarget::Material(1)]), Combine::Add),
-        select(SelectionShape::Inverse, Combine::Replace),
+        select(SelectionShape::Outline { view: view(), points, through: true }, CombineMode::Replace),
+        select(SelectionShape::Targets(vec![FillTarget::Material(1)]), CombineMode::Add),
+        select(SelectionShape::Inverse, CombineMode::Replace),
         select(
             SelectionShape::Depth { origin: DVec3::ONE, axis: DVec3::Z, range: [0.5, 2.0] },
-            Combine::Intersect,
+            CombineMode::Intersect,
         ),
-        select(SelectionShape::Normal { normal: DVec3::Y, degrees: 30.0 }, Combine::Subtract),
+        select(SelectionShape::Normal { normal: DVec3::Y, degrees: 30.0 }, CombineMode::Subtract),
         RecordedStep::Layers(LayerEdit::AddPaint),
         RecordedStep::Layers(LayerEdit::Opacity(1, 0.3)),
         RecordedStep::Layers(LayerEdit::Shift { from: 1, to: 0 }),

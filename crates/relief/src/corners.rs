@@ -4,7 +4,7 @@
 //! point there; its disparity is the mean of what they lead to expect, each by its own slope.
 
 use crate::cells::{Cells, LAYERS, Side};
-use crate::hidden::number;
+use crate::hidden::side_index;
 
 /// The cells around a corner of the grid: upper left, upper right, lower left, lower right; first those of the first layer.
 const AROUND: usize = 4 * LAYERS;
@@ -77,13 +77,13 @@ impl Cells {
 
     fn around(&self, [i, j]: [usize; 2]) -> [Option<usize>; AROUND] {
         let mut around = [None; AROUND];
-        for (place, found) in around.iter_mut().enumerate() {
+        for (place, slot) in around.iter_mut().enumerate() {
             let (right, below) = (place % 2, place / 2 % 2);
             let (Some(x), Some(y)) = ((i + right).checked_sub(1), (j + below).checked_sub(1)) else {
                 continue;
             };
             if x < self.grid.width && y < self.grid.height {
-                *found = Some(self.grid.at(x, y)).filter(|&cell| self.is_there(place / 4, cell));
+                *slot = Some(self.grid.at(x, y)).filter(|&cell| self.is_there(place / 4, cell));
             }
         }
         around
@@ -107,7 +107,7 @@ impl Cells {
                 if around[beside].is_some() && self.links[layer].has(cell, side) {
                     join(place, beside);
                 }
-                if layer == 1 && around[beside - 4].is_some() && self.onward[cell][number(side)] {
+                if layer == 1 && around[beside - 4].is_some() && self.onward[cell][side_index(side)] {
                     join(place, beside - 4);
                 }
             }

@@ -15,7 +15,7 @@ const BAND: usize = 64;
 
 /// The first layer, told apart at its edges.
 #[derive(Clone, Copy)]
-pub(crate) struct Layer<'a> {
+pub(crate) struct MattedLayer<'a> {
     /// By cell: disparity, how much of it is there, in [0, 1], and its colour.
     pub disparity: &'a [f32],
     pub opacity: &'a [f32],
@@ -24,7 +24,7 @@ pub(crate) struct Layer<'a> {
 
 /// What covers a pixel of a view.
 #[derive(Clone, Copy)]
-pub(crate) struct Cover {
+pub(crate) struct PixelCover {
     /// The disparity of what is nearest in it; −∞ where nothing is.
     pub nearest: f32,
     /// That of what else is in it, behind a jump.
@@ -35,17 +35,17 @@ pub(crate) struct Cover {
     pub light: [f32; 3],
 }
 
-impl Cover {
+impl PixelCover {
     const NONE: Self =
         Self { nearest: f32::NEG_INFINITY, next: f32::NEG_INFINITY, share: 0.0, light: [0.0; 3] };
 
     /// How much of the pixel is left for what is no nearer than `most`, and of its light.
-    pub fn left(&self, color: [f32; 3], most: f32) -> (f32, [f32; 3]) {
-        if self.nearest <= most {
+    pub fn remaining(&self, color: [f32; 3], max_disparity: f32) -> (f32, [f32; 3]) {
+        if self.nearest <= max_disparity {
             return (1.0, color);
         }
         // Of two edges in one pixel nothing can be told.
-        if self.next > most || self.share >= 1.0 {
+        if self.next > max_disparity || self.share >= 1.0 {
             return (0.0, [0.0; 3]);
         }
         (1.0 - self.share, std::array::from_fn(|c| color[c] - self.light[c]))
@@ -53,12 +53,12 @@ impl Cover {
 }
 
 /// By pixel of the view at this offset, in the grid of cells. `jump` is the least step of disparity that is a jump.
-pub(crate) fn covers(grid: Grid, layer: Layer, offset: [f32; 2], jump: f32) -> Vec<Cover> {
-    let mut covers = vec![Cover::NONE; grid.count()];
+pub(crate) fn covers(grid: Grid, layer: MattedLayer, offset: [f32; 2], jump: f32) -> Vec<PixelCover> {
+    let mut project_covers = vec![PixelCover::NONE; grid.count()];
     let moved = |disparity: &f32| (disparity * offset[1]).abs();
     let far = layer.disparity.iter().map(moved).fold(0.0, f32::max).ceil() as usize;
     let far = far.saturating_add(1);
-    let bands = covers.par_chunks_mut(BAND * grid.width).enumerate();
+    let bands = project_covers.par_chunks_mut(BAND * grid.width).enumerate();
     bands.for_each(|(band, covers)| {
         let (first, rows) = (band * BAND, covers.len() / grid.width);
         // What a band shows comes from rows about it.
@@ -68,8 +68,9 @@ pub(crate) fn covers(grid: Grid, layer: Layer, offset: [f32; 2], jump: f32) -> V
             cells.filter(|&cell| !layer.disparity[cell].is_nan())
         };
         let touched = |cell: usize| {
-            let place = place(grid, cell, layer.disparity[cell], offset);
-            touched(grid, place).map(move |(pixel, share)| (pixel.wrapping_sub(first * grid.width), share))
+            let place = project_cell(grid, cell, layer.disparity[cell], offset);
+            overlapped_pixels(grid, place)
+                .map(move |(pixel, share)| (pixel.wrapping_sub(first * grid.width), share))
         };
         for cell in cells() {
             for (pixel, _) in touched(cell) {
@@ -92,27 +93,27 @@ pub(crate) fn covers(grid: Grid, layer: Layer, offset: [f32; 2], jump: f32) -> V
             }
         }
     });
-    covers
+    project_covers
 }
 
 /// Where a view shows a cell's middle, pixels from its upper left corner.
-pub(crate) fn place(grid: Grid, cell: usize, disparity: f32, [dx, dy]: [f32; 2]) -> [f32; 2] {
+pub(crate) fn project_cell(grid: Grid, cell: usize, disparity: f32, [dx, dy]: [f32; 2]) -> [f32; 2] {
     let (x, y) = ((cell % grid.width) as f32 + 0.5, (cell / grid.width) as f32 + 0.5);
     [x - disparity * dx, y - disparity * dy]
 }
 
 /// The pixels that a cell around this place has something in common with, and how much of each.
-pub(crate) fn touched(grid: Grid, [x, y]: [f32; 2]) -> impl Iterator<Item = (usize, f32)> {
+pub(crate) fn overlapped_pixels(grid: Grid, [x, y]: [f32; 2]) -> impl Iterator<Item = (usize, f32)> {
     let (left, above) = ((x - 0.5).floor(), (y - 0.5).floor());
     let (right, below) = (x - 0.5 - left, y - 0.5 - above);
-    let of = move |dx: isize, dy: isize| {
+    let at_offset = move |dx: isize, dy: isize| {
         let share = |after: f32, is_after: bool| if is_after { after } else { 1.0 - after };
         let share = share(right, dx == 1) * share(below, dy == 1);
         let (x, y) = ((left as isize).saturating_add(dx), (above as isize).saturating_add(dy));
         let is_in = (0..grid.width as isize).contains(&x) && (0..grid.height as isize).contains(&y);
         (is_in && share > TOUCHED).then(|| (grid.at(x as usize, y as usize), share))
     };
-    [(0, 0), (1, 0), (0, 1), (1, 1)].into_iter().filter_map(move |(dx, dy)| of(dx, dy))
+    [(0, 0), (1, 0), (0, 1), (1, 1)].into_iter().filter_map(move |(dx, dy)| at_offset(dx, dy))
 }
 
 #[cfg(test)]
@@ -123,7 +124,7 @@ mod tests {
     fn what_lies_behind_is_left_at_an_edge() {
         // A card's last column is there to 0.4; the view shows it half a pixel further left.
         let grid = Grid { width: 6, height: 1 };
-        let layer = Layer {
+        let layer = MattedLayer {
             disparity: &[0.5, 0.5, 0.5, 0.0, 0.0, 0.0],
             opacity: &[1.0, 1.0, 0.4, 1.0, 1.0, 1.0],
             colors: &[[0.8; 3]; 6],
@@ -137,9 +138,9 @@ mod tests {
         );
         // Behind it is 0.1.
         let color = [0.7 * 0.8 + 0.3 * 0.1; 3];
-        let (open, light) = covers[1].left(color, 0.25);
+        let (open, light) = covers[1].remaining(color, 0.25);
         assert!((open - 0.3).abs() < 1e-6 && (light[0] / open - 0.1).abs() < 1e-5, "{open} {light:?}");
-        assert_eq!(covers[0].left([0.8; 3], 0.25).0, 0.0);
-        assert_eq!(covers[4].left([0.3; 3], 0.25), (1.0, [0.3; 3]));
+        assert_eq!(covers[0].remaining([0.8; 3], 0.25).0, 0.0);
+        assert_eq!(covers[4].remaining([0.3; 3], 0.25), (1.0, [0.3; 3]));
     }
 }

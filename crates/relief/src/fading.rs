@@ -11,8 +11,8 @@ use rayon::prelude::*;
 const BOXES: usize = 3;
 
 /// Gives cells that are not known the colour of the nearest that is, blurred by a bell as wide as it is far away.
-pub(crate) fn fade(grid: Grid, colors: &mut [[f32; 3]], is_known: &[bool]) {
-    let distance = continued(grid, colors, is_known);
+pub(crate) fn fade(grid: Grid, colors: &mut [[f32; 3]], has_color: &[bool]) {
+    let distance = extend_colors(grid, colors, has_color);
     let farthest = distance.iter().copied().max().unwrap_or(0) as f32;
     let mut blurred = colors.to_vec();
     let mut sigma = 0.0f32;
@@ -33,9 +33,10 @@ pub(crate) fn fade(grid: Grid, colors: &mut [[f32; 3]], is_known: &[bool]) {
 }
 
 /// Carries colours from what is known outward; tells by how many cells. Where nothing is known nothing changes.
-fn continued(grid: Grid, colors: &mut [[f32; 3]], is_known: &[bool]) -> Vec<u32> {
-    let mut distance: Vec<u32> = is_known.iter().map(|known| if *known { 0 } else { u32::MAX }).collect();
-    let mut border: Vec<usize> = (0..grid.count()).filter(|&cell| is_known[cell]).collect();
+fn extend_colors(grid: Grid, colors: &mut [[f32; 3]], has_color: &[bool]) -> Vec<u32> {
+    let mut distance: Vec<u32> =
+        has_color.iter().map(|has_color| if *has_color { 0 } else { u32::MAX }).collect();
+    let mut border: Vec<usize> = (0..grid.count()).filter(|&cell| has_color[cell]).collect();
     while !border.is_empty() {
         let mut next = Vec::new();
         for cell in border {
@@ -97,11 +98,11 @@ mod tests {
     #[test]
     fn stripes_go_on_nearby_and_fade_to_their_mean() {
         let grid = Grid { width: 60, height: 40 };
-        let is_known: Vec<bool> = (0..grid.count()).map(|cell| cell / 60 < 20).collect();
+        let has_color: Vec<bool> = (0..grid.count()).map(|cell| cell / 60 < 20).collect();
         let striped: Vec<[f32; 3]> =
             (0..grid.count()).map(|cell| [f32::from(cell / 6 % 2 == 0), 0.3, 0.0]).collect();
         let mut faded = striped.clone();
-        fade(grid, &mut faded, &is_known);
+        fade(grid, &mut faded, &has_color);
         assert_eq!(faded[..20 * 60], striped[..20 * 60]);
         assert!(faded.iter().all(|color| (color[1] - 0.3).abs() < 1e-4));
         let contrast = |y: usize| (15..45).map(|x| (faded[grid.at(x, y)][0] - 0.5).abs()).fold(0.0, f32::max);

@@ -3,7 +3,7 @@
 use crate::cells::Grid;
 
 /// The same with a number everywhere, if there is one at all: inward from what is known, always the least of the neighbours.
-pub fn filled([width, height]: [usize; 2], mut disparity: Vec<f32>) -> Vec<f32> {
+pub fn fill_unknown_disparity([width, height]: [usize; 2], mut disparity: Vec<f32>) -> Vec<f32> {
     let grid = Grid { width, height };
     let mut border: Vec<usize> = (0..grid.count())
         .filter(|&cell| {
@@ -13,9 +13,9 @@ pub fn filled([width, height]: [usize; 2], mut disparity: Vec<f32>) -> Vec<f32> 
     while !border.is_empty() {
         let least =
             |cell: usize| grid.around(cell).map(|(_, other)| disparity[other]).fold(f32::NAN, f32::min);
-        let found: Vec<f32> = border.iter().map(|&cell| least(cell)).collect();
-        for (&cell, found) in border.iter().zip(found) {
-            disparity[cell] = found;
+        let values: Vec<f32> = border.iter().map(|&cell| least(cell)).collect();
+        for (&cell, value) in border.iter().zip(values) {
+            disparity[cell] = value;
         }
         let mut next: Vec<usize> =
             border.iter().flat_map(|&cell| grid.around(cell).map(|(_, other)| other)).collect();
@@ -32,10 +32,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_not_known_is_as_far_as_the_farther_side() {
-        let known = [1.0, f32::NAN, f32::NAN, f32::NAN, 0.2];
-        let filled = filled([5, 1], known.to_vec());
+    fn unknown_disparities_are_as_far_as_the_farther_side() {
+        let sparse = [1.0, f32::NAN, f32::NAN, f32::NAN, 0.2];
+        let filled = fill_unknown_disparity([5, 1], sparse.to_vec());
         assert_eq!(filled, [1.0, 1.0, 0.2, 0.2, 0.2]);
-        assert!(super::filled([2, 1], vec![f32::NAN; 2]).iter().all(|d| d.is_nan()));
+        assert!(super::fill_unknown_disparity([2, 1], vec![f32::NAN; 2]).iter().all(|d| d.is_nan()));
     }
 }

@@ -10,7 +10,7 @@ pub(crate) struct Frame {
 }
 
 impl Frame {
-    pub fn of([width, height]: [usize; 2], margin: usize) -> Self {
+    pub fn new([width, height]: [usize; 2], margin: usize) -> Self {
         Self { grid: Grid { width: width + 2 * margin, height: height + 2 * margin }, margin }
     }
 

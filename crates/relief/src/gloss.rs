@@ -9,13 +9,13 @@ mod sightings;
 
 use crate::cells::Grid;
 use crate::error::ReliefError;
-use crate::look::noise;
+use crate::look::noise_variance;
 use crate::other_view::OtherView;
-use crate::other_views::Seen;
+use crate::other_views::FrontLayer;
 use polynomial::{DEGREES, Regression};
 use progress::Progress;
 use rayon::prelude::*;
-use sightings::Sightings;
+use sightings::Observations;
 
 /// Gloss of a picture, as polynomials by blocks of its pixels.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,11 +37,11 @@ pub struct Gloss {
 pub const GLOSS_TERMS: usize = polynomial::TERMS - 1;
 
 /// A higher degree is taken if what is left out is told better by this factor of the squared error.
-const BETTER: f32 = 0.9;
+const DEGREE_IMPROVEMENT: f32 = 0.9;
 /// Gloss is believed where the squared error of what is left out is at most this share of what it is without.
-const BELIEVED: f32 = 0.6;
+const MAX_ERROR_SHARE: f32 = 0.6;
 /// So far off, px, textures may be in views: disparities and resampling do no better.
-const OFF_PX: f32 = 0.3;
+const TEXTURE_ERROR_PX: f32 = 0.3;
 
 impl Gloss {
     /// Of a block without.
@@ -49,8 +49,8 @@ impl Gloss {
 }
 
 /// The gloss of the cells of the first layer that are `whole`: there in the picture, and not in part. None where no block has any.
-pub(crate) fn gloss<E: Send>(
-    seen: &Seen<'_>,
+pub(crate) fn fit_gloss<E: Send>(
+    layer: &FrontLayer<'_>,
     shown: &[[f32; 3]],
     whole: &[bool],
     views: &[OtherView<'_, E>],
@@ -60,37 +60,40 @@ pub(crate) fn gloss<E: Send>(
     if views.is_empty() || reach == [0.0; 2] {
         return Ok(None);
     }
-    let sightings = Sightings::of(seen, shown, whole, views, progress)?;
+    let sightings = Observations::collect(layer, shown, whole, views, progress)?;
     let place = |view: &OtherView<'_, E>| {
         [0, 1].map(|axis| if reach[axis] > 0.0 { view.offset[axis] / reach[axis] } else { 0.0 })
     };
     let places: Vec<[f32; 2]> = views.iter().map(place).collect();
-    let regression = Regression::of(&places);
-    let of_block = |block: usize| regression.errors(&sightings.of_block(block), doubt(&sightings, block));
+    let regression = Regression::new(&places);
+    let of_block =
+        |block: usize| regression.errors(&sightings.of_block(block), noise_floor(&sightings, block));
     let errors: Vec<Option<[f32; DEGREES]>> =
         (0..sightings.blocks.count()).into_par_iter().map(of_block).collect();
     progress.check().map_err(ReliefError::Cancelled)?;
     let degrees: Vec<usize> = (0..sightings.blocks.count())
         .into_par_iter()
-        .map(|block| degree(&sightings, &errors, block))
+        .map(|block| select_degree(&sightings, &errors, block))
         .collect();
     let glossy: Vec<usize> = (0..degrees.len()).filter(|&block| degrees[block] > 0).collect();
     let mut numbers = vec![Gloss::NONE; degrees.len()];
     glossy.iter().enumerate().for_each(|(number, &block)| numbers[block] = number as u32);
-    let polynomials =
-        glossy.par_iter().map(|&block| regression.told(&sightings.of_block(block), degrees[block])).collect();
+    let polynomials = glossy
+        .par_iter()
+        .map(|&block| regression.fit_coefficients(&sightings.of_block(block), degrees[block]))
+        .collect();
     let Grid { width, height } = sightings.blocks;
-    let found = Gloss { block: sightings.side, blocks: [width, height], reach, numbers, polynomials };
-    Ok((!found.polynomials.is_empty()).then_some(found))
+    let gloss = Gloss { block: sightings.side, blocks: [width, height], reach, numbers, polynomials };
+    Ok((!gloss.polynomials.is_empty()).then_some(gloss))
 }
 
 /// What squared error is no gloss: that of noise, and of a texture that is off.
-fn doubt(sightings: &Sightings, block: usize) -> f32 {
-    noise(sightings.picture[block]) + OFF_PX * OFF_PX * sightings.steepest[block]
+fn noise_floor(sightings: &Observations, block: usize) -> f32 {
+    noise_variance(sightings.picture[block]) + TEXTURE_ERROR_PX * TEXTURE_ERROR_PX * sightings.steepest[block]
 }
 
 /// The degree that tells a block and those around it; 0 for none.
-fn degree(sightings: &Sightings, errors: &[Option<[f32; DEGREES]>], block: usize) -> usize {
+fn select_degree(sightings: &Observations, errors: &[Option<[f32; DEGREES]>], block: usize) -> usize {
     let Some(own) = errors[block] else { return 0 };
     let Grid { width, height } = sightings.blocks;
     let (x, y) = (block % width, block / width);
@@ -100,12 +103,13 @@ fn degree(sightings: &Sightings, errors: &[Option<[f32; DEGREES]>], block: usize
             let other = y * width + x;
             if let Some(errors) = errors[other] {
                 (0..DEGREES).for_each(|degree| sums[degree] += errors[degree]);
-                doubts += doubt(sightings, other);
+                doubts += noise_floor(sightings, other);
             }
         }
     }
-    let best =
-        (1..DEGREES).fold(0, |best, degree| if sums[degree] < BETTER * sums[best] { degree } else { best });
-    let is_believed = sums[best] <= BELIEVED * sums[0] && sums[0] - sums[best] > doubts && own[best] < own[0];
+    let best = (1..DEGREES)
+        .fold(0, |best, degree| if sums[degree] < DEGREE_IMPROVEMENT * sums[best] { degree } else { best });
+    let is_believed =
+        sums[best] <= MAX_ERROR_SHARE * sums[0] && sums[0] - sums[best] > doubts && own[best] < own[0];
     if is_believed { best } else { 0 }
 }

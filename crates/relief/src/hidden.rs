@@ -12,7 +12,7 @@ const MARGIN: f32 = 2.0;
 const ROUNDS: usize = 24;
 
 /// The second layer.
-pub(crate) struct Hidden {
+pub(crate) struct HiddenLayer {
     /// Disparity of each cell; none where nothing is hidden that matters.
     pub disparity: Vec<f32>,
     pub links: Links,
@@ -23,7 +23,7 @@ pub(crate) struct Hidden {
 }
 
 /// Where in [`Hidden::onward`] a side stands.
-pub(crate) fn number(side: Side) -> usize {
+pub(crate) fn side_index(side: Side) -> usize {
     match side {
         Side::Left => 0,
         Side::Right => 1,
@@ -34,14 +34,14 @@ pub(crate) fn number(side: Side) -> usize {
 
 /// Continues what lies behind jumps. `reach` is the aperture's radius (disparity times it is a parallax, px), `jump` the least step of
 /// disparity that is a jump, `further` so many cells beyond.
-pub(crate) fn hidden(
+pub(crate) fn continue_hidden(
     grid: Grid,
     front: &[f32],
     links: &Links,
     reach: f32,
     further: f32,
     jump: f32,
-) -> Hidden {
+) -> HiddenLayer {
     let mut disparity = vec![f32::NAN; grid.count()];
     let mut distance = vec![u32::MAX; grid.count()];
     let mut onward = vec![[false; 4]; grid.count()];
@@ -53,7 +53,7 @@ pub(crate) fn hidden(
             if links.has(cell, side) || !is_before {
                 continue;
             }
-            onward[cell][number(side)] = true;
+            onward[cell][side_index(side)] = true;
             if distance[cell] != 1 {
                 distance[cell] = 1;
                 queue.push_back(cell);
@@ -91,11 +91,11 @@ pub(crate) fn hidden(
         }
         // It goes on only from what it still lies beside.
         for (side, other) in grid.around(cell) {
-            let is_beside = onward[cell][number(side)] && (front[other] - disparity[cell]).abs() <= jump;
-            onward[cell][number(side)] = is_beside;
+            let is_beside = onward[cell][side_index(side)] && (front[other] - disparity[cell]).abs() <= jump;
+            onward[cell][side_index(side)] = is_beside;
         }
     }
-    Hidden { disparity, links: own_links, onward, order }
+    HiddenLayer { disparity, links: own_links, onward, order }
 }
 
 /// A membrane between the jumps that it goes on from.
@@ -114,9 +114,10 @@ fn even_out(
                 let own = disparity[cell];
                 let (mut sum, mut count) = (0.0, 0.0);
                 for (side, other) in grid.around(cell) {
-                    let beside = if onward[cell][number(side)] { front[other] } else { disparity[other] };
-                    if (beside - own).abs() <= jump {
-                        sum += beside;
+                    let neighbour =
+                        if onward[cell][side_index(side)] { front[other] } else { disparity[other] };
+                    if (neighbour - own).abs() <= jump {
+                        sum += neighbour;
                         count += 1.0;
                     }
                 }
@@ -136,12 +137,12 @@ mod tests {
     use crate::jumps;
 
     #[test]
-    fn a_wall_goes_on_behind_a_card_as_far_as_the_aperture_looks() {
+    fn a_wall_continues_behind_a_card_as_far_as_the_aperture_sees() {
         let grid = Grid { width: 40, height: 9 };
         let front: Vec<f32> =
             (0..grid.count()).map(|cell| if (15..30).contains(&(cell % 40)) { 2.0 } else { 0.5 }).collect();
         let links = jumps::links(grid, &front, 0.25);
-        let hidden = hidden(grid, &front, &links, 2.0, 0.0, 0.25);
+        let hidden = continue_hidden(grid, &front, &links, 2.0, 0.0, 0.25);
         // 1.5 of disparity by a radius of 2 and the margin: six cells from either side of the card.
         let row: Vec<usize> = (0..40).filter(|&x| !hidden.disparity[grid.at(x, 4)].is_nan()).collect();
         assert_eq!(row, [15, 16, 17, 18, 19, 20, 24, 25, 26, 27, 28, 29]);

@@ -29,15 +29,15 @@ fn side_of(grid: Grid, disparity: &[f32], colors: &[[f32; 3]], jump: f32, cell: 
     let (x, y) = (cell % grid.width, cell / grid.width);
     let across = (x > 0 && x + 1 < grid.width).then(|| [cell - 1, cell + 1]);
     let down = (y > 0 && y + 1 < grid.height).then(|| [cell - grid.width, cell + grid.width]);
-    let between = |[one, other]: &[usize; 2]| {
-        let (a, b) = (disparity[cell] - disparity[*one], disparity[*other] - disparity[cell]);
+    let between = |[first, second]: &[usize; 2]| {
+        let (a, b) = (disparity[cell] - disparity[*first], disparity[*second] - disparity[cell]);
         // Both of one sign, together a jump, and neither side goes on like that.
         let is_alone = |from: usize, to: usize, step: f32| {
             let beyond = to as isize + to as isize - from as isize;
             let is_in = beyond >= 0 && (beyond as usize) < grid.count();
             !is_in || (disparity[beyond as usize] - disparity[to]).abs() < SLOPE * step.abs()
         };
-        a * b > 0.0 && (a + b).abs() > jump && is_alone(cell, *one, a) && is_alone(cell, *other, b)
+        a * b > 0.0 && (a + b).abs() > jump && is_alone(cell, *first, a) && is_alone(cell, *second, b)
     };
     let ends = across.filter(between).or(down.filter(between))?;
     let far = |other: usize| {
@@ -73,9 +73,9 @@ fn hangs_together(grid: Grid, disparity: &[f32], jump: f32, cell: usize, side: S
     if here.abs() <= jump {
         return true;
     }
-    let goes_on =
+    let continues =
         |k: isize| step(k).is_some_and(|step| step * here > 0.0 && step.abs() >= SLOPE * here.abs());
-    (goes_on(-1) && goes_on(1)) || (goes_on(-1) && goes_on(-2)) || (goes_on(1) && goes_on(2))
+    (continues(-1) && continues(1)) || (continues(-1) && continues(-2)) || (continues(1) && continues(2))
 }
 
 #[cfg(test)]

@@ -43,10 +43,10 @@ mod triangulation;
 mod upsampling;
 
 pub use error::ReliefError;
-pub use filling::filled;
+pub use filling::fill_unknown_disparity;
 pub use gloss::{GLOSS_TERMS, Gloss};
 pub use other_view::OtherView;
 pub use relief::{Relief, ReliefOptions, ReliefVertex, TEXTURE_LAYERS};
-pub use repair::{DepthRepair, DepthStroke, repaired};
-pub use roughness::roughness;
-pub use upsampling::upsampled;
+pub use repair::{DepthRepair, DepthStroke, apply_depth_strokes};
+pub use roughness::measure_roughness;
+pub use upsampling::upsample;

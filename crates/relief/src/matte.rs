@@ -8,7 +8,7 @@
 //! picture stays what it is.
 
 use crate::cells::{Grid, Links};
-use crate::look::{Look, Looks, distance, noise};
+use crate::look::{ColorAccumulator, ColorStats, noise_variance, squared_distance};
 use rayon::prelude::*;
 
 /// From this share on a pixel shows one side only.
@@ -20,32 +20,32 @@ const FAR_AROUND: isize = 12;
 /// The standard deviation of a share where only depth tells it: an edge anywhere within a pixel.
 const BY_DEPTH: f32 = 0.3;
 /// So many standard deviations off 0 or 1 it is a mixture.
-const SURELY: f32 = 2.0;
+const MIN_DEVIATIONS: f32 = 2.0;
 /// Of how far a pixel is off the colour of its side, squared, a mixture explains at least so much.
 const EXPLAINED: f32 = 0.5;
 
 /// A pixel that shows both sides of a jump.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Mixed {
+pub(crate) struct MixedPixel {
     pub cell: usize,
     /// What stands before is this much of it, in (0, 1).
     pub share: f32,
     /// Whether it would be taken for what lies behind.
     pub is_beyond: bool,
-    pub before: Look,
-    pub behind: Look,
+    pub before: ColorStats,
+    pub behind: ColorStats,
 }
 
 /// Pixels beside jumps, which may show both sides.
-pub(crate) fn edges(
+pub(crate) fn find_edges(
     grid: Grid,
     disparity: &[f32],
     links: &Links,
     colors: &[[f32; 3]],
     jump: f32,
-) -> Vec<Mixed> {
-    let jumps = Jumps::of(grid, disparity, links, jump);
-    let look = |cell: usize| {
+) -> Vec<MixedPixel> {
+    let jumps = Jumps::new(grid, disparity, links, jump);
+    let edge_at = |cell: usize| {
         let own = disparity[cell];
         let (levels, is_beyond) = match (jumps.behind[cell], jumps.before[cell]) {
             (Some(behind), _) => ([own, behind], false),
@@ -53,49 +53,51 @@ pub(crate) fn edges(
             (None, None) => return None,
         };
         let [before, behind] = sides(grid, disparity, colors, &jumps, jump, cell, levels)?;
-        Some(Mixed { cell, share: f32::from(u8::from(!is_beyond)), is_beyond, before, behind })
+        Some(MixedPixel { cell, share: f32::from(u8::from(!is_beyond)), is_beyond, before, behind })
     };
-    (0..grid.count()).into_par_iter().filter_map(look).collect()
+    (0..grid.count()).into_par_iter().filter_map(edge_at).collect()
 }
 
 /// Those of the edges that do show both sides. Those of the farther side are then taken for the nearer one's, which they are part of: the
 /// disparities with that, too.
-pub(crate) fn mixtures(
+pub(crate) fn find_mixtures(
     grid: Grid,
     disparity: &[f32],
     links: &Links,
     colors: &[[f32; 3]],
-    edges: &[Mixed],
+    edges: &[MixedPixel],
     jump: f32,
-) -> (Vec<f32>, Vec<Mixed>) {
-    let told: Vec<Mixed> = edges.iter().filter_map(|edge| mixed(colors[edge.cell], *edge)).collect();
-    let across = across(grid, disparity, links, told.iter().filter(|told| told.is_beyond), jump);
-    (across, told)
+) -> (Vec<f32>, Vec<MixedPixel>) {
+    let mixtures: Vec<MixedPixel> =
+        edges.iter().filter_map(|edge| detect_mixture(colors[edge.cell], *edge)).collect();
+    let across =
+        disparity_across(grid, disparity, links, mixtures.iter().filter(|pixel| pixel.is_beyond), jump);
+    (across, mixtures)
 }
 
 /// Pixels beside jumps that show only what is on the other side.
-pub(crate) fn wrong(
+pub(crate) fn find_misplaced(
     grid: Grid,
     disparity: &[f32],
     links: &Links,
     colors: &[[f32; 3]],
     jump: f32,
-) -> Vec<Mixed> {
-    let told = edges(grid, disparity, links, colors, jump);
-    let is_wrong = |told: &Mixed| match told.is_beyond {
-        true => told.share >= WHOLE,
-        false => told.share <= 1.0 - WHOLE,
+) -> Vec<MixedPixel> {
+    let edges = find_edges(grid, disparity, links, colors, jump);
+    let is_misplaced = |pixel: &MixedPixel| match pixel.is_beyond {
+        true => pixel.share >= WHOLE,
+        false => pixel.share <= 1.0 - WHOLE,
     };
-    let told = told.into_iter().filter_map(|edge| mixed(colors[edge.cell], edge));
-    told.filter(is_wrong).collect()
+    let mixtures = edges.into_iter().filter_map(|edge| detect_mixture(colors[edge.cell], edge));
+    mixtures.filter(is_misplaced).collect()
 }
 
 /// The disparities where pixels beside jumps have that of what is on the other side.
-pub(crate) fn across<'a>(
+pub(crate) fn disparity_across<'a>(
     grid: Grid,
     disparity: &[f32],
     links: &Links,
-    pixels: impl IntoIterator<Item = &'a Mixed>,
+    pixels: impl IntoIterator<Item = &'a MixedPixel>,
     jump: f32,
 ) -> Vec<f32> {
     let mut across = disparity.to_vec();
@@ -116,8 +118,8 @@ pub(crate) fn across<'a>(
 }
 
 /// A mixture, told anew: once it is known what lies behind. The colours of both sides, of which it is made exactly.
-pub(crate) fn unmixed(color: [f32; 3], mixed: &Mixed) -> (f32, [[f32; 3]; 2]) {
-    let share = share(color, mixed).0.clamp(LEAST, 1.0 - LEAST);
+pub(crate) fn unmix(color: [f32; 3], mixed: &MixedPixel) -> (f32, [[f32; 3]; 2]) {
+    let share = estimate_share(color, mixed).0.clamp(MIN_SHARE, 1.0 - MIN_SHARE);
     let (a, b) = (share, 1.0 - share);
     let spread = a * a * mixed.before.variance + b * b * mixed.behind.variance;
     let mut sides = [mixed.before.color, mixed.behind.color];
@@ -133,7 +135,7 @@ pub(crate) fn unmixed(color: [f32; 3], mixed: &Mixed) -> (f32, [[f32; 3]; 2]) {
 }
 
 /// Shares are told in steps of an eighth bit; less than one is none.
-const LEAST: f32 = 1.0 / 256.0;
+const MIN_SHARE: f32 = 1.0 / 256.0;
 
 /// Where depth jumps: by cell, what lies on the other side.
 struct Jumps {
@@ -144,10 +146,10 @@ struct Jumps {
 }
 
 impl Jumps {
-    fn of(grid: Grid, disparity: &[f32], links: &Links, jump: f32) -> Self {
-        let mut found = Self { behind: vec![None; grid.count()], before: vec![None; grid.count()] };
-        let far = |found: Option<f32>, other: f32| Some(found.map_or(other, |known| known.min(other)));
-        let near = |found: Option<f32>, other: f32| Some(found.map_or(other, |known| known.max(other)));
+    fn new(grid: Grid, disparity: &[f32], links: &Links, jump: f32) -> Self {
+        let mut jumps = Self { behind: vec![None; grid.count()], before: vec![None; grid.count()] };
+        let far = |current: Option<f32>, other: f32| Some(current.map_or(other, |value| value.min(other)));
+        let near = |current: Option<f32>, other: f32| Some(current.map_or(other, |value| value.max(other)));
         for cell in 0..grid.count() {
             for (side, other) in grid.around(cell) {
                 if links.has(cell, side) {
@@ -155,13 +157,13 @@ impl Jumps {
                 }
                 let step = disparity[cell] - disparity[other];
                 if step > jump {
-                    found.behind[cell] = far(found.behind[cell], disparity[other]);
+                    jumps.behind[cell] = far(jumps.behind[cell], disparity[other]);
                 } else if step < -jump {
-                    found.before[cell] = near(found.before[cell], disparity[other]);
+                    jumps.before[cell] = near(jumps.before[cell], disparity[other]);
                 }
             }
         }
-        found
+        jumps
     }
 
     /// Whether a cell lies at no jump.
@@ -179,11 +181,11 @@ fn sides(
     jump: f32,
     cell: usize,
     [before, behind]: [f32; 2],
-) -> Option<[Look; 2]> {
+) -> Option<[ColorStats; 2]> {
     let [x, y] = [cell % grid.width, cell / grid.width].map(|at| at as isize);
     // Of what lies in one depth around it, so far: the whole pixels, or all.
     let around = |level: f32, reach: isize, of_all: bool| {
-        let mut looks = Looks::default();
+        let mut accumulator = ColorAccumulator::default();
         for (dy, dx) in (-reach..=reach).flat_map(|dy| (-reach..=reach).map(move |dx| (dy, dx))) {
             let (x, y) = (x + dx, y + dy);
             if x < 0 || y < 0 || x >= grid.width as isize || y >= grid.height as isize {
@@ -192,10 +194,10 @@ fn sides(
             let other = grid.at(x as usize, y as usize);
             if (disparity[other] - level).abs() <= jump && (of_all || jumps.is_plain(other)) {
                 // Nearer ones tell more.
-                looks.add(colors[other], 1.0 / (1.0 + (dx * dx + dy * dy) as f32));
+                accumulator.add(colors[other], 1.0 / (1.0 + (dx * dx + dy * dy) as f32));
             }
         }
-        looks.look()
+        accumulator.stats()
     };
     let behind = around(behind, AROUND, false)?;
     // What is too thin to have an inside goes on elsewhere, as hair on a head; or it is told by what there is of it.
@@ -206,9 +208,9 @@ fn sides(
 }
 
 /// The share of what stands before, and its standard deviation.
-fn share(color: [f32; 3], mixed: &Mixed) -> (f32, f32) {
+fn estimate_share(color: [f32; 3], mixed: &MixedPixel) -> (f32, f32) {
     let expected = if mixed.is_beyond { 0.0 } else { 1.0 };
-    let between = distance(mixed.before.color, mixed.behind.color);
+    let between = squared_distance(mixed.before.color, mixed.behind.color);
     let along: f32 = (0..3)
         .map(|c| (color[c] - mixed.behind.color[c]) * (mixed.before.color[c] - mixed.behind.color[c]))
         .sum();
@@ -217,7 +219,7 @@ fn share(color: [f32; 3], mixed: &Mixed) -> (f32, f32) {
     let mut precision = by_depth;
     // How much either side varies counts as much as there is of it.
     for _ in 0..3 {
-        let noise = noise(color);
+        let noise = noise_variance(color);
         let variance = share * share * mixed.before.variance + (1.0 - share).powi(2) * mixed.behind.variance;
         let variance = (variance + noise) / 3.0;
         precision = by_depth + between / variance;
@@ -227,10 +229,13 @@ fn share(color: [f32; 3], mixed: &Mixed) -> (f32, f32) {
 }
 
 /// Whether a pixel is a mixture, and of how much.
-fn mixed(color: [f32; 3], mixed: Mixed) -> Option<Mixed> {
-    let (share, deviation) = share(color, &mixed);
-    let (pure, off) = if mixed.is_beyond { (mixed.behind, share) } else { (mixed.before, 1.0 - share) };
+fn detect_mixture(color: [f32; 3], mixed: MixedPixel) -> Option<MixedPixel> {
+    let (share, deviation) = estimate_share(color, &mixed);
+    let (pure, mixed_share) =
+        if mixed.is_beyond { (mixed.behind, share) } else { (mixed.before, 1.0 - share) };
     let mean = std::array::from_fn(|c| share * mixed.before.color[c] + (1.0 - share) * mixed.behind.color[c]);
-    let is_explained = distance(color, mean) <= (1.0 - EXPLAINED) * distance(color, pure.color);
-    (off > SURELY * deviation && off >= LEAST && is_explained).then_some(Mixed { share, ..mixed })
+    let is_explained =
+        squared_distance(color, mean) <= (1.0 - EXPLAINED) * squared_distance(color, pure.color);
+    (mixed_share > MIN_DEVIATIONS * deviation && mixed_share >= MIN_SHARE && is_explained)
+        .then_some(MixedPixel { share, ..mixed })
 }

@@ -1,10 +1,10 @@
 //! What other views show of places that the picture does not.
 
 use crate::cells::Grid;
-use crate::covers::{Cover, Layer, covers, place, touched};
+use crate::covers::{MattedLayer, PixelCover, covers, overlapped_pixels, project_cell};
 use crate::error::ReliefError;
 use crate::frame::Frame;
-use crate::look::{Look, Looks};
+use crate::look::{ColorAccumulator, ColorStats};
 use crate::other_view::OtherView;
 use progress::Progress;
 use rayon::prelude::*;
@@ -18,31 +18,31 @@ const LEAST_LEFT: f32 = 0.05;
 
 /// A place that the picture does not show.
 #[derive(Clone, Copy)]
-pub(crate) struct Asked {
+pub(crate) struct TexelQuery {
     pub cell: usize,
     pub disparity: f32,
 }
 
 /// What views look at: the first layer.
-pub(crate) struct Seen<'a> {
+pub(crate) struct FrontLayer<'a> {
     pub frame: &'a Frame,
     pub front: &'a [f32],
     /// The least step of disparity that is a jump.
     pub jump: f32,
 }
 
-impl Seen<'_> {
+impl FrontLayer<'_> {
     /// What other views show of places, where one does; in pixels that they share with what stands before, what is left of their
     /// light.
-    pub fn looks<E: Send>(
+    pub fn collect_color_stats<E: Send>(
         &self,
-        asked: &[Asked],
-        before: Layer,
+        queries: &[TexelQuery],
+        before: MattedLayer,
         views: &[&OtherView<'_, E>],
         progress: &dyn Progress,
-    ) -> Result<Vec<Option<Look>>, ReliefError<E>> {
-        let mut sums = vec![Looks::default(); asked.len()];
-        if asked.is_empty() {
+    ) -> Result<Vec<Option<ColorStats>>, ReliefError<E>> {
+        let mut sums = vec![ColorAccumulator::default(); queries.len()];
+        if queries.is_empty() {
             return Ok(Vec::new());
         }
         let (grid, margin) = (self.frame.grid, self.frame.margin as f32);
@@ -57,37 +57,37 @@ impl Seen<'_> {
                 continue;
             }
             let covers = covers(grid, before, view.offset, self.jump);
-            sums.par_iter_mut().zip(asked).for_each(|(sum, asked)| {
-                let most = asked.disparity + self.jump;
-                let place = place(grid, asked.cell, asked.disparity, view.offset);
-                if !is_in(picture, place.map(|at| at - margin)) {
+            sums.par_iter_mut().zip(queries).for_each(|(sum, query)| {
+                let max_disparity = query.disparity + self.jump;
+                let place = project_cell(grid, query.cell, query.disparity, view.offset);
+                if !is_inside(picture, place.map(|at| at - margin)) {
                     return;
                 }
                 let (mut left, mut light) = (0.0, [0.0; 3]);
-                for (pixel, share) in touched(grid, place) {
+                for (pixel, share) in overlapped_pixels(grid, place) {
                     // The border goes on.
                     let color = shown[self.frame.pixel(pixel)];
-                    let (open, of_pixel) = covers[pixel].left(color, most);
+                    let (open, of_pixel) = covers[pixel].remaining(color, max_disparity);
                     left += share * open;
                     (0..3).for_each(|c| light[c] += share * of_pixel[c]);
                 }
                 if left < LEAST_LEFT {
                     return;
                 }
-                let weight = if is_clear(grid, &covers, place, most) { 1.0 } else { BESIDE_EDGES };
+                let weight = if is_clear(grid, &covers, place, max_disparity) { 1.0 } else { BESIDE_EDGES };
                 sum.add(light.map(|light| (light / left).max(0.0)), left * left * weight);
             });
         }
-        Ok(sums.iter().map(Looks::look).collect())
+        Ok(sums.iter().map(ColorAccumulator::stats).collect())
     }
 }
 
 /// The disparity of what is nearest in each pixel of a view, as far as the first layer tells.
-pub(crate) fn nearest(grid: Grid, front: &[f32], offset: [f32; 2]) -> Vec<f32> {
+pub(crate) fn nearest_disparity(grid: Grid, front: &[f32], offset: [f32; 2]) -> Vec<f32> {
     let mut nearest = vec![f32::NEG_INFINITY; grid.count()];
     for (cell, &disparity) in front.iter().enumerate().filter(|(_, disparity)| !disparity.is_nan()) {
         // It covers the pixels whose middles are nearer to its own than they are wide, but for a rim that is less than noise.
-        let [columns, rows] = place(grid, cell, disparity, offset).map(|at| {
+        let [columns, rows] = project_cell(grid, cell, disparity, offset).map(|at| {
             let first = (at - 0.5).floor();
             let share = at - 0.5 - first;
             [
@@ -106,24 +106,24 @@ pub(crate) fn nearest(grid: Grid, front: &[f32], offset: [f32; 2]) -> Vec<f32> {
 }
 
 /// Whether nothing of more disparity than `most` is at a place or beside it.
-fn is_clear(grid: Grid, covers: &[Cover], [x, y]: [f32; 2], most: f32) -> bool {
+fn is_clear(grid: Grid, covers: &[PixelCover], [x, y]: [f32; 2], max_disparity: f32) -> bool {
     let (x, y) = (x.floor() as isize, y.floor() as isize);
     (y - 1..=y + 1).all(|y| {
         (x - 1..=x + 1).all(|x| {
             let is_in = (0..grid.width as isize).contains(&x) && (0..grid.height as isize).contains(&y);
-            !is_in || covers[grid.at(x as usize, y as usize)].nearest <= most
+            !is_in || covers[grid.at(x as usize, y as usize)].nearest <= max_disparity
         })
     })
 }
 
 /// Whether a place is in a picture.
-fn is_in(picture: Grid, [x, y]: [f32; 2]) -> bool {
+fn is_inside(picture: Grid, [x, y]: [f32; 2]) -> bool {
     x >= 0.0 && y >= 0.0 && x <= picture.width as f32 && y <= picture.height as f32
 }
 
 /// What a picture shows at a place in it.
-pub(crate) fn interpolated(grid: Grid, picture: &[[f32; 3]], [x, y]: [f32; 2]) -> Option<[f32; 3]> {
-    if !is_in(grid, [x, y]) {
+pub(crate) fn interpolate(grid: Grid, picture: &[[f32; 3]], [x, y]: [f32; 2]) -> Option<[f32; 3]> {
+    if !is_inside(grid, [x, y]) {
         return None;
     }
     let (x, y) = (x - 0.5, y - 0.5);

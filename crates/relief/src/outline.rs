@@ -7,7 +7,7 @@
 use glam::Vec2;
 
 /// Shares of the pixels around may be so far off what the line leaves them, in the mean.
-const OFF: f32 = 0.12;
+const MAX_MEAN_ERROR: f32 = 0.12;
 /// Halvings until a line is where it leaves the share: finer than shares are told.
 const HALVINGS: usize = 24;
 
@@ -16,7 +16,7 @@ const PIXEL: [Vec2; 4] = [Vec2::new(0.0, 0.0), Vec2::new(0.0, 1.0), Vec2::new(1.
 
 /// What of a pixel stands before, by the shares of it and of those around, row by row: corners in it, x right, y down, counter-clockwise as
 /// the picture shows them.
-pub(crate) fn before(shares: &[[f32; 3]; 3]) -> Option<Vec<Vec2>> {
+pub(crate) fn fit_outline(shares: &[[f32; 3]; 3]) -> Option<Vec<Vec2>> {
     let rise = |at: &dyn Fn(usize, usize) -> f32| {
         (0..3).map(|k| [1.0, 2.0, 1.0][k] * (at(k, 2) - at(k, 0))).sum::<f32>()
     };
@@ -27,24 +27,24 @@ pub(crate) fn before(shares: &[[f32; 3]; 3]) -> Option<Vec<Vec2>> {
     let corner = Vec2::splat(0.5);
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);
-        match area(&cut(Vec2::ZERO, normal, corner, middle)) > shares[1][1] {
+        match area(&clip(Vec2::ZERO, normal, corner, middle)) > shares[1][1] {
             true => low = middle,
             false => high = middle,
         }
     }
-    let mut off = 0.0;
+    let mut mean_error = 0.0;
     for (y, row) in shares.iter().enumerate() {
         for (x, share) in row.iter().enumerate() {
             let pixel = Vec2::new(x as f32 - 1.0, y as f32 - 1.0);
-            off += (area(&cut(pixel, normal, corner, low)) - share).abs() / 8.0;
+            mean_error += (area(&clip(pixel, normal, corner, low)) - share).abs() / 8.0;
         }
     }
-    let outline = cut(Vec2::ZERO, normal, corner, low);
-    (off <= OFF && outline.len() >= 3).then_some(outline)
+    let outline = clip(Vec2::ZERO, normal, corner, low);
+    (mean_error <= MAX_MEAN_ERROR && outline.len() >= 3).then_some(outline)
 }
 
 /// What of a pixel with this upper left corner lies at least so far from `from` along a normal.
-fn cut(pixel: Vec2, normal: Vec2, from: Vec2, far: f32) -> Vec<Vec2> {
+fn clip(pixel: Vec2, normal: Vec2, from: Vec2, far: f32) -> Vec<Vec2> {
     let height = |place: Vec2| (place - from).dot(normal) - far;
     let mut left = Vec::with_capacity(5);
     for k in 0..4 {
@@ -76,32 +76,36 @@ mod tests {
 
     /// Shares that a line leaves, upright to an angle, so far from the middle.
     fn shares(angle: f32, far: f32) -> [[f32; 3]; 3] {
-        let of = |x: usize, y: usize| {
+        let share_at = |x: usize, y: usize| {
             let pixel = Vec2::new(x as f32 - 1.0, y as f32 - 1.0);
-            area(&cut(pixel, Vec2::from_angle(angle), Vec2::splat(0.5), far))
+            area(&clip(pixel, Vec2::from_angle(angle), Vec2::splat(0.5), far))
         };
-        std::array::from_fn(|y| std::array::from_fn(|x| of(x, y)))
+        std::array::from_fn(|y| std::array::from_fn(|x| share_at(x, y)))
     }
 
     #[test]
-    fn a_straight_edge_is_found_where_it_is() {
+    fn a_straight_edge_is_located() {
         for step in 0..40 {
             let (angle, far) = (0.37 * step as f32, 0.4 * (0.61 * step as f32).sin());
             let shares = shares(angle, far);
-            let found = before(&shares).expect("it is straight");
-            assert!((area(&found) - shares[1][1]).abs() < 1e-4, "{} {}", area(&found), shares[1][1]);
+            let outline = fit_outline(&shares).expect("it is straight");
+            assert!((area(&outline) - shares[1][1]).abs() < 1e-4, "{} {}", area(&outline), shares[1][1]);
             // Between the true line and the one that was found lies little.
             let normal = Vec2::from_angle(angle);
-            let off = found.iter().map(|place| far - (*place - 0.5).dot(normal)).fold(0.0, f32::max);
-            assert!(off < 0.12, "{off} at {angle} {far}");
+            let error = outline.iter().map(|place| far - (*place - 0.5).dot(normal)).fold(0.0, f32::max);
+            assert!(error < 0.12, "{error} at {angle} {far}");
         }
     }
 
     #[test]
     fn hair_and_corners_have_no_line() {
-        assert_eq!(before(&[[0.0, 0.5, 0.0]; 3]), None, "a hair");
-        assert_eq!(before(&[[0.0; 3], [0.0, 0.4, 0.0], [0.0; 3]]), None, "a speck");
-        assert_eq!(before(&[[1.0, 0.3, 1.0]; 3]), None, "a gap");
-        assert_eq!(before(&[[0.0, 0.0, 0.0], [0.0, 0.3, 0.3], [0.0, 0.0, 0.0]]), None, "the end of a hair");
+        assert_eq!(fit_outline(&[[0.0, 0.5, 0.0]; 3]), None, "a hair");
+        assert_eq!(fit_outline(&[[0.0; 3], [0.0, 0.4, 0.0], [0.0; 3]]), None, "a speck");
+        assert_eq!(fit_outline(&[[1.0, 0.3, 1.0]; 3]), None, "a gap");
+        assert_eq!(
+            fit_outline(&[[0.0, 0.0, 0.0], [0.0, 0.3, 0.3], [0.0, 0.0, 0.0]]),
+            None,
+            "the end of a hair"
+        );
     }
 }

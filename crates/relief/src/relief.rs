@@ -2,16 +2,16 @@
 
 use crate::cells::{Cells, Grid, Links};
 use crate::corners::Corner;
-use crate::covers::Layer;
+use crate::covers::MattedLayer;
 use crate::error::ReliefError;
 use crate::frame::Frame;
-use crate::gloss::{Gloss, gloss};
-use crate::hidden::{Hidden, hidden};
-use crate::matte::{Mixed, unmixed};
+use crate::gloss::{Gloss, fit_gloss};
+use crate::hidden::{HiddenLayer, continue_hidden};
+use crate::matte::{MixedPixel, unmix};
 use crate::other_view::OtherView;
-use crate::other_views::{Asked, Seen};
-use crate::snapping::snap;
-use crate::texture::{Texture, texture};
+use crate::other_views::{FrontLayer, TexelQuery};
+use crate::snapping::snap_edges;
+use crate::texture::{Texture, build_texture};
 use crate::triangulation::{Metric, Triangulation};
 use crate::{jumps, matte, outline, steps};
 use glam::Vec2;
@@ -72,9 +72,9 @@ pub struct Relief {
     /// By texel of the first layer, how much of it is there, in (0, 1]: less than 1 beneath the triangles that say so.
     pub opacity: Vec<f32>,
     /// By texel of the first layer, whether the picture shows there what is behind it, too: its colour is not the picture's.
-    pub is_told_apart: Vec<bool>,
+    pub is_matted: Vec<bool>,
     /// By texel of both layers, whether some picture shows it; what is not was invented.
-    pub is_seen: Vec<bool>,
+    pub is_observed: Vec<bool>,
     /// What the first layer sends otherwise through other parts of the aperture than through the middle; none where other views show nothing
     /// of it.
     pub gloss: Option<Gloss>,
@@ -92,7 +92,7 @@ impl Relief {
     ///
     /// # Panics
     /// If picture or disparities are not of the size.
-    pub fn of<E: Send>(
+    pub fn build<E: Send>(
         size: [usize; 2],
         disparity: &[f32],
         picture: &[[f32; 3]],
@@ -101,58 +101,66 @@ impl Relief {
         progress: &dyn Progress,
     ) -> Result<Self, ReliefError<E>> {
         assert!(disparity.len() == size[0] * size[1] && picture.len() == disparity.len());
-        let frame = Frame::of(size, options.margin_px);
+        let frame = Frame::new(size, options.margin_px);
         let grid = frame.grid;
         let jump = options.jump_px / options.reach;
         let (mut front, shown) = (frame.continued(disparity), frame.continued(picture));
         jumps::snap(grid, &mut front, &shown, jump);
-        steps::even_out(grid, &mut front, jump);
+        steps::smooth_rounding(grid, &mut front, jump);
         let stage = Stage::new(progress, 0.0, 0.1);
-        let (stays, links) = snap(&frame, &mut front, &shown, views, jump, &stage)?;
+        let (stays, links) = snap_edges(&frame, &mut front, &shown, views, jump, &stage)?;
         let reach = options.reach * options.beyond;
-        let mut edges = matte::edges(grid, &front, &links, &shown, jump);
+        let mut edges = matte::find_edges(grid, &front, &links, &shown, jump);
         edges.retain(|edge| !stays[edge.cell]);
         progress.check().map_err(ReliefError::Cancelled)?;
 
         // What else is to be shown: beside the picture, behind it, and what edges are told apart by. They may move by a cell.
-        let behind = hidden(grid, &front, &links, reach, 1.0, jump);
-        let beside = (0..grid.count()).filter(|&cell| !frame.is_in_picture(cell));
-        let beside = beside.map(|cell| (cell, Asked { cell, disparity: front[cell] }));
-        let lies_open = |edge: &&Mixed| edge.is_beyond && behind.disparity[edge.cell].is_nan();
+        let behind = continue_hidden(grid, &front, &links, reach, 1.0, jump);
+        let margin_cells = (0..grid.count()).filter(|&cell| !frame.is_in_picture(cell));
+        let margin_queries = margin_cells.map(|cell| (cell, TexelQuery { cell, disparity: front[cell] }));
+        let lies_open = |edge: &&MixedPixel| edge.is_beyond && behind.disparity[edge.cell].is_nan();
         let beyond = edges.iter().filter(lies_open).map(|edge| (edge.cell, front[edge.cell]));
         let behind = behind.order.iter().map(|&cell| (cell, behind.disparity[cell])).chain(beyond);
-        let behind = behind.map(|(cell, disparity)| (grid.count() + cell, Asked { cell, disparity }));
-        let asked = beside.chain(behind).filter(|(_, asked)| !asked.disparity.is_nan());
-        let (places, asked): (Vec<usize>, Vec<Asked>) = asked.unzip();
-        let seen = Seen { frame: &frame, front: &front, jump };
+        let behind = behind.map(|(cell, disparity)| (grid.count() + cell, TexelQuery { cell, disparity }));
+        let queries = margin_queries.chain(behind).filter(|(_, query)| !query.disparity.is_nan());
+        let (places, queries): (Vec<usize>, Vec<TexelQuery>) = queries.unzip();
+        let front_layer = FrontLayer { frame: &frame, front: &front, jump };
         let all: Vec<_> = views.iter().collect();
-        let before = told_apart(grid, &front, &links, &shown, &edges, jump);
-        let looks = seen.looks(&asked, before.layer(), &all, &Stage::new(progress, 0.1, 0.5))?;
-        let mut told = vec![None; TEXTURE_LAYERS * grid.count()];
-        places.into_iter().zip(looks).for_each(|(place, look)| told[place] = look);
+        let picture_matte = matte_from_picture(grid, &front, &links, &shown, &edges, jump);
+        let color_stats = front_layer.collect_color_stats(
+            &queries,
+            picture_matte.layer(),
+            &all,
+            &Stage::new(progress, 0.1, 0.5),
+        )?;
+        let mut observed_colors = vec![None; TEXTURE_LAYERS * grid.count()];
+        places.into_iter().zip(color_stats).for_each(|(place, stats)| observed_colors[place] = stats);
 
-        let edges: Vec<Mixed> = edges
+        let edges: Vec<MixedPixel> = edges
             .into_iter()
-            .map(|edge| Mixed { behind: told[grid.count() + edge.cell].unwrap_or(edge.behind), ..edge })
+            .map(|edge| MixedPixel {
+                behind: observed_colors[grid.count() + edge.cell].unwrap_or(edge.behind),
+                ..edge
+            })
             .collect();
-        let (front, mixed) = matte::mixtures(grid, &front, &links, &shown, &edges, jump);
+        let (front, mixed) = matte::find_mixtures(grid, &front, &links, &shown, &edges, jump);
         let links = jumps::links(grid, &front, jump);
-        let hidden = hidden(grid, &front, &links, reach, 0.0, jump);
+        let hidden = continue_hidden(grid, &front, &links, reach, 0.0, jump);
         progress.check().map_err(ReliefError::Cancelled)?;
         let is_in_picture = |cell| frame.is_in_picture(cell);
-        let Texture { colors, is_seen, mut opacity } =
-            texture(grid, shown, is_in_picture, &hidden, &mixed, &told);
+        let Texture { colors, is_observed, mut opacity } =
+            build_texture(grid, shown, is_in_picture, &hidden, &mixed, &observed_colors);
         let whole: Vec<bool> =
             (0..grid.count()).map(|cell| frame.is_in_picture(cell) && opacity[cell] == 1.0).collect();
-        let seen = Seen { frame: &frame, front: &front, jump };
-        let gloss = gloss(&seen, &colors[0], &whole, views, &Stage::new(progress, 0.5, 0.9))?;
-        let Hidden { disparity: back, links: back_links, onward, .. } = hidden;
+        let front_layer = FrontLayer { frame: &frame, front: &front, jump };
+        let gloss = fit_gloss(&front_layer, &colors[0], &whole, views, &Stage::new(progress, 0.5, 0.9))?;
+        let HiddenLayer { disparity: back, links: back_links, onward, .. } = hidden;
         let cells = Cells { grid, disparity: [front, back], links: [links, back_links], onward };
-        let mut mesh = Mesh::of(grid);
+        let mut mesh = Mesh::new(grid);
         let metric = Metric { reach: options.reach, offset: options.offset };
-        let is_told_apart: Vec<bool> = opacity.iter().map(|share| *share < 1.0).collect();
+        let is_matted: Vec<bool> = opacity.iter().map(|share| *share < 1.0).collect();
         for layer in 0..TEXTURE_LAYERS {
-            let is_whole = |cell: usize| layer > 0 || !is_told_apart[cell];
+            let is_whole = |cell: usize| layer > 0 || !is_matted[cell];
             mesh.add(&cells, layer, metric, options.tolerance_px, &is_whole);
         }
         for (cell, outline) in outlines(&cells, &opacity, jump).collect::<Vec<_>>() {
@@ -175,8 +183,8 @@ impl Relief {
             translucent: mesh.translucent,
             texture: colors.concat(),
             opacity,
-            is_told_apart,
-            is_seen,
+            is_matted,
+            is_observed,
             gloss,
         })
     }
@@ -188,33 +196,33 @@ impl Relief {
 }
 
 /// The first layer as far as the picture alone tells its edges apart.
-struct ToldApart {
+struct PictureMatte {
     disparity: Vec<f32>,
     opacity: Vec<f32>,
     colors: Vec<[f32; 3]>,
 }
 
-impl ToldApart {
-    fn layer(&self) -> Layer<'_> {
-        Layer { disparity: &self.disparity, opacity: &self.opacity, colors: &self.colors }
+impl PictureMatte {
+    fn layer(&self) -> MattedLayer<'_> {
+        MattedLayer { disparity: &self.disparity, opacity: &self.opacity, colors: &self.colors }
     }
 }
 
-fn told_apart(
+fn matte_from_picture(
     grid: Grid,
     front: &[f32],
     links: &Links,
     shown: &[[f32; 3]],
-    edges: &[Mixed],
+    edges: &[MixedPixel],
     jump: f32,
-) -> ToldApart {
-    let (disparity, mixed) = matte::mixtures(grid, front, links, shown, edges, jump);
+) -> PictureMatte {
+    let (disparity, mixed) = matte::find_mixtures(grid, front, links, shown, edges, jump);
     let (mut opacity, mut colors) = (vec![1.0; grid.count()], shown.to_vec());
     for mixed in mixed {
-        let (share, [before, _]) = unmixed(shown[mixed.cell], &mixed);
+        let (share, [before, _]) = unmix(shown[mixed.cell], &mixed);
         (opacity[mixed.cell], colors[mixed.cell]) = (share, before);
     }
-    ToldApart { disparity, opacity, colors }
+    PictureMatte { disparity, opacity, colors }
 }
 
 /// Triangles as they are found, and the points that they share.
@@ -233,7 +241,7 @@ struct Mesh {
 const NONE: u32 = u32::MAX;
 
 impl Mesh {
-    fn of(grid: Grid) -> Self {
+    fn new(grid: Grid) -> Self {
         let row = grid.width + 1;
         let first = vec![NONE; row * (grid.height + 1)];
         Self {
@@ -248,16 +256,16 @@ impl Mesh {
 
     fn vertex(&mut self, layer: u8, corner: Corner) -> u32 {
         let at = corner.at[1] * self.row + corner.at[0];
-        let known = match layer == 0 && corner.point == 0 {
+        let index = match layer == 0 && corner.point == 0 {
             true => &mut self.first[at],
             false => self.others.entry((layer, at, corner.point)).or_insert(NONE),
         };
-        if *known == NONE {
-            *known = self.vertices.len() as u32;
+        if *index == NONE {
+            *index = self.vertices.len() as u32;
             let place = Vec2::new(corner.at[0] as f32, corner.at[1] as f32);
             self.vertices.push(ReliefVertex { place, disparity: corner.disparity, layer });
         }
-        *known
+        *index
     }
 
     /// A layer's triangles, but for cells that are not whole.
@@ -269,7 +277,7 @@ impl Mesh {
         tolerance: f32,
         is_whole: &(dyn Fn(usize) -> bool + Sync),
     ) {
-        for triangle in Triangulation::of(cells, layer, metric, is_whole).triangles(tolerance) {
+        for triangle in Triangulation::new(cells, layer, metric, is_whole).triangles(tolerance) {
             // A triangle over a cell that is not whole is half of that cell.
             let least = [0, 1].map(|axis| triangle.corners.iter().map(|at| at[axis]).min().unwrap_or(0));
             if !is_whole(cells.grid.at(least[0], least[1])) {
@@ -346,5 +354,5 @@ fn outlines<'a>(
         Some(shares)
     };
     let in_part = (0..grid.count()).filter(|&cell| opacity[cell] < 1.0);
-    in_part.map(move |cell| (cell, shares(cell).and_then(|shares| outline::before(&shares))))
+    in_part.map(move |cell| (cell, shares(cell).and_then(|shares| outline::fit_outline(&shares))))
 }

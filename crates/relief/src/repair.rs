@@ -22,7 +22,8 @@ pub struct DepthStroke {
     /// What it does.
     pub repair: DepthRepair,
     /// Where it goes, pixels from the picture's upper left corner.
-    pub way: Vec<[f32; 2]>,
+    #[serde(rename = "way")]
+    pub path: Vec<[f32; 2]>,
     /// How far it reaches to either side, px, > 0.
     pub radius_px: f32,
     /// The share of the radius with full strength, in [0, 1].
@@ -32,18 +33,18 @@ pub struct DepthStroke {
 }
 
 /// How far one full stroke pulls or pushes, of the range of the picture's disparities.
-const DEEPEST: f32 = 0.1;
+const MAX_SHIFT_SHARE: f32 = 0.1;
 /// Places and radii beyond this are none of a picture, px.
-const FARTHEST_PX: f32 = 1e6;
+const MAX_COORDINATE_PX: f32 = 1e6;
 /// Pixels to either side that are evened out among, as a share of the radius, and at most.
-const AMONG: f32 = 0.5;
-const AMONG_PX: f32 = 24.0;
+const SMOOTHING_RADIUS_SHARE: f32 = 0.5;
+const MAX_SMOOTHING_RADIUS_PX: f32 = 24.0;
 /// Of them, so many to either side are looked at.
-const LOOKED_AT: isize = 4;
+const SAMPLES_PER_SIDE: isize = 4;
 /// Colours so far apart, in square roots of linear light, are hardly alike.
-const ALIKE: f32 = 0.06;
+const COLOR_SIGMA: f32 = 0.06;
 /// From this share of a stroke on a pixel belongs to one that spreads.
-const BELONGS: f32 = 0.5;
+const MIN_SPREAD_WEIGHT: f32 = 0.5;
 
 impl DepthStroke {
     /// Whether its numbers are within their ranges.
@@ -52,14 +53,14 @@ impl DepthStroke {
         is_share(self.hardness)
             && is_share(self.strength)
             && self.radius_px > 0.0
-            && self.radius_px <= FARTHEST_PX
-            && self.way.iter().flatten().all(|at| at.abs() <= FARTHEST_PX)
+            && self.radius_px <= MAX_COORDINATE_PX
+            && self.path.iter().flatten().all(|at| at.abs() <= MAX_COORDINATE_PX)
     }
 
     /// The same on a picture whose pixels are `by` of this one's wide.
-    fn reduced(&self, by: f32) -> Self {
-        let way = self.way.iter().map(|place| place.map(|at| at / by)).collect();
-        Self { way, radius_px: self.radius_px / by, ..self.clone() }
+    fn scaled_down(&self, pixel_scale: f32) -> Self {
+        let path = self.path.iter().map(|place| place.map(|at| at / pixel_scale)).collect();
+        Self { path, radius_px: self.radius_px / pixel_scale, ..self.clone() }
     }
 
     /// The pixels that it covers, row by row, and by how much, in (0, 1].
@@ -71,8 +72,8 @@ impl DepthStroke {
             let last = (high + radius - 0.5).floor().min(count as f32 - 1.0);
             first..(last + 1.0).max(0.0) as usize
         };
-        let single = self.way.first().filter(|_| self.way.len() == 1).map(|&at| [at, at]);
-        for [[ax, ay], [bx, by]] in self.way.array_windows().copied().chain(single) {
+        let single = self.path.first().filter(|_| self.path.len() == 1).map(|&at| [at, at]);
+        for [[ax, ay], [bx, by]] in self.path.array_windows().copied().chain(single) {
             let (dx, dy) = (bx - ax, by - ay);
             let squared = dx * dx + dy * dy;
             for y in span(ay.min(by), ay.max(by), height) {
@@ -82,8 +83,8 @@ impl DepthStroke {
                         if squared > 0.0 { ((px * dx + py * dy) / squared).clamp(0.0, 1.0) } else { 0.0 };
                     let distance = (px - along * dx).hypot(py - along * dy);
                     if distance <= radius {
-                        let known = nearest.entry(y * width + x).or_insert(distance);
-                        *known = known.min(distance);
+                        let shortest = nearest.entry(y * width + x).or_insert(distance);
+                        *shortest = shortest.min(distance);
                     }
                 }
             }
@@ -103,19 +104,19 @@ impl DepthStroke {
 
 /// Disparities of a picture (linear RGB, row by row), a number each, after strokes in their order. They stay within the range that they had.
 /// `by`: pixels of the strokes' picture that one of this is wide.
-pub fn repaired(
+pub fn apply_depth_strokes(
     size: [usize; 2],
     mut disparity: Vec<f32>,
     picture: &[[f32; 3]],
     strokes: &[DepthStroke],
-    by: f32,
+    pixel_scale: f32,
 ) -> Vec<f32> {
     let low = disparity.iter().copied().fold(f32::INFINITY, f32::min);
     let high = disparity.iter().copied().fold(f32::NEG_INFINITY, f32::max);
     for stroke in strokes.iter().filter(|stroke| stroke.is_valid()) {
-        let stroke = stroke.reduced(by);
+        let stroke = stroke.scaled_down(pixel_scale);
         let covered = stroke.covered(size);
-        let step = stroke.strength * DEEPEST * (high - low);
+        let step = stroke.strength * MAX_SHIFT_SHARE * (high - low);
         let changed: Vec<f32> = match stroke.repair {
             DepthRepair::Nearer => {
                 covered.iter().map(|&(at, weight)| disparity[at] + weight * step).collect()
@@ -124,17 +125,18 @@ pub fn repaired(
                 covered.iter().map(|&(at, weight)| disparity[at] - weight * step).collect()
             }
             DepthRepair::Smooth => {
-                let among = (stroke.radius_px * AMONG).min(AMONG_PX);
+                let smoothing_radius_px =
+                    (stroke.radius_px * SMOOTHING_RADIUS_SHARE).min(MAX_SMOOTHING_RADIUS_PX);
                 let toward = |&(at, weight): &(usize, f32)| {
-                    let mean = mean_of_like(size, &disparity, picture, at, among);
+                    let mean = mean_of_similar(size, &disparity, picture, at, smoothing_radius_px);
                     disparity[at] + (mean - disparity[at]) * weight * stroke.strength
                 };
                 covered.iter().map(toward).collect()
             }
             DepthRepair::Spread => {
-                let Some(level) = beneath(size, &disparity, &stroke) else { continue };
+                let Some(level) = start_disparity(size, &disparity, &stroke) else { continue };
                 let spread = |&(at, weight): &(usize, f32)| {
-                    if weight >= BELONGS { level } else { disparity[at] }
+                    if weight >= MIN_SPREAD_WEIGHT { level } else { disparity[at] }
                 };
                 covered.iter().map(spread).collect()
             }
@@ -147,27 +149,27 @@ pub fn repaired(
 }
 
 /// The mean disparity around a pixel, of pixels that are like it.
-fn mean_of_like(
+fn mean_of_similar(
     [width, height]: [usize; 2],
     disparity: &[f32],
     picture: &[[f32; 3]],
     pixel: usize,
-    among: f32,
+    smoothing_radius_px: f32,
 ) -> f32 {
-    let step = (among / LOOKED_AT as f32).ceil().max(1.0) as isize;
+    let step = (smoothing_radius_px / SAMPLES_PER_SIDE as f32).ceil().max(1.0) as isize;
     let (x, y) = ((pixel % width) as isize, (pixel / width) as isize);
     let own = picture[pixel].map(encoded);
     let (mut sum, mut weights) = (0.0, 0.0);
-    for dy in -LOOKED_AT..=LOOKED_AT {
-        for dx in -LOOKED_AT..=LOOKED_AT {
+    for dy in -SAMPLES_PER_SIDE..=SAMPLES_PER_SIDE {
+        for dx in -SAMPLES_PER_SIDE..=SAMPLES_PER_SIDE {
             let (x, y) = (x + dx * step, y + dy * step);
             if !(0..width as isize).contains(&x) || !(0..height as isize).contains(&y) {
                 continue;
             }
             let other = y as usize * width + x as usize;
             let color = picture[other].map(encoded);
-            let apart: f32 = own.iter().zip(color).map(|(a, b)| (a - b) * (a - b)).sum();
-            let weight = (-apart / (2.0 * ALIKE * ALIKE)).exp();
+            let difference: f32 = own.iter().zip(color).map(|(a, b)| (a - b) * (a - b)).sum();
+            let weight = (-difference / (2.0 * COLOR_SIGMA * COLOR_SIGMA)).exp();
             sum += weight * disparity[other];
             weights += weight;
         }
@@ -181,10 +183,10 @@ fn encoded(linear: f32) -> f32 {
 }
 
 /// The disparity where a stroke begins: the median of a small disc; of a stroke that begins beside the picture none.
-fn beneath(size: [usize; 2], disparity: &[f32], stroke: &DepthStroke) -> Option<f32> {
-    let start = *stroke.way.first()?;
+fn start_disparity(size: [usize; 2], disparity: &[f32], stroke: &DepthStroke) -> Option<f32> {
+    let start = *stroke.path.first()?;
     let disc =
-        DepthStroke { way: vec![start], radius_px: (stroke.radius_px * 0.25).max(1.0), ..stroke.clone() };
+        DepthStroke { path: vec![start], radius_px: (stroke.radius_px * 0.25).max(1.0), ..stroke.clone() };
     let mut values: Vec<f32> = disc.covered(size).into_iter().map(|(at, _)| disparity[at]).collect();
     let middle = values.len() / 2;
     (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f32::total_cmp).1)
@@ -204,13 +206,13 @@ mod tests {
         (disparity, picture)
     }
 
-    fn stroke(repair: DepthRepair, way: &[[f32; 2]], radius_px: f32) -> DepthStroke {
-        DepthStroke { repair, way: way.to_vec(), radius_px, hardness: 0.5, strength: 1.0 }
+    fn stroke(repair: DepthRepair, path: &[[f32; 2]], radius_px: f32) -> DepthStroke {
+        DepthStroke { repair, path: path.to_vec(), radius_px, hardness: 0.5, strength: 1.0 }
     }
 
     fn after(strokes: &[DepthStroke]) -> Vec<f32> {
         let (disparity, picture) = card();
-        repaired(SIZE, disparity, &picture, strokes, 1.0)
+        apply_depth_strokes(SIZE, disparity, &picture, strokes, 1.0)
     }
 
     #[test]
@@ -239,7 +241,7 @@ mod tests {
         let (mut disparity, picture) = card();
         disparity[5 * 40 + 30] = 0.5;
         let smooth = stroke(DepthRepair::Smooth, &[[5.0, 15.0], [35.0, 5.0]], 12.0);
-        let smooth = repaired(SIZE, disparity, &picture, &[smooth], 1.0);
+        let smooth = apply_depth_strokes(SIZE, disparity, &picture, &[smooth], 1.0);
         assert!(smooth[5 * 40 + 30] < 0.05, "{}", smooth[5 * 40 + 30]);
         assert!(smooth[15 * 40 + 15] > 0.99 && smooth[15 * 40 + 22] < 0.01);
     }
@@ -249,7 +251,9 @@ mod tests {
         let (disparity, picture) = card();
         let fine = stroke(DepthRepair::Nearer, &[[60.0, 10.0], [60.0, 50.0]], 6.0);
         let coarse = stroke(DepthRepair::Nearer, &[[30.0, 5.0], [30.0, 25.0]], 3.0);
-        let repaired = |stroke, by| repaired(SIZE, disparity.clone(), &picture, &[stroke], by);
+        let repaired = |stroke, pixel_scale| {
+            apply_depth_strokes(SIZE, disparity.clone(), &picture, &[stroke], pixel_scale)
+        };
         assert_eq!(repaired(fine, 2.0), repaired(coarse, 1.0));
     }
 

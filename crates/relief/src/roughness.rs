@@ -7,21 +7,21 @@ const EDGES: f64 = 0.1;
 
 /// How far disparities are off the middle of those beside them, left and right, above and below: as far at most, but for a tenth of them. Nearly 0
 /// of a map that was rendered, as planes are linear in it; more where it was found, and the noise of that shows.
-pub fn roughness([width, height]: [usize; 2], disparity: &[f32]) -> f32 {
+pub fn measure_roughness([width, height]: [usize; 2], disparity: &[f32]) -> f32 {
     let grid = Grid { width, height };
-    let off = |a: usize, middle: usize, b: usize| {
-        let off = (0.5 * (disparity[a] + disparity[b]) - disparity[middle]).abs();
-        (!off.is_nan()).then_some(off)
+    let deviation_at = |a: usize, middle: usize, b: usize| {
+        let deviation = (0.5 * (disparity[a] + disparity[b]) - disparity[middle]).abs();
+        (!deviation.is_nan()).then_some(deviation)
     };
     let mut all = Vec::new();
     for y in 0..height {
         for x in 0..width {
             let cell = grid.at(x, y);
             if x > 0 && x + 1 < width {
-                all.extend(off(cell - 1, cell, cell + 1));
+                all.extend(deviation_at(cell - 1, cell, cell + 1));
             }
             if y > 0 && y + 1 < height {
-                all.extend(off(cell - width, cell, cell + width));
+                all.extend(deviation_at(cell - width, cell, cell + width));
             }
         }
     }
@@ -45,11 +45,11 @@ mod tests {
             0.03 * x as f32 - 0.05 * y as f32 + if x > 20 { 2.0 } else { 0.0 }
         };
         let even: Vec<f32> = (0..1200).map(plane).collect();
-        assert!(roughness(size, &even) < 1e-5);
+        assert!(measure_roughness(size, &even) < 1e-5);
         let noisy: Vec<f32> = (0..1200)
             .map(|k| plane(k) + if k.wrapping_mul(2_654_435_761) >> 9 & 1 == 0 { 0.1 } else { 0.0 })
             .collect();
-        assert!(roughness(size, &noisy) > 0.04, "{}", roughness(size, &noisy));
-        assert_eq!(roughness([1, 1], &[0.5]), 0.0);
+        assert!(measure_roughness(size, &noisy) > 0.04, "{}", measure_roughness(size, &noisy));
+        assert_eq!(measure_roughness([1, 1], &[0.5]), 0.0);
     }
 }

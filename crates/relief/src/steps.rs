@@ -13,25 +13,25 @@ const STRIDES: [usize; 6] = [32, 16, 8, 4, 2, 1];
 const ROUNDS: usize = 6;
 
 /// Evens out what rounding left open. Steps of more than `jump` are none of its.
-pub(crate) fn even_out(grid: Grid, disparity: &mut Vec<f32>, jump: f32) {
+pub(crate) fn smooth_rounding(grid: Grid, disparity: &mut Vec<f32>, jump: f32) {
     let Some(level) = level(grid, disparity, jump) else { return };
     let rounded = disparity.clone();
     for (stride, _) in STRIDES.iter().flat_map(|stride| (0..ROUNDS).map(move |round| (*stride, round))) {
         // A slope of several levels from neighbour to neighbour is told finely enough; what is more is another thing.
-        let most = jump.min(3.0 * level * stride as f32);
+        let max_step = jump.min(3.0 * level * stride as f32);
         let before = &*disparity;
         let next = (0..grid.count()).into_par_iter().map(|cell| {
             let (x, y) = (cell % grid.width, cell / grid.width);
             let own = before[cell];
-            let pair = |fits: bool, by: usize| {
-                let [a, b] = fits.then(|| [before[cell - by], before[cell + by]])?;
-                ((a - own).abs() <= most && (b - own).abs() <= most).then_some(0.5 * (a + b))
+            let pair = |fits: bool, offset: usize| {
+                let [a, b] = fits.then(|| [before[cell - offset], before[cell + offset]])?;
+                ((a - own).abs() <= max_step && (b - own).abs() <= max_step).then_some(0.5 * (a + b))
             };
             let across = pair(x >= stride && x + stride < grid.width, stride);
             let down = pair(y >= stride && y + stride < grid.height, stride * grid.width);
             let evened = match (across, down) {
                 (Some(a), Some(b)) => 0.5 * (a + b),
-                (Some(one), None) | (None, Some(one)) => one,
+                (Some(value), None) | (None, Some(value)) => value,
                 (None, None) => own,
             };
             let half = 0.5 * level;
@@ -74,17 +74,18 @@ mod tests {
         let slope = |x: usize, y: usize| if x < 60 { 0.013 * x as f32 + 0.004 * y as f32 } else { 3.0 };
         let exact: Vec<f32> = (0..grid.count()).map(|cell| slope(cell % 120, cell / 120)).collect();
         let mut rounded: Vec<f32> = exact.iter().map(|d| (d / 0.2).round() * 0.2).collect();
-        let off = |found: &[f32]| found.iter().zip(&exact).map(|(a, b)| (a - b).powi(2)).sum::<f32>();
-        let before = off(&rounded);
-        even_out(grid, &mut rounded, 1.0);
-        assert!(off(&rounded) < 0.1 * before, "{} of {before}", off(&rounded));
+        let squared_error =
+            |values: &[f32]| values.iter().zip(&exact).map(|(a, b)| (a - b).powi(2)).sum::<f32>();
+        let before = squared_error(&rounded);
+        smooth_rounding(grid, &mut rounded, 1.0);
+        assert!(squared_error(&rounded) < 0.1 * before, "{} of {before}", squared_error(&rounded));
         assert_eq!(rounded[grid.at(90, 20)], 3.0);
         // What was not rounded stays as it is.
         let mut fine = exact.clone();
         let bent: Vec<f32> =
             exact.iter().enumerate().map(|(k, d)| d + 0.01 * (k as f32 * 0.7).sin()).collect();
         fine.copy_from_slice(&bent);
-        even_out(grid, &mut fine, 1.0);
+        smooth_rounding(grid, &mut fine, 1.0);
         assert_eq!(fine[..60], bent[..60]);
     }
 }

@@ -2,9 +2,9 @@
 
 use crate::cells::Grid;
 use crate::fading::fade;
-use crate::hidden::{Hidden, number};
-use crate::look::Look;
-use crate::matte::{Mixed, unmixed};
+use crate::hidden::{HiddenLayer, side_index};
+use crate::look::ColorStats;
+use crate::matte::{MixedPixel, unmix};
 use rayon::prelude::*;
 
 /// Texels around the second layer that are filled from it, so that interpolation finds something.
@@ -16,55 +16,56 @@ const ROUNDS: usize = 32;
 pub(crate) struct Texture {
     pub colors: [Vec<[f32; 3]>; 2],
     /// By layer and cell, which some view shows.
-    pub is_seen: Vec<bool>,
+    pub is_observed: Vec<bool>,
     /// By cell, how much of the first layer is there.
     pub opacity: Vec<f32>,
 }
 
 /// Completes the picture: `told` is what other views show by cell, of what is beside the picture and of what goes on behind it.
-pub(crate) fn texture(
+pub(crate) fn build_texture(
     grid: Grid,
     mut shown: Vec<[f32; 3]>,
     is_in_picture: impl Fn(usize) -> bool,
-    hidden: &Hidden,
-    mixed: &[Mixed],
-    told: &[Option<Look>],
+    hidden: &HiddenLayer,
+    mixed: &[MixedPixel],
+    observed_colors: &[Option<ColorStats>],
 ) -> Texture {
     let mut colors = vec![[f32::NAN; 3]; grid.count()];
-    let mut is_seen = [vec![true; grid.count()], vec![false; grid.count()]].concat();
+    let mut is_observed = [vec![true; grid.count()], vec![false; grid.count()]].concat();
     for cell in (0..grid.count()).filter(|&cell| !is_in_picture(cell)) {
-        is_seen[cell] = told[cell].is_some();
-        shown[cell] = told[cell].map_or(shown[cell], |look| look.color);
+        is_observed[cell] = observed_colors[cell].is_some();
+        shown[cell] = observed_colors[cell].map_or(shown[cell], |stats| stats.color);
     }
     for &cell in &hidden.order {
-        if let Some(look) = told[grid.count() + cell] {
-            is_seen[grid.count() + cell] = true;
-            colors[cell] = look.color;
+        if let Some(stats) = observed_colors[grid.count() + cell] {
+            is_observed[grid.count() + cell] = true;
+            colors[cell] = stats.color;
         }
     }
     let mut opacity = vec![1.0; grid.count()];
     for mixed in mixed.iter().filter(|mixed| !hidden.disparity[mixed.cell].is_nan()) {
         let cell = mixed.cell;
-        let (share, [before, behind]) = unmixed(shown[cell], mixed);
+        let (share, [before, behind]) = unmix(shown[cell], mixed);
         (opacity[cell], shown[cell], colors[cell]) = (share, before, behind);
         // Most of what the picture shows there is what lies behind.
-        is_seen[grid.count() + cell] |= share <= 0.5;
+        is_observed[grid.count() + cell] |= share <= 0.5;
     }
-    fade(grid, &mut shown, &is_seen[..grid.count()]);
+    fade(grid, &mut shown, &is_observed[..grid.count()]);
     invent(grid, &shown, hidden, &mut colors);
     fill_rim(grid, &hidden.order, &mut colors);
-    Texture { colors: [shown, colors], is_seen, opacity }
+    Texture { colors: [shown, colors], is_observed, opacity }
 }
 
 /// Fills what no view shows, from the farther side inward.
-fn invent(grid: Grid, picture: &[[f32; 3]], hidden: &Hidden, colors: &mut [[f32; 3]]) {
+fn invent(grid: Grid, picture: &[[f32; 3]], hidden: &HiddenLayer, colors: &mut [[f32; 3]]) {
     let unseen: Vec<usize> = hidden.order.iter().copied().filter(|&cell| colors[cell][0].is_nan()).collect();
     let around = |colors: &[[f32; 3]], cell: usize| {
         let (mut sum, mut count) = ([0.0; 3], 0.0f32);
         for (side, other) in grid.around(cell) {
-            let beside = if hidden.onward[cell][number(side)] { picture[other] } else { colors[other] };
-            if !beside[0].is_nan() {
-                (0..3).for_each(|c| sum[c] += beside[c]);
+            let neighbour =
+                if hidden.onward[cell][side_index(side)] { picture[other] } else { colors[other] };
+            if !neighbour[0].is_nan() {
+                (0..3).for_each(|c| sum[c] += neighbour[c]);
                 count += 1.0;
             }
         }
@@ -97,13 +98,13 @@ fn invent(grid: Grid, picture: &[[f32; 3]], hidden: &Hidden, colors: &mut [[f32;
 fn fill_rim(grid: Grid, order: &[usize], colors: &mut [[f32; 3]]) {
     let mut border: Vec<usize> = order.to_vec();
     for _ in 0..RIM {
-        let mut found: Vec<(usize, [f32; 3])> = Vec::new();
+        let mut rim: Vec<(usize, [f32; 3])> = Vec::new();
         for &cell in &border {
-            let beside = grid.around(cell).filter(|(_, other)| colors[*other][0].is_nan());
-            found.extend(beside.map(|(_, other)| (other, colors[cell])));
+            let outside = grid.around(cell).filter(|(_, other)| colors[*other][0].is_nan());
+            rim.extend(outside.map(|(_, other)| (other, colors[cell])));
         }
-        border = found.iter().map(|(cell, _)| *cell).collect();
-        for (cell, color) in found {
+        border = rim.iter().map(|(cell, _)| *cell).collect();
+        for (cell, color) in rim {
             colors[cell] = color;
         }
     }

@@ -30,7 +30,7 @@ pub(crate) struct LayerTriangle {
 
 impl Triangulation {
     /// How far off the corners of a layer's cells are. Cells that are not whole have triangles of their own.
-    pub fn of(
+    pub fn new(
         cells: &Cells,
         layer: usize,
         metric: Metric,
@@ -79,14 +79,14 @@ impl Triangulation {
                 if quarter == 0 {
                     return 0.0;
                 }
-                let mut most = 0.0f32;
+                let mut max_error = 0.0f32;
                 for (dx, dy) in [(-1, -1), (1, -1), (-1, 1), (1, 1)] {
                     let (x, y) = (x as isize + dx * quarter as isize, y as isize + dy * quarter as isize);
                     if (0..=side as isize).contains(&x) && (0..=side as isize).contains(&y) {
-                        most = most.max(errors[y as usize * (side + 1) + x as usize]);
+                        max_error = max_error.max(errors[y as usize * (side + 1) + x as usize]);
                     }
                 }
-                most
+                max_error
             };
             let before = &errors;
             let sides: Vec<Vec<(usize, f32)>> = (0..=side / half)
@@ -94,17 +94,17 @@ impl Triangulation {
                 .map(|line| {
                     let y = line * half;
                     let first = if line % 2 == 0 { half } else { 0 };
-                    let mut found = Vec::new();
+                    let mut line_errors = Vec::new();
                     for x in (first..=side).step_by(step) {
                         let ends = if line % 2 == 0 {
                             [end(x - half, y, [x, y]), end(x + half, y, [x, y])]
                         } else {
                             [end(x, y - half, [x, y]), end(x, y + half, [x, y])]
                         };
-                        let off = metric.off(at(x, y), ends, step as f32);
-                        found.push((y * (side + 1) + x, off.max(beneath(before, x, y))));
+                        let error = metric.deviation(at(x, y), ends, step as f32);
+                        line_errors.push((y * (side + 1) + x, error.max(beneath(before, x, y))));
                     }
-                    found
+                    line_errors
                 })
                 .collect();
             raise(&mut errors, sides);
@@ -114,7 +114,7 @@ impl Triangulation {
                 .into_par_iter()
                 .map(|line| {
                     let y = line * step + half;
-                    let mut found = Vec::new();
+                    let mut line_errors = Vec::new();
                     for column in 0..side / step {
                         let x = column * step + half;
                         let end = |x: usize, y: usize| end(x, y, [column * step + half, line * step + half]);
@@ -123,12 +123,12 @@ impl Triangulation {
                             _ => [end(x + half, y - half), end(x - half, y + half)],
                         };
                         let sides = [(x - half, y), (x + half, y), (x, y - half), (x, y + half)];
-                        let most =
-                            sides.iter().fold(0.0f32, |most, &(x, y)| most.max(before[y * (side + 1) + x]));
-                        let off = metric.off(at(x, y), ends, step as f32 * std::f32::consts::SQRT_2);
-                        found.push((y * (side + 1) + x, off.max(most)));
+                        let max_error =
+                            sides.iter().fold(0.0f32, |max, &(x, y)| max.max(before[y * (side + 1) + x]));
+                        let error = metric.deviation(at(x, y), ends, step as f32 * std::f32::consts::SQRT_2);
+                        line_errors.push((y * (side + 1) + x, error.max(max_error)));
                     }
-                    found
+                    line_errors
                 })
                 .collect();
             raise(&mut errors, middles);
@@ -174,17 +174,17 @@ pub(crate) struct Metric {
 impl Metric {
     /// How far a middle is from what its ends lead to expect, which are so many pixels apart; nothing where one of them is cut, which is
     /// seen to elsewhere.
-    fn off(self, middle: f32, [a, b]: [f32; 2], length: f32) -> f32 {
+    fn deviation(self, middle: f32, [a, b]: [f32; 2], length: f32) -> f32 {
         let depth = (0.5 * (a + b) - middle).abs() * self.reach;
         let nearness = a + b + 2.0 * self.offset;
-        let beside = if nearness > 0.0 { 0.5 * length * (a - b).abs() / nearness } else { 0.0 };
-        let off = depth.max(beside);
-        if off.is_nan() { 0.0 } else { off }
+        let texture_shift = if nearness > 0.0 { 0.5 * length * (a - b).abs() / nearness } else { 0.0 };
+        let deviation = depth.max(texture_shift);
+        if deviation.is_nan() { 0.0 } else { deviation }
     }
 }
 
-fn raise(errors: &mut [f32], found: Vec<Vec<(usize, f32)>>) {
-    for (number, error) in found.into_iter().flatten() {
+fn raise(errors: &mut [f32], raised: Vec<Vec<(usize, f32)>>) {
+    for (number, error) in raised.into_iter().flatten() {
         errors[number] = errors[number].max(error);
     }
 }

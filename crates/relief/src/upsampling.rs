@@ -9,7 +9,7 @@ use rayon::prelude::*;
 const COLOR: f32 = 0.08;
 
 /// The map at the size of its picture (linear RGB). Numbers that are none count for nothing; where all four are none, none is told.
-pub fn upsampled(
+pub fn upsample(
     [columns, rows]: [usize; 2],
     values: &[f32],
     [width, height]: [usize; 2],
@@ -70,12 +70,12 @@ mod tests {
         let picture: Vec<[f32; 3]> =
             (0..16 * 4).map(|cell| [if cell % 16 < 10 { 0.1 } else { 0.8 }; 3]).collect();
         let map = [0.0, 0.0, 1.0, 1.0];
-        let fine = upsampled([4, 1], &map, [16, 4], &picture);
+        let fine = upsample([4, 1], &map, [16, 4], &picture);
         for (x, value) in fine.iter().enumerate().take(16) {
             assert!((value - f32::from(u8::from(x >= 10))).abs() < 0.05 || x == 9, "{x}: {value}");
         }
-        let unknown = upsampled([2, 1], &[f32::NAN, 3.0], [8, 1], &[[0.5; 3]; 8]);
+        let unknown = upsample([2, 1], &[f32::NAN, 3.0], [8, 1], &[[0.5; 3]; 8]);
         assert!(unknown[0].is_nan() && (unknown[7] - 3.0).abs() < 1e-5, "{unknown:?}");
-        assert_eq!(upsampled([2, 1], &[1.0, 2.0], [2, 1], &[[0.0; 3]; 2]), [1.0, 2.0]);
+        assert_eq!(upsample([2, 1], &[1.0, 2.0], [2, 1], &[[0.0; 3]; 2]), [1.0, 2.0]);
     }
 }

@@ -39,7 +39,7 @@ fn made(strength: f64, bright: f64) -> Relief {
         .collect();
     let disparity = vec![DISPARITY as f32; SIZE[0] * SIZE[1]];
     let options = ReliefOptions { reach: 2.0, ..ReliefOptions::default() };
-    Relief::of(SIZE, &disparity, &view([0.0; 2], strength, 1.0), &views, &options, &Unwatched).unwrap()
+    Relief::build(SIZE, &disparity, &view([0.0; 2], strength, 1.0), &views, &options, &Unwatched).unwrap()
 }
 
 /// What is added in the middle of a block toward a place in the aperture, in [−1, 1].

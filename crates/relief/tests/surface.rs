@@ -15,7 +15,7 @@ fn disparities(of: impl Fn(f32, f32) -> f32) -> Vec<f32> {
 
 fn surface(disparity: &[f32], options: &ReliefOptions) -> Relief {
     let picture = vec![[0.5; 3]; disparity.len()];
-    Relief::of::<Infallible>(SIZE, disparity, &picture, &[], options, &Unwatched).unwrap()
+    Relief::build::<Infallible>(SIZE, disparity, &picture, &[], options, &Unwatched).unwrap()
 }
 
 /// A hill on a slope.
@@ -156,7 +156,10 @@ fn no_skin_spans_a_jump_and_the_wall_goes_on_behind_the_card() {
     assert!(shared >= 2 * (30 + 21), "{shared}");
     // Nothing shows what is behind: it is invented, of the wall's colour.
     let second = SIZE[0] * SIZE[1];
-    assert!(relief.is_seen[..second].iter().all(|seen| *seen) && !relief.is_seen[second..].contains(&true));
+    assert!(
+        relief.is_observed[..second].iter().all(|seen| *seen)
+            && !relief.is_observed[second..].contains(&true)
+    );
     assert_eq!(relief.texture[second + 20 * SIZE[0] + 20], [0.5; 3]);
 }
 
@@ -179,18 +182,18 @@ fn what_is_behind_has_the_colours_of_the_views_that_see_it() {
     };
     let options = ReliefOptions { reach: 2.0, ..ReliefOptions::default() };
     let relief =
-        Relief::of(SIZE, &disparity, &picture, &[view(2.0), view(-2.0)], &options, &Unwatched).unwrap();
+        Relief::build(SIZE, &disparity, &picture, &[view(2.0), view(-2.0)], &options, &Unwatched).unwrap();
     let second = SIZE[0] * SIZE[1];
     for (x, y) in [(49, 20), (48, 24), (20, 20), (21, 15)] {
         let texel = second + y * SIZE[0] + x;
-        assert!(relief.is_seen[texel], "{x} {y}");
+        assert!(relief.is_observed[texel], "{x} {y}");
         let off = relief.texture[texel][0] - wall(x as f32 + 0.5)[0];
         assert!(off.abs() < 0.03, "{off} at {x} {y}");
     }
     // Negative control: with the views exchanged it is something else.
     let wrong = |offset: f32| OtherView::<Infallible> { offset: [-offset, 0.0], ..view(offset) };
     let relief =
-        Relief::of(SIZE, &disparity, &picture, &[wrong(2.0), wrong(-2.0)], &options, &Unwatched).unwrap();
+        Relief::build(SIZE, &disparity, &picture, &[wrong(2.0), wrong(-2.0)], &options, &Unwatched).unwrap();
     let off = |x: usize| (relief.texture[second + 20 * SIZE[0] + x][0] - wall(x as f32 + 0.5)[0]).abs();
     assert!((44..50).map(off).fold(0.0, f32::max) > 0.2);
 }
@@ -250,7 +253,7 @@ fn pixels_that_show_both_sides_of_a_jump_are_there_in_part() {
     let picture = soft_card(20.3, 50.3, card, |_| wall);
     let disparity = disparities(card_at);
     let options = ReliefOptions { reach: 4.0, ..ReliefOptions::default() };
-    let relief = Relief::of::<Infallible>(SIZE, &disparity, &picture, &[], &options, &Unwatched).unwrap();
+    let relief = Relief::build::<Infallible>(SIZE, &disparity, &picture, &[], &options, &Unwatched).unwrap();
     let second = SIZE[0] * SIZE[1];
     for y in 14..31 {
         for (x, share) in [(20, 0.7), (50, 0.3)] {
@@ -276,19 +279,19 @@ fn whole_pixels_and_textures_are_there_as_a_whole() {
     let options = ReliefOptions { reach: 4.0, ..ReliefOptions::default() };
     let disparity = disparities(card_at);
     let relief = |picture: &[[f32; 3]]| {
-        Relief::of::<Infallible>(SIZE, &disparity, picture, &[], &options, &Unwatched).unwrap()
+        Relief::build::<Infallible>(SIZE, &disparity, picture, &[], &options, &Unwatched).unwrap()
     };
     let sharp = relief(&soft_card(20.0, 50.0, [0.8, 0.1, 0.05], |_| [0.05, 0.2, 0.6]));
-    assert!(!sharp.is_told_apart.contains(&true));
+    assert!(!sharp.is_matted.contains(&true));
     // Colours that are alike tell nothing.
     let alike = relief(&soft_card(20.5, 50.5, [0.3, 0.3, 0.3], |_| [0.3, 0.301, 0.3]));
-    assert!(!alike.is_told_apart.contains(&true));
+    assert!(!alike.is_matted.contains(&true));
     // Neither do those that vary as much as they differ.
     let grain = |x: usize, y: usize| ((x * 7919 + y * 104_729) % 101) as f32 / 101.0;
     let grain: Vec<[f32; 3]> =
         (0..SIZE[0] * SIZE[1]).map(|cell| [grain(cell % SIZE[0], cell / SIZE[0]); 3]).collect();
     let grainy = relief(&grain);
-    let told_apart = grainy.is_told_apart.iter().filter(|is_told_apart| **is_told_apart).count();
+    let told_apart = grainy.is_matted.iter().filter(|is_told_apart| **is_told_apart).count();
     assert!(told_apart <= 4, "{told_apart}");
 }
 
@@ -315,7 +318,7 @@ fn what_other_views_show_behind_an_edge_tells_how_much_of_it_is_there() {
     let options = ReliefOptions { reach: 4.0, ..ReliefOptions::default() };
     let picture = shown(0.0);
     let views = [3.0, 4.0].map(view);
-    let relief = Relief::of(SIZE, &disparity, &picture, &views, &options, &Unwatched).unwrap();
+    let relief = Relief::build(SIZE, &disparity, &picture, &views, &options, &Unwatched).unwrap();
     let cell = 20 * SIZE[0] + 49;
     let share = share_of_card(&relief, 49, 20);
     assert!((share - 0.4).abs() < 0.05, "{share}");
@@ -336,13 +339,14 @@ fn what_lies_behind_is_told_up_to_the_edge_that_hides_it() {
     };
     let options = ReliefOptions { reach: 4.0, ..ReliefOptions::default() };
     let views = [1.0, 2.0, 3.0, 4.0].map(view);
-    let relief = Relief::of(SIZE, &disparities(card_at), &shown(0.0), &views, &options, &Unwatched).unwrap();
+    let relief =
+        Relief::build(SIZE, &disparities(card_at), &shown(0.0), &views, &options, &Unwatched).unwrap();
     // The last view looks 6.8 px behind it: where it shows the wall last, half of a pixel is the card's.
     for x in 43..50 {
         let behind = SIZE[0] * SIZE[1] + 20 * SIZE[0] + x;
         let (told, expected) = (relief.texture[behind], wall(x as f32 + 0.5));
         assert!((0..3).all(|c| (told[c] - expected[c]).abs() < 0.02), "{told:?}, not {expected:?} at {x}");
-        assert!(relief.is_seen[behind], "{x}");
+        assert!(relief.is_observed[behind], "{x}");
     }
 }
 
@@ -362,7 +366,7 @@ fn what_looks_like_the_other_side_stays_where_views_show_it() {
     let options = ReliefOptions { reach: 4.0, ..ReliefOptions::default() };
     let found = |views: &[OtherView<'_, Infallible>]| {
         let disparity = disparities(|x, y| if self::card(x, y) == 2.0 { 2.0 } else { 0.5 });
-        let relief = Relief::of(SIZE, &disparity, &shown(0.0), views, &options, &Unwatched).unwrap();
+        let relief = Relief::build(SIZE, &disparity, &shown(0.0), views, &options, &Unwatched).unwrap();
         first_layer(&relief, Vec2::new(50.4, 20.4)).0
     };
     assert!((found(&[]) - 2.0).abs() < 0.05, "the picture alone cannot tell");
@@ -376,7 +380,7 @@ fn edges_of_depth_go_where_the_picture_has_them() {
     let picture = soft_card(20.0, 50.0, [0.8, 0.1, 0.05], |_| [0.05, 0.2, 0.6]);
     // A pixel too far right on the left, and on the right.
     let moved = disparities(|x, y| if (21.0..51.0).contains(&x) { card_at(30.0, y) } else { 0.3 });
-    let relief = Relief::of::<Infallible>(SIZE, &moved, &picture, &[], &options, &Unwatched).unwrap();
+    let relief = Relief::build::<Infallible>(SIZE, &moved, &picture, &[], &options, &Unwatched).unwrap();
     for y in [15.3, 20.4, 29.6] {
         for (x, wanted) in [(19.6, 0.3), (20.4, 2.0), (49.6, 2.0), (50.4, 0.3)] {
             let (found, _) = first_layer(&relief, Vec2::new(x, y));
@@ -400,7 +404,7 @@ fn a_hair_lets_through_what_is_behind_it() {
         if is_near && (12.0..33.0).contains(&y) { 2.0 } else { 0.3 }
     });
     let options = ReliefOptions { reach: 4.0, ..ReliefOptions::default() };
-    let relief = Relief::of::<Infallible>(SIZE, &disparity, &picture, &[], &options, &Unwatched).unwrap();
+    let relief = Relief::build::<Infallible>(SIZE, &disparity, &picture, &[], &options, &Unwatched).unwrap();
     for y in 16..29 {
         let cell = y * SIZE[0] + 30;
         let [before, behind] = [relief.texture[cell], relief.texture[SIZE[0] * SIZE[1] + cell]];

@@ -1,7 +1,7 @@
 //! The renderers that are measured, each with its knob.
 
-use crate::stopwatch::{Timed, timed};
-use baselines::scatter;
+use crate::stopwatch::{Timed, measure_time};
+use baselines::scatter_rays;
 use focus::Focus;
 use lens::{Camera, Picture};
 use salf::Salf;
@@ -54,7 +54,7 @@ pub struct Shot<'a> {
 }
 
 /// What a contender drew, and what that took.
-pub struct Drawn {
+pub struct DrawnPicture {
     /// The picture.
     pub picture: Picture,
     /// Seconds of the bake, where there is one.
@@ -74,7 +74,7 @@ const MEASURED_SEED: u32 = 1;
 
 impl Contender {
     /// The splat as it is unless asked otherwise.
-    pub fn usual_splat() -> Self {
+    pub fn default_splat() -> Self {
         Self::Splat { tolerance_px: RenderOptions::default().tolerance_px }
     }
 
@@ -95,7 +95,7 @@ impl Contender {
     }
 
     /// What it is, for the page.
-    pub fn what(renderer: &str) -> &'static str {
+    pub fn description(renderer: &str) -> &'static str {
         match Renderer::named(renderer) {
             Some(Renderer::Splat) => "the light field, splatted",
             Some(Renderer::Truth) => "ray tracing",
@@ -108,7 +108,7 @@ impl Contender {
     }
 
     /// Its knob's name; empty where it has none.
-    pub fn knob(&self) -> &'static str {
+    pub fn knob_name(&self) -> &'static str {
         match self {
             Self::Splat { .. } => "tolerance_px",
             Self::Truth { .. } => "spp",
@@ -120,7 +120,7 @@ impl Contender {
     }
 
     /// Where its knob stands; 0 where it has none.
-    pub fn value(&self) -> f64 {
+    pub fn knob_value(&self) -> f64 {
         match *self {
             Self::Splat { tolerance_px } => tolerance_px,
             Self::Truth { samples_per_pixel: count }
@@ -151,43 +151,43 @@ impl Contender {
     }
 
     /// Draws the picture, again if that is quick.
-    pub fn draw(&self, shot: Shot<'_>, steps: &dyn Steps) -> Result<Drawn, SessionError> {
+    pub fn draw(&self, shot: Shot<'_>, steps: &dyn Steps) -> Result<DrawnPicture, SessionError> {
         let pixels = shot.camera.width as usize * shot.camera.height as usize;
         let colour = size_of::<[f32; 3]>();
         let options = self.options();
         match *self {
-            Self::Splat { .. } => splat(shot, &options, steps),
+            Self::Splat { .. } => draw_splat(shot, &options, steps),
             Self::Scatter { .. } => {
-                let (baked, salf) = light_field(shot, &options, steps)?;
-                let drawn = timed(|| {
+                let (baked, salf) = bake_light_field(shot, &options, steps)?;
+                let drawn = measure_time(|| {
                     let progress = steps.begin("scattering");
-                    Ok(scatter(&salf, shot.camera, shot.focus, &options.scatter, &*progress)?)
+                    Ok(scatter_rays(&salf, shot.camera, shot.focus, &options.scatter, &*progress)?)
                 })?;
-                Ok(from_light_field(&salf, baked, drawn, salf.statistics().bytes))
+                Ok(drawn_from_light_field(&salf, baked, drawn, salf.statistics().bytes))
             }
-            Self::Truth { .. } => whole(shot, &options, shot.tracer.bytes(), steps),
+            Self::Truth { .. } => draw_from_scratch(shot, &options, shot.tracer.bytes(), steps),
             // A colour and a defocus a pixel.
             Self::Blur | Self::Layers { .. } => {
-                whole(shot, &options, pixels * (colour + size_of::<f64>()), steps)
+                draw_from_scratch(shot, &options, pixels * (colour + size_of::<f64>()), steps)
             }
             // A colour and a depth a pixel of each view.
             Self::Views { views_a_side } => {
                 let views = (views_a_side as usize).pow(2);
-                whole(shot, &options, views * pixels * (colour + size_of::<f32>()), steps)
+                draw_from_scratch(shot, &options, views * pixels * (colour + size_of::<f32>()), steps)
             }
         }
     }
 }
 
 /// A renderer that makes everything anew for every picture.
-fn whole(
+fn draw_from_scratch(
     shot: Shot<'_>,
     options: &RenderOptions,
     bytes: usize,
     steps: &dyn Steps,
-) -> Result<Drawn, SessionError> {
-    let drawn = timed(|| render(shot.tracer, shot.camera, shot.focus, options, steps))?;
-    Ok(Drawn {
+) -> Result<DrawnPicture, SessionError> {
+    let drawn = measure_time(|| render(shot.tracer, shot.camera, shot.focus, options, steps))?;
+    Ok(DrawnPicture {
         picture: drawn.value.picture,
         bake_seconds: None,
         picture_seconds: drawn.seconds,
@@ -198,10 +198,14 @@ fn whole(
 }
 
 /// The splat: what it makes of the light field once counts as baked, each further lens is a picture.
-fn splat(shot: Shot<'_>, options: &RenderOptions, steps: &dyn Steps) -> Result<Drawn, SessionError> {
-    let (baked, salf) = light_field(shot, options, steps)?;
+fn draw_splat(
+    shot: Shot<'_>,
+    options: &RenderOptions,
+    steps: &dyn Steps,
+) -> Result<DrawnPicture, SessionError> {
+    let (baked, salf) = bake_light_field(shot, options, steps)?;
     let camera = &salf.camera;
-    let prepared = timed(|| {
+    let prepared = measure_time(|| {
         let mut splatter = Splatter::new(salf.clone());
         splatter.set_tolerance(options.splat_tolerance);
         splatter.render(camera, shot.focus, &*steps.begin("splatting"))?;
@@ -210,29 +214,34 @@ fn splat(shot: Shot<'_>, options: &RenderOptions, steps: &dyn Steps) -> Result<D
     let mut splatter = prepared.value;
     // Another focus distance each time: what the splatter keeps of a lens must not help.
     let mut nudges = (1..).map(|k| 1.0 + 1e-9 * f64::from(k));
-    let drawn = timed(|| {
+    let drawn = measure_time(|| {
         let focus_distance = camera.focus_distance * nudges.next().unwrap_or(1.0);
         splatter.refocus(&Camera { focus_distance, ..camera.clone() }, &*steps.begin("splatting"))?;
         Ok(splatter.picture().averaged(options.cells_a_side))
     })?;
     let first = (prepared.seconds - drawn.seconds).max(0.0);
     let bytes = salf.statistics().bytes + splatter.bytes().iter().sum::<usize>();
-    Ok(from_light_field(&salf, baked + first, drawn, bytes))
+    Ok(drawn_from_light_field(&salf, baked + first, drawn, bytes))
 }
 
 /// Bakes the light field, and how long that took, s.
-fn light_field(
+fn bake_light_field(
     shot: Shot<'_>,
     options: &RenderOptions,
     steps: &dyn Steps,
 ) -> Result<(f64, Arc<Salf>), SessionError> {
-    let baked = timed(|| options.bake(shot.tracer, shot.camera, shot.focus, steps))?;
+    let baked = measure_time(|| options.bake(shot.tracer, shot.camera, shot.focus, steps))?;
     Ok((baked.seconds, Arc::new(baked.value)))
 }
 
 /// A picture of a renderer that bakes a light field once and draws every picture from it.
-fn from_light_field(salf: &Salf, bake_seconds: f64, drawn: Timed<Picture>, bytes: usize) -> Drawn {
-    Drawn {
+fn drawn_from_light_field(
+    salf: &Salf,
+    bake_seconds: f64,
+    drawn: Timed<Picture>,
+    bytes: usize,
+) -> DrawnPicture {
+    DrawnPicture {
         picture: drawn.value,
         bake_seconds: Some(bake_seconds),
         picture_seconds: drawn.seconds,

@@ -8,23 +8,23 @@ use session::FirstHits;
 const TYPICAL_CIRCLE: f64 = 0.05;
 
 /// The share of pixels that stay below it.
-const MOST: f64 = 0.9;
+const TYPICAL_SHARE: f64 = 0.9;
 
 /// Opens the aperture of `camera` as far as its scene (`hits` are those of the standard lens) calls for; the focus distance
 /// stays. Returns what was done, a sentence. Without any depth to blur by, the camera stays as it is.
-pub fn opened_lens(camera: &mut Camera, hits: &FirstHits) -> String {
+pub fn open_aperture(camera: &mut Camera, hits: &FirstHits) -> String {
     let optics = camera.optics();
     // Pixels of a circle, for each unit of aperture radius.
-    let a_unit = |&kappa: &f64| 2.0 * kappa.abs() / optics.tan_half_yfov * optics.half_height_px;
+    let circle_px_per_unit = |&kappa: &f64| 2.0 * kappa.abs() / optics.tan_half_yfov * optics.half_height_px;
     let surfaces = hits.kappa.iter().zip(&hits.depth).filter(|(_, depth)| depth.is_finite());
-    let mut circles: Vec<f64> = surfaces.map(|(kappa, _)| a_unit(kappa)).collect();
-    let wide = quantile(&mut circles, MOST);
+    let mut circles: Vec<f64> = surfaces.map(|(kappa, _)| circle_px_per_unit(kappa)).collect();
+    let wide = quantile(&mut circles, TYPICAL_SHARE);
     let radius = TYPICAL_CIRCLE * camera.height as f64 / wide;
     if !(radius.is_finite() && radius > 0.0) {
         return "the file has no lens, and nothing in sight to choose one by".into();
     }
     camera.aperture_radius = radius;
-    let (share, circle) = (MOST * 100.0, TYPICAL_CIRCLE * 100.0);
+    let (share, circle) = (TYPICAL_SHARE * 100.0, TYPICAL_CIRCLE * 100.0);
     format!(
         "chosen (the file has none): circles of confusion of at most {circle:.0} % of the picture's height in {share:.0} % of the picture"
     )
@@ -50,8 +50,8 @@ mod tests {
             *depth = 1.0 + k as f32 / 10.0;
             hits.kappa[k] = optics.standard_kappa(1.0 / *depth as f64);
         }
-        let told = opened_lens(&mut camera, &hits);
-        assert!(told.contains("chosen"), "{told}");
+        let sentence = open_aperture(&mut camera, &hits);
+        assert!(sentence.contains("chosen"), "{sentence}");
         let optics = camera.optics();
         let mut circles: Vec<f64> = hits.kappa.iter().map(|&k| optics.circle_of_confusion_px(k)).collect();
         assert!((quantile(&mut circles, 0.9) - 0.5).abs() < 1e-9);
@@ -60,8 +60,8 @@ mod tests {
     #[test]
     fn nothing_in_sight_changes_nothing() {
         let mut camera = Camera::default();
-        let told = opened_lens(&mut camera, &FirstHits::background(4, 4));
+        let sentence = open_aperture(&mut camera, &FirstHits::background(4, 4));
         assert_eq!(camera, Camera::default());
-        assert!(told.contains("nothing in sight"));
+        assert!(sentence.contains("nothing in sight"));
     }
 }

@@ -4,29 +4,29 @@ use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 use serde_json::Value;
 
 /// Names and values of a JSON object, in its own order, which a map of `serde_json` does not keep.
-pub struct Fields(pub Vec<(String, Value)>);
+pub struct OrderedFields(pub Vec<(String, Value)>);
 
-impl<'de> Deserialize<'de> for Fields {
+impl<'de> Deserialize<'de> for OrderedFields {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_map(InOrder)
+        deserializer.deserialize_map(FieldVisitor)
     }
 }
 
-struct InOrder;
+struct FieldVisitor;
 
-impl<'de> Visitor<'de> for InOrder {
-    type Value = Fields;
+impl<'de> Visitor<'de> for FieldVisitor {
+    type Value = OrderedFields;
 
     fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str("an object")
     }
 
-    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Fields, A::Error> {
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<OrderedFields, A::Error> {
         let mut fields = Vec::new();
         while let Some(field) = map.next_entry()? {
             fields.push(field);
         }
-        Ok(Fields(fields))
+        Ok(OrderedFields(fields))
     }
 }
 
@@ -36,8 +36,8 @@ mod tests {
 
     #[test]
     fn the_order_is_kept() {
-        let Fields(fields) = serde_json::from_str(r#"{"b": 1, "a": "x", "c": null}"#).unwrap();
+        let OrderedFields(fields) = serde_json::from_str(r#"{"b": 1, "a": "x", "c": null}"#).unwrap();
         assert_eq!(fields.iter().map(|(name, _)| name.as_str()).collect::<String>(), "bac");
-        assert!(serde_json::from_str::<Fields>("[1]").is_err());
+        assert!(serde_json::from_str::<OrderedFields>("[1]").is_err());
     }
 }

@@ -38,8 +38,8 @@ pub fn own_rmse(record: &Record) -> f64 {
 /// The comparison at equal error for every scene and focus whose knobs were turned.
 pub fn equal_errors<'a>(records: impl Iterator<Item = &'a Record>) -> Vec<EqualError> {
     let knobs: Vec<&Record> = records.filter(|record| record.series == Series::Knob).collect();
-    let usual = Contender::usual_splat();
-    let splats = knobs.iter().filter(|r| r.renderer == usual.renderer() && r.value == usual.value());
+    let usual = Contender::default_splat();
+    let splats = knobs.iter().filter(|r| r.renderer == usual.renderer() && r.value == usual.knob_value());
     splats
         .filter_map(|splat| {
             let truths: Vec<&&Record> = knobs

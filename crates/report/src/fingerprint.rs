@@ -28,13 +28,13 @@ impl Fingerprint {
     }
 
     /// The name: 24 hexadecimal digits, 96 bits.
-    pub fn name(self) -> String {
+    pub fn hex_name(self) -> String {
         self.0.finalize().iter().take(12).map(|byte| format!("{byte:02x}")).collect()
     }
 }
 
 /// Of all that a scene shows, wherever its files lie.
-pub fn of_scene(scene: &Scene) -> String {
+pub fn scene_fingerprint(scene: &Scene) -> String {
     let numbers = |values: &[u32]| bytemuck::cast_slice::<u32, u8>(values).to_vec();
     let triangles: Vec<u32> =
         scene.triangles.iter().flat_map(|t| [&t.vertices[..], &[t.part]].concat()).collect();
@@ -50,12 +50,12 @@ pub fn of_scene(scene: &Scene) -> String {
         .add_debug(&scene.materials)
         .add_debug(&scene.lights)
         .add_debug(&scene.back_faces)
-        .add_debug(&scene.own_world)
+        .add_debug(&scene.embedded_world)
         .add_debug(&scene.world)
         .add_debug(&scene.single_scattering)
         .add_debug(&scene.photo_lookup)
         .add(bytemuck::cast_slice(&scene.tangents));
-    for world in scene.own_world.iter().chain(&scene.world) {
+    for world in scene.embedded_world.iter().chain(&scene.world) {
         if let Environment::Map(map) = &world.environment {
             fingerprint = fingerprint.add(bytemuck::cast_slice(&map.texels));
         }
@@ -71,11 +71,11 @@ pub fn of_scene(scene: &Scene) -> String {
         };
         fingerprint = fingerprint.add_debug(&[image.width, image.height]).add(texels);
     }
-    fingerprint.name()
+    fingerprint.hex_name()
 }
 
 /// Of a camera with its lens, aperture picture and size.
-pub fn of_camera(camera: &Camera) -> String {
+pub fn camera_fingerprint(camera: &Camera) -> String {
     let fingerprint = Fingerprint::new();
     match &camera.aperture.shape {
         // The texels of a mask run into millions: as bytes, not as text.
@@ -89,11 +89,11 @@ pub fn of_camera(camera: &Camera) -> String {
         }
         _ => fingerprint.add_debug(camera),
     }
-    .name()
+    .hex_name()
 }
 
 /// Of a focus. It counts in parts, so it means something only together with its scene.
-pub fn of_focus(focus: &Focus) -> String {
+pub fn focus_fingerprint(focus: &Focus) -> String {
     let mut fingerprint = Fingerprint::new().add_debug(&focus.background);
     // Painted parts share one map: it is taken up once.
     let mut last_map = None;
@@ -113,7 +113,7 @@ pub fn of_focus(focus: &Focus) -> String {
             }
         };
     }
-    fingerprint.name()
+    fingerprint.hex_name()
 }
 
 #[cfg(test)]
@@ -126,22 +126,22 @@ mod tests {
         let scene = Scene { positions: vec![glam::DVec3::ONE; 3], ..Scene::default() };
         let moved = Scene { positions: vec![glam::DVec3::splat(1.0 + 1e-15); 3], ..scene.clone() };
         let elsewhere = Scene { path: "other.glb".into(), ..scene.clone() };
-        assert_ne!(of_scene(&scene), of_scene(&moved));
-        assert_eq!(of_scene(&scene), of_scene(&elsewhere), "where it lies does not matter");
+        assert_ne!(scene_fingerprint(&scene), scene_fingerprint(&moved));
+        assert_eq!(scene_fingerprint(&scene), scene_fingerprint(&elsewhere), "where it lies does not matter");
     }
 
     #[test]
     fn any_change_of_a_camera_shows() {
         let camera = Camera::default();
-        assert_ne!(of_camera(&camera), of_camera(&Camera { width: 961, ..camera.clone() }));
+        assert_ne!(camera_fingerprint(&camera), camera_fingerprint(&Camera { width: 961, ..camera.clone() }));
         let masked = |value: f32| {
             let mask =
                 ApertureMask { width: 2, height: 1, transmission: vec![value, 1.0], file: String::new() };
             let shape = ApertureShape::Mask(Arc::new(mask));
             Camera { aperture: lens::Aperture { shape, ..Default::default() }, ..Camera::default() }
         };
-        assert_ne!(of_camera(&masked(0.0)), of_camera(&masked(1.0)));
-        assert_eq!(of_camera(&masked(1.0)), of_camera(&masked(1.0)));
+        assert_ne!(camera_fingerprint(&masked(0.0)), camera_fingerprint(&masked(1.0)));
+        assert_eq!(camera_fingerprint(&masked(1.0)), camera_fingerprint(&masked(1.0)));
     }
 
     #[test]
@@ -149,12 +149,12 @@ mod tests {
         let scene = Arc::new(Scene::default());
         let standard = Focus::constant(scene.clone(), FocusOffset::STANDARD);
         let painted = Focus::constant(scene, FocusOffset::new(1.0, 1.0));
-        assert_ne!(of_focus(&standard), of_focus(&painted));
+        assert_ne!(focus_fingerprint(&standard), focus_fingerprint(&painted));
     }
 
     #[test]
     fn what_is_taken_up_keeps_its_bounds() {
-        let name = |a: &str, b: &str| Fingerprint::new().add(a.as_bytes()).add(b.as_bytes()).name();
+        let name = |a: &str, b: &str| Fingerprint::new().add(a.as_bytes()).add(b.as_bytes()).hex_name();
         assert_ne!(name("ab", "c"), name("a", "bc"));
         assert_eq!(name("ab", "c").len(), 24);
     }

@@ -12,32 +12,35 @@ use trace::Tracer;
 const PAINTED_CIRCLE: f64 = 0.06;
 
 /// Rays a side that look what is in sight.
-const LOOKS_A_SIDE: u32 = 64;
+const RAYS_A_SIDE: u32 = 64;
 
 /// A recipe by material (by node, where all is of one material). In the order of what fills most of the picture: sharp
 /// wherever it stands, far blur of a fixed size, nearer than the lens has it, and half way between the two anchors. Where
 /// there is but one thing to paint, it is all half way, so that paint blurs something. Returns with it what it does, a
 /// sentence.
 pub fn generic_recipe(scene: &Scene, tracer: &Tracer, camera: &Camera) -> (FocusRecipe, String) {
-    let by_material = by_sight(tracer, camera, |triangle| scene.material_of(triangle).name.clone());
+    let by_material = names_by_coverage(tracer, camera, |triangle| scene.material_of(triangle).name.clone());
     let is_by_material = by_material.len() > 1;
     let names = if is_by_material {
         by_material
     } else {
-        by_sight(tracer, camera, |triangle| scene.nodes[scene.part_of(triangle).node as usize].name.clone())
+        names_by_coverage(tracer, camera, |triangle| {
+            scene.nodes[scene.part_of(triangle).node as usize].name.clone()
+        })
     };
     // t − 1 = κ·d for a surface in focus, whatever its anchor.
     let optics = camera.optics();
     let kappa = optics.kappa_for_circle_px(PAINTED_CIRCLE * camera.height as f64).unwrap_or_default();
     let shift = kappa * optics.image_distance;
-    let half_way = FocusOffset::new(1.0 + 0.5 * shift, 0.5);
+    let between_anchors = FocusOffset::new(1.0 + 0.5 * shift, 0.5);
     let focuses = [
         FocusOffset::new(1.0, 1.0),
         FocusOffset::new(1.0 + shift, 1.0),
         FocusOffset::new(1.0 - shift, 0.0),
-        half_way,
+        between_anchors,
     ];
-    let (used, circle) = (if names.len() > 1 { &focuses[..] } else { &[half_way] }, PAINTED_CIRCLE * 100.0);
+    let (cycled_focuses, circle) =
+        (if names.len() > 1 { &focuses[..] } else { &[between_anchors] }, PAINTED_CIRCLE * 100.0);
     let what = if names.len() > 1 {
         format!(
             "made up, in turn by {}: sharp wherever it stands, {circle:.0} % of the picture's height of far blur, as \
@@ -53,7 +56,7 @@ pub fn generic_recipe(scene: &Scene, tracer: &Tracer, camera: &Camera) -> (Focus
     };
     let entries: Vec<_> = names
         .into_iter()
-        .zip(used.iter().copied().cycle())
+        .zip(cycled_focuses.iter().copied().cycle())
         .map(|(name, focus)| (name, RecipeEntry::Value(focus)))
         .collect();
     let (materials, nodes) = if is_by_material { (entries, Vec::new()) } else { (Vec::new(), entries) };
@@ -61,15 +64,15 @@ pub fn generic_recipe(scene: &Scene, tracer: &Tracer, camera: &Camera) -> (Focus
 }
 
 /// The names of what the pinhole sees, those first that fill most of the picture.
-fn by_sight(tracer: &Tracer, camera: &Camera, name: impl Fn(u32) -> String) -> Vec<String> {
-    let mut seen: BTreeMap<String, u32> = BTreeMap::new();
-    for look in 0..LOOKS_A_SIDE * LOOKS_A_SIDE {
-        let at = DVec2::new((look % LOOKS_A_SIDE) as f64 + 0.5, (look / LOOKS_A_SIDE) as f64 + 0.5);
-        if let Some(hit) = tracer.first_hit(&chief_ray(camera, at / LOOKS_A_SIDE as f64)) {
-            *seen.entry(name(hit.point.triangle)).or_default() += 1;
+fn names_by_coverage(tracer: &Tracer, camera: &Camera, name: impl Fn(u32) -> String) -> Vec<String> {
+    let mut counts: BTreeMap<String, u32> = BTreeMap::new();
+    for index in 0..RAYS_A_SIDE * RAYS_A_SIDE {
+        let at = DVec2::new((index % RAYS_A_SIDE) as f64 + 0.5, (index / RAYS_A_SIDE) as f64 + 0.5);
+        if let Some(hit) = tracer.first_hit(&chief_ray(camera, at / RAYS_A_SIDE as f64)) {
+            *counts.entry(name(hit.point.triangle)).or_default() += 1;
         }
     }
-    let mut names: Vec<_> = seen.into_iter().collect();
-    names.sort_by(|(a, seen_a), (b, seen_b)| seen_b.cmp(seen_a).then(a.cmp(b)));
+    let mut names: Vec<_> = counts.into_iter().collect();
+    names.sort_by(|(a, count_a), (b, count_b)| count_b.cmp(count_a).then(a.cmp(b)));
     names.into_iter().map(|(name, _)| name).collect()
 }

@@ -55,7 +55,7 @@ pub use engine::{Check, EngineRecord, EngineReport, run_engine};
 pub use live::ShownPicture;
 pub use machine::Machine;
 pub use options::{ReportOptions, SceneRequest};
-pub use photographs::{Photographs, Sparse, ToldPhotograph};
+pub use photographs::{Photographs, ReconstructedPhotograph, SparseLightField};
 pub use record::{Record, Series};
 pub use report::Report;
 pub use run::run;

@@ -1,7 +1,7 @@
 //! What the live preview shows as time goes on: of a new view, of a camera that moved, of a lens that turned.
 
 use crate::options::SceneRequest;
-use crate::reference::conserved;
+use crate::reference::conserved_picture;
 use crate::subject::Subject;
 use glam::DMat4;
 use lens::Camera;
@@ -30,14 +30,14 @@ pub struct ShownPicture {
 }
 
 /// How far the camera turns, rad, and by which factor the focus distance grows.
-const TURN: f64 = 0.03;
-const REFOCUS: f64 = 1.1;
+const TURN_RADIANS: f64 = 0.03;
+const REFOCUS_FACTOR: f64 = 1.1;
 
 /// How often it is looked whether there is something new.
-const LOOK: Duration = Duration::from_millis(4);
+const POLL_INTERVAL: Duration = Duration::from_millis(4);
 
 /// Opens a scene as the window does and watches the preview after each of some changes. The scene's light is known by then.
-pub fn watch(
+pub fn watch_preview(
     request: &SceneRequest,
     subject: &Subject,
     unwrap: &atlas::UnwrapOptions,
@@ -48,47 +48,47 @@ pub fn watch(
     let mut session = Session::new(SessionOptions {
         unwrap: unwrap.clone(),
         preview_size: camera.width.max(camera.height),
-        keep_after: day,
-        exact_after: Some(Duration::from_millis(300)),
+        recovery_delay: day,
+        exact_delay: Some(Duration::from_millis(300)),
         ..SessionOptions::default()
     })?;
     session.apply(Command::Open(request.file.clone()))?;
-    until(&mut session, progress, |session| session.document().is_some())?;
+    poll_until(&mut session, progress, |session| session.document().is_some())?;
     match &request.variant {
         VariantChoice::AsSaved => {}
         VariantChoice::Own => session.apply(Command::SetVariant(None))?,
         VariantChoice::Named(name) => session.apply(Command::SetVariant(Some(name.clone())))?,
     }
-    until(&mut session, progress, Session::is_idle)?;
+    poll_until(&mut session, progress, Session::is_idle)?;
     if let Some(back_faces) = request.back_faces {
         session.apply(Command::SetBackFaces(back_faces))?;
     }
     if let Some(world) = &request.world {
         session.apply(Command::SetWorld(Some(world.load(&subject.scene)?)))?;
     }
-    until(&mut session, progress, Session::is_idle)?;
+    poll_until(&mut session, progress, Session::is_idle)?;
 
     // First another view, so that nothing is there of the one that is watched.
     let turned = |by: f64| camera.camera_to_world * DMat4::from_rotation_y(by);
-    session.apply(Command::Camera(CameraEdit::Whole(Camera {
-        camera_to_world: turned(-TURN),
+    session.apply(Command::EditCamera(CameraEdit::Whole(Camera {
+        camera_to_world: turned(-TURN_RADIANS),
         ..camera.clone()
     })))?;
-    until(&mut session, progress, is_exact)?;
+    poll_until(&mut session, progress, is_exact)?;
     let changes = [
         ("camera moved", CameraEdit::Whole(camera.clone())),
-        ("camera moved again", CameraEdit::Pose(turned(TURN))),
-        ("lens turned", CameraEdit::FocusDistance(camera.focus_distance * REFOCUS)),
+        ("camera moved again", CameraEdit::Pose(turned(TURN_RADIANS))),
+        ("lens turned", CameraEdit::FocusDistance(camera.focus_distance * REFOCUS_FACTOR)),
     ];
     let mut watched = Vec::new();
     for (after, change) in changes {
-        watched.extend(watch_one(&mut session, after, change, progress)?);
+        watched.extend(watch_change(&mut session, after, change, progress)?);
     }
     Ok(watched)
 }
 
 /// What is shown after one change, to the exact picture.
-fn watch_one(
+fn watch_change(
     session: &mut Session,
     after: &str,
     change: CameraEdit,
@@ -96,19 +96,19 @@ fn watch_one(
 ) -> Result<Vec<ShownPicture>, SessionError> {
     let before = session.preview().map_or(0, |preview| preview.id);
     let start = Instant::now();
-    session.apply(Command::Camera(change))?;
+    session.apply(Command::EditCamera(change))?;
     let mut shown: Vec<(Preview, f64)> = Vec::new();
-    until(session, progress, |session| {
+    poll_until(session, progress, |session| {
         let last = shown.last().map_or(before, |(preview, _)| preview.id);
         let newer = session.preview().filter(|preview| preview.id > last);
         shown.extend(newer.map(|preview| (preview.clone(), start.elapsed().as_secs_f64())));
         !shown.is_empty() && is_exact(session)
     })?;
-    let last = shown.last().and_then(|(preview, _)| preview.picture.bring());
-    let Some(last) = last.map(|picture| conserved(&picture)) else { return Ok(Vec::new()) };
+    let last = shown.last().and_then(|(preview, _)| preview.picture.fetch());
+    let Some(last) = last.map(|picture| conserved_picture(&picture)) else { return Ok(Vec::new()) };
     let mut pictures = Vec::new();
     for (preview, seconds) in &shown {
-        let Some(own) = preview.picture.bring() else { continue };
+        let Some(own) = preview.picture.fetch() else { continue };
         let what = match (preview.kind, preview.quality) {
             (PreviewKind::Pinhole, _) => "pinhole",
             (_, Quality::Coarse) => "coarse",
@@ -116,8 +116,8 @@ fn watch_one(
             (_, Quality::Exact) => "exact",
         };
         let on_screen = match preview.enlarged_to {
-            Some(size) => conserved(&session::enlarged(&own, size)),
-            None => conserved(&own),
+            Some(size) => conserved_picture(&session::enlarged(&own, size)),
+            None => conserved_picture(&own),
         };
         let shown = enlarged(&on_screen, [last.width, last.height]);
         let psnr = compare(&shown, &last)?.psnr;
@@ -133,7 +133,7 @@ fn is_exact(session: &Session) -> bool {
 }
 
 /// Polls until `done`.
-fn until(
+fn poll_until(
     session: &mut Session,
     progress: &dyn Progress,
     mut done: impl FnMut(&Session) -> bool,
@@ -148,7 +148,7 @@ fn until(
         if done(session) {
             return Ok(());
         }
-        std::thread::sleep(LOOK);
+        std::thread::sleep(POLL_INTERVAL);
     }
 }
 

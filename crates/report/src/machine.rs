@@ -1,6 +1,6 @@
 //! The machine that was measured on.
 
-use crate::memory::kilobytes;
+use crate::memory::parse_kilobytes;
 use serde::Serialize;
 use std::time::SystemTime;
 
@@ -25,14 +25,14 @@ pub struct Machine {
 
 impl Machine {
     /// This machine, now.
-    pub fn here() -> Self {
+    pub fn current() -> Self {
         let cpuinfo = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
         let meminfo = std::fs::read_to_string("/proc/meminfo").unwrap_or_default();
         Self {
-            processor: processor(&cpuinfo).unwrap_or_else(|| std::env::consts::ARCH.into()),
+            processor: processor_name(&cpuinfo).unwrap_or_else(|| std::env::consts::ARCH.into()),
             cores: std::thread::available_parallelism().map_or(1, |cores| cores.get()),
             threads: rayon::current_num_threads(),
-            memory_bytes: kilobytes(&meminfo, "MemTotal:"),
+            memory_bytes: parse_kilobytes(&meminfo, "MemTotal:"),
             system: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
             version: format!(
                 "{}{}",
@@ -45,7 +45,7 @@ impl Machine {
 }
 
 /// The model's name in the text of /proc/cpuinfo.
-fn processor(cpuinfo: &str) -> Option<String> {
+fn processor_name(cpuinfo: &str) -> Option<String> {
     let line = cpuinfo.lines().find(|line| line.starts_with("model name"))?;
     let name = line.split_once(':')?.1.split_whitespace().collect::<Vec<_>>().join(" ");
     (!name.is_empty()).then_some(name)
@@ -58,11 +58,11 @@ mod tests {
     #[test]
     fn the_processor_is_named() {
         assert_eq!(
-            processor("processor: 0\nmodel name\t: A  CPU @ 2 GHz\n").as_deref(),
+            processor_name("processor: 0\nmodel name\t: A  CPU @ 2 GHz\n").as_deref(),
             Some("A CPU @ 2 GHz")
         );
-        assert_eq!(processor("BogoMIPS: 48\n"), None);
-        let here = Machine::here();
+        assert_eq!(processor_name("BogoMIPS: 48\n"), None);
+        let here = Machine::current();
         assert!(here.cores >= 1 && here.threads >= 1 && here.date.ends_with('Z'), "{here:?}");
     }
 }

@@ -1,15 +1,15 @@
 //! One measurement: a contender draws a setting and is compared with the reference.
 
-use crate::band::Band;
+use crate::band::OutlineBand;
 use crate::contender::{Contender, Shot};
 use crate::memory::PeakMemory;
 use crate::record::{Record, Series};
-use crate::reference::{ReferenceError, conserved};
+use crate::reference::{ReferenceError, conserved_picture};
 use project::{LinearPicture, compare};
 use session::{SessionError, Steps};
 
 /// What a contender's picture is compared with.
-pub struct Against<'a> {
+pub struct Comparison<'a> {
     /// The reference.
     pub picture: &'a LinearPicture,
     /// How far off it is.
@@ -17,11 +17,11 @@ pub struct Against<'a> {
     /// The circle of confusion that 99 % of the pixels with a surface stay below, px.
     pub coc_px: f64,
     /// The pixels beside outlines.
-    pub band: Band,
+    pub band: OutlineBand,
 }
 
 /// Names of what is measured.
-pub struct Named<'a> {
+pub struct MeasurementNames<'a> {
     /// The scene.
     pub scene: &'a str,
     /// The focus.
@@ -34,35 +34,35 @@ pub struct Named<'a> {
 pub fn measure(
     contender: Contender,
     shot: Shot<'_>,
-    against: &Against<'_>,
-    named: &Named<'_>,
+    comparison: &Comparison<'_>,
+    names: &MeasurementNames<'_>,
     steps: &dyn Steps,
 ) -> Result<(Record, LinearPicture), SessionError> {
     let memory = PeakMemory::watch();
     let drawn = contender.draw(shot, steps)?;
-    let peak_bytes = memory.taken();
-    let picture = conserved(&drawn.picture);
-    let found = compare(&picture, against.picture)?;
+    let peak_bytes = memory.peak_increase_bytes();
+    let picture = conserved_picture(&drawn.picture);
+    let errors = compare(&picture, comparison.picture)?;
     let record = Record {
-        scene: named.scene.into(),
-        focus: named.focus.into(),
+        scene: names.scene.into(),
+        focus: names.focus.into(),
         renderer: contender.renderer().into(),
-        knob: contender.knob().into(),
-        value: contender.value(),
+        knob: contender.knob_name().into(),
+        value: contender.knob_value(),
         seconds: drawn.bake_seconds.unwrap_or(0.0) + drawn.picture_seconds,
         bytes: drawn.bytes as u64,
-        rmse: found.rmse,
-        relmse: found.rel_mse,
-        psnr: found.psnr,
-        flip: found.flip,
-        mean_error: found.signed_mean_error,
-        band_psnr: against.band.psnr(&picture.rgb, &against.picture.rgb),
-        reference_psnr: against.error.psnr,
-        series: named.series,
+        rmse: errors.rmse,
+        relmse: errors.rel_mse,
+        psnr: errors.psnr,
+        flip: errors.flip,
+        mean_error: errors.signed_mean_error,
+        band_psnr: comparison.band.psnr(&picture.rgb, &comparison.picture.rgb),
+        reference_psnr: comparison.error.psnr,
+        series: names.series,
         width: shot.camera.width,
         height: shot.camera.height,
         aperture_radius: shot.camera.aperture_radius,
-        coc_px: against.coc_px,
+        coc_px: comparison.coc_px,
         triangles: shot.tracer.scene().triangles.len() as u64,
         threads: rayon::current_num_threads() as u32,
         backend: "cpu".into(),
@@ -71,8 +71,8 @@ pub fn measure(
         repeats: drawn.repeats,
         peak_bytes,
         samples: drawn.samples.map(|samples| samples as u64),
-        rmse_unclipped: found.rmse_unclipped,
-        reference_rmse: against.error.rmse,
+        rmse_unclipped: errors.rmse_unclipped,
+        reference_rmse: comparison.error.rmse,
     };
     Ok((record, picture))
 }

@@ -10,22 +10,22 @@ impl PeakMemory {
     pub fn watch() -> Self {
         // Writing 5 sets the mark of the highest resident memory back to what is held now (proc(5)).
         let is_set_back = std::fs::write("/proc/self/clear_refs", "5").is_ok();
-        Self { before: if is_set_back { resident("VmRSS:") } else { None } }
+        Self { before: if is_set_back { status_bytes("VmRSS:") } else { None } }
     }
 
     /// Bytes that the process held more at its peak than when the watch began.
-    pub fn taken(&self) -> Option<u64> {
-        Some(resident("VmHWM:")?.saturating_sub(self.before?))
+    pub fn peak_increase_bytes(&self) -> Option<u64> {
+        Some(status_bytes("VmHWM:")?.saturating_sub(self.before?))
     }
 }
 
 /// A line of the process' status, in bytes.
-fn resident(name: &str) -> Option<u64> {
-    kilobytes(&std::fs::read_to_string("/proc/self/status").ok()?, name)
+fn status_bytes(name: &str) -> Option<u64> {
+    parse_kilobytes(&std::fs::read_to_string("/proc/self/status").ok()?, name)
 }
 
 /// The value of a line `NAME   12345 kB`, in bytes.
-pub fn kilobytes(text: &str, name: &str) -> Option<u64> {
+pub fn parse_kilobytes(text: &str, name: &str) -> Option<u64> {
     let value = text.lines().find_map(|line| line.strip_prefix(name))?;
     Some(value.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()? * 1024)
 }
@@ -37,8 +37,8 @@ mod tests {
     #[test]
     fn lines_are_read() {
         let text = "Name:\tx\nVmHWM:\t   12 kB\nVmRSS:\t 7 kB\n";
-        assert_eq!(kilobytes(text, "VmHWM:"), Some(12 * 1024));
-        assert_eq!(kilobytes(text, "VmSwap:"), None);
+        assert_eq!(parse_kilobytes(text, "VmHWM:"), Some(12 * 1024));
+        assert_eq!(parse_kilobytes(text, "VmSwap:"), None);
     }
 
     #[test]
@@ -48,7 +48,7 @@ mod tests {
         let held = vec![1u8; 64 << 20];
         assert_eq!(std::hint::black_box(&held)[1 << 20], 1);
         drop(held);
-        if let Some(taken) = watch.taken() {
+        if let Some(taken) = watch.peak_increase_bytes() {
             // Other tests of this process may hold and free memory meanwhile.
             assert!(taken > 32 << 20, "{taken}");
         }

@@ -53,5 +53,5 @@ impl ReportOptions {
     /// The same where the engine alone is measured: its pictures are large.
     pub const ENGINE_REFERENCE_SPP: u32 = 256;
     /// Fewest rays a pixel of a reference: two halves are compared.
-    pub const FEWEST_REFERENCE_SPP: u32 = 2;
+    pub const MIN_REFERENCE_SPP: u32 = 2;
 }

@@ -1,7 +1,7 @@
 //! How well the photographs of a capture tell those that are left out, and what they would be as a sparse light field.
 
 use crate::default_lens::quantile;
-use crate::store::{Store, file_part};
+use crate::store::{Store, file_name_part};
 use baselines::ghosting_bounds;
 use glam::DVec3;
 use project::{LinearPicture, write_rgb};
@@ -11,17 +11,19 @@ use session::{LeftOut, SessionError};
 use std::path::PathBuf;
 
 /// Photographs that are left out of a capture.
-pub const COUNT: usize = 4;
+pub const LEFT_OUT_COUNT: usize = 4;
 
 /// One way to tell a photograph that was left out.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ToldPhotograph {
+pub struct ReconstructedPhotograph {
     /// The photograph's name.
     pub photograph: String,
     /// What tells it: `light`, `constant texture` or `texture of one photograph`.
-    pub told_by: String,
+    #[serde(rename = "told_by")]
+    pub method: String,
     /// The share of the frame where the others see the surface.
-    pub seen: f64,
+    #[serde(rename = "seen")]
+    pub visible_share: f64,
     /// PSNR there, dB; linear, clipped to [0, 1].
     pub psnr: f64,
     /// Mean FLIP there.
@@ -38,9 +40,10 @@ pub struct Photographs {
     /// How much more memory the process held at most meanwhile, bytes, where that is known.
     pub peak_bytes: Option<u64>,
     /// Each photograph and way.
-    pub told: Vec<ToldPhotograph>,
+    #[serde(rename = "told")]
+    pub reconstructions: Vec<ReconstructedPhotograph>,
     /// The photographs as a sparse light field.
-    pub sparse: Option<Sparse>,
+    pub sparse: Option<SparseLightField>,
     /// By photograph: it, and what light tells.
     #[serde(skip)]
     pub pictures: Vec<[PathBuf; 2]>,
@@ -48,7 +51,7 @@ pub struct Photographs {
 
 /// Photographs as views of a light field that are shifted and added up.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Sparse {
+pub struct SparseLightField {
     /// From the photographs to the middle of what they see, the median, scene units.
     pub depth: f64,
     /// From each to the next one, the median, scene units.
@@ -59,25 +62,27 @@ pub struct Sparse {
 
 impl Photographs {
     /// Of photographs that were left out, their pictures kept in `store`.
-    pub fn of(
+    pub fn from_left_out(
         scene: &Scene,
         left_out: &LeftOut,
         peak_bytes: Option<u64>,
         name: &str,
         store: &Store,
     ) -> Result<Self, SessionError> {
-        let mut told = Vec::new();
+        let mut reconstructions = Vec::new();
         for picture in &left_out.pictures {
-            told.extend(picture.told.iter().map(|by| ToldPhotograph {
-                photograph: picture.name.clone(),
-                told_by: by.what.into(),
-                seen: picture.seen,
-                psnr: by.psnr,
-                flip: by.flip,
+            reconstructions.extend(picture.predictions.iter().map(|reconstruction| {
+                ReconstructedPhotograph {
+                    photograph: picture.name.clone(),
+                    method: reconstruction.method.into(),
+                    visible_share: picture.visible_share,
+                    psnr: reconstruction.psnr,
+                    flip: reconstruction.flip,
+                }
             }));
-            let files = files(store, name, &picture.name);
-            for (file, picture) in files.iter().zip([&picture.photograph, &picture.told[0].picture]) {
-                let small = reduced(picture);
+            let files = picture_files(store, name, &picture.name);
+            for (file, picture) in files.iter().zip([&picture.photograph, &picture.predictions[0].picture]) {
+                let small = reduced_for_page(picture);
                 write_rgb(file, small.width, small.height, &small.pixels)?;
             }
         }
@@ -85,8 +90,8 @@ impl Photographs {
             count: scene.views.len(),
             seconds: left_out.seconds,
             peak_bytes,
-            told,
-            sparse: Sparse::of(scene, &scene.views),
+            reconstructions,
+            sparse: SparseLightField::from_views(scene, &scene.views),
             pictures: Vec::new(),
         };
         photographs.find_pictures(name, store);
@@ -95,34 +100,37 @@ impl Photographs {
 
     /// Finds the pictures of an earlier run.
     pub fn find_pictures(&mut self, name: &str, store: &Store) {
-        let light = self.told.iter().filter(|told| told.told_by == "light");
-        self.pictures = light.map(|told| files(store, name, &told.photograph)).collect();
+        let light = self.reconstructions.iter().filter(|reconstruction| reconstruction.method == "light");
+        self.pictures =
+            light.map(|reconstruction| picture_files(store, name, &reconstruction.photograph)).collect();
     }
 
     /// PSNR of each way over all photographs: of the mean of their squared errors, dB.
-    pub fn together(&self, told_by: &str) -> f64 {
-        let of_way = || self.told.iter().filter(|told| told.told_by == told_by);
-        let squares: f64 = of_way().map(|told| 10f64.powf(-told.psnr / 10.0)).sum();
-        project::psnr(squares / of_way().count().max(1) as f64)
+    pub fn overall_psnr(&self, method: &str) -> f64 {
+        let of_method =
+            || self.reconstructions.iter().filter(|reconstruction| reconstruction.method == method);
+        let squares: f64 = of_method().map(|reconstruction| 10f64.powf(-reconstruction.psnr / 10.0)).sum();
+        project::psnr(squares / of_method().count().max(1) as f64)
     }
 }
 
-fn files(store: &Store, name: &str, photograph: &str) -> [PathBuf; 2] {
-    let part = file_part(photograph);
+fn picture_files(store: &Store, name: &str, photograph: &str) -> [PathBuf; 2] {
+    let part = file_name_part(photograph);
     [store.file(&format!("{name}-{part}"), "png"), store.file(&format!("{name}-{part}-light"), "png")]
 }
 
-impl Sparse {
+impl SparseLightField {
     /// Of some of the photographs of a scene; none of fewer than two.
-    pub fn of(scene: &Scene, views: &[View]) -> Option<Self> {
+    pub fn from_views(scene: &Scene, views: &[View]) -> Option<Self> {
         let (low, high) = scene.bounds();
         let middle = 0.5 * (low + high);
         let to_next = |view: &View| {
             let others = views.iter().filter(|other| other.name != view.name);
             others.map(|other| other.position().distance(view.position())).min_by(f64::total_cmp)
         };
-        let depth =
-            median(views.iter().map(|view| along(view, middle)).filter(|depth| *depth > 0.0).collect())?;
+        let depth = median(
+            views.iter().map(|view| depth_along_axis(view, middle)).filter(|depth| *depth > 0.0).collect(),
+        )?;
         let spacing = median(views.iter().filter_map(to_next).collect())?;
         let focal_px = median(views.iter().map(|view| view.lens.intrinsics().focal_px[0]).collect())?;
         let [nearer, farther] = ghosting_bounds(depth, 1.0, spacing, focal_px);
@@ -131,7 +139,7 @@ impl Sparse {
     }
 }
 
-fn along(view: &View, point: DVec3) -> f64 {
+fn depth_along_axis(view: &View, point: DVec3) -> f64 {
     (point - view.position()).dot(view.forward())
 }
 
@@ -141,12 +149,12 @@ fn median(mut values: Vec<f64>) -> Option<f64> {
 }
 
 /// At most this wide in the page.
-const WIDEST: u32 = 720;
+const MAX_WIDTH_PX: u32 = 720;
 
 /// The picture made smaller by a whole number, so that the page does not grow with the photographs.
-fn reduced(picture: &LinearPicture) -> Photograph {
+fn reduced_for_page(picture: &LinearPicture) -> Photograph {
     let whole = Photograph { width: picture.width, height: picture.height, pixels: picture.rgb.clone() };
-    whole.reduced(picture.width.div_ceil(WIDEST))
+    whole.downsampled(picture.width.div_ceil(MAX_WIDTH_PX))
 }
 
 #[cfg(test)]
@@ -161,17 +169,17 @@ mod tests {
             rgb: (0..4000).map(|k| [(k % 2) as f32, 0.25, 1.0]).collect(),
             ..LinearPicture::default()
         };
-        let small = reduced(&picture);
+        let small = reduced_for_page(&picture);
         assert_eq!((small.width, small.height), (500, 2));
         assert!(small.pixels.iter().all(|&pixel| pixel == [0.5, 0.25, 1.0]));
     }
 
     #[test]
     fn all_photographs_count_by_their_squared_errors() {
-        let told = |psnr: f64| ToldPhotograph {
+        let reconstruction = |psnr: f64| ReconstructedPhotograph {
             photograph: "a".into(),
-            told_by: "light".into(),
-            seen: 1.0,
+            method: "light".into(),
+            visible_share: 1.0,
             psnr,
             flip: 0.0,
         };
@@ -179,10 +187,10 @@ mod tests {
             count: 9,
             seconds: 1.0,
             peak_bytes: None,
-            told: vec![told(20.0), told(30.0)],
+            reconstructions: vec![reconstruction(20.0), reconstruction(30.0)],
             sparse: None,
             pictures: Vec::new(),
         };
-        assert!((photographs.together("light") - 22.596).abs() < 1e-3);
+        assert!((photographs.overall_psnr("light") - 22.596).abs() < 1e-3);
     }
 }

@@ -25,7 +25,7 @@ pub struct Setting {
 }
 
 /// A scene is not cut into more triangles than this.
-const MOST_TRIANGLES: usize = 2_000_000;
+const MAX_TRIANGLES: usize = 2_000_000;
 
 /// References of what is measured for its cost are traced with this many times fewer rays.
 const COST_REFERENCE_SHARE: u32 = 8;
@@ -37,20 +37,20 @@ const COST_SPP: u32 = 64;
 const COST_VIEWS_A_SIDE: u32 = 5;
 
 /// The standard focus is the subject's first.
-const STANDARD: usize = 0;
+const STANDARD_FOCUS: usize = 0;
 
 /// What is drawn where cost is measured, in a sentence.
 pub fn cost_note() -> String {
-    let splat = Contender::usual_splat();
+    let splat = Contender::default_splat();
     format!(
         "Cost is that under the standard lens: the splat at a tolerance of {} px, the ray tracer with {COST_SPP} rays a pixel, \
          {COST_VIEWS_A_SIDE} × {COST_VIEWS_A_SIDE} views.",
-        significant(splat.value())
+        significant(splat.knob_value())
     )
 }
 
 /// All settings of a subject.
-pub fn settings(subject: &Subject, options: &ReportOptions) -> Vec<Setting> {
+pub fn plan_settings(subject: &Subject, options: &ReportOptions) -> Vec<Setting> {
     let base = |series, focus, camera| Setting {
         series,
         focus,
@@ -61,21 +61,20 @@ pub fn settings(subject: &Subject, options: &ReportOptions) -> Vec<Setting> {
     };
     let mut settings: Vec<Setting> = (0..subject.focuses.len())
         .map(|focus| Setting {
-            contenders: sweep(options.is_quick),
+            contenders: knob_sweep(options.is_quick),
             ..base(Series::Knob, focus, subject.camera.clone())
         })
         .collect();
 
     let cost = |series, camera| Setting {
-        reference_spp: (options.reference_spp / COST_REFERENCE_SHARE)
-            .max(ReportOptions::FEWEST_REFERENCE_SPP),
+        reference_spp: (options.reference_spp / COST_REFERENCE_SHARE).max(ReportOptions::MIN_REFERENCE_SPP),
         contenders: vec![
-            Contender::usual_splat(),
+            Contender::default_splat(),
             Contender::Truth { samples_per_pixel: COST_SPP },
             Contender::Blur,
             Contender::Views { views_a_side: COST_VIEWS_A_SIDE },
         ],
-        ..base(series, STANDARD, camera)
+        ..base(series, STANDARD_FOCUS, camera)
     };
     let factors: &[f64] = if options.is_quick { &[0.5, 1.0] } else { &[0.25, 0.5, 1.0, 2.0] };
     settings.extend(factors.iter().map(|factor| {
@@ -89,10 +88,10 @@ pub fn settings(subject: &Subject, options: &ReportOptions) -> Vec<Setting> {
         let (width, height) = (scaled(subject.camera.width), scaled(subject.camera.height));
         cost(Series::PictureSize, Camera { width, height, ..subject.camera.clone() })
     }));
-    let most_cuts = if options.is_quick { 1 } else { 2 };
-    let fits = |cuts: &u32| subject.scene.triangles.len() << (2 * cuts) <= MOST_TRIANGLES;
+    let max_cuts = if options.is_quick { 1 } else { 2 };
+    let fits = |cuts: &u32| subject.scene.triangles.len() << (2 * cuts) <= MAX_TRIANGLES;
     settings.extend(
-        (0..=most_cuts)
+        (0..=max_cuts)
             .filter(|cuts| *cuts == 0 || fits(cuts))
             .map(|cuts| Setting { cuts, ..cost(Series::SceneSize, subject.camera.clone()) }),
     );
@@ -100,7 +99,7 @@ pub fn settings(subject: &Subject, options: &ReportOptions) -> Vec<Setting> {
 }
 
 /// Every contender with its knob at several places.
-fn sweep(is_quick: bool) -> Vec<Contender> {
+fn knob_sweep(is_quick: bool) -> Vec<Contender> {
     let tolerances: &[f64] = if is_quick { &[2.0, 0.0] } else { &[8.0, 4.0, 2.0, 1.0, 0.5, 0.0] };
     let spps: &[u32] = if is_quick { &[4, 16, 64] } else { &[4, 8, 16, 32, 64, 128, 256] };
     let splats = tolerances.iter().map(|&tolerance_px| Contender::Splat { tolerance_px });

@@ -49,7 +49,7 @@ pub fn trace_reference(
         };
         Ok::<_, SessionError>(render(shot.tracer, shot.camera, shot.focus, &options, steps)?.picture)
     };
-    let [a, b] = [half(SEEDS[0])?, half(SEEDS[1])?].map(|half| conserved(&half));
+    let [a, b] = [half(SEEDS[0])?, half(SEEDS[1])?].map(|half| conserved_picture(&half));
     let rmse = compare(&a, &b)?.rmse / 2.0;
     let mean = |(a, b): (&[f32; 3], &[f32; 3])| [0, 1, 2].map(|k| (a[k] + b[k]) / 2.0);
     let rgb = a.rgb.iter().zip(&b.rgb).map(mean).collect();
@@ -63,6 +63,6 @@ pub fn trace_reference(
 }
 
 /// A picture under the exposure that errors are measured with.
-pub fn conserved(picture: &Picture) -> LinearPicture {
-    LinearPicture::of(picture, Exposure::Conserve)
+pub fn conserved_picture(picture: &Picture) -> LinearPicture {
+    LinearPicture::from_picture(picture, Exposure::Conserve)
 }

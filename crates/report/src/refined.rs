@@ -1,6 +1,6 @@
 //! How far the light at once is off, as light that is refined tells it.
 
-use crate::reference::conserved;
+use crate::reference::conserved_picture;
 use focus::Focus;
 use lens::Camera;
 use project::{LinearPicture, compare};
@@ -26,31 +26,34 @@ pub struct RefinedLight {
 
 impl RefinedLight {
     /// What passes, and a quarter of them, tell of a picture.
-    pub fn of(
+    pub fn measure(
         tracer: &Arc<Tracer>,
         camera: &Camera,
         focus: &Focus,
         passes: u32,
         steps: &dyn Steps,
     ) -> Result<Self, SessionError> {
-        let drawn = |light: LightQuality| -> Result<(LinearPicture, f64), SessionError> {
+        let draw_with = |light: LightQuality| -> Result<(LinearPicture, f64), SessionError> {
             let options = RenderOptions { light, ..RenderOptions::default() };
             let rendered = render(tracer, camera, focus, &options, steps)?;
-            Ok((conserved(&rendered.picture), rendered.cost.bake_seconds + rendered.cost.picture_seconds))
+            Ok((
+                conserved_picture(&rendered.picture),
+                rendered.cost.bake_seconds + rendered.cost.picture_seconds,
+            ))
         };
-        let (at_once, seconds_at_once) = drawn(LightQuality::Fine)?;
-        let (last, _) = drawn(LightQuality::Refined { passes: passes / 4 })?;
-        let (refined, seconds) = drawn(LightQuality::Refined { passes })?;
+        let (at_once, seconds_at_once) = draw_with(LightQuality::Fine)?;
+        let (last, _) = draw_with(LightQuality::Refined { passes: passes / 4 })?;
+        let (refined, seconds) = draw_with(LightQuality::Refined { passes })?;
         let square = |picture: &LinearPicture| -> Result<_, SessionError> {
-            let found = compare(picture, &refined)?;
-            Ok((10f64.powf(-found.psnr / 10.0), found.signed_mean_error))
+            let errors = compare(picture, &refined)?;
+            Ok((10f64.powf(-errors.psnr / 10.0), errors.signed_mean_error))
         };
         let (from_last, _) = square(&last)?;
         let (from_standing, at_once_mean) = square(&at_once)?;
-        let errors = LightErrors::told(from_last, from_standing);
+        let errors = LightErrors::from_mean_squares(from_last, from_standing);
         Ok(Self {
             passes,
-            at_once_psnr: project::psnr(errors.standing),
+            at_once_psnr: project::psnr(errors.displayed),
             noise_psnr: project::psnr(errors.refined),
             at_once_mean,
             seconds: [seconds_at_once, seconds],

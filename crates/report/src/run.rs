@@ -1,23 +1,23 @@
 //! The run: from scenes to measurements, each kept as soon as it is done.
 
-use crate::band::Band;
+use crate::band::OutlineBand;
 use crate::contender::{Contender, Shot};
 use crate::default_lens::quantile;
 use crate::fingerprint::{self, Fingerprint};
 use crate::live::{self, ShownPicture};
 use crate::machine::Machine;
-use crate::measure::{Against, Named, measure};
+use crate::measure::{Comparison, MeasurementNames, measure};
 use crate::memory::PeakMemory;
 use crate::options::{ReportOptions, SceneRequest};
 use crate::photographs::{self, Photographs};
-use crate::plan::{Setting, settings};
+use crate::plan::{Setting, plan_settings};
 use crate::record::{Record, Series};
-use crate::reference::{conserved, trace_reference};
+use crate::reference::{conserved_picture, trace_reference};
 use crate::refined::RefinedLight;
 use crate::report::{Measured, Report};
-use crate::store::{Store, file_part};
-use crate::subdivision::subdivided;
-use crate::subject::{Subject, first_hits};
+use crate::store::{Store, file_name_part};
+use crate::subdivision::subdivide;
+use crate::subject::{Subject, trace_first_hits};
 use crate::summary::{FocusSummary, ModelledScene, Reference, SceneSummary};
 use crate::views::Views;
 use crate::write::write_report;
@@ -25,7 +25,7 @@ use focus::Focus;
 use progress::Progress;
 use project::{LinearPicture, compare, read_picture, write_error_map, write_rgb};
 use salf::Salf;
-use session::{Modelled, RenderOptions, SessionError, Steps, bake, bake_unpacked, may_be_refined};
+use session::{Modelled, RenderOptions, SessionError, Steps, bake, bake_unpacked, can_refine_light};
 use splat::Splatter;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
@@ -33,7 +33,7 @@ use std::time::Instant;
 use trace::Tracer;
 
 /// Results of other forms than this do not count.
-const FORM: &str = "3";
+const FORMAT_VERSION: &str = "3";
 
 /// The tolerance of the finest light field, px.
 const FINEST_TOLERANCE_PX: f64 = 0.0;
@@ -51,9 +51,9 @@ pub fn run(
 ) -> Result<Report, SessionError> {
     let start = Instant::now();
     let store = Store::open(&folder.join("measurements"))?;
-    let runner = Runner { options, store: &store, steps, note };
+    let runner = ReportRunner { options, store: &store, steps, note };
     let mut report = Report {
-        machine: Machine::here(),
+        machine: Machine::current(),
         scenes: Vec::new(),
         measured: Vec::new(),
         hard: None,
@@ -62,7 +62,7 @@ pub fn run(
         seconds: 0.0,
     };
     for request in requests {
-        runner.scene(request, &mut report)?;
+        runner.measure_scene(request, &mut report)?;
     }
     if options.with_hard_cases {
         let bar = steps.begin("hard cases");
@@ -73,7 +73,7 @@ pub fn run(
     Ok(report)
 }
 
-struct Runner<'a> {
+struct ReportRunner<'a> {
     options: &'a ReportOptions,
     store: &'a Store,
     steps: &'a dyn Steps,
@@ -81,35 +81,35 @@ struct Runner<'a> {
 }
 
 /// A setting, with what names its results.
-struct Place<'a> {
+struct SettingContext<'a> {
     subject: &'a Subject,
     setting: &'a Setting,
     scene_print: &'a str,
     focus_print: &'a str,
 }
 
-impl Runner<'_> {
-    fn scene(&self, request: &SceneRequest, report: &mut Report) -> Result<(), SessionError> {
+impl ReportRunner<'_> {
+    fn measure_scene(&self, request: &SceneRequest, report: &mut Report) -> Result<(), SessionError> {
         let mut subject = Subject::open(request, self.options, self.steps)?;
         let same_name = report.scenes.iter().filter(|scene| scene.name == subject.name).count();
         if same_name > 0 {
             subject.name = format!("{} ({})", subject.name, same_name + 1);
         }
         subject.warnings.iter().for_each(|warning| (self.note)(&format!("warning: {warning}")));
-        let scene_print = fingerprint::of_scene(&subject.scene);
+        let scene_print = fingerprint::scene_fingerprint(&subject.scene);
         let focus_prints: Vec<_> =
-            subject.focuses.iter().map(|named| fingerprint::of_focus(&named.focus)).collect();
+            subject.focuses.iter().map(|named| fingerprint::focus_fingerprint(&named.focus)).collect();
         let live = self.live(request, &subject, &scene_print)?;
         let photographs = self.photographs(&subject, &scene_print)?;
-        let views = Views::of(&subject.input, &subject.name, self.steps)?;
-        let settings = settings(&subject, self.options);
+        let views = Views::measure(&subject.input, &subject.name, self.steps)?;
+        let settings = plan_settings(&subject, self.options);
         let total: usize = settings.iter().map(|setting| setting.contenders.len()).sum();
         let mut done = 0;
         let mut focuses = Vec::new();
         // The scene in finer and finer triangles, made when it is needed.
         let mut cut: Option<(u32, Arc<Tracer>)> = None;
         for setting in &settings {
-            let place = Place {
+            let place = SettingContext {
                 subject: &subject,
                 setting,
                 scene_print: &scene_print,
@@ -119,18 +119,18 @@ impl Runner<'_> {
             for &contender in &setting.contenders {
                 done += 1;
                 let name = self.measurement_name(&place, contender);
-                let kept = self.kept(&name, setting.series);
-                let measured = match kept {
+                let stored = self.stored_measurement(&name, setting.series);
+                let measured = match stored {
                     Some(measured) => measured,
                     None => {
-                        let (picture, about) = match &mut reference {
+                        let (picture, reference_summary) = match &mut reference {
                             Some(reference) => reference,
                             None => reference.insert(self.reference(&place)?),
                         };
-                        let band =
-                            band.get_or_insert_with(|| Band::of_scene(&subject.tracer, &setting.camera));
-                        let (error, coc_px) = (about.error, about.circles_px[2]);
-                        let against = Against { picture, error, coc_px, band: band.clone() };
+                        let band = band
+                            .get_or_insert_with(|| OutlineBand::from_scene(&subject.tracer, &setting.camera));
+                        let (error, coc_px) = (reference_summary.error, reference_summary.circles_px[2]);
+                        let against = Comparison { picture, error, coc_px, band: band.clone() };
                         let tracer = self.cut_tracer(&place, &mut cut)?;
                         report.new += 1;
                         let count = [done, total];
@@ -182,7 +182,7 @@ impl Runner<'_> {
     }
 
     /// A measurement of an earlier run, if its figures and pictures are all there.
-    fn kept(&self, name: &str, series: Series) -> Option<Measured> {
+    fn stored_measurement(&self, name: &str, series: Series) -> Option<Measured> {
         let record = Record { series, ..self.store.get(name)? };
         let pictures = (series == Series::Knob).then(|| self.picture_files(name));
         let complete = pictures.iter().flatten().all(|file| file.is_file());
@@ -195,22 +195,22 @@ impl Runner<'_> {
 
     fn measure(
         &self,
-        place: &Place<'_>,
+        place: &SettingContext<'_>,
         contender: Contender,
         tracer: &Arc<Tracer>,
-        against: &Against<'_>,
+        against: &Comparison<'_>,
         name: &str,
         [done, total]: [usize; 2],
     ) -> Result<Measured, SessionError> {
-        let Place { subject, setting, .. } = place;
+        let SettingContext { subject, setting, .. } = place;
         let focus = &subject.focuses[setting.focus];
         let label = format!("{}, {}: {} [{done}/{total}]", subject.name, focus.name, contender.renderer());
         let bar = self.steps.begin(&label);
-        let one = OneBar { bar: &*bar, furthest: Mutex::new(0.0) };
+        let one = SharedBar { bar: &*bar, furthest_fraction: Mutex::new(0.0) };
         // Only the standard focus is measured on a cut scene, whose parts are the same.
         let cut_focus = Focus { scene: tracer.scene().clone(), ..focus.focus.clone() };
         let shot = Shot { tracer, camera: &setting.camera, focus: &cut_focus };
-        let named = Named { scene: &subject.name, focus: focus.name, series: setting.series };
+        let named = MeasurementNames { scene: &subject.name, focus: focus.name, series: setting.series };
         let (record, picture) = measure(contender, shot, against, &named, &one)?;
         let pictures = if setting.series == Series::Knob {
             let [png, flip] = self.picture_files(name);
@@ -235,7 +235,7 @@ impl Runner<'_> {
     /// The tracer of a setting's scene.
     fn cut_tracer(
         &self,
-        place: &Place<'_>,
+        place: &SettingContext<'_>,
         cut: &mut Option<(u32, Arc<Tracer>)>,
     ) -> Result<Arc<Tracer>, SessionError> {
         let cuts = place.setting.cuts;
@@ -248,8 +248,8 @@ impl Runner<'_> {
         let mut scene = place.subject.scene.as_ref().clone();
         for _ in 0..cuts {
             let too_many =
-                || SessionError::bad(&place.subject.file, "too many vertices to cut its triangles");
-            scene = subdivided(&scene).ok_or_else(too_many)?;
+                || SessionError::bad_file(&place.subject.file, "too many vertices to cut its triangles");
+            scene = subdivide(&scene).ok_or_else(too_many)?;
         }
         let tracer = Arc::new(Tracer::new(Arc::new(scene)));
         *cut = Some((cuts, tracer.clone()));
@@ -257,19 +257,19 @@ impl Runner<'_> {
     }
 
     /// The reference of a setting, traced or as an earlier run left it.
-    fn reference(&self, place: &Place<'_>) -> Result<(LinearPicture, Reference), SessionError> {
+    fn reference(&self, place: &SettingContext<'_>) -> Result<(LinearPicture, Reference), SessionError> {
         let name = self.reference_name(place);
         let file = self.store.file(&name, "exr");
         if let (Some(about), Ok(picture)) = (self.store.get::<Reference>(&name), read_picture(&file)) {
             return Ok((picture, about));
         }
-        let Place { subject, setting, .. } = place;
+        let SettingContext { subject, setting, .. } = place;
         let focus = &subject.focuses[setting.focus];
         let bar = self.steps.begin(&format!("{}, {}: reference", subject.name, focus.name));
-        let one = OneBar { bar: &*bar, furthest: Mutex::new(0.0) };
+        let one = SharedBar { bar: &*bar, furthest_fraction: Mutex::new(0.0) };
         let shot = Shot { tracer: &subject.tracer, camera: &setting.camera, focus: &focus.focus };
         let (picture, error) = trace_reference(shot, setting.reference_spp, &one)?;
-        let hits = first_hits(shot.tracer, shot.focus, shot.camera, &one)?;
+        let hits = trace_first_hits(shot.tracer, shot.focus, shot.camera, &one)?;
         // The background is at infinity, and blurred or not it looks the same.
         let circles = hits.circle_of_confusion_px(shot.camera).into_iter().zip(&hits.depth);
         let circles = circles.filter(|(_, depth)| depth.is_finite());
@@ -287,23 +287,32 @@ impl Runner<'_> {
 
     /// How the photographs of a capture tell those that are left out.
     fn photographs(&self, subject: &Subject, scene_print: &str) -> Result<Option<Photographs>, SessionError> {
-        if subject.scene.views.len() <= photographs::COUNT {
+        if subject.scene.views.len() <= photographs::LEFT_OUT_COUNT {
             return Ok(None);
         }
-        let print = self.print_of(subject, scene_print).name();
-        let name = format!("{}-photographs-{print}", file_part(&subject.name));
-        if let Some(mut kept) = self.store.get::<Photographs>(&name) {
-            kept.find_pictures(&name, self.store);
-            if kept.pictures.iter().flatten().all(|file| file.is_file()) {
-                return Ok(Some(kept));
+        let print = self.scene_and_camera_fingerprint(subject, scene_print).hex_name();
+        let name = format!("{}-photographs-{print}", file_name_part(&subject.name));
+        if let Some(mut stored) = self.store.get::<Photographs>(&name) {
+            stored.find_pictures(&name, self.store);
+            if stored.pictures.iter().flatten().all(|file| file.is_file()) {
+                return Ok(Some(stored));
             }
         }
         let memory = PeakMemory::watch();
-        let left_out =
-            subject.input.leave_photographs_out(photographs::COUNT, &self.options.unwrap, self.steps)?;
-        let found = Photographs::of(&subject.scene, &left_out, memory.taken(), &name, self.store)?;
-        self.store.put(&name, &found)?;
-        Ok(Some(found))
+        let left_out = subject.input.leave_photographs_out(
+            photographs::LEFT_OUT_COUNT,
+            &self.options.unwrap,
+            self.steps,
+        )?;
+        let measured = Photographs::from_left_out(
+            &subject.scene,
+            &left_out,
+            memory.peak_increase_bytes(),
+            &name,
+            self.store,
+        )?;
+        self.store.put(&name, &measured)?;
+        Ok(Some(measured))
     }
 
     /// What the live preview shows as time goes on. The window has no switch for single scattering: not watched then.
@@ -317,55 +326,56 @@ impl Runner<'_> {
             return Ok(Vec::new());
         }
         let print = self
-            .print_of(subject, scene_print)
+            .scene_and_camera_fingerprint(subject, scene_print)
             .add(&(rayon::current_num_threads() as u64).to_le_bytes())
-            .name();
-        let name = format!("{}-live-{print}", file_part(&subject.name));
-        if let Some(kept) = self.store.get(&name) {
-            return Ok(kept);
+            .hex_name();
+        let name = format!("{}-live-{print}", file_name_part(&subject.name));
+        if let Some(stored) = self.store.get(&name) {
+            return Ok(stored);
         }
         let bar = self.steps.begin(&format!("{}: the live preview", subject.name));
-        let live = live::watch(request, subject, &self.options.unwrap, &*bar)?;
+        let live = live::watch_preview(request, subject, &self.options.unwrap, &*bar)?;
         self.store.put(&name, &live)?;
         Ok(live)
     }
 
     /// How far the light at once is off.
     fn light(&self, subject: &Subject, scene_print: &str) -> Result<Option<RefinedLight>, SessionError> {
-        if !may_be_refined(&subject.tracer) {
+        if !can_refine_light(&subject.tracer) {
             return Ok(None);
         }
         let passes: u32 = if self.options.is_quick { 16 } else { 64 };
-        let print = self.print_of(subject, scene_print).add(&passes.to_le_bytes()).name();
-        let name = format!("{}-light-{print}", file_part(&subject.name));
-        if let Some(kept) = self.store.get(&name) {
-            return Ok(Some(kept));
+        let print =
+            self.scene_and_camera_fingerprint(subject, scene_print).add(&passes.to_le_bytes()).hex_name();
+        let name = format!("{}-light-{print}", file_name_part(&subject.name));
+        if let Some(stored) = self.store.get(&name) {
+            return Ok(Some(stored));
         }
         let bar = self.steps.begin(&format!("{}: its light", subject.name));
-        let one = OneBar { bar: &*bar, furthest: Mutex::new(0.0) };
+        let one = SharedBar { bar: &*bar, furthest_fraction: Mutex::new(0.0) };
         let standard = &subject.focuses[0].focus;
-        let found = RefinedLight::of(&subject.tracer, &subject.camera, standard, passes, &one)?;
-        self.store.put(&name, &found)?;
-        Ok(Some(found))
+        let measured = RefinedLight::measure(&subject.tracer, &subject.camera, standard, passes, &one)?;
+        self.store.put(&name, &measured)?;
+        Ok(Some(measured))
     }
 
     /// What was modelled under the standard lens, and what the saving cost.
     fn modelled(&self, subject: &Subject, scene_print: &str) -> Result<ModelledScene, SessionError> {
         let standard = &subject.focuses[0].focus;
-        let print = self.print_of(subject, scene_print).name();
-        let name = format!("{}-modelled-{print}", file_part(&subject.name));
-        if let Some(kept) = self.store.get(&name) {
-            return Ok(kept);
+        let print = self.scene_and_camera_fingerprint(subject, scene_print).hex_name();
+        let name = format!("{}-modelled-{print}", file_name_part(&subject.name));
+        if let Some(stored) = self.store.get(&name) {
+            return Ok(stored);
         }
         let bar = self.steps.begin(&format!("{}: what was modelled", subject.name));
-        let one = OneBar { bar: &*bar, furthest: Mutex::new(0.0) };
+        let one = SharedBar { bar: &*bar, furthest_fraction: Mutex::new(0.0) };
         let atlas = subject.input.atlas(&self.options.unwrap, &one)?;
         let tolerance_px = RenderOptions::default().tolerance_px;
         let drawn = |salf: Salf| {
             let salf = Arc::new(salf);
             let mut splatter = Splatter::new(salf.clone());
             splatter.render(&subject.camera, standard, &*one.begin("splatting"))?;
-            Ok::<_, SessionError>((salf, conserved(splatter.picture())))
+            Ok::<_, SessionError>((salf, conserved_picture(splatter.picture())))
         };
         let Subject { tracer, camera, .. } = subject;
         let (salf, picture) = drawn(bake(tracer, camera, standard, tolerance_px, &one)?)?;
@@ -373,7 +383,7 @@ impl Runner<'_> {
         let (finest, finest_picture) = drawn(finest)?;
         let cost = compare(&picture, &finest_picture)?;
         let scene = ModelledScene {
-            modelled: Modelled::of(&salf, &subject.tracer, Some(&atlas)),
+            modelled: Modelled::measure(&salf, &subject.tracer, Some(&atlas)),
             tolerance_px,
             saving_psnr: cost.psnr,
             saving_flip: cost.flip,
@@ -384,60 +394,60 @@ impl Runner<'_> {
     }
 
     /// Of a scene and its camera.
-    fn print_of(&self, subject: &Subject, scene_print: &str) -> Fingerprint {
+    fn scene_and_camera_fingerprint(&self, subject: &Subject, scene_print: &str) -> Fingerprint {
         Fingerprint::new()
-            .add(FORM.as_bytes())
+            .add(FORMAT_VERSION.as_bytes())
             .add(self.options.build.as_bytes())
             .add(scene_print.as_bytes())
-            .add(fingerprint::of_camera(&subject.camera).as_bytes())
+            .add(fingerprint::camera_fingerprint(&subject.camera).as_bytes())
     }
 
-    fn reference_name(&self, place: &Place<'_>) -> String {
-        let Place { subject, setting, .. } = place;
-        let print = self.print(place).add(&setting.reference_spp.to_le_bytes()).name();
+    fn reference_name(&self, place: &SettingContext<'_>) -> String {
+        let SettingContext { subject, setting, .. } = place;
+        let print = self.picture_fingerprint(place).add(&setting.reference_spp.to_le_bytes()).hex_name();
         let focus = subject.focuses[setting.focus].name;
-        format!("{}-{focus}-reference-{print}", file_part(&subject.name))
+        format!("{}-{focus}-reference-{print}", file_name_part(&subject.name))
     }
 
-    fn measurement_name(&self, place: &Place<'_>, contender: Contender) -> String {
-        let Place { subject, setting, .. } = place;
-        let (renderer, value) = (contender.renderer(), contender.value());
+    fn measurement_name(&self, place: &SettingContext<'_>, contender: Contender) -> String {
+        let SettingContext { subject, setting, .. } = place;
+        let (renderer, value) = (contender.renderer(), contender.knob_value());
         let print = self
-            .print(place)
+            .picture_fingerprint(place)
             .add(&setting.reference_spp.to_le_bytes())
             .add(&setting.cuts.to_le_bytes())
             .add(renderer.as_bytes())
-            .add(contender.knob().as_bytes())
+            .add(contender.knob_name().as_bytes())
             .add(&value.to_le_bytes())
             .add(&(rayon::current_num_threads() as u64).to_le_bytes())
-            .name();
+            .hex_name();
         let focus = subject.focuses[setting.focus].name;
-        file_part(&format!("{}-{focus}-{renderer}-{value}-{print}", subject.name))
+        file_name_part(&format!("{}-{focus}-{renderer}-{value}-{print}", subject.name))
     }
 
     /// Of the picture that is drawn.
-    fn print(&self, place: &Place<'_>) -> Fingerprint {
+    fn picture_fingerprint(&self, place: &SettingContext<'_>) -> Fingerprint {
         Fingerprint::new()
-            .add(FORM.as_bytes())
+            .add(FORMAT_VERSION.as_bytes())
             .add(self.options.build.as_bytes())
             .add(place.scene_print.as_bytes())
-            .add(fingerprint::of_camera(&place.setting.camera).as_bytes())
+            .add(fingerprint::camera_fingerprint(&place.setting.camera).as_bytes())
             .add(place.focus_print.as_bytes())
     }
 }
 
 /// Steps that share one bar, each an equal share of what those before it left.
-struct OneBar<'a> {
+struct SharedBar<'a> {
     bar: &'a dyn Progress,
-    furthest: Mutex<f32>,
+    furthest_fraction: Mutex<f32>,
 }
 
 /// The share of what is left that a step gets.
 const STEP_SHARE: f32 = 0.6;
 
-impl Steps for OneBar<'_> {
+impl Steps for SharedBar<'_> {
     fn begin(&self, _label: &str) -> Box<dyn Progress + '_> {
-        let mut furthest = self.furthest.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        let mut furthest = self.furthest_fraction.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         let start = *furthest;
         *furthest += (1.0 - start) * STEP_SHARE;
         Box::new(progress::Stage::new(self.bar, start, *furthest))

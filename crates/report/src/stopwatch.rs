@@ -6,9 +6,9 @@ use std::time::Instant;
 /// Work that takes longer is not repeated, s.
 const QUICK_SECONDS: f64 = 0.25;
 /// Quick work is repeated until this is spent, s …
-const ENOUGH_SECONDS: f64 = 0.5;
+const MIN_TOTAL_SECONDS: f64 = 0.5;
 /// … or it was done this often.
-const MOST_REPEATS: usize = 5;
+const MAX_REPEATS: usize = 5;
 
 /// What was made, and how long it took.
 pub struct Timed<T> {
@@ -21,7 +21,7 @@ pub struct Timed<T> {
 }
 
 /// Does `work`, and again if it is quick.
-pub fn timed<T>(mut work: impl FnMut() -> Result<T, SessionError>) -> Result<Timed<T>, SessionError> {
+pub fn measure_time<T>(mut work: impl FnMut() -> Result<T, SessionError>) -> Result<Timed<T>, SessionError> {
     let mut times = Vec::new();
     loop {
         let start = Instant::now();
@@ -29,7 +29,7 @@ pub fn timed<T>(mut work: impl FnMut() -> Result<T, SessionError>) -> Result<Tim
         times.push(start.elapsed().as_secs_f64());
         let spent: f64 = times.iter().sum();
         let is_quick = times[0] <= QUICK_SECONDS;
-        if !is_quick || spent >= ENOUGH_SECONDS || times.len() >= MOST_REPEATS {
+        if !is_quick || spent >= MIN_TOTAL_SECONDS || times.len() >= MAX_REPEATS {
             let repeats = times.len() as u32;
             return Ok(Timed { value, seconds: median(&mut times), repeats });
         }
@@ -54,19 +54,19 @@ mod tests {
     #[test]
     fn quick_work_is_repeated_and_slow_work_is_not() {
         let mut count = 0;
-        let quick = timed(|| {
+        let quick = measure_time(|| {
             count += 1;
             Ok(count)
         });
         let quick = quick.unwrap();
-        assert_eq!((quick.repeats as usize, quick.value), (MOST_REPEATS, MOST_REPEATS));
-        let slow = timed(|| {
+        assert_eq!((quick.repeats as usize, quick.value), (MAX_REPEATS, MAX_REPEATS));
+        let slow = measure_time(|| {
             std::thread::sleep(std::time::Duration::from_millis(260));
             Ok(())
         });
         let slow = slow.unwrap();
         assert!(slow.repeats == 1 && slow.seconds >= 0.26, "{} {}", slow.repeats, slow.seconds);
-        assert!(timed(|| Err::<(), _>(SessionError::Cancelled)).is_err());
+        assert!(measure_time(|| Err::<(), _>(SessionError::Cancelled)).is_err());
     }
 
     #[test]

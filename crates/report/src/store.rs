@@ -32,7 +32,7 @@ impl Store {
 
     /// Keeps a result.
     pub fn put<T: Serialize>(&self, name: &str, result: &T) -> Result<(), SessionError> {
-        write_whole(&self.file(name, "json"), &to_json(result)?)
+        write_atomically(&self.file(name, "json"), &to_json(result)?)
     }
 }
 
@@ -45,7 +45,7 @@ pub fn to_json<T: Serialize>(value: &T) -> Result<Vec<u8>, SessionError> {
 }
 
 /// Writes a file: it holds either all of `bytes` or what it held before.
-pub fn write_whole(file: &Path, bytes: &[u8]) -> Result<(), SessionError> {
+pub fn write_atomically(file: &Path, bytes: &[u8]) -> Result<(), SessionError> {
     let written = AtomicWriteFile::open(file).and_then(|mut new| {
         new.write_all(bytes)?;
         new.commit()
@@ -60,14 +60,14 @@ pub fn write_files<'a>(
 ) -> Result<Vec<PathBuf>, SessionError> {
     let write = |(name, bytes): (&str, Vec<u8>)| {
         let file = folder.join(name);
-        write_whole(&file, &bytes)?;
+        write_atomically(&file, &bytes)?;
         Ok(file)
     };
     files.into_iter().map(write).collect()
 }
 
 /// `text` as part of a file's name: letters, digits, dots and dashes.
-pub fn file_part(text: &str) -> String {
+pub fn file_name_part(text: &str) -> String {
     text.chars().map(|c| if c.is_alphanumeric() || c == '.' { c } else { '-' }).collect()
 }
 
@@ -84,6 +84,6 @@ mod tests {
         assert_eq!(store.get::<Vec<f64>>("a"), Some(vec![0.1, 1e-17]));
         std::fs::write(store.file("a", "json"), "[0.1, 1e").unwrap();
         assert_eq!(store.get::<Vec<f64>>("a"), None);
-        assert_eq!(file_part("my scene/2"), "my-scene-2");
+        assert_eq!(file_name_part("my scene/2"), "my-scene-2");
     }
 }

@@ -6,13 +6,13 @@ use std::collections::HashMap;
 /// Cuts every triangle of `scene` in four at the middles of its sides. Surfaces, colours and textures stay where they are;
 /// normals stay to the precision of their interpolation. A shared side has one shared middle, so closed meshes stay closed.
 /// `None` if the vertices could no longer be counted in 32 bits.
-pub fn subdivided(scene: &Scene) -> Option<Scene> {
+pub fn subdivide(scene: &Scene) -> Option<Scene> {
     let mut fine = Scene { triangles: Vec::with_capacity(scene.triangles.len() * 4), ..scene.clone() };
     let mut middles: HashMap<[u32; 2], u32> = HashMap::new();
     let mut middle = |fine: &mut Scene, a: u32, b: u32| -> Option<u32> {
         let side = [a.min(b), a.max(b)];
-        if let Some(&known) = middles.get(&side) {
-            return Some(known);
+        if let Some(&existing) = middles.get(&side) {
+            return Some(existing);
         }
         let index = u32::try_from(fine.positions.len()).ok().filter(|&index| index < u32::MAX)?;
         push_middle(&mut fine.positions, side, |a, b| 0.5 * (a + b));
@@ -71,7 +71,7 @@ mod tests {
     #[test]
     fn four_times_the_triangles_of_the_same_surface() {
         let scene = square();
-        let fine = subdivided(&scene).unwrap();
+        let fine = subdivide(&scene).unwrap();
         assert_eq!(fine.triangles.len(), 8);
         assert_eq!(fine.parts[0].triangles, 0..8);
         // Four corners, four outer sides and one shared diagonal.

@@ -1,6 +1,6 @@
 //! A scene to measure on: opened, with its camera, lens and focuses.
 
-use crate::default_lens::opened_lens;
+use crate::default_lens::open_aperture;
 use crate::generic_focus::generic_recipe;
 use crate::options::{ReportOptions, SceneRequest};
 use focus::Focus;
@@ -10,7 +10,7 @@ use session::{FirstHits, Input, InputKind, SessionError, Steps};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
-use trace::{Leaving, Radiance, Tracer};
+use trace::{OutgoingRadiance, Radiance, Tracer};
 
 /// A scene with its camera and what it is focused by.
 pub struct Subject {
@@ -54,11 +54,11 @@ impl Subject {
         options: &ReportOptions,
         steps: &dyn Steps,
     ) -> Result<Self, SessionError> {
-        if InputKind::of(&request.file)? == InputKind::LightField {
+        if InputKind::from_path(&request.file)? == InputKind::LightField {
             let what = "is baked for one size and tolerance, a report bakes many (give its scene or project)";
-            return Err(SessionError::bad(&request.file, what));
+            return Err(SessionError::bad_file(&request.file, what));
         }
-        let mut input = Input::open_in(&request.file, &request.variant, steps)?;
+        let mut input = Input::open_variant(&request.file, &request.variant, steps)?;
         if let Some(back_faces) = request.back_faces {
             input.set_back_faces(back_faces);
         }
@@ -74,18 +74,19 @@ impl Subject {
             [width, ReportOptions::HEIGHT]
         });
         (camera.width, camera.height) = (width, height);
-        camera.validate().map_err(|error| SessionError::bad(&request.file, error))?;
+        camera.validate().map_err(|error| SessionError::bad_file(&request.file, error))?;
 
         let scene = input.scene.clone();
         let start = Instant::now();
         let tracer = Arc::new(Tracer::new(scene.clone()));
         let prepare_seconds = start.elapsed().as_secs_f64();
         let standard = Focus::constant(scene.clone(), FocusOffset::STANDARD);
-        let hits = first_hits(&tracer, &standard, &camera, steps)?;
+        let hits = trace_first_hits(&tracer, &standard, &camera, steps)?;
         // A glTF file knows where cameras stand, not what lens they have.
         let has_lens =
             input.project.is_some() || matches!(request.camera, Some(session::CameraChoice::File(_)));
-        let lens = if has_lens { "as the camera says".to_string() } else { opened_lens(&mut camera, &hits) };
+        let lens =
+            if has_lens { "as the camera says".to_string() } else { open_aperture(&mut camera, &hits) };
 
         let painted = match (&request.focus, &input.project) {
             (Some(file), _) => Some(NamedFocus {
@@ -105,7 +106,7 @@ impl Subject {
             None => {
                 let (recipe, what) = generic_recipe(&scene, &tracer, &camera);
                 let focus =
-                    recipe.evaluate(&scene).map_err(|error| SessionError::bad(&request.file, error))?;
+                    recipe.evaluate(&scene).map_err(|error| SessionError::bad_file(&request.file, error))?;
                 NamedFocus { name: "painted", what, focus }
             }
         };
@@ -131,23 +132,23 @@ impl Subject {
 }
 
 /// Where the chief rays of `camera` meet the scene; without its light.
-pub fn first_hits(
+pub fn trace_first_hits(
     tracer: &Tracer,
     focus: &Focus,
     camera: &Camera,
     steps: &dyn Steps,
 ) -> Result<FirstHits, SessionError> {
-    Ok(FirstHits::trace(tracer, &Dark, focus, camera, &*steps.begin("first hits"))?)
+    Ok(FirstHits::trace(tracer, &NoLight, focus, camera, &*steps.begin("first hits"))?)
 }
 
 /// No light: for first hits of which only the places count.
-struct Dark;
+struct NoLight;
 
-impl Radiance for Dark {
-    fn leaving(&self, _point: scene::SurfacePoint, _eye: glam::DVec3) -> Leaving {
-        Leaving::own(glam::Vec3::ZERO)
+impl Radiance for NoLight {
+    fn outgoing(&self, _point: scene::SurfacePoint, _eye: glam::DVec3) -> OutgoingRadiance {
+        OutgoingRadiance::from_own(glam::Vec3::ZERO)
     }
-    fn from_infinity(&self, _direction: glam::DVec3) -> glam::Vec3 {
+    fn environment(&self, _direction: glam::DVec3) -> glam::Vec3 {
         glam::Vec3::ZERO
     }
 }

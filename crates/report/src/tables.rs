@@ -2,7 +2,7 @@
 
 use crate::findings::EqualError;
 use crate::live::ShownPicture;
-use crate::photographs::{Photographs, ToldPhotograph};
+use crate::photographs::{Photographs, ReconstructedPhotograph};
 use crate::plot::{bytes, seconds, significant, with_minus};
 use crate::record::Record;
 use crate::summary::{ModelledScene, SceneSummary};
@@ -44,7 +44,7 @@ pub fn scenes(scenes: &[SceneSummary]) -> Table {
 }
 
 /// Time at equal error.
-pub fn equal_errors(found: &[EqualError]) -> Table {
+pub fn equal_errors(comparisons: &[EqualError]) -> Table {
     let mut table = Table::new(&[
         "scene",
         "focus",
@@ -56,20 +56,20 @@ pub fn equal_errors(found: &[EqualError]) -> Table {
         "#refocus: faster by",
         "#slope of ray tracing",
     ]);
-    for found in found {
-        let splat = &found.splat;
-        let mark = if found.is_extrapolated { " *" } else { "" };
-        let factor = |seconds: f64| format!("{} ×", significant(found.truth_seconds / seconds));
+    for comparison in comparisons {
+        let splat = &comparison.splat;
+        let mark = if comparison.is_extrapolated { " *" } else { "" };
+        let factor = |seconds: f64| format!("{} ×", significant(comparison.truth_seconds / seconds));
         table.push([
-            found.scene.clone(),
-            found.focus.clone(),
+            comparison.scene.clone(),
+            comparison.focus.clone(),
             format!("{:.1}", splat.psnr),
             seconds(splat.seconds),
             seconds(splat.picture_seconds),
-            format!("{}{mark}", seconds(found.truth_seconds)),
+            format!("{}{mark}", seconds(comparison.truth_seconds)),
             factor(splat.seconds),
             factor(splat.picture_seconds),
-            with_minus(format!("{:.2}", found.truth_slope)),
+            with_minus(format!("{:.2}", comparison.truth_slope)),
         ]);
     }
     table
@@ -103,25 +103,34 @@ pub fn live(pictures: &[ShownPicture]) -> Table {
 /// How photographs tell those that are left out, and all of them together.
 pub fn photographs(photographs: &Photographs) -> Table {
     let mut table = Table::new(&["photograph", "told by", "#seen", "#PSNR, dB", "#FLIP"]);
-    for ToldPhotograph { photograph, told_by, seen, psnr, flip } in &photographs.told {
-        let seen = format!("{:.1} %", seen * 100.0);
-        table.push([photograph.clone(), told_by.clone(), seen, format!("{psnr:.2}"), format!("{flip:.4}")]);
+    for ReconstructedPhotograph { photograph, method, visible_share, psnr, flip } in
+        &photographs.reconstructions
+    {
+        let visible_percent = format!("{:.1} %", visible_share * 100.0);
+        table.push([
+            photograph.clone(),
+            method.clone(),
+            visible_percent,
+            format!("{psnr:.2}"),
+            format!("{flip:.4}"),
+        ]);
     }
     // Each photograph is told in the same ways.
-    let first = photographs.told.first().map(|told| &told.photograph);
-    for way in photographs.told.iter().filter(|told| Some(&told.photograph) == first) {
-        let psnr = format!("{:.2}", photographs.together(&way.told_by));
-        table.push(["all".into(), way.told_by.clone(), String::new(), psnr, String::new()]);
+    let first = photographs.reconstructions.first().map(|reconstruction| &reconstruction.photograph);
+    for reconstruction in photographs.reconstructions.iter().filter(|other| Some(&other.photograph) == first)
+    {
+        let psnr = format!("{:.2}", photographs.overall_psnr(&reconstruction.method));
+        table.push(["all".into(), reconstruction.method.clone(), String::new(), psnr, String::new()]);
     }
     table
 }
 
 /// How far disparities that views tell are from those that came with them.
-pub fn disparity(found: &Disparity) -> Table {
+pub fn disparity(error: &Disparity) -> Table {
     let mut table = Table::new(&["disparities", "#off by > 0.07", "#by > 0.03", "#mean square × 100"]);
     let percent = |share: f64| format!("{:.2} %", 100.0 * share);
-    let mean_square = format!("{:.3}", 100.0 * found.mean_square);
-    table.push(["found in the views".into(), percent(found.bad_007), percent(found.bad_003), mean_square]);
+    let mean_square = format!("{:.3}", 100.0 * error.mean_square);
+    table.push(["found in the views".into(), percent(error.bad_007), percent(error.bad_003), mean_square]);
     table
 }
 
@@ -129,9 +138,9 @@ pub fn disparity(found: &Disparity) -> Table {
 pub fn hard_cases(outcomes: &[Outcome]) -> Table {
     let mut table = Table::new(&["case", "expected", "found", "pass", "control fails"]);
     let yes_or_no = |yes: bool| if yes { "yes" } else { "NO" }.to_string();
-    for Outcome { case, expected, found, pass, control_fails } in outcomes {
+    for Outcome { case, expected, measured, pass, control_fails } in outcomes {
         let cells =
-            [case.clone(), expected.clone(), found.clone(), yes_or_no(*pass), yes_or_no(*control_fails)];
+            [case.clone(), expected.clone(), measured.clone(), yes_or_no(*pass), yes_or_no(*control_fails)];
         table.push(cells);
     }
     table

@@ -1,6 +1,6 @@
 //! What the views of a light field tell: how far found depth is from the one that came with them, and what they would be by themselves.
 
-use crate::photographs::Sparse;
+use crate::photographs::SparseLightField;
 use serde::{Deserialize, Serialize};
 use session::{DisparityError, Input, SessionError, Steps};
 
@@ -12,7 +12,7 @@ pub struct Views {
     /// How far disparities that they tell are from those that came with them, if some did.
     pub disparity: Option<Disparity>,
     /// As a sparse light field.
-    pub sparse: Option<Sparse>,
+    pub sparse: Option<SparseLightField>,
 }
 
 /// How far found disparities are from given ones.
@@ -28,8 +28,8 @@ pub struct Disparity {
 
 impl Views {
     /// Of an opened light field; none of anything else.
-    pub fn of(input: &Input, name: &str, steps: &dyn Steps) -> Result<Option<Self>, SessionError> {
-        let views = &input.scene.left_out;
+    pub fn measure(input: &Input, name: &str, steps: &dyn Steps) -> Result<Option<Self>, SessionError> {
+        let views = &input.scene.excluded_views;
         if input.scene.picture.is_none() || views.len() < 2 {
             return Ok(None);
         }
@@ -40,6 +40,10 @@ impl Views {
             bad_003,
             mean_square,
         });
-        Ok(Some(Self { count: views.len(), disparity, sparse: Sparse::of(&input.scene, views) }))
+        Ok(Some(Self {
+            count: views.len(),
+            disparity,
+            sparse: SparseLightField::from_views(&input.scene, views),
+        }))
     }
 }

@@ -1,6 +1,6 @@
 //! The report's files.
 
-use crate::fields::Fields;
+use crate::fields::OrderedFields;
 use crate::findings::equal_errors;
 use crate::page;
 use crate::record::{Record, Series};
@@ -37,8 +37,8 @@ fn csv(records: &[&Record]) -> Result<Vec<u8>, SessionError> {
     let mut text = String::new();
     for (k, record) in records.iter().enumerate() {
         let json = serde_json::to_string(record);
-        let fields: Result<Fields, _> = json.and_then(|json| serde_json::from_str(&json));
-        let Fields(fields) = fields
+        let fields: Result<OrderedFields, _> = json.and_then(|json| serde_json::from_str(&json));
+        let OrderedFields(fields) = fields
             .map_err(|error| SessionError::Internal(format!("a measurement cannot be written: {error}")))?;
         let mut line = |cells: Vec<String>| {
             text.push_str(&cells.join(","));
@@ -98,8 +98,10 @@ fn markdown(report: &Report) -> String {
     }
     for scene in &report.scenes {
         let Some(views) = &scene.views else { continue };
-        let table =
-            views.disparity.as_ref().map_or_else(String::new, |found| tables::disparity(found).to_markdown());
+        let table = views
+            .disparity
+            .as_ref()
+            .map_or_else(String::new, |disparity| tables::disparity(disparity).to_markdown());
         section(
             &format!("Views of the light field: {}", scene.name),
             format!("{table}\n{}\n", page::views_sentence(views)),

@@ -3,43 +3,43 @@
 use glam::Vec3;
 
 /// Cells a side at most that light is told on.
-pub const MOST_CELLS: usize = 8;
+pub const MAX_CELLS: usize = 8;
 
 /// A part of the aperture, and what is sent toward it in the mean.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Part {
+pub struct AperturePart {
     pub light: Vec3,
     /// What of it was found by chance.
-    pub by_chance: Vec3,
+    pub noisy: Vec3,
     /// The part, on 8 × 8 cells.
     pub cells: u64,
 }
 
 /// Light toward each of `side` × `side` cells, row by row from v = −1, and what of it was found by chance.
-pub struct Cells<'a> {
+pub struct ApertureCells<'a> {
     pub side: usize,
     pub light: &'a [Vec3],
-    pub by_chance: &'a [Vec3],
+    pub noisy: &'a [Vec3],
 }
 
-impl Cells<'_> {
+impl ApertureCells<'_> {
     /// The cells of a square joined where none differs by more than `differs` from their mean, else those of its quarters.
-    pub fn parts(&self, differs: f32) -> Vec<Part> {
+    pub fn parts(&self, differs: f32) -> Vec<AperturePart> {
         let mut parts = Vec::new();
         self.join([0, 0], self.side, differs, &mut parts);
         parts
     }
 
-    fn join(&self, [row, column]: [usize; 2], side: usize, differs: f32, parts: &mut Vec<Part>) {
+    fn join(&self, [row, column]: [usize; 2], side: usize, differs: f32, parts: &mut Vec<AperturePart>) {
         let cells = || (0..side * side).map(|k| (row + k / side) * self.side + column + k % side);
         let mean = |of: &[Vec3]| cells().map(|cell| of[cell]).sum::<Vec3>() / (side * side) as f32;
         let light = mean(self.light);
         if cells().all(|cell| (self.light[cell] - light).abs().max_element() <= differs) {
-            let finer = MOST_CELLS / self.side;
+            let finer = MAX_CELLS / self.side;
             let bits = u64::MAX >> (64 - side * finer) << (column * finer);
             let rows = row * finer..(row + side) * finer;
             let cells = rows.fold(0, |cells, row| cells | bits << (8 * row));
-            parts.push(Part { light, by_chance: mean(self.by_chance), cells });
+            parts.push(AperturePart { light, noisy: mean(self.noisy), cells });
             return;
         }
         for quarter in 0..4 {

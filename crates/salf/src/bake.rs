@@ -9,7 +9,7 @@
 //! The samples of each block are packed as soon as they are all found ([`crate::samples`]). What the first looks found is kept until then,
 //! or, of a large picture, looked for again: [`crate::parts`] bakes parts of one.
 
-use crate::baker::{Baker, FirstLook};
+use crate::baker::{BlockBaker, CellSurvey};
 use crate::occluders::Occluders;
 use crate::options::BakeOptions;
 use crate::outliers::Outliers;
@@ -26,7 +26,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use trace::{Radiance, Tracer};
 
 /// First looks, of some 400 bytes a pixel and more, are kept of so many pixels; of a larger picture they are made twice.
-const KEPT_PX: i64 = 1 << 23;
+const MAX_RETAINED_PX: i64 = 1 << 23;
 
 /// Bakes the light field that `camera`'s square aperture sees. `camera` must be valid.
 pub fn bake(
@@ -36,41 +36,42 @@ pub fn bake(
     options: &BakeOptions,
     progress: &dyn Progress,
 ) -> Result<Salf, Cancelled> {
-    bake_and_tell(tracer, radiance, camera, options, progress).map(|(salf, _)| salf)
+    bake_with_outliers(tracer, radiance, camera, options, progress).map(|(salf, _)| salf)
 }
 
 /// The same, with what light of outliers was spread.
-pub fn bake_and_tell(
+pub fn bake_with_outliers(
     tracer: &Tracer,
     radiance: &dyn Radiance,
     camera: &Camera,
     options: &BakeOptions,
     progress: &dyn Progress,
 ) -> Result<(Salf, Outliers), Cancelled> {
-    bake_keeping(KEPT_PX, tracer, radiance, camera, options, progress)
+    bake_retaining(MAX_RETAINED_PX, tracer, radiance, camera, options, progress)
 }
 
 /// The same with first looks kept of a picture of at most so many pixels.
-fn bake_keeping(
-    kept_px: i64,
+fn bake_retaining(
+    max_retained_px: i64,
     tracer: &Tracer,
     radiance: &dyn Radiance,
     camera: &Camera,
     options: &BakeOptions,
     progress: &dyn Progress,
 ) -> Result<(Salf, Outliers), Cancelled> {
-    let baker = Baker::new(tracer, radiance, camera, options);
+    let baker = BlockBaker::new(tracer, radiance, camera, options);
     let domain = baker.domain;
     let IVec2 { x: columns, y: rows } = domain.blocks();
-    let keeps = domain.extent().as_i64vec2().element_product() <= kept_px;
+    let retains_surveys = domain.extent().as_i64vec2().element_product() <= max_retained_px;
 
     let rows: Vec<i32> = (0..rows).collect();
-    let surveyed = each_row(&rows, &Stage::new(progress, 0.0, 0.4), |&row| {
+    let surveyed = map_rows(&rows, &Stage::new(progress, 0.0, 0.4), |&row| {
         let blocks = (0..columns).map(|column| domain.cells_of_block(IVec2::new(column, row)));
-        if keeps {
-            let looks: Vec<_> = blocks.map(|cells| baker.first_looks(&cells)).collect();
-            let depths = looks.iter().flatten().map(|look| (look.cell, look.depths)).collect::<Vec<_>>();
-            return (depths, looks);
+        if retains_surveys {
+            let surveys: Vec<_> = blocks.map(|cells| baker.survey_cells(&cells)).collect();
+            let depths =
+                surveys.iter().flatten().map(|survey| (survey.cell, survey.depths)).collect::<Vec<_>>();
+            return (depths, surveys);
         }
         let depths = blocks.flatten().map(|cell| (cell, baker.depths(cell)));
         (depths.collect(), Vec::new())
@@ -78,22 +79,22 @@ fn bake_keeping(
     let depths = surveyed.iter().flat_map(|(depths, _)| depths.iter().copied());
     let whole = [IVec2::splat(-domain.margin), domain.extent()];
     let occluders = Occluders::new(whole, baker.view.radius_per_kappa_px, depths);
-    let kept: Vec<Vec<FirstLook>> = surveyed.into_iter().flat_map(|(_, looks)| looks).collect();
+    let retained: Vec<Vec<CellSurvey>> = surveyed.into_iter().flat_map(|(_, surveys)| surveys).collect();
 
     let mut patches_of_block = patches(&baker, &|_| true, &Stage::new(progress, 0.4, 0.45))?;
     let blocks: Vec<IVec2> = rows.iter().flat_map(|&y| (0..columns).map(move |x| IVec2::new(x, y))).collect();
     let numbered: Vec<_> = blocks.iter().copied().enumerate().collect();
-    let parts = each_row(&numbered, &Stage::new(progress, 0.45, 1.0), |&(number, block)| {
+    let parts = map_rows(&numbered, &Stage::new(progress, 0.45, 1.0), |&(number, block)| {
         let patches = patches_of_block.get(&domain.corner_of_block(block)).map_or(&[][..], Vec::as_slice);
-        match kept.get(number) {
-            Some(looks) => baker.block(&occluders, looks, patches),
-            None => baker.block(&occluders, &baker.first_looks(&domain.cells_of_block(block)), patches),
+        match retained.get(number) {
+            Some(surveys) => baker.bake_block(&occluders, surveys, patches),
+            None => baker.bake_block(&occluders, &baker.survey_cells(&domain.cells_of_block(block)), patches),
         }
     })?;
-    let outliers = parts.iter().fold(Outliers::default(), |all, (_, outliers)| all.and(*outliers));
+    let outliers = parts.iter().fold(Outliers::default(), |all, (_, outliers)| all.merged(*outliers));
     blocks.iter().for_each(|&block| drop(patches_of_block.remove(&domain.corner_of_block(block))));
-    let beside = beside(patches_of_block);
-    let samples = Samples::join(parts.into_iter().map(|(samples, _)| samples).chain(beside));
+    let outside = outside_domain(patches_of_block);
+    let samples = Samples::join(parts.into_iter().map(|(samples, _)| samples).chain(outside));
     Ok((
         Salf { camera: camera.clone(), margin_px: domain.margin as u32, carried: options.carried, samples },
         outliers,
@@ -102,14 +103,14 @@ fn bake_keeping(
 
 /// The samples that are placed on the surface, of blocks that are wanted, by the corners of their blocks.
 pub fn patches(
-    baker: &Baker,
-    is_wanted: &(dyn Fn(IVec2) -> bool + Sync),
+    baker: &BlockBaker,
+    is_selected: &(dyn Fn(IVec2) -> bool + Sync),
     progress: &dyn Progress,
 ) -> Result<HashMap<IVec2, Vec<Sample>>, Cancelled> {
     let triangles: Vec<u32> = baker.placement.on_surface().collect();
     let chunks: Vec<_> = triangles.chunks(256).collect();
-    let patches = each_row(&chunks, progress, |chunk| {
-        let of = |&triangle: &u32| surface_patches::samples(baker, triangle, is_wanted);
+    let patches = map_rows(&chunks, progress, |chunk| {
+        let of = |&triangle: &u32| surface_patches::samples(baker, triangle, is_selected);
         chunk.iter().flat_map(of).collect::<Vec<_>>()
     })?;
     let mut of_block: HashMap<IVec2, Vec<Sample>> = HashMap::new();
@@ -120,14 +121,14 @@ pub fn patches(
 }
 
 /// Samples that lie beside the domain, and so in no block.
-pub fn beside(patches: HashMap<IVec2, Vec<Sample>>) -> impl Iterator<Item = Samples> {
-    let mut beside: Vec<_> = patches.into_iter().collect();
-    beside.sort_by_key(|(corner, _)| (corner.y, corner.x));
-    beside.into_iter().map(|(_, patches)| Samples::from(patches))
+pub fn outside_domain(patches: HashMap<IVec2, Vec<Sample>>) -> impl Iterator<Item = Samples> {
+    let mut blocks: Vec<_> = patches.into_iter().collect();
+    blocks.sort_by_key(|(corner, _)| (corner.y, corner.x));
+    blocks.into_iter().map(|(_, patches)| Samples::from(patches))
 }
 
 /// Works on rows in parallel, in order of result, with progress and cancel.
-pub fn each_row<T: Sync, R: Send>(
+pub fn map_rows<T: Sync, R: Send>(
     rows: &[T],
     progress: &dyn Progress,
     work: impl Fn(&T) -> R + Sync,

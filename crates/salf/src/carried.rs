@@ -15,7 +15,7 @@ pub enum Carried {
 
 impl Carried {
     /// What a focus needs.
-    pub fn of(focus: &dyn SurfaceField<FocusOffset>) -> Self {
-        if focus.concerns_carried() { Self::Painted } else { Self::Standard }
+    pub fn for_focus(focus: &dyn SurfaceField<FocusOffset>) -> Self {
+        if focus.affects_carried_light() { Self::Painted } else { Self::Standard }
     }
 }

@@ -22,7 +22,7 @@ pub enum Density {
 
 impl Density {
     /// Rays a side of a cell.
-    pub fn rays_a_side(self) -> usize {
+    pub fn rays_per_side(self) -> usize {
         match self {
             Self::Coarse => Cell::SUBDIVISION / 2,
             Self::Fine => Cell::SUBDIVISION,
@@ -31,7 +31,7 @@ impl Density {
 
     /// Rays of a cell, in the order of its sub-cells.
     pub fn rays(self) -> usize {
-        self.rays_a_side() * self.rays_a_side()
+        self.rays_per_side() * self.rays_per_side()
     }
 
     /// The sub-cells that a ray stands for, a bit each.
@@ -173,7 +173,7 @@ impl Domain {
     pub fn cell_around(&self, pixel: IVec2) -> Cell {
         let block = (pixel + self.margin) / Self::BLOCK;
         let mut cell = Cell { corner: block * Self::BLOCK - self.margin, side: Self::BLOCK };
-        while !self.is_fine_enough(cell) {
+        while !self.is_fine(cell) {
             let side = cell.side / 2;
             let beyond_middle = pixel.cmpge(cell.corner + side);
             cell.corner += IVec2::select(beyond_middle, IVec2::splat(side), IVec2::ZERO);
@@ -182,7 +182,7 @@ impl Domain {
         cell
     }
 
-    fn is_fine_enough(&self, cell: Cell) -> bool {
+    fn is_fine(&self, cell: Cell) -> bool {
         cell.side == 1 || self.distance_outside(cell) >= 4 * cell.side
     }
 
@@ -191,7 +191,7 @@ impl Domain {
         if cell.corner.x >= beyond.x || cell.corner.y >= beyond.y {
             return;
         }
-        if self.is_fine_enough(cell) {
+        if self.is_fine(cell) {
             cells.push(cell);
             return;
         }
@@ -218,7 +218,7 @@ mod tests {
         for density in [Density::Coarse, Density::Fine] {
             let sub_cells = (0..density.rays()).map(|ray| density.sub_cells(ray));
             assert_eq!(sub_cells.clone().fold(0, |all, some| all ^ some), u64::MAX);
-            let side = 8 / density.rays_a_side();
+            let side = 8 / density.rays_per_side();
             for (ray, sub_cells) in sub_cells.enumerate() {
                 let [row, column] = Cell::row_and_column(ray);
                 for k in (0..Cell::SUB_CELLS).filter(|k| sub_cells >> k & 1 == 1) {

@@ -41,7 +41,7 @@ impl Net {
 
     /// The `k`-th of nets that together have, in each cell, places that are spread as evenly: any 4^m of them that follow each
     /// other from a multiple of 4^m on.
-    pub fn one_of_many(bits: u32, k: u32) -> Self {
+    pub fn for_pattern(bits: u32, k: u32) -> Self {
         Self { seed: [0, bits], bits, shift: sequence(k) }
     }
 
@@ -75,7 +75,7 @@ mod tests {
     #[test]
     fn a_net_has_one_place_in_each_box() {
         let alone = (0..200).map(|k| (2 + k % 3, Net::new(2 + k % 3, [k, 7 * k])));
-        let of_many = (0..200).map(|k| (2 + k % 3, Net::one_of_many(2 + k % 3, k)));
+        let of_many = (0..200).map(|k| (2 + k % 3, Net::for_pattern(2 + k % 3, k)));
         for (index, (bits, net)) in alone.chain(of_many).enumerate() {
             let n = 1usize << bits;
             for wide in 0..=2 * bits {
@@ -98,7 +98,7 @@ mod tests {
             for (row, column) in [(0, 0), (3, 7), (15, 15)] {
                 let mut found = vec![false; side * side];
                 for k in first..first + (side * side) as u32 {
-                    let [u, v] = Net::one_of_many(4, k).place(row, column);
+                    let [u, v] = Net::for_pattern(4, k).place(row, column);
                     found[(v * side as f64) as usize * side + (u * side as f64) as usize] = true;
                 }
                 assert!(found.iter().all(|&found| found), "{first}, {side}: {row} {column}");

@@ -4,22 +4,22 @@ use crate::domain::{Cell, CellPart, Density};
 use crate::jitter::Net;
 use crate::occluders::{Depths, Occluders};
 use crate::options::BakeOptions;
-use crate::outgoing::{self, Asked, Outgoing, Sent, TowardCells};
-use crate::own_change::OwnChange;
+use crate::outgoing::{self, ApertureRadiance, LightComponent, MeanRadiance, RadianceQuery};
+use crate::own_change::OwnLightChange;
 use crate::placement::Placement;
 use crate::sample::Sample;
-use crate::samples::Found;
+use crate::samples::BakedSample;
 use crate::view::View;
 use glam::{DVec2, IVec2, Vec3};
 use scene::{Scene, SurfacePoint};
 use std::ops::Range;
-use trace::{Beam, Hit, Leaving, Radiance, Received, Spot, Tracer, Viewpoint};
+use trace::{Beam, Hit, IncidentLight, OutgoingRadiance, Radiance, ShadingPoint, Tracer, Viewpoint};
 
 /// Surfaces along one chief ray beyond which nothing is looked for.
-const DEEPEST_LAYER: usize = 12;
+const MAX_LAYERS: usize = 12;
 
 /// The same where some of them may be half there, and let others show.
-const DEEPEST_PANE: usize = 48;
+const MAX_PANE_LAYERS: usize = 48;
 
 /// Parallax, px, up to which what a nearer surface hides of a cell and what it does not are samples of their own: the outline
 /// is nearly sharp on them, and few rays from either would not tell how much of both together it hides.
@@ -43,7 +43,7 @@ pub struct Member {
 }
 
 /// A member that is looked for a group.
-struct Met {
+struct HitMember {
     member: Member,
     /// How much of it counts, in [0, 1].
     share: f32,
@@ -110,30 +110,30 @@ pub fn trace_cell(
 ) -> Layers {
     let mut layers =
         Layers { groups: Vec::new(), depth_range: [0.0, f32::INFINITY], has_gap: false, has_pane: false };
-    let net = Net::new(density.rays_a_side().ilog2(), cell.corner.as_uvec2().to_array());
-    let ray_side = cell.side as f64 / density.rays_a_side() as f64;
+    let net = Net::new(density.rays_per_side().ilog2(), cell.corner.as_uvec2().to_array());
+    let ray_side = cell.side as f64 / density.rays_per_side() as f64;
     let corner_of = |ray: usize| {
         let [row, column] = Cell::row_and_column(ray);
         cell.corner.as_dvec2() + DVec2::new(column as f64, row as f64) * ray_side
     };
     // Rays that lie together: all, or those of a quadrant.
-    for first in (0..density.rays()).step_by(Beam::MOST_RAYS) {
-        let pixels: [_; Beam::MOST_RAYS] = std::array::from_fn(|k| {
+    for first in (0..density.rays()).step_by(Beam::MAX_RAYS) {
+        let pixels: [_; Beam::MAX_RAYS] = std::array::from_fn(|k| {
             let [row, column] = Cell::row_and_column(first + k);
             corner_of(first + k) + DVec2::from_array(net.place(row, column)) * ray_side
         });
-        let beam = view.beam(corner_of(first), ray_side * Beam::MOST_RAYS.isqrt() as f64);
+        let beam = view.beam(corner_of(first), ray_side * Beam::MAX_RAYS.isqrt() as f64);
         let rays = pixels.map(|pixel| view.chief_ray(pixel));
-        let most = match (hidden, tracer.blends()) {
+        let most = match (hidden, tracer.has_transparency()) {
             (false, _) => 1,
-            (true, false) => DEEPEST_LAYER,
-            (true, true) => DEEPEST_PANE,
+            (true, false) => MAX_LAYERS,
+            (true, true) => MAX_PANE_LAYERS,
         };
         let met: Vec<(usize, Hit)> = if hidden {
             tracer.all_hits(&beam, &rays, most)
         } else {
             let first = tracer.first_hits(&beam, &rays).into_iter().enumerate();
-            let mut met = Vec::with_capacity(Beam::MOST_RAYS);
+            let mut met = Vec::with_capacity(Beam::MAX_RAYS);
             met.extend(first.filter_map(|(ray, hit)| Some((ray, hit?))));
             met
         };
@@ -144,7 +144,7 @@ pub fn trace_cell(
             left = others;
             // Behind the last surface lies the background.
             let hits = of_ray.iter().map(|(_, hit)| Some(*hit)).chain([None]).take(most);
-            layers.add_all(tracer, view, placement, density.sub_cells(first + ray), pixel, hits);
+            layers.add_hits(tracer, view, placement, density.sub_cells(first + ray), pixel, hits);
         }
     }
     layers
@@ -152,7 +152,7 @@ pub fn trace_cell(
 
 impl Layers {
     /// Adds what a ray through `pixel` meets, one surface behind the other.
-    fn add_all(
+    fn add_hits(
         &mut self,
         tracer: &Tracer,
         view: &View,
@@ -167,7 +167,7 @@ impl Layers {
             let inverse_depth = hit.map_or(0.0, |hit| 1.0 / hit.t);
             let point = hit.map(|hit| hit.point);
             let opacity = match point {
-                Some(point) if tracer.blends() => tracer.scene().opacity(point),
+                Some(point) if tracer.has_transparency() => tracer.scene().opacity(point),
                 _ => 1.0,
             };
             if layer == 0 {
@@ -177,7 +177,7 @@ impl Layers {
                 *near = near.max(inverse_depth as f32);
                 *far = far.min(inverse_depth as f32);
             }
-            let met = Met {
+            let met = HitMember {
                 member: Member { sub_cells, pixel, point, inverse_depth },
                 share: opacity * if is_pinhole { through } else { 1.0 },
                 panes,
@@ -196,12 +196,12 @@ impl Layers {
     }
 
     /// Adds a member to the group it belongs to, or to one of its own.
-    fn add(&mut self, tracer: &Tracer, view: &View, met: Met) {
-        let Met { member, share, panes, is_nearest, nearest } = met;
+    fn add(&mut self, tracer: &Tracer, view: &View, met: HitMember) {
+        let HitMember { member, share, panes, is_nearest, nearest } = met;
         let parallax_px = view.radius_per_kappa_px;
         let is_just_behind = !is_nearest && (nearest - member.inverse_depth) * parallax_px < JUST_BEHIND_PX;
         let part = member.point.map(|p| tracer.scene().triangles[p.triangle as usize].part);
-        let belongs = |group: &&mut Group| {
+        let is_same_surface = |group: &&mut Group| {
             let first = group.members[0];
             let expected = first.inverse_depth + group.slope.dot(member.pixel - first.pixel);
             group.part == part
@@ -210,7 +210,7 @@ impl Layers {
                 && (member.inverse_depth - expected).abs() * parallax_px <= Occluders::SAME_SURFACE_PX
                 && group.members.last().is_none_or(|last| last.sub_cells != member.sub_cells)
         };
-        if let Some(group) = self.groups.iter_mut().find(belongs) {
+        if let Some(group) = self.groups.iter_mut().find(is_same_surface) {
             group.members.push(member);
             group.shares.push(share);
             group.is_nearest &= is_nearest;
@@ -224,9 +224,9 @@ impl Layers {
                 slope = DVec2::new(-tilt.x, tilt.y) / parallax_px;
             }
         }
-        let mut members = Vec::with_capacity(Beam::MOST_RAYS);
+        let mut members = Vec::with_capacity(Beam::MAX_RAYS);
         members.push(member);
-        let mut shares = Vec::with_capacity(Beam::MOST_RAYS);
+        let mut shares = Vec::with_capacity(Beam::MAX_RAYS);
         shares.push(share);
         self.groups.push(Group { members, shares, panes, is_nearest, is_just_behind, part, tilt, slope });
     }
@@ -275,7 +275,7 @@ impl Group {
 
     /// What stands for it where light is told of many at once; `None` of the background, and where it is folded so that one point
     /// does not tell of all.
-    pub fn spot(&self, scene: &Scene, cell: Cell) -> Option<Spot> {
+    pub fn shading_point(&self, scene: &Scene, cell: Cell) -> Option<ShadingPoint> {
         const FLAT: f64 = 0.95;
         let member = nearest(&self.members, self.center(cell));
         let point = member.point?;
@@ -285,66 +285,68 @@ impl Group {
                 other.triangle == point.triangle || scene.shading_normal(other).dot(normal) >= FLAT
             })
         };
-        self.members.iter().all(is_alike).then_some(Spot { point, pixel: member.pixel })
+        self.members.iter().all(is_alike).then_some(ShadingPoint { point, pixel: member.pixel })
     }
 
     /// Its samples, as if nothing hid the aperture: one with its mean radiance over its share of the cell; where that
     /// varies, one a quadrant; where it changes over the aperture, one a part of that. Where it sends carried light, too, that has
     /// its own ([`Outgoing`]). None if the aperture is a point that sees nothing of it. `received` is what its spot receives, where
     /// that is known, `shared` the carried light that it has in common with its neighbours.
-    pub fn samples(
+    pub fn baked_samples(
         &self,
         radiance: &dyn Radiance,
         view: &View,
         cell: Cell,
-        received: Option<Received>,
-        shared: Option<&TowardCells>,
-    ) -> Vec<Found> {
+        incident: Option<IncidentLight>,
+        shared: Option<&ApertureRadiance>,
+    ) -> Vec<BakedSample> {
         if self.shares.iter().all(|&share| share == 0.0) {
             return Vec::new();
         }
         let seed = cell.corner.as_uvec2().to_array();
         // Where all that is own is told, the rest keeps its focus.
-        let is_told = received.is_some_and(|received| received.gloss.is_some());
-        let blurred = if is_told { outgoing::blurred_px(view, self.mean_inverse_depth()) } else { 1 };
-        let asked = Asked { radiance, view, seed, received, own_only: shared.is_some(), blurred };
+        let is_own_interpolated = incident.is_some_and(|incident| incident.gloss.is_some());
+        let blurred =
+            if is_own_interpolated { outgoing::blurred_px(view, self.mean_inverse_depth()) } else { 1 };
+        let query = RadianceQuery { radiance, view, seed, incident, own_only: shared.is_some(), blurred };
         if let Some(shared) = shared {
-            let sent = self.toward_middle(&asked);
+            let sent = self.toward_middle(&query);
             let own = mean(&sent, &self.shares);
-            return self.glossy_samples(cell, &shared.beside(own));
+            return self.glossy_samples(cell, &shared.with_own(own));
         }
         let is_pinhole = view.optics.aperture_radius == 0.0;
         let middle = self.middle(cell);
-        let width = middle.and_then(|point| radiance.carried_width(point));
-        let side = width.map_or(1, |width| outgoing::cells_a_side(view, self.mean_inverse_depth(), width));
+        let width = middle.and_then(|point| radiance.carried_lobe_width(point));
+        let side = width.map_or(1, |width| outgoing::cells_per_side(view, self.mean_inverse_depth(), width));
         if side > 1 {
             let points: Vec<_> = self.weighted_points().collect();
-            return self.glossy_samples(cell, &TowardCells::ask(&asked, &points, side));
+            return self.glossy_samples(cell, &ApertureRadiance::gather(&query, &points, side));
         }
         let sent = match width {
             Some(_) if !is_pinhole => {
                 let points = self.members.iter().filter_map(|member| member.point);
-                outgoing::toward_places(&asked, &points.collect::<Vec<_>>())
+                outgoing::toward_aperture_points(&query, &points.collect::<Vec<_>>())
             }
-            _ => self.toward_middle(&asked),
+            _ => self.toward_middle(&query),
         };
         let mean = |rays: &Range<usize>| mean(&sent[rays.clone()], &self.shares[rays.clone()]);
-        let change = middle.and_then(|point| OwnChange::of(&asked, point, self.mean_inverse_depth()));
+        let change =
+            middle.and_then(|point| OwnLightChange::sample(&query, point, self.mean_inverse_depth()));
         // Few paths tell what a quadrant carries: it may differ by more.
         let even = if width.is_some() { 2.0 } else { 1.0 } * BakeOptions::EVEN_PER_PX * view.tolerance_px;
         let parts = self.parts(cell, even as f32, |rays| mean(rays).total());
         // Looks are kept for the whole picture, most with one sample: no room for more.
-        let mut found = Vec::with_capacity(parts.len());
+        let mut baked = Vec::with_capacity(parts.len());
         for rays in parts {
-            let mut add = |kind| found.push(self.sample(cell, rays.clone(), kind));
-            for kind in mean(&rays).kinds() {
+            let mut add = |kind| baked.push(self.sample(cell, rays.clone(), kind));
+            for kind in mean(&rays).components() {
                 match &change {
                     Some(change) if !kind.is_carried => change.parts(&kind).into_iter().for_each(&mut add),
                     _ => add(kind),
                 }
             }
         }
-        found
+        baked
     }
 
     /// Its surface in the middle of its sub-cells; `None` of the background.
@@ -359,8 +361,8 @@ impl Group {
         if tile_side <= cell.side {
             return None;
         }
-        let width = radiance.carried_width(self.middle(cell)?)?;
-        let side = outgoing::cells_a_side(view, depth, width).max(2);
+        let width = radiance.carried_lobe_width(self.middle(cell)?)?;
+        let side = outgoing::cells_per_side(view, depth, width).max(2);
         let [corner, of] = [cell.corner, IVec2::splat(tile_side)];
         let corner = (corner.div_euclid(of) * of).to_array();
         Some(Tile { part: self.part?, corner, tile_side, side })
@@ -373,14 +375,14 @@ impl Group {
 
     /// What each member sends to the aperture's middle. Where only light tells one from the next, a few of them stand for all: two
     /// that lie apart, or if these differ one of every four.
-    fn toward_middle(&self, asked: &Asked) -> Vec<Leaving> {
+    fn toward_middle(&self, query: &RadianceQuery) -> Vec<OutgoingRadiance> {
         const TOGETHER: usize = 4;
         const ALIKE: f32 = 0.02;
         let count = self.members.len();
         let sent =
-            |at: usize, number: usize, of: usize| member_to_middle(asked, &self.members[at], number, of);
-        let is_plain = self.members[0].point.is_some_and(|point| !asked.radiance.varies_within(point));
-        if is_plain && asked.received.is_some() {
+            |at: usize, number: usize, of: usize| member_to_middle(query, &self.members[at], number, of);
+        let is_plain = self.members[0].point.is_some_and(|point| !query.radiance.varies_within_pixel(point));
+        if is_plain && query.incident.is_some() {
             return vec![sent(count / 2, 0, 1); count];
         }
         if !is_plain || count < TOGETHER * TOGETHER {
@@ -393,9 +395,9 @@ impl Group {
             sent(at, number, groups)
         };
         let far = [0, groups - 1].map(|group| of_group(group, usize::from(group > 0)));
-        let [first, last] = far.each_ref().map(Leaving::total);
+        let [first, last] = far.each_ref().map(OutgoingRadiance::total);
         if (first - last).abs().max_element() <= ALIKE * first.max(last).max_element() {
-            let mean = Sent::mean(far.map(|light| (light, 1.0))).leaving();
+            let mean = MeanRadiance::mean(far.map(|light| (light, 1.0))).to_outgoing();
             return vec![mean; count];
         }
         let between = |group: usize| match group {
@@ -407,10 +409,10 @@ impl Group {
     }
 
     /// The same where carried light is told on cells of the aperture: it is one for all members.
-    fn glossy_samples(&self, cell: Cell, asked: &TowardCells) -> Vec<Found> {
+    fn glossy_samples(&self, cell: Cell, radiance: &ApertureRadiance) -> Vec<BakedSample> {
         let all = 0..self.members.len();
-        let own = asked.all.kinds().filter(|kind| !kind.is_carried);
-        let kinds = own.chain(asked.carried());
+        let own = radiance.all.components().filter(|kind| !kind.is_carried);
+        let kinds = own.chain(radiance.carried());
         kinds.map(|kind| self.sample(cell, all.clone(), kind)).collect()
     }
 
@@ -438,7 +440,7 @@ impl Group {
     }
 
     /// The sample that some of its members make, of one kind of light.
-    fn sample(&self, cell: Cell, members: Range<usize>, kind: Outgoing) -> Found {
+    fn sample(&self, cell: Cell, members: Range<usize>, kind: LightComponent) -> BakedSample {
         let there = self.shares[members.clone()].iter().sum::<f32>() / members.len() as f32;
         let members = &self.members[members];
         let sub_cells = sub_cells_of(members);
@@ -455,14 +457,16 @@ impl Group {
             is_carried: kind.is_carried,
             visibility: kind.toward,
         };
-        Found { sample, part_of: Some((cell, sub_cells)), by_chance: kind.by_chance }
+        BakedSample { sample, part_of: Some((cell, sub_cells)), noisy: kind.noisy }
     }
 }
 
 /// What some rays of these shares send in the mean. Where none of them is there, they count alike.
-fn mean(sent: &[Leaving], shares: &[f32]) -> Sent {
+fn mean(sent: &[OutgoingRadiance], shares: &[f32]) -> MeanRadiance {
     let is_there = shares.iter().any(|&share| share > 0.0);
-    Sent::mean(sent.iter().zip(shares).map(|(light, share)| (*light, if is_there { *share } else { 1.0 })))
+    MeanRadiance::mean(
+        sent.iter().zip(shares).map(|(light, share)| (*light, if is_there { *share } else { 1.0 })),
+    )
 }
 
 /// Of some members, at least one, the nearest to a place in the picture.
@@ -482,11 +486,13 @@ fn mean_inverse_depth(members: &[Member]) -> f64 {
 }
 
 /// What a member sends to the aperture's middle, the `index`-th of `count` that are asked.
-fn member_to_middle(asked: &Asked, member: &Member, index: usize, count: usize) -> Leaving {
-    let Asked { radiance, view, .. } = *asked;
+fn member_to_middle(query: &RadianceQuery, member: &Member, index: usize, count: usize) -> OutgoingRadiance {
+    let RadianceQuery { radiance, view, .. } = *query;
     match member.point {
-        Some(point) => asked.leaving(point, view.eye, index, count),
-        None => Leaving::own(radiance.from_infinity(view.chief_ray(member.pixel).direction.normalize())),
+        Some(point) => query.outgoing(point, view.eye, index, count),
+        None => OutgoingRadiance::from_own(
+            radiance.environment(view.chief_ray(member.pixel).direction.normalize()),
+        ),
     }
 }
 
@@ -500,16 +506,16 @@ mod tests {
     struct Halves([f32; 2]);
 
     impl Radiance for Halves {
-        fn leaving(&self, _point: SurfacePoint, _eye: DVec3) -> trace::Leaving {
+        fn outgoing(&self, _point: SurfacePoint, _eye: DVec3) -> trace::OutgoingRadiance {
             unreachable!("there is no surface")
         }
-        fn from_infinity(&self, direction: DVec3) -> Vec3 {
+        fn environment(&self, direction: DVec3) -> Vec3 {
             Vec3::splat(self.0[usize::from(direction.x > 0.0)])
         }
     }
 
     /// The samples of a cell of the background whose upright middle line is the picture's.
-    fn samples(side: i32, light: [f32; 2]) -> Vec<Found> {
+    fn samples(side: i32, light: [f32; 2]) -> Vec<BakedSample> {
         let camera = Camera { width: 64, height: 64, ..Camera::default() };
         let view = View::new(&camera, BakeOptions::TOLERANCE_PX);
         // Half a pixel further right, the middle is that of a cell of one pixel.
@@ -531,7 +537,7 @@ mod tests {
             tilt: DVec2::ZERO,
             slope: DVec2::ZERO,
         };
-        group.samples(&Halves(light), &view, cell, None, None)
+        group.baked_samples(&Halves(light), &view, cell, None, None)
     }
 
     #[test]

@@ -32,7 +32,7 @@ pub mod tree;
 mod view;
 mod visibility;
 
-pub use bake::{bake, bake_and_tell};
+pub use bake::{bake, bake_with_outliers};
 pub use carried::Carried;
 pub use domain::{Cell, Domain};
 pub use file::{SalfFile, SalfFileError};
@@ -42,4 +42,4 @@ pub use outliers::Outliers;
 pub use parts::{PartsBaker, Surroundings};
 pub use salf::{Salf, SalfStatistics};
 pub use sample::{Address, Sample, SampleFocus, Visibility};
-pub use samples::{Addresses, Run, Samples, Spot};
+pub use samples::{Addresses, Run, SampleLocation, Samples};

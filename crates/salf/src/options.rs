@@ -41,7 +41,7 @@ impl BakeOptions {
     pub fn for_focus(tracer: &Tracer, camera: &Camera, focus: &dyn SurfaceField<FocusOffset>) -> Self {
         let view = View::new(camera, Self::TOLERANCE_PX);
         let margin_px = painted_margin_px(tracer, &view, focus);
-        Self { margin_px, carried: Carried::of(focus), ..Self::default() }
+        Self { margin_px, carried: Carried::for_focus(focus), ..Self::default() }
     }
 
     /// The same as all of these need that look from one place at different times: of each its lens and its focus.

@@ -6,7 +6,7 @@
 //!
 //! Own and carried light share the weight of their patch, as they share its coverage, so each is divided by its share.
 
-use crate::aperture_parts::{Cells, MOST_CELLS, Part};
+use crate::aperture_parts::{ApertureCells, AperturePart, MAX_CELLS};
 use crate::carried::Carried;
 use crate::jitter::jitter;
 use crate::sample::Visibility;
@@ -14,7 +14,7 @@ use crate::view::View;
 use glam::{DVec2, DVec3, Vec3};
 use scene::SurfacePoint;
 use std::f64::consts::FRAC_PI_4;
-use trace::{Among, Leaving, Radiance, Received};
+use trace::{IncidentLight, OutgoingRadiance, Radiance, SampleSlot};
 
 /// Cells that a lobe as wide as the aperture is seen needs, a side.
 const CELLS_A_WIDTH: f64 = 6.0;
@@ -27,35 +27,35 @@ const STEPS: f32 = 128.0;
 
 /// Light toward the aperture, and what of the weight of its patch it has.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Outgoing {
+pub struct LightComponent {
     pub radiance: Vec3,
     pub share: f32,
     pub is_carried: bool,
     /// What of the radiance was found by chance ([`Leaving::by_chance`]).
-    pub by_chance: Vec3,
+    pub noisy: Vec3,
     /// The part of the aperture that it is sent toward.
     pub toward: Visibility,
 }
 
 /// Means of what some points send.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Sent {
+pub struct MeanRadiance {
     own: Vec3,
     carried: Vec3,
     carried_share: f32,
-    by_chance: [Vec3; 2],
+    noisy: [Vec3; 2],
     weight: f32,
 }
 
-impl Sent {
+impl MeanRadiance {
     /// Of points of these weights.
-    pub fn mean(of: impl IntoIterator<Item = (Leaving, f32)>) -> Self {
+    pub fn mean(of: impl IntoIterator<Item = (OutgoingRadiance, f32)>) -> Self {
         let mut sum = Self::default();
-        for (Leaving { own, carried, carried_share, by_chance }, weight) in of {
+        for (OutgoingRadiance { own, carried, carried_share, noisy: by_chance }, weight) in of {
             sum.own += own * weight;
             sum.carried += carried * weight;
             sum.carried_share += carried_share * weight;
-            (0..2).for_each(|kind| sum.by_chance[kind] += by_chance[kind] * weight);
+            (0..2).for_each(|kind| sum.noisy[kind] += by_chance[kind] * weight);
             sum.weight += weight;
         }
         let by = 1.0 / sum.weight;
@@ -63,15 +63,15 @@ impl Sent {
             own: sum.own * by,
             carried: sum.carried * by,
             carried_share: sum.carried_share * by,
-            by_chance: sum.by_chance.map(|light| light * by),
+            noisy: sum.noisy.map(|light| light * by),
             ..sum
         }
     }
 
     /// As of one point.
-    pub fn leaving(&self) -> Leaving {
-        let Self { own, carried, carried_share, by_chance, .. } = *self;
-        Leaving { own, carried, carried_share, by_chance }
+    pub fn to_outgoing(&self) -> OutgoingRadiance {
+        let Self { own, carried, carried_share, noisy: by_chance, .. } = *self;
+        OutgoingRadiance { own, carried, carried_share, noisy: by_chance }
     }
 
     /// All light, own and carried.
@@ -88,16 +88,15 @@ impl Sent {
     }
 
     /// Its two kinds of light, each toward the whole aperture.
-    pub fn kinds(&self) -> impl Iterator<Item = Outgoing> + use<> {
+    pub fn components(&self) -> impl Iterator<Item = LightComponent> + use<> {
         let share = self.share();
-        let kinds =
-            [(self.own, 1.0 - share, false), (self.carried, share, true)].into_iter().zip(self.by_chance);
+        let kinds = [(self.own, 1.0 - share, false), (self.carried, share, true)].into_iter().zip(self.noisy);
         kinds.filter(|((_, share, _), _)| *share > 0.0).map(|((light, share, is_carried), by_chance)| {
-            Outgoing {
-                radiance: sent(light / share),
+            LightComponent {
+                radiance: clamped(light / share),
                 share,
                 is_carried,
-                by_chance: by_chance / share,
+                noisy: by_chance / share,
                 toward: Visibility::Open,
             }
         })
@@ -105,21 +104,21 @@ impl Sent {
 }
 
 /// Light that is told by paths which correct what was known may come out below 0, and is then nearer to the truth at 0.
-fn sent(light: Vec3) -> Vec3 {
+fn clamped(light: Vec3) -> Vec3 {
     light.max(Vec3::ZERO)
 }
 
 /// How many cells a side the carried light of a point of inverse depth `inverse_depth` is asked for on, whose narrowest lobe is
 /// `width` rad wide.
-pub fn cells_a_side(view: &View, inverse_depth: f64, width: f64) -> usize {
+pub fn cells_per_side(view: &View, inverse_depth: f64, width: f64) -> usize {
     let circle_px = view.circle_px(inverse_depth);
     let of_lobe = cells_of_lobe(view, inverse_depth, width);
-    let wanted = match view.carried {
+    let cells = match view.carried {
         Carried::Standard => (circle_px / view.tolerance_px).min(of_lobe),
         Carried::Painted => of_lobe,
     };
     // Without an aperture there is nothing to tell apart, 0/0.
-    if wanted > 1.0 { (wanted.min(MOST_CELLS as f64).ceil() as usize).next_power_of_two() } else { 1 }
+    if cells > 1.0 { (cells.min(MAX_CELLS as f64).ceil() as usize).next_power_of_two() } else { 1 }
 }
 
 /// How many cells a side the light of a lobe of a width needs.
@@ -129,46 +128,46 @@ pub fn cells_of_lobe(view: &View, inverse_depth: f64, width: f64) -> f64 {
 
 /// Who is asked what the points of a cell send, from where, and what is known of it.
 #[derive(Clone, Copy)]
-pub struct Asked<'a> {
+pub struct RadianceQuery<'a> {
     pub radiance: &'a dyn Radiance,
     pub view: &'a View<'a>,
     /// Of the cell.
     pub seed: [u32; 2],
     /// What its points receive.
-    pub received: Option<Received>,
+    pub incident: Option<IncidentLight>,
     /// Whether only what is own is wanted.
     pub own_only: bool,
     /// How many cells the picture takes the mean of, wherever it is focused.
     pub blurred: usize,
 }
 
-impl Asked<'_> {
+impl RadianceQuery<'_> {
     /// What a point sends toward a world position, the `index`-th of `count` that are asked.
-    pub fn leaving(&self, point: SurfacePoint, eye: DVec3, index: usize, count: usize) -> Leaving {
+    pub fn outgoing(&self, point: SurfacePoint, eye: DVec3, index: usize, count: usize) -> OutgoingRadiance {
         let seed = u64::from(self.seed[0]) << 32 | u64::from(self.seed[1]);
         let count = count * self.blurred;
-        let among = Among {
+        let slot = SampleSlot {
             seed,
             index: index as u32,
             count: count as u32,
-            received: self.received,
+            incident: self.incident,
             own_only: self.own_only,
         };
-        self.radiance.leaving_among(point, eye, among)
+        self.radiance.outgoing_sample(point, eye, slot)
     }
 }
 
 /// What points send toward the open aperture, each toward a place of its own.
-pub fn toward_places(asked: &Asked, points: &[SurfacePoint]) -> Vec<Leaving> {
+pub fn toward_aperture_points(query: &RadianceQuery, points: &[SurfacePoint]) -> Vec<OutgoingRadiance> {
     // Roberts's sequence: fractions of the plastic number's powers.
     const STEP: DVec2 = DVec2::new(0.754_877_666_246_692_8, 0.569_840_290_998_053_3);
-    let Asked { view, seed, .. } = *asked;
+    let RadianceQuery { view, seed, .. } = *query;
     let [x, y, _] = jitter(seed[0], seed[1], 1 << 20);
     let place = |k: usize| {
         let at = (DVec2::new(x, y) + STEP * k as f64).fract();
         view.aperture_point(view.open_aperture.sample(at.x, at.y))
     };
-    let sent = |(k, &point): (usize, &SurfacePoint)| asked.leaving(point, place(k), k, points.len());
+    let sent = |(k, &point): (usize, &SurfacePoint)| query.outgoing(point, place(k), k, points.len());
     points.iter().enumerate().map(sent).collect()
 }
 
@@ -196,67 +195,68 @@ pub fn blurred_px(view: &View, inverse_depth: f64) -> usize {
 }
 
 /// What points send toward each cell of the aperture.
-pub struct TowardCells {
+pub struct ApertureRadiance {
     /// What the points send toward all cells in the mean.
-    pub all: Sent,
+    pub all: MeanRadiance,
     side: usize,
     /// Carried light of all points toward each cell, row by row from v = −1.
     carried: Vec<Vec3>,
     /// What of it was found by chance.
-    by_chance: Vec<Vec3>,
+    noisy: Vec<Vec3>,
 }
 
-impl TowardCells {
+impl ApertureRadiance {
     /// Asks points of these weights, or many of them, toward `side` × `side` cells: each cell is asked by as many points, neighbours
     /// ask for cells apart.
-    pub fn ask(of: &Asked, points: &[(SurfacePoint, f32)], side: usize) -> Self {
-        let Asked { view, seed, .. } = *of;
+    pub fn gather(query: &RadianceQuery, points: &[(SurfacePoint, f32)], side: usize) -> Self {
+        let RadianceQuery { view, seed, .. } = *query;
         let cells = side * side;
         const MOST: usize = 128;
         let count = cells * points.len().min(MOST).div_ceil(cells);
         let bits = cells.ilog2();
-        let mut of_points: Vec<Vec<(Leaving, f32)>> = vec![Vec::new(); points.len()];
-        let mut of_cells: Vec<Vec<(Leaving, f32)>> = vec![Vec::new(); cells];
+        let mut of_points: Vec<Vec<(OutgoingRadiance, f32)>> = vec![Vec::new(); points.len()];
+        let mut of_cells: Vec<Vec<(OutgoingRadiance, f32)>> = vec![Vec::new(); cells];
         let turn = (jitter(seed[0], seed[1], 1 << 21)[0] * cells as f64) as usize;
-        for asked in 0..count {
-            let at = asked * points.len() / count;
+        for sample in 0..count {
+            let at = sample * points.len() / count;
             let (point, weight) = points[at];
-            let cell = ((asked % cells) as u32).reverse_bits() >> (u32::BITS - bits);
+            let cell = ((sample % cells) as u32).reverse_bits() >> (u32::BITS - bits);
             let [row, column] = crate::domain::Cell::row_and_column(cell as usize ^ turn);
-            let [x, y, _] = jitter(seed[0], seed[1], (1 << 22) + asked as u32);
+            let [x, y, _] = jitter(seed[0], seed[1], (1 << 22) + sample as u32);
             let place = DVec2::new(column as f64 + x, row as f64 + y) * (2.0 / side as f64) - 1.0;
-            let leaving = of.leaving(point, view.aperture_point(place), asked, count);
-            of_points[at].push((leaving, weight));
-            of_cells[row * side + column].push((leaving, weight));
+            let outgoing = query.outgoing(point, view.aperture_point(place), sample, count);
+            of_points[at].push((outgoing, weight));
+            of_cells[row * side + column].push((outgoing, weight));
         }
-        let of_cells: Vec<_> = of_cells.into_iter().map(Sent::mean).collect();
+        let of_cells: Vec<_> = of_cells.into_iter().map(MeanRadiance::mean).collect();
         let of_points = of_points.into_iter().zip(points).filter(|(sent, _)| !sent.is_empty());
-        let of_points = of_points.map(|(sent, (_, weight))| (Sent::mean(sent).leaving(), *weight));
+        let of_points =
+            of_points.map(|(sent, (_, weight))| (MeanRadiance::mean(sent).to_outgoing(), *weight));
         Self {
-            all: Sent::mean(of_points),
+            all: MeanRadiance::mean(of_points),
             side,
             carried: of_cells.iter().map(|sent| sent.carried).collect(),
-            by_chance: of_cells.iter().map(|sent| sent.by_chance[1]).collect(),
+            noisy: of_cells.iter().map(|sent| sent.noisy[1]).collect(),
         }
     }
 
     /// The same carried light beside other own light.
-    pub fn beside(&self, own: Sent) -> Self {
-        let all = Sent { carried: self.all.carried, ..own };
-        Self { all, side: self.side, carried: self.carried.clone(), by_chance: self.by_chance.clone() }
+    pub fn with_own(&self, own: MeanRadiance) -> Self {
+        let all = MeanRadiance { carried: self.all.carried, ..own };
+        Self { all, side: self.side, carried: self.carried.clone(), noisy: self.noisy.clone() }
     }
 
     /// Carried light on as few parts of the aperture as tell it.
-    pub fn carried(&self) -> Vec<Outgoing> {
+    pub fn carried(&self) -> Vec<LightComponent> {
         let differs = ALIKE * self.all.total().max_element();
-        let cells = Cells { side: self.side, light: &self.carried, by_chance: &self.by_chance };
+        let cells = ApertureCells { side: self.side, light: &self.carried, noisy: &self.noisy };
         let share = self.all.share();
-        let part = |Part { light, by_chance, cells }| Outgoing {
-            radiance: sent(light / share),
+        let part = |AperturePart { light, noisy: by_chance, cells }| LightComponent {
+            radiance: clamped(light / share),
             share,
             is_carried: true,
-            by_chance: by_chance / share,
-            toward: Visibility::of(&[cells]),
+            noisy: by_chance / share,
+            toward: Visibility::from_words(&[cells]),
         };
         cells.parts(differs).into_iter().map(part).collect()
     }
@@ -271,11 +271,16 @@ mod tests {
     struct Mirror;
 
     impl Radiance for Mirror {
-        fn leaving(&self, _point: SurfacePoint, eye: DVec3) -> Leaving {
+        fn outgoing(&self, _point: SurfacePoint, eye: DVec3) -> OutgoingRadiance {
             let carried = Vec3::splat(if eye.x > 0.25 { 8.0 } else { 0.5 });
-            Leaving { own: Vec3::splat(0.3), carried, carried_share: 0.25, ..Leaving::default() }
+            OutgoingRadiance {
+                own: Vec3::splat(0.3),
+                carried,
+                carried_share: 0.25,
+                ..OutgoingRadiance::default()
+            }
         }
-        fn from_infinity(&self, _direction: DVec3) -> Vec3 {
+        fn environment(&self, _direction: DVec3) -> Vec3 {
             Vec3::ZERO
         }
     }
@@ -285,15 +290,15 @@ mod tests {
         let camera = Camera { width: 64, height: 64, aperture_radius: 0.5, ..Camera::default() };
         let view = View::new(&camera, 2.0);
         let points = vec![(SurfacePoint { triangle: 0, barycentric: DVec2::ZERO }, 1.0); 16];
-        let of = Asked {
+        let of = RadianceQuery {
             radiance: &Mirror,
             view: &view,
             seed: [3, 5],
-            received: None,
+            incident: None,
             own_only: false,
             blurred: 1,
         };
-        let asked = TowardCells::ask(&of, &points, 4);
+        let asked = ApertureRadiance::gather(&of, &points, 4);
         let parts = asked.carried();
         // The left half as two quarters, and the right one cell by cell: three quarters of it are bright.
         assert_eq!(parts.len(), 2 + 8, "{parts:?}");
@@ -305,7 +310,7 @@ mod tests {
             assert!((part.share, part.is_carried) == (0.25, true));
         }
         assert_eq!(seen, u64::MAX);
-        let light = |part: &Outgoing| match &part.toward {
+        let light = |part: &LightComponent| match &part.toward {
             Visibility::Open => part.radiance.x,
             Visibility::Cells { words } => part.radiance.x * words[0].count_ones() as f32 / 64.0,
         };
@@ -313,7 +318,7 @@ mod tests {
         let expected = 0.75 * 0.5 + 0.25 * 8.0;
         assert!((sum - expected).abs() < 0.8, "{sum} for {expected}: cells on the edge are either");
         // What is the same toward all is one.
-        let even = TowardCells { carried: vec![Vec3::ONE; 16], ..asked };
+        let even = ApertureRadiance { carried: vec![Vec3::ONE; 16], ..asked };
         assert_eq!(even.carried().len(), 1);
         assert_eq!(even.carried()[0].toward, Visibility::Open);
     }
@@ -322,16 +327,16 @@ mod tests {
     fn kinds_share_the_weight_and_keep_the_light() {
         for share in [0.0, 0.001, 0.3, 0.999, 1.0] {
             for own in [0.0, 2.0] {
-                let sent = Sent::mean([(
-                    Leaving {
+                let sent = MeanRadiance::mean([(
+                    OutgoingRadiance {
                         own: Vec3::splat(own),
                         carried: Vec3::splat(4.0 * share),
                         carried_share: share,
-                        ..Leaving::default()
+                        ..OutgoingRadiance::default()
                     },
                     0.5,
                 )]);
-                let kinds: Vec<_> = sent.kinds().collect();
+                let kinds: Vec<_> = sent.components().collect();
                 assert_eq!(kinds.iter().map(|kind| kind.share).sum::<f32>(), 1.0);
                 let light: Vec3 = kinds.iter().map(|kind| kind.radiance * kind.share).sum();
                 assert!((light - sent.total()).abs().max_element() < 1e-5, "{share}, {own}: {kinds:?}");
@@ -344,10 +349,10 @@ mod tests {
         let camera = Camera { width: 1920, height: 1080, aperture_radius: 0.02, ..Camera::default() };
         let view = View::new(&camera, 2.0);
         let focus = 1.0 / camera.focus_distance;
-        let of = |inverse_depth: f64, width: f64| cells_a_side(&view, inverse_depth, width);
+        let of = |inverse_depth: f64, width: f64| cells_per_side(&view, inverse_depth, width);
         assert_eq!((of(focus, 0.0), of(1.0, 0.0), of(1.0, 0.65)), (1, 8, 1));
         assert!((2..8).contains(&of(1.0, 0.06)), "{}", of(1.0, 0.06));
         let pinhole = Camera { aperture_radius: 0.0, ..camera };
-        assert_eq!(cells_a_side(&View::new(&pinhole, 2.0), 1.0, 0.0), 1);
+        assert_eq!(cells_per_side(&View::new(&pinhole, 2.0), 1.0, 0.0), 1);
     }
 }

@@ -1,47 +1,47 @@
 //! How the own light of a point changes over the aperture.
 
-use crate::aperture_parts::{Cells, MOST_CELLS, Part};
-use crate::outgoing::{ALIKE, Asked, Outgoing, cells_of_lobe};
+use crate::aperture_parts::{ApertureCells, AperturePart, MAX_CELLS};
+use crate::outgoing::{ALIKE, LightComponent, RadianceQuery, cells_of_lobe};
 use crate::sample::Visibility;
 use glam::{DVec2, Vec3};
 use scene::SurfacePoint;
 
 /// By cell of the aperture, how much more own light a point sends there than to the middle.
-pub struct OwnChange {
+pub struct OwnLightChange {
     side: usize,
     more: Vec<Vec3>,
 }
 
-impl OwnChange {
+impl OwnLightChange {
     /// Of a point of inverse depth `inverse_depth`; none where it sends the same toward all of the aperture. It is told as finely for what
     /// is in focus: who looks through a part of the aperture sees it there, too.
-    pub fn of(asked: &Asked, point: SurfacePoint, inverse_depth: f64) -> Option<Self> {
-        let Asked { view, radiance, .. } = *asked;
-        let wanted = cells_of_lobe(view, inverse_depth, radiance.own_width(point)?);
-        if wanted <= 1.0 {
+    pub fn sample(query: &RadianceQuery, point: SurfacePoint, inverse_depth: f64) -> Option<Self> {
+        let RadianceQuery { view, radiance, .. } = *query;
+        let cells = cells_of_lobe(view, inverse_depth, radiance.own_lobe_width(point)?);
+        if cells <= 1.0 {
             return None;
         }
-        let side = (wanted.min(MOST_CELLS as f64).ceil() as usize).next_power_of_two();
-        let middle = asked.leaving(point, view.eye, 0, 1).own;
+        let side = (cells.min(MAX_CELLS as f64).ceil() as usize).next_power_of_two();
+        let middle = query.outgoing(point, view.eye, 0, 1).own;
         let more = |cell: usize| {
             let at = DVec2::new((cell % side) as f64 + 0.5, (cell / side) as f64 + 0.5);
             let eye = view.aperture_point(at * (2.0 / side as f64) - 1.0);
-            asked.leaving(point, eye, 0, 1).own - middle
+            query.outgoing(point, eye, 0, 1).own - middle
         };
         Some(Self { side, more: (0..side * side).map(more).collect() })
     }
 
     /// What is sent to the middle as it is sent toward each part of the aperture.
-    pub fn parts(&self, sent: &Outgoing) -> Vec<Outgoing> {
+    pub fn parts(&self, sent: &LightComponent) -> Vec<LightComponent> {
         let light = |more: &Vec3| (sent.radiance + *more / sent.share).max(Vec3::ZERO);
         let light: Vec<Vec3> = self.more.iter().map(light).collect();
         let mean = light.iter().sum::<Vec3>() / light.len() as f32;
-        let by_chance = vec![sent.by_chance; light.len()];
-        let cells = Cells { side: self.side, light: &light, by_chance: &by_chance };
+        let by_chance = vec![sent.noisy; light.len()];
+        let cells = ApertureCells { side: self.side, light: &light, noisy: &by_chance };
         let parts = cells.parts(ALIKE * mean.max_element()).into_iter();
-        let part = |Part { light, cells, .. }| Outgoing {
+        let part = |AperturePart { light, cells, .. }| LightComponent {
             radiance: light,
-            toward: Visibility::of(&[cells]),
+            toward: Visibility::from_words(&[cells]),
             ..sent.clone()
         };
         parts.map(part).collect()
@@ -54,19 +54,19 @@ mod tests {
     use crate::view::View;
     use glam::DVec3;
     use lens::Camera;
-    use trace::{Leaving, Radiance};
+    use trace::{OutgoingRadiance, Radiance};
 
     /// Sends more toward the right.
     struct Glossy;
 
     impl Radiance for Glossy {
-        fn leaving(&self, _point: SurfacePoint, eye: DVec3) -> Leaving {
-            Leaving::own(Vec3::splat(0.5 + eye.x as f32))
+        fn outgoing(&self, _point: SurfacePoint, eye: DVec3) -> OutgoingRadiance {
+            OutgoingRadiance::from_own(Vec3::splat(0.5 + eye.x as f32))
         }
-        fn from_infinity(&self, _direction: DVec3) -> Vec3 {
+        fn environment(&self, _direction: DVec3) -> Vec3 {
             Vec3::ZERO
         }
-        fn own_width(&self, point: SurfacePoint) -> Option<f64> {
+        fn own_lobe_width(&self, point: SurfacePoint) -> Option<f64> {
             (point.triangle == 0).then_some(0.1)
         }
     }
@@ -77,15 +77,21 @@ mod tests {
         let view = View::new(&camera, 2.0);
         let asked = |triangle: u32, view: &View| {
             let point = SurfacePoint { triangle, barycentric: DVec2::ZERO };
-            let of =
-                Asked { radiance: &Glossy, view, seed: [3, 5], received: None, own_only: false, blurred: 1 };
-            OwnChange::of(&of, point, 0.5)
+            let of = RadianceQuery {
+                radiance: &Glossy,
+                view,
+                seed: [3, 5],
+                incident: None,
+                own_only: false,
+                blurred: 1,
+            };
+            OwnLightChange::sample(&of, point, 0.5)
         };
-        let sent = Outgoing {
+        let sent = LightComponent {
             radiance: Vec3::splat(0.6),
             share: 1.0,
             is_carried: false,
-            by_chance: Vec3::ZERO,
+            noisy: Vec3::ZERO,
             toward: Visibility::Open,
         };
         let parts = asked(0, &view).unwrap().parts(&sent);

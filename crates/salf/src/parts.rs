@@ -5,8 +5,8 @@
 //! So a part of the picture is surveyed first, with as much around it ([`PartsBaker::around`]); then its squares are baked, some at
 //! a time. The parts of a light field have its camera, its blocks and its hierarchy.
 
-use crate::bake::{beside, each_row, patches};
-use crate::baker::Baker;
+use crate::bake::{map_rows, outside_domain, patches};
+use crate::baker::BlockBaker;
 use crate::domain::Domain;
 use crate::occluders::Occluders;
 use crate::options::BakeOptions;
@@ -24,7 +24,7 @@ use trace::{Radiance, Tracer};
 
 /// Bakes parts of one light field.
 pub struct PartsBaker<'a> {
-    baker: Baker<'a>,
+    baker: BlockBaker<'a>,
     camera: &'a Camera,
     options: BakeOptions,
     reach: Reach,
@@ -50,7 +50,7 @@ impl<'a> PartsBaker<'a> {
         options: &BakeOptions,
         focus: &dyn SurfaceField<FocusOffset>,
     ) -> Self {
-        let baker = Baker::new(tracer, radiance, camera, options);
+        let baker = BlockBaker::new(tracer, radiance, camera, options);
         let reach = Reach::new(tracer.scene(), &baker.view, baker.domain, &baker.placement, focus);
         Self { baker, camera, options: *options, reach }
     }
@@ -62,7 +62,7 @@ impl<'a> PartsBaker<'a> {
 
     /// Surveys what stands around some pixels of the picture, first and end: the squares whose light may come within `near_px` of
     /// them, and of the squares that lie outside of the picture those that are nearest to them.
-    pub fn around(
+    pub fn survey_surroundings(
         &self,
         [first, end]: [IVec2; 2],
         near_px: i32,
@@ -83,10 +83,10 @@ impl<'a> PartsBaker<'a> {
             self.reach.squares().filter(|(square, bound)| is_needed(*square, *bound)).collect();
         let squares: Vec<IVec2> = needed.iter().map(|(square, _)| *square).collect();
         let occluders = self.survey(&needed, &Stage::new(progress, 0.0, 0.9))?;
-        let wanted: HashSet<IVec2> = squares.iter().copied().collect();
-        let is_wanted =
-            |corner: IVec2| wanted.contains(&self.square_of(self.baker.domain.nearest_block(corner)));
-        let patches = patches(&self.baker, &is_wanted, &Stage::new(progress, 0.9, 1.0))?;
+        let selected: HashSet<IVec2> = squares.iter().copied().collect();
+        let is_selected =
+            |corner: IVec2| selected.contains(&self.square_of(self.baker.domain.nearest_block(corner)));
+        let patches = patches(&self.baker, &is_selected, &Stage::new(progress, 0.9, 1.0))?;
         Ok(Surroundings { squares, occluders, patches })
     }
 
@@ -106,16 +106,16 @@ impl<'a> PartsBaker<'a> {
             let [low, high] = [(square - far).max(IVec2::ZERO), (square + far).min(size - 1)];
             (low.y..=high.y).flat_map(move |y| (low.x..=high.x).map(move |x| IVec2::new(x, y)))
         };
-        let wanted: HashSet<IVec2> = needed.iter().map(|(square, _)| *square).collect();
-        let mut surveyed: HashSet<IVec2> = wanted.clone();
+        let selected: HashSet<IVec2> = needed.iter().map(|(square, _)| *square).collect();
+        let mut surveyed: HashSet<IVec2> = selected.clone();
         needed.iter().for_each(|(square, bound)| surveyed.extend(near(*square, *bound)));
         let hides =
-            |(square, bound): &(IVec2, Bound)| near(*square, *bound).any(|near| wanted.contains(&near));
+            |(square, bound): &(IVec2, Bound)| near(*square, *bound).any(|near| selected.contains(&near));
         surveyed.extend(self.reach.squares().filter(hides).map(|(square, _)| square));
 
         let mut squares: Vec<IVec2> = surveyed.into_iter().collect();
         squares.sort_by_key(|square| (square.y, square.x));
-        let depths = each_row(&squares, progress, |&square| {
+        let depths = map_rows(&squares, progress, |&square| {
             let blocks = self.blocks_of(square);
             let cells = blocks.flat_map(|block| domain.cells_of_block(block));
             cells.map(|cell| (cell, self.baker.depths(cell))).collect::<Vec<_>>()
@@ -151,12 +151,12 @@ impl<'a> PartsBaker<'a> {
         let domain = &self.baker.domain;
         let mut blocks: Vec<IVec2> = squares.iter().flat_map(|square| self.blocks_of(*square)).collect();
         blocks.sort_by_key(|block| (block.y, block.x));
-        let parts = each_row(&blocks, progress, |&block| {
+        let parts = map_rows(&blocks, progress, |&block| {
             let patches = around.patches.get(&domain.corner_of_block(block)).map_or(&[][..], Vec::as_slice);
-            let looks = self.baker.first_looks(&domain.cells_of_block(block));
-            self.baker.block(&around.occluders, &looks, patches)
+            let looks = self.baker.survey_cells(&domain.cells_of_block(block));
+            self.baker.bake_block(&around.occluders, &looks, patches)
         })?;
-        let outliers = parts.iter().fold(Outliers::default(), |all, (_, outliers)| all.and(*outliers));
+        let outliers = parts.iter().fold(Outliers::default(), |all, (_, outliers)| all.merged(*outliers));
         let here: HashSet<IVec2> = squares.iter().copied().collect();
         let is_beside = |corner: &IVec2| {
             let nearest = domain.nearest_block(*corner);
@@ -164,7 +164,8 @@ impl<'a> PartsBaker<'a> {
         };
         let apart = around.patches.iter().filter(|(corner, _)| is_beside(corner));
         let apart: HashMap<_, _> = apart.map(|(corner, patches)| (*corner, patches.clone())).collect();
-        let samples = Samples::join(parts.into_iter().map(|(samples, _)| samples).chain(beside(apart)));
+        let samples =
+            Samples::join(parts.into_iter().map(|(samples, _)| samples).chain(outside_domain(apart)));
         let (camera, margin_px) = (self.camera.clone(), domain.margin as u32);
         Ok((Salf { camera, margin_px, carried: self.options.carried, samples }, outliers))
     }

@@ -45,7 +45,7 @@ impl Placement {
 fn is_bright(scene: &Scene, triangle: u32) -> bool {
     let material = scene.material_of(triangle);
     let center = SurfacePoint { triangle, barycentric: DVec2::splat(1.0 / 3.0) };
-    material.emissive.max_element() > BRIGHT && scene.emitted(center).max_element() > BRIGHT
+    material.emissive.max_element() > BRIGHT && scene.emitted_radiance(center).max_element() > BRIGHT
 }
 
 /// Whether a triangle in front of the camera is small in the picture.

@@ -37,7 +37,7 @@ impl FocusRange {
     const ANY: Self = Self { t: [-1e9, 1e9], anchor: [0.0, 1.0] };
 
     /// The range from the least of values to the greatest, and the ordinary lens, which carried light may keep.
-    fn between([least, greatest]: [FocusOffset; 2]) -> Self {
+    fn spanning([least, greatest]: [FocusOffset; 2]) -> Self {
         let wide = |a: f64, b: f64, standard: f64| [a.min(b).min(standard), a.max(b).max(standard)];
         Self { t: wide(least.t, greatest.t, 1.0), anchor: wide(least.anchor, greatest.anchor, 0.0) }
     }
@@ -75,7 +75,7 @@ pub struct Bound {
 }
 
 impl Bound {
-    fn or(self, other: Self) -> Self {
+    fn union(self, other: Self) -> Self {
         Self {
             inverse_depth: self.inverse_depth.max(other.inverse_depth),
             radius_px: self.radius_px.max(other.radius_px),
@@ -96,7 +96,7 @@ pub struct Reach {
 }
 
 /// So many triangles are gathered by one thread.
-const TOGETHER: usize = 1 << 12;
+const CHUNK_TRIANGLES: usize = 1 << 12;
 
 impl Reach {
     /// Of what `view` shows of a scene that is focused so.
@@ -107,16 +107,16 @@ impl Reach {
         placement: &Placement,
         focus: &dyn SurfaceField<FocusOffset>,
     ) -> Self {
-        let squares = Squares::of(domain);
-        let of_background = FocusRange::between([focus.at_infinity().or_standard(); 2]);
+        let squares = Squares::new(domain);
+        let of_background = FocusRange::spanning([focus.at_infinity().or_standard(); 2]);
         let background = of_background.radius_px(view, [0.0; 2]);
         let is_painted = AtomicBool::new(!of_background.is_standard());
         let empty = || HashMap::<(u32, u32), Bound>::new();
         let triangles: Vec<u32> = (0..scene.triangles.len() as u32).collect();
-        let gather = |mut found: HashMap<(u32, u32), Bound>, chunk: &[u32]| {
+        let gather = |mut bounds_by_part: HashMap<(u32, u32), Bound>, chunk: &[u32]| {
             for &triangle in chunk {
                 let part = scene.triangles[triangle as usize].part;
-                let range = focus.bounds(triangle).map_or(FocusRange::ANY, FocusRange::between);
+                let range = focus.bounds(triangle).map_or(FocusRange::ANY, FocusRange::spanning);
                 if !range.is_standard() {
                     is_painted.store(true, Ordering::Relaxed);
                 }
@@ -127,27 +127,27 @@ impl Reach {
                         inverse_depth: depths[1] as f32,
                         radius_px: (wider * range.radius_px(view, depths)) as f32,
                     };
-                    let known = found.entry((part, square)).or_default();
-                    *known = known.or(bound);
+                    let total = bounds_by_part.entry((part, square)).or_default();
+                    *total = total.union(bound);
                 });
             }
-            found
+            bounds_by_part
         };
         let both = |mut a: HashMap<(u32, u32), Bound>, b: HashMap<(u32, u32), Bound>| {
             for (key, bound) in b {
-                let known = a.entry(key).or_default();
-                *known = known.or(bound);
+                let total = a.entry(key).or_default();
+                *total = total.union(bound);
             }
             a
         };
-        let found = triangles.par_chunks(TOGETHER).fold(empty, gather).reduce(empty, both);
+        let bounds_by_part = triangles.par_chunks(CHUNK_TRIANGLES).fold(empty, gather).reduce(empty, both);
         let behind = Bound { inverse_depth: 0.0, radius_px: background as f32 };
         let mut bounds = vec![behind; squares.size.element_product() as usize];
-        for ((_, square), bound) in &found {
-            let known = &mut bounds[*square as usize];
-            *known = known.or(*bound);
+        for ((_, square), bound) in &bounds_by_part {
+            let total = &mut bounds[*square as usize];
+            *total = total.union(*bound);
         }
-        let parts = found.into_iter().map(|(key, bound)| (key, bound.radius_px)).collect();
+        let parts = bounds_by_part.into_iter().map(|(key, bound)| (key, bound.radius_px)).collect();
         let may_be_painted = is_painted.into_inner();
         Self { size: squares.size, corner: squares.corner, bounds, parts, may_be_painted }
     }
@@ -181,7 +181,7 @@ struct Squares {
 }
 
 impl Squares {
-    fn of(domain: Domain) -> Self {
+    fn new(domain: Domain) -> Self {
         let side = SQUARE_PX / Domain::BLOCK;
         Self { size: (domain.blocks() + side - 1) / side, corner: IVec2::splat(-domain.margin) }
     }
@@ -193,7 +193,7 @@ impl Squares {
         view: &View,
         placement: &Placement,
         triangle: u32,
-        found: &mut dyn FnMut(u32, [f64; 2]),
+        visit_square: &mut dyn FnMut(u32, [f64; 2]),
     ) {
         let corners = scene.corners(triangle).map(|p| view.camera.camera_from_world(p));
         if corners.iter().all(|p| p.z <= 0.0) {
@@ -241,7 +241,7 @@ impl Squares {
                     }
                 };
                 if depths[1] > 0.0 && depths[0] <= depths[1] {
-                    found((y * self.size.x + x) as u32, [depths[0].max(0.0), depths[1]]);
+                    visit_square((y * self.size.x + x) as u32, [depths[0].max(0.0), depths[1]]);
                 }
             }
         }

@@ -67,12 +67,12 @@ pub struct SampleFocus<'a> {
 
 impl<'a> SampleFocus<'a> {
     /// How a paint focuses samples.
-    pub fn of(paint: &'a dyn SurfaceField<FocusOffset>) -> Self {
-        Self { paint, concerns_carried: paint.concerns_carried() }
+    pub fn new(paint: &'a dyn SurfaceField<FocusOffset>) -> Self {
+        Self { paint, concerns_carried: paint.affects_carried_light() }
     }
 
     /// How it focuses what is sent from an address.
-    pub fn at(&self, address: Address) -> FocusOffset {
+    pub fn offset(&self, address: Address) -> FocusOffset {
         if address.is_carried && !self.concerns_carried {
             return FocusOffset::STANDARD;
         }
@@ -96,7 +96,7 @@ pub enum Visibility {
 
 impl Visibility {
     /// What these cells make up, one word of them or four.
-    pub fn of(words: &[u64]) -> Self {
+    pub fn from_words(words: &[u64]) -> Self {
         match words.iter().all(|&word| word == u64::MAX) {
             true => Self::Open,
             false => Self::Cells { words: words.into() },
@@ -104,7 +104,7 @@ impl Visibility {
     }
 
     /// What both see; `None` if that is nothing.
-    pub fn and(&self, other: &Self) -> Option<Self> {
+    pub fn intersection(&self, other: &Self) -> Option<Self> {
         let (Self::Cells { words: a }, Self::Cells { words: b }) = (self, other) else {
             return Some(if *self == Self::Open { other.clone() } else { self.clone() });
         };
@@ -158,11 +158,14 @@ mod tests {
     #[test]
     fn what_both_see() {
         let cells = |words: &[u64]| Visibility::Cells { words: words.into() };
-        assert_eq!(Visibility::Open.and(&cells(&[5])), Some(cells(&[5])));
-        assert_eq!(cells(&[5]).and(&Visibility::Open), Some(cells(&[5])));
-        assert_eq!(cells(&[5]).and(&cells(&[6])), Some(cells(&[4])));
-        assert_eq!(cells(&[5]).and(&cells(&[2])), None);
-        assert_eq!(cells(&[1]).and(&cells(&[2 | 1 << 17, 0, 7, 0])), Some(cells(&[2 | 1 << 17, 0, 0, 0])));
+        assert_eq!(Visibility::Open.intersection(&cells(&[5])), Some(cells(&[5])));
+        assert_eq!(cells(&[5]).intersection(&Visibility::Open), Some(cells(&[5])));
+        assert_eq!(cells(&[5]).intersection(&cells(&[6])), Some(cells(&[4])));
+        assert_eq!(cells(&[5]).intersection(&cells(&[2])), None);
+        assert_eq!(
+            cells(&[1]).intersection(&cells(&[2 | 1 << 17, 0, 7, 0])),
+            Some(cells(&[2 | 1 << 17, 0, 0, 0]))
+        );
     }
 
     #[test]

@@ -21,10 +21,10 @@ mod run;
 
 pub use arrays::Samples;
 pub(crate) use arrays::{Chunk, Starts};
-pub(crate) use pack::{Found, Packer, block_corner};
+pub(crate) use pack::{BakedSample, Packer, block_corner};
 pub(crate) use plane::Plane;
 pub(crate) use record::{Patch, Record};
-pub use run::{Addresses, Run, Spot};
+pub use run::{Addresses, Run, SampleLocation};
 
 #[cfg(test)]
 mod tests;

@@ -5,20 +5,20 @@
 //! lie between the pinhole's rays. Such triangles ([`crate::placement`]) are cut into patches of about a pixel, and each
 //! side of a patch that can be seen is a sample.
 
-use crate::baker::Baker;
+use crate::baker::BlockBaker;
 use crate::domain::Domain;
 use crate::jitter::jitter;
-use crate::outgoing::{Outgoing, Sent};
+use crate::outgoing::{LightComponent, MeanRadiance};
 use crate::sample::Sample;
 use crate::samples::block_corner;
 use crate::view::View;
-use crate::visibility::{self, Fineness, Patterns, Seen};
+use crate::visibility::{self, Fineness, Patterns, VisiblePart};
 use glam::{DVec2, DVec3, IVec2};
 use scene::SurfacePoint;
 use trace::Viewpoint;
 
 /// More pieces than this are not made of one triangle: the largest is then split no further.
-const MOST_PATCHES: usize = 20_000;
+const MAX_PATCHES: usize = 20_000;
 
 /// Pieces whose image on the picture is brighter are cut further: one alone would show the cells of its visibility.
 const GLARING: f64 = 0.5;
@@ -74,8 +74,8 @@ impl Piece {
 /// The samples of one triangle.
 ///
 /// `is_wanted` tells of the corner of a block whether what lies there is.
-pub fn samples(baker: &Baker, triangle: u32, is_wanted: &dyn Fn(IVec2) -> bool) -> Vec<Sample> {
-    let Baker { view, domain, .. } = baker;
+pub fn samples(baker: &BlockBaker, triangle: u32, is_selected: &dyn Fn(IVec2) -> bool) -> Vec<Sample> {
+    let BlockBaker { view, domain, .. } = baker;
     let scene = baker.tracer.scene();
     let corners = scene.corners(triangle).map(|p| view.camera.camera_from_world(p));
     let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or_zero();
@@ -87,13 +87,13 @@ pub fn samples(baker: &Baker, triangle: u32, is_wanted: &dyn Fn(IVec2) -> bool) 
     let whole = Piece { barycentric: [DVec2::ZERO, DVec2::X, DVec2::Y], corners };
     let mut samples = Vec::new();
     let center = SurfacePoint { triangle, barycentric: DVec2::splat(1.0 / 3.0) };
-    let brightness = f64::from(scene.emitted(center).max_element());
+    let brightness = f64::from(scene.emitted_radiance(center).max_element());
     for piece in split(whole, view, domain, brightness) {
-        if !is_wanted(block_corner(piece.pixel(view).as_vec2().floor().as_ivec2())) {
+        if !is_selected(block_corner(piece.pixel(view).as_vec2().floor().as_ivec2())) {
             continue;
         }
         let point = SurfacePoint { triangle, barycentric: piece.barycentric.iter().sum::<DVec2>() / 3.0 };
-        let sides = if scene.hides_back(triangle) { &[front][..] } else { &[front, -front] };
+        let sides = if scene.culls_back_face(triangle) { &[front][..] } else { &[front, -front] };
         for &side in sides {
             samples.extend(patch(baker, point, piece, side));
         }
@@ -102,8 +102,8 @@ pub fn samples(baker: &Baker, triangle: u32, is_wanted: &dyn Fn(IVec2) -> bool) 
 }
 
 /// One side of a piece.
-fn patch(baker: &Baker, point: SurfacePoint, piece: Piece, normal: DVec3) -> Vec<Sample> {
-    let Baker { tracer, radiance, view, patterns, .. } = baker;
+fn patch(baker: &BlockBaker, point: SurfacePoint, piece: Piece, normal: DVec3) -> Vec<Sample> {
+    let BlockBaker { tracer, radiance, view, patterns, .. } = baker;
     let optics = &view.optics;
     let position = piece.center();
     // w(P, U) = dA·n·(U − P)/(z³ tan²θ), linear in U.
@@ -116,27 +116,27 @@ fn patch(baker: &Baker, point: SurfacePoint, piece: Piece, normal: DVec3) -> Vec
     }
     let pixel = piece.pixel(view);
     let inverse_depth = 1.0 / position.z;
-    let fineness = Fineness::of(view, inverse_depth);
+    let fineness = Fineness::for_depth(view, inverse_depth);
     let seed = [point.triangle, (jitter(point.barycentric.x.to_bits() as u32, 0, 0)[0] * 1e9) as u32];
     let is_on_side = |u: DVec2| weight + tilt.dot(u) > 0.0;
     let from = Viewpoint::Surface(point);
-    let seen = visibility::visibility(
+    let parts = visibility::visible_parts(
         tracer,
         view,
         patterns,
         from,
         fineness,
-        Patterns::some_number(seed),
+        Patterns::random_number(seed),
         is_on_side,
     );
-    if seen.is_empty() {
+    if parts.is_empty() {
         return Vec::new();
     }
     let rim = view.aperture_point(tilt.signum());
     let there = tracer.scene().opacity(point);
-    let kinds: Vec<_> = Sent::mean([(radiance.leaving(point, rim), 1.0)]).kinds().collect();
-    let past = |(visibility, share): Seen| {
-        let sample = move |kind: Outgoing| {
+    let kinds: Vec<_> = MeanRadiance::mean([(radiance.outgoing(point, rim), 1.0)]).components().collect();
+    let masked = |(visibility, share): VisiblePart| {
+        let sample = move |kind: LightComponent| {
             let share = there * share * kind.share;
             Sample {
                 center: pixel.as_vec2(),
@@ -152,7 +152,7 @@ fn patch(baker: &Baker, point: SurfacePoint, piece: Piece, normal: DVec3) -> Vec
         };
         kinds.clone().into_iter().map(sample)
     };
-    seen.into_iter().filter(|_| there > 0.0).flat_map(past).collect()
+    parts.into_iter().filter(|_| there > 0.0).flat_map(masked).collect()
 }
 
 /// Cuts a triangle by its longest projected side until every piece is about a pixel, or an eighth of its own circle of
@@ -179,7 +179,7 @@ fn split(whole: Piece, view: &View, domain: &Domain, brightness: f64) -> Vec<Pie
             let fine = (view.optics.circle_of_confusion_px(kappa) / 8.0).max(1.0);
             let extent = (last - first).max_element();
             let is_small = extent <= FINEST_PX || extent <= fine && piece.glare(view, brightness) <= GLARING;
-            if is_small || depth >= 24 || pieces.len() >= MOST_PATCHES {
+            if is_small || depth >= 24 || pieces.len() >= MAX_PATCHES {
                 pieces.push(piece);
                 continue;
             }

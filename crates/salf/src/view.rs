@@ -41,7 +41,7 @@ impl<'a> View<'a> {
     }
 
     /// The same, with carried light told so finely.
-    pub fn telling(self, carried: Carried) -> Self {
+    pub fn with_carried(self, carried: Carried) -> Self {
         Self { carried, ..self }
     }
 

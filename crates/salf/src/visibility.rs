@@ -5,7 +5,7 @@ use crate::jitter::{Net, jitter};
 use crate::sample::Visibility;
 use crate::view::View;
 use glam::DVec2;
-use trace::{PlaceSet, Places, Sight, Tracer, Viewpoint};
+use trace::{PointSet, SquareVisibility, TargetPoints, Tracer, Viewpoint};
 
 /// How much of its cell, along each axis, the places of a ray are spread over, of 16 cells a side.
 ///
@@ -28,17 +28,17 @@ pub enum Fineness {
 
 impl Fineness {
     /// For a point of inverse depth `inverse_depth`.
-    pub fn of(view: &View, inverse_depth: f64) -> Self {
+    pub fn for_depth(view: &View, inverse_depth: f64) -> Self {
         let circle_px = view.circle_px(inverse_depth);
         if circle_px <= view.tolerance_px {
             return Self::Coarse;
         }
         // The narrowest that is as wide, or the narrowest of all.
-        let wanted = SPREAD_PX * 16.0 / circle_px;
-        Self::Fine(SPREADS.iter().skip(1).take_while(|&&spread| wanted <= spread).count())
+        let target_spread = SPREAD_PX * 16.0 / circle_px;
+        Self::Fine(SPREADS.iter().skip(1).take_while(|&&spread| target_spread <= spread).count())
     }
 
-    fn cells_a_side(self) -> usize {
+    fn cells_per_side(self) -> usize {
         match self {
             Self::Coarse => 8,
             Self::Fine(_) => 16,
@@ -49,9 +49,9 @@ impl Fineness {
 /// Where in each cell of the aperture its ray goes through: several patterns, spread so that in each cell of it the rays of
 /// neighbours are spread evenly, too.
 pub struct Patterns {
-    coarse: Vec<Places>,
+    coarse: Vec<TargetPoints>,
     /// By spread.
-    fine: [Vec<Places>; SPREADS.len()],
+    fine: [Vec<TargetPoints>; SPREADS.len()],
 }
 
 impl Patterns {
@@ -67,14 +67,14 @@ impl Patterns {
         Self { coarse: all(8, 1.0), fine: SPREADS.map(|spread| all(16, spread)) }
     }
 
-    fn pattern(side: usize, spread: f64, number: u32) -> Places {
-        let net = Net::one_of_many(side.ilog2(), number);
+    fn pattern(side: usize, spread: f64, number: u32) -> TargetPoints {
+        let net = Net::for_pattern(side.ilog2(), number);
         let place = |cell: usize| {
             let (row, column) = (cell / side, cell % side);
             let [u, v] = net.place(row, column).map(|at| 0.5 + spread * (at - 0.5));
             DVec2::new(column as f64 + u, row as f64 + v) * (2.0 / side as f64) - 1.0
         };
-        Places::new(&(0..side * side).map(place).collect::<Vec<_>>())
+        TargetPoints::new(&(0..side * side).map(place).collect::<Vec<_>>())
     }
 
     /// The number of the pattern for the `index`-th surface of a cell: along Morton's curve, so that neighbours have others.
@@ -85,11 +85,11 @@ impl Patterns {
     }
 
     /// The number of some pattern.
-    pub fn some_number(seed: [u32; 2]) -> u32 {
+    pub fn random_number(seed: [u32; 2]) -> u32 {
         (jitter(seed[0], seed[1], 0)[0] * f64::from(Self::COUNT)) as u32
     }
 
-    fn of(&self, fineness: Fineness, number: u32) -> &Places {
+    fn pattern_points(&self, fineness: Fineness, number: u32) -> &TargetPoints {
         let patterns = match fineness {
             Fineness::Coarse => &self.coarse,
             Fineness::Fine(spread) => &self.fine[spread],
@@ -99,13 +99,13 @@ impl Patterns {
 }
 
 /// A part of the aperture that a point sees, and how much of it: less than 1 past what is half there.
-pub type Seen = (Visibility, f32);
+pub type VisiblePart = (Visibility, f32);
 
 /// The cells of the aperture that a point sees, by how much of it: one ray each, of the pattern of a `number`. None if it sees
 /// none.
 ///
 /// `is_on_side` tells which aperture points lie on the side of the surface that the point stands for.
-pub fn visibility(
+pub fn visible_parts(
     tracer: &Tracer,
     view: &View,
     patterns: &Patterns,
@@ -113,18 +113,19 @@ pub fn visibility(
     fineness: Fineness,
     number: u32,
     is_on_side: impl Fn(DVec2) -> bool,
-) -> Vec<Seen> {
-    let places = patterns.of(fineness, number);
-    let Sight { hidden, shares } = tracer.sight(from, &view.aperture_square(), places);
-    let seen = (places.all() - hidden).iter().filter(|&cell| is_on_side(places.at(cell)));
-    let part = |seen: PlaceSet| Visibility::of(&seen.words()[..fineness.cells_a_side().pow(2) / 64]);
+) -> Vec<VisiblePart> {
+    let places = patterns.pattern_points(fineness, number);
+    let SquareVisibility { hidden, shares } = tracer.square_visibility(from, &view.aperture_square(), places);
+    let visible = (places.all() - hidden).iter().filter(|&cell| is_on_side(places.position(cell)));
+    let part =
+        |cells: PointSet| Visibility::from_words(&cells.words()[..fineness.cells_per_side().pow(2) / 64]);
     match shares {
         None => {
-            let seen: PlaceSet = seen.collect();
-            if seen.is_empty() { Vec::new() } else { vec![(part(seen), 1.0)] }
+            let cells: PointSet = visible.collect();
+            if cells.is_empty() { Vec::new() } else { vec![(part(cells), 1.0)] }
         }
         Some(shares) => {
-            let levels = levels(seen.map(|cell| (shares[cell], cell)).collect());
+            let levels = levels(visible.map(|cell| (shares[cell], cell)).collect());
             levels.into_iter().map(|(share, cells)| (part(cells.into_iter().collect()), share)).collect()
         }
     }
@@ -134,7 +135,7 @@ pub fn visibility(
 const SAME_SHARE: f32 = 1.0 / 1024.0;
 
 /// So many different shares are told; of more, only so many steps between the least and the largest.
-const MOST_SHARES: usize = 16;
+const MAX_SHARES: usize = 16;
 
 /// Cells by how much is seen of them. The mean stays what it is, however few levels tell it.
 fn levels(mut cells: Vec<(f32, usize)>) -> Vec<(f32, Vec<usize>)> {
@@ -145,14 +146,13 @@ fn levels(mut cells: Vec<(f32, usize)>) -> Vec<(f32, Vec<usize>)> {
         (mean, cells.iter().map(|(_, cell)| *cell).collect())
     };
     let alike: Vec<_> = cells.chunk_by(|a, b| b.0 - a.0 <= SAME_SHARE * b.0).collect();
-    let is_told =
+    let is_resolved =
         alike.iter().all(|cells| cells[cells.len() - 1].0 - cells[0].0 <= 2.0 * SAME_SHARE * cells[0].0);
-    if is_told && alike.len() <= MOST_SHARES {
+    if is_resolved && alike.len() <= MAX_SHARES {
         return alike.into_iter().map(level).collect();
     }
-    let step = |share: f32| {
-        (((share - least) / (largest - least) * MOST_SHARES as f32) as usize).min(MOST_SHARES - 1)
-    };
+    let step =
+        |share: f32| (((share - least) / (largest - least) * MAX_SHARES as f32) as usize).min(MAX_SHARES - 1);
     cells.chunk_by(|a, b| step(a.0) == step(b.0)).map(level).collect()
 }
 
@@ -174,7 +174,7 @@ mod tests {
         let view = View::new(&camera, 2.0);
         let of_circle = |px: f64| {
             let kappa = view.optics.kappa_for_circle_px(px).expect("there is an aperture");
-            Fineness::of(&view, 1.0 - kappa)
+            Fineness::for_depth(&view, 1.0 - kappa)
         };
         let found = [1.0, 1.99, 2.01, 8.0, 12.0, 15.0, 18.0, 25.0, 500.0].map(of_circle);
         let spreads = [0, 0, 1, 1, 2, 3, 4].map(Fineness::Fine);
@@ -191,7 +191,7 @@ mod tests {
         assert_eq!(levels(cells(&|cell| [0.5, 0.25, 1.0][cell % 3])).len(), 3);
         for share in [|cell: usize| (cell as f32 + 1.0) / 256.0, |cell: usize| 0.5 + 1e-5 * cell as f32] {
             let found = levels(cells(&share));
-            assert!(found.len() <= MOST_SHARES);
+            assert!(found.len() <= MAX_SHARES);
             let mut all: Vec<_> = found.iter().flat_map(|(_, cells)| cells.clone()).collect();
             all.sort();
             assert!(all.into_iter().eq(0..256));

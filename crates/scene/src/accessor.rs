@@ -14,7 +14,7 @@ use gltf::json::validation::Checked;
 pub(crate) use gltf::accessor::DataType as Component;
 
 /// A component type by glTF's number.
-pub(crate) fn component_of(code: u64) -> Option<Component> {
+pub(crate) fn component_from_code(code: u64) -> Option<Component> {
     Some(match code {
         5120 => Component::I8,
         5121 => Component::U8,
@@ -27,7 +27,7 @@ pub(crate) fn component_of(code: u64) -> Option<Component> {
 }
 
 /// The value at the start of `bytes`, as stored. Every one of them is exact in f64.
-pub(crate) fn read(component: Component, bytes: &[u8]) -> f64 {
+pub(crate) fn read_component(component: Component, bytes: &[u8]) -> f64 {
     match component {
         Component::I8 => f64::from(bytes[0] as i8),
         Component::U8 => f64::from(bytes[0]),
@@ -58,7 +58,7 @@ pub(crate) struct Shape {
 
 impl Shape {
     /// By glTF's name.
-    pub fn of(name: &str) -> Option<Self> {
+    pub fn from_name(name: &str) -> Option<Self> {
         Some(Self::from(match name {
             "SCALAR" => Dimensions::Scalar,
             "VEC2" => Dimensions::Vec2,
@@ -114,7 +114,7 @@ impl From<Dimensions> for Shape {
 }
 
 /// Elements in a buffer view.
-struct Elements<'a> {
+struct ElementView<'a> {
     bytes: &'a [u8],
     stride: usize,
 }
@@ -128,27 +128,32 @@ pub(crate) struct Accessor<'a> {
     pub shape: Shape,
     pub normalized: bool,
     /// Absent: zeros.
-    base: Option<Elements<'a>>,
+    base: Option<ElementView<'a>>,
     /// Replaced elements, sorted by index, and their values.
     replaced: Vec<(u32, u32)>,
     replacements_increase: bool,
-    values: Option<Elements<'a>>,
+    values: Option<ElementView<'a>>,
 }
 
 impl<'a> Accessor<'a> {
     /// Checks accessor `index`, which `place` refers to.
     pub fn open(document: &'a Document<'_>, index: usize, place: &str) -> Result<Self, Fault> {
         let place = document.entry("accessors", index, place)?;
-        document.sound_below(&place)?;
+        document.check_below(&place)?;
         let file = document.typed().accessors().nth(index);
         let json = document.typed().as_json().accessors.get(index);
         let (Some(file), Some(json)) = (file, json) else { return Err(Fault::NoData { place }) };
         let (component, shape) = (file.data_type(), Shape::from(file.dimensions()));
         let count = file.count();
         let base = match json.buffer_view {
-            Some(view) => {
-                Some(elements(document, &place, view.value(), file.offset(), count, shape.size(component))?)
-            }
+            Some(view) => Some(element_view(
+                document,
+                &place,
+                view.value(),
+                file.offset(),
+                count,
+                shape.size(component),
+            )?),
             None => None,
         };
         let mut accessor = Self {
@@ -191,14 +196,15 @@ impl<'a> Accessor<'a> {
         }
         let part = |key: &str, view: usize, offset: u64, size: usize| {
             let offset = usize::try_from(offset).unwrap_or(usize::MAX);
-            elements(document, &format!("{place}/{key}"), view, offset, count, size)
+            element_view(document, &format!("{place}/{key}"), view, offset, count, size)
         };
-        let found = part("indices", indices.buffer_view.value(), indices.byte_offset.0, component.size())?;
+        let index_elements =
+            part("indices", indices.buffer_view.value(), indices.byte_offset.0, component.size())?;
         let size = self.shape.size(self.component);
         self.values = Some(part("values", values.buffer_view.value(), values.byte_offset.0, size)?);
-        document.budget.memory(8 * count as u64, &self.place)?;
+        document.budget.take_memory(8 * count as u64, &self.place)?;
         for i in 0..count {
-            let index = read(component, &found.bytes[i * found.stride..]) as u32;
+            let index = read_component(component, &index_elements.bytes[i * index_elements.stride..]) as u32;
             if index as usize >= self.count {
                 return malformed(
                     "indices/bufferView",
@@ -223,17 +229,17 @@ impl<'a> Accessor<'a> {
     }
 
     /// The stored value of component `component` of element `index`, which must be below `count`.
-    pub fn stored(&self, index: usize, component: usize) -> f64 {
+    pub fn raw_value(&self, index: usize, component: usize) -> f64 {
         let at = self.shape.offset(self.component, component);
         match self.element(index) {
-            Some(bytes) => read(self.component, &bytes[at..]),
+            Some(bytes) => read_component(self.component, &bytes[at..]),
             None => 0.0,
         }
     }
 
     /// The same as the number it stands for, normalised if the accessor says so.
-    pub fn number(&self, index: usize, component: usize) -> f64 {
-        let stored = self.stored(index, component);
+    pub fn value(&self, index: usize, component: usize) -> f64 {
+        let stored = self.raw_value(index, component);
         if self.normalized { normalized(self.component, stored) } else { stored }
     }
 
@@ -260,7 +266,7 @@ impl<'a> Accessor<'a> {
     pub fn doubles<const N: usize>(&self, index: usize) -> [f64; N] {
         let Some(bytes) = self.element(index) else { return [0.0; N] };
         std::array::from_fn(|i| {
-            let value = read(self.component, &bytes[self.shape.offset(self.component, i)..]);
+            let value = read_component(self.component, &bytes[self.shape.offset(self.component, i)..]);
             if self.normalized { normalized(self.component, value) } else { value }
         })
     }
@@ -281,14 +287,14 @@ impl<'a> Accessor<'a> {
 }
 
 /// `count` elements of `size` bytes, which must lie in the buffer view to which `owner` refers.
-fn elements<'a>(
+fn element_view<'a>(
     document: &'a Document<'_>,
     owner: &str,
     view: usize,
     offset: usize,
     count: usize,
     size: usize,
-) -> Result<Elements<'a>, Fault> {
+) -> Result<ElementView<'a>, Fault> {
     let (bytes, stride) = document.buffer_view(view, &format!("{owner}/bufferView"))?;
     let stride = stride.unwrap_or(size);
     if stride < size {
@@ -310,7 +316,7 @@ fn elements<'a>(
             ),
         });
     }
-    Ok(Elements { bytes: &bytes[offset..], stride })
+    Ok(ElementView { bytes: &bytes[offset..], stride })
 }
 
 #[cfg(test)]
@@ -348,7 +354,7 @@ mod tests {
     fn columns_of_small_matrices_are_padded() {
         let document = document(r#"{"bufferView":0,"componentType":5121,"type":"MAT2","count":1}"#);
         let matrix = Accessor::open(&document, 0, "").unwrap();
-        assert_eq!((0..4).map(|i| matrix.stored(0, i)).collect::<Vec<_>>(), [0.0, 1.0, 4.0, 5.0]);
+        assert_eq!((0..4).map(|i| matrix.raw_value(0, i)).collect::<Vec<_>>(), [0.0, 1.0, 4.0, 5.0]);
     }
 
     #[test]
@@ -358,7 +364,7 @@ mod tests {
                "indices":{"bufferView":0,"byteOffset":3,"componentType":5121},"values":{"bufferView":0,"byteOffset":6}}}"#,
         );
         let sparse = Accessor::open(&document, 0, "").unwrap();
-        let all: Vec<f64> = (0..9).map(|i| sparse.stored(i, 0)).collect();
+        let all: Vec<f64> = (0..9).map(|i| sparse.raw_value(i, 0)).collect();
         assert_eq!(all, [0.0, 0.0, 0.0, 128.0, 129.0, 0.0, 0.0, 0.0, 0.0]);
     }
 

@@ -8,7 +8,7 @@ mod interpolation;
 mod target;
 mod track;
 
-use crate::document::{Document, named};
+use crate::document::{Document, nonempty_name};
 use crate::error::Fault;
 use crate::json_object::Object;
 use serde::Serialize;
@@ -29,7 +29,7 @@ pub struct Animation {
 
 /// A time of one of a file's animations.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Moment {
+pub struct AnimationTime {
     /// The animation, by name; the first where there is none.
     pub animation: Option<String>,
     /// Time, s. Before its first key and after its last, an animation stands still.
@@ -37,33 +37,33 @@ pub struct Moment {
 }
 
 /// More channels than this are hardly meant.
-const MOST_CHANNELS: usize = 1 << 16;
+const MAX_CHANNELS: usize = 1 << 16;
 
 /// The animations of a document, in its order.
-pub(crate) fn list(document: &Document<'_>) -> Vec<Animation> {
-    let of = |index| {
+pub(crate) fn list_animations(document: &Document<'_>) -> Vec<Animation> {
+    let summary = |index| {
         let animation = document.item("animations", index, "").ok()?;
         let channels = animation.objects("channels").unwrap_or_default();
         let samplers = animation.objects("samplers").unwrap_or_default();
         let mut seconds = 0.0_f64;
-        for channel in channels.iter().take(MOST_CHANNELS) {
-            if let Ok(Some(track)) = track(document, &samplers, channel)
-                && track.end().is_finite()
+        for channel in channels.iter().take(MAX_CHANNELS) {
+            if let Ok(Some(track)) = open_track(document, &samplers, channel)
+                && track.end_seconds().is_finite()
             {
-                seconds = seconds.max(track.end());
+                seconds = seconds.max(track.end_seconds());
             }
         }
-        Some(Animation { name: name(&animation, index), seconds, channels: channels.len() })
+        Some(Animation { name: animation_name(&animation, index), seconds, channels: channels.len() })
     };
-    (0..document.len("animations")).filter_map(of).collect()
+    (0..document.len("animations")).filter_map(summary).collect()
 }
 
-fn name(animation: &Object<'_>, index: usize) -> String {
-    named(animation.text("name").ok().flatten()).unwrap_or_else(|| format!("animation {index}"))
+fn animation_name(animation: &Object<'_>, index: usize) -> String {
+    nonempty_name(animation.text("name").ok().flatten()).unwrap_or_else(|| format!("animation {index}"))
 }
 
 /// What an animation makes of a document.
-pub(crate) struct Played {
+pub(crate) struct AnimatedDocument {
     /// The document's text at the moment.
     pub root: Value,
     /// Whether it changes materials, too.
@@ -74,16 +74,19 @@ pub(crate) struct Played {
 ///
 /// # Errors
 /// The animation is not there, or it is too large.
-pub(crate) fn played(document: &Document<'_>, moment: &Moment) -> Result<Played, Fault> {
-    let mut played = Played { root: document.value_to_change()?, changes_materials: false };
-    let Some(animation) = chosen(document, moment)? else { return Ok(played) };
+pub(crate) fn apply_animation(
+    document: &Document<'_>,
+    moment: &AnimationTime,
+) -> Result<AnimatedDocument, Fault> {
+    let mut animated = AnimatedDocument { root: document.cloned_root()?, changes_materials: false };
+    let Some(animation) = find_animation(document, moment)? else { return Ok(animated) };
     let channels = animation.objects("channels")?;
-    if channels.len() > MOST_CHANNELS {
-        return Err(animation.malformed("channels", format!("has more than {MOST_CHANNELS}")));
+    if channels.len() > MAX_CHANNELS {
+        return Err(animation.malformed("channels", format!("has more than {MAX_CHANNELS}")));
     }
     let samplers = animation.objects("samplers")?;
     for channel in &channels {
-        let value = match value(document, &samplers, channel, moment.seconds) {
+        let value = match channel_value(document, &samplers, channel, moment.seconds) {
             Ok(Some(value)) => value,
             Ok(None) => continue,
             Err(fault @ Fault::TooBig { .. }) => return Err(fault),
@@ -93,49 +96,52 @@ pub(crate) fn played(document: &Document<'_>, moment: &Moment) -> Result<Played,
             }
         };
         let (target, value) = value;
-        played.changes_materials |= target.is_of_material();
-        if !target.write(&mut played.root, value) {
+        animated.changes_materials |= target.is_material_property();
+        if !target.write(&mut animated.root, value) {
             document
                 .warn(format!("{}/target: {} is not there; it stays at rest", channel.place, target.pointer));
         }
     }
-    Ok(played)
+    Ok(animated)
 }
 
 /// The animation of a moment; none where the file has none and none was asked for.
-fn chosen<'a>(document: &'a Document<'_>, moment: &Moment) -> Result<Option<Object<'a>>, Fault> {
+fn find_animation<'a>(
+    document: &'a Document<'_>,
+    moment: &AnimationTime,
+) -> Result<Option<Object<'a>>, Fault> {
     let count = document.len("animations");
-    let Some(asked) = &moment.animation else {
+    let Some(requested_name) = &moment.animation else {
         return if count == 0 { Ok(None) } else { document.item("animations", 0, "").map(Some) };
     };
-    let mut known = Vec::new();
+    let mut names = Vec::new();
     for index in 0..count {
         let animation = document.item("animations", index, "")?;
-        let name = name(&animation, index);
-        if name == *asked {
+        let name = animation_name(&animation, index);
+        if name == *requested_name {
             return Ok(Some(animation));
         }
-        known.push(format!("{name:?}"));
+        names.push(format!("{name:?}"));
     }
     /// So many names are told.
-    const TOLD: usize = 20;
-    known.truncate(TOLD);
-    let known =
-        if known.is_empty() { "it has none".into() } else { format!("there are {}", known.join(", ")) };
-    Err(Fault::NoAnimation { name: asked.clone(), known })
+    const MAX_LISTED: usize = 20;
+    names.truncate(MAX_LISTED);
+    let available =
+        if names.is_empty() { "it has none".into() } else { format!("there are {}", names.join(", ")) };
+    Err(Fault::NoAnimation { name: requested_name.clone(), available })
 }
 
 /// What a channel animates, and its value at a time; nothing for what no picture depends on.
-fn value(
+fn channel_value(
     document: &Document<'_>,
     samplers: &[Object<'_>],
     channel: &Object<'_>,
     seconds: f64,
 ) -> Result<Option<(Target, Vec<f64>)>, Fault> {
-    let Some(target) = Target::read(document, channel)? else { return Ok(None) };
-    let Some(track) = track(document, samplers, channel)? else { return Ok(None) };
-    let numbers = track.at(document, seconds, target.is_rotation())?;
-    if let Some(expected) = target.numbers().filter(|&expected| expected != numbers.len()) {
+    let Some(target) = Target::from_channel(document, channel)? else { return Ok(None) };
+    let Some(track) = open_track(document, samplers, channel)? else { return Ok(None) };
+    let numbers = track.sample(document, seconds, target.is_rotation())?;
+    if let Some(expected) = target.number_count().filter(|&expected| expected != numbers.len()) {
         let what =
             format!("has {} numbers a key for {}, which has {expected}", numbers.len(), target.pointer);
         return Err(channel.malformed("sampler", what));
@@ -146,7 +152,7 @@ fn value(
     Ok(Some((target, numbers)))
 }
 
-fn track<'a>(
+fn open_track<'a>(
     document: &'a Document<'_>,
     samplers: &[Object<'_>],
     channel: &Object<'_>,

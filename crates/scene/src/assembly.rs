@@ -2,8 +2,8 @@
 
 use crate::document::Document;
 use crate::error::Fault;
-use crate::primitive::{Primitive, compact};
-use crate::skin::blended;
+use crate::primitive::{Primitive, compact_indices};
+use crate::skin::blend_joints;
 use crate::{Part, Scene, Triangle};
 use glam::{DMat3, DMat4, DVec3, Vec2, Vec3, Vec4};
 use std::iter::repeat;
@@ -26,7 +26,7 @@ const UV_BYTES: u64 = 2 * 8;
 
 /// What of a primitive a part of the scene shows.
 #[derive(Default)]
-pub(crate) struct Shown {
+pub(crate) struct ShownElements {
     /// Its vertices, by their numbers in the primitive; none if there is nothing to see.
     pub vertices: Vec<u32>,
     /// Its triangles, the same way; nothing where it shows all of them.
@@ -34,14 +34,14 @@ pub(crate) struct Shown {
 }
 
 /// Appends `primitive` as a part of scene node `node` with scene material `material`, and says what of it the part shows.
-pub(crate) fn append(
+pub(crate) fn append_primitive(
     scene: &mut Scene,
     document: &Document<'_>,
     primitive: &Primitive,
     placement: &Placement<'_>,
     node: u32,
     material: u32,
-) -> Result<Shown, Fault> {
+) -> Result<ShownElements, Fault> {
     let vertices = primitive.positions.len();
     let passing = vertices as u64 * if matches!(placement, Placement::Skinned(_)) { 128 + 32 } else { 32 };
     let further_sets = scene.further_uv.len().max(primitive.further_uv.len());
@@ -51,42 +51,42 @@ pub(crate) fn append(
     // Tangents that are new to the scene take room for the triangles before them, too.
     let has_tangents = !(scene.tangents.is_empty() && primitive.tangents.is_empty());
     let untouched = if scene.tangents.is_empty() { scene.triangles.len() as u64 } else { 0 };
-    let of_tangents = if has_tangents { 96 * (primitive.triangles.len() as u64 + untouched) } else { 0 };
-    let of_triangles = primitive.triangles.len() as u64 * 33 + of_tangents;
-    let lasting = vertices as u64 * vertex_bytes + of_triangles + padding;
-    document.budget.memory(passing + lasting, &primitive.place)?;
-    document.budget.work(16 * vertices as u64, &primitive.place)?;
+    let tangent_bytes = if has_tangents { 96 * (primitive.triangles.len() as u64 + untouched) } else { 0 };
+    let triangle_bytes = primitive.triangles.len() as u64 * 33 + tangent_bytes;
+    let lasting = vertices as u64 * vertex_bytes + triangle_bytes + padding;
+    document.budget.take_memory(passing + lasting, &primitive.place)?;
+    document.budget.take_work(16 * vertices as u64, &primitive.place)?;
     let matrices: Vec<DMat4> = match placement {
         Placement::Rigid(matrix) => vec![*matrix],
         Placement::Skinned(joints) => {
             let influences = primitive.influences.chunks_exact(primitive.influences_per_vertex.max(1));
-            influences.map(|influences| blended(joints, influences)).collect()
+            influences.map(|influences| blend_joints(joints, influences)).collect()
         }
     };
     let matrix = |v: usize| if matrices.len() == 1 { &matrices[0] } else { &matrices[v] };
     let world: Vec<DVec3> =
         (0..vertices).map(|v| matrix(v).transform_point3(primitive.positions[v])).collect();
 
-    let sane =
+    let is_usable =
         |&v: &u32| world[v as usize].abs().max_element() <= MAX_COORDINATE && world[v as usize].is_finite();
-    let is_kept: Vec<bool> = primitive.triangles.iter().map(|t| t.iter().all(sane)).collect();
-    let kept = |i: &usize| is_kept[*i];
-    let kept: Vec<[u32; 3]> =
-        (0..is_kept.len()).filter(kept).map(|triangle| primitive.triangles[triangle]).collect();
-    if kept.len() < primitive.triangles.len() {
-        let (dropped, all) = (primitive.triangles.len() - kept.len(), primitive.triangles.len());
+    let is_valid: Vec<bool> = primitive.triangles.iter().map(|t| t.iter().all(is_usable)).collect();
+    let is_valid_triangle = |i: &usize| is_valid[*i];
+    let valid_triangles: Vec<[u32; 3]> =
+        (0..is_valid.len()).filter(is_valid_triangle).map(|triangle| primitive.triangles[triangle]).collect();
+    if valid_triangles.len() < primitive.triangles.len() {
+        let (dropped, all) = (primitive.triangles.len() - valid_triangles.len(), primitive.triangles.len());
         document.warn(format!(
             "{}: {dropped} of {all} triangles have infinite, undefined or absurdly large positions; left out",
             primitive.place
         ));
     }
-    let (triangles, used) = match kept.len() == primitive.triangles.len() {
-        true => (kept, (0..vertices as u32).collect()),
-        false => compact(&kept),
+    let (triangles, used) = match valid_triangles.len() == primitive.triangles.len() {
+        true => (valid_triangles, (0..vertices as u32).collect()),
+        false => compact_indices(&valid_triangles),
     };
     if triangles.is_empty() {
-        document.budget.release(passing + lasting);
-        return Ok(Shown::default());
+        document.budget.release_memory(passing + lasting);
+        return Ok(ShownElements::default());
     }
 
     let mirrors = |matrix: &DMat4| matrix.determinant() < 0.0;
@@ -97,25 +97,25 @@ pub(crate) fn append(
     scene.positions.extend(used.iter().map(|&v| world[v as usize]));
     let end = scene.positions.len();
     let normal = |v: usize| world_normal(matrix(v), primitive.normals[v]);
-    extend(&mut scene.normals, !primitive.normals.is_empty(), Vec3::ZERO, base, end, &used, normal);
+    extend_attribute(&mut scene.normals, !primitive.normals.is_empty(), Vec3::ZERO, base, end, &used, normal);
     scene.further_uv.resize(further_sets, Vec::new());
     let none = Vec::new();
     let further = scene.further_uv.iter_mut().zip(primitive.further_uv.iter().chain(repeat(&none)));
     for (uv, source) in scene.uv.iter_mut().zip(&primitive.uv).chain(further) {
-        extend(uv, !source.is_empty(), Vec2::ZERO, base, end, &used, |v| source[v]);
+        extend_attribute(uv, !source.is_empty(), Vec2::ZERO, base, end, &used, |v| source[v]);
     }
     let colors = &primitive.colors;
-    extend(&mut scene.colors, !colors.is_empty(), Vec4::ONE, base, end, &used, |v| colors[v]);
+    extend_attribute(&mut scene.colors, !colors.is_empty(), Vec4::ONE, base, end, &used, |v| colors[v]);
     if has_tangents {
         scene.tangents.resize(first as usize, [Vec4::ZERO; 3]);
-        let of = |triangle: usize| {
+        let world_tangents = |triangle: usize| {
             let (corners, vertices) = (primitive.tangents[triangle], primitive.triangles[triangle]);
             let [a, b, c] =
                 [0, 1, 2].map(|corner| world_tangent(matrix(vertices[corner] as usize), corners[corner]));
             if mirrored { [a, c, b] } else { [a, b, c] }
         };
-        let kept = (0..primitive.tangents.len()).filter(|&triangle| is_kept[triangle]);
-        scene.tangents.extend(kept.map(of));
+        let valid = (0..primitive.tangents.len()).filter(|&triangle| is_valid[triangle]);
+        scene.tangents.extend(valid.map(world_tangents));
         scene.tangents.resize(first as usize + triangles.len(), [Vec4::ZERO; 3]);
     }
     scene.triangles.extend(triangles.into_iter().map(|[a, b, c]| {
@@ -129,14 +129,15 @@ pub(crate) fn append(
         has_uv: [0, 1].map(|set| !primitive.uv[set].is_empty()),
         mirrored,
     });
-    document.budget.release(passing);
-    let all = is_kept.iter().all(|&is_kept| is_kept);
-    let numbers = || (0..).zip(&is_kept).filter(|(_, is_kept)| **is_kept).map(|(number, _)| number).collect();
-    Ok(Shown { vertices: used, triangles: (!all).then(numbers) })
+    document.budget.release_memory(passing);
+    let all = is_valid.iter().all(|&is_kept| is_kept);
+    let numbers =
+        || (0..).zip(&is_valid).filter(|(_, is_kept)| **is_kept).map(|(number, _)| number).collect();
+    Ok(ShownElements { vertices: used, triangles: (!all).then(numbers) })
 }
 
 /// Appends an attribute of the used vertices, or its default. An attribute that no part has so far stays empty.
-fn extend<T: Clone>(
+fn extend_attribute<T: Clone>(
     array: &mut Vec<T>,
     present: bool,
     default: T,

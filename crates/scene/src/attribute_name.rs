@@ -8,13 +8,16 @@ pub(crate) struct AttributeName<'a> {
 
 impl<'a> AttributeName<'a> {
     /// `None` for a name that glTF does not know.
-    pub fn of(name: &'a str) -> Option<Self> {
+    pub fn parse(name: &'a str) -> Option<Self> {
         if matches!(name, "POSITION" | "NORMAL" | "TANGENT") || name.starts_with('_') && name.len() > 1 {
             return Some(Self { base: name, set: None });
         }
         let (base, set) = name.split_once('_')?;
         let canonical = set == "0" || !set.starts_with('0') && set.bytes().all(|byte| byte.is_ascii_digit());
-        let known = matches!(base, "TEXCOORD" | "COLOR" | "JOINTS" | "WEIGHTS");
-        (known && canonical).then(|| set.parse().ok()).flatten().map(|set| Self { base, set: Some(set) })
+        let is_numbered = matches!(base, "TEXCOORD" | "COLOR" | "JOINTS" | "WEIGHTS");
+        (is_numbered && canonical)
+            .then(|| set.parse().ok())
+            .flatten()
+            .map(|set| Self { base, set: Some(set) })
     }
 }

@@ -17,11 +17,11 @@ impl BackFaces {
 
     /// Its name.
     pub fn name(self) -> &'static str {
-        Self::ALL.iter().find(|(_, known)| *known == self).map_or("", |(name, _)| name)
+        Self::ALL.iter().find(|(_, candidate)| *candidate == self).map_or("", |(name, _)| name)
     }
 
     /// The one of this name.
-    pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.iter().find(|(known, _)| *known == name).map(|(_, back_faces)| *back_faces)
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.iter().find(|(candidate, _)| *candidate == name).map(|(_, back_faces)| *back_faces)
     }
 }

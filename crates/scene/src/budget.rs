@@ -31,7 +31,7 @@ impl Budget {
     }
 
     /// Takes `bytes` for `what`.
-    pub fn memory(&self, bytes: u64, what: &str) -> Result<(), Fault> {
+    pub fn take_memory(&self, bytes: u64, what: &str) -> Result<(), Fault> {
         let limit = self.options.max_memory >> 20;
         take(&self.memory, bytes, || {
             format!("{what} takes {} MiB of a limit of {limit} MiB in all", bytes >> 20)
@@ -44,22 +44,22 @@ impl Budget {
     }
 
     /// Gives `bytes` back.
-    pub fn release(&self, bytes: u64) {
+    pub fn release_memory(&self, bytes: u64) {
         self.memory.set(self.memory.get() + bytes);
     }
 
     /// Takes `count` triangles.
-    pub fn triangles(&self, count: u64) -> Result<(), Fault> {
+    pub fn take_triangles(&self, count: u64) -> Result<(), Fault> {
         take(&self.triangles, count, || format!("it has more than {} triangles", self.options.max_triangles))
     }
 
     /// Takes the time for `count` values, for `place`.
-    pub fn work(&self, count: u64, place: &str) -> Result<(), Fault> {
+    pub fn take_work(&self, count: u64, place: &str) -> Result<(), Fault> {
         take(&self.work, count, || format!("{place}: reading the scene takes too many steps"))
     }
 
     /// Takes the time to look at `count` values for flaws; false if it is used up and they are to be passed over.
-    pub fn check(&self, count: usize) -> bool {
+    pub fn try_take_checks(&self, count: usize) -> bool {
         let left = self.checks.get().checked_sub(count as u64);
         self.checks.set(left.unwrap_or(self.checks.get()));
         left.is_some()

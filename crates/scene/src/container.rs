@@ -22,7 +22,10 @@ const HEADER: usize = 12;
 const MAX_CHUNKS: usize = 1000;
 
 /// Splits the bytes of a .glb or .gltf file; harmless flaws go to `warn`.
-pub(crate) fn split<'a>(bytes: &'a [u8], warn: &mut dyn FnMut(String)) -> Result<Container<'a>, Fault> {
+pub(crate) fn split_chunks<'a>(
+    bytes: &'a [u8],
+    warn: &mut dyn FnMut(String),
+) -> Result<Container<'a>, Fault> {
     if bytes.is_empty() {
         return Err(Fault::NotGltf("it is empty".into()));
     }
@@ -32,12 +35,12 @@ pub(crate) fn split<'a>(bytes: &'a [u8], warn: &mut dyn FnMut(String)) -> Result
     Ok(Container { json: bytes, chunk: None, is_glb: false })
 }
 
-fn word(bytes: &[u8], at: usize) -> Option<u32> {
+fn read_u32(bytes: &[u8], at: usize) -> Option<u32> {
     Some(u32::from_le_bytes(bytes.get(at..at.checked_add(4)?)?.try_into().ok()?))
 }
 
 fn split_glb<'a>(bytes: &'a [u8], warn: &mut dyn FnMut(String)) -> Result<Container<'a>, Fault> {
-    let (Some(version), Some(declared)) = (word(bytes, 4), word(bytes, 8)) else {
+    let (Some(version), Some(declared)) = (read_u32(bytes, 4), read_u32(bytes, 8)) else {
         return Err(Fault::NotGltf("the GLB header is cut off".into()));
     };
     if version != 2 {
@@ -49,11 +52,12 @@ fn split_glb<'a>(bytes: &'a [u8], warn: &mut dyn FnMut(String)) -> Result<Contai
     }
     let (mut json, mut chunk, mut at, mut count) = (None, None, HEADER, 0);
     while at < bytes.len() {
-        let header = word(bytes, at).zip(word(bytes, at + 4));
-        let is_filling = header.is_none_or(|(length, kind)| length == 0 && kind == 0);
-        let is_behind = at >= declared && !is_known_chunk(bytes, at);
+        let header = read_u32(bytes, at).zip(read_u32(bytes, at + 4));
+        let is_padding = header.is_none_or(|(length, kind)| length == 0 && kind == 0);
+        let is_past_end = at >= declared && !is_chunk_header(bytes, at);
         count += 1;
-        let Some((length, kind)) = header.filter(|_| !is_filling && !is_behind && count <= MAX_CHUNKS) else {
+        let Some((length, kind)) = header.filter(|_| !is_padding && !is_past_end && count <= MAX_CHUNKS)
+        else {
             warn(format!("the {} bytes after the last GLB chunk are ignored", bytes.len() - at));
             break;
         };
@@ -84,15 +88,15 @@ fn split_glb<'a>(bytes: &'a [u8], warn: &mut dyn FnMut(String)) -> Result<Contai
     }
 }
 
-fn is_known_chunk(bytes: &[u8], at: usize) -> bool {
-    matches!(word(bytes, at.saturating_add(4)), Some(CHUNK_JSON | CHUNK_BIN))
+fn is_chunk_header(bytes: &[u8], at: usize) -> bool {
+    matches!(read_u32(bytes, at.saturating_add(4)), Some(CHUNK_JSON | CHUNK_BIN))
 }
 
 /// Where the chunk behind one starts that ends at `end` by its length. Some writers fill a chunk up and do not count
 /// that in its length, or count what they did not write; so the next chunk may stand up to three bytes off.
 fn next_chunk(bytes: &[u8], end: usize) -> usize {
     let near = [0, 1, 2, 3, -1, -2, -3].map(|offset| end.saturating_add_signed(offset));
-    near.into_iter().find(|&at| is_known_chunk(bytes, at)).unwrap_or(end)
+    near.into_iter().find(|&at| is_chunk_header(bytes, at)).unwrap_or(end)
 }
 
 #[cfg(test)]
@@ -104,7 +108,7 @@ mod tests {
         let mut bytes = b"glTF\x02\0\0\0\x00\x01\0\0\x02\0\0\0JSON{}".to_vec();
         bytes.extend(b"\xFF\xFF\xFF\xFFBIN\0abc");
         let mut warnings = Vec::new();
-        let container = split(&bytes, &mut |w| warnings.push(w)).unwrap();
+        let container = split_chunks(&bytes, &mut |w| warnings.push(w)).unwrap();
         assert_eq!((container.json, container.chunk), (&b"{}"[..], Some(&b"abc"[..])));
         assert_eq!(warnings.len(), 4, "{warnings:?}");
     }
@@ -122,7 +126,7 @@ mod tests {
 
     fn parts(bytes: &[u8]) -> (&[u8], Option<&[u8]>, Vec<String>) {
         let mut warnings = Vec::new();
-        let container = split(bytes, &mut |w| warnings.push(w)).unwrap();
+        let container = split_chunks(bytes, &mut |w| warnings.push(w)).unwrap();
         (container.json, container.chunk, warnings)
     }
 
@@ -185,6 +189,8 @@ mod tests {
         }
         let many = [vec![json], vec![(0, &b"xtra"[..], &b""[..]); 100_000]].concat();
         assert!(parts(&glb(&many, 0)).2.len() <= MAX_CHUNKS + 1);
-        assert!(split(&glb(&[bin], 0), &mut |_| {}).unwrap_err().to_string().contains("no JSON chunk"));
+        assert!(
+            split_chunks(&glb(&[bin], 0), &mut |_| {}).unwrap_err().to_string().contains("no JSON chunk")
+        );
     }
 }

@@ -3,7 +3,7 @@
 use crate::percent_encoding::percent_decoded;
 
 /// What follows `data:`.
-pub(crate) fn data_uri(uri: &str) -> Option<&str> {
+pub(crate) fn strip_data_scheme(uri: &str) -> Option<&str> {
     let (scheme, data) = uri.split_at_checked(5)?;
     scheme.eq_ignore_ascii_case("data:").then_some(data)
 }
@@ -67,9 +67,12 @@ mod tests {
 
     #[test]
     fn data_uris() {
-        assert_eq!(data_uri("DATA:text/plain;base64,Zg==").and_then(decode_data), Some(b"f".to_vec()));
-        assert_eq!(data_uri("data:,a%20b").and_then(decode_data), Some(b"a b".to_vec()));
-        assert_eq!(data_uri("data:").and_then(decode_data), None);
-        assert_eq!(data_uri("dat"), None);
+        assert_eq!(
+            strip_data_scheme("DATA:text/plain;base64,Zg==").and_then(decode_data),
+            Some(b"f".to_vec())
+        );
+        assert_eq!(strip_data_scheme("data:,a%20b").and_then(decode_data), Some(b"a b".to_vec()));
+        assert_eq!(strip_data_scheme("data:").and_then(decode_data), None);
+        assert_eq!(strip_data_scheme("dat"), None);
     }
 }

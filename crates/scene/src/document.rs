@@ -4,7 +4,7 @@ use crate::LoadOptions;
 use crate::budget::Budget;
 use crate::container::{self, Container};
 use crate::error::Fault;
-use crate::json_object::{Object, integer};
+use crate::json_object::{Object, as_whole_number};
 use crate::json_text;
 use crate::mending::{self, Faults};
 use serde_json::Value;
@@ -25,7 +25,7 @@ pub(crate) struct Document<'a> {
     pub budget: Budget,
     warnings: RefCell<Warnings>,
     /// The buffers that were needed so far.
-    pub buffers: Vec<OnceCell<Vec<u8>>>,
+    pub cached_buffers: Vec<OnceCell<Vec<u8>>>,
     /// Extensions that it used and that it required, and that were taken out ([`Self::with`]).
     pub decoded: [Vec<&'static str>; 2],
 }
@@ -35,7 +35,7 @@ const MAX_WARNINGS: usize = 100;
 
 #[derive(Default)]
 struct Warnings {
-    kept: Vec<String>,
+    messages: Vec<String>,
     dropped: usize,
 }
 
@@ -43,17 +43,17 @@ impl<'a> Document<'a> {
     /// Parses the bytes of a scene file that lies in `folder`.
     pub fn parse(bytes: &'a [u8], folder: PathBuf, options: &LoadOptions) -> Result<Self, Fault> {
         let budget = Budget::new(options);
-        budget.memory(bytes.len() as u64, "the file")?;
+        budget.take_memory(bytes.len() as u64, "the file")?;
         let mut warnings = Vec::new();
         let mut warn = |warning| warnings.push(warning);
-        let Container { json, chunk, is_glb } = container::split(bytes, &mut warn)?;
+        let Container { json, chunk, is_glb } = container::split_chunks(bytes, &mut warn)?;
         let root = json_text::parse(json, is_glb, &budget, &mut warn)?;
         let root_bytes = json_text::parsed_size(json);
         if !root.is_object() {
             return Err(Fault::NotGltf("its JSON is not an object".into()));
         }
         check_version(&Object::new(&root, String::new())?)?;
-        let (typed, faults) = mending::typed(&root, &budget)?;
+        let (typed, faults) = mending::repair_document(&root, &budget)?;
         let buffers = (0..mending::len(&root, "buffers")).map(|_| OnceCell::new()).collect();
         let (warnings_so_far, decoded) = (RefCell::default(), Default::default());
         let document = Self {
@@ -65,7 +65,7 @@ impl<'a> Document<'a> {
             folder,
             budget,
             warnings: warnings_so_far,
-            buffers,
+            cached_buffers: buffers,
             decoded,
         };
         for warning in warnings {
@@ -75,7 +75,7 @@ impl<'a> Document<'a> {
     }
 
     /// The same with another text, which has a further buffer of these bytes, and without the need of some extensions.
-    pub fn with(
+    pub fn with_decoded_buffer(
         mut self,
         mut root: Value,
         bytes: Vec<u8>,
@@ -90,19 +90,19 @@ impl<'a> Document<'a> {
                 root.as_object_mut().map(|root| root.remove(list));
             }
         }
-        self.budget.memory(bytes.len() as u64, "the meshes that it holds compressed")?;
+        self.budget.take_memory(bytes.len() as u64, "the meshes that it holds compressed")?;
         if let Some(Value::Array(buffers)) = root.get_mut("buffers") {
             buffers.push(serde_json::json!({ "byteLength": bytes.len() }));
-            self.buffers.push(OnceCell::from(bytes));
+            self.cached_buffers.push(OnceCell::from(bytes));
         }
-        (self.typed, self.faults) = mending::typed(&root, &self.budget)?;
+        (self.typed, self.faults) = mending::repair_document(&root, &self.budget)?;
         self.root = root;
         Ok(self)
     }
 
     /// The same with another text, in which numbers differ.
-    pub fn with_numbers_of(mut self, root: Value) -> Result<Self, Fault> {
-        (self.typed, self.faults) = mending::typed(&root, &self.budget)?;
+    pub fn with_root(mut self, root: Value) -> Result<Self, Fault> {
+        (self.typed, self.faults) = mending::repair_document(&root, &self.budget)?;
         self.root = root;
         Ok(self)
     }
@@ -114,18 +114,18 @@ impl<'a> Document<'a> {
     }
 
     /// An error if the file is wrong exactly at `place`, a JSON pointer.
-    pub fn sound(&self, place: &str) -> Result<(), Fault> {
-        self.faults.at(place)
+    pub fn check_at(&self, place: &str) -> Result<(), Fault> {
+        self.faults.check_at(place)
     }
 
     /// An error if the file is wrong at `place` or anywhere inside.
-    pub fn sound_below(&self, place: &str) -> Result<(), Fault> {
-        self.faults.below(place)
+    pub fn check_below(&self, place: &str) -> Result<(), Fault> {
+        self.faults.check_below(place)
     }
 
     /// The index at a JSON pointer, for what the typed document does not hold.
     pub fn index_at(&self, place: &str) -> Option<usize> {
-        usize::try_from(integer(self.root.pointer(place)?)?).ok()
+        usize::try_from(as_whole_number(self.root.pointer(place)?)?).ok()
     }
 
     /// The place of an entry of a collection, which `place` refers to.
@@ -133,11 +133,11 @@ impl<'a> Document<'a> {
         if index < self.len(collection) {
             Ok(format!("/{collection}/{index}"))
         } else {
-            Err(Self::absent(collection, index, place))
+            Err(Self::missing_entry(collection, index, place))
         }
     }
 
-    fn absent(collection: &str, index: usize, place: &str) -> Fault {
+    fn missing_entry(collection: &str, index: usize, place: &str) -> Fault {
         Fault::Malformed {
             place: place.into(),
             what: format!("refers to {collection}[{index}], which does not exist"),
@@ -145,7 +145,7 @@ impl<'a> Document<'a> {
     }
 
     /// The document's outermost object.
-    pub fn root(&self) -> Object<'_> {
+    pub fn root_object(&self) -> Object<'_> {
         // That it is an object was checked when it was parsed.
         match Object::new(&self.root, String::new()) {
             Ok(object) => object,
@@ -154,13 +154,13 @@ impl<'a> Document<'a> {
     }
 
     /// The outermost value.
-    pub fn value(&self) -> &Value {
+    pub fn root_value(&self) -> &Value {
         &self.root
     }
 
     /// A copy of it.
-    pub fn value_to_change(&self) -> Result<Value, Fault> {
-        self.budget.memory(self.root_bytes, "the document in motion")?;
+    pub fn cloned_root(&self) -> Result<Value, Fault> {
+        self.budget.take_memory(self.root_bytes, "the document in motion")?;
         Ok(self.root.clone())
     }
 
@@ -173,24 +173,24 @@ impl<'a> Document<'a> {
     pub fn item(&self, collection: &str, index: usize, place: &str) -> Result<Object<'_>, Fault> {
         match self.root.get(collection).and_then(|list| list.get(index)) {
             Some(value) => Object::new(value, format!("/{collection}/{index}")),
-            None => Err(Self::absent(collection, index, place)),
+            None => Err(Self::missing_entry(collection, index, place)),
         }
     }
 
     /// Notes a flaw that does no harm.
     pub fn warn(&self, warning: impl Into<String>) {
         let (mut warnings, warning) = (self.warnings.borrow_mut(), warning.into());
-        if warnings.kept.len() >= MAX_WARNINGS {
+        if warnings.messages.len() >= MAX_WARNINGS {
             warnings.dropped += 1;
-        } else if !warnings.kept.contains(&warning) {
-            warnings.kept.push(warning);
+        } else if !warnings.messages.contains(&warning) {
+            warnings.messages.push(warning);
         }
     }
 
     /// All warnings so far.
     pub fn warnings(&self) -> Vec<String> {
         let warnings = self.warnings.borrow();
-        let mut all = warnings.kept.clone();
+        let mut all = warnings.messages.clone();
         if warnings.dropped > 0 {
             all.push(format!("… and {} more", warnings.dropped));
         }
@@ -199,7 +199,7 @@ impl<'a> Document<'a> {
 }
 
 /// A name, unless it is empty.
-pub(crate) fn named(name: Option<&str>) -> Option<String> {
+pub(crate) fn nonempty_name(name: Option<&str>) -> Option<String> {
     name.filter(|name| !name.is_empty()).map(String::from)
 }
 
@@ -215,7 +215,7 @@ fn check_version(root: &Object<'_>) -> Result<(), Fault> {
 }
 
 /// The canonical folder of a file.
-pub(crate) fn folder_of(file: &Path) -> std::io::Result<PathBuf> {
+pub(crate) fn canonical_folder(file: &Path) -> std::io::Result<PathBuf> {
     let file = file.canonicalize()?;
     Ok(file.parent().map(Path::to_path_buf).unwrap_or(file))
 }

@@ -69,20 +69,20 @@ pub enum Fault {
         cure: String,
     },
     /// It does not have the variant that was chosen.
-    #[error("no variant is called {name:?} ({known})")]
+    #[error("no variant is called {name:?} ({available})")]
     NoVariant {
         /// What was asked for.
         name: String,
         /// The names that there are, in words.
-        known: String,
+        available: String,
     },
     /// It does not have the animation that was asked for.
-    #[error("no animation is called {name:?} ({known})")]
+    #[error("no animation is called {name:?} ({available})")]
     NoAnimation {
         /// What was asked for.
         name: String,
         /// The names that there are, in words.
-        known: String,
+        available: String,
     },
     /// A limit of [`crate::LoadOptions`] was passed.
     #[error("{what} (simplify the scene or raise the limit)")]

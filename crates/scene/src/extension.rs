@@ -53,14 +53,14 @@ pub(crate) fn required<'a>(document: &'a Document<'_>) -> impl Iterator<Item = &
 
 /// Refuses a document that requires what is not supported; warns of what is ignored and shows.
 pub(crate) fn check(document: &Document<'_>) -> Result<(), Fault> {
-    let is_strange = |extension: &&str| !SUPPORTED.contains(extension) && !HARMLESS.contains(extension);
-    if let Some(extension) = required(document).find(is_strange) {
+    let is_unsupported = |extension: &&str| !SUPPORTED.contains(extension) && !HARMLESS.contains(extension);
+    if let Some(extension) = required(document).find(is_unsupported) {
         return Err(Fault::Extension {
             cure: "export the scene without it".into(),
             extension: extension.into(),
         });
     }
-    for extension in used(document).filter(is_strange) {
+    for extension in used(document).filter(is_unsupported) {
         document
             .warn(format!("the extension {extension} is ignored; the picture may differ from other viewers"));
     }

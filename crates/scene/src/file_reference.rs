@@ -11,21 +11,21 @@ use std::path::PathBuf;
 
 /// A relative path that a URI may mean.
 #[derive(Debug, PartialEq)]
-pub(crate) struct Reading {
+pub(crate) struct UriInterpretation {
     pub path: PathBuf,
     /// Whether the URI is well-formed and this is what it says.
-    pub is_proper: bool,
+    pub is_well_formed: bool,
 }
 
 /// What a URI may mean, likelier ones first; of a reading that cannot be, why.
-pub(crate) fn readings(uri: &str) -> Vec<Result<Reading, &'static str>> {
+pub(crate) fn interpret_uri(uri: &str) -> Vec<Result<UriInterpretation, &'static str>> {
     let (decoded, is_sound) = percent_decoded(uri);
     let is_plain = is_sound && !uri.contains(['\\', '#', '?']);
-    let mut readings: Vec<Result<Reading, _>> = Vec::new();
+    let mut readings: Vec<Result<UriInterpretation, _>> = Vec::new();
     let mut add = |name: &[u8], separators: &[u8], is_proper: bool| {
         let path = inner_path(name, separators);
         if !readings.iter().any(|known| known.as_ref().map(|known| &known.path) == path.as_ref()) {
-            readings.push(path.map(|path| Reading { path, is_proper }));
+            readings.push(path.map(|path| UriInterpretation { path, is_well_formed: is_proper }));
         }
     };
     const SEPARATORS: &[u8] = b"/\\";
@@ -81,7 +81,7 @@ mod tests {
     use super::*;
 
     fn paths(uri: &str) -> Vec<String> {
-        readings(uri).into_iter().flatten().map(|reading| reading.path.display().to_string()).collect()
+        interpret_uri(uri).into_iter().flatten().map(|reading| reading.path.display().to_string()).collect()
     }
 
     #[test]
@@ -89,10 +89,10 @@ mod tests {
         for (uri, path) in
             [("a%20b/c.png", "a b/c.png"), ("./a//c.png", "a/c.png"), ("a b+c.png", "a b+c.png")]
         {
-            let first = readings(uri).swap_remove(0);
-            assert_eq!(first, Ok(Reading { path: path.into(), is_proper: true }), "{uri}");
+            let first = interpret_uri(uri).swap_remove(0);
+            assert_eq!(first, Ok(UriInterpretation { path: path.into(), is_well_formed: true }), "{uri}");
         }
-        assert_eq!(readings("plain.bin").len(), 1);
+        assert_eq!(interpret_uri("plain.bin").len(), 1);
     }
 
     #[test]
@@ -109,7 +109,7 @@ mod tests {
             if cfg!(unix) {
                 assert_eq!(paths(uri), expected, "{uri}");
             }
-            let proper = readings(uri).into_iter().flatten().any(|reading| reading.is_proper);
+            let proper = interpret_uri(uri).into_iter().flatten().any(|reading| reading.is_well_formed);
             assert_eq!(proper, uri.starts_with("a+"), "{uri}");
         }
         assert_eq!(paths("textures\\c.png")[0], "textures/c.png");
@@ -131,23 +131,23 @@ mod tests {
         ];
         for uri in outside {
             assert!(
-                readings(uri).iter().all(|reading| *reading == Err(OUTSIDE)),
+                interpret_uri(uri).iter().all(|reading| *reading == Err(OUTSIDE)),
                 "{uri}: {:?}",
-                readings(uri)
+                interpret_uri(uri)
             );
         }
         // Decoded they would; as they stand they are names like others.
         for uri in
             ["%2e%2e/a", "..%2fa", "%2Fetc/passwd", "a/..%5Cb", "%2e%2e%2f100%", "..+%2f..", "..%5ca?b"]
         {
-            assert!(readings(uri)[0].is_err(), "{uri}");
-            for path in readings(uri).into_iter().flatten().map(|reading| reading.path) {
+            assert!(interpret_uri(uri)[0].is_err(), "{uri}");
+            for path in interpret_uri(uri).into_iter().flatten().map(|reading| reading.path) {
                 let normal = |part| matches!(part, std::path::Component::Normal(_));
                 assert!(path.components().all(normal), "{uri}: {}", path.display());
             }
         }
         for uri in ["", "%00", "a%00b"] {
-            assert!(readings(uri)[0].is_err(), "{uri}");
+            assert!(interpret_uri(uri)[0].is_err(), "{uri}");
         }
     }
 }

@@ -6,12 +6,12 @@ use glam::{DVec2, DVec3, Vec3};
 impl Scene {
     /// What gloss adds to the picture's light at a point, toward a world position; may be below 0.
     #[inline]
-    pub fn picture_gloss(&self, point: SurfacePoint, eye: DVec3) -> Vec3 {
-        if self.picture.is_none() { Vec3::ZERO } else { self.gloss_of_picture(point, eye) }
+    pub fn picture_gloss_radiance(&self, point: SurfacePoint, eye: DVec3) -> Vec3 {
+        if self.picture.is_none() { Vec3::ZERO } else { self.interpolate_picture_gloss(point, eye) }
     }
 
-    fn gloss_of_picture(&self, point: SurfacePoint, eye: DVec3) -> Vec3 {
-        let Some((gloss, place)) = self.gloss_at(point) else { return Vec3::ZERO };
+    fn interpolate_picture_gloss(&self, point: SurfacePoint, eye: DVec3) -> Vec3 {
+        let Some((gloss, picture_position)) = self.locate_picture_gloss(point) else { return Vec3::ZERO };
         // Surfaces of pictures lie before the origin, where their camera stands and looks down −z.
         let position = point.position(self);
         let ahead = eye.z - position.z;
@@ -19,26 +19,29 @@ impl Scene {
             return Vec3::ZERO;
         }
         let aperture = position + (eye - position) * (-position.z / ahead);
-        gloss.added(place, aperture.truncate())
+        gloss.radiance_offset(picture_position, aperture.truncate())
     }
 
     /// The angle that the captured aperture spans as seen from a point whose light changes over it, rad; none of other points.
     pub fn picture_gloss_angle(&self, point: SurfacePoint) -> Option<f64> {
-        let (gloss, place) = self.gloss_at(point)?;
-        let widest = gloss.reach[0].max(gloss.reach[1]);
-        gloss.is_at(place).then(|| 2.0 * widest / -point.position(self).z)
+        let (gloss, picture_position) = self.locate_picture_gloss(point)?;
+        let widest = gloss.aperture_half_extent[0].max(gloss.aperture_half_extent[1]);
+        gloss.varies_at(picture_position).then(|| 2.0 * widest / -point.position(self).z)
     }
 
     /// The gloss of the picture that a point shows, and where in it that is.
-    fn gloss_at(&self, point: SurfacePoint) -> Option<(&PictureGloss, DVec2)> {
+    fn locate_picture_gloss(&self, point: SurfacePoint) -> Option<(&PictureGloss, DVec2)> {
         let picture = self.picture.as_ref()?;
         let gloss = picture.gloss.as_ref()?;
         let corners = self.triangles[point.triangle as usize].vertices.map(|v| self.uv[0][v as usize]);
         let uv: DVec2 = corners.iter().zip(point.weights()).map(|(uv, weight)| uv.as_dvec2() * weight).sum();
         let size = DVec2::new(f64::from(picture.size[0]), f64::from(picture.size[1]));
-        let place = uv * size - f64::from(picture.margin);
-        let [width, height] = picture.shown().map(f64::from);
-        let is_in = place.x >= 0.0 && place.y >= 0.0 && place.x <= width && place.y <= height;
-        is_in.then_some((gloss, place))
+        let picture_position = uv * size - f64::from(picture.margin);
+        let [width, height] = picture.picture_size().map(f64::from);
+        let is_in = picture_position.x >= 0.0
+            && picture_position.y >= 0.0
+            && picture_position.x <= width
+            && picture_position.y <= height;
+        is_in.then_some((gloss, picture_position))
     }
 }

@@ -27,7 +27,7 @@ impl Hierarchy {
         let roots = scene_roots(document)?;
         let mut world = vec![None; count];
         let mut hidden = vec![false; count];
-        let shown = walk(document, &roots, &mut world, &mut hidden, Walk::Strict)?;
+        let shown = place_nodes(document, &roots, &mut world, &mut hidden, ErrorHandling::Strict)?;
         // Joints of a skin may hang beside the scene.
         let mut is_child = vec![false; count];
         for node in 0..count {
@@ -35,14 +35,14 @@ impl Hierarchy {
         }
         let others: Vec<usize> =
             (0..count).filter(|&node| !is_child[node] && world[node].is_none()).collect();
-        walk(document, &others, &mut world, &mut hidden, Walk::Lenient)?;
+        place_nodes(document, &others, &mut world, &mut hidden, ErrorHandling::Lenient)?;
         Ok(Self { shown, hidden, world })
     }
 }
 
 /// What a flaw on the way means.
 #[derive(Clone, Copy, PartialEq)]
-enum Walk {
+enum ErrorHandling {
     /// The nodes are shown: an error.
     Strict,
     /// They are not: the branch ends there.
@@ -57,12 +57,12 @@ pub(crate) fn shown_scene(document: &Document<'_>) -> Option<usize> {
 
 /// The roots of the shown scene: of `scene`, else of the first scene, else of all.
 fn scene_roots(document: &Document<'_>) -> Result<Vec<usize>, Fault> {
-    if let Err(fault) = document.sound("/scene") {
+    if let Err(fault) = document.check_at("/scene") {
         document.warn(format!("{fault}; another is shown"));
     }
     let typed = document.typed();
     if let Some(scene) = shown_scene(document).and_then(|index| typed.scenes().nth(index)) {
-        document.sound_below(&format!("/scenes/{}", scene.index()))?;
+        document.check_below(&format!("/scenes/{}", scene.index()))?;
         return Ok(scene.nodes().map(|node| node.index()).collect());
     }
     let count = document.len("nodes");
@@ -72,7 +72,7 @@ fn scene_roots(document: &Document<'_>) -> Result<Vec<usize>, Fault> {
     }
     let roots: Vec<usize> = (0..count).filter(|&node| !is_child[node]).collect();
     if roots.is_empty() && count > 0 {
-        return Err(loops(0));
+        return Err(cycle_error(0));
     }
     Ok(roots)
 }
@@ -83,17 +83,17 @@ fn children(document: &Document<'_>, node: usize) -> impl DoubleEndedIterator<It
     list.iter().map(gltf::json::Index::value)
 }
 
-fn loops(node: usize) -> Fault {
+fn cycle_error(node: usize) -> Fault {
     Fault::Malformed { place: format!("/nodes/{node}"), what: "is a part of a loop of nodes".into() }
 }
 
 /// Places everything that hangs on `roots`; depth first, in file order.
-fn walk(
+fn place_nodes(
     document: &Document<'_>,
     roots: &[usize],
     world: &mut [Option<DMat4>],
     hidden: &mut [bool],
-    mode: Walk,
+    mode: ErrorHandling,
 ) -> Result<Vec<usize>, Fault> {
     enum Step {
         Enter { node: usize, parent: Option<usize> },
@@ -112,28 +112,28 @@ fn walk(
         };
         if on_path.get(node) == Some(&true) {
             match mode {
-                Walk::Strict => return Err(loops(node)),
-                Walk::Lenient => continue,
+                ErrorHandling::Strict => return Err(cycle_error(node)),
+                ErrorHandling::Lenient => continue,
             }
         }
         if world.get(node).is_some_and(Option::is_some) {
-            if mode == Walk::Strict {
+            if mode == ErrorHandling::Strict {
                 document.warn(format!("/nodes/{node}: has several parents; only the first counts"));
             }
             continue;
         }
         let read = || {
-            document.sound_below(&format!("/nodes/{node}/children"))?;
+            document.check_below(&format!("/nodes/{node}/children"))?;
             local_transform(document, node)
         };
         let local = match (read(), mode) {
             (Ok(local), _) => local,
-            (Err(fault), Walk::Strict) => return Err(fault),
-            (Err(_), Walk::Lenient) => continue,
+            (Err(fault), ErrorHandling::Strict) => return Err(fault),
+            (Err(_), ErrorHandling::Lenient) => continue,
         };
         let parent_world = parent.and_then(|parent| world[parent]).unwrap_or(DMat4::IDENTITY);
         world[node] = Some(parent_world * local);
-        hidden[node] = parent.is_some_and(|parent| hidden[parent]) || hides(document, node);
+        hidden[node] = parent.is_some_and(|parent| hidden[parent]) || is_hidden_by_extension(document, node);
         on_path[node] = true;
         order.push(node);
         stack.push(Step::Leave(node));
@@ -144,9 +144,9 @@ fn walk(
 }
 
 /// Whether KHR_node_visibility hides a node by itself. A flaw there hides nothing.
-fn hides(document: &Document<'_>, node: usize) -> bool {
+fn is_hidden_by_extension(document: &Document<'_>, node: usize) -> bool {
     const EXTENSION: &str = "KHR_node_visibility";
-    if let Err(fault) = document.sound_below(&format!("/nodes/{node}/extensions/{EXTENSION}")) {
+    if let Err(fault) = document.check_below(&format!("/nodes/{node}/extensions/{EXTENSION}")) {
         document.warn(format!("{fault}; the node is shown"));
     }
     let node = document.typed().as_json().nodes.get(node);

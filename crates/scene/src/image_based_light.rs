@@ -8,7 +8,7 @@
 //! sRGB-encoded; where it has an opacity, that is the D of RGBD, by which the decoded colours are divided.
 //! <https://github.com/KhronosGroup/glTF/tree/main/extensions/2.0/Vendor/EXT_lights_image_based>
 
-use crate::document::{Document, named};
+use crate::document::{Document, nonempty_name};
 use crate::error::Fault;
 use crate::hierarchy::shown_scene;
 use crate::json_object::Object;
@@ -24,26 +24,30 @@ const EXTENSION: &str = "EXT_lights_image_based";
 const TEXEL_BYTES: u64 = 12;
 
 /// The world that the shown scene brings, if it does.
-pub(crate) fn own_world(document: &Document<'_>) -> Result<Option<World>, Fault> {
+pub(crate) fn read_embedded_world(document: &Document<'_>) -> Result<Option<World>, Fault> {
     let Some(scene) = shown_scene(document) else { return Ok(None) };
-    let Some(user) = document.item("scenes", scene, "/scene")?.extension(EXTENSION)? else { return Ok(None) };
-    let Some(index) = user.index("light")? else { return Err(user.malformed("light", "is missing")) };
-    let lights = match document.root().extension(EXTENSION)? {
+    let Some(reference) = document.item("scenes", scene, "/scene")?.extension(EXTENSION)? else {
+        return Ok(None);
+    };
+    let Some(index) = reference.index("light")? else {
+        return Err(reference.malformed("light", "is missing"));
+    };
+    let lights = match document.root_object().extension(EXTENSION)? {
         Some(extension) => extension.objects("lights")?,
         None => Vec::new(),
     };
     let Some(light) = lights.get(index) else {
-        return Err(user.malformed("light", format!("refers to lights[{index}], which does not exist")));
+        return Err(reference.malformed("light", format!("refers to lights[{index}], which does not exist")));
     };
-    let name = named(light.text("name")?).unwrap_or_else(|| format!("{index}"));
+    let name = nonempty_name(light.text("name")?).unwrap_or_else(|| format!("{index}"));
     let rotation = rotation(light)?;
-    let cube = cube_map(document, light, intensity(light)?)?;
-    tell_flaws(document, light, cube.side);
-    let [texels, lookups] = CubeMap::cost(cube.side);
-    document.budget.memory(TEXEL_BYTES * texels, &light.place)?;
-    document.budget.work(lookups, &light.place)?;
+    let cube = read_cube_map(document, light, intensity(light)?)?;
+    warn_about_flaws(document, light, cube.side);
+    let [texels, lookups] = CubeMap::conversion_cost(cube.side);
+    document.budget.take_memory(TEXEL_BYTES * texels, &light.place)?;
+    document.budget.take_work(lookups, &light.place)?;
     let map = cube.to_equirectangular(format!("image-based light {name}"), rotation);
-    document.budget.release(TEXEL_BYTES * 6 * u64::from(cube.side).pow(2));
+    document.budget.release_memory(TEXEL_BYTES * 6 * u64::from(cube.side).pow(2));
     Ok(Some(World { environment: Environment::Map(Arc::new(map)), ..World::uniform(glam::Vec3::ZERO) }))
 }
 
@@ -69,17 +73,17 @@ fn intensity(light: &Object<'_>) -> Result<f32, Fault> {
 }
 
 /// The sharpest cube.
-fn cube_map(document: &Document<'_>, light: &Object<'_>, intensity: f32) -> Result<CubeMap, Fault> {
+fn read_cube_map(document: &Document<'_>, light: &Object<'_>, intensity: f32) -> Result<CubeMap, Fault> {
     let key = "specularImages/0";
     let faces = light.list("specularImages")?.first();
     let Some(faces) = faces else { return Err(light.malformed("specularImages", "is missing or empty")) };
-    let indices = indices(faces).ok_or_else(|| light.malformed(key, "is not an array of 6 images"))?;
+    let indices = image_indices(faces).ok_or_else(|| light.malformed(key, "is not an array of 6 images"))?;
     if indices.len() != 6 {
         return Err(light.malformed(key, format!("has {} faces, a cube has 6", indices.len())));
     }
     let mut cube = CubeMap { side: 0, faces: Default::default() };
     for (face, &index) in indices.iter().enumerate() {
-        let image = document.image(index, &format!("{}/{key}/{face}", light.place))?;
+        let image = document.decode_image(index, &format!("{}/{key}/{face}", light.place))?;
         let wrong = |what: String| Fault::Malformed { place: format!("/images/{index}"), what };
         let (width, height) = (image.width, image.height);
         if width != height {
@@ -91,26 +95,26 @@ fn cube_map(document: &Document<'_>, light: &Object<'_>, intensity: f32) -> Resu
         }
         cube.side = width;
         let texels = u64::from(width).pow(2);
-        document.budget.memory(TEXEL_BYTES * texels, &light.place)?;
-        cube.faces[face] = radiance(&image, intensity).map_err(wrong)?;
+        document.budget.take_memory(TEXEL_BYTES * texels, &light.place)?;
+        cube.faces[face] = image_radiance(&image, intensity).map_err(wrong)?;
         let bytes = match &image.texels {
             ImageLevel::Bits8(_) => 4,
             ImageLevel::Bits16(_) => 8,
             ImageLevel::Float(_) => 16,
         };
-        document.budget.release(bytes * texels);
+        document.budget.release_memory(bytes * texels);
     }
     Ok(cube)
 }
 
 /// Indices of images.
-fn indices(list: &Value) -> Option<Vec<usize>> {
-    let index = |value: &Value| usize::try_from(crate::json_object::integer(value)?).ok();
+fn image_indices(list: &Value) -> Option<Vec<usize>> {
+    let index = |value: &Value| usize::try_from(crate::json_object::as_whole_number(value)?).ok();
     list.as_array()?.iter().map(index).collect()
 }
 
 /// The light that an image's texels stand for, times `intensity`; or what is wrong with one.
-fn radiance(image: &Image, intensity: f32) -> Result<Vec<[f32; 3]>, String> {
+fn image_radiance(image: &Image, intensity: f32) -> Result<Vec<[f32; 3]>, String> {
     let places = (0..image.height).flat_map(|y| (0..image.width).map(move |x| (x, y)));
     let light = |(x, y)| {
         let texel = image.texel(x, y, true);
@@ -125,14 +129,16 @@ fn radiance(image: &Image, intensity: f32) -> Result<Vec<[f32; 3]>, String> {
 }
 
 /// Warns of what is out of order in the rest, which is not needed here.
-fn tell_flaws(document: &Document<'_>, light: &Object<'_>, side: u32) {
+fn warn_about_flaws(document: &Document<'_>, light: &Object<'_>, side: u32) {
     let warn = |key: &str, what: String| document.warn(format!("{}/{key}: {what}", light.place));
     if !side.is_power_of_two() {
         warn("specularImages/0", format!("its faces have {side} texels a side, which is no power of two"));
     }
-    match light.integer("specularImageSize") {
-        Ok(Some(said)) if said == u64::from(side) => {}
-        Ok(Some(said)) => warn("specularImageSize", format!("is {said}, but the first faces have {side}")),
+    match light.whole_number("specularImageSize") {
+        Ok(Some(declared)) if declared == u64::from(side) => {}
+        Ok(Some(declared)) => {
+            warn("specularImageSize", format!("is {declared}, but the first faces have {side}"))
+        }
         _ => warn("specularImageSize", "is missing, or no whole number".into()),
     }
     let rows = light.list("irradianceCoefficients").unwrap_or_default();
@@ -144,7 +150,7 @@ fn tell_flaws(document: &Document<'_>, light: &Object<'_>, side: u32) {
     }
     for (mip, faces) in light.list("specularImages").unwrap_or_default().iter().enumerate().skip(1) {
         let exist = |list: Vec<usize>| list.len() == 6 && list.iter().all(|&i| i < document.len("images"));
-        if !indices(faces).is_some_and(exist) {
+        if !image_indices(faces).is_some_and(exist) {
             warn(&format!("specularImages/{mip}"), "is not an array of 6 images that exist".into());
         }
     }

@@ -1,7 +1,7 @@
 //! Decoding images: PNG, JPEG and WebP, 8 or 16 bits, grey, palette or colour, and KTX 2 with Basis Universal textures, within
 //! limits.
 
-use crate::document::{Document, named};
+use crate::document::{Document, nonempty_name};
 use crate::error::Fault;
 use crate::{Image, ImageLevel};
 use basisu::{DecodeFlags, TargetFormat, Transcoder};
@@ -29,7 +29,7 @@ impl Document<'_> {
     /// The encoded bytes of image `index`, which `place` refers to.
     pub fn image_bytes(&self, index: usize, place: &str) -> Result<Cow<'_, [u8]>, Fault> {
         let place = self.entry("images", index, place)?;
-        self.sound_below(&place)?;
+        self.check_below(&place)?;
         // The typed view relies on a media type beside the buffer view; the bytes tell as well.
         let image = self.typed().as_json().images.get(index);
         let source = image.map(|image| (image.uri.as_deref(), image.buffer_view));
@@ -46,14 +46,14 @@ impl Document<'_> {
     }
 
     /// Decodes image `index`.
-    pub fn image(&self, index: usize, place: &str) -> Result<Image, Fault> {
+    pub fn decode_image(&self, index: usize, place: &str) -> Result<Image, Fault> {
         let bytes = self.image_bytes(index, place)?;
         let place = format!("/images/{index}");
         let format = match mime_type(&bytes) {
             Some("image/png") => ImageFormat::Png,
             Some("image/jpeg") => ImageFormat::Jpeg,
             Some("image/webp") => ImageFormat::WebP,
-            Some("image/ktx2") => return self.basis_image(index, &bytes, &place),
+            Some("image/ktx2") => return self.decode_basis_image(index, &bytes, &place),
             _ => {
                 return Err(Fault::Malformed { place, what: "is neither PNG, JPEG, WebP nor KTX 2".into() });
             }
@@ -68,27 +68,27 @@ impl Document<'_> {
         reader.limits(limits);
         let decoder = reader.into_decoder().map_err(broken)?;
         let (width, height) = decoder.dimensions();
-        let texels = self.texels([width, height], bytes.len(), &place)?;
+        let texels = self.checked_texel_count([width, height], bytes.len(), &place)?;
         let deep = decoder.color_type().bytes_per_pixel() / decoder.color_type().channel_count() > 1;
         let size = texels * if deep { 8 } else { 4 };
         // The decoder's own picture exists beside the converted one.
         let decoding = decoder.total_bytes();
-        self.budget.memory(size, &place)?;
-        self.budget.memory(decoding, &place)?;
+        self.budget.take_memory(size, &place)?;
+        self.budget.take_memory(decoding, &place)?;
         let picture = DynamicImage::from_decoder(decoder).map_err(broken)?;
         let texels = match deep {
             true => ImageLevel::Bits16(picture.into_rgba16().into_raw()),
             false => ImageLevel::Bits8(picture.into_rgba8().into_raw()),
         };
-        self.budget.release(decoding);
+        self.budget.release_memory(decoding);
         if let Cow::Owned(bytes) = bytes {
-            self.budget.release(bytes.len() as u64);
+            self.budget.release_memory(bytes.len() as u64);
         }
         Ok(Image { name: self.image_name(index), width, height, texels })
     }
 
     /// Decodes the largest level of a Basis Universal texture.
-    fn basis_image(&self, index: usize, bytes: &[u8], place: &str) -> Result<Image, Fault> {
+    fn decode_basis_image(&self, index: usize, bytes: &[u8], place: &str) -> Result<Image, Fault> {
         let broken = |error: basisu::Error| Fault::Malformed {
             place: place.into(),
             what: format!("cannot be decoded: {error:?}"),
@@ -96,8 +96,8 @@ impl Document<'_> {
         // What it announces, before anything is made room for.
         let sides = [20, 24].map(|at| bytes.get(at..at + 4).and_then(|bytes| bytes.try_into().ok()));
         let [width, height] = sides.map(|side| side.map_or(0, u32::from_le_bytes));
-        let texels = self.texels([width, height], bytes.len(), place)?;
-        self.budget.memory(4 * texels, place)?;
+        let texels = self.checked_texel_count([width, height], bytes.len(), place)?;
+        self.budget.take_memory(4 * texels, place)?;
         let texture = Transcoder::new(bytes).map_err(broken)?;
         if texture.base_dimensions() != (width, height) {
             return Err(Fault::Malformed { place: place.into(), what: "tells two sizes".into() });
@@ -107,14 +107,19 @@ impl Document<'_> {
     }
 
     /// How many texels an image of these sides has, if that is within the limits.
-    pub(crate) fn texels(&self, [width, height]: [u32; 2], bytes: usize, place: &str) -> Result<u64, Fault> {
+    pub(crate) fn checked_texel_count(
+        &self,
+        [width, height]: [u32; 2],
+        bytes: usize,
+        place: &str,
+    ) -> Result<u64, Fault> {
         let texels = u64::from(width) * u64::from(height);
         let limit = self.budget.options.max_texels;
         if texels > limit {
             let what = format!("{place}: {width}×{height} texels, the limit is {limit}");
             return Err(Fault::TooBig { what });
         }
-        self.budget.work(texels + bytes as u64 / 8, place)?;
+        self.budget.take_work(texels + bytes as u64 / 8, place)?;
         if texels == 0 {
             return Err(Fault::Malformed { place: place.into(), what: "has no texels".into() });
         }
@@ -124,8 +129,8 @@ impl Document<'_> {
     fn image_name(&self, index: usize) -> String {
         let file = self.typed().as_json().images.get(index);
         let uri = file.and_then(|file| file.uri.clone());
-        let uri = uri.filter(|uri| crate::data_uri::data_uri(uri).is_none());
-        let name = file.and_then(|file| named(file.name.as_deref())).or(uri);
+        let uri = uri.filter(|uri| crate::data_uri::strip_data_scheme(uri).is_none());
+        let name = file.and_then(|file| nonempty_name(file.name.as_deref())).or(uri);
         name.unwrap_or_else(|| format!("image {index}"))
     }
 }

@@ -3,38 +3,39 @@
 use crate::accessor::Accessor;
 use crate::document::Document;
 use crate::error::Fault;
-use crate::json_object::integer;
+use crate::json_object::as_whole_number;
 use glam::{DMat4, DQuat, DVec3};
 
 /// The extension.
 pub(crate) const EXTENSION: &str = "EXT_mesh_gpu_instancing";
 
 /// Node-from-instance matrices; one identity for a node that is not instanced.
-pub(crate) fn instances(document: &Document<'_>, node: &gltf::Node<'_>) -> Result<Vec<DMat4>, Fault> {
+pub(crate) fn instance_matrices(document: &Document<'_>, node: &gltf::Node<'_>) -> Result<Vec<DMat4>, Fault> {
     let place = format!("/nodes/{}/extensions", node.index());
-    document.sound(&place)?;
+    document.check_at(&place)?;
     let place = format!("{place}/{EXTENSION}");
-    document.sound(&place)?;
+    document.check_at(&place)?;
     let Some(extension) = node.extension_value(EXTENSION) else {
         return Ok(vec![DMat4::IDENTITY]);
     };
     let place = format!("{place}/attributes");
-    document.sound(&place)?;
-    let open = |name: &str, components: usize| -> Result<Option<Accessor<'_>>, Fault> {
+    document.check_at(&place)?;
+    let open_attribute = |name: &str, components: usize| -> Result<Option<Accessor<'_>>, Fault> {
         let place = format!("{place}/{name}");
-        document.sound(&place)?;
-        let index = extension.get("attributes").and_then(|attributes| integer(attributes.get(name)?));
+        document.check_at(&place)?;
+        let index = extension.get("attributes").and_then(|attributes| as_whole_number(attributes.get(name)?));
         let Some(index) = index else { return Ok(None) };
         Ok(Some(Accessor::open(document, index as usize, &place)?.expect_components(&[components], name)?))
     };
-    let (translation, rotation, scale) = (open("TRANSLATION", 3)?, open("ROTATION", 4)?, open("SCALE", 3)?);
+    let (translation, rotation, scale) =
+        (open_attribute("TRANSLATION", 3)?, open_attribute("ROTATION", 4)?, open_attribute("SCALE", 3)?);
     let counts = [&translation, &rotation, &scale].into_iter().flatten().map(|accessor| accessor.count);
     let Some(count) = counts.clone().min() else { return Ok(vec![DMat4::IDENTITY]) };
     if counts.clone().max() != Some(count) {
         document.warn(format!("{place}: its attributes differ in length; {count} instances are shown"));
     }
-    document.budget.work(10 * count as u64, &place)?;
-    document.budget.memory(128 * count as u64, &place)?;
+    document.budget.take_work(10 * count as u64, &place)?;
+    document.budget.take_memory(128 * count as u64, &place)?;
     let matrix = |i: usize| {
         let vector = |accessor: &Option<Accessor<'_>>, default| {
             accessor.as_ref().map_or(default, |accessor| DVec3::from_array(accessor.doubles(i)))

@@ -44,13 +44,13 @@ impl<'a> Object<'a> {
     }
 
     /// A whole number ≥ 0.
-    pub fn integer(&self, key: &str) -> Result<Option<u64>, Fault> {
-        self.read(key, "a whole number", integer)
+    pub fn whole_number(&self, key: &str) -> Result<Option<u64>, Fault> {
+        self.read(key, "a whole number", as_whole_number)
     }
 
     /// An index.
     pub fn index(&self, key: &str) -> Result<Option<usize>, Fault> {
-        Ok(self.integer(key)?.map(|i| usize::try_from(i).unwrap_or(usize::MAX)))
+        Ok(self.whole_number(key)?.map(|i| usize::try_from(i).unwrap_or(usize::MAX)))
     }
 
     /// A number.
@@ -73,7 +73,7 @@ impl<'a> Object<'a> {
 
     /// Indices; absent is empty.
     pub fn indices(&self, key: &str) -> Result<Vec<usize>, Fault> {
-        let index = |value: &Value| integer(value).map(|i| usize::try_from(i).unwrap_or(usize::MAX));
+        let index = |value: &Value| as_whole_number(value).map(|i| usize::try_from(i).unwrap_or(usize::MAX));
         let list =
             self.read(key, "an array of indices", |value| value.as_array()?.iter().map(index).collect())?;
         Ok(list.unwrap_or_default())
@@ -121,7 +121,7 @@ impl<'a> Object<'a> {
 }
 
 /// A whole number ≥ 0, also if it is written as a float.
-pub(crate) fn integer(value: &Value) -> Option<u64> {
+pub(crate) fn as_whole_number(value: &Value) -> Option<u64> {
     value.as_u64().or_else(|| {
         let number = value.as_f64()?;
         (number.fract() == 0.0 && (0.0..9.007_199_254_740_992e15).contains(&number)).then_some(number as u64)
@@ -143,7 +143,7 @@ mod tests {
             (json!(1e300), None),
             (json!("3"), None),
         ] {
-            assert_eq!(integer(&value), expected, "{value}");
+            assert_eq!(as_whole_number(&value), expected, "{value}");
         }
     }
 
@@ -153,7 +153,7 @@ mod tests {
         let object = Object::new(&value, "/accessors/2".into()).unwrap();
         assert!(
             object
-                .integer("count")
+                .whole_number("count")
                 .unwrap_err()
                 .to_string()
                 .contains("/accessors/2/count: is not a whole number")

@@ -22,25 +22,25 @@ pub(crate) fn parse(
     if bytes.starts_with(b"\xFF\xFE") || bytes.starts_with(b"\xFE\xFF") {
         return Err(Fault::NotGltf("its text is UTF-16 instead of UTF-8".into()));
     }
-    let mut text = without_head(bytes, warn);
-    budget.memory(2 * parsed_size(text), "the parsed document")?;
+    let mut text = trim_leading_padding(bytes, warn);
+    budget.take_memory(2 * parsed_size(text), "the parsed document")?;
     let is_json = is_glb || text.starts_with(b"{");
-    let mut found = first_value(text);
-    let mended;
-    if found.is_err() && is_json {
+    let mut parsed = first_value(text);
+    let repaired;
+    if parsed.is_err() && is_json {
         let copy = 2 * text.len() as u64;
-        budget.memory(copy, "the mended JSON text")?;
-        mended = with_known_numbers(text);
-        budget.release(copy);
-        if mended != text {
-            text = &mended;
-            found = first_value(text);
+        budget.take_memory(copy, "the mended JSON text")?;
+        repaired = replace_non_finite_numbers(text);
+        budget.release_memory(copy);
+        if repaired != text {
+            text = &repaired;
+            parsed = first_value(text);
             warn("the JSON text has NaN or Infinity, which JSON does not know; they count as missing".into());
         }
     }
-    match found {
+    match parsed {
         Ok((value, end)) => {
-            warn_of_rest(&text[end..], warn);
+            warn_about_trailing_bytes(&text[end..], warn);
             Ok(value)
         }
         Err(error) if is_json => Err(Fault::NotGltf(format!("its JSON is invalid: {error}"))),
@@ -49,12 +49,12 @@ pub(crate) fn parse(
 }
 
 /// The text from its first character on.
-fn without_head<'a>(bytes: &'a [u8], warn: &mut dyn FnMut(String)) -> &'a [u8] {
+fn trim_leading_padding<'a>(bytes: &'a [u8], warn: &mut dyn FnMut(String)) -> &'a [u8] {
     let text = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
     if text.len() < bytes.len() {
         warn("the JSON text starts with a byte order mark".into());
     }
-    let start = text.iter().position(|&byte| !is_filling(byte)).unwrap_or(text.len());
+    let start = text.iter().position(|&byte| !is_padding(byte)).unwrap_or(text.len());
     if text[..start].iter().any(|byte| !byte.is_ascii_whitespace()) {
         warn("the JSON text has NULs or control characters in front of it".into());
     }
@@ -62,7 +62,7 @@ fn without_head<'a>(bytes: &'a [u8], warn: &mut dyn FnMut(String)) -> &'a [u8] {
 }
 
 /// Whether a byte is something to fill up with: white space, NUL, control characters.
-fn is_filling(byte: u8) -> bool {
+fn is_padding(byte: u8) -> bool {
     byte <= b' '
 }
 
@@ -76,14 +76,14 @@ fn first_value(text: &[u8]) -> Result<(Value, usize), serde_json::Error> {
 }
 
 /// What follows the value: spaces fill a chunk up, anything else does not belong there.
-fn warn_of_rest(rest: &[u8], warn: &mut dyn FnMut(String)) {
+fn warn_about_trailing_bytes(rest: &[u8], warn: &mut dyn FnMut(String)) {
     // What of the white space JSON knows; the others are as odd as NULs.
     let is_space = |byte: &u8| matches!(byte, b' ' | b'\t' | b'\n' | b'\r');
     if rest.iter().all(is_space) {
         return;
     }
     let count = rest.len();
-    warn(match rest.iter().all(|&byte| is_filling(byte)) {
+    warn(match rest.iter().all(|&byte| is_padding(byte)) {
         true => format!("the JSON text is filled up by {count} NULs or control characters instead of spaces"),
         false => {
             format!("the JSON text is followed by {count} bytes that are no part of it; they are ignored")
@@ -93,7 +93,7 @@ fn warn_of_rest(rest: &[u8], warn: &mut dyn FnMut(String)) {
 
 /// A copy of the text with `null` for every NaN and infinity as the languages write them: `NaN`, `-Infinity`, `inf`,
 /// `-nan(ind)`, `1.#QNAN`.
-fn with_known_numbers(text: &[u8]) -> Vec<u8> {
+fn replace_non_finite_numbers(text: &[u8]) -> Vec<u8> {
     let is_word = |byte: u8| byte.is_ascii_alphanumeric() || b"+-.#()".contains(&byte);
     let (mut copy, mut at, mut in_string) = (Vec::with_capacity(text.len()), 0, false);
     while at < text.len() {
@@ -106,7 +106,7 @@ fn with_known_numbers(text: &[u8]) -> Vec<u8> {
             }
             byte if !in_string && is_word(byte) => {
                 at += text[at..].iter().take_while(|&&byte| is_word(byte)).count();
-                if is_no_number(&text[start..at]) {
+                if is_non_finite_number(&text[start..at]) {
                     copy.extend_from_slice(b"null");
                     continue;
                 }
@@ -120,7 +120,7 @@ fn with_known_numbers(text: &[u8]) -> Vec<u8> {
 }
 
 /// Whether a word stands for NaN or an infinity.
-fn is_no_number(word: &[u8]) -> bool {
+fn is_non_finite_number(word: &[u8]) -> bool {
     let word = word.to_ascii_lowercase();
     let word = word.strip_prefix(b"-").or(word.strip_prefix(b"+")).unwrap_or(&word);
     [&b"nan"[..], b"inf", b"1.#"].iter().any(|start| word.starts_with(start))

@@ -79,11 +79,11 @@ mod variants;
 mod views;
 mod world;
 
-pub use animation::{Animation, Moment};
+pub use animation::{Animation, AnimationTime};
 pub use back_faces::BackFaces;
 pub use error::{Fault, SceneError};
 pub use inspection::Inspection;
-pub use load::{MovingScene, inspect, load, with_source};
+pub use load::{AnimatedScene, inspect, load, with_source};
 pub use load_options::LoadOptions;
 pub use material::{
     AlphaMode, Anisotropy, Clearcoat, DiffuseTransmission, Iridescence, Material, NormalMap, Scalar, Sheen,
@@ -94,8 +94,8 @@ pub use model::{Image, ImageLevel, Light, LightKind, Node, Part, Scene, SceneCam
 pub use own_extras::{CameraLens, EXTRAS_KEY, EXTRAS_VERSION};
 pub use picture_gloss::PictureGloss;
 pub use picture_texture::PictureTexture;
-pub use pose::{Posed, RestTriangle};
-pub use source::{PartSource, Source, StoredElements};
+pub use pose::{PosedScene, RestTriangle};
+pub use source::{GltfSource, PartSource, StoredElements};
 pub use surface_mesh::SurfaceMesh;
 pub use surface_point::{SurfaceField, SurfacePoint};
 pub use texture_lookup::{linear_from_srgb, srgb_from_linear};

@@ -1,14 +1,14 @@
 //! From a file to a scene: the story of reading one, from top to bottom.
 
-use crate::animation::{self, Animation, Moment};
-use crate::assembly::{Placement, append};
-use crate::document::{Document, named};
+use crate::animation::{self, Animation, AnimationTime};
+use crate::assembly::{Placement, append_primitive};
+use crate::document::{Document, nonempty_name};
 use crate::error::{Fault, Stop};
 use crate::hierarchy::Hierarchy;
 use crate::material_file::{MaterialReader, default_material};
-use crate::pose::{Posed, RestParts};
+use crate::pose::{PosedScene, RestParts};
 use crate::primitive::Primitive;
-use crate::source::{PartSource, Source};
+use crate::source::{GltfSource, PartSource};
 use crate::triangulation::MODE_NAMES;
 use crate::variants::Variants;
 use crate::{Inspection, LoadOptions, Material, Node, Scene, SceneError};
@@ -28,19 +28,21 @@ use std::sync::Arc;
 /// [`SceneError::NoTriangles`] if there is nothing to see, [`SceneError::Bad`] for everything that is wrong with the
 /// file and does harm, [`SceneError::Cancelled`] if `progress` says so. What does no harm is in [`Scene::warnings`].
 pub fn load(path: &Path, options: &LoadOptions, progress: &dyn Progress) -> Result<Scene, SceneError> {
-    let (scene, inspection) = open(path, options, progress)?;
+    let (scene, inspection) = load_and_inspect(path, options, progress)?;
     if scene.triangles.is_empty() {
-        let others: Vec<String> = (inspection.primitives.iter().zip(MODE_NAMES))
+        let other_primitives: Vec<String> = (inspection.primitives.iter().zip(MODE_NAMES))
             .filter(|&(&count, _)| count > 0)
             .map(|(count, name)| format!("{count} × {name}"))
             .collect();
-        let why = match (inspection.meshes, others.is_empty()) {
+        let why = match (inspection.meshes, other_primitives.is_empty()) {
             (0, _) => "the file has no mesh".into(),
             _ if inspection.hidden_nodes > 0 => {
                 format!("{} of its nodes are hidden (KHR_node_visibility)", inspection.hidden_nodes)
             }
             (_, true) => "its meshes are empty".into(),
-            (_, false) => format!("the file has {}, none of which shows a triangle", others.join(", ")),
+            (_, false) => {
+                format!("the file has {}, none of which shows a triangle", other_primitives.join(", "))
+            }
         };
         // What was left out on the way tells more than the count.
         let left_out = scene.warnings.iter().find(|warning| warning.contains("left out"));
@@ -56,7 +58,7 @@ pub fn load(path: &Path, options: &LoadOptions, progress: &dyn Progress) -> Resu
 /// # Errors
 /// As [`load`], but for [`SceneError::NoTriangles`].
 pub fn inspect(path: &Path, options: &LoadOptions) -> Result<Inspection, SceneError> {
-    Ok(open(path, options, &Unwatched)?.1)
+    Ok(load_and_inspect(path, options, &Unwatched)?.1)
 }
 
 /// Reads a .glb or .gltf file to be written again, and gives it to `work`, which has it for as long as it takes.
@@ -67,20 +69,20 @@ pub fn with_source<T>(
     path: &Path,
     options: &LoadOptions,
     progress: &dyn Progress,
-    work: impl FnOnce(&Source<'_>) -> T,
+    work: impl FnOnce(&GltfSource<'_>) -> T,
 ) -> Result<T, SceneError> {
-    guarded(path, || {
+    catch_panics(path, || {
         let bytes = read_file(path, options)?;
-        let document = parse(path, &bytes, options)?;
+        let document = parse_document(path, &bytes, options)?;
         let mut parts = Some(Vec::new());
         let variants = Variants::read(&document, options.variant.as_deref())?;
-        let (scene, ..) = geometry(path, &document, &variants, &mut parts, progress)?;
-        Ok(work(&Source { document: &document, scene, parts: parts.unwrap_or_default() }))
+        let (scene, ..) = read_geometry(path, &document, &variants, &mut parts, progress)?;
+        Ok(work(&GltfSource { document: &document, scene, parts: parts.unwrap_or_default() }))
     })
 }
 
 /// The scene of a file at any moment of its animations.
-pub struct MovingScene {
+pub struct AnimatedScene {
     rest: Arc<Scene>,
     options: LoadOptions,
     animations: Vec<Animation>,
@@ -89,26 +91,30 @@ pub struct MovingScene {
     materials: Vec<usize>,
 }
 
-impl MovingScene {
+impl AnimatedScene {
     /// Looks at the file of a scene that was read with these options, but for the variant, which is the scene's.
     ///
     /// # Errors
     /// As [`load`]; and the file is another than the scene was read from.
-    pub fn of(rest: Arc<Scene>, options: &LoadOptions, progress: &dyn Progress) -> Result<Self, SceneError> {
+    pub fn open(
+        rest: Arc<Scene>,
+        options: &LoadOptions,
+        progress: &dyn Progress,
+    ) -> Result<Self, SceneError> {
         let options = LoadOptions { variant: rest.variant.clone(), ..options.clone() };
         let path = rest.path.clone();
-        guarded(&path, || {
+        catch_panics(&path, || {
             let bytes = read_file(&path, &options)?;
-            let document = parse(&path, &bytes, &options)?;
+            let document = parse_document(&path, &bytes, &options)?;
             let variants = Variants::read(&document, options.variant.as_deref())?;
             let mut sources = Some(Vec::new());
-            let (scene, _, used) = geometry(&path, &document, &variants, &mut sources, progress)?;
+            let (scene, _, used) = read_geometry(&path, &document, &variants, &mut sources, progress)?;
             if scene.positions != rest.positions || scene.triangles != rest.triangles {
-                return Err(changed().into());
+                return Err(file_changed().into());
             }
-            let parts = RestParts::of(&scene, &sources.unwrap_or_default());
-            let materials = used.by.into_keys().collect();
-            Ok(Self { rest, options, animations: animation::list(&document), parts, materials })
+            let parts = RestParts::new(&scene, &sources.unwrap_or_default());
+            let materials = used.first_user_by_material.into_keys().collect();
+            Ok(Self { rest, options, animations: animation::list_animations(&document), parts, materials })
         })
     }
 
@@ -127,32 +133,36 @@ impl MovingScene {
     ///
     /// # Errors
     /// As [`load`], but that nothing may be shown; and it has no such animation.
-    pub fn at(&self, moment: &Moment, progress: &dyn Progress) -> Result<Posed, SceneError> {
+    pub fn pose_at(&self, moment: &AnimationTime, progress: &dyn Progress) -> Result<PosedScene, SceneError> {
         let (rest, path) = (&self.rest, &self.rest.path);
-        guarded(path, || {
+        catch_panics(path, || {
             let bytes = read_file(path, &self.options)?;
-            let document = parse(path, &bytes, &self.options)?;
-            let played = animation::played(&document, moment)?;
-            let document = document.with_numbers_of(played.root)?;
+            let document = parse_document(path, &bytes, &self.options)?;
+            let animated = animation::apply_animation(&document, moment)?;
+            let document = document.with_root(animated.root)?;
             let variants = Variants::read(&document, self.options.variant.as_deref())?;
             let mut sources = Some(Vec::new());
-            let (mut scene, _, used) = geometry(path, &document, &variants, &mut sources, progress)?;
-            let is_known = used.by.keys().all(|material| self.materials.contains(material));
-            if !is_known || played.changes_materials || used.uses_default && !self.has_default(&document) {
+            let (mut scene, _, used) = read_geometry(path, &document, &variants, &mut sources, progress)?;
+            let has_rest_materials =
+                used.first_user_by_material.keys().all(|material| self.materials.contains(material));
+            if !has_rest_materials
+                || animated.changes_materials
+                || used.uses_default && !self.has_default(&document)
+            {
                 let mut materials = MaterialReader::new(&document);
-                used.fill(&mut scene, &document, &mut materials)?;
+                used.read_into(&mut scene, &document, &mut materials)?;
                 scene.images = materials.into_images();
             } else {
                 (scene.materials, scene.images) = (rest.materials.clone(), rest.images.clone());
             }
             scene.normals.iter_mut().for_each(|normal| *normal = normal.normalize_or_zero());
-            self.see_as_at_rest(&mut scene);
-            let at_rest =
-                self.parts.of_triangles(&scene, &sources.unwrap_or_default()).ok_or_else(changed)?;
+            self.copy_static_state(&mut scene);
+            let rest_triangles =
+                self.parts.rest_triangles(&scene, &sources.unwrap_or_default()).ok_or_else(file_changed)?;
             let mut warnings = document.warnings();
             warnings.retain(|warning| !rest.warnings.contains(warning));
             scene.warnings = warnings;
-            Ok(Posed { scene, at_rest })
+            Ok(PosedScene { scene, rest_triangles })
         })
     }
 
@@ -162,16 +172,16 @@ impl MovingScene {
     }
 
     /// Gives a scene what does not move.
-    fn see_as_at_rest(&self, scene: &mut Scene) {
+    fn copy_static_state(&self, scene: &mut Scene) {
         let rest = &self.rest;
         scene.variant = rest.variant.clone();
         scene.variants = rest.variants.clone();
-        scene.own_world = rest.own_world.clone();
+        scene.embedded_world = rest.embedded_world.clone();
         scene.world = rest.world.clone();
         scene.back_faces = rest.back_faces;
         scene.single_scattering = rest.single_scattering;
-        if rest.camera_is_invented {
-            (scene.cameras, scene.camera_is_invented) = (rest.cameras.clone(), true);
+        if rest.has_default_camera {
+            (scene.cameras, scene.has_default_camera) = (rest.cameras.clone(), true);
         } else if scene.cameras.len() == rest.cameras.len() {
             for (camera, at_rest) in scene.cameras.iter_mut().zip(&rest.cameras) {
                 camera.focus_distance = at_rest.focus_distance;
@@ -180,21 +190,21 @@ impl MovingScene {
     }
 }
 
-fn changed() -> Fault {
+fn file_changed() -> Fault {
     Fault::NotGltf("it has changed since it was opened".into())
 }
 
 /// Reads a file.
-fn open(
+fn load_and_inspect(
     path: &Path,
     options: &LoadOptions,
     progress: &dyn Progress,
 ) -> Result<(Scene, Inspection), SceneError> {
-    guarded(path, || read(path, options, progress))
+    catch_panics(path, || read_scene(path, options, progress))
 }
 
 /// Does work on the file at `path`; panics of decoders become errors.
-fn guarded<T>(path: &Path, work: impl FnOnce() -> Result<T, Stop>) -> Result<T, SceneError> {
+fn catch_panics<T>(path: &Path, work: impl FnOnce() -> Result<T, Stop>) -> Result<T, SceneError> {
     let result = std::panic::catch_unwind(AssertUnwindSafe(work));
     let stop = match result {
         Ok(Ok(read)) => return Ok(read),
@@ -211,46 +221,50 @@ fn guarded<T>(path: &Path, work: impl FnOnce() -> Result<T, Stop>) -> Result<T, 
     })
 }
 
-fn read(path: &Path, options: &LoadOptions, progress: &dyn Progress) -> Result<(Scene, Inspection), Stop> {
+fn read_scene(
+    path: &Path,
+    options: &LoadOptions,
+    progress: &dyn Progress,
+) -> Result<(Scene, Inspection), Stop> {
     let bytes = read_file(path, options)?;
-    let document = parse(path, &bytes, options)?;
+    let document = parse_document(path, &bytes, options)?;
     progress.check()?;
 
     let variants = Variants::read(&document, options.variant.as_deref())?;
-    let (mut scene, hierarchy, used) = geometry(path, &document, &variants, &mut None, progress)?;
-    scene.variant = variants.chosen().map(String::from);
+    let (mut scene, hierarchy, used) = read_geometry(path, &document, &variants, &mut None, progress)?;
+    scene.variant = variants.selected_name().map(String::from);
     scene.variants = variants.names;
     let mut materials = MaterialReader::new(&document);
-    used.fill(&mut scene, &document, &mut materials)?;
+    used.read_into(&mut scene, &document, &mut materials)?;
     scene.images = materials.into_images();
-    scene.own_world = image_based_light::own_world(&document)?;
+    scene.embedded_world = image_based_light::read_embedded_world(&document)?;
     scene.normals.iter_mut().for_each(|normal| *normal = normal.normalize_or_zero());
-    complete(&document, &mut scene);
-    flaws::check(&document);
+    add_missing_camera(&document, &mut scene);
+    flaws::lint(&document);
     scene.warnings = document.warnings();
-    let inspection = inspection(&document, &hierarchy, &scene);
+    let inspection = count_contents(&document, &hierarchy, &scene);
     Ok((scene, inspection))
 }
 
-fn parse<'a>(path: &Path, bytes: &'a [u8], options: &LoadOptions) -> Result<Document<'a>, Fault> {
-    let folder = crate::document::folder_of(path).map_err(Fault::Unreadable)?;
-    let document = compressed::plain(Document::parse(bytes, folder, options)?)?;
+fn parse_document<'a>(path: &Path, bytes: &'a [u8], options: &LoadOptions) -> Result<Document<'a>, Fault> {
+    let folder = crate::document::canonical_folder(path).map_err(Fault::Unreadable)?;
+    let document = compressed::decompress(Document::parse(bytes, folder, options)?)?;
     extension::check(&document)?;
     Ok(document)
 }
 
 /// What the nodes show in a variant, and which materials that uses. Where the parts stand in the file is noted in `sources`, if that
 /// is wanted.
-fn geometry(
+fn read_geometry(
     path: &Path,
     document: &Document<'_>,
     variants: &Variants,
     sources: &mut Option<Vec<PartSource>>,
     progress: &dyn Progress,
-) -> Result<(Scene, Hierarchy, UsedMaterials), Stop> {
+) -> Result<(Scene, Hierarchy, MaterialUses), Stop> {
     let mut scene = Scene { path: path.into(), ..Scene::default() };
     let hierarchy = Hierarchy::read(document)?;
-    let mut used = UsedMaterials::default();
+    let mut used = MaterialUses::default();
     for (i, &index) in hierarchy.shown.iter().enumerate() {
         progress.report(i as f32 / hierarchy.shown.len() as f32);
         let Some(node) = document.typed().nodes().nth(index) else { continue };
@@ -261,7 +275,7 @@ fn geometry(
         }
         scene.lights.extend(punctual_light::node_light(document, &node, world)?);
         let mesh = MeshNode { document, variants, hierarchy: &hierarchy, node, world };
-        mesh.read(&mut scene, &mut used, sources, progress)?;
+        mesh.append_to(&mut scene, &mut used, sources, progress)?;
     }
     Ok((scene, hierarchy, used))
 }
@@ -283,18 +297,18 @@ fn read_file(path: &Path, options: &LoadOptions) -> Result<Vec<u8>, Fault> {
 
 /// The materials that parts use, in the order of the file, the default one last.
 #[derive(Default)]
-struct UsedMaterials {
+struct MaterialUses {
     /// Who used a material of the file first.
-    by: HashMap<usize, String>,
+    first_user_by_material: HashMap<usize, String>,
     uses_default: bool,
 }
 
-impl UsedMaterials {
+impl MaterialUses {
     /// The index in the scene of a material of the file.
-    fn index(&mut self, document: &Document<'_>, material: Option<usize>, place: &str) -> u32 {
+    fn note_use(&mut self, document: &Document<'_>, material: Option<usize>, place: &str) -> u32 {
         match material {
             Some(index) => {
-                self.by.entry(index).or_insert_with(|| format!("{place}/material"));
+                self.first_user_by_material.entry(index).or_insert_with(|| format!("{place}/material"));
                 index as u32
             }
             None => {
@@ -305,16 +319,16 @@ impl UsedMaterials {
     }
 
     /// Reads them. A material that no part uses has its name and nothing else.
-    fn fill(
+    fn read_into(
         self,
         scene: &mut Scene,
         document: &Document<'_>,
         reader: &mut MaterialReader<'_>,
     ) -> Result<(), Fault> {
         for index in 0..document.len("materials") {
-            scene.materials.push(match self.by.get(&index) {
+            scene.materials.push(match self.first_user_by_material.get(&index) {
                 Some(place) => reader.read(index, place)?,
-                None => Material { name: reader.name(index), ..default_material() },
+                None => Material { name: reader.material_name(index), ..default_material() },
             });
         }
         if self.uses_default {
@@ -335,33 +349,33 @@ struct MeshNode<'a> {
 
 impl MeshNode<'_> {
     /// Appends every primitive of every instance of the node's mesh.
-    fn read(
+    fn append_to(
         &self,
         scene: &mut Scene,
-        used: &mut UsedMaterials,
+        used: &mut MaterialUses,
         sources: &mut Option<Vec<PartSource>>,
         progress: &dyn Progress,
     ) -> Result<(), Stop> {
         let (document, node) = (self.document, &self.node);
         let place = format!("/nodes/{}", node.index());
-        document.sound(&format!("{place}/mesh"))?;
+        document.check_at(&format!("{place}/mesh"))?;
         let Some(mesh) = node.mesh() else { return Ok(()) };
-        document.sound(&format!("{place}/weights"))?;
-        document.sound(&format!("/meshes/{}/weights", mesh.index()))?;
+        document.check_at(&format!("{place}/weights"))?;
+        document.check_at(&format!("/meshes/{}/weights", mesh.index()))?;
         let weights = node.weights().or(mesh.weights()).unwrap_or_default();
         let weights: Vec<f64> = weights.iter().copied().map(f64::from).collect();
-        let primitives = self.primitives(&mesh, &weights, used, progress)?;
+        let primitives = self.read_primitives(&mesh, &weights, used, progress)?;
         if primitives.is_empty() {
             return Ok(());
         }
-        document.sound(&format!("{place}/skin"))?;
+        document.check_at(&format!("{place}/skin"))?;
         let joints = match node.skin() {
             Some(skin) => Some(skin::joint_matrices(document, self.hierarchy, &skin)?),
             None => None,
         };
         let instances = match joints {
             Some(_) => vec![DMat4::IDENTITY],
-            None => instancing::instances(document, node)?,
+            None => instancing::instance_matrices(document, node)?,
         };
         let is_instanced = node.extension_value(instancing::EXTENSION).is_some() && instances.len() > 1;
         for (i, instance) in instances.into_iter().enumerate() {
@@ -369,14 +383,14 @@ impl MeshNode<'_> {
             for (index, primitive, material) in &primitives {
                 progress.check()?;
                 if i > 0 {
-                    document.budget.triangles(primitive.triangles.len() as u64)?;
+                    document.budget.take_triangles(primitive.triangles.len() as u64)?;
                 }
                 let placement = match &joints {
                     Some(joints) if !primitive.influences.is_empty() => Placement::Skinned(joints),
                     _ => Placement::Rigid(self.world * instance),
                 };
-                let node_of_scene = scene.nodes.len() as u32;
-                let shown = append(scene, document, primitive, &placement, node_of_scene, *material)?;
+                let scene_node = scene.nodes.len() as u32;
+                let shown = append_primitive(scene, document, primitive, &placement, scene_node, *material)?;
                 if let Some(sources) = sources.as_mut().filter(|_| !shown.vertices.is_empty()) {
                     let elements = shown.vertices.iter().map(|&v| primitive.elements[v as usize]);
                     sources.push(PartSource {
@@ -391,7 +405,7 @@ impl MeshNode<'_> {
             }
             if scene.parts.len() > first_part {
                 let index = node.index();
-                let name = named(node.name()).unwrap_or_else(|| format!("node {index}"));
+                let name = nonempty_name(node.name()).unwrap_or_else(|| format!("node {index}"));
                 scene.nodes.push(Node { name, index: index as u32, world: self.world * instance });
             }
         }
@@ -400,24 +414,24 @@ impl MeshNode<'_> {
     }
 
     /// The primitives of a mesh that have triangles, with their index in it and their material in the scene.
-    fn primitives(
+    fn read_primitives(
         &self,
         mesh: &gltf::Mesh<'_>,
         weights: &[f64],
-        used: &mut UsedMaterials,
+        used: &mut MaterialUses,
         progress: &dyn Progress,
     ) -> Result<Vec<(usize, Primitive, u32)>, Stop> {
         let document = self.document;
         let mut primitives = Vec::new();
         let place = format!("/meshes/{}", mesh.index());
-        document.sound(&place)?;
-        document.sound(&format!("{place}/primitives"))?;
+        document.check_at(&place)?;
+        document.check_at(&format!("{place}/primitives"))?;
         for file in mesh.primitives() {
             progress.check()?;
             let place = format!("{place}/primitives/{}", file.index());
             match Primitive::read(document, &file, &place, self.variants, weights) {
                 Ok(Some(primitive)) => {
-                    let material = used.index(document, primitive.material, &primitive.place);
+                    let material = used.note_use(document, primitive.material, &primitive.place);
                     primitives.push((file.index(), primitive, material));
                 }
                 Ok(None) => {}
@@ -432,18 +446,18 @@ impl MeshNode<'_> {
 }
 
 /// Gives the scene what the file lacks: a camera. Light is the world's.
-fn complete(document: &Document<'_>, scene: &mut Scene) {
+fn add_missing_camera(document: &Document<'_>, scene: &mut Scene) {
     if scene.triangles.is_empty() {
         return;
     }
     if scene.cameras.is_empty() {
-        scene.cameras.push(scene_cameras::framing(scene, DQuat::IDENTITY));
-        scene.camera_is_invented = true;
+        scene.cameras.push(scene_cameras::framing_camera(scene, DQuat::IDENTITY));
+        scene.has_default_camera = true;
     }
     scene_cameras::focus_cameras(scene);
     let needs_light = scene.parts.iter().any(|part| !scene.materials[part.material as usize].unlit);
     let is_dark = !scene.lights.is_empty() && scene.lights.iter().all(|light| light.intensity == Vec3::ZERO);
-    if needs_light && is_dark && !scene.has_lamps() && scene.own_world.is_none() {
+    if needs_light && is_dark && !scene.has_emissive_materials() && scene.embedded_world.is_none() {
         document.warn(
             "none of its lights shines, because of an intensity of 0; surfaces that need light are black",
         );
@@ -451,12 +465,12 @@ fn complete(document: &Document<'_>, scene: &mut Scene) {
 }
 
 /// Counts what the file holds.
-fn inspection(document: &Document<'_>, hierarchy: &Hierarchy, scene: &Scene) -> Inspection {
+fn count_contents(document: &Document<'_>, hierarchy: &Hierarchy, scene: &Scene) -> Inspection {
     let mut primitives = [0; 7];
     for mesh in document.typed().meshes() {
         for primitive in mesh.primitives() {
             let place = format!("/meshes/{}/primitives/{}", mesh.index(), primitive.index());
-            if document.sound(&format!("{place}/mode")).is_ok() {
+            if document.check_at(&format!("{place}/mode")).is_ok() {
                 primitives[primitive.mode().as_gl_enum() as usize] += 1;
             }
         }
@@ -474,7 +488,7 @@ fn inspection(document: &Document<'_>, hierarchy: &Hierarchy, scene: &Scene) -> 
         lights: document.len("lights"),
         skins: document.len("skins"),
         animations: document.len("animations"),
-        animation_list: animation::list(document),
+        animation_list: animation::list_animations(document),
         triangles: scene.triangles.len(),
         extensions_used: extension::used(document).map(String::from).collect(),
         extensions_required: extension::required(document).map(String::from).collect(),

@@ -204,14 +204,14 @@ pub enum Wrap {
 
 impl Scalar {
     /// Without a texture.
-    pub const fn plain(factor: f32) -> Self {
+    pub const fn constant(factor: f32) -> Self {
         Self { factor, texture: None }
     }
 }
 
 impl Tint {
     /// Without a texture.
-    pub const fn plain(factor: Vec3) -> Self {
+    pub const fn constant(factor: Vec3) -> Self {
         Self { factor, texture: None }
     }
 }
@@ -229,14 +229,14 @@ impl Default for Material {
             alpha: AlphaMode::Opaque,
             double_sided: false,
             workflow: Workflow::MetallicRoughness {
-                metallic: Scalar::plain(1.0),
-                roughness: Scalar::plain(1.0),
+                metallic: Scalar::constant(1.0),
+                roughness: Scalar::constant(1.0),
             },
             normal_map: None,
             ior: 1.5,
-            specular: Scalar::plain(1.0),
-            specular_color: Tint::plain(Vec3::ONE),
-            transmission: Scalar::plain(0.0),
+            specular: Scalar::constant(1.0),
+            specular_color: Tint::constant(Vec3::ONE),
+            transmission: Scalar::constant(0.0),
             volume: None,
             dispersion: 0.0,
             clearcoat: None,
@@ -250,19 +250,19 @@ impl Default for Material {
 
 impl Material {
     /// A surface that shows its base colour, white, on both sides, whatever the light.
-    pub fn of_unlit() -> Self {
+    pub fn unlit_white() -> Self {
         Self { unlit: true, double_sided: true, ..Self::default() }
     }
 
     /// A surface that scatters light diffusely and does nothing else: no metal, no reflection (Lambert). White.
-    pub fn of_lambert() -> Self {
+    pub fn lambertian_white() -> Self {
         let workflow =
-            Workflow::MetallicRoughness { metallic: Scalar::plain(0.0), roughness: Scalar::plain(1.0) };
-        Self { workflow, specular: Scalar::plain(0.0), ..Self::default() }
+            Workflow::MetallicRoughness { metallic: Scalar::constant(0.0), roughness: Scalar::constant(1.0) };
+        Self { workflow, specular: Scalar::constant(0.0), ..Self::default() }
     }
 
     /// Whether it is seen from its front alone.
-    pub fn hides_back(&self, back_faces: BackFaces) -> bool {
+    pub fn culls_back_faces(&self, back_faces: BackFaces) -> bool {
         back_faces == BackFaces::Hide && !self.double_sided
     }
 
@@ -273,18 +273,18 @@ impl Material {
 
     /// Whether any of it differs from point to point by a texture.
     pub fn has_textures(&self) -> bool {
-        self.base_color_texture.is_some() || self.emissive_texture.is_some() || !self.has_even_gloss()
+        self.base_color_texture.is_some() || self.emissive_texture.is_some() || !self.has_uniform_gloss()
     }
 
     /// Whether neither bumps nor any texture changes how it mirrors, but for the base colour.
-    pub fn has_even_gloss(&self) -> bool {
+    pub fn has_uniform_gloss(&self) -> bool {
         let scalar = |scalar: &Scalar| scalar.texture.is_some();
         let tint = |tint: &Tint| tint.texture.is_some();
-        let of_workflow = match &self.workflow {
+        let is_workflow_textured = match &self.workflow {
             Workflow::MetallicRoughness { metallic, roughness } => scalar(metallic) || scalar(roughness),
             Workflow::SpecularGlossiness { specular, glossiness } => tint(specular) || scalar(glossiness),
         };
-        let changes = of_workflow
+        let is_textured = is_workflow_textured
             || self.normal_map.is_some()
             || scalar(&self.specular)
             || tint(&self.specular_color)
@@ -298,11 +298,11 @@ impl Material {
             || self
                 .diffuse_transmission
                 .is_some_and(|through| scalar(&through.factor) || tint(&through.color));
-        !changes
+        !is_textured
     }
 
     /// Whether it sends light of its own: unlit, or emissive.
-    pub fn emits(&self) -> bool {
+    pub fn is_emitter(&self) -> bool {
         self.unlit || self.emissive != Vec3::ZERO
     }
 }

@@ -1,8 +1,8 @@
 //! Materials of the file.
 
-use crate::document::{Document, named};
+use crate::document::{Document, nonempty_name};
 use crate::error::Fault;
-use crate::material_properties::Properties;
+use crate::material_properties::LenientProperties;
 use crate::material_textures::further_uv_sets;
 use crate::own_extras;
 use crate::texture_reader::TextureReader;
@@ -35,9 +35,11 @@ impl<'a> MaterialReader<'a> {
     }
 
     /// The name of material `index`.
-    pub fn name(&self, index: usize) -> String {
+    pub fn material_name(&self, index: usize) -> String {
         let material = self.textures.document.typed().materials().nth(index);
-        material.and_then(|material| named(material.name())).unwrap_or_else(|| format!("material {index}"))
+        material
+            .and_then(|material| nonempty_name(material.name()))
+            .unwrap_or_else(|| format!("material {index}"))
     }
 
     /// Material `index`, which is used by `place`. Without a base colour, an emission or an opacity there is no material;
@@ -45,17 +47,17 @@ impl<'a> MaterialReader<'a> {
     pub fn read(&mut self, index: usize, place: &str) -> Result<Material, Fault> {
         let document = self.textures.document;
         let place = document.entry("materials", index, place)?;
-        let name = self.name(index);
+        let name = self.material_name(index);
         let Some(file) = document.typed().materials().nth(index) else {
             return Ok(Material { name, ..default_material() });
         };
-        document.sound(&place)?;
+        document.check_at(&place)?;
         for key in ["pbrMetallicRoughness", "emissiveFactor", "doubleSided"] {
-            document.sound_below(&format!("{place}/{key}"))?;
+            document.check_below(&format!("{place}/{key}"))?;
         }
-        extensions_are_sound(document, &format!("{place}/extensions"))?;
+        check_color_extensions(document, &format!("{place}/extensions"))?;
         let sets = further_uv_sets(document, Some(index));
-        if let Some(radiance) = self.radiance(index, &sets) {
+        if let Some(radiance) = self.read_radiance(index, &sets) {
             return Ok(Material {
                 name,
                 double_sided: file.double_sided(),
@@ -64,13 +66,13 @@ impl<'a> MaterialReader<'a> {
                 ..Material::default()
             });
         }
-        let (base_color, [section, texture]) = base_color(&file);
+        let (base_color, [section, texture]) = read_base_color(&file);
         let emissive = file.emissive_strength().unwrap_or(1.0) * Vec3::from_array(file.emissive_factor());
         if !base_color.is_finite() || !emissive.is_finite() {
             return Err(Fault::Malformed { place, what: "its colours are not finite".into() });
         }
         if emissive != Vec3::ZERO {
-            document.sound_below(&format!("{place}/emissiveTexture"))?;
+            document.check_below(&format!("{place}/emissiveTexture"))?;
         }
         let mut material = Material {
             name,
@@ -81,7 +83,7 @@ impl<'a> MaterialReader<'a> {
             alpha: match file.alpha_mode() {
                 gltf::material::AlphaMode::Opaque => AlphaMode::Opaque,
                 gltf::material::AlphaMode::Mask => {
-                    document.sound(&format!("{place}/alphaCutoff"))?;
+                    document.check_at(&format!("{place}/alphaCutoff"))?;
                     AlphaMode::Mask(file.alpha_cutoff().unwrap_or(0.5))
                 }
                 gltf::material::AlphaMode::Blend => AlphaMode::Blend,
@@ -89,14 +91,14 @@ impl<'a> MaterialReader<'a> {
             ..Material::default()
         };
         let object = document.item("materials", index, &place)?;
-        let mut properties = Properties::new(&mut self.textures, object, &sets);
+        let mut properties = LenientProperties::new(&mut self.textures, object, &sets);
         material.base_color_texture =
             properties.section(section).and_then(|mut section| section.texture(texture, true));
         if material.emissive != Vec3::ZERO {
             material.emissive_texture = properties.texture("emissiveTexture", true);
         }
         if !material.unlit {
-            read_gloss(&mut material, &mut properties);
+            read_scattering(&mut material, &mut properties);
         }
         Ok(material)
     }
@@ -104,7 +106,7 @@ impl<'a> MaterialReader<'a> {
 
 impl MaterialReader<'_> {
     /// The radiance that material `index` sends, where it brings that.
-    fn radiance(&mut self, index: usize, sets: &[u32]) -> Option<TextureRef> {
+    fn read_radiance(&mut self, index: usize, sets: &[u32]) -> Option<TextureRef> {
         let document = self.textures.document;
         let info =
             document.item("materials", index, "").and_then(|object| own_extras::radiance(document, &object));
@@ -119,35 +121,35 @@ impl MaterialReader<'_> {
 /// The base colour, and the section and key of the texture that scales it: that of metallic-roughness, or the diffuse colour
 /// of KHR_materials_pbrSpecularGlossiness, which wants to be preferred where both are there. An unlit material shows its base
 /// colour by definition, if it says any.
-fn base_color(file: &gltf::Material<'_>) -> (Vec4, [&'static str; 2]) {
+fn read_base_color(file: &gltf::Material<'_>) -> (Vec4, [&'static str; 2]) {
     let plain = file.pbr_metallic_roughness();
     let factor = Vec4::from_array(plain.base_color_factor());
-    let says_a_color = plain.base_color_texture().is_some() || factor != Vec4::ONE;
-    match file.pbr_specular_glossiness().filter(|_| !(file.unlit() && says_a_color)) {
+    let has_base_color = plain.base_color_texture().is_some() || factor != Vec4::ONE;
+    match file.pbr_specular_glossiness().filter(|_| !(file.unlit() && has_base_color)) {
         Some(glossy) => (Vec4::from_array(glossy.diffuse_factor()), [SPECULAR_GLOSSINESS, "diffuseTexture"]),
         None => (factor, ["pbrMetallicRoughness", "baseColorTexture"]),
     }
 }
 
 /// Everything that scatters light but the base colour.
-fn read_gloss(material: &mut Material, file: &mut Properties<'_, '_>) {
-    const ANY: f32 = f32::MAX;
+fn read_scattering(material: &mut Material, file: &mut LenientProperties<'_, '_>) {
+    const UNLIMITED: f32 = f32::MAX;
     material.normal_map = file.normal_map("normalTexture");
-    material.workflow = workflow(file);
+    material.workflow = read_workflow(file);
     if let Some(index) = file.section("KHR_materials_ior") {
-        let ior = index.number("ior", 1.5, [0.0, ANY]);
+        let ior = index.number("ior", 1.5, [0.0, UNLIMITED]);
         material.ior = if ior == 0.0 { 0.0 } else { ior.max(1.0) };
     }
     if let Some(mut specular) = file.section("KHR_materials_specular") {
         material.specular = specular.scalar(["specularFactor", "specularTexture"], 1.0, 3);
         material.specular_color =
-            specular.tint(["specularColorFactor", "specularColorTexture"], Vec3::ONE, ANY);
+            specular.tint(["specularColorFactor", "specularColorTexture"], Vec3::ONE, UNLIMITED);
     }
     if let Some(mut transmission) = file.section("KHR_materials_transmission") {
         material.transmission = transmission.scalar(["transmissionFactor", "transmissionTexture"], 0.0, 0);
     }
     if let Some(volume) = file.section("KHR_materials_volume")
-        && volume.number("thicknessFactor", 0.0, [0.0, ANY]) > 0.0
+        && volume.number("thicknessFactor", 0.0, [0.0, UNLIMITED]) > 0.0
     {
         material.volume = Some(Volume {
             attenuation_distance: volume.distance("attenuationDistance"),
@@ -155,7 +157,7 @@ fn read_gloss(material: &mut Material, file: &mut Properties<'_, '_>) {
         });
     }
     if let Some(dispersion) = file.section("KHR_materials_dispersion") {
-        material.dispersion = dispersion.number("dispersion", 0.0, [0.0, ANY]);
+        material.dispersion = dispersion.number("dispersion", 0.0, [0.0, UNLIMITED]);
     }
     material.clearcoat = file.section("KHR_materials_clearcoat").and_then(|mut coat| {
         let factor = coat.scalar(["clearcoatFactor", "clearcoatTexture"], 0.0, 0);
@@ -174,7 +176,7 @@ fn read_gloss(material: &mut Material, file: &mut Properties<'_, '_>) {
         let strength = anisotropy.number("anisotropyStrength", 0.0, [0.0, 1.0]);
         (strength > 0.0).then(|| Anisotropy {
             strength,
-            rotation: anisotropy.number("anisotropyRotation", 0.0, [-ANY, ANY]),
+            rotation: anisotropy.number("anisotropyRotation", 0.0, [-UNLIMITED, UNLIMITED]),
             texture: anisotropy.texture("anisotropyTexture", false),
         })
     });
@@ -183,8 +185,8 @@ fn read_gloss(material: &mut Material, file: &mut Properties<'_, '_>) {
         let ends = [("iridescenceThicknessMinimum", 100.0), ("iridescenceThicknessMaximum", 400.0)];
         (factor.factor > 0.0).then(|| Iridescence {
             factor,
-            ior: film.number("iridescenceIor", 1.3, [1.0, ANY]),
-            thickness: ends.map(|(key, absent)| film.number(key, absent, [0.0, ANY])),
+            ior: film.number("iridescenceIor", 1.3, [1.0, UNLIMITED]),
+            thickness: ends.map(|(key, absent)| film.number(key, absent, [0.0, UNLIMITED])),
             thickness_texture: film.texture("iridescenceThicknessTexture", false),
         })
     });
@@ -198,7 +200,7 @@ fn read_gloss(material: &mut Material, file: &mut Properties<'_, '_>) {
 }
 
 /// Metalness and roughness, or colour and glossiness of the reflection.
-fn workflow(file: &mut Properties<'_, '_>) -> Workflow {
+fn read_workflow(file: &mut LenientProperties<'_, '_>) -> Workflow {
     if let Some(mut glossy) = file.section(SPECULAR_GLOSSINESS) {
         const TEXTURE: &str = "specularGlossinessTexture";
         return Workflow::SpecularGlossiness {
@@ -215,13 +217,13 @@ fn workflow(file: &mut Properties<'_, '_>) -> Workflow {
 }
 
 /// An error if something is wrong with what a material's `extensions` say of its colours.
-fn extensions_are_sound(document: &Document<'_>, place: &str) -> Result<(), Fault> {
-    document.sound(place)?;
+fn check_color_extensions(document: &Document<'_>, place: &str) -> Result<(), Fault> {
+    document.check_at(place)?;
     for name in ["emissive_strength", "unlit"] {
-        document.sound_below(&format!("{place}/KHR_materials_{name}"))?;
+        document.check_below(&format!("{place}/KHR_materials_{name}"))?;
     }
     let glossy = format!("{place}/{SPECULAR_GLOSSINESS}");
-    document.sound(&glossy)?;
-    document.sound_below(&format!("{glossy}/diffuseFactor"))?;
-    document.sound_below(&format!("{glossy}/diffuseTexture"))
+    document.check_at(&glossy)?;
+    document.check_below(&format!("{glossy}/diffuseFactor"))?;
+    document.check_below(&format!("{glossy}/diffuseTexture"))
 }

@@ -8,20 +8,20 @@ use crate::{NormalMap, Scalar, TextureRef, Tint};
 use glam::Vec3;
 
 /// The properties of a material, or of a part or an extension of it.
-pub(crate) struct Properties<'r, 'a> {
+pub(crate) struct LenientProperties<'r, 'a> {
     reader: &'r mut TextureReader<'a>,
     object: Object<'a>,
     /// The material's further UV sets.
     sets: &'r [u32],
 }
 
-impl<'r, 'a> Properties<'r, 'a> {
+impl<'r, 'a> LenientProperties<'r, 'a> {
     pub fn new(reader: &'r mut TextureReader<'a>, object: Object<'a>, sets: &'r [u32]) -> Self {
         Self { reader, object, sets }
     }
 
     /// What was read, or a warning.
-    fn told<T>(&self, read: Result<Option<T>, Fault>) -> Option<T> {
+    fn or_warn<T>(&self, read: Result<Option<T>, Fault>) -> Option<T> {
         read.unwrap_or_else(|fault| {
             self.reader.document.warn(format!("{fault}; it is left out"));
             None
@@ -29,25 +29,25 @@ impl<'r, 'a> Properties<'r, 'a> {
     }
 
     /// A part or an extension, if it is there.
-    pub fn section(&mut self, name: &str) -> Option<Properties<'_, 'a>> {
-        let object = self.told(section(&self.object, name))?;
-        Some(Properties { reader: self.reader, object, sets: self.sets })
+    pub fn section(&mut self, name: &str) -> Option<LenientProperties<'_, 'a>> {
+        let object = self.or_warn(section(&self.object, name))?;
+        Some(LenientProperties { reader: self.reader, object, sets: self.sets })
     }
 
     /// A number, moved into a range.
     pub fn number(&self, key: &str, absent: f32, [low, high]: [f32; 2]) -> f32 {
-        self.told(self.object.number(key)).map_or(absent, |number| number as f32).clamp(low, high)
+        self.or_warn(self.object.number(key)).map_or(absent, |number| number as f32).clamp(low, high)
     }
 
     /// A number that may be infinite, which it is where it is absent.
     pub fn distance(&self, key: &str) -> f64 {
-        let distance = self.told(self.object.number(key)).unwrap_or(f64::INFINITY);
+        let distance = self.or_warn(self.object.number(key)).unwrap_or(f64::INFINITY);
         if distance > 0.0 { distance } else { f64::INFINITY }
     }
 
     /// A linear colour, each channel moved into [0, `high`].
     pub fn color(&self, key: &str, absent: Vec3, high: f32) -> Vec3 {
-        let color = self.told(self.object.numbers::<3>(key));
+        let color = self.or_warn(self.object.numbers::<3>(key));
         color
             .map_or(absent, |color| Vec3::from_array(color.map(|v| v as f32)))
             .clamp(Vec3::ZERO, Vec3::splat(high))
@@ -55,10 +55,10 @@ impl<'r, 'a> Properties<'r, 'a> {
 
     /// A texture.
     pub fn texture(&mut self, key: &str, is_color: bool) -> Option<TextureRef> {
-        let info = self.told(TextureInfo::of(&self.object, key))?;
+        let info = self.or_warn(TextureInfo::read(&self.object, key))?;
         let place = format!("{}/{key}", self.object.place);
         let texture = self.reader.texture(&info, &place, is_color, self.sets);
-        self.told(texture)
+        self.or_warn(texture)
     }
 
     /// A number in [0, 1] with the texture that scales it; that is not read where the number is 0.
@@ -76,7 +76,7 @@ impl<'r, 'a> Properties<'r, 'a> {
 
     /// A normal map.
     pub fn normal_map(&mut self, key: &str) -> Option<NormalMap> {
-        let scale = self.told(TextureInfo::of(&self.object, key))?.scale;
+        let scale = self.or_warn(TextureInfo::read(&self.object, key))?.scale;
         let texture = self.texture(key, false)?;
         Some(NormalMap { texture, scale: scale.clamp(-1e3, 1e3) })
     }

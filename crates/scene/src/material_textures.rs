@@ -50,16 +50,16 @@ pub(crate) struct TextureInfo {
 
 impl TextureInfo {
     /// The property `key` of `owner`, if it is there.
-    pub fn of(owner: &Object<'_>, key: &str) -> Result<Option<Self>, Fault> {
+    pub fn read(owner: &Object<'_>, key: &str) -> Result<Option<Self>, Fault> {
         let Some(info) = owner.object(key)? else { return Ok(None) };
         let Some(index) = info.index("index")? else { return Err(info.malformed("index", "is missing")) };
         let transform = info.extension("KHR_texture_transform")?;
-        let set_of = |object: &Object<'_>| object.integer("texCoord");
-        let own = set_of(&info)?;
-        let set = transform.as_ref().map(set_of).transpose()?.flatten().or(own).unwrap_or(0);
+        let set_of = |object: &Object<'_>| object.whole_number("texCoord");
+        let own_set = set_of(&info)?;
+        let set = transform.as_ref().map(set_of).transpose()?.flatten().or(own_set).unwrap_or(0);
         let set = u32::try_from(set).map_err(|_| info.malformed("texCoord", "is too large"))?;
         let scale = info.number("scale")?.unwrap_or(1.0) as f32;
-        let transform = transform.map_or(Ok(Mat3::IDENTITY), |transform| matrix(&transform))?;
+        let transform = transform.map_or(Ok(Mat3::IDENTITY), |transform| transform_matrix(&transform))?;
         Ok(Some(Self { index, set, transform, scale }))
     }
 
@@ -79,7 +79,7 @@ pub(crate) fn uv_set(set: u32, further: &[u32]) -> u8 {
 
 /// KHR_texture_transform: translation · rotation · scale. The rotation runs counter-clockwise as seen with v
 /// downwards, that is, from +v to +u.
-fn matrix(transform: &Object<'_>) -> Result<Mat3, Fault> {
+fn transform_matrix(transform: &Object<'_>) -> Result<Mat3, Fault> {
     let pair = |key: &str, absent: Vec2| -> Result<Vec2, Fault> {
         Ok(transform.numbers::<2>(key)?.map_or(absent, |pair| Vec2::from_array(pair.map(|v| v as f32))))
     };
@@ -108,11 +108,12 @@ pub(crate) fn further_uv_sets(document: &Document<'_>, material: Option<usize>) 
         return sets;
     };
     let emissive = material.numbers::<3>("emissiveFactor").ok().flatten().unwrap_or_default();
-    let counts = |key: &&&str| **key != "emissiveTexture" || emissive != [0.0; 3];
+    let is_sampled = |key: &&&str| **key != "emissiveTexture" || emissive != [0.0; 3];
     for (name, keys) in TEXTURES {
         // What is wrong is told when the material is read.
         let Ok(Some(section)) = section(&material, name) else { continue };
-        for info in keys.iter().filter(counts).filter_map(|key| TextureInfo::of(&section, key).ok().flatten())
+        for info in
+            keys.iter().filter(is_sampled).filter_map(|key| TextureInfo::read(&section, key).ok().flatten())
         {
             if info.set > 1 && !sets.contains(&info.set) {
                 sets.push(info.set);
@@ -135,8 +136,10 @@ pub(crate) fn tangent_texture(document: &Document<'_>, material: Option<usize>) 
     if material.extension("KHR_materials_unlit").ok()?.is_some() {
         return None;
     }
-    let of = |&(name, key): &(&str, &str)| TextureInfo::of(&section(&material, name).ok()??, key).ok()?;
-    let plain = TextureInfo { index: 0, set: 0, transform: Mat3::IDENTITY, scale: 1.0 };
-    let is_anisotropic = || material.extension("KHR_materials_anisotropy").ok().flatten().map(|_| plain);
-    WITH_TANGENTS.iter().find_map(of).or_else(is_anisotropic)
+    let texture_info =
+        |&(name, key): &(&str, &str)| TextureInfo::read(&section(&material, name).ok()??, key).ok()?;
+    let default_info = TextureInfo { index: 0, set: 0, transform: Mat3::IDENTITY, scale: 1.0 };
+    let is_anisotropic =
+        || material.extension("KHR_materials_anisotropy").ok().flatten().map(|_| default_info);
+    WITH_TANGENTS.iter().find_map(texture_info).or_else(is_anisotropic)
 }

@@ -9,8 +9,8 @@
 use crate::attribute_name::AttributeName;
 use crate::budget::Budget;
 use crate::error::Fault;
-use crate::json_object::integer;
-use crate::schema::{Kind, ROOT, Spec};
+use crate::json_object::as_whole_number;
+use crate::schema::{PropertyKind, ROOT, Spec};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 
@@ -41,19 +41,19 @@ const UNUSED: [&str; 22] = [
 ];
 
 /// Properties whose default does as well.
-const DEFAULTED: [&str; 6] = ["alphaMode", "generator", "magFilter", "name", "wrapS", "wrapT"];
+const DEFAULTS_ALLOWED: [&str; 6] = ["alphaMode", "generator", "magFilter", "name", "wrapS", "wrapT"];
 
 /// What is wrong with a document, by JSON pointer.
 #[derive(Debug, Default)]
 pub(crate) struct Faults(BTreeMap<String, String>);
 
 impl Faults {
-    fn note(&mut self, place: &str, what: String) {
+    fn record(&mut self, place: &str, what: String) {
         self.0.entry(place.into()).or_insert(what);
     }
 
     /// An error if something is wrong exactly at `place`.
-    pub fn at(&self, place: &str) -> Result<(), Fault> {
+    pub fn check_at(&self, place: &str) -> Result<(), Fault> {
         match self.0.get(place) {
             Some(what) => Err(Fault::Malformed { place: place.into(), what: what.clone() }),
             None => Ok(()),
@@ -61,11 +61,11 @@ impl Faults {
     }
 
     /// An error if something is wrong at `place` or below.
-    pub fn below(&self, place: &str) -> Result<(), Fault> {
-        self.at(place)?;
+    pub fn check_below(&self, place: &str) -> Result<(), Fault> {
+        self.check_at(place)?;
         let inner = format!("{place}/");
         match self.0.range(inner.clone()..).next() {
-            Some((place, _)) if place.starts_with(&inner) => self.at(place),
+            Some((place, _)) if place.starts_with(&inner) => self.check_at(place),
             _ => Ok(()),
         }
     }
@@ -73,15 +73,15 @@ impl Faults {
 
 /// The typed document and what had to be left out of it. Every index in it exists, unless there is a fault at its
 /// place. What it takes beyond twice the size of the JSON comes from `budget`.
-pub(crate) fn typed(root: &Value, budget: &Budget) -> Result<(gltf::Document, Faults), Fault> {
-    let mut mending = Mending { root, budget, faults: Faults::default(), stop: None };
-    let (mended, _) = mending.object(root, &ROOT, "");
-    if let Some(stop) = mending.stop {
+pub(crate) fn repair_document(root: &Value, budget: &Budget) -> Result<(gltf::Document, Faults), Fault> {
+    let mut repair = Repair { root, budget, faults: Faults::default(), stop: None };
+    let (repaired, _) = repair.object(root, &ROOT, "");
+    if let Some(stop) = repair.stop {
         return Err(stop);
     }
-    let root = serde_json::from_value(Value::Object(mended))
+    let root = serde_json::from_value(Value::Object(repaired))
         .map_err(|error| Fault::NotGltf(format!("its JSON is invalid: {error}")))?;
-    Ok((gltf::Document::from_json_without_validation(root), mending.faults))
+    Ok((gltf::Document::from_json_without_validation(root), repair.faults))
 }
 
 /// How many entries a collection of the document has.
@@ -94,7 +94,7 @@ pub(crate) fn len(root: &Value, collection: &str) -> usize {
     list.and_then(Value::as_array).map_or(0, Vec::len)
 }
 
-struct Mending<'a> {
+struct Repair<'a> {
     root: &'a Value,
     budget: &'a Budget,
     faults: Faults,
@@ -103,24 +103,27 @@ struct Mending<'a> {
 }
 
 /// What is wrong with a property; nothing if it is noted already, further inside.
-type Wrong = Option<String>;
+type DefectMessage = Option<String>;
 
-fn wrong<T>(what: impl Into<String>) -> Result<T, Wrong> {
+fn defect<T>(what: impl Into<String>) -> Result<T, DefectMessage> {
     Err(Some(what.into()))
 }
 
-impl Mending<'_> {
+impl Repair<'_> {
     /// An object, and whether it has all that it cannot do without.
     fn object(&mut self, value: &Value, spec: &Spec, place: &str) -> (Map<String, Value>, bool) {
         /// What stands in for an object takes more than the number or text that the file has in its place.
-        const STAND_IN: u64 = 3000;
+        const PLACEHOLDER_BYTES: u64 = 3000;
         let none = Map::new();
         let map = value.as_object().unwrap_or_else(|| {
-            self.faults.note(place, "is not an object".into());
-            self.stop = self.stop.take().or(self.budget.memory(STAND_IN, "what is wrong with it").err());
+            self.faults.record(place, "is not an object".into());
+            self.stop = self
+                .stop
+                .take()
+                .or(self.budget.take_memory(PLACEHOLDER_BYTES, "what is wrong with it").err());
             &none
         });
-        let (mut mended, mut whole) = (Map::new(), true);
+        let (mut repaired, mut is_complete) = (Map::new(), true);
         let required = spec.required.iter().map(|property| (true, property));
         for (required, (key, kind)) in required.chain(spec.optional.iter().map(|property| (false, property)))
         {
@@ -130,113 +133,124 @@ impl Mending<'_> {
                 Some(value) => self.property(value, kind, &format!("{place}/{key}")),
                 None if !required && !spec.filled.contains(key) => continue,
                 // A list that is missing is as good as an empty one.
-                None if !required || matches!(kind, Kind::List(_)) => Err(None),
-                None => wrong("is missing"),
+                None if !required || matches!(kind, PropertyKind::List(_)) => Err(None),
+                None => defect("is missing"),
             };
             let value = match result {
                 Ok(value) => Some(value),
                 Err(what) => {
-                    if let Some(what) = what.filter(|_| !UNUSED.contains(key) && !DEFAULTED.contains(key)) {
-                        self.faults.note(&format!("{place}/{key}"), what);
+                    if let Some(what) =
+                        what.filter(|_| !UNUSED.contains(key) && !DEFAULTS_ALLOWED.contains(key))
+                    {
+                        self.faults.record(&format!("{place}/{key}"), what);
                     }
-                    whole &= !(required && matches!(kind, Kind::Index(_) | Kind::Object(_)));
-                    (required || spec.filled.contains(key)).then(|| stand_in(kind))
+                    is_complete &=
+                        !(required && matches!(kind, PropertyKind::Index(_) | PropertyKind::Object(_)));
+                    (required || spec.filled.contains(key)).then(|| placeholder(kind))
                 }
             };
             if let Some(value) = value {
-                mended.insert((*key).into(), value);
+                repaired.insert((*key).into(), value);
             }
         }
         if let Some(extensions) = map.get("extensions").filter(|value| !value.is_null()) {
             let extensions = self.extensions(extensions, spec, &format!("{place}/extensions"));
-            mended.insert("extensions".into(), Value::Object(extensions));
+            repaired.insert("extensions".into(), Value::Object(extensions));
         }
-        (mended, whole)
+        (repaired, is_complete)
     }
 
     /// The extensions that are known here.
     fn extensions(&mut self, value: &Value, spec: &Spec, place: &str) -> Map<String, Value> {
-        let mut mended = Map::new();
+        let mut repaired = Map::new();
         let Some(map) = value.as_object() else {
-            self.faults.note(place, "is not an object".into());
-            return mended;
+            self.faults.record(place, "is not an object".into());
+            return repaired;
         };
         for (name, spec) in spec.extensions {
             if let Some(value) = map.get(*name).filter(|value| !value.is_null())
                 && let (extension, true) = self.object(value, spec, &format!("{place}/{name}"))
             {
-                mended.insert((*name).into(), Value::Object(extension));
+                repaired.insert((*name).into(), Value::Object(extension));
             }
         }
-        mended
+        repaired
     }
 
-    fn property(&mut self, value: &Value, kind: &Kind, place: &str) -> Result<Value, Wrong> {
+    fn property(&mut self, value: &Value, kind: &PropertyKind, place: &str) -> Result<Value, DefectMessage> {
         match kind {
-            Kind::Flag if !value.is_boolean() => wrong("is not true or false"),
-            Kind::Text if !value.is_string() => wrong("is not a text"),
-            Kind::Number(..) | Kind::Above(_) if !value.is_number() => wrong("is not a number"),
-            Kind::Flag | Kind::Text | Kind::Number(..) | Kind::Above(_) => Ok(value.clone()),
-            Kind::Integer(_, most) => match integer(value) {
-                Some(number) if number > *most => wrong(format!("{number} is too large")),
+            PropertyKind::Flag if !value.is_boolean() => defect("is not true or false"),
+            PropertyKind::Text if !value.is_string() => defect("is not a text"),
+            PropertyKind::Number(..) | PropertyKind::Above(_) if !value.is_number() => {
+                defect("is not a number")
+            }
+            PropertyKind::Flag | PropertyKind::Text | PropertyKind::Number(..) | PropertyKind::Above(_) => {
+                Ok(value.clone())
+            }
+            PropertyKind::Integer(_, most) => match as_whole_number(value) {
+                Some(number) if number > *most => defect(format!("{number} is too large")),
                 number => whole_number(number),
             },
-            Kind::MultipleOf4(..) => whole_number(integer(value)),
-            Kind::Code(codes) => match integer(value) {
-                Some(code) if !codes.contains(&code) => wrong(format!("{code} is unknown")),
+            PropertyKind::MultipleOf4(..) => whole_number(as_whole_number(value)),
+            PropertyKind::Code(codes) => match as_whole_number(value) {
+                Some(code) if !codes.contains(&code) => defect(format!("{code} is unknown")),
                 code => whole_number(code),
             },
-            Kind::Word(words) => match value.as_str() {
+            PropertyKind::Word(words) => match value.as_str() {
                 Some(word) if words.contains(&word) => Ok(value.clone()),
-                Some(word) => wrong(format!("{:?} is unknown", word.chars().take(40).collect::<String>())),
-                None => wrong("is not a text"),
+                Some(word) => defect(format!("{:?} is unknown", word.chars().take(40).collect::<String>())),
+                None => defect("is not a text"),
             },
-            Kind::Numbers(least, most, ..) => match value.as_array() {
-                Some(list) if !list.iter().all(Value::is_number) => wrong("is not an array of numbers"),
+            PropertyKind::Numbers(least, most, ..) => match value.as_array() {
+                Some(list) if !list.iter().all(Value::is_number) => defect("is not an array of numbers"),
                 Some(list) if *most < usize::MAX && !(*least..=*most).contains(&list.len()) => {
-                    wrong(format!("is not an array of {least} numbers"))
+                    defect(format!("is not an array of {least} numbers"))
                 }
                 Some(_) => Ok(value.clone()),
-                None => wrong("is not an array of numbers"),
+                None => defect("is not an array of numbers"),
             },
-            Kind::Index(collection) => self.index(value, collection),
-            Kind::Indices(collection) => {
-                let item = |mending: &mut Self, item: &Value, place: &str| {
-                    mending.index(item, collection).map_err(|what| mending.note(place, what)).ok()
+            PropertyKind::Index(collection) => self.index(value, collection),
+            PropertyKind::Indices(collection) => {
+                let item = |repair: &mut Self, item: &Value, place: &str| {
+                    repair.index(item, collection).map_err(|what| repair.record(place, what)).ok()
                 };
                 self.list(value, place, item)
             }
-            Kind::Texts => self.list(value, place, |_, text, _| text.is_string().then(|| text.clone())),
-            Kind::Object(spec) => match self.object(value, spec, place) {
+            PropertyKind::Texts => {
+                self.list(value, place, |_, text, _| text.is_string().then(|| text.clone()))
+            }
+            PropertyKind::Object(spec) => match self.object(value, spec, place) {
                 (object, true) => Ok(Value::Object(object)),
                 (_, false) => Err(None),
             },
-            Kind::List(spec) => self.list(value, place, |mending, item, place| {
-                Some(Value::Object(mending.object(item, spec, place).0))
+            PropertyKind::List(spec) => self.list(value, place, |repair, item, place| {
+                Some(Value::Object(repair.object(item, spec, place).0))
             }),
-            Kind::Accessors => self.accessors(value, place, |_| true),
-            Kind::Attributes => self.accessors(value, place, |name| AttributeName::of(name).is_some()),
-            Kind::Targets => self.list(value, place, |mending, target, place| {
-                let known = |name: &str| AttributeName::of(name).is_some();
-                let mended = mending.accessors(target, place, known);
-                Some(mended.unwrap_or_else(|what| {
-                    mending.note(place, what);
+            PropertyKind::Accessors => self.accessors(value, place, |_| true),
+            PropertyKind::Attributes => {
+                self.accessors(value, place, |name| AttributeName::parse(name).is_some())
+            }
+            PropertyKind::Targets => self.list(value, place, |repair, target, place| {
+                let is_attribute = |name: &str| AttributeName::parse(name).is_some();
+                let repaired = repair.accessors(target, place, is_attribute);
+                Some(repaired.unwrap_or_else(|what| {
+                    repair.record(place, what);
                     json!({})
                 }))
             }),
         }
     }
 
-    fn note(&mut self, place: &str, what: Wrong) {
+    fn record(&mut self, place: &str, what: DefectMessage) {
         if let Some(what) = what {
-            self.faults.note(place, what);
+            self.faults.record(place, what);
         }
     }
 
-    fn index(&self, value: &Value, collection: &str) -> Result<Value, Wrong> {
-        match integer(value) {
+    fn index(&self, value: &Value, collection: &str) -> Result<Value, DefectMessage> {
+        match as_whole_number(value) {
             Some(index) if index >= len(self.root, collection) as u64 => {
-                wrong(format!("refers to {collection}[{index}], which does not exist"))
+                defect(format!("refers to {collection}[{index}], which does not exist"))
             }
             index => whole_number(index),
         }
@@ -248,14 +262,14 @@ impl Mending<'_> {
         value: &Value,
         place: &str,
         item: impl Fn(&mut Self, &Value, &str) -> Option<Value>,
-    ) -> Result<Value, Wrong> {
-        let Some(list) = value.as_array() else { return wrong("is not an array") };
+    ) -> Result<Value, DefectMessage> {
+        let Some(list) = value.as_array() else { return defect("is not an array") };
         let items = list.iter().enumerate();
-        let mended = items.filter_map(|(i, value)| match self.stop {
+        let repaired = items.filter_map(|(i, value)| match self.stop {
             None => item(self, value, &format!("{place}/{i}")),
             Some(_) => None,
         });
-        Ok(mended.collect())
+        Ok(repaired.collect())
     }
 
     /// Accessors by name, as far as the name is known.
@@ -263,36 +277,43 @@ impl Mending<'_> {
         &mut self,
         value: &Value,
         place: &str,
-        known: impl Fn(&str) -> bool,
-    ) -> Result<Value, Wrong> {
-        let Some(map) = value.as_object() else { return wrong("is not an object") };
-        let mut mended = Map::new();
-        for (name, value) in map.iter().filter(|(name, value)| known(name) && !value.is_null()) {
+        is_accepted: impl Fn(&str) -> bool,
+    ) -> Result<Value, DefectMessage> {
+        let Some(map) = value.as_object() else { return defect("is not an object") };
+        let mut repaired = Map::new();
+        for (name, value) in map.iter().filter(|(name, value)| is_accepted(name) && !value.is_null()) {
             match self.index(value, "accessors") {
-                Ok(index) => drop(mended.insert(name.clone(), index)),
-                Err(what) => self.note(&format!("{place}/{name}"), what),
+                Ok(index) => drop(repaired.insert(name.clone(), index)),
+                Err(what) => self.record(&format!("{place}/{name}"), what),
             }
         }
-        Ok(Value::Object(mended))
+        Ok(Value::Object(repaired))
     }
 }
 
-fn whole_number(number: Option<u64>) -> Result<Value, Wrong> {
-    number.map_or_else(|| wrong("is not a whole number"), |number| Ok(number.into()))
+fn whole_number(number: Option<u64>) -> Result<Value, DefectMessage> {
+    number.map_or_else(|| defect("is not a whole number"), |number| Ok(number.into()))
 }
 
 /// What takes the place of a property that is missing or wrong.
-fn stand_in(kind: &Kind) -> Value {
+fn placeholder(kind: &PropertyKind) -> Value {
     match kind {
-        Kind::Flag => false.into(),
-        Kind::Text => "".into(),
-        Kind::Number(..) | Kind::Above(_) | Kind::Integer(..) | Kind::MultipleOf4(..) => 0.into(),
-        Kind::Code(codes) => codes[0].into(),
-        Kind::Word(words) => words[0].into(),
+        PropertyKind::Flag => false.into(),
+        PropertyKind::Text => "".into(),
+        PropertyKind::Number(..)
+        | PropertyKind::Above(_)
+        | PropertyKind::Integer(..)
+        | PropertyKind::MultipleOf4(..) => 0.into(),
+        PropertyKind::Code(codes) => codes[0].into(),
+        PropertyKind::Word(words) => words[0].into(),
         // Beyond every collection.
-        Kind::Index(_) => u32::MAX.into(),
-        Kind::Numbers(..) | Kind::Indices(_) | Kind::Texts | Kind::List(_) | Kind::Targets => json!([]),
-        Kind::Object(_) | Kind::Accessors | Kind::Attributes => json!({}),
+        PropertyKind::Index(_) => u32::MAX.into(),
+        PropertyKind::Numbers(..)
+        | PropertyKind::Indices(_)
+        | PropertyKind::Texts
+        | PropertyKind::List(_)
+        | PropertyKind::Targets => json!([]),
+        PropertyKind::Object(_) | PropertyKind::Accessors | PropertyKind::Attributes => json!({}),
     }
 }
 
@@ -302,7 +323,10 @@ mod tests {
     use crate::LoadOptions;
 
     fn typed(root: &Value) -> Result<(gltf::Document, Faults), Fault> {
-        super::typed(root, &Budget::new(&LoadOptions { max_memory: 1 << 20, ..LoadOptions::default() }))
+        super::repair_document(
+            root,
+            &Budget::new(&LoadOptions { max_memory: 1 << 20, ..LoadOptions::default() }),
+        )
     }
 
     #[test]
@@ -319,7 +343,7 @@ mod tests {
         .unwrap();
         assert_eq!(typed.accessors().next().map(|accessor| accessor.count()), Some(3));
         assert_eq!(typed.default_scene().map(|scene| scene.nodes().count()), Some(0));
-        assert!(faults.below("").is_ok());
+        assert!(faults.check_below("").is_ok());
     }
 
     #[test]
@@ -345,11 +369,11 @@ mod tests {
             ("/accessors/0/sparse/values", "is missing"),
             ("/materials/0/emissiveTexture/index", "refers to textures[0], which does not exist"),
         ] {
-            assert!(faults.at(place).unwrap_err().to_string().contains(what), "{place}: {faults:?}");
+            assert!(faults.check_at(place).unwrap_err().to_string().contains(what), "{place}: {faults:?}");
         }
-        assert!(faults.below("/nodes/0").is_err() && faults.at("/nodes/0").is_ok());
+        assert!(faults.check_below("/nodes/0").is_err() && faults.check_at("/nodes/0").is_ok());
         for place in ["/materials/0/alphaMode", "/materials/0/normalTexture", "/nodes/1/name", "/meshes"] {
-            assert!(faults.below(place).is_ok(), "{place}: {faults:?}");
+            assert!(faults.check_below(place).is_ok(), "{place}: {faults:?}");
         }
     }
 }

@@ -1,7 +1,7 @@
 //! What is odd about the triangles: for the eye of whoever exported them.
 
 use crate::Scene;
-use crate::turned_faces::turned_faces;
+use crate::turned_faces::count_inverted_faces;
 use glam::DVec3;
 use serde::Serialize;
 
@@ -19,7 +19,8 @@ pub struct MeshHealth {
     /// Edges of more than two triangles.
     pub non_manifold_edges: usize,
     /// Triangles that face away from the outside of a closed mesh.
-    pub turned: usize,
+    #[serde(rename = "turned")]
+    pub inverted: usize,
     /// Triangles whose part has no texture coordinates.
     pub without_uv: usize,
     /// Summed area.
@@ -32,7 +33,7 @@ pub struct MeshHealth {
 
 impl MeshHealth {
     /// Looks at every triangle of `scene`. Sorts the edges: O(n log n).
-    pub fn of(scene: &Scene) -> Self {
+    pub fn measure(scene: &Scene) -> Self {
         let welded = weld(&scene.positions);
         let mut edges = Vec::with_capacity(3 * scene.triangles.len());
         let mut corners = Vec::with_capacity(scene.triangles.len());
@@ -58,7 +59,7 @@ impl MeshHealth {
             corners.push(ids);
         }
         // A vertex is the lowest at its position.
-        health.turned = turned_faces(&corners, |vertex| scene.positions[vertex as usize]);
+        health.inverted = count_inverted_faces(&corners, |vertex| scene.positions[vertex as usize]);
         corners.iter_mut().for_each(|ids| ids.sort_unstable());
         corners.sort_unstable();
         health.duplicates = corners.windows(2).filter(|pair| pair[0] == pair[1]).count();

@@ -48,11 +48,11 @@ pub struct Scene {
     /// Perspective cameras in file order. Never empty: a scene without one gets a framing of its own.
     pub cameras: Vec<SceneCamera>,
     /// Whether the first camera was made up because the file has none.
-    pub camera_is_invented: bool,
+    pub has_default_camera: bool,
     /// Whether faces that are not double sided are seen from behind.
     pub back_faces: BackFaces,
     /// What lies beyond all surfaces as the file has it (EXT_lights_image_based): the world where none was chosen.
-    pub own_world: Option<World>,
+    pub embedded_world: Option<World>,
     /// The world that was chosen for it; else it has one of its own ([`World::of_scene`]).
     pub world: Option<World>,
     /// Whether light that meets microfacets more than once is left out, as in renderers that do.
@@ -63,7 +63,7 @@ pub struct Scene {
     pub photo_lookup: PhotoLookup,
     /// Photographs that are looked through and compared with, no light is made of them: those left out, and the views of a light field,
     /// whose light the texture has.
-    pub left_out: Vec<View>,
+    pub excluded_views: Vec<View>,
     /// Of a surface that was made from a picture: the picture as its texture.
     pub picture: Option<PictureTexture>,
     /// What was wrong with the file but did no harm, a sentence each.
@@ -202,8 +202,8 @@ impl Scene {
     }
 
     /// Whether a triangle is seen from its front alone.
-    pub fn hides_back(&self, triangle: u32) -> bool {
-        self.material_of(triangle).hides_back(self.back_faces)
+    pub fn culls_back_face(&self, triangle: u32) -> bool {
+        self.material_of(triangle).culls_back_faces(self.back_faces)
     }
 
     /// The texture coordinates of all vertices in a set ([`TextureRef::uv_set`](crate::TextureRef::uv_set)); empty if no part has it.

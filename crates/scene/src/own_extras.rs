@@ -38,7 +38,7 @@ pub struct CameraLens {
 
 impl CameraLens {
     /// The camera with what the file says of its lens.
-    pub fn of(&self, camera: Camera) -> Camera {
+    pub fn apply_to(&self, camera: Camera) -> Camera {
         let [width, height] = self.size_px.unwrap_or([camera.width, camera.height]);
         Camera {
             width,
@@ -53,8 +53,8 @@ impl CameraLens {
     }
 
     /// The names of the fields that the file says, as in a camera file.
-    pub fn said(&self) -> Vec<&'static str> {
-        let said = [
+    pub fn specified_fields(&self) -> Vec<&'static str> {
+        let fields = [
             ("width", self.size_px.is_some()),
             ("height", self.size_px.is_some()),
             ("focus_distance", self.focus_distance.is_some()),
@@ -63,17 +63,17 @@ impl CameraLens {
             ("shift", self.shift.is_some()),
             ("aperture", self.aperture.is_some()),
         ];
-        said.into_iter().filter(|(_, is_said)| *is_said).map(|(name, _)| name).collect()
+        fields.into_iter().filter(|(_, is_said)| *is_said).map(|(name, _)| name).collect()
     }
 }
 
 /// Our entry in the extras of a part of the document, in a version that is known.
-fn entry<'a>(document: &Document<'_>, holder: &Object<'a>) -> Result<Option<Object<'a>>, Fault> {
+fn focus_brush_extras<'a>(document: &Document<'_>, holder: &Object<'a>) -> Result<Option<Object<'a>>, Fault> {
     // Extras may be anything; ours are an object.
     let Some(extras) = holder.get("extras").filter(|extras| extras.is_object()) else { return Ok(None) };
     let extras = Object::new(extras, format!("{}/extras", holder.place))?;
     let Some(own) = extras.object(EXTRAS_KEY)? else { return Ok(None) };
-    match own.integer("version")? {
+    match own.whole_number("version")? {
         Some(EXTRAS_VERSION) => Ok(Some(own)),
         Some(other) => {
             document.warn(format!("{}/version: {other} is not known here; all of it is left out", own.place));
@@ -84,7 +84,7 @@ fn entry<'a>(document: &Document<'_>, holder: &Object<'a>) -> Result<Option<Obje
 }
 
 /// What was read, or a warning and nothing.
-fn told<T: Default>(document: &Document<'_>, read: Result<T, Fault>) -> T {
+fn or_warn<T: Default>(document: &Document<'_>, read: Result<T, Fault>) -> T {
     read.unwrap_or_else(|fault| {
         document.warn(format!("{fault}; it is left out"));
         T::default()
@@ -95,19 +95,19 @@ fn told<T: Default>(document: &Document<'_>, read: Result<T, Fault>) -> T {
 pub(crate) fn camera_lens(document: &Document<'_>, index: usize, yfov: f64) -> CameraLens {
     let read = || -> Result<CameraLens, Fault> {
         let camera = document.item("cameras", index, "/cameras")?;
-        let Some(own) = entry(document, &camera)? else { return Ok(CameraLens::default()) };
+        let Some(own) = focus_brush_extras(document, &camera)? else { return Ok(CameraLens::default()) };
         Ok(CameraLens {
-            size_px: told(document, size(&own)),
-            focus_distance: told(document, focus_distance(&own)),
-            aperture_radius: told(document, own.number("aperture_radius")),
-            sensor_height: told(document, own.number("sensor_height")),
-            shift: told(document, own.numbers::<2>("shift")).map(DVec2::from_array),
-            aperture: told(document, aperture(&own)),
+            size_px: or_warn(document, size(&own)),
+            focus_distance: or_warn(document, focus_distance(&own)),
+            aperture_radius: or_warn(document, own.number("aperture_radius")),
+            sensor_height: or_warn(document, own.number("sensor_height")),
+            shift: or_warn(document, own.numbers::<2>("shift")).map(DVec2::from_array),
+            aperture: or_warn(document, aperture(&own)),
         })
     };
-    let lens = told(document, read());
+    let lens = or_warn(document, read());
     let place = || format!("/cameras/{index}/extras/{EXTRAS_KEY}");
-    usable(lens, yfov).unwrap_or_else(|error| {
+    validated(lens, yfov).unwrap_or_else(|error| {
         document.warn(format!(
             "{}/{}: it must be {}; the lens is left out",
             place(),
@@ -119,13 +119,13 @@ pub(crate) fn camera_lens(document: &Document<'_>, index: usize, yfov: f64) -> C
 }
 
 /// The lens, if a camera can have it.
-fn usable(lens: CameraLens, yfov: f64) -> Result<CameraLens, lens::CameraError> {
-    lens.of(Camera { yfov, ..Camera::default() }).validate()?;
+fn validated(lens: CameraLens, yfov: f64) -> Result<CameraLens, lens::CameraError> {
+    lens.apply_to(Camera { yfov, ..Camera::default() }).validate()?;
     Ok(lens)
 }
 
 fn size(own: &Object<'_>) -> Result<Option<[u32; 2]>, Fault> {
-    let side = |key| own.integer(key).map(|side| side.and_then(|side| u32::try_from(side).ok()));
+    let side = |key| own.whole_number(key).map(|side| side.and_then(|side| u32::try_from(side).ok()));
     Ok(side("width")?.zip(side("height")?).map(<[u32; 2]>::from))
 }
 
@@ -145,7 +145,8 @@ fn aperture(own: &Object<'_>) -> Result<Option<Aperture>, Fault> {
         "disc" => ApertureShape::Disc,
         "square" => ApertureShape::Square,
         "polygon" => ApertureShape::Polygon {
-            blades: aperture.integer("blades")?.unwrap_or(DEFAULT_BLADES).min(u64::from(u32::MAX)) as u32,
+            blades: aperture.whole_number("blades")?.unwrap_or(DEFAULT_BLADES).min(u64::from(u32::MAX))
+                as u32,
             rotation: number("rotation", 0.0)?,
             roundness: number("roundness", 0.0)?,
         },
@@ -169,10 +170,10 @@ pub(crate) fn radiance<'a>(
     document: &Document<'_>,
     material: &Object<'a>,
 ) -> Result<Option<RadianceInfo<'a>>, Fault> {
-    let Some(own) = entry(document, material)? else { return Ok(None) };
+    let Some(own) = focus_brush_extras(document, material)? else { return Ok(None) };
     let Some(radiance) = own.object("radiance")? else { return Ok(None) };
     let Some(uri) = radiance.text("uri")? else { return Err(radiance.malformed("uri", "is missing")) };
-    let set = radiance.integer("texCoord")?.unwrap_or(0);
+    let set = radiance.whole_number("texCoord")?.unwrap_or(0);
     let set = u32::try_from(set).map_err(|_| radiance.malformed("texCoord", "is too large"))?;
     Ok(Some(RadianceInfo { uri, set, place: radiance.place }))
 }

@@ -5,16 +5,16 @@ use glam::DVec2;
 
 impl Scene {
     /// Its photographs: first those that light it, then those that are only compared with.
-    pub fn photographs(&self) -> impl Iterator<Item = &View> {
-        self.views.iter().chain(&self.left_out)
+    pub fn all_views(&self) -> impl Iterator<Item = &View> {
+        self.views.iter().chain(&self.excluded_views)
     }
 
     /// How far a surface that was made from a picture was photographed at a point: 1 it was, 0 it was invented; none of other surfaces.
-    pub fn photographed(&self, point: SurfacePoint) -> Option<f32> {
+    pub fn photographed_share(&self, point: SurfacePoint) -> Option<f32> {
         let picture = self.picture.as_ref()?;
         let corners =
             self.triangles[point.triangle as usize].vertices.map(|v| self.uv[0][v as usize].as_dvec2());
         let uv: DVec2 = corners.iter().zip(point.weights()).map(|(uv, weight)| *uv * weight).sum();
-        Some(f32::from(picture.is_seen_at(uv.to_array())))
+        Some(f32::from(picture.is_photographed_at(uv.to_array())))
     }
 }

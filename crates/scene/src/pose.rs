@@ -9,11 +9,11 @@ use std::collections::HashMap;
 
 /// A scene at a moment of an animation.
 #[derive(Clone, Debug)]
-pub struct Posed {
+pub struct PosedScene {
     /// The scene.
     pub scene: Scene,
     /// Of each of its triangles, which one it is at rest; none if it is hidden then.
-    pub at_rest: Vec<Option<RestTriangle>>,
+    pub rest_triangles: Vec<Option<RestTriangle>>,
 }
 
 /// A triangle of the scene at rest.
@@ -22,23 +22,23 @@ pub struct RestTriangle {
     /// Its index.
     pub triangle: u32,
     /// Whether its second and third corner are the third and second of the triangle in motion: a transform that mirrors turns them.
-    pub is_turned: bool,
+    pub is_flipped: bool,
 }
 
-impl Posed {
+impl PosedScene {
     /// Whether every triangle is that of the scene at rest with the same index.
-    pub fn has_all_in_place(&self) -> bool {
+    pub fn matches_rest(&self) -> bool {
         let mut number = 0..;
-        self.at_rest
+        self.rest_triangles
             .iter()
-            .all(|rest| rest.is_some_and(|rest| Some(rest.triangle) == number.next() && !rest.is_turned))
+            .all(|rest| rest.is_some_and(|rest| Some(rest.triangle) == number.next() && !rest.is_flipped))
     }
 }
 
 /// Node, instance and primitive.
 type PartName = [usize; 3];
 
-fn name_of(source: &PartSource) -> PartName {
+fn part_name(source: &PartSource) -> PartName {
     [source.node, source.instance.map_or(0, |(instance, _)| instance), source.primitive]
 }
 
@@ -55,7 +55,7 @@ struct RestPart {
 
 impl RestParts {
     /// Those of a scene whose parts stand there in its file.
-    pub fn of(scene: &Scene, sources: &[PartSource]) -> Self {
+    pub fn new(scene: &Scene, sources: &[PartSource]) -> Self {
         let part = |(part, source): (&crate::Part, &PartSource)| {
             let part = RestPart {
                 first_triangle: part.triangles.start,
@@ -63,33 +63,33 @@ impl RestParts {
                 mirrored: part.mirrored,
                 triangles: source.triangles.clone(),
             };
-            (name_of(source), part)
+            (part_name(source), part)
         };
         Self(scene.parts.iter().zip(sources).map(part).collect())
     }
 
     /// Of each triangle of a scene in motion, which one it is at rest. `None` if a part has other triangles than it can have.
-    pub fn of_triangles(&self, scene: &Scene, sources: &[PartSource]) -> Option<Vec<Option<RestTriangle>>> {
-        let mut found = Vec::with_capacity(scene.triangles.len());
+    pub fn rest_triangles(&self, scene: &Scene, sources: &[PartSource]) -> Option<Vec<Option<RestTriangle>>> {
+        let mut matches = Vec::with_capacity(scene.triangles.len());
         for (part, source) in scene.parts.iter().zip(sources) {
-            let rest = self.0.get(&name_of(source));
+            let rest = self.0.get(&part_name(source));
             for at in 0..part.triangles.len() {
                 let number = match &source.triangles {
                     Some(triangles) => *triangles.get(at)?,
                     None => at as u32,
                 };
-                let of_rest = |rest: &RestPart| {
+                let rest_triangle = |rest: &RestPart| {
                     let at = match &rest.triangles {
                         Some(triangles) => triangles.binary_search(&number).ok()? as u32,
                         None => number,
                     };
                     let is_turned = rest.mirrored != part.mirrored;
                     (at < rest.triangle_count)
-                        .then_some(RestTriangle { triangle: rest.first_triangle + at, is_turned })
+                        .then_some(RestTriangle { triangle: rest.first_triangle + at, is_flipped: is_turned })
                 };
-                found.push(rest.and_then(of_rest));
+                matches.push(rest.and_then(rest_triangle));
             }
         }
-        (found.len() == scene.triangles.len()).then_some(found)
+        (matches.len() == scene.triangles.len()).then_some(matches)
     }
 }

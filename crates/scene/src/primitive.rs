@@ -49,19 +49,19 @@ impl Primitive {
     ) -> Result<Option<Self>, Fault> {
         /// Reading the properties takes as long as reading so many values.
         const PROPERTIES: u64 = 256;
-        document.budget.work(PROPERTIES + weights.len() as u64, place)?;
-        document.sound(place)?;
-        document.sound(&format!("{place}/mode"))?;
+        document.budget.take_work(PROPERTIES + weights.len() as u64, place)?;
+        document.check_at(place)?;
+        document.check_at(&format!("{place}/mode"))?;
         let mode = file.mode();
         if triangle_count(mode, 0).is_none() {
             return Ok(None);
         }
-        document.sound(&format!("{place}/extensions"))?;
-        document.sound_below(&format!("{place}/extensions/KHR_draco_mesh_compression"))?;
+        document.check_at(&format!("{place}/extensions"))?;
+        document.check_below(&format!("{place}/extensions/KHR_draco_mesh_compression"))?;
         let attributes = Attributes { document, file, place: format!("{place}/attributes") };
-        document.sound(&attributes.place)?;
+        document.check_at(&attributes.place)?;
         let position_place = format!("{}/POSITION", attributes.place);
-        document.sound(&position_place)?;
+        document.check_at(&position_place)?;
         let Some(position) = file.get(&Semantic::Positions) else {
             document.warn(format!("{}: has no POSITION and is left out", attributes.place));
             return Ok(None);
@@ -71,12 +71,12 @@ impl Primitive {
         let material = match variants.material(document, place)? {
             Some(material) => Some(material),
             None => {
-                document.sound(&format!("{place}/material"))?;
+                document.check_at(&format!("{place}/material"))?;
                 file.material().index()
             }
         };
-        let corners = corners(document, file, place, position.count)?;
-        let (triangles, vertices) = compact(&corners);
+        let corners = read_corners(document, file, place, position.count)?;
+        let (triangles, vertices) = compact_indices(&corners);
         drop(corners);
         if triangles.is_empty() {
             return Ok(None);
@@ -84,7 +84,7 @@ impl Primitive {
         let further_sets = further_uv_sets(document, material);
         let vertex_bytes = VERTEX_BYTES + 8 * further_sets.len() as u64;
         let memory = triangles.len() as u64 * 12 + vertices.len() as u64 * vertex_bytes;
-        document.budget.memory(memory, place)?;
+        document.budget.take_memory(memory, place)?;
         let mut primitive = Self {
             place: place.into(),
             material,
@@ -113,7 +113,7 @@ impl Primitive {
 
     /// Gives its memory back.
     pub fn release(self, document: &Document<'_>) {
-        document.budget.release(self.memory);
+        document.budget.release_memory(self.memory);
     }
 
     /// Normals and colours. What is broken about them is left out with a warning.
@@ -124,20 +124,20 @@ impl Primitive {
         count: usize,
     ) -> Result<(), Fault> {
         let open = |semantic, components: &[usize]| attributes.open(&semantic, components, count);
-        attributes.document.budget.work(8 * vertices.len() as u64, &attributes.place)?;
+        attributes.document.budget.take_work(8 * vertices.len() as u64, &attributes.place)?;
         if let Some(normal) = open(Semantic::Normals, &[3]) {
             self.normals = vertices.iter().map(|&v| DVec3::from_array(normal.doubles(v as usize))).collect();
         }
         if let Some(color) = open(Semantic::Colors(0), &[3, 4]) {
             let opaque = color.shape.components() == 3;
-            let read = |&v: &u32| {
+            let read_color = |&v: &u32| {
                 let color = match opaque {
                     true => glam::Vec3::from_array(color.floats(v as usize)).extend(1.0),
                     false => Vec4::from_array(color.floats(v as usize)),
                 };
                 if color.is_finite() { color.max(Vec4::ZERO) } else { Vec4::ONE }
             };
-            self.colors = vertices.iter().map(read).collect();
+            self.colors = vertices.iter().map(read_color).collect();
         }
         Ok(())
     }
@@ -151,7 +151,7 @@ impl Primitive {
         count: usize,
     ) -> Result<(), Fault> {
         let work = 2 * (2 + further_sets.len()) as u64 * vertices.len() as u64;
-        attributes.document.budget.work(work, &attributes.place)?;
+        attributes.document.budget.take_work(work, &attributes.place)?;
         for (set, uvs) in self.uv_sets(further_sets) {
             if let Some(uv) = attributes.open(&Semantic::TexCoords(set), &[2], count) {
                 let finite = |uv: Vec2| if uv.is_finite() { uv } else { Vec2::ZERO };
@@ -171,29 +171,31 @@ impl Primitive {
         count: usize,
     ) -> Result<(), Fault> {
         let (document, triangles) = (attributes.document, self.triangles.len() as u64);
-        document.budget.memory(48 * triangles, &attributes.place)?;
+        document.budget.take_memory(48 * triangles, &attributes.place)?;
         self.memory += 48 * triangles;
-        document.budget.work(4 * vertices.len() as u64 + 64 * triangles, &attributes.place)?;
-        let own = attributes.open(&Semantic::Tangents, &[4], count).filter(|_| !self.normals.is_empty());
-        if let Some(own) = own {
-            let of = |v: u32| Vec4::from_array(own.floats(vertices[v as usize] as usize));
+        document.budget.take_work(4 * vertices.len() as u64 + 64 * triangles, &attributes.place)?;
+        let file_tangents =
+            attributes.open(&Semantic::Tangents, &[4], count).filter(|_| !self.normals.is_empty());
+        if let Some(own) = file_tangents {
+            let tangent = |v: u32| Vec4::from_array(own.floats(vertices[v as usize] as usize));
             let finite = |tangent: Vec4| if tangent.is_finite() { tangent } else { Vec4::ZERO };
-            self.tangents = self.triangles.iter().map(|corners| corners.map(|v| finite(of(v)))).collect();
+            self.tangents =
+                self.triangles.iter().map(|corners| corners.map(|v| finite(tangent(v)))).collect();
             return Ok(());
         }
         let uv = match usize::from(texture.uv_set(further_sets)) {
             set @ (0 | 1) => &self.uv[set],
             set => &self.further_uv[set - 2],
         };
-        document.budget.memory(tangents::BYTES_A_TRIANGLE * triangles, &attributes.place)?;
-        self.tangents = tangents::generate(tangents::Mesh {
+        document.budget.take_memory(tangents::BYTES_PER_TRIANGLE * triangles, &attributes.place)?;
+        self.tangents = tangents::generate(tangents::TangentInput {
             triangles: &self.triangles,
             positions: &self.positions,
             normals: &self.normals,
             uv,
             transform: texture.transform,
         });
-        document.budget.release(tangents::BYTES_A_TRIANGLE * triangles);
+        document.budget.release_memory(tangents::BYTES_PER_TRIANGLE * triangles);
         Ok(())
     }
 
@@ -231,9 +233,9 @@ impl Primitive {
         }
         self.influences_per_vertex = 4 * sets.len();
         let number = (self.influences_per_vertex * vertices.len()) as u64;
-        document.budget.memory(16 * number, &attributes.place)?;
+        document.budget.take_memory(16 * number, &attributes.place)?;
         self.memory += 16 * number;
-        document.budget.work(2 * number, &attributes.place)?;
+        document.budget.take_work(2 * number, &attributes.place)?;
         self.influences.reserve_exact(number as usize);
         for &v in vertices {
             let start = self.influences.len();
@@ -241,15 +243,15 @@ impl Primitive {
                 let weights = weights.doubles::<4>(v as usize);
                 for (i, weight) in weights.into_iter().enumerate() {
                     let weight = if weight.is_finite() { weight.max(0.0) } else { 0.0 };
-                    self.influences.push((joints.stored(v as usize, i) as u32, weight));
+                    self.influences.push((joints.raw_value(v as usize, i) as u32, weight));
                 }
             }
-            let own = &mut self.influences[start..];
-            let sum: f64 = own.iter().map(|&(_, weight)| weight).sum();
+            let vertex_influences = &mut self.influences[start..];
+            let sum: f64 = vertex_influences.iter().map(|&(_, weight)| weight).sum();
             match sum {
                 // A vertex that hangs on nothing hangs on its first joint.
-                0.0 => own[0].1 = 1.0,
-                sum => own.iter_mut().for_each(|(_, weight)| *weight /= sum),
+                0.0 => vertex_influences[0].1 = 1.0,
+                sum => vertex_influences.iter_mut().for_each(|(_, weight)| *weight /= sum),
             }
         }
         Ok(())
@@ -266,21 +268,23 @@ impl Primitive {
         weights: &[f64],
     ) -> Result<(), Fault> {
         let place = format!("{}/targets", self.place);
-        document.sound(&place)?;
+        document.check_at(&place)?;
         for ((i, target), &weight) in file.morph_targets().enumerate().zip(weights) {
             let place = format!("{place}/{i}");
-            document.sound(&place)?;
+            document.check_at(&place)?;
             if weight == 0.0 {
                 continue;
             }
-            document.budget.work((12 + 2 * further_sets.len() as u64) * vertices.len() as u64, &place)?;
+            document
+                .budget
+                .take_work((12 + 2 * further_sets.len() as u64) * vertices.len() as u64, &place)?;
             let open = |name: &str, components: &[usize]| {
                 // Typed targets know neither texture coordinates nor colours.
                 let place = format!("{place}/{name}");
-                attribute(document, document.index_at(&place), &place, name, components, count)
+                open_attribute(document, document.index_at(&place), &place, name, components, count)
             };
             let position_place = format!("{place}/POSITION");
-            document.sound(&position_place)?;
+            document.check_at(&position_place)?;
             if let Some(delta) = target.positions() {
                 let delta = Accessor::open(document, delta.index(), &position_place)?;
                 let delta = delta.expect_components(&[3], "POSITION")?;
@@ -293,7 +297,7 @@ impl Primitive {
             }
             let normal_place = format!("{place}/NORMAL");
             let normals = target.normals().map(|normals| normals.index());
-            if let Some(delta) = attribute(document, normals, &normal_place, "NORMAL", &[3], count) {
+            if let Some(delta) = open_attribute(document, normals, &normal_place, "NORMAL", &[3], count) {
                 for (normal, &v) in self.normals.iter_mut().zip(vertices) {
                     *normal += weight * DVec3::from_array(delta.doubles(v as usize));
                 }
@@ -321,14 +325,14 @@ impl Primitive {
 }
 
 /// All triangles of a primitive whose vertices exist, by the elements of its accessors that their corners are.
-pub(crate) fn triangles(
+pub(crate) fn read_triangles(
     document: &Document<'_>,
     file: &gltf::Primitive<'_>,
     place: &str,
 ) -> Result<Vec<[u32; 3]>, Fault> {
     match file.get(&Semantic::Positions) {
         Some(position) if triangle_count(file.mode(), 0).is_some() => {
-            corners(document, file, place, position.count())
+            read_corners(document, file, place, position.count())
         }
         _ => Ok(Vec::new()),
     }
@@ -347,12 +351,12 @@ impl<'a> Attributes<'a> {
     fn open(&self, semantic: &Semantic, components: &[usize], count: usize) -> Option<Accessor<'a>> {
         let index = self.file.get(semantic).map(|accessor| accessor.index());
         let name = semantic.to_string();
-        attribute(self.document, index, &format!("{}/{name}", self.place), &name, components, count)
+        open_attribute(self.document, index, &format!("{}/{name}", self.place), &name, components, count)
     }
 }
 
 /// An attribute that the picture can do without: nothing, with a warning, if it is broken.
-fn attribute<'a>(
+fn open_attribute<'a>(
     document: &'a Document<'_>,
     index: Option<usize>,
     place: &str,
@@ -361,7 +365,7 @@ fn attribute<'a>(
     count: usize,
 ) -> Option<Accessor<'a>> {
     let open = || -> Result<Option<Accessor<'a>>, Fault> {
-        document.sound(place)?;
+        document.check_at(place)?;
         let Some(index) = index else { return Ok(None) };
         let accessor = Accessor::open(document, index, place)?.expect_components(components, name)?;
         if accessor.count < count {
@@ -376,14 +380,14 @@ fn attribute<'a>(
 }
 
 /// The corners of all triangles; those with a vertex that does not exist are left out with a warning.
-fn corners(
+fn read_corners(
     document: &Document<'_>,
     file: &gltf::Primitive<'_>,
     place: &str,
     count: usize,
 ) -> Result<Vec<[u32; 3]>, Fault> {
     let (mode, indices_place) = (file.mode(), format!("{place}/indices"));
-    document.sound(&indices_place)?;
+    document.check_at(&indices_place)?;
     let indices = match file.indices() {
         Some(indices) => {
             let indices = Accessor::open(document, indices.index(), &indices_place)?;
@@ -400,11 +404,11 @@ fn corners(
     if mode == Mode::Triangles && number % 3 != 0 {
         document.warn(format!("{place}: its {number} corners are not a multiple of 3; the rest is left out"));
     }
-    document.budget.triangles(triangles as u64)?;
-    document.budget.work(3 * triangles as u64, place)?;
-    document.budget.memory(12 * triangles as u64, place)?;
+    document.budget.take_triangles(triangles as u64)?;
+    document.budget.take_work(3 * triangles as u64, place)?;
+    document.budget.take_memory(12 * triangles as u64, place)?;
     let vertex =
-        |corner: usize| indices.as_ref().map_or(corner as u32, |indices| indices.stored(corner, 0) as u32);
+        |corner: usize| indices.as_ref().map_or(corner as u32, |indices| indices.raw_value(corner, 0) as u32);
     let mut corners = Vec::with_capacity(triangles);
     for i in 0..triangles {
         let corner = triangle(mode, i).map(vertex);
@@ -418,12 +422,12 @@ fn corners(
             "{indices_place}: {dropped} of {triangles} triangles refer to vertices beyond the {count} there are; left out"
         ));
     }
-    document.budget.release(12 * triangles as u64);
+    document.budget.release_memory(12 * triangles as u64);
     Ok(corners)
 }
 
 /// Numbers the vertices that occur, in ascending order: the triangles in new numbers, and the old number of each.
-pub(crate) fn compact(corners: &[[u32; 3]]) -> (Vec<[u32; 3]>, Vec<u32>) {
+pub(crate) fn compact_indices(corners: &[[u32; 3]]) -> (Vec<[u32; 3]>, Vec<u32>) {
     let all = || corners.iter().flatten().copied();
     let (Some(low), Some(high)) = (all().min(), all().max()) else { return (Vec::new(), Vec::new()) };
     let span = (high - low) as usize + 1;
@@ -448,15 +452,15 @@ pub(crate) fn compact(corners: &[[u32; 3]]) -> (Vec<[u32; 3]>, Vec<u32>) {
 
 #[cfg(test)]
 mod tests {
-    use super::compact;
+    use super::compact_indices;
 
     #[test]
     fn compact_keeps_order_dense_or_sparse() {
         for far in [0, 4_000_000_000] {
-            let (triangles, vertices) = compact(&[[7, 5, 9 + far], [5, 7, 6]]);
+            let (triangles, vertices) = compact_indices(&[[7, 5, 9 + far], [5, 7, 6]]);
             assert_eq!(vertices, [5, 6, 7, 9 + far]);
             assert_eq!(triangles, [[2, 0, 3], [0, 2, 1]]);
         }
-        assert_eq!(compact(&[]), (vec![], vec![]));
+        assert_eq!(compact_indices(&[]), (vec![], vec![]));
     }
 }

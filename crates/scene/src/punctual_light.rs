@@ -1,6 +1,6 @@
 //! KHR_lights_punctual, and the light of a scene that has none.
 
-use crate::document::{Document, named};
+use crate::document::{Document, nonempty_name};
 use crate::error::Fault;
 use crate::{Light, LightKind};
 use glam::{DMat4, DVec3, Vec3};
@@ -16,29 +16,29 @@ pub(crate) fn node_light(
     world: DMat4,
 ) -> Result<Option<Light>, Fault> {
     let place = format!("/nodes/{}/extensions", node.index());
-    document.sound(&place)?;
-    document.sound_below(&format!("{place}/{EXTENSION}"))?;
+    document.check_at(&place)?;
+    document.check_below(&format!("{place}/{EXTENSION}"))?;
     let Some(light) = node.light() else { return Ok(None) };
     let index = light.index();
     let place = format!("/extensions/{EXTENSION}/lights/{index}");
-    if let Err(fault) = document.sound(&format!("{place}/type")) {
+    if let Err(fault) = document.check_at(&format!("{place}/type")) {
         document.warn(format!("{fault}; the light is left out"));
         return Ok(None);
     }
     for key in ["color", "intensity"] {
-        document.sound_below(&format!("{place}/{key}"))?;
+        document.check_below(&format!("{place}/{key}"))?;
     }
     let kind = match light.kind() {
         Kind::Point => LightKind::Point,
         Kind::Directional => LightKind::Directional,
         Kind::Spot { inner_cone_angle, outer_cone_angle } => {
-            cone(document, &format!("{place}/spot"), inner_cone_angle.into(), outer_cone_angle.into())
+            spot_cone(document, &format!("{place}/spot"), inner_cone_angle.into(), outer_cone_angle.into())
         }
     };
     let range = match kind {
         // It has no end whatever the file says.
         LightKind::Directional => f64::INFINITY,
-        _ => range(document, &format!("{place}/range"), light.range()),
+        _ => light_range(document, &format!("{place}/range"), light.range()),
     };
     let intensity = light.intensity() * Vec3::from_array(light.color());
     if !intensity.is_finite() {
@@ -55,14 +55,16 @@ pub(crate) fn node_light(
         document.warn(format!("/nodes/{}: stands nowhere; its light is left out", node.index()));
         return Ok(None);
     };
-    let name = named(light.name()).or(named(node.name())).unwrap_or_else(|| format!("light {index}"));
+    let name = nonempty_name(light.name())
+        .or(nonempty_name(node.name()))
+        .unwrap_or_else(|| format!("light {index}"));
     Ok(Some(Light { name, kind, intensity, position, direction, range }))
 }
 
 /// How far a light reaches. Exporters write 0 for a light without an end; a range that glTF does not know counts as
 /// none, for a light that goes out is hardly meant.
-fn range(document: &Document<'_>, place: &str, range: Option<f32>) -> f64 {
-    if let Err(fault) = document.sound(place) {
+fn light_range(document: &Document<'_>, place: &str, range: Option<f32>) -> f64 {
+    if let Err(fault) = document.check_at(place) {
         document.warn(format!("{fault}; the light reaches any distance"));
     }
     match range {
@@ -76,18 +78,18 @@ fn range(document: &Document<'_>, place: &str, range: Option<f32>) -> f64 {
 
 /// A spot light's cone, its angles brought to 0 ≤ inner ≤ outer ≤ π/2. Equal ones are a sharp edge; an outer angle
 /// of 0 or less would let no light out at all, so that glTF's default takes its place.
-fn cone(document: &Document<'_>, place: &str, inner: f64, outer: f64) -> LightKind {
+fn spot_cone(document: &Document<'_>, place: &str, inner: f64, outer: f64) -> LightKind {
     for place in [place, &format!("{place}/innerConeAngle"), &format!("{place}/outerConeAngle")] {
-        if let Err(fault) = document.sound(place) {
+        if let Err(fault) = document.check_at(place) {
             document.warn(format!("{fault}; the default takes its place"));
         }
     }
-    let mended = if outer > 0.0 { outer.min(FRAC_PI_2) } else { FRAC_PI_4 };
+    let repaired = if outer > 0.0 { outer.min(FRAC_PI_2) } else { FRAC_PI_4 };
     // Half of the numbers that stand for π/2 are rounded up.
-    if (mended - outer).abs() > 1e-6 {
+    if (repaired - outer).abs() > 1e-6 {
         document.warn(format!(
-            "{place}/outerConeAngle: {outer:.6} is no half angle of a cone; it is taken for {mended:.6}"
+            "{place}/outerConeAngle: {outer:.6} is no half angle of a cone; it is taken for {repaired:.6}"
         ));
     }
-    LightKind::Spot { inner: inner.clamp(0.0, mended), outer: mended }
+    LightKind::Spot { inner: inner.clamp(0.0, repaired), outer: repaired }
 }

@@ -13,16 +13,20 @@ const TEXEL_BYTES: u64 = 16;
 
 impl Document<'_> {
     /// Decodes the picture of a radiance.
-    pub fn radiance(&self, info: &RadianceInfo<'_>) -> Result<Image, Fault> {
+    pub fn decode_radiance(&self, info: &RadianceInfo<'_>) -> Result<Image, Fault> {
         let bytes = self.resource(&info.place, info.uri)?;
         let broken = |what: String| Fault::Malformed { place: format!("{}/uri", info.place), what };
         let unreadable = |error: exr::error::Error| broken(format!("is no readable EXR: {error}"));
         // What it announces, before anything is made room for.
         let meta = exr::meta::MetaData::read_from_buffered(Cursor::new(&bytes), false).map_err(unreadable)?;
-        let announced = meta.headers.first().map_or(Vec2(0, 0), |header| header.layer_size);
+        let declared_size = meta.headers.first().map_or(Vec2(0, 0), |header| header.layer_size);
         let side = |side: usize| u32::try_from(side).unwrap_or(u32::MAX);
-        let texels = self.texels([side(announced.0), side(announced.1)], bytes.len(), &info.place)?;
-        self.budget.memory(TEXEL_BYTES * texels, &info.place)?;
+        let texels = self.checked_texel_count(
+            [side(declared_size.0), side(declared_size.1)],
+            bytes.len(),
+            &info.place,
+        )?;
+        self.budget.take_memory(TEXEL_BYTES * texels, &info.place)?;
         let row = |size: Vec2<usize>, Vec2(x, y): Vec2<usize>| 4 * (y * size.0 + x);
         let picture = read()
             .no_deep_data()
@@ -40,7 +44,7 @@ impl Document<'_> {
             .from_buffered(Cursor::new(&bytes))
             .map_err(unreadable)?;
         let (size, mut texels) = picture.layer_data.channel_data.pixels;
-        if size != announced {
+        if size != declared_size {
             return Err(broken("tells two sizes".into()));
         }
         if !texels.iter().all(|value| value.is_finite()) {
@@ -48,7 +52,7 @@ impl Document<'_> {
         }
         // A filter of the program that wrote it may have left some light below none.
         texels.iter_mut().for_each(|value| *value = value.max(0.0));
-        self.budget.release(bytes.len() as u64);
+        self.budget.release_memory(bytes.len() as u64);
         let (width, height) = (side(size.0), side(size.1));
         Ok(Image { name: info.uri.into(), width, height, texels: ImageLevel::Float(texels) })
     }

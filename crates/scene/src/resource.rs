@@ -3,10 +3,10 @@
 //! A reference is a data URI or a relative path inside the scene's folder. Everything else (absolute paths,
 //! `..`, schemes, links that lead outside) is refused: opening a scene must not read the rest of the disk.
 
-use crate::data_uri::{data_uri, decode_data};
+use crate::data_uri::{decode_data, strip_data_scheme};
 use crate::document::Document;
 use crate::error::Fault;
-use crate::file_reference::{Reading, readings};
+use crate::file_reference::{UriInterpretation, interpret_uri};
 use gltf::buffer::Source;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -19,28 +19,30 @@ impl<'a> Document<'a> {
             uri: shortened(uri),
             what: what.into(),
         };
-        if let Some(data) = data_uri(uri) {
-            self.budget.memory(data.len() as u64, owner)?;
+        if let Some(data) = strip_data_scheme(uri) {
+            self.budget.take_memory(data.len() as u64, owner)?;
             return decode_data(data).ok_or_else(|| refuse("is not valid data (export the scene again)"));
         }
-        let path = self.inner_file(owner, uri).map_err(|what| refuse(&what))?;
-        let size = path.metadata().map_err(|error| refuse(&unreadable(&error)))?.len();
-        self.budget.memory(size, &shortened(uri))?;
+        let path = self.find_inner_file(owner, uri).map_err(|what| refuse(&what))?;
+        let size = path.metadata().map_err(|error| refuse(&read_failure(&error)))?.len();
+        self.budget.take_memory(size, &shortened(uri))?;
         let mut bytes = Vec::with_capacity(size as usize);
         // No more than was accounted for, even if the file is growing.
         let read = std::fs::File::open(&path).and_then(|file| file.take(size).read_to_end(&mut bytes));
-        read.map_err(|error| refuse(&unreadable(&error)))?;
+        read.map_err(|error| refuse(&read_failure(&error)))?;
         Ok(bytes)
     }
 
     /// The file inside the scene's folder that the `uri` at `owner` means, or what is wrong with its first reading.
-    fn inner_file(&self, owner: &str, uri: &str) -> Result<PathBuf, String> {
+    fn find_inner_file(&self, owner: &str, uri: &str) -> Result<PathBuf, String> {
         let mut wrong = None;
-        for reading in readings(uri) {
-            let found = reading
-                .map_err(String::from)
-                .and_then(|Reading { path, is_proper }| Ok((resolve(&self.folder, &path)?, path, is_proper)));
-            match found {
+        for reading in interpret_uri(uri) {
+            let resolved = reading.map_err(String::from).and_then(
+                |UriInterpretation { path, is_well_formed: is_proper }| {
+                    Ok((resolve(&self.folder, &path)?, path, is_proper))
+                },
+            );
+            match resolved {
                 Ok((file, path, is_proper)) => {
                     if !is_proper {
                         let (uri, path) = (shortened(uri), shortened(&path.display().to_string()));
@@ -58,41 +60,44 @@ impl<'a> Document<'a> {
 
     /// The bytes of a buffer, as far as they are declared and there. They are read once.
     pub fn buffer(&self, index: usize, place: &str) -> Result<&[u8], Fault> {
-        let own = self.entry("buffers", index, place)?;
-        self.sound_below(&own)?;
+        let buffer_place = self.entry("buffers", index, place)?;
+        self.check_below(&buffer_place)?;
         let buffer = self.typed().buffers().nth(index);
         let Some((declared, source)) = buffer.map(|buffer| (buffer.length(), buffer.source())) else {
-            return Err(Fault::NoData { place: own });
+            return Err(Fault::NoData { place: buffer_place });
         };
-        let kept = &self.buffers[index];
-        let bytes: &[u8] = match (kept.get(), source, self.chunk) {
+        let cached = &self.cached_buffers[index];
+        let bytes: &[u8] = match (cached.get(), source, self.chunk) {
             (Some(bytes), ..) => bytes,
             (None, Source::Uri(uri), _) => {
-                let bytes = self.resource(&own, uri)?;
-                kept.get_or_init(|| bytes)
+                let bytes = self.resource(&buffer_place, uri)?;
+                cached.get_or_init(|| bytes)
             }
             (None, Source::Bin, Some(chunk)) if index == 0 => chunk,
-            (None, Source::Bin, _) => return Err(Fault::NoData { place: own }),
+            (None, Source::Bin, _) => return Err(Fault::NoData { place: buffer_place }),
         };
         if bytes.len() < declared {
-            self.warn(format!("{own}/byteLength: declares {declared} bytes, but there are {}", bytes.len()));
+            self.warn(format!(
+                "{buffer_place}/byteLength: declares {declared} bytes, but there are {}",
+                bytes.len()
+            ));
         }
         Ok(&bytes[..bytes.len().min(declared)])
     }
 
     /// The bytes of a buffer view and its stride, if it declares one.
     pub fn buffer_view(&self, index: usize, place: &str) -> Result<(&[u8], Option<usize>), Fault> {
-        let own = self.entry("bufferViews", index, place)?;
-        self.sound_below(&own)?;
+        let view_place = self.entry("bufferViews", index, place)?;
+        self.check_below(&view_place)?;
         let Some(view) = self.typed().views().nth(index) else {
-            return Err(Fault::NoData { place: own });
+            return Err(Fault::NoData { place: view_place });
         };
         let buffer = view.buffer().index();
-        let bytes = self.buffer(buffer, &format!("{own}/buffer"))?;
+        let bytes = self.buffer(buffer, &format!("{view_place}/buffer"))?;
         let (offset, length) = (view.offset(), view.length());
         let Some(end) = offset.checked_add(length).filter(|&end| end <= bytes.len()) else {
             return Err(Fault::Malformed {
-                place: own,
+                place: view_place,
                 what: format!(
                     "bytes {offset} + {length} do not fit buffer {buffer} of {} bytes",
                     bytes.len()
@@ -103,7 +108,7 @@ impl<'a> Document<'a> {
     }
 }
 
-fn unreadable(error: &std::io::Error) -> String {
+fn read_failure(error: &std::io::Error) -> String {
     match error.kind() {
         std::io::ErrorKind::NotFound => "is missing (put it back beside the scene file)".into(),
         _ => format!("cannot be read: {error} (check the file)"),
@@ -121,7 +126,7 @@ fn shortened(uri: &str) -> String {
 
 /// The regular file at `path` inside `folder`, links followed.
 fn resolve(folder: &Path, path: &Path) -> Result<PathBuf, String> {
-    let real = folder.join(path).canonicalize().map_err(|error| unreadable(&error))?;
+    let real = folder.join(path).canonicalize().map_err(|error| read_failure(&error))?;
     if !real.starts_with(folder) {
         return Err("is a link that leads outside the scene's folder (copy the file there)".into());
     }

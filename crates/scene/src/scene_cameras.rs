@@ -1,6 +1,6 @@
 //! The cameras of the file, and the framing of a scene that has none.
 
-use crate::document::{Document, named};
+use crate::document::{Document, nonempty_name};
 use crate::error::Fault;
 use crate::{CameraLens, Scene, SceneCamera, own_extras};
 use glam::{DMat3, DMat4, DQuat, DVec3};
@@ -15,7 +15,7 @@ pub(crate) fn node_camera(
     node: &gltf::Node<'_>,
     world: DMat4,
 ) -> Result<Option<SceneCamera>, Fault> {
-    document.sound(&format!("/nodes/{}/camera", node.index()))?;
+    document.check_at(&format!("/nodes/{}/camera", node.index()))?;
     let Some(camera) = node.camera() else { return Ok(None) };
     let index = camera.index();
     let place = format!("/cameras/{index}");
@@ -23,11 +23,11 @@ pub(crate) fn node_camera(
         document.warn(format!("{place}: {why}; the camera is left out"));
         Ok(None)
     };
-    if let Err(fault) = document.sound(&format!("{place}/type")) {
+    if let Err(fault) = document.check_at(&format!("{place}/type")) {
         document.warn(format!("{fault}; the camera is left out"));
         return Ok(None);
     }
-    document.sound_below(&place)?;
+    document.check_below(&place)?;
     // The typed view relies on the type and the property of that name to agree.
     let json = document.typed().as_json().cameras.get(index);
     match json.map(|camera| (&camera.type_, &camera.perspective)) {
@@ -46,15 +46,17 @@ pub(crate) fn node_camera(
         return skip("its yfov is not between 0 and π");
     }
     let aspect = perspective.aspect_ratio().map(f64::from).filter(|&aspect| aspect > 0.0);
-    let Some(camera_to_world) = rigid(world) else { return skip("its transform is singular") };
-    let name = named(camera.name()).or(named(node.name())).unwrap_or_else(|| format!("camera {index}"));
+    let Some(camera_to_world) = rigid_transform(world) else { return skip("its transform is singular") };
+    let name = nonempty_name(camera.name())
+        .or(nonempty_name(node.name()))
+        .unwrap_or_else(|| format!("camera {index}"));
     let lens = own_extras::camera_lens(document, index, yfov);
     let index = Some(index as u32);
     Ok(Some(SceneCamera { name, index, camera_to_world, yfov, aspect, focus_distance: 1.0, lens }))
 }
 
 /// The pose in a transform: where it looks (−Z) is kept, up as well as it goes, scale and mirroring are removed.
-fn rigid(world: DMat4) -> Option<DMat4> {
+fn rigid_transform(world: DMat4) -> Option<DMat4> {
     let position = world.w_axis.truncate();
     let back = world.z_axis.truncate().try_normalize()?;
     let up = world.y_axis.truncate();
@@ -65,7 +67,7 @@ fn rigid(world: DMat4) -> Option<DMat4> {
 
 /// A camera that sees the whole scene in a picture at least as wide as high, from the front, right and above, and as close as that
 /// allows. `upright` turns the world so that up is +y and the front +z.
-pub(crate) fn framing(scene: &Scene, upright: DQuat) -> SceneCamera {
+pub(crate) fn framing_camera(scene: &Scene, upright: DQuat) -> SceneCamera {
     const YFOV: f64 = 0.7;
     /// Room around the scene.
     const MARGIN: f64 = 1.1;
@@ -90,7 +92,7 @@ pub(crate) fn framing(scene: &Scene, upright: DQuat) -> SceneCamera {
     let (low, high) = scene.bounds();
     // All in one point: any distance will do.
     let nearest = (high - low).length() * 1e-3;
-    let surface = scene_front(scene, back);
+    let surface = front_extent(scene, back);
     let distance = distance.max(surface + if nearest > 0.0 { nearest } else { 1.0 });
     let position = right * across + up * along + back * distance;
     SceneCamera {
@@ -105,7 +107,7 @@ pub(crate) fn framing(scene: &Scene, upright: DQuat) -> SceneCamera {
 }
 
 /// How far the scene reaches in a direction.
-fn scene_front(scene: &Scene, direction: DVec3) -> f64 {
+fn front_extent(scene: &Scene, direction: DVec3) -> f64 {
     let used = scene.triangles.iter().flat_map(|triangle| triangle.vertices);
     used.map(|vertex| scene.positions[vertex as usize].dot(direction)).fold(f64::NEG_INFINITY, f64::max)
 }
@@ -117,10 +119,10 @@ pub(crate) fn focus_cameras(scene: &mut Scene) {
     let (low, high) = scene.bounds();
     let centre = 0.5 * (low + high);
     let affordable = MAX_TESTS / scene.triangles.len().max(1);
-    let distance = |camera: &SceneCamera, look: bool| {
+    let distance = |camera: &SceneCamera, should_trace: bool| {
         let (origin, axis) =
             (camera.camera_to_world.w_axis.truncate(), -camera.camera_to_world.z_axis.truncate());
-        let ahead = look.then(|| first_surface(scene, origin, axis)).flatten();
+        let ahead = should_trace.then(|| first_hit_distance(scene, origin, axis)).flatten();
         ahead.unwrap_or_else(|| {
             let middle = (centre - origin).dot(axis);
             // The scene lies behind the camera: as far as it is away.
@@ -135,7 +137,7 @@ pub(crate) fn focus_cameras(scene: &mut Scene) {
 }
 
 /// The distance to the nearest triangle along a ray (Möller and Trumbore 1997).
-fn first_surface(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<f64> {
+fn first_hit_distance(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<f64> {
     let hit = |triangle: u32| {
         let [a, b, c] = scene.corners(triangle);
         let (e1, e2) = (b - a, c - a);
@@ -159,9 +161,9 @@ mod tests {
         let world = DMat4::from_translation(DVec3::ONE)
             * DMat4::from_rotation_y(0.5)
             * DMat4::from_scale(DVec3::new(-2.0, 3.0, 4.0));
-        let pose = rigid(world).unwrap();
+        let pose = rigid_transform(world).unwrap();
         let expected = DMat4::from_translation(DVec3::ONE) * DMat4::from_rotation_y(0.5);
         assert!(pose.abs_diff_eq(expected, 1e-12), "{pose}");
-        assert_eq!(rigid(DMat4::ZERO), None);
+        assert_eq!(rigid_transform(DMat4::ZERO), None);
     }
 }

@@ -2,7 +2,7 @@
 //! serve twice: to tell of flaws, and to mend a document so that it can be typed.
 
 /// What a property may be.
-pub(crate) enum Kind {
+pub(crate) enum PropertyKind {
     Flag,
     Text,
     /// In a closed range.
@@ -37,12 +37,12 @@ pub(crate) enum Kind {
     Targets,
 }
 
-use Kind::*;
+use PropertyKind::*;
 
 /// The properties of an object.
 pub(crate) struct Spec {
-    pub required: &'static [(&'static str, Kind)],
-    pub optional: &'static [(&'static str, Kind)],
+    pub required: &'static [(&'static str, PropertyKind)],
+    pub optional: &'static [(&'static str, PropertyKind)],
     /// The extensions that may stand here, among those that are read.
     pub extensions: &'static [(&'static str, &'static Spec)],
     /// (property, what must be there with it).
@@ -56,16 +56,16 @@ pub(crate) struct Spec {
 const NONE: Spec =
     Spec { required: &[], optional: &[], extensions: &[], needs: &[], one_of: &[], filled: &[] };
 
-const ANY: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
-const COUNT: Kind = Integer(1, u64::MAX);
-const OFFSET: Kind = Integer(0, u64::MAX);
-const SET: Kind = Integer(0, u32::MAX as u64);
-const UNIT: Kind = Number(0.0, 1.0);
+const ANY_NUMBER: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
+const COUNT: PropertyKind = Integer(1, u64::MAX);
+const OFFSET: PropertyKind = Integer(0, u64::MAX);
+const SET: PropertyKind = Integer(0, u32::MAX as u64);
+const UNIT: PropertyKind = Number(0.0, 1.0);
 /// π/2 as exporters write it, in f32, where it is rounded up.
 const RIGHT_ANGLE: f64 = std::f32::consts::FRAC_PI_2 as f64;
-const COLOR: Kind = Numbers(3, 3, 0.0, 1.0);
-const fn numbers(least: usize, most: usize) -> Kind {
-    Numbers(least, most, ANY.0, ANY.1)
+const COLOR: PropertyKind = Numbers(3, 3, 0.0, 1.0);
+const fn numbers(least: usize, most: usize) -> PropertyKind {
+    Numbers(least, most, ANY_NUMBER.0, ANY_NUMBER.1)
 }
 
 pub(crate) static ROOT: Spec = Spec {
@@ -187,10 +187,10 @@ static CAMERA: Spec = Spec {
 
 static ORTHOGRAPHIC: Spec = Spec {
     required: &[
-        ("xmag", Number(ANY.0, ANY.1)),
-        ("ymag", Number(ANY.0, ANY.1)),
+        ("xmag", Number(ANY_NUMBER.0, ANY_NUMBER.1)),
+        ("ymag", Number(ANY_NUMBER.0, ANY_NUMBER.1)),
         ("zfar", Above(0.0)),
-        ("znear", Number(0.0, ANY.1)),
+        ("znear", Number(0.0, ANY_NUMBER.1)),
     ],
     ..NONE
 };
@@ -222,7 +222,7 @@ static MATERIAL: Spec = Spec {
         ("emissiveTexture", Object(&TEXTURE_INFO)),
         ("emissiveFactor", COLOR),
         ("alphaMode", Word(&["OPAQUE", "MASK", "BLEND"])),
-        ("alphaCutoff", Number(0.0, ANY.1)),
+        ("alphaCutoff", Number(0.0, ANY_NUMBER.1)),
         ("doubleSided", Flag),
     ],
     extensions: &[
@@ -254,7 +254,8 @@ static METALLIC_ROUGHNESS: Spec = Spec {
     ..NONE
 };
 
-static EMISSIVE_STRENGTH: Spec = Spec { optional: &[("emissiveStrength", Number(0.0, ANY.1))], ..NONE };
+static EMISSIVE_STRENGTH: Spec =
+    Spec { optional: &[("emissiveStrength", Number(0.0, ANY_NUMBER.1))], ..NONE };
 
 static SPECULAR_GLOSSINESS: Spec = Spec {
     optional: &[
@@ -271,7 +272,7 @@ static SPECULAR: Spec = Spec {
     optional: &[
         ("specularFactor", UNIT),
         ("specularTexture", Object(&TEXTURE_INFO)),
-        ("specularColorFactor", Numbers(3, 3, 0.0, ANY.1)),
+        ("specularColorFactor", Numbers(3, 3, 0.0, ANY_NUMBER.1)),
         ("specularColorTexture", Object(&TEXTURE_INFO)),
     ],
     ..NONE
@@ -280,7 +281,7 @@ static SPECULAR: Spec = Spec {
 static ANISOTROPY: Spec = Spec {
     optional: &[
         ("anisotropyStrength", UNIT),
-        ("anisotropyRotation", Number(ANY.0, ANY.1)),
+        ("anisotropyRotation", Number(ANY_NUMBER.0, ANY_NUMBER.1)),
         ("anisotropyTexture", Object(&TEXTURE_INFO)),
     ],
     ..NONE
@@ -307,18 +308,18 @@ static DIFFUSE_TRANSMISSION: Spec = Spec {
     ..NONE
 };
 
-static DISPERSION: Spec = Spec { optional: &[("dispersion", Number(0.0, ANY.1))], ..NONE };
+static DISPERSION: Spec = Spec { optional: &[("dispersion", Number(0.0, ANY_NUMBER.1))], ..NONE };
 
 /// 0 stands for infinity; what lies between 0 and 1 is nothing's.
-static IOR: Spec = Spec { optional: &[("ior", Number(0.0, ANY.1))], ..NONE };
+static IOR: Spec = Spec { optional: &[("ior", Number(0.0, ANY_NUMBER.1))], ..NONE };
 
 static IRIDESCENCE: Spec = Spec {
     optional: &[
         ("iridescenceFactor", UNIT),
         ("iridescenceTexture", Object(&TEXTURE_INFO)),
-        ("iridescenceIor", Number(1.0, ANY.1)),
-        ("iridescenceThicknessMinimum", Number(0.0, ANY.1)),
-        ("iridescenceThicknessMaximum", Number(0.0, ANY.1)),
+        ("iridescenceIor", Number(1.0, ANY_NUMBER.1)),
+        ("iridescenceThicknessMinimum", Number(0.0, ANY_NUMBER.1)),
+        ("iridescenceThicknessMaximum", Number(0.0, ANY_NUMBER.1)),
         ("iridescenceThicknessTexture", Object(&TEXTURE_INFO)),
     ],
     ..NONE
@@ -341,7 +342,7 @@ static TRANSMISSION: Spec = Spec {
 
 static VOLUME: Spec = Spec {
     optional: &[
-        ("thicknessFactor", Number(0.0, ANY.1)),
+        ("thicknessFactor", Number(0.0, ANY_NUMBER.1)),
         ("thicknessTexture", Object(&TEXTURE_INFO)),
         ("attenuationDistance", Above(0.0)),
         ("attenuationColor", COLOR),
@@ -358,7 +359,7 @@ static TEXTURE_INFO: Spec = Spec {
 
 static NORMAL_TEXTURE: Spec = Spec {
     required: &[("index", Index("textures"))],
-    optional: &[("texCoord", SET), ("scale", Number(ANY.0, ANY.1))],
+    optional: &[("texCoord", SET), ("scale", Number(ANY_NUMBER.0, ANY_NUMBER.1))],
     extensions: &[("KHR_texture_transform", &TEXTURE_TRANSFORM)],
     ..NONE
 };
@@ -373,7 +374,7 @@ static OCCLUSION_TEXTURE: Spec = Spec {
 static TEXTURE_TRANSFORM: Spec = Spec {
     optional: &[
         ("offset", numbers(2, 2)),
-        ("rotation", Number(ANY.0, ANY.1)),
+        ("rotation", Number(ANY_NUMBER.0, ANY_NUMBER.1)),
         ("scale", numbers(2, 2)),
         ("texCoord", SET),
     ],
@@ -475,7 +476,7 @@ static LIGHT: Spec = Spec {
     optional: &[
         ("name", Text),
         ("color", COLOR),
-        ("intensity", Number(0.0, ANY.1)),
+        ("intensity", Number(0.0, ANY_NUMBER.1)),
         ("range", Above(0.0)),
         ("spot", Object(&SPOT)),
     ],

@@ -19,9 +19,9 @@ pub(crate) fn joint_matrices(
     skin: &gltf::Skin<'_>,
 ) -> Result<Vec<DMat4>, Fault> {
     let place = format!("/skins/{}", skin.index());
-    document.sound_below(&place)?;
+    document.check_below(&place)?;
     let joints: Vec<usize> = skin.joints().map(|joint| joint.index()).collect();
-    document.budget.work(64 * joints.len() as u64, &place)?;
+    document.budget.take_work(64 * joints.len() as u64, &place)?;
     let malformed = |what: String| Fault::Malformed { place: format!("{place}/joints"), what };
     if joints.is_empty() {
         return Err(malformed("is empty".into()));
@@ -55,7 +55,7 @@ pub(crate) fn joint_matrices(
 }
 
 /// The matrix of a vertex: the weighted sum over its joints. A joint that does not exist is left out.
-pub(crate) fn blended(joints: &[DMat4], influences: &[(u32, f64)]) -> DMat4 {
+pub(crate) fn blend_joints(joints: &[DMat4], influences: &[(u32, f64)]) -> DMat4 {
     let sum = influences
         .iter()
         .filter(|&&(_, weight)| weight > 0.0)

@@ -13,7 +13,7 @@ use serde_json::Value;
 use std::borrow::Cow;
 
 /// The file of a scene.
-pub struct Source<'a> {
+pub struct GltfSource<'a> {
     pub(crate) document: &'a Document<'a>,
     /// The scene that the file makes, without its materials and what is made up.
     pub scene: Scene,
@@ -51,10 +51,10 @@ pub struct StoredElements {
     pub bytes: Vec<u8>,
 }
 
-impl Source<'_> {
+impl GltfSource<'_> {
     /// The JSON document, as it is in the file.
     pub fn document(&self) -> &Value {
-        self.document.value()
+        self.document.root_value()
     }
 
     /// The bytes of a buffer, as far as they are declared and there; nothing for one whose data the file does not
@@ -85,7 +85,7 @@ impl Source<'_> {
     pub fn elements(&self, accessor: usize, indices: &[u32]) -> Result<StoredElements, Fault> {
         let accessor = Accessor::open(self.document, accessor, "/meshes")?;
         let size = accessor.shape.size(accessor.component);
-        self.document.budget.memory((size * indices.len()) as u64, &accessor.place)?;
+        self.document.budget.take_memory((size * indices.len()) as u64, &accessor.place)?;
         let mut bytes = vec![0; size * indices.len()];
         for (element, &index) in bytes.chunks_exact_mut(size).zip(indices) {
             if let Some(stored) =
@@ -94,7 +94,7 @@ impl Source<'_> {
                 element.copy_from_slice(&stored[..size]);
             }
         }
-        self.document.budget.release(bytes.len() as u64);
+        self.document.budget.release_memory(bytes.len() as u64);
         let (component, components) = (accessor.component.as_gl_enum(), accessor.shape.components());
         Ok(StoredElements { component, components, size, bytes })
     }
@@ -117,7 +117,7 @@ impl Source<'_> {
         let file = self.document.typed().meshes().nth(mesh);
         let file = file.and_then(|mesh| mesh.primitives().nth(primitive));
         file.map_or(Ok(Vec::new()), |file| {
-            primitive::triangles(self.document, &file, &format!("/meshes/{mesh}/primitives/{primitive}"))
+            primitive::read_triangles(self.document, &file, &format!("/meshes/{mesh}/primitives/{primitive}"))
         })
     }
 }

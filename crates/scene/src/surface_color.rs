@@ -19,7 +19,7 @@ impl Scene {
 
     /// The linear vertex colour at a point; 1 where the part has none.
     #[inline]
-    pub fn color_at(&self, point: SurfacePoint) -> Vec4 {
+    pub fn vertex_color_at(&self, point: SurfacePoint) -> Vec4 {
         if self.colors.is_empty() {
             return Vec4::ONE;
         }
@@ -30,30 +30,30 @@ impl Scene {
 
     /// A texture's linear RGBA at a point of the surface.
     #[inline]
-    pub fn texture_at(&self, texture: &TextureRef, point: SurfacePoint) -> Vec4 {
+    pub fn sample_texture_at(&self, texture: &TextureRef, point: SurfacePoint) -> Vec4 {
         self.sample_texture(texture, self.uv_at(point, texture.uv_set))
     }
 
     /// Linear base colour (factor × texture × vertex colour); opacity in w, before the alpha mode is applied.
     pub fn base_color(&self, point: SurfacePoint) -> Vec4 {
         let material = self.material_of(point.triangle);
-        let mut color = material.base_color * self.color_at(point);
+        let mut color = material.base_color * self.vertex_color_at(point);
         if let Some(texture) = &material.base_color_texture {
-            color *= self.texture_at(texture, point);
+            color *= self.sample_texture_at(texture, point);
         }
         color
     }
 
     /// The radiance that the surface sends by itself: the base colour of an unlit material, else the emissive
     /// factor × texture. Whether the back sends it too is for the caller ([`crate::Material::double_sided`]).
-    pub fn emitted(&self, point: SurfacePoint) -> Vec3 {
+    pub fn emitted_radiance(&self, point: SurfacePoint) -> Vec3 {
         let material = self.material_of(point.triangle);
         if material.unlit {
             return self.base_color(point).truncate();
         }
         match &material.emissive_texture {
             Some(texture) if material.emissive != Vec3::ZERO => {
-                material.emissive * self.texture_at(texture, point).truncate()
+                material.emissive * self.sample_texture_at(texture, point).truncate()
             }
             _ => material.emissive,
         }
@@ -89,7 +89,7 @@ impl Scene {
     pub fn scalar_at(&self, scalar: &Scalar, point: SurfacePoint) -> f32 {
         match &scalar.texture {
             Some((texture, channel)) => {
-                scalar.factor * self.texture_at(texture, point)[usize::from(*channel)]
+                scalar.factor * self.sample_texture_at(texture, point)[usize::from(*channel)]
             }
             None => scalar.factor,
         }
@@ -99,7 +99,7 @@ impl Scene {
     #[inline]
     pub fn tint_at(&self, tint: &Tint, point: SurfacePoint) -> Vec3 {
         match &tint.texture {
-            Some(texture) => tint.factor * self.texture_at(texture, point).truncate(),
+            Some(texture) => tint.factor * self.sample_texture_at(texture, point).truncate(),
             None => tint.factor,
         }
     }
@@ -123,7 +123,7 @@ impl Scene {
     pub fn bumped_normal(&self, map: &NormalMap, point: SurfacePoint) -> DVec3 {
         let normal = self.shading_normal(point);
         let Some([tangent, bitangent]) = self.tangents_at(point, normal) else { return normal };
-        let bump = self.texture_at(&map.texture, point).truncate() * 2.0 - 1.0;
+        let bump = self.sample_texture_at(&map.texture, point).truncate() * 2.0 - 1.0;
         let bump = (bump * Vec3::new(map.scale, map.scale, 1.0)).as_dvec3();
         (tangent * bump.x + bitangent * bump.y + normal * bump.z).try_normalize().unwrap_or(normal)
     }

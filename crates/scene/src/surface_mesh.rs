@@ -1,7 +1,7 @@
 //! A scene of one mesh that no glTF file tells of: a scan, a surface made from depths.
 
 use crate::assembly::MAX_COORDINATE;
-use crate::primitive::compact;
+use crate::primitive::compact_indices;
 use crate::{LoadOptions, Material, Node, Part, Scene, SceneError, Triangle, scene_cameras};
 use glam::{DMat4, DQuat, DVec3, Vec3, Vec4};
 use std::path::PathBuf;
@@ -30,33 +30,33 @@ impl Scene {
     ///
     /// # Errors
     /// [`SceneError::NoTriangles`] if none is left, [`SceneError::Bad`] if there are more than `options` allow.
-    pub fn of_mesh(mesh: SurfaceMesh, options: &LoadOptions) -> Result<Self, SceneError> {
+    pub fn from_mesh(mesh: SurfaceMesh, options: &LoadOptions) -> Result<Self, SceneError> {
         let SurfaceMesh { path, name, positions, normals, colors, triangles } = mesh;
         if triangles.len() as u64 > options.max_triangles {
             let what =
                 format!("it has {} triangles, the limit is {}", triangles.len(), options.max_triangles);
             return Err(SceneError::Bad { file: path, fault: crate::Fault::TooBig { what } });
         }
-        let is_sane = |&v: &u32| {
+        let is_usable = |&v: &u32| {
             let position = positions.get(v as usize);
             position.is_some_and(|p| p.is_finite() && p.abs().max_element() <= MAX_COORDINATE)
         };
         let all = triangles.len();
-        let sane: Vec<[u32; 3]> =
-            triangles.into_iter().filter(|corners| corners.iter().all(is_sane)).collect();
+        let usable: Vec<[u32; 3]> =
+            triangles.into_iter().filter(|corners| corners.iter().all(is_usable)).collect();
         let mut warnings = Vec::new();
-        if sane.len() < all {
+        if usable.len() < all {
             warnings.push(format!(
                 "{} of {all} triangles have a vertex that does not exist, is infinite, undefined or absurdly far away; left out",
-                all - sane.len()
+                all - usable.len()
             ));
         }
-        if sane.is_empty() {
+        if usable.is_empty() {
             let why = warnings.pop().unwrap_or_else(|| "the mesh has none".into());
             return Err(SceneError::NoTriangles { file: path, why });
         }
-        let (triangles, used) = compact(&sane);
-        drop(sane);
+        let (triangles, used) = compact_indices(&usable);
+        drop(usable);
         let normal = |&v: &u32| normals.get(v as usize).map_or(Vec3::ZERO, |n| n.normalize_or_zero());
         let color = |&v: &u32| match colors.get(v as usize) {
             Some(color) if color.is_finite() => color.max(Vec4::ZERO),
@@ -66,9 +66,9 @@ impl Scene {
             true => Material {
                 base_color: Vec3::splat(0.5).extend(1.0),
                 double_sided: true,
-                ..Material::of_lambert()
+                ..Material::lambertian_white()
             },
-            false => Material::of_unlit(),
+            false => Material::unlit_white(),
         };
         let mut scene = Self {
             path,
@@ -78,7 +78,7 @@ impl Scene {
             triangles: triangles.into_iter().map(|vertices| Triangle { vertices, part: 0 }).collect(),
             nodes: vec![Node { name: name.clone(), index: 0, world: DMat4::IDENTITY }],
             materials: vec![Material { name, ..material }],
-            camera_is_invented: true,
+            has_default_camera: true,
             warnings,
             ..Self::default()
         };
@@ -96,8 +96,8 @@ impl Scene {
 
     /// Frames the scene anew, if its camera was made up: `upright` turns the world so that up is +y. The scene itself is not turned.
     pub fn set_upright(&mut self, upright: DQuat) {
-        if self.camera_is_invented {
-            self.cameras = vec![scene_cameras::framing(self, upright)];
+        if self.has_default_camera {
+            self.cameras = vec![scene_cameras::framing_camera(self, upright)];
             scene_cameras::focus_cameras(self);
         }
     }
@@ -119,7 +119,7 @@ mod tests {
 
     #[test]
     fn only_what_is_sound_is_kept() {
-        let scene = Scene::of_mesh(mesh(), &LoadOptions::default()).unwrap();
+        let scene = Scene::from_mesh(mesh(), &LoadOptions::default()).unwrap();
         assert_eq!(scene.positions, [DVec3::ZERO, DVec3::X, DVec3::Y]);
         assert_eq!(scene.triangles.iter().map(|t| t.vertices).collect::<Vec<_>>(), [[0, 1, 2], [2, 1, 0]]);
         assert!(scene.warnings[0].starts_with("3 of 5 triangles"), "{:?}", scene.warnings);
@@ -132,7 +132,7 @@ mod tests {
         let colors = (0..6).map(|v| Vec4::splat(v as f32)).collect();
         let normals = (0..6).map(|v| Vec3::Z * v as f32).collect();
         let scene =
-            Scene::of_mesh(SurfaceMesh { colors, normals, ..mesh() }, &LoadOptions::default()).unwrap();
+            Scene::from_mesh(SurfaceMesh { colors, normals, ..mesh() }, &LoadOptions::default()).unwrap();
         assert_eq!(scene.colors, [1.0, 2.0, 3.0].map(Vec4::splat));
         assert_eq!(scene.normals, [Vec3::Z; 3]);
         assert!(scene.materials[0].unlit && scene.materials[0].double_sided);
@@ -140,7 +140,7 @@ mod tests {
 
     #[test]
     fn what_cannot_be_a_scene_is_refused() {
-        let of = |mesh, options: &LoadOptions| Scene::of_mesh(mesh, options).unwrap_err().to_string();
+        let of = |mesh, options: &LoadOptions| Scene::from_mesh(mesh, options).unwrap_err().to_string();
         let nothing = of(SurfaceMesh { triangles: vec![], ..mesh() }, &LoadOptions::default());
         assert!(nothing.starts_with("a.ply: no triangle"), "{nothing}");
         let unsound = of(SurfaceMesh { triangles: vec![[0, 1, 2]], ..mesh() }, &LoadOptions::default());
@@ -151,7 +151,7 @@ mod tests {
 
     #[test]
     fn the_framing_is_upright_where_up_is_elsewhere() {
-        let mut scene = Scene::of_mesh(mesh(), &LoadOptions::default()).unwrap();
+        let mut scene = Scene::from_mesh(mesh(), &LoadOptions::default()).unwrap();
         scene.set_upright(DQuat::from_rotation_arc(DVec3::Z, DVec3::Y));
         let camera = &scene.cameras[0];
         assert!(camera.camera_to_world.y_axis.z > 0.8, "{}", camera.camera_to_world);

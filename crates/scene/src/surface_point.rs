@@ -29,7 +29,7 @@ impl SurfacePoint {
     }
 
     /// The same of a point that may be of another scene; none where this one has no such triangle.
-    pub fn position_if_there(self, scene: &Scene) -> Option<DVec3> {
+    pub fn checked_position(self, scene: &Scene) -> Option<DVec3> {
         ((self.triangle as usize) < scene.triangles.len()).then(|| self.position(scene))
     }
 }
@@ -47,7 +47,7 @@ pub trait SurfaceField<T>: Sync {
     }
     /// Whether any value says something of the light that surfaces carry (mirror, let through), too. Where none does, nobody
     /// need look for that light; a field that does not know says yes.
-    fn concerns_carried(&self) -> bool {
+    fn affects_carried_light(&self) -> bool {
         true
     }
 }

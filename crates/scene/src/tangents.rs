@@ -7,10 +7,10 @@ use bevy_mikktspace::{Geometry, TangentSpace, generate_tangents};
 use glam::{DVec3, Mat3, Vec2, Vec3, Vec4};
 
 /// Bytes that a triangle takes while its tangents are made, about.
-pub(crate) const BYTES_A_TRIANGLE: u64 = 400;
+pub(crate) const BYTES_PER_TRIANGLE: u64 = 400;
 
 /// What tangents depend on.
-pub(crate) struct Mesh<'a> {
+pub(crate) struct TangentInput<'a> {
     pub triangles: &'a [[u32; 3]],
     pub positions: &'a [DVec3],
     /// Empty if there are none.
@@ -22,31 +22,31 @@ pub(crate) struct Mesh<'a> {
 }
 
 /// A mesh as MikkTSpace wants it.
-struct Work<'a> {
-    mesh: Mesh<'a>,
+struct TangentGenerator<'a> {
+    mesh: TangentInput<'a>,
     tangents: Vec<[Vec4; 3]>,
 }
 
 /// Tangents of the corners of a mesh's triangles by MikkTSpace: unit vectors with the sign of the bitangent, normal × tangent ·
 /// sign. Zero where a triangle has none.
-pub(crate) fn generate(mesh: Mesh<'_>) -> Vec<[Vec4; 3]> {
+pub(crate) fn generate(mesh: TangentInput<'_>) -> Vec<[Vec4; 3]> {
     let tangents = vec![[Vec4::ZERO; 3]; mesh.triangles.len()];
     if mesh.uv.is_empty() {
         return tangents;
     }
-    let mut work = Work { mesh, tangents };
+    let mut work = TangentGenerator { mesh, tangents };
     // It fails where there is nothing to do.
     let _ = generate_tangents(&mut work);
     work.tangents
 }
 
-impl Work<'_> {
+impl TangentGenerator<'_> {
     fn vertex(&self, face: usize, corner: usize) -> usize {
         self.mesh.triangles[face][corner] as usize
     }
 }
 
-impl Geometry for Work<'_> {
+impl Geometry for TangentGenerator<'_> {
     fn num_faces(&self) -> usize {
         self.mesh.triangles.len()
     }
@@ -78,7 +78,7 @@ impl Geometry for Work<'_> {
 
     fn set_tangent(&mut self, space: Option<TangentSpace>, face: usize, corner: usize) {
         let tangent = space.map_or(Vec4::ZERO, |space| Vec4::from_array(space.tangent_encoded()));
-        let is_one = tangent.is_finite() && tangent.truncate() != Vec3::ZERO;
-        self.tangents[face][corner] = if is_one { tangent } else { Vec4::ZERO };
+        let is_usable = tangent.is_finite() && tangent.truncate() != Vec3::ZERO;
+        self.tangents[face][corner] = if is_usable { tangent } else { Vec4::ZERO };
     }
 }

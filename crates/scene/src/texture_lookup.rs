@@ -28,7 +28,7 @@ pub fn linear_from_srgb(v: f64) -> f32 {
 impl Wrap {
     /// The texel that stands at `i` of a row of `n` texels.
     #[inline]
-    fn fold(self, i: i32, n: i32) -> i32 {
+    fn wrap_index(self, i: i32, n: i32) -> i32 {
         if (i as u32) < (n as u32) {
             return i;
         }
@@ -47,8 +47,8 @@ impl Image {
     /// RGBA of the texel in column `x` of row `y`, both within the image: linear RGB of an image of colours, else the numbers
     /// as they are, in [0, 1].
     pub fn texel(&self, x: u32, y: u32, is_color: bool) -> Vec4 {
-        let at = self.start_of(x, y);
-        self.mean(&Texels { starts: [at; 4], shares: None }, is_color)
+        let at = self.texel_offset(x, y);
+        self.mean(&TexelQuad { starts: [at; 4], shares: None }, is_color)
     }
 
     /// RGBA at texture coordinates; of colours linear.
@@ -57,13 +57,15 @@ impl Image {
         /// Not more than half the range of i32, so that the right neighbour has a number too.
         const FAR: f32 = (1 << 30) as f32;
         let (w, h) = (self.width as i32, self.height as i32);
-        let start = |x: i32, y: i32| self.start_of(wrap[0].fold(x, w) as u32, wrap[1].fold(y, h) as u32);
+        let start = |x: i32, y: i32| {
+            self.texel_offset(wrap[0].wrap_index(x, w) as u32, wrap[1].wrap_index(y, h) as u32)
+        };
         let at = uv * Vec2::new(w as f32, h as f32) - if nearest { 0.0 } else { 0.5 };
         let at = at.clamp(Vec2::splat(-FAR), Vec2::splat(FAR));
         let [x, y] = at.to_array().map(floor);
         let texels = match nearest {
-            true => Texels { starts: [start(x, y); 4], shares: None },
-            false => Texels {
+            true => TexelQuad { starts: [start(x, y); 4], shares: None },
+            false => TexelQuad {
                 starts: [start(x, y), start(x + 1, y), start(x, y + 1), start(x + 1, y + 1)],
                 shares: Some(at - Vec2::new(x as f32, y as f32)),
             },
@@ -73,34 +75,36 @@ impl Image {
 
     /// Where a texel's numbers begin.
     #[inline]
-    fn start_of(&self, x: u32, y: u32) -> usize {
+    fn texel_offset(&self, x: u32, y: u32) -> usize {
         4 * (y as usize * self.width as usize + x as usize)
     }
 
     /// The mean of some texels.
     #[inline]
-    fn mean(&self, of: &Texels, is_color: bool) -> Vec4 {
+    fn mean(&self, texels: &TexelQuad, is_color: bool) -> Vec4 {
         match (&self.texels, is_color) {
-            (ImageLevel::Bits8(data), true) => of.mean(|at| color(&data[at..at + 4], &*LINEAR_FROM_8, 255.0)),
-            (ImageLevel::Bits8(data), false) => of.mean(|at| numbers(&data[at..at + 4], 255.0)),
-            (ImageLevel::Bits16(data), true) => {
-                of.mean(|at| color(&data[at..at + 4], &LINEAR_FROM_16, 65535.0))
+            (ImageLevel::Bits8(data), true) => {
+                texels.mean(|at| color(&data[at..at + 4], &*LINEAR_FROM_8, 255.0))
             }
-            (ImageLevel::Bits16(data), false) => of.mean(|at| numbers(&data[at..at + 4], 65535.0)),
-            (ImageLevel::Float(data), _) => of.mean(|at| Vec4::from_slice(&data[at..at + 4])),
+            (ImageLevel::Bits8(data), false) => texels.mean(|at| numbers(&data[at..at + 4], 255.0)),
+            (ImageLevel::Bits16(data), true) => {
+                texels.mean(|at| color(&data[at..at + 4], &LINEAR_FROM_16, 65535.0))
+            }
+            (ImageLevel::Bits16(data), false) => texels.mean(|at| numbers(&data[at..at + 4], 65535.0)),
+            (ImageLevel::Float(data), _) => texels.mean(|at| Vec4::from_slice(&data[at..at + 4])),
         }
     }
 }
 
 /// Texels whose mean is wanted: which they are is found once, how they are read once for all of them.
-struct Texels {
+struct TexelQuad {
     /// Where the numbers of each begin: upper left, upper right, lower left, lower right.
     starts: [usize; 4],
     /// How far the place lies toward the right and the lower ones, in [0, 1]; none where the first is all.
     shares: Option<Vec2>,
 }
 
-impl Texels {
+impl TexelQuad {
     #[inline]
     fn mean(&self, texel: impl Fn(usize) -> Vec4) -> Vec4 {
         let [upper_left, upper_right, lower_left, lower_right] = self.starts;
@@ -121,15 +125,20 @@ fn floor(v: f32) -> i32 {
 
 /// A texel of colours by the table that decodes them; its opacity is linear, of `most`.
 #[inline]
-fn color<T: Copy + Into<f32> + Into<usize>>(texel: &[T], linear: &[f32], most: f32) -> Vec4 {
-    let of = |k: usize| linear[Into::<usize>::into(texel[k])];
-    Vec4::new(of(0), of(1), of(2), Into::<f32>::into(texel[3]) * (1.0 / most))
+fn color<T: Copy + Into<f32> + Into<usize>>(texel: &[T], linear: &[f32], max_value: f32) -> Vec4 {
+    let linear_channel = |k: usize| linear[Into::<usize>::into(texel[k])];
+    Vec4::new(
+        linear_channel(0),
+        linear_channel(1),
+        linear_channel(2),
+        Into::<f32>::into(texel[3]) * (1.0 / max_value),
+    )
 }
 
 /// The four numbers of a texel, of `most`.
 #[inline]
-fn numbers<T: Copy + Into<f32>>(texel: &[T], most: f32) -> Vec4 {
-    Vec4::new(texel[0].into(), texel[1].into(), texel[2].into(), texel[3].into()) * (1.0 / most)
+fn numbers<T: Copy + Into<f32>>(texel: &[T], max_value: f32) -> Vec4 {
+    Vec4::new(texel[0].into(), texel[1].into(), texel[2].into(), texel[3].into()) * (1.0 / max_value)
 }
 
 impl Scene {

@@ -2,7 +2,7 @@
 
 use crate::document::Document;
 use crate::error::Fault;
-use crate::json_object::integer;
+use crate::json_object::as_whole_number;
 use crate::material_textures::{TextureInfo, uv_set};
 use crate::own_extras::RadianceInfo;
 use crate::{Image, TextureRef, Wrap};
@@ -14,15 +14,15 @@ use std::collections::HashMap;
 pub(crate) struct TextureReader<'a> {
     pub document: &'a Document<'a>,
     /// By index in the file; `None` for one that cannot be read.
-    known: HashMap<usize, Option<u32>>,
+    image_indices: HashMap<usize, Option<u32>>,
     pub images: Vec<Image>,
     /// Pictures of radiance, by URI; `None` for one that cannot be read.
-    radiances: HashMap<String, Option<u32>>,
+    radiance_indices: HashMap<String, Option<u32>>,
 }
 
 impl<'a> TextureReader<'a> {
     pub fn new(document: &'a Document<'a>) -> Self {
-        Self { document, known: HashMap::new(), images: Vec::new(), radiances: HashMap::new() }
+        Self { document, image_indices: HashMap::new(), images: Vec::new(), radiance_indices: HashMap::new() }
     }
 
     /// The texture at `place`; nothing (which is white) with a warning if its image cannot be had.
@@ -34,8 +34,8 @@ impl<'a> TextureReader<'a> {
         further_sets: &[u32],
     ) -> Result<Option<TextureRef>, Fault> {
         let texture_place = self.document.entry("textures", info.index, &format!("{place}/index"))?;
-        self.document.sound(&texture_place)?;
-        self.document.sound(&format!("{texture_place}/sampler"))?;
+        self.document.check_at(&texture_place)?;
+        self.document.check_at(&format!("{texture_place}/sampler"))?;
         let Some(texture) = self.document.typed().textures().nth(info.index) else { return Ok(None) };
         let Some(image) = self.texture_image(&texture, &texture_place) else { return Ok(None) };
         let sampler = texture.sampler();
@@ -51,16 +51,16 @@ impl<'a> TextureReader<'a> {
 
     /// The picture of a radiance as a texture; nothing, with a warning, if it cannot be had.
     pub fn radiance(&mut self, info: &RadianceInfo<'_>, further_sets: &[u32]) -> Option<TextureRef> {
-        let image = match self.radiances.get(info.uri) {
-            Some(known) => *known,
+        let image = match self.radiance_indices.get(info.uri) {
+            Some(cached) => *cached,
             None => {
-                let image = self.document.radiance(info).map(|image| {
+                let image = self.document.decode_radiance(info).map(|image| {
                     self.images.push(image);
                     self.images.len() as u32 - 1
                 });
                 let image =
                     image.map_err(|fault| self.document.warn(format!("{fault}; the light is left out"))).ok();
-                self.radiances.insert(info.uri.into(), image);
+                self.radiance_indices.insert(info.uri.into(), image);
                 image
             }
         };
@@ -76,19 +76,21 @@ impl<'a> TextureReader<'a> {
 
     /// The first of a texture's images that can be read: Basis Universal, WebP, then the plain one.
     fn texture_image(&mut self, texture: &gltf::Texture<'_>, place: &str) -> Option<u32> {
-        let of_extension = |name: &str| {
-            let index = texture.extension_value(name).and_then(|value| integer(value.get("source")?));
+        let extension_source = |name: &str| {
+            let index = texture.extension_value(name).and_then(|value| as_whole_number(value.get("source")?));
             (index.map(|index| index as usize), format!("{place}/extensions/{name}/source"))
         };
         // The typed view relies on the source to be there.
         let json = self.document.typed().as_json().textures.get(texture.index());
         let plain = json.map(|texture| texture.source.value()).filter(|&i| i < self.document.len("images"));
         let plain = (plain, format!("{place}/source"));
-        let (mut is_told, mut sources) = (false, 0);
-        for (source, place) in [of_extension("KHR_texture_basisu"), of_extension("EXT_texture_webp"), plain] {
-            if let Err(fault) = self.document.sound(&place) {
+        let (mut has_warned, mut sources) = (false, 0);
+        for (source, place) in
+            [extension_source("KHR_texture_basisu"), extension_source("EXT_texture_webp"), plain]
+        {
+            if let Err(fault) = self.document.check_at(&place) {
                 self.document.warn(format!("{fault}; the texture is white"));
-                is_told = true;
+                has_warned = true;
             }
             let Some(source) = source else { continue };
             sources += 1;
@@ -96,17 +98,17 @@ impl<'a> TextureReader<'a> {
                 return Some(image);
             }
         }
-        if sources == 0 && !is_told {
+        if sources == 0 && !has_warned {
             self.document.warn(format!("{place}: has no image of a supported format; it is white"));
         }
         None
     }
 
     fn image(&mut self, index: usize, place: &str) -> Option<u32> {
-        if let Some(known) = self.known.get(&index) {
-            return *known;
+        if let Some(cached) = self.image_indices.get(&index) {
+            return *cached;
         }
-        let image = match self.document.image(index, place) {
+        let image = match self.document.decode_image(index, place) {
             Ok(image) => {
                 self.images.push(image);
                 Some(self.images.len() as u32 - 1)
@@ -116,7 +118,7 @@ impl<'a> TextureReader<'a> {
                 None
             }
         };
-        self.known.insert(index, image);
+        self.image_indices.insert(index, image);
         image
     }
 }

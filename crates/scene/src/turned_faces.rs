@@ -15,11 +15,11 @@ struct Face {
 /// `corners` are the triangles by their welded vertices, `position` tells where those lie. A piece is what hangs together by
 /// edges; it is closed if each of its edges has two faces, and has an outside if those can be turned so that all neighbours
 /// agree: then its volume, Σ a·(b×c)/6 over its triangles, tells which way is out. Of other pieces nothing is counted.
-pub fn turned_faces(corners: &[[u32; 3]], position: impl Fn(u32) -> DVec3) -> usize {
+pub fn count_inverted_faces(corners: &[[u32; 3]], position: impl Fn(u32) -> DVec3) -> usize {
     let mut faces: Vec<Face> = Vec::new();
     let mut by_corners = HashMap::new();
     // Of each triangle its face, and whether it has the corners in the face's order.
-    let mut of_triangle = Vec::with_capacity(corners.len());
+    let mut face_of_triangle = Vec::with_capacity(corners.len());
     for &triangle in corners {
         let [a, b, c] = triangle;
         if a == b || b == c || c == a {
@@ -31,22 +31,22 @@ pub fn turned_faces(corners: &[[u32; 3]], position: impl Fn(u32) -> DVec3) -> us
             faces.push(Face { corners: triangle, is_flipped: false });
             faces.len() - 1
         });
-        of_triangle.push((face, is_same_turn(faces[face].corners, triangle)));
+        face_of_triangle.push((face, has_same_orientation(faces[face].corners, triangle)));
     }
-    let turned_out = outward(&mut faces, position);
-    of_triangle
+    let outward_sides = find_outward_sides(&mut faces, position);
+    face_of_triangle
         .into_iter()
-        .filter(|&(face, is_same)| turned_out[face].is_some_and(|is_outward| is_outward != is_same))
+        .filter(|&(face, is_same)| outward_sides[face].is_some_and(|is_outward| is_outward != is_same))
         .count()
 }
 
 /// Whether two orders of the same corners turn the same way.
-fn is_same_turn([a, b, c]: [u32; 3], other: [u32; 3]) -> bool {
+fn has_same_orientation([a, b, c]: [u32; 3], other: [u32; 3]) -> bool {
     [[a, b, c], [b, c, a], [c, a, b]].contains(&other)
 }
 
 /// For each face whether its corners run counter-clockwise seen from outside; none where there is no outside.
-fn outward(faces: &mut [Face], position: impl Fn(u32) -> DVec3) -> Vec<Option<bool>> {
+fn find_outward_sides(faces: &mut [Face], position: impl Fn(u32) -> DVec3) -> Vec<Option<bool>> {
     // Each side of a face, by the edge: which face, and whether it runs along the edge from the lower vertex.
     let mut sides: Vec<([u32; 2], usize, bool)> = Vec::with_capacity(3 * faces.len());
     for (index, face) in faces.iter().enumerate() {
@@ -56,23 +56,23 @@ fn outward(faces: &mut [Face], position: impl Fn(u32) -> DVec3) -> Vec<Option<bo
     sides.sort_unstable();
     let mut neighbours = vec![Vec::with_capacity(3); faces.len()];
     let mut is_open = vec![false; faces.len()];
-    for around in sides.chunk_by(|a, b| a.0 == b.0) {
-        let (_, first, first_runs) = around[0];
-        for &(_, face, runs) in &around[1..] {
+    for faces_at_edge in sides.chunk_by(|a, b| a.0 == b.0) {
+        let (_, first, first_runs) = faces_at_edge[0];
+        for &(_, face, runs) in &faces_at_edge[1..] {
             neighbours[first].push((face, runs == first_runs));
             neighbours[face].push((first, runs == first_runs));
         }
-        if around.len() != 2 {
-            around.iter().for_each(|&(_, face, _)| is_open[face] = true);
+        if faces_at_edge.len() != 2 {
+            faces_at_edge.iter().for_each(|&(_, face, _)| is_open[face] = true);
         }
     }
-    let mut found = vec![None; faces.len()];
-    let mut is_seen = vec![false; faces.len()];
+    let mut outward_sides = vec![None; faces.len()];
+    let mut is_visited = vec![false; faces.len()];
     for start in 0..faces.len() {
-        if is_seen[start] {
+        if is_visited[start] {
             continue;
         }
-        is_seen[start] = true;
+        is_visited[start] = true;
         let (mut piece, mut next, mut has_outside) = (vec![start], 0, true);
         while let Some(&face) = piece.get(next) {
             next += 1;
@@ -80,10 +80,10 @@ fn outward(faces: &mut [Face], position: impl Fn(u32) -> DVec3) -> Vec<Option<bo
             for &(neighbour, runs_alike) in &neighbours[face] {
                 // Faces that agree run along their edge in opposite directions.
                 let is_flipped = faces[face].is_flipped ^ runs_alike;
-                if is_seen[neighbour] {
+                if is_visited[neighbour] {
                     has_outside &= faces[neighbour].is_flipped == is_flipped;
                 } else {
-                    is_seen[neighbour] = true;
+                    is_visited[neighbour] = true;
                     faces[neighbour].is_flipped = is_flipped;
                     piece.push(neighbour);
                 }
@@ -93,11 +93,11 @@ fn outward(faces: &mut [Face], position: impl Fn(u32) -> DVec3) -> Vec<Option<bo
         let volume: f64 = piece.iter().map(|&face| signed_volume(&faces[face], origin, &position)).sum();
         if has_outside && volume != 0.0 && volume.is_finite() {
             for &face in &piece {
-                found[face] = Some((volume > 0.0) ^ faces[face].is_flipped);
+                outward_sides[face] = Some((volume > 0.0) ^ faces[face].is_flipped);
             }
         }
     }
-    found
+    outward_sides
 }
 
 /// Six times the volume of the tetrahedron of a face, as it is turned, and `origin`.
@@ -119,7 +119,7 @@ mod tests {
     }
 
     fn turned(triangles: &[[u32; 3]]) -> usize {
-        turned_faces(triangles, corner)
+        count_inverted_faces(triangles, corner)
     }
 
     fn inward() -> [[u32; 3]; 4] {
@@ -151,6 +151,6 @@ mod tests {
         assert_eq!(turned(&flap), 0);
         // All in one plane: no volume.
         let flat = |index: u32| corner(index).with_z(0.0);
-        assert_eq!(turned_faces(&inward(), flat), 0);
+        assert_eq!(count_inverted_faces(&inward(), flat), 0);
     }
 }

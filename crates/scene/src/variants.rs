@@ -6,7 +6,7 @@
 
 use crate::document::Document;
 use crate::error::Fault;
-use crate::json_object::{Object, integer};
+use crate::json_object::{Object, as_whole_number};
 
 pub(crate) const EXTENSION: &str = "KHR_materials_variants";
 
@@ -15,43 +15,41 @@ pub(crate) struct Variants {
     /// What they are called, in the order of the file; no two alike.
     pub names: Vec<String>,
     /// Index into `names`.
-    chosen: Option<usize>,
+    selected: Option<usize>,
 }
 
 impl Variants {
     /// The variants of a file; chosen is the one of this name, or none.
     pub fn read(document: &Document<'_>, choice: Option<&str>) -> Result<Self, Fault> {
-        let names = names(document);
+        let names = variant_names(document);
         let chosen = match choice {
             None => None,
-            Some(choice) => Some(
-                names
-                    .iter()
-                    .position(|name| name == choice)
-                    .ok_or_else(|| Fault::NoVariant { name: choice.into(), known: there_are(&names) })?,
-            ),
+            Some(choice) => Some(names.iter().position(|name| name == choice).ok_or_else(|| {
+                Fault::NoVariant { name: choice.into(), available: describe_available(&names) }
+            })?),
         };
-        Ok(Self { names, chosen })
+        Ok(Self { names, selected: chosen })
     }
 
     /// What the chosen one is called.
-    pub fn chosen(&self) -> Option<&str> {
-        self.names.get(self.chosen?).map(String::as_str)
+    pub fn selected_name(&self) -> Option<&str> {
+        self.names.get(self.selected?).map(String::as_str)
     }
 
     /// The material, by its index in the file, that the chosen variant gives the primitive at `place`; none where its own stays.
     pub fn material(&self, document: &Document<'_>, place: &str) -> Result<Option<usize>, Fault> {
-        let Some(chosen) = self.chosen else { return Ok(None) };
+        let Some(selected) = self.selected else { return Ok(None) };
         let place = format!("{place}/extensions/{EXTENSION}/mappings");
-        let Some(mappings) = document.value().pointer(&place).and_then(|list| list.as_array()) else {
+        let Some(mappings) = document.root_value().pointer(&place).and_then(|list| list.as_array()) else {
             return Ok(None);
         };
-        document.budget.work(mappings.len() as u64, &place)?;
+        document.budget.take_work(mappings.len() as u64, &place)?;
         for (i, mapping) in mappings.iter().enumerate() {
             let variants = mapping.get("variants").and_then(|list| list.as_array());
-            let is_meant = variants
-                .is_some_and(|list| list.iter().any(|variant| integer(variant) == Some(chosen as u64)));
-            if !is_meant {
+            let maps_selected = variants.is_some_and(|list| {
+                list.iter().any(|variant| as_whole_number(variant) == Some(selected as u64))
+            });
+            if !maps_selected {
                 continue;
             }
             let mapping = Object::new(mapping, format!("{place}/{i}"))?;
@@ -66,14 +64,15 @@ impl Variants {
 }
 
 /// The names: as the file says, else `variant N`. One that another has already is followed by its number.
-fn names(document: &Document<'_>) -> Vec<String> {
-    let root = document.value().pointer(&format!("/extensions/{EXTENSION}/variants"));
+fn variant_names(document: &Document<'_>) -> Vec<String> {
+    let root = document.root_value().pointer(&format!("/extensions/{EXTENSION}/variants"));
     let list = root.and_then(|list| list.as_array()).map_or(&[][..], Vec::as_slice);
     let mut names = Vec::with_capacity(list.len());
     let mut taken = std::collections::HashSet::new();
     for (i, variant) in list.iter().enumerate() {
-        let said = variant.get("name").and_then(|name| name.as_str()).filter(|name| !name.is_empty());
-        let mut name = said.map_or_else(|| format!("variant {i}"), String::from);
+        let declared_name =
+            variant.get("name").and_then(|name| name.as_str()).filter(|name| !name.is_empty());
+        let mut name = declared_name.map_or_else(|| format!("variant {i}"), String::from);
         if taken.contains(&name) {
             document.warn(format!(
                 "/extensions/{EXTENSION}/variants/{i}/name: {name:?} is another's name, too; this one is called \"{name} ({i})\""
@@ -88,14 +87,14 @@ fn names(document: &Document<'_>) -> Vec<String> {
 }
 
 /// What can be chosen, for a message.
-fn there_are(names: &[String]) -> String {
+fn describe_available(names: &[String]) -> String {
     /// More names than these are counted.
-    const MOST: usize = 30;
+    const MAX_LISTED: usize = 30;
     if names.is_empty() {
         return format!("the file has no variants: no {EXTENSION}");
     }
-    let told: Vec<String> = names.iter().take(MOST).map(|name| format!("{name:?}")).collect();
-    let more = names.len().saturating_sub(MOST);
+    let listed: Vec<String> = names.iter().take(MAX_LISTED).map(|name| format!("{name:?}")).collect();
+    let more = names.len().saturating_sub(MAX_LISTED);
     let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-    format!("there are {}{more}", told.join(", "))
+    format!("there are {}{more}", listed.join(", "))
 }

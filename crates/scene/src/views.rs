@@ -28,8 +28,8 @@ impl PhotoLookup {
     pub const ALL: [(&str, Self); 2] = [("texels", Self::Texels), ("direct", Self::Direct)];
 
     /// The one with this name.
-    pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.iter().find(|(known, _)| *known == name).map(|(_, lookup)| *lookup)
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.iter().find(|(candidate, _)| *candidate == name).map(|(_, lookup)| *lookup)
     }
 }
 

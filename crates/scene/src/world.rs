@@ -72,13 +72,13 @@ impl World {
     pub fn radiance(&self, direction: DVec3) -> Vec3 {
         let radiance = match &self.environment {
             Environment::Uniform(radiance) => *radiance,
-            Environment::Map(map) => map.radiance(self.unturned(direction)),
+            Environment::Map(map) => map.radiance(self.environment_from_world(direction)),
         };
         radiance * self.strength
     }
 
     /// What the camera sees in a direction (unit).
-    pub fn seen(&self, direction: DVec3) -> Vec3 {
+    pub fn backdrop_radiance(&self, direction: DVec3) -> Vec3 {
         match self.backdrop {
             Backdrop::Environment => self.radiance(direction),
             Backdrop::Color(color) => color,
@@ -86,12 +86,12 @@ impl World {
     }
 
     /// A direction of the world in the environment's own axes.
-    pub fn unturned(&self, direction: DVec3) -> DVec3 {
+    pub fn environment_from_world(&self, direction: DVec3) -> DVec3 {
         glam::DQuat::from_rotation_y(-self.rotation) * direction
     }
 
     /// And back.
-    pub fn turned(&self, direction: DVec3) -> DVec3 {
+    pub fn world_from_environment(&self, direction: DVec3) -> DVec3 {
         glam::DQuat::from_rotation_y(self.rotation) * direction
     }
 }

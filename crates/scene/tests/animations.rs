@@ -6,7 +6,7 @@ mod handmade;
 use glam::{DVec3, Vec3};
 use handmade::Glb;
 use progress::Unwatched;
-use scene::{LoadOptions, Moment, MovingScene, Posed, SceneError, load};
+use scene::{AnimatedScene, AnimationTime, LoadOptions, PosedScene, SceneError, load};
 use serde_json::{Value, json};
 use std::path::Path;
 use std::sync::Arc;
@@ -14,7 +14,7 @@ use tempfile::TempDir;
 
 /// A file on the disk for as long as it is looked at.
 struct Opened {
-    scene: MovingScene,
+    scene: AnimatedScene,
     _folder: TempDir,
 }
 
@@ -23,11 +23,11 @@ fn opened(glb: &Glb) -> Result<Opened, SceneError> {
     let file = folder.path().join("moving.glb");
     std::fs::write(&file, glb.bytes()).unwrap();
     let rest = Arc::new(load(&file, &LoadOptions::default(), &Unwatched)?);
-    Ok(Opened { scene: MovingScene::of(rest, &LoadOptions::default(), &Unwatched)?, _folder: folder })
+    Ok(Opened { scene: AnimatedScene::open(rest, &LoadOptions::default(), &Unwatched)?, _folder: folder })
 }
 
-fn at(glb: &Glb, seconds: f64) -> Posed {
-    opened(glb).unwrap().scene.at(&Moment { animation: None, seconds }, &Unwatched).unwrap()
+fn at(glb: &Glb, seconds: f64) -> PosedScene {
+    opened(glb).unwrap().scene.pose_at(&AnimationTime { animation: None, seconds }, &Unwatched).unwrap()
 }
 
 impl Glb {
@@ -81,7 +81,7 @@ fn rotations_turn_at_an_even_pace() {
     let turned = posed.scene.positions[1];
     let expected = DVec3::new((std::f64::consts::PI / 6.0).cos(), 0.5, 0.0);
     assert!((turned - expected).length() < 1e-6, "{turned}");
-    assert!(posed.has_all_in_place());
+    assert!(posed.matches_rest());
 }
 
 #[test]
@@ -99,8 +99,8 @@ fn morph_targets_take_normals_along() {
     // A pointer to one of the weights leaves the other.
     let mut glb = Glb { json: glb.json, bin: glb.bin };
     glb.animate_pointer("/meshes/0/weights/1", &[0.0], &[1.0], "SCALAR");
-    let moment = Moment { animation: Some("anim 1".into()), seconds: 0.0 };
-    let posed = opened(&glb).unwrap().scene.at(&moment, &Unwatched).unwrap();
+    let moment = AnimationTime { animation: Some("anim 1".into()), seconds: 0.0 };
+    let posed = opened(&glb).unwrap().scene.pose_at(&moment, &Unwatched).unwrap();
     assert_eq!(posed.scene.positions[0], DVec3::X);
 }
 
@@ -142,7 +142,7 @@ fn what_is_hidden_leaves_and_what_is_shown_comes() {
     );
     let found = |glb: &Glb, seconds| {
         let posed = at(glb, seconds);
-        posed.at_rest.iter().map(|rest| rest.map(|rest| rest.triangle)).collect::<Vec<_>>()
+        posed.rest_triangles.iter().map(|rest| rest.map(|rest| rest.triangle)).collect::<Vec<_>>()
     };
     assert_eq!(found(&glb, 0.5), [Some(0), Some(1)]);
     assert_eq!(found(&glb, 1.0), [Some(1)], "paint stays with its own triangle");
@@ -160,7 +160,7 @@ fn what_is_hidden_leaves_and_what_is_shown_comes() {
 fn a_mirrored_moment_turns_corners() {
     let mut glb = Glb::triangle();
     glb.animate(NODE("scale"), &[0.0, 1.0], &[1.0, 1.0, 1.0, -1.0, 1.0, 1.0], "VEC3", "STEP");
-    let turned = |seconds| at(&glb, seconds).at_rest[0].unwrap().is_turned;
+    let turned = |seconds| at(&glb, seconds).rest_triangles[0].unwrap().is_flipped;
     assert!(!turned(0.0) && turned(1.0));
 }
 
@@ -227,13 +227,13 @@ fn flaws_leave_the_rest_moving() {
     glb.json["animations"] =
         json!([{"samplers": [weights], "channels": [{"sampler": 0, "target": NODE("weights")}]}]);
     let opened = opened(&glb).unwrap();
-    let error = opened.scene.at(&Moment::default(), &Unwatched).unwrap_err().to_string();
+    let error = opened.scene.pose_at(&AnimationTime::default(), &Unwatched).unwrap_err().to_string();
     assert!(
         error.contains("moving.glb") && error.contains("limit") || error.contains("too many steps"),
         "{error}"
     );
-    let moment = Moment { animation: Some("Gallop".into()), seconds: 0.0 };
-    let error = opened.scene.at(&moment, &Unwatched).unwrap_err().to_string();
+    let moment = AnimationTime { animation: Some("Gallop".into()), seconds: 0.0 };
+    let error = opened.scene.pose_at(&moment, &Unwatched).unwrap_err().to_string();
     assert!(error.contains("no animation is called \"Gallop\"") && error.contains("animation 0"), "{error}");
 }
 
@@ -244,15 +244,15 @@ fn sample_files_move_on_their_own_surface() {
         [("Fox.glb", Some("Run"), 1.1583333), ("MorphStressTest/MorphStressTest.gltf", Some("TheWave"), 0.0)]
     {
         let rest = Arc::new(load(&folder.join(file), &LoadOptions::default(), &Unwatched).unwrap());
-        let moving = MovingScene::of(rest.clone(), &LoadOptions::default(), &Unwatched).unwrap();
+        let moving = AnimatedScene::open(rest.clone(), &LoadOptions::default(), &Unwatched).unwrap();
         let names: Vec<_> = moving.animations().iter().map(|animation| animation.name.as_str()).collect();
         assert!(names.contains(&animation.unwrap()), "{names:?}");
         let end = moving.animations().iter().find(|a| Some(a.name.as_str()) == animation).unwrap().seconds;
         assert!(end > 0.1 && (seconds == 0.0 || (end - seconds).abs() < 1e-3), "{end}");
-        let moment = |seconds| Moment { animation: animation.map(String::from), seconds };
-        let posed = |seconds| moving.at(&moment(seconds), &Unwatched).unwrap();
+        let moment = |seconds| AnimationTime { animation: animation.map(String::from), seconds };
+        let posed = |seconds| moving.pose_at(&moment(seconds), &Unwatched).unwrap();
         let (early, late) = (posed(end * 0.25), posed(end * 0.6));
-        assert!(early.has_all_in_place() && late.has_all_in_place());
+        assert!(early.matches_rest() && late.matches_rest());
         assert_eq!(early.scene.triangles, rest.triangles);
         assert_ne!(early.scene.positions, late.scene.positions);
         let size = |scene: &scene::Scene| (scene.bounds().1 - scene.bounds().0).length();

@@ -19,7 +19,7 @@ fn a_triangle() {
     assert_eq!(scene.corners(0), [DVec3::ZERO, DVec3::X, DVec3::Y]);
     assert_eq!((scene.nodes[0].name.as_str(), scene.materials[0].name.as_str()), ("tri", "default material"));
     assert_eq!(scene.shading_normal(MIDDLE), DVec3::Z);
-    let health = MeshHealth::of(&scene);
+    let health = MeshHealth::measure(&scene);
     assert_eq!((health.area, health.boundary_edges, health.without_uv), (0.5, 3, 1));
 }
 
@@ -140,10 +140,10 @@ fn emitted_light() {
     glb.json["materials"] = json!([{"emissiveFactor": [1, 0.5, 0],
         "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 4}}}]);
     let scene = glb.clean();
-    assert_eq!(scene.emitted(MIDDLE), Vec3::new(4.0, 2.0, 0.0));
-    assert!(scene.shines());
+    assert_eq!(scene.emitted_radiance(MIDDLE), Vec3::new(4.0, 2.0, 0.0));
+    assert!(scene.has_light_sources());
     glb.json["materials"][0]["extensions"] = json!({"KHR_materials_unlit": {}});
-    assert_eq!(glb.clean().emitted(MIDDLE), Vec3::ONE);
+    assert_eq!(glb.clean().emitted_radiance(MIDDLE), Vec3::ONE);
 }
 
 #[test]
@@ -281,7 +281,7 @@ fn triangles_that_cannot_be_are_left_out() {
     let indices = glb.raw_accessor(&[0, 1, 2, 0, 1, 9, 0, 1, 2], 5121, "SCALAR", 9);
     glb.json["meshes"][0]["primitives"][0]["indices"] = json!(indices);
     let scene = glb.load().unwrap();
-    assert_eq!((scene.triangles.len(), MeshHealth::of(&scene).duplicates), (2, 1));
+    assert_eq!((scene.triangles.len(), MeshHealth::measure(&scene).duplicates), (2, 1));
     assert!(
         scene.warnings[0].contains("1 of 3 triangles refer to vertices beyond the 3"),
         "{:?}",

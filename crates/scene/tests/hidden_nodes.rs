@@ -51,10 +51,10 @@ fn hidden_lights_do_not_shine_and_hidden_cameras_see() {
     glb.json["extensions"] = json!({"KHR_lights_punctual": {"lights": [{"type": "point"}]}});
     glb.json["cameras"] = json!([{"type": "perspective", "perspective": {"yfov": 0.7, "znear": 0.1}}]);
     let scene = glb.clean();
-    assert!(!scene.shines() && !scene.camera_is_invented);
+    assert!(!scene.has_light_sources() && !scene.has_default_camera);
     assert_eq!(scene.cameras[0].camera_to_world.w_axis.truncate(), DVec3::new(0.0, 0.0, 5.0));
     glb.json["nodes"][1]["extensions"][HIDDEN]["visible"] = json!(true);
-    assert!(glb.clean().shines());
+    assert!(glb.clean().has_light_sources());
 }
 
 #[test]

@@ -77,7 +77,7 @@ fn light(glb: &mut Glb) -> &mut Value {
 }
 
 fn world(scene: &Scene) -> &World {
-    scene.own_world.as_ref().expect("a world of its own")
+    scene.embedded_world.as_ref().expect("a world of its own")
 }
 
 /// The middles of the octants.
@@ -107,10 +107,10 @@ fn faces_look_where_the_extension_says() {
         assert!(seen.abs_diff_eq(octant(direction), 1e-3), "{direction}: {seen}");
     }
     // It is the world where none was chosen, whatever background the camera has.
-    assert_eq!(World::of_scene(&scene, Some(Vec3::ONE)), *world);
+    assert_eq!(World::from_scene(&scene, Some(Vec3::ONE)), *world);
     let chosen = Scene { world: Some(World::studio()), ..scene.clone() };
-    assert_eq!(World::of_scene(&chosen, None), World::studio());
-    assert!(Glb::triangle().clean().own_world.is_none());
+    assert_eq!(World::from_scene(&chosen, None), World::studio());
+    assert!(Glb::triangle().clean().embedded_world.is_none());
 }
 
 #[test]

@@ -53,22 +53,27 @@ fn every_extension_is_read() {
     let scene = triangle(material, &[[128, 128, 255, 255]]).clean();
     let material = &scene.materials[0];
     assert_eq!((material.ior, material.dispersion), (1.8, 0.3));
-    assert_eq!(material.specular, Scalar::plain(0.5));
-    assert_eq!(material.specular_color, Tint::plain(Vec3::new(2.0, 1.0, 0.0)));
-    assert_eq!(material.transmission, Scalar::plain(0.75));
+    assert_eq!(material.specular, Scalar::constant(0.5));
+    assert_eq!(material.specular_color, Tint::constant(Vec3::new(2.0, 1.0, 0.0)));
+    assert_eq!(material.transmission, Scalar::constant(0.75));
     let volume = Volume { attenuation_distance: 2.0, attenuation_color: Vec3::new(1.0, 0.5, 0.0) };
     assert_eq!(material.volume, Some(volume));
     let coat = material.clearcoat.unwrap();
-    assert_eq!((coat.factor, coat.roughness), (Scalar::plain(1.0), Scalar::plain(0.1)));
+    assert_eq!((coat.factor, coat.roughness), (Scalar::constant(1.0), Scalar::constant(0.1)));
     assert!(matches!(coat.normal_map, Some(NormalMap { scale: 0.5, .. })));
     let sheen = material.sheen.unwrap();
-    assert_eq!((sheen.color, sheen.roughness), (Tint::plain(Vec3::new(0.1, 0.2, 0.3)), Scalar::plain(0.4)));
+    assert_eq!(
+        (sheen.color, sheen.roughness),
+        (Tint::constant(Vec3::new(0.1, 0.2, 0.3)), Scalar::constant(0.4))
+    );
     let anisotropy = material.anisotropy.unwrap();
     assert_eq!((anisotropy.strength, anisotropy.rotation), (0.6, 1.5));
     let film = material.iridescence.unwrap();
-    assert_eq!((film.factor, film.ior, film.thickness), (Scalar::plain(1.0), 1.3, [100.0, 300.0]));
-    let through =
-        DiffuseTransmission { factor: Scalar::plain(0.25), color: Tint::plain(Vec3::new(0.0, 1.0, 0.0)) };
+    assert_eq!((film.factor, film.ior, film.thickness), (Scalar::constant(1.0), 1.3, [100.0, 300.0]));
+    let through = DiffuseTransmission {
+        factor: Scalar::constant(0.25),
+        color: Tint::constant(Vec3::new(0.0, 1.0, 0.0)),
+    };
     assert_eq!(material.diffuse_transmission, Some(through));
 }
 

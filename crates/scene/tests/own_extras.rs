@@ -35,8 +35,8 @@ fn a_lens_is_read_and_what_it_does_not_say_is_as_elsewhere() {
     assert_eq!(scene.cameras[0].lens, expected);
     assert_eq!(scene.warnings, Vec::<String>::new());
     let some = with_lens(json!({"version": 1, "shift": [0.5, 0]}));
-    assert_eq!(some.cameras[0].lens.said(), ["shift"]);
-    let camera = some.cameras[0].lens.of(Camera::default());
+    assert_eq!(some.cameras[0].lens.specified_fields(), ["shift"]);
+    let camera = some.cameras[0].lens.apply_to(Camera::default());
     assert_eq!(camera, Camera { shift: DVec2::new(0.5, 0.0), ..Camera::default() });
 }
 
@@ -85,7 +85,9 @@ fn radiance_of_any_brightness_comes_from_a_picture_beside_the_file() {
         let material = &scene.materials[0];
         assert!(material.unlit && matches!(scene.images[0].texels, ImageLevel::Float(_)));
         let at = |barycentric: [f64; 2]| {
-            scene.emitted(scene::SurfacePoint { triangle: 0, barycentric: barycentric.into() }).to_array()
+            scene
+                .emitted_radiance(scene::SurfacePoint { triangle: 0, barycentric: barycentric.into() })
+                .to_array()
         };
         assert_eq!(at([0.0, 0.0]), [5.0, 0.0, 0.0], "set {set}; light below none is none");
         assert_eq!(at([0.0, 1.0]), [0.0, 0.25, 0.0], "set {set}");

@@ -23,7 +23,7 @@ fn view(file: &Path, size_px: [u32; 2]) -> View {
 }
 
 fn read(file: &Path, size_px: [u32; 2]) -> Result<Photograph, PictureError> {
-    view(file, size_px).photograph(&LoadOptions::default())
+    view(file, size_px).read_photograph(&LoadOptions::default())
 }
 
 /// Writes a row of pixels as a PNG with this profile.
@@ -104,7 +104,7 @@ fn pictures_are_turned_as_the_view_says_not_as_the_file_says() {
     let as_stored = read(&file, [32, 16]).unwrap();
     assert!(as_stored.pixels[0][0] > 0.9 && as_stored.pixels[31][0] < 0.1);
     let turned =
-        View { orientation: 6, ..view(&file, [16, 32]) }.photograph(&LoadOptions::default()).unwrap();
+        View { orientation: 6, ..view(&file, [16, 32]) }.read_photograph(&LoadOptions::default()).unwrap();
     assert_eq!([turned.width, turned.height], [16, 32]);
     // What was on the left is on top.
     assert!(turned.pixels[15][0] > 0.9 && turned.pixels[16 * 31][0] < 0.1);
@@ -126,7 +126,7 @@ fn what_is_wrong_with_a_picture_is_one_sentence() {
     RgbImage::new(4, 2).save(&file).unwrap();
     said(read(&file, [2, 4]), "is 4 × 2 px, its camera is for 2 × 4 px");
     let few = LoadOptions { max_texels: 7, ..LoadOptions::default() };
-    said(view(&file, [4, 2]).photograph(&few), "beyond the limit of 7 px");
+    said(view(&file, [4, 2]).read_photograph(&few), "beyond the limit of 7 px");
 }
 
 #[test]
@@ -135,7 +135,7 @@ fn masks_are_told_by_brightness_at_any_size() {
     let file = folder.path().join("mask.png");
     image::GrayImage::from_raw(2, 1, vec![0, 255]).unwrap().save(&file).unwrap();
     let with = View { mask: Some(file), ..view(Path::new("a.png"), [4, 2]) };
-    let mask = with.mask(&LoadOptions::default()).unwrap().unwrap();
-    assert_eq!(mask.counts, [false, false, true, true, false, false, true, true]);
-    assert_eq!(view(Path::new("a.png"), [4, 2]).mask(&LoadOptions::default()).unwrap(), None);
+    let mask = with.read_mask(&LoadOptions::default()).unwrap().unwrap();
+    assert_eq!(mask.is_valid, [false, false, true, true, false, false, true, true]);
+    assert_eq!(view(Path::new("a.png"), [4, 2]).read_mask(&LoadOptions::default()).unwrap(), None);
 }

@@ -35,7 +35,7 @@ fn every_model_opens() {
                     scene.images.len(),
                     scene.lights.len(),
                     scene.cameras.len(),
-                    if scene.camera_is_invented { " (invented)" } else { "" },
+                    if scene.has_default_camera { " (invented)" } else { "" },
                     scene.warnings,
                     start.elapsed()
                 );
@@ -78,7 +78,7 @@ fn quantised_geometry_is_the_plain_one() {
     let (Some(quantised), Some(plain)) = (sample("derived/house_quantized.glb"), sample("house.glb")) else {
         return;
     };
-    let (q, p) = (MeshHealth::of(&quantised), MeshHealth::of(&plain));
+    let (q, p) = (MeshHealth::measure(&quantised), MeshHealth::measure(&plain));
     assert!((q.area / p.area - 1.0).abs() < 2e-3, "{} {}", q.area, p.area);
     let size = (plain.bounds().1 - plain.bounds().0).max_element();
     assert!((quantised.bounds().0 - plain.bounds().0).abs().max_element() < 2e-4 * size);
@@ -110,7 +110,7 @@ fn texture_rotation_points_at_the_green_marker() {
 fn framing_sees_everything() {
     for name in ["FlightHelmet/FlightHelmet.gltf", "terrain.glb", "MorphStressTest/MorphStressTest.gltf"] {
         let Some(scene) = sample(name) else { return };
-        assert!(scene.camera_is_invented);
+        assert!(scene.has_default_camera);
         let camera = &scene.cameras[0];
         let view = camera.camera_to_world.inverse();
         let tan = (0.5 * camera.yfov).tan();
@@ -128,7 +128,7 @@ fn framing_sees_everything() {
 #[test]
 fn lights_and_cameras_of_the_file() {
     let Some(scene) = sample("geometry-camera-light.glb") else { return };
-    assert!(scene.shines() && !scene.camera_is_invented);
+    assert!(scene.has_light_sources() && !scene.has_default_camera);
     assert_eq!(scene.cameras.len(), 1);
     assert!(scene.lights.iter().any(|light| light.kind == LightKind::Point));
     assert!(scene.lights.iter().any(|light| matches!(light.kind, LightKind::Spot { .. })));
@@ -138,5 +138,5 @@ fn lights_and_cameras_of_the_file() {
 #[test]
 fn a_scene_of_unlit_materials_needs_no_light() {
     let Some(gallery) = sample("vr-gallery.glb") else { return };
-    assert!(gallery.lights.is_empty() && gallery.shines());
+    assert!(gallery.lights.is_empty() && gallery.has_light_sources());
 }

@@ -55,8 +55,8 @@ fn diffuse_is_base_colour() {
             assert_eq!(scene.opacity(MIDDLE), expected.opacity(MIDDLE), "{factor} {texture} {mode}");
             let (material, like) = (&scene.materials[0], &expected.materials[0]);
             let dull = Workflow::SpecularGlossiness {
-                specular: Tint::plain(Vec3::ZERO),
-                glossiness: Scalar::plain(0.0),
+                specular: Tint::constant(Vec3::ZERO),
+                glossiness: Scalar::constant(0.0),
             };
             assert_eq!(material.workflow, dull);
             assert_eq!((material.base_color_texture, material.alpha), (like.base_color_texture, like.alpha));

@@ -71,14 +71,14 @@ fn two_textures_lie_in_two_sets() {
     green(&mut glb, 5);
     let scene = glb.clean();
     assert_eq!(
-        (scene.base_color(MIDDLE), scene.emitted(MIDDLE), scene.further_uv.len()),
+        (scene.base_color(MIDDLE), scene.emitted_radiance(MIDDLE), scene.further_uv.len()),
         (GREEN, Vec3::X, 2)
     );
     // The same set twice is kept once.
     glb.json["materials"][0]["emissiveTexture"]["texCoord"] = json!(5);
     let scene = glb.clean();
     assert_eq!(
-        (scene.base_color(MIDDLE), scene.emitted(MIDDLE), scene.further_uv.len()),
+        (scene.base_color(MIDDLE), scene.emitted_radiance(MIDDLE), scene.further_uv.len()),
         (GREEN, Vec3::Y, 1)
     );
 }

@@ -42,7 +42,7 @@ impl From<Cancelled> for SessionError {
 
 impl SessionError {
     /// Bad input in `file`.
-    pub fn bad(file: &Path, what: impl std::fmt::Display) -> Self {
+    pub fn bad_file(file: &Path, what: impl std::fmt::Display) -> Self {
         Self::BadInput(format!("{}: {what}", file.display()))
     }
 
@@ -52,7 +52,7 @@ impl SessionError {
             Deadlock, Interrupted, OutOfMemory, QuotaExceeded, ResourceBusy, StorageFull, TimedOut,
             WouldBlock,
         };
-        let text = |cure| format!("{}: {} ({cure})", file.display(), plain(error));
+        let text = |remedy| format!("{}: {} ({remedy})", file.display(), without_error_number(error));
         match error.kind() {
             StorageFull | QuotaExceeded => Self::TryAgain(text("free some disk space and try again")),
             ResourceBusy | Deadlock | TimedOut | WouldBlock | Interrupted | OutOfMemory => {
@@ -65,16 +65,16 @@ impl SessionError {
     }
 
     /// What a panic means to the user.
-    pub(crate) fn panicked(doing: &str, payload: &(dyn std::any::Any + Send)) -> Self {
+    pub(crate) fn from_panic(task: &str, payload: &(dyn std::any::Any + Send)) -> Self {
         let message = payload.downcast_ref::<&str>().copied();
         let message = message.or_else(|| payload.downcast_ref::<String>().map(String::as_str));
         let message = message.unwrap_or("no message").lines().next().unwrap_or_default();
-        Self::Internal(format!("{doing}: stopped by a fault of the program: {message} (please report this)"))
+        Self::Internal(format!("{task}: stopped by a fault of the program: {message} (please report this)"))
     }
 }
 
 /// The operating system's sentence without its error number.
-fn plain(error: &std::io::Error) -> String {
+fn without_error_number(error: &std::io::Error) -> String {
     let text = error.to_string();
     text.split(" (os error").next().unwrap_or(&text).to_lowercase()
 }

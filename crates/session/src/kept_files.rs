@@ -14,7 +14,7 @@ use std::time::SystemTime;
 
 /// Files of one kind.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct KeptFiles {
+pub(crate) struct DiskCache {
     /// Their folder in the cache folder, and their extension.
     pub name: &'static str,
     /// Bytes that they may take together.
@@ -22,25 +22,25 @@ pub(crate) struct KeptFiles {
 }
 
 /// Where they are from one run of the program to the next.
-static FOLDER: OnceLock<PathBuf> = OnceLock::new();
+static CACHE_FOLDER: OnceLock<PathBuf> = OnceLock::new();
 
 /// Has what was worked out (irradiance, light from photographs, atlases) kept in a folder from one run of the program to the next; the
 /// first one that is named counts. Without one nothing is kept.
-pub fn keep_work_in(folder: PathBuf) {
-    let _ = FOLDER.set(folder);
+pub fn set_cache_folder(folder: PathBuf) {
+    let _ = CACHE_FOLDER.set(folder);
 }
 
-impl KeptFiles {
+impl DiskCache {
     /// The file of what is made from what `made_from` adds; none where nothing is kept or builds of the program cannot be told apart.
-    pub fn file(&self, made_from: impl FnOnce(&mut Sha256)) -> Option<PathBuf> {
-        self.file_in(FOLDER.get()?, made_from)
+    pub fn entry_path(&self, add_inputs: impl FnOnce(&mut Sha256)) -> Option<PathBuf> {
+        self.entry_path_in(CACHE_FOLDER.get()?, add_inputs)
     }
 
     /// The same in another cache folder.
-    pub fn file_in(&self, folder: &Path, made_from: impl FnOnce(&mut Sha256)) -> Option<PathBuf> {
+    pub fn entry_path_in(&self, folder: &Path, add_inputs: impl FnOnce(&mut Sha256)) -> Option<PathBuf> {
         let mut hash = Sha256::new();
-        hash.update(build()?);
-        made_from(&mut hash);
+        hash.update(build_id()?);
+        add_inputs(&mut hash);
         let name: String = hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
         Some(folder.join(self.name).join(name).with_extension(self.name))
     }
@@ -51,11 +51,11 @@ impl KeptFiles {
             return None;
         }
         let mut bytes = std::fs::read(path).ok()?;
-        let contents = bytes.len().checked_sub(SUM_BYTES)?;
-        if Sha256::digest(&bytes[..contents]).as_slice() != &bytes[contents..] {
+        let content_len = bytes.len().checked_sub(CHECKSUM_BYTES)?;
+        if Sha256::digest(&bytes[..content_len]).as_slice() != &bytes[content_len..] {
             return None;
         }
-        bytes.truncate(contents);
+        bytes.truncate(content_len);
         // It was looked for: it goes last. Where that cannot be noted, it goes by when it was written.
         let _ = File::options().write(true).open(path).and_then(|file| file.set_modified(SystemTime::now()));
         Some(bytes)
@@ -71,22 +71,23 @@ impl KeptFiles {
             file.commit()
         });
         if written.is_ok() {
-            tidy(folder, self.name, self.budget_bytes, path);
+            evict_oldest(folder, self.name, self.budget_bytes, path);
         }
     }
 }
 
-const SUM_BYTES: usize = 32;
+const CHECKSUM_BYTES: usize = 32;
 
 /// Removes the files of an extension that were not looked for the longest, as many as lie beyond a budget, but not the `newest`.
-pub(crate) fn tidy(folder: &Path, extension: &str, budget_bytes: u64, newest: &Path) {
+pub(crate) fn evict_oldest(folder: &Path, extension: &str, budget_bytes: u64, newest: &Path) {
     let Ok(listing) = std::fs::read_dir(folder) else { return };
-    let known = |path: &PathBuf| path.extension().is_some_and(|of_path| of_path == extension);
-    let paths = listing.filter_map(|entry| Some(entry.ok()?.path())).filter(known);
+    let has_extension =
+        |path: &PathBuf| path.extension().is_some_and(|path_extension| path_extension == extension);
+    let paths = listing.filter_map(|entry| Some(entry.ok()?.path())).filter(has_extension);
     let mut files: Vec<_> = paths
         .filter_map(|path| {
-            let data = path.metadata().ok()?;
-            Some((data.modified().ok()?, data.len(), path))
+            let metadata = path.metadata().ok()?;
+            Some((metadata.modified().ok()?, metadata.len(), path))
         })
         .collect();
     files.sort();
@@ -102,7 +103,7 @@ pub(crate) fn tidy(folder: &Path, extension: &str, budget_bytes: u64, newest: &P
 }
 
 /// Tells this build of the program from others, which may work otherwise.
-pub(crate) fn build() -> Option<String> {
+pub(crate) fn build_id() -> Option<String> {
     let program = std::env::current_exe().and_then(std::fs::metadata).ok()?;
     let modified = program.modified().ok()?.duration_since(SystemTime::UNIX_EPOCH).ok()?;
     Some(format!("{} {modified:?}", program.len()))
@@ -126,29 +127,29 @@ mod tests {
         let (old, young) = (write("old.salf", 90), write("young.salf", 20));
         let other = write("notes.txt", 500);
         let newest = write("newest.salf", 100);
-        tidy(folder.path(), "salf", 250, &newest);
+        evict_oldest(folder.path(), "salf", 250, &newest);
         assert!(!old.exists() && young.exists() && newest.exists() && other.exists());
-        tidy(folder.path(), "salf", 250, &newest);
+        evict_oldest(folder.path(), "salf", 250, &newest);
         assert!(young.exists(), "what is left is within the budget");
     }
 
     #[test]
     fn what_is_damaged_is_as_good_as_none() {
-        const FILES: KeptFiles = KeptFiles { name: "numbers", budget_bytes: 1000 };
+        const CACHE: DiskCache = DiskCache { name: "numbers", budget_bytes: 1000 };
         let folder = tempfile::tempdir().unwrap();
-        let file = FILES.file_in(folder.path(), |hash| hash.update("one")).unwrap();
-        assert_ne!(FILES.file_in(folder.path(), |hash| hash.update("two")).unwrap(), file);
-        assert!(FILES.read(&file).is_none());
-        FILES.write(&file, b"numbers");
-        assert_eq!(FILES.read(&file).unwrap(), b"numbers");
-        let whole = std::fs::read(&file).unwrap();
-        std::fs::write(&file, &whole[..7]).unwrap();
-        assert!(FILES.read(&file).is_none());
+        let entry = CACHE.entry_path_in(folder.path(), |hash| hash.update("one")).unwrap();
+        assert_ne!(CACHE.entry_path_in(folder.path(), |hash| hash.update("two")).unwrap(), entry);
+        assert!(CACHE.read(&entry).is_none());
+        CACHE.write(&entry, b"numbers");
+        assert_eq!(CACHE.read(&entry).unwrap(), b"numbers");
+        let valid_bytes = std::fs::read(&entry).unwrap();
+        std::fs::write(&entry, &valid_bytes[..7]).unwrap();
+        assert!(CACHE.read(&entry).is_none());
         std::fs::write(
-            &file,
-            whole.iter().enumerate().map(|(k, b)| b ^ u8::from(k == 3)).collect::<Vec<_>>(),
+            &entry,
+            valid_bytes.iter().enumerate().map(|(k, b)| b ^ u8::from(k == 3)).collect::<Vec<_>>(),
         )
         .unwrap();
-        assert!(FILES.read(&file).is_none());
+        assert!(CACHE.read(&entry).is_none());
     }
 }

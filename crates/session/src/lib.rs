@@ -32,29 +32,29 @@ mod tiles;
 mod tiny_glb;
 
 pub use baselines::{FirstHits, LayeredOptions, ScatterOptions, ViewsOptions};
-pub use carrying::{CarriedNode, CarriedPaint};
+pub use carrying::{TransferredPaint, UnmatchedNode};
 pub use commands::{COMMANDS, Command, CommandId, CommandInfo, Event, KeyMap, Menu, Shortcut};
 pub use display::{
     Display, LivePicture, OcioViews, Screen, ScreenPixel, Thumbnail, ThumbnailResult, Thumbnails, Tone,
     ToneCurve, enlarged, to_screen,
 };
 pub use document::{
-    Beginning, CameraChoice, CameraEdit, DisparityError, Document, HistoryStep, Input, InputKind,
-    NearQuestion, Stage, SurfaceHit, VariantChoice, camera_between, camera_of, chief_ray, is_capture,
-    load_scene, pick, view_ray,
+    CameraChoice, CameraEdit, DepthPolarityRequest, DisparityError, Document, HistoryStep, Input, InputKind,
+    NewDocumentOptions, Stage, SurfaceHit, VariantChoice, camera_between, chief_ray, is_capture, load_scene,
+    pick, shot_camera_from, view_ray,
 };
-pub use editing::{FillRegion, StrokePoint, StrokeTarget, rectangle, replay};
+pub use editing::{FillRegion, StrokePoint, StrokeTarget, rectangle_outline, replay};
 pub use error::SessionError;
-pub use jobs::{JobId, JobProgress, JobStatus, Steps, Waker, guarded};
-pub use kept_files::keep_work_in;
+pub use jobs::{JobId, JobProgress, JobStatus, Steps, Waker, catch_panics};
+pub use kept_files::set_cache_folder;
 pub use light_field::{
-    ApertureCell, ApertureImage, DENSE_SAMPLE_BYTES, KeptVisibility, LightErrors, LightFieldStore,
-    LightQuality, Modelled, ModelledRow, TexelStatistics, bake, bake_unpacked, may_be_refined, write_salf,
+    ApertureCell, ApertureImage, BakedVisibility, DENSE_SAMPLE_BYTES, LightErrors, LightFieldStore,
+    LightQuality, Modelled, ModelledRow, TexelStatistics, bake, bake_unpacked, can_refine_light, write_salf,
 };
 pub use output::{
-    Aov, BlurHistogram, CocConvention, LeftOut, LeftOutPicture, MOST_CELLS_A_SIDE, Reference, ReferenceKind,
-    RenderCost, RenderOptions, Rendered, Renderer, Stereo, StereoForm, ToldBy, Verification, VerifiedError,
-    render, render_input, render_stereo, thumbnail, write_unwrapped,
+    Aov, BlurHistogram, CocConvention, LeftOut, LeftOutPicture, LeftOutPrediction, MAX_CELLS_A_SIDE,
+    Reference, ReferenceKind, RenderCost, RenderOptions, Rendered, Renderer, Stereo, StereoForm,
+    Verification, VerifiedError, read_thumbnail, render, render_input, render_stereo, write_unwrapped,
 };
 pub use preview::{DrawingCosts, PictureTimes, Preview, PreviewActivity, PreviewKind, Quality};
 pub use relief::{DepthRepair, DepthStroke};
@@ -62,7 +62,7 @@ pub use sequence::{
     Baking, FrameFiles, FrameList, FrameReport, Outcome, SequenceOptions, SequenceReport, Shard, Take,
     TakeOptions, WritePicture, render_frames,
 };
-pub use session::{FullSize, Session, SessionOptions};
+pub use session::{FullSizeFieldState, Session, SessionOptions};
 pub use slf::PhotographLight;
 pub use tiles::{Merged, TileGrid, TileOptions, TileReport, TilesReport, merge_tiles, render_tiles};
 pub use trace::truth::Region;

@@ -37,7 +37,7 @@ fn brightness(session: &mut Session) -> f32 {
         revision_shown && session.is_settled()
     };
     wait(session, "a picture", |session, _| is_fine(session));
-    let picture = session.preview().unwrap().picture.bring().unwrap();
+    let picture = session.preview().unwrap().picture.fetch().unwrap();
     picture.radiance.iter().flatten().sum::<f32>() / picture.radiance.len() as f32
 }
 
@@ -59,13 +59,13 @@ fn a_wall_seen_from_behind_is_there_when_it_is_asked_for() {
     // From behind it.
     let pose =
         DMat4::from_translation(DVec3::new(0.0, 0.0, -8.0)) * DMat4::from_rotation_y(std::f64::consts::PI);
-    session.apply(Command::Camera(CameraEdit::Pose(pose))).unwrap();
+    session.apply(Command::EditCamera(CameraEdit::Pose(pose))).unwrap();
     assert!(!sees(&session));
     assert!(brightness(&mut session) == 0.0, "from behind it is not");
     let before = session.document().unwrap().map.clone();
     let stroke = |session: &mut Session| {
         let ray = session.picture_ray(middle).unwrap();
-        session.apply(Command::BeginStroke(StrokePoint::ray(ray))).unwrap();
+        session.apply(Command::BeginStroke(StrokePoint::from_ray(ray))).unwrap();
         session.apply(Command::CommitStroke).unwrap();
     };
     stroke(&mut session);
@@ -77,7 +77,9 @@ fn a_wall_seen_from_behind_is_there_when_it_is_asked_for() {
     assert!(session.document().unwrap().map != before);
     let project = folder.path().join("shown.fbrush");
     session.apply(Command::SaveAs(project.clone())).unwrap();
-    wait(&mut session, "the file", |_, events| events.iter().any(|event| matches!(event, Event::Written(_))));
+    wait(&mut session, "the file", |_, events| {
+        events.iter().any(|event| matches!(event, Event::FileWritten(_)))
+    });
     let mut again = opened(&project);
     assert!(sees(&again) && brightness(&mut again) > 0.1, "a project keeps it");
 

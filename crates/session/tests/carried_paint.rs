@@ -9,7 +9,7 @@ use at_work::{opened, settle, stroke};
 use focus::FocusMap;
 use glam::DVec3;
 use progress::Unwatched;
-use session::{Beginning, Command, Document};
+use session::{Command, Document, NewDocumentOptions};
 use std::path::{Path, PathBuf};
 use tiny_glb::{QUADS, Quad};
 
@@ -73,12 +73,16 @@ fn compared(before: &Document, after: &Document, moved: [f64; 2]) -> (f64, usize
 fn paint_follows_a_scene_that_was_written_again_as_another_mesh() {
     let place = Place::painted();
     let before = place.open();
-    assert!(before.carried.is_none() && before.path.is_some());
+    assert!(before.paint_transfer.is_none() && before.path.is_some());
     std::fs::write(place.scene(), tiny_glb::glb(&halved())).unwrap();
     let kept = std::fs::read(place.project()).unwrap();
     let mut session = opened(&place.project());
     let after = session.document().unwrap();
-    assert!(after.carried.as_ref().is_some_and(|carried| carried.gaps.is_empty()), "{:?}", after.carried);
+    assert!(
+        after.paint_transfer.as_ref().is_some_and(|carried| carried.unmatched_nodes.is_empty()),
+        "{:?}",
+        after.paint_transfer
+    );
     assert_eq!(after.path, None, "the project that it comes from stays");
     let (off, painted) = compared(&before, after, [0.0, 0.0]);
     assert!(painted > 20, "{painted} places are painted");
@@ -111,9 +115,12 @@ fn paint_follows_what_was_moved_as_a_whole_and_told_is_what_has_no_partner() {
     let after = begun(&moved, &place.project());
     let (off, painted) = compared(&before, &after, [7.0, -2.0]);
     assert!(painted > 20 && off <= 0.01, "{off} of the places have another t");
-    let carried = after.carried.as_ref().unwrap();
-    assert_eq!(carried.gaps.len(), 1, "{:?}", carried.gaps);
-    assert_eq!((carried.gaps[0].name.as_str(), carried.gaps[0].share), ("new", 1.0));
+    let carried = after.paint_transfer.as_ref().unwrap();
+    assert_eq!(carried.unmatched_nodes.len(), 1, "{:?}", carried.unmatched_nodes);
+    assert_eq!(
+        (carried.unmatched_nodes[0].name.as_str(), carried.unmatched_nodes[0].unmatched_share),
+        ("new", 1.0)
+    );
     let selected = after.selection.as_ref().expect("what has no partner is selected");
     let texels = &after.stage.texels.texels;
     let of_new =
@@ -122,6 +129,6 @@ fn paint_follows_what_was_moved_as_a_whole_and_told_is_what_has_no_partner() {
 }
 
 fn begun(scene: &Path, project: &Path) -> Document {
-    let beginning = Beginning { paint_from: Some(project), ..Beginning::default() };
-    Document::begin(scene, &beginning, &Default::default(), &Unwatched).unwrap()
+    let beginning = NewDocumentOptions { paint_from: Some(project), ..NewDocumentOptions::default() };
+    Document::create(scene, &beginning, &Default::default(), &Unwatched).unwrap()
 }

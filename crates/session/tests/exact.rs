@@ -38,12 +38,17 @@ fn wait_for(session: &mut Session, quality: Quality) -> Picture {
             .is_some_and(|preview| preview.quality == quality && preview.map_serial == session.map_serial())
             && session.is_settled()
     });
-    (*preview(session).picture.bring().unwrap()).clone()
+    (*preview(session).picture.fetch().unwrap()).clone()
 }
 
 fn opened(scene: &Path, exact_after: Option<Duration>) -> Session {
     let keep_after = Duration::from_secs(3600);
-    let options = SessionOptions { preview_size: 240, exact_after, keep_after, ..SessionOptions::default() };
+    let options = SessionOptions {
+        preview_size: 240,
+        exact_delay: exact_after,
+        recovery_delay: keep_after,
+        ..SessionOptions::default()
+    };
     let mut session = Session::new(options).unwrap();
     session.apply(Command::Open(scene.into())).unwrap();
     wait(&mut session, "a document", |session| session.document().is_some());
@@ -56,14 +61,14 @@ fn dab(session: &mut Session, x: f64) {
     let brush = Brush { radius: 0.15, target, ..session.document().unwrap().brush.clone() };
     session.apply(Command::SetBrush(brush)).unwrap();
     let ray = session.picture_ray(DVec2::new(x, 0.75)).unwrap();
-    session.apply(Command::BeginStroke(StrokePoint::ray(ray))).unwrap();
+    session.apply(Command::BeginStroke(StrokePoint::from_ray(ray))).unwrap();
     session.apply(Command::CommitStroke).unwrap();
 }
 
 /// What is on screen is the preview's picture.
 fn shows_preview(session: &Session) -> bool {
     let tone = Tone { exposure: session.document().unwrap().exposure, display: session.display() };
-    session.screen().pixels() == to_screen(&preview(session).picture.bring().unwrap(), tone)
+    session.screen().pixels() == to_screen(&preview(session).picture.fetch().unwrap(), tone)
 }
 
 #[test]
@@ -111,7 +116,7 @@ fn idle_makes_the_picture_exact_and_a_stroke_leaves_the_rest_of_it_as_it_is() {
     wait_for(&mut session, Quality::Viewing);
     assert!(wait_for(&mut session, Quality::Exact) == exact);
     // Another lens is another picture.
-    session.apply(Command::Camera(CameraEdit::FocusDistance(2.5))).unwrap();
+    session.apply(Command::EditCamera(CameraEdit::FocusDistance(2.5))).unwrap();
     wait_for(&mut session, Quality::Viewing);
     assert!(wait_for(&mut session, Quality::Exact) != exact);
 }
@@ -123,20 +128,20 @@ fn without_the_wish_no_exact_picture_is_drawn_and_the_tolerance_is_the_users() {
     tiny_glb::write(&scene);
     let mut session = opened(&scene, None);
     // Blurred enough that much can be drawn from coarse nodes.
-    session.apply(Command::Camera(CameraEdit::FNumber(0.7))).unwrap();
-    session.apply(Command::Camera(CameraEdit::FocusDistance(0.8))).unwrap();
+    session.apply(Command::EditCamera(CameraEdit::FNumber(0.7))).unwrap();
+    session.apply(Command::EditCamera(CameraEdit::FocusDistance(0.8))).unwrap();
     wait(&mut session, "the lens", |session| session.is_settled());
     let fine = wait_for(&mut session, Quality::Viewing);
     std::thread::sleep(Duration::from_millis(300));
     session.poll();
     assert_eq!(preview(&session).quality, Quality::Viewing);
-    assert_eq!(session.drawing_exactly(), None);
+    assert_eq!(session.exact_picture_progress(), None);
     let distance = |a: &Picture, b: &Picture| -> f64 {
         let pairs = a.radiance.iter().flatten().zip(b.radiance.iter().flatten());
         pairs.map(|(a, b)| f64::from(a - b).powi(2)).sum()
     };
     session.apply(Command::SetTolerance(Tolerance { share_of_circle: 1.0 })).unwrap();
-    wait(&mut session, "a coarser picture", |session| *preview(session).picture.bring().unwrap() != fine);
+    wait(&mut session, "a coarser picture", |session| *preview(session).picture.fetch().unwrap() != fine);
     let coarse = wait_for(&mut session, Quality::Viewing);
     session.apply(Command::SetTolerance(Tolerance::NONE)).unwrap();
     let exact = wait_for(&mut session, Quality::Exact);

@@ -21,15 +21,15 @@ fn what_is_saved_is_opened_again() {
     assert!(session.apply(Command::Save).is_err(), "there is no file yet");
     stroke(&mut session);
     session.apply(Command::CommitStroke).unwrap();
-    session.apply(Command::Camera(CameraEdit::FocusDistance(2.5))).unwrap();
+    session.apply(Command::EditCamera(CameraEdit::FocusDistance(2.5))).unwrap();
     session.apply(Command::SetView(serde_json::json!({"yaw": 0.25}))).unwrap();
     let card = session.pick(&session.picture_ray(DVec2::new(0.4, 0.5)).unwrap()).unwrap();
-    session.apply(Command::SelectRegion(FillRegion::Node(card), focus::Combine::Replace)).unwrap();
+    session.apply(Command::SelectRegion(FillRegion::Node(card), focus::CombineMode::Replace)).unwrap();
     let selection = session.document().unwrap().selection.clone();
     assert!(selection.is_some());
     session.apply(Command::SaveAs(project.clone())).unwrap();
     let events = settle(&mut session);
-    assert!(events.contains(&Event::Written(project.clone())));
+    assert!(events.contains(&Event::FileWritten(project.clone())));
     let document = session.document().unwrap();
     assert!(!document.is_unsaved());
     assert_eq!(document.name(), "quads.fbrush");
@@ -70,7 +70,7 @@ fn the_unwrapped_scene_is_written_in_the_background_or_not_at_all() {
     let job = session.jobs().pop().expect("it is done in the background");
     assert!(job.label.contains("unwrapped.glb") && job.can_cancel, "{job:?}");
     let events = settle(&mut session);
-    assert!(events.contains(&Event::Written(unwrapped.clone())));
+    assert!(events.contains(&Event::FileWritten(unwrapped.clone())));
     let again = session::load_scene(&unwrapped, &progress::Unwatched).unwrap();
     let document = session.document().unwrap();
     assert_eq!(again.triangles.len(), document.scene().triangles.len());
@@ -111,11 +111,11 @@ fn a_scene_that_is_written_has_the_lens_of_the_shot_camera() {
         let again = session::Input::open(&file, &progress::Unwatched).unwrap();
         assert_eq!(again.scene.cameras.len(), count);
         let camera = &again.scene.cameras[count - 1];
-        assert_eq!(camera.lens.of(input.camera.clone()).shift, shot.shift);
+        assert_eq!(camera.lens.apply_to(input.camera.clone()).shift, shot.shift);
         assert_eq!(camera.lens.aperture_radius, Some(0.03));
         assert!((camera.yfov - shot.yfov).abs() < 1e-6);
         let first = &again.scene.cameras[0];
-        assert_eq!(first.lens.said().is_empty(), count == 2, "only one camera has the lens");
+        assert_eq!(first.lens.specified_fields().is_empty(), count == 2, "only one camera has the lens");
     }
 }
 
@@ -129,8 +129,8 @@ fn a_template_begins_a_document_without_a_file() {
     std::fs::write(&recipe, r#"{"nodes": {"card": {"t": 1.1, "anchor": 1}}}"#).unwrap();
     let unwrap = Default::default();
     let begun = {
-        let beginning = session::Beginning { focus: Some(&recipe), ..Default::default() };
-        session::Document::begin(&scene, &beginning, &unwrap, &progress::Unwatched).unwrap()
+        let beginning = session::NewDocumentOptions { focus: Some(&recipe), ..Default::default() };
+        session::Document::create(&scene, &beginning, &unwrap, &progress::Unwatched).unwrap()
     };
     begun.to_project().save(&template).unwrap();
     let bytes = std::fs::read(&template).unwrap();
@@ -156,7 +156,7 @@ fn unsaved_work_is_restored() {
     let scene = folder.path().join("quads.glb");
     let project = folder.path().join("quads.fbrush");
     tiny_glb::write(&scene);
-    let options = SessionOptions { keep_after: Duration::from_millis(100), ..SessionOptions::default() };
+    let options = SessionOptions { recovery_delay: Duration::from_millis(100), ..SessionOptions::default() };
     let mut session = opened_with(&scene, options);
     session.apply(Command::SaveAs(project.clone())).unwrap();
     settle(&mut session);

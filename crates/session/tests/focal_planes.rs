@@ -73,7 +73,7 @@ impl SurfaceField<FocusOffset> for Unpainted {
 }
 
 fn decibels(a: &Picture, b: &Picture) -> f64 {
-    let linear = |picture| LinearPicture::of(picture, Exposure::Normalise);
+    let linear = |picture| LinearPicture::from_picture(picture, Exposure::Normalise);
     compare(&linear(a), &linear(b)).unwrap().psnr
 }
 
@@ -82,9 +82,9 @@ fn planar(folder: &std::path::Path) -> (Session, Camera) {
     let scene = folder.join("quads.glb");
     tiny_glb::write(&scene);
     let mut session = opened(&scene);
-    session.apply(Command::Camera(CameraEdit::ApertureRadius(0.06))).unwrap();
-    session.apply(Command::Layer(LayerEdit::AddPlane)).unwrap();
-    session.apply(Command::Layer(LayerEdit::Plane(1, leaning()))).unwrap();
+    session.apply(Command::EditCamera(CameraEdit::ApertureRadius(0.06))).unwrap();
+    session.apply(Command::EditLayers(LayerEdit::AddPlane)).unwrap();
+    session.apply(Command::EditLayers(LayerEdit::Plane(1, leaning()))).unwrap();
     settle(&mut session);
     let camera = Camera { width: 180, height: 120, ..session.document().unwrap().camera.clone() };
     (session, camera)
@@ -96,7 +96,8 @@ fn it_is_splatted_as_it_is_traced() {
     let (session, camera) = planar(folder.path());
     let document = session.document().unwrap();
     let stage = &document.stage;
-    let focus = Focus::painted(stage.scene.clone(), stage.atlas.clone(), Arc::new(document.map.clone()));
+    let focus =
+        Focus::from_atlas_map(stage.scene.clone(), stage.atlas.clone(), Arc::new(document.map.clone()));
     let options = RenderOptions::at_tolerance(0.0);
     let splat = session::render(&stage.tracer, &camera, &focus, &options, &Unwatched).unwrap().picture;
 
@@ -145,7 +146,7 @@ fn it_stays_in_the_scene_when_the_camera_moves_and_is_undone() {
         CameraEdit::Pose(DMat4::from_translation(DVec3::new(0.0, 0.1, -1.0))),
     ] {
         let is_moved = matches!(edit, CameraEdit::Pose(_));
-        session.apply(Command::Camera(edit)).unwrap();
+        session.apply(Command::EditCamera(edit)).unwrap();
         settle(&mut session);
         assert_eq!(plane(&session), leaning());
         let now = circle(&session);
@@ -160,7 +161,7 @@ fn it_stays_in_the_scene_when_the_camera_moves_and_is_undone() {
     let through =
         FocalPlane { points: [wall.position, DVec3::ZERO, DVec3::new(3.0, 0.0, -9.0)], ..leaning() };
     let through = FocalPlane { curvature: 0.0, ..through };
-    session.apply(Command::Layer(LayerEdit::Plane(1, through))).unwrap();
+    session.apply(Command::EditLayers(LayerEdit::Plane(1, through))).unwrap();
     settle(&mut session);
     assert!(circle(&session).abs() < 1e-3, "{}", circle(&session));
     session.apply(Command::Undo).unwrap();
@@ -173,7 +174,7 @@ fn it_stays_in_the_scene_when_the_camera_moves_and_is_undone() {
     assert!(held < 4 * texels, "steps hold rules, not what follows from them: {held} bytes");
     let line = [0.0, 1.0, 2.0].map(|x| DVec3::new(x, 0.0, -2.0));
     let refused =
-        session.apply(Command::Layer(LayerEdit::Plane(1, FocalPlane { points: line, ..leaning() })));
+        session.apply(Command::EditLayers(LayerEdit::Plane(1, FocalPlane { points: line, ..leaning() })));
     assert!(refused.unwrap_err().to_string().contains("in one line"));
     // What was saved has it.
     let file = folder.path().join("plane.fbrush");

@@ -22,7 +22,7 @@ fn a_scene_too_bright_for_the_screen_tells_so_once_and_with_its_first_blurred_pi
     std::fs::write(&scene, tiny_glb::container(&doc, &bin)).unwrap();
 
     let exact_after = Some(Duration::from_millis(20));
-    let options = SessionOptions { preview_size: 60, exact_after, ..SessionOptions::default() };
+    let options = SessionOptions { preview_size: 60, exact_delay: exact_after, ..SessionOptions::default() };
     let mut session = Session::new(options).unwrap();
     session.apply(Command::Open(scene)).unwrap();
     let (start, mut told) = (Instant::now(), Vec::new());
@@ -31,7 +31,7 @@ fn a_scene_too_bright_for_the_screen_tells_so_once_and_with_its_first_blurred_pi
         std::thread::sleep(Duration::from_millis(2));
         for event in session.poll() {
             match event {
-                Event::Glaring(stops) => told.push(stops),
+                Event::GlareDetected(stops) => told.push(stops),
                 Event::Failed(why) => panic!("{why}"),
                 _ => {}
             }

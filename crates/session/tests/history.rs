@@ -2,7 +2,7 @@
 
 mod tiny_glb;
 
-use focus::{Brush, BrushMode, Combine, Gradient, GradientLine, GradientShape, LayerEdit};
+use focus::{Brush, BrushMode, CombineMode, Gradient, GradientLine, GradientShape, LayerEdit};
 use glam::{DVec2, DVec3};
 use lens::FocusOffset;
 use project::SelectionShape;
@@ -64,7 +64,7 @@ fn hash(session: &Session) -> u64 {
 }
 
 fn ray_point(session: &Session, at: DVec2) -> StrokePoint {
-    StrokePoint::ray(session.picture_ray(at).unwrap())
+    StrokePoint::from_ray(session.picture_ray(at).unwrap())
 }
 
 /// Does something. Most of it changes something.
@@ -101,14 +101,14 @@ fn edit(session: &mut Session, random: &mut Random) {
             session.apply(Command::CommitStroke).unwrap();
             drawn
         }
-        (9, Some(hit)) => session.apply(Command::SelectRegion(FillRegion::Node(hit), Combine::Add)),
-        (10, _) => session.apply(Command::Select(SelectionShape::Everything, Combine::Replace)),
-        (11, _) if layers < 5 => session.apply(Command::Layer(LayerEdit::AddPaint)),
-        (11, _) => session.apply(Command::Layer(LayerEdit::Remove(layer))),
-        (12, _) => session.apply(Command::Layer(LayerEdit::Opacity(layer, random.unit()))),
-        (13, _) => session.apply(Command::Layer(LayerEdit::Visible(layer, random.below(3) > 0))),
-        (14, _) => session.apply(Command::Layer(LayerEdit::Shift { from: layer, to: 0 })),
-        (15, _) => session.apply(Command::Camera(CameraEdit::FocusDistance(1.0 + random.unit()))),
+        (9, Some(hit)) => session.apply(Command::SelectRegion(FillRegion::Node(hit), CombineMode::Add)),
+        (10, _) => session.apply(Command::Select(SelectionShape::Everything, CombineMode::Replace)),
+        (11, _) if layers < 5 => session.apply(Command::EditLayers(LayerEdit::AddPaint)),
+        (11, _) => session.apply(Command::EditLayers(LayerEdit::Remove(layer))),
+        (12, _) => session.apply(Command::EditLayers(LayerEdit::Opacity(layer, random.unit()))),
+        (13, _) => session.apply(Command::EditLayers(LayerEdit::Visible(layer, random.below(3) > 0))),
+        (14, _) => session.apply(Command::EditLayers(LayerEdit::Shift { from: layer, to: 0 })),
+        (15, _) => session.apply(Command::EditCamera(CameraEdit::FocusDistance(1.0 + random.unit()))),
         _ => session.apply(Command::ActivateLayer(layer)),
     };
     session.apply(Command::FinishEdit).unwrap();
@@ -124,7 +124,7 @@ fn ten_thousand_edits_undos_and_redos_leave_what_a_model_expects() {
         preview_size: 4,
         undo_budget_bytes: BUDGET_BYTES,
         // No recovery file is written meanwhile.
-        keep_after: Duration::from_secs(3600),
+        recovery_delay: Duration::from_secs(3600),
         ..SessionOptions::default()
     };
     let mut session = Session::new(options).unwrap();

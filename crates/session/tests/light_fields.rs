@@ -4,7 +4,7 @@ mod tiny_glb;
 
 use lens::{FocusOffset, Picture};
 use session::{
-    CameraEdit, Command, Event, FillRegion, FullSize, LightFieldStore, Preview, Quality, Session,
+    CameraEdit, Command, Event, FillRegion, FullSizeFieldState, LightFieldStore, Preview, Quality, Session,
     SessionOptions,
 };
 use std::path::Path;
@@ -29,8 +29,8 @@ fn opened(scene: &Path, folder: &Path) -> Session {
     let keep_after = Duration::from_secs(3600);
     let options = SessionOptions {
         preview_size: 240,
-        keep_after,
-        light_fields: Some(store),
+        recovery_delay: keep_after,
+        light_field_store: Some(store),
         ..SessionOptions::default()
     };
     let mut session = Session::new(options).unwrap();
@@ -42,7 +42,7 @@ fn opened(scene: &Path, folder: &Path) -> Session {
 fn fine(session: &mut Session) -> Picture {
     let is_fine = |preview: &Preview| preview.quality == Quality::Viewing;
     wait(session, "a picture", |session| session.preview().is_some_and(is_fine) && session.is_settled());
-    (*session.preview().unwrap().picture.bring().unwrap()).clone()
+    (*session.preview().unwrap().picture.fetch().unwrap()).clone()
 }
 
 /// The files that are kept, once there are as many.
@@ -86,7 +86,7 @@ fn a_scene_that_was_baked_once_is_not_baked_again() {
     wait(&mut session, "another picture", |session| {
         session
             .preview()
-            .is_some_and(|p| p.quality == Quality::Viewing && *p.picture.bring().unwrap() == picture)
+            .is_some_and(|p| p.quality == Quality::Viewing && *p.picture.fetch().unwrap() == picture)
     });
     drop(session);
     assert_eq!(kept(&store, 1), files);
@@ -94,7 +94,7 @@ fn a_scene_that_was_baked_once_is_not_baked_again() {
     // Paint that reaches further than what is kept, another pose and another scene are baked; so is what is damaged.
     let mut session = opened(&scene, &store);
     fine(&mut session);
-    session.apply(Command::Camera(CameraEdit::YFov(0.6))).unwrap();
+    session.apply(Command::EditCamera(CameraEdit::YFov(0.6))).unwrap();
     fine(&mut session);
     kept(&store, 2);
     let radiance_of = |session: &Session| session.preview().unwrap().modelled.sample_count();
@@ -113,14 +113,14 @@ fn an_export_takes_the_light_field_that_is_being_made() {
     tiny_glb::write(&scene);
     let options = SessionOptions {
         preview_size: 240,
-        keep_after: Duration::from_secs(3600),
+        recovery_delay: Duration::from_secs(3600),
         ..SessionOptions::default()
     };
     let mut session = Session::new(options).unwrap();
     session.apply(Command::Open(scene)).unwrap();
     wait(&mut session, "a document", |session| session.document().is_some());
-    session.apply(Command::Camera(CameraEdit::Size(240, 160))).unwrap();
-    assert_eq!(session.full_size(), FullSize::Underway);
+    session.apply(Command::EditCamera(CameraEdit::Size(240, 160))).unwrap();
+    assert_eq!(session.full_size_field_state(), FullSizeFieldState::InProgress);
     let path = folder.path().join("picture.png");
     session.apply(Command::ExportPicture(path.clone())).unwrap();
     let mut steps = std::collections::BTreeSet::new();
@@ -136,7 +136,7 @@ fn an_export_takes_the_light_field_that_is_being_made() {
     }
     assert!(steps.contains("baking the live picture") && !steps.contains("baking"), "{steps:?}");
     fine(&mut session);
-    assert_eq!(session.full_size(), FullSize::Ready);
-    session.apply(Command::Camera(CameraEdit::Size(480, 320))).unwrap();
-    assert_eq!(session.full_size(), FullSize::Missing, "the live picture is smaller");
+    assert_eq!(session.full_size_field_state(), FullSizeFieldState::Ready);
+    session.apply(Command::EditCamera(CameraEdit::Size(480, 320))).unwrap();
+    assert_eq!(session.full_size_field_state(), FullSizeFieldState::Missing, "the live picture is smaller");
 }

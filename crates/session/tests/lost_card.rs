@@ -44,7 +44,7 @@ fn opened(path: &Path, gpu: Option<Gpu>) -> Session {
 
 /// Points of a stroke, one after another.
 fn point(session: &Session, k: usize) -> StrokePoint {
-    StrokePoint::ray(session.picture_ray(DVec2::new(0.55 + 0.04 * k as f64, 0.7)).unwrap())
+    StrokePoint::from_ray(session.picture_ray(DVec2::new(0.55 + 0.04 * k as f64, 0.7)).unwrap())
 }
 
 const POINTS: usize = 8;
@@ -64,7 +64,7 @@ fn paint(session: &mut Session, at: usize, something: impl FnOnce(&mut Session))
 }
 
 fn picture(session: &Session) -> Arc<Picture> {
-    session.preview().expect("a picture").picture.bring().expect("its card is there")
+    session.preview().expect("a picture").picture.fetch().expect("its card is there")
 }
 
 #[test]
@@ -84,7 +84,7 @@ fn twenty_lost_cards_lose_no_stroke() {
         let gpu = Gpu::open(BackendChoice::Gpu, None).unwrap();
         let mut session = opened(&path, gpu.clone());
         let is_there =
-            |session: &Session| matches!(session.preview().unwrap().picture, LivePicture::There(_));
+            |session: &Session| matches!(session.preview().unwrap().picture, LivePicture::OnCard(_));
         assert!(is_there(&session) && session.screen().on_card().is_some(), "round {round}");
         assert_eq!(picture(&session), blank, "round {round}");
         let card = gpu.expect("asked for");

@@ -26,7 +26,7 @@ fn it_is_seen_scaled_and_kept_as_the_scene_s_own() {
     std::fs::write(&file, tiny_glb::lit(&tiny_glb::QUADS[1..])).unwrap();
     let mut session = opened(&file);
     assert!(is_blue(corner(&session), 2.0), "{:?}", corner(&session));
-    let own = session.document().unwrap().scene().own_world.clone().unwrap();
+    let own = session.document().unwrap().scene().embedded_world.clone().unwrap();
     let Environment::Map(map) = &own.environment else { panic!("no picture") };
     assert_eq!(map.name, "image-based light six colours");
 

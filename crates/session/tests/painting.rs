@@ -27,7 +27,7 @@ fn paint_shows_while_the_stroke_goes_on_and_undo_brings_the_same_bits_back() {
     assert!(session.is_painting());
     let shown = |session: &Session| {
         let tone = Tone { exposure: session.document().unwrap().exposure, display: session.display() };
-        session.screen().pixels() == to_screen(&session.preview().unwrap().picture.bring().unwrap(), tone)
+        session.screen().pixels() == to_screen(&session.preview().unwrap().picture.fetch().unwrap(), tone)
     };
     assert!(shown(&session), "what was made anew piece by piece is the whole");
     let [columns, rows] = session.screen().changed_since(seen).expect("a change");
@@ -83,9 +83,9 @@ fn the_lens_is_undone_with_the_paint_and_bad_values_change_nothing() {
     assert!((distance - 2.0).abs() < 1e-5, "the axial depth of the card: {distance}");
     assert!(picture(&session) != blank);
 
-    let wrong = session.apply(Command::Camera(CameraEdit::FocusDistance(-1.0)));
+    let wrong = session.apply(Command::EditCamera(CameraEdit::FocusDistance(-1.0)));
     assert!(matches!(wrong, Err(SessionError::BadInput(_))));
-    session.apply(Command::Camera(CameraEdit::FNumber(1.0))).unwrap();
+    session.apply(Command::EditCamera(CameraEdit::FNumber(1.0))).unwrap();
     settle(&mut session);
     session.apply(Command::Undo).unwrap();
     session.apply(Command::Undo).unwrap();
@@ -109,10 +109,10 @@ fn depth_curves_follow_the_camera_and_come_back_with_it() {
     tiny_glb::write(&scene);
     let mut session = opened(&scene);
     let blank = picture(&session);
-    session.apply(Command::Layer(focus::LayerEdit::AddCurve)).unwrap();
+    session.apply(Command::EditLayers(focus::LayerEdit::AddCurve)).unwrap();
     let curve = focus::Curve::new([[2.5f64.ln(), 1.0], [4.0f64.ln(), 1.3]]).unwrap();
     let curve = focus::DepthCurve { curve, anchor: 1.0 };
-    session.apply(Command::Layer(focus::LayerEdit::Curve(1, curve))).unwrap();
+    session.apply(Command::EditLayers(focus::LayerEdit::Curve(1, curve))).unwrap();
     settle(&mut session);
     let wall = session.pick(&session.picture_ray(ON_WALL).unwrap()).unwrap();
     assert!((session.focus_at(&wall).unwrap().t - 1.3).abs() < 1e-5, "the wall stands at 4");
@@ -121,7 +121,7 @@ fn depth_curves_follow_the_camera_and_come_back_with_it() {
 
     let mut pose = session.document().unwrap().camera.camera_to_world;
     pose.w_axis.z -= 1.5;
-    session.apply(Command::Camera(CameraEdit::Pose(pose))).unwrap();
+    session.apply(Command::EditCamera(CameraEdit::Pose(pose))).unwrap();
     settle(&mut session);
     assert!((session.focus_at(&wall).unwrap().t - 1.0).abs() < 1e-5, "now at 2.5");
     session.apply(Command::Undo).unwrap();

@@ -19,7 +19,7 @@ fn wave(session: &mut Session, y: f64, bunch: usize) {
     let point = |k: usize| {
         let at = DVec2::new(0.1 + 0.016 * k as f64, y + 0.1 * (k as f64 * 0.3).sin());
         let pressure = 0.4 + 0.6 * (k as f32 / 50.0);
-        StrokePoint { at: session::StrokeTarget::View(view, at), pressure }
+        StrokePoint { target: session::StrokeTarget::View(view, at), pressure }
     };
     session.apply(Command::BeginStroke(point(0))).unwrap();
     for k in 1..=50 {
@@ -39,7 +39,8 @@ fn recorded_strokes_paint_the_same_map_again_whatever_the_timing() {
     let paint = |bunch: usize| {
         // However slow the machine, no recovery file is written, which the next session would take up.
         let keep_after = Duration::from_secs(3600);
-        let mut session = opened_with(&scene, SessionOptions { keep_after, ..SessionOptions::default() });
+        let mut session =
+            opened_with(&scene, SessionOptions { recovery_delay: keep_after, ..SessionOptions::default() });
         for (k, mode) in
             [BrushMode::Set, BrushMode::Add, BrushMode::Smooth, BrushMode::Sharpen].iter().enumerate()
         {
@@ -54,7 +55,7 @@ fn recorded_strokes_paint_the_same_map_again_whatever_the_timing() {
             session.apply(Command::SetBrush(brush)).unwrap();
             wave(&mut session, 0.4 + 0.02 * k as f64, bunch);
         }
-        session.apply(Command::Layer(focus::LayerEdit::AddPaint)).unwrap();
+        session.apply(Command::EditLayers(focus::LayerEdit::AddPaint)).unwrap();
         let target = FocusOffset::new(0.8, 1.0);
         let brush = focus::Brush { radius: 0.2, target, ..focus::Brush::default() };
         session.apply(Command::SetBrush(brush)).unwrap();
@@ -80,7 +81,7 @@ fn recorded_strokes_paint_the_same_map_again_whatever_the_timing() {
     let strokes: Vec<_> = steps.iter().filter(|s| matches!(s, RecordedStep::Stroke(_))).cloned().collect();
     let nobody = progress::Unwatched;
     let mut again =
-        session::Document::begin(&scene, &Default::default(), &Default::default(), &nobody).unwrap();
+        session::Document::create(&scene, &Default::default(), &Default::default(), &nobody).unwrap();
     let missing = session::replay(&mut again, &strokes).unwrap_err().to_string();
     assert!(
         missing.contains("step 5") && missing.contains("Layer 1") && missing.contains("Paint"),
@@ -88,13 +89,13 @@ fn recorded_strokes_paint_the_same_map_again_whatever_the_timing() {
     );
 
     let mut again =
-        session::Document::begin(&scene, &Default::default(), &Default::default(), &nobody).unwrap();
+        session::Document::create(&scene, &Default::default(), &Default::default(), &nobody).unwrap();
     assert_eq!(session::replay(&mut again, &steps).unwrap(), 6);
     assert!(again.map == document.map && again.layers == document.layers);
 
     // On a project that has the layer: the same bits, saved and opened as well.
     let mut blank = opened(&scene);
-    blank.apply(Command::Layer(focus::LayerEdit::AddPaint)).unwrap();
+    blank.apply(Command::EditLayers(focus::LayerEdit::AddPaint)).unwrap();
     let project = folder.path().join("blank.fbrush");
     blank.apply(Command::SaveAs(project.clone())).unwrap();
     settle(&mut blank);
@@ -128,7 +129,7 @@ fn a_stroke_is_mirrored_about_the_object_it_begins_on_and_so_is_its_recording() 
     };
     let (right, left) = (place(-0.25), place(-0.55));
     let view = shot_view(&session);
-    let point = StrokePoint { at: session::StrokeTarget::View(view, right), pressure: 1.0 };
+    let point = StrokePoint { target: session::StrokeTarget::View(view, right), pressure: 1.0 };
     session.apply(Command::BeginStroke(point)).unwrap();
     session.apply(Command::CommitStroke).unwrap();
     let focus_at = |session: &Session, at: DVec2| {
@@ -145,14 +146,14 @@ fn a_stroke_is_mirrored_about_the_object_it_begins_on_and_so_is_its_recording() 
     let steps = project::read_strokes(&strokes).unwrap();
     let nobody = progress::Unwatched;
     let mut again =
-        session::Document::begin(&scene, &Default::default(), &Default::default(), &nobody).unwrap();
+        session::Document::create(&scene, &Default::default(), &Default::default(), &nobody).unwrap();
     assert_eq!(session::replay(&mut again, &steps).unwrap(), 1);
     assert!(again.map == session.document().unwrap().map);
 
     // A fill takes the object at the image of the click: on the card that is the card itself.
     let card = session.pick(&session.picture_ray(right).unwrap()).unwrap();
     let symmetry = session.document().unwrap().symmetry_at(Some(&card));
-    assert!((symmetry.center[0] + 0.4).abs() < 1e-6 && symmetry.is_along_world(), "{symmetry:?}");
+    assert!((symmetry.center[0] + 0.4).abs() < 1e-6 && symmetry.has_world_axes(), "{symmetry:?}");
     let world = session.document().unwrap().symmetry_at(None);
     assert_eq!(world.center, [0.0; 3], "where there is no object");
 }

@@ -31,7 +31,7 @@ fn preview(session: &Session) -> &Preview {
 }
 
 fn shown(session: &Session) -> Picture {
-    (*preview(session).picture.bring().unwrap()).clone()
+    (*preview(session).picture.fetch().unwrap()).clone()
 }
 
 fn is_exact_by(session: &Session, passes: u32) -> bool {
@@ -47,9 +47,9 @@ fn opened(scene: &Path, light_passes: u32, store: Option<&Path>) -> Session {
         store.map(|folder| LightFieldStore::new(folder.to_path_buf()).with_shortest_bake(Duration::ZERO));
     let options = SessionOptions {
         preview_size: 60,
-        exact_after: Some(Duration::from_millis(20)),
+        exact_delay: Some(Duration::from_millis(20)),
         light_passes,
-        light_fields,
+        light_field_store: light_fields,
         ..SessionOptions::default()
     };
     let mut session = Session::new(options).unwrap();
@@ -116,7 +116,7 @@ fn paint_does_not_stop_it_and_a_moved_camera_and_the_user_do() {
     let brush = Brush { radius: 0.3, target, ..session.document().unwrap().brush.clone() };
     session.apply(Command::SetBrush(brush)).unwrap();
     let ray = session.picture_ray(DVec2::new(0.75, 0.75)).unwrap();
-    session.apply(Command::BeginStroke(StrokePoint::ray(ray))).unwrap();
+    session.apply(Command::BeginStroke(StrokePoint::from_ray(ray))).unwrap();
     session.apply(Command::CommitStroke).unwrap();
     wait(&mut session, "the stroke", |session| preview(session).map_serial == session.map_serial());
     assert!(apart(&shown(&session), &before) > 1e-4, "it shows");
@@ -128,7 +128,7 @@ fn paint_does_not_stop_it_and_a_moved_camera_and_the_user_do() {
     assert!(apart(&unpainted, &painted) > 1e-4, "the stroke was still there, and went");
 
     session
-        .apply(Command::Camera(CameraEdit::Pose(glam::DMat4::from_translation(glam::DVec3::X * 0.1))))
+        .apply(Command::EditCamera(CameraEdit::Pose(glam::DMat4::from_translation(glam::DVec3::X * 0.1))))
         .unwrap();
     wait(&mut session, "the other view", |session| {
         preview(session).quality >= Quality::Viewing && preview(session).costs.light_passes == 0

@@ -81,7 +81,7 @@ fn write_wall(file: &Path, layouts: &[[[f32; 2]; 2]]) {
 }
 
 fn begun(file: &Path) -> Document {
-    Document::begin(file, &Default::default(), &Default::default(), &progress::Unwatched).unwrap()
+    Document::create(file, &Default::default(), &Default::default(), &progress::Unwatched).unwrap()
 }
 
 /// The shot camera, small and with a wide lens focused on the wall.
@@ -92,7 +92,7 @@ fn camera(document: &Document) -> Camera {
 
 /// A stroke along the wall, over all of its strips: 200 dabs, a hundredth of a radius here and there.
 fn stroke(camera: &Camera) -> RecordedStroke {
-    let view = ViewFrame::of(camera);
+    let view = ViewFrame::from_camera(camera);
     let target = FocusOffset::new(1.02, 1.0);
     let brush = Brush { radius: 0.2, hardness: 0.3, target, ..Brush::default() };
     // The picture is 3.02 m wide at the wall's depth.
@@ -139,7 +139,7 @@ fn places(document: &Document, camera: &Camera) -> Vec<DVec2> {
 
 /// κ at places of the picture.
 fn kappas(document: &Document, map: &FocusMap, camera: &Camera, places: &[DVec2]) -> Vec<f64> {
-    let view = ViewFrame::of(camera);
+    let view = ViewFrame::from_camera(camera);
     let kappa = |&at: &DVec2| {
         let hit =
             session::pick(&document.stage.tracer, &view_ray(&view, at)).expect("the wall fills the picture");
@@ -156,7 +156,8 @@ fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
 /// Coverage of the picture that a focus gives.
 fn coverage(document: &Document, map: &FocusMap, camera: &Camera) -> Vec<f64> {
     let stage = &document.stage;
-    let focus = Focus::painted(stage.scene.clone(), stage.atlas.clone(), std::sync::Arc::new(map.clone()));
+    let focus =
+        Focus::from_atlas_map(stage.scene.clone(), stage.atlas.clone(), std::sync::Arc::new(map.clone()));
     let options = RenderOptions::default();
     let rendered = render(&stage.tracer, camera, &focus, &options, &progress::Unwatched).unwrap();
     rendered.picture.coverage.iter().map(|c| f64::from(*c)).collect()
@@ -228,7 +229,8 @@ fn a_stroke_paints_the_same_map_at_any_rate_of_events_and_frames() {
     // Events a frame, and how long a frame takes.
     for (events, pause) in [(1, 0), (1, 3), (7, 1), (500, 0)] {
         let keep_after = Duration::from_secs(3600);
-        let options = SessionOptions { preview_size: 60, keep_after, ..SessionOptions::default() };
+        let options =
+            SessionOptions { preview_size: 60, recovery_delay: keep_after, ..SessionOptions::default() };
         let mut session = Session::new(options).unwrap();
         session.apply(Command::Open(file.clone())).unwrap();
         while session.document().is_none() {
@@ -237,7 +239,7 @@ fn a_stroke_paints_the_same_map_at_any_rate_of_events_and_frames() {
         }
         session.apply(Command::SetBrush(stroke.brush.clone())).unwrap();
         for (k, point) in stroke.points.iter().enumerate() {
-            let point = StrokePoint::recorded(&stroke.view, point);
+            let point = StrokePoint::from_recorded(&stroke.view, point);
             let command = if k == 0 { Command::BeginStroke(point) } else { Command::ExtendStroke(point) };
             session.apply(command).unwrap();
             if k % events == 0 {

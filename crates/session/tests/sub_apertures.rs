@@ -23,7 +23,7 @@ fn picture(session: &mut Session) -> Arc<Picture> {
         std::thread::sleep(Duration::from_millis(2));
         session.poll();
     }
-    session.preview().unwrap().picture.bring().unwrap()
+    session.preview().unwrap().picture.fetch().unwrap()
 }
 
 /// Where the light of a picture has its middle, px from the upper left corner, and how far it is spread.
@@ -57,7 +57,7 @@ fn what_is_out_of_focus_moves_as_its_defocus_says() {
         session.poll();
     }
     for edit in [CameraEdit::ApertureRadius(0.1), CameraEdit::FocusDistance(4.0)] {
-        session.apply(Command::Camera(edit)).unwrap();
+        session.apply(Command::EditCamera(edit)).unwrap();
     }
     let whole = picture(&mut session);
     let shown = session.preview().unwrap().camera.clone();
@@ -66,7 +66,7 @@ fn what_is_out_of_focus_moves_as_its_defocus_says() {
     assert!(radius < -5.0, "near defocus of some pixels: {radius}");
     let (rest, spread) = middle(&whole);
     for point in [DVec2::new(0.5, 0.25), DVec2::new(-0.7, 0.0), DVec2::new(0.0, -0.9)] {
-        session.apply(Command::LookThrough(Some(point))).unwrap();
+        session.apply(Command::SetSubAperture(Some(point))).unwrap();
         let (seen, sharper) = middle(&picture(&mut session));
         let wanted = rest + radius * DVec2::new(point.x, -point.y);
         assert!(seen.distance(wanted) < 0.1, "{point}: {seen}, not {wanted}");
@@ -77,7 +77,7 @@ fn what_is_out_of_focus_moves_as_its_defocus_says() {
     let (seen, _) = middle(&picture(&mut session));
     assert!(seen.distance(rest) < 0.1, "{seen}, not {rest}");
     session.apply(Command::Undo).unwrap();
-    session.apply(Command::LookThrough(None)).unwrap();
+    session.apply(Command::SetSubAperture(None)).unwrap();
     let again = picture(&mut session);
     assert_eq!(again.radiance, whole.radiance, "the whole lens's picture is what it was");
     assert_eq!(

@@ -96,10 +96,10 @@ fn a_variant_is_a_step_of_undo() {
     session.apply(Command::Redo).unwrap();
     settle(&mut session);
     assert_eq!(variant(&session), Some("Blue"), "of two steps in a row the last counts");
-    session.apply(Command::GoTo(0)).unwrap();
+    session.apply(Command::GoToHistoryStep(0)).unwrap();
     settle(&mut session);
     assert_eq!(variant(&session), None);
-    session.apply(Command::GoTo(2)).unwrap();
+    session.apply(Command::GoToHistoryStep(2)).unwrap();
     settle(&mut session);
     assert_eq!(variant(&session), Some("Green"));
     // One that was asked for before another is not taken up, even if it is done.
@@ -134,7 +134,7 @@ fn a_project_keeps_its_variant() {
     let again = opened(&place.project());
     assert_eq!(variant(&again), Some("Blue"));
     drop(again);
-    let open = |choice| Input::open_in(&place.project(), &choice, &progress::Unwatched);
+    let open = |choice| Input::open_variant(&place.project(), &choice, &progress::Unwatched);
     let chosen = |choice| open(choice).unwrap().scene.variant.clone();
     assert_eq!(chosen(VariantChoice::AsSaved).as_deref(), Some("Blue"));
     assert_eq!(chosen(VariantChoice::Named("Green".into())).as_deref(), Some("Green"));

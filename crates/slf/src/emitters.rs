@@ -1,6 +1,6 @@
 //! Emissive surfaces as area lights.
 
-use crate::light_tree::{Light, LightTree};
+use crate::light_tree::{LightBounds, LightTree};
 use glam::{DVec2, DVec3, Vec3};
 use scene::{Scene, SurfacePoint};
 use std::collections::HashMap;
@@ -10,7 +10,7 @@ use std::collections::HashMap;
 pub(crate) struct Emitters {
     triangles: Vec<Emitter>,
     /// By triangle of the scene: its place in `triangles`.
-    places: HashMap<u32, u32>,
+    triangle_indices: HashMap<u32, u32>,
     tree: LightTree,
 }
 
@@ -29,7 +29,7 @@ pub(crate) struct EmitterSample {
     /// The place.
     pub place: DVec3,
     /// Unit direction toward it.
-    pub from: DVec3,
+    pub direction: DVec3,
     /// The radiance it sends, were nothing in between.
     pub radiance: Vec3,
     /// Of its direction, 1/sr.
@@ -38,7 +38,7 @@ pub(crate) struct EmitterSample {
 
 impl Emitters {
     /// The emissive triangles of a scene. Unlit ones are not: their radiance is a picture, not light.
-    pub fn of(scene: &Scene) -> Self {
+    pub fn from_scene(scene: &Scene) -> Self {
         let (mut triangles, mut lights) = (Vec::new(), Vec::new());
         for part in &scene.parts {
             let material = &scene.materials[part.material as usize];
@@ -56,12 +56,13 @@ impl Emitters {
                     let corners = scene.corners(triangle);
                     let low = corners.into_iter().fold(DVec3::INFINITY, DVec3::min);
                     let high = corners.into_iter().fold(DVec3::NEG_INFINITY, DVec3::max);
-                    lights.push(Light { low, high, normal, both_sides, power });
+                    lights.push(LightBounds { low, high, normal, both_sides, power });
                 }
             }
         }
-        let places = (0..).zip(&triangles).map(|(place, emitter)| (emitter.triangle, place)).collect();
-        Self { triangles, places, tree: LightTree::of(&lights) }
+        let triangle_indices =
+            (0..).zip(&triangles).map(|(place, emitter)| (emitter.triangle, place)).collect();
+        Self { triangles, triangle_indices, tree: LightTree::new(&lights) }
     }
 
     /// Whether there are none.
@@ -78,16 +79,16 @@ impl Emitters {
         let point = SurfacePoint { triangle: emitter.triangle, barycentric };
         let place = point.position(scene);
         let toward = place - position;
-        let from = toward.try_normalize()?;
+        let direction = toward.try_normalize()?;
         let density = share * emitter.density(toward)?;
-        Some(EmitterSample { place, from, radiance: scene.emitted(point), density })
+        Some(EmitterSample { place, direction, radiance: scene.emitted_radiance(point), density })
     }
 
     /// The density, 1/sr, with which [`Self::sample`] finds a place on `triangle` from a position: 0 if none.
     pub fn density(&self, triangle: u32, place: DVec3, position: DVec3) -> f64 {
-        let Some(&number) = self.places.get(&triangle) else { return 0.0 };
-        let of_place = self.triangles[number as usize].density(place - position);
-        of_place.map_or(0.0, |density| density * self.tree.probability(position, number as usize))
+        let Some(&number) = self.triangle_indices.get(&triangle) else { return 0.0 };
+        let area_density = self.triangles[number as usize].density(place - position);
+        area_density.map_or(0.0, |density| density * self.tree.probability(position, number as usize))
     }
 }
 
@@ -112,8 +113,9 @@ fn mean_emission(scene: &Scene, triangle: u32) -> f64 {
     }
     let cells = (0..SIDE * SIDE).map(|k| DVec2::new(f64::from(k % SIDE), f64::from(k / SIDE)) + 0.5);
     let points = cells.map(|cell| uniform_barycentric(cell / f64::from(SIDE)));
-    let sum: f64 =
-        points.map(|barycentric| luminance(scene.emitted(SurfacePoint { triangle, barycentric }))).sum();
+    let sum: f64 = points
+        .map(|barycentric| luminance(scene.emitted_radiance(SurfacePoint { triangle, barycentric })))
+        .sum();
     sum / f64::from(SIDE * SIDE) + 0.01 * peak
 }
 

@@ -25,29 +25,29 @@ pub(crate) struct EnvironmentLight {
 
 impl EnvironmentLight {
     /// None where the world is dark, or the same everywhere: a surface finds that best by how it scatters.
-    pub fn of(world: &World) -> Option<Self> {
+    pub fn from_world(world: &World) -> Option<Self> {
         let Environment::Map(map) = &world.environment else { return None };
         if world.strength <= 0.0 {
             return None;
         }
         let (width, height) = (i64::from(map.width), i64::from(map.height));
         // Cells begin at texel centres; the first row ends at the first centre, the last one begins at the last.
-        let edge = |row: i64| map.latitude((row as f64 - 0.5).clamp(0.0, height as f64)).sin();
+        let edge = |row: i64| map.row_latitude((row as f64 - 0.5).clamp(0.0, height as f64)).sin();
         let sines: Vec<[f64; 2]> = (0..=height).map(|row| [edge(row), edge(row + 1)]).collect();
         let luminance =
             |column, row| f64::from(map.texel(column, row).dot(Vec3::new(0.2126, 0.7152, 0.0722)));
         let (mut rows, mut cells) = (Vec::new(), Vec::new());
         for (row, [top, bottom]) in (0i64..).zip(&sines) {
-            let of_cell = |column: i64| {
+            let cell_weight = |column: i64| {
                 let corners = [row - 1, row].map(|row| luminance(column, row) + luminance(column + 1, row));
                 corners[0] + corners[1]
             };
-            let weights: Vec<f64> = (0..width).map(of_cell).collect();
+            let weights: Vec<f64> = (0..width).map(cell_weight).collect();
             rows.push(weights.iter().sum::<f64>() * (top - bottom));
-            cells.extend(running(&weights));
+            cells.extend(cumulative_shares(&weights));
         }
         let rows_sum: f64 = rows.iter().sum();
-        let rows = running(&rows);
+        let rows = cumulative_shares(&rows);
         (rows_sum > 0.0 && rows_sum.is_finite()).then(|| Self { map: map.clone(), rows, cells, sines })
     }
 
@@ -59,8 +59,8 @@ impl EnvironmentLight {
 
     /// Draws a direction in the environment's own axes, by uniform numbers, and tells its density.
     pub fn sample(&self, u: [f64; 2]) -> (DVec3, f64) {
-        let (row, down) = inverted(&self.rows, u[1]);
-        let (column, along) = inverted(self.row(row), u[0]);
+        let (row, down) = invert_cumulative(&self.rows, u[1]);
+        let (column, along) = invert_cumulative(self.row(row), u[0]);
         let [top, bottom] = self.sines[row];
         let sine = top + (bottom - top) * down;
         let position = column as f64 + 0.5 + along;
@@ -72,7 +72,7 @@ impl EnvironmentLight {
 
     /// The density, 1/sr, with which a direction is drawn.
     pub fn density(&self, direction: DVec3) -> f64 {
-        let at = self.map.position_of(direction) - 0.5;
+        let at = self.map.texel_position(direction) - 0.5;
         let column = (at.x.floor() as i64).rem_euclid(i64::from(self.map.width));
         let row = (at.y.floor() as i64 + 1).clamp(0, i64::from(self.map.height));
         self.density_of_cell(row as usize, column as usize)
@@ -87,23 +87,23 @@ impl EnvironmentLight {
 }
 
 /// Weights summed up and scaled to end at 1; begins with 0. Of no weights at all, even steps.
-fn running(weights: &[f64]) -> Vec<f64> {
+fn cumulative_shares(weights: &[f64]) -> Vec<f64> {
     let sum: f64 = weights.iter().sum();
-    let (of, whole) =
+    let (terms, total) =
         if sum > 0.0 { (weights.to_vec(), sum) } else { (vec![1.0; weights.len()], weights.len() as f64) };
-    let mut reached = 0.0;
+    let mut sum_so_far = 0.0;
     let mut steps = vec![0.0];
-    steps.extend(of.iter().map(|weight| {
-        reached += weight;
-        (reached / whole).min(1.0)
+    steps.extend(terms.iter().map(|weight| {
+        sum_so_far += weight;
+        (sum_so_far / total).min(1.0)
     }));
     steps[weights.len()] = 1.0;
     steps
 }
 
 /// The step of running sums that a uniform number falls into, and how far into it.
-fn inverted(steps: &[f64], u: f64) -> (usize, f64) {
-    let step = steps.partition_point(|&reached| reached <= u).clamp(1, steps.len() - 1) - 1;
+fn invert_cumulative(steps: &[f64], u: f64) -> (usize, f64) {
+    let step = steps.partition_point(|&sum| sum <= u).clamp(1, steps.len() - 1) - 1;
     let (from, to) = (steps[step], steps[step + 1]);
     (step, if to > from { ((u - from) / (to - from)).clamp(0.0, 1.0) } else { 0.5 })
 }
@@ -129,7 +129,7 @@ mod tests {
 
     #[test]
     fn density_is_of_what_is_drawn_and_sums_to_one() {
-        let light = EnvironmentLight::of(&sunny(1e5)).unwrap();
+        let light = EnvironmentLight::from_world(&sunny(1e5)).unwrap();
         for [a, b] in spread(5000) {
             let (direction, density) = light.sample([a, b]);
             assert!((direction.length() - 1.0).abs() < 1e-12);
@@ -153,7 +153,7 @@ mod tests {
     fn a_sun_of_one_texel_does_not_sparkle() {
         for sun in [0.3, 10.0, 1e3, 1e5] {
             let world = sunny(sun);
-            let light = EnvironmentLight::of(&world).unwrap();
+            let light = EnvironmentLight::from_world(&world).unwrap();
             let ratios: Vec<f64> = spread(20_000)
                 .map(|[a, b]| {
                     let (direction, density) = light.sample([a, b]);
@@ -161,8 +161,8 @@ mod tests {
                 })
                 .collect();
             let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
-            let most = ratios.iter().copied().fold(0.0, f64::max);
-            assert!(most < 4.2 * mean, "{sun}: {most} of {mean}");
+            let max = ratios.iter().copied().fold(0.0, f64::max);
+            assert!(max < 4.2 * mean, "{sun}: {max} of {mean}");
             // The sun's own light: its peak over the pyramid that bilinear interpolation makes of it.
             let latitude = std::f64::consts::FRAC_PI_2 - 9.5 / 32.0 * std::f64::consts::PI;
             let texel = (std::f64::consts::PI / 32.0).powi(2) * latitude.cos();
@@ -173,7 +173,7 @@ mod tests {
 
     #[test]
     fn darkness_and_uniform_light_need_no_search() {
-        assert!(EnvironmentLight::of(&World::uniform(Vec3::ONE)).is_none());
-        assert!(EnvironmentLight::of(&World { strength: 0.0, ..sunny(1.0) }).is_none());
+        assert!(EnvironmentLight::from_world(&World::uniform(Vec3::ONE)).is_none());
+        assert!(EnvironmentLight::from_world(&World { strength: 0.0, ..sunny(1.0) }).is_none());
     }
 }

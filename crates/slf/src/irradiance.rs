@@ -15,7 +15,7 @@ use glam::{DVec3, Vec3};
 use patches::Patches;
 use place::Place;
 use scene::World;
-use trace::Received;
+use trace::IncidentLight;
 
 /// Light that arrives at every patch of a scene's surface.
 #[derive(Debug)]
@@ -31,7 +31,7 @@ pub struct Irradiance {
 impl Irradiance {
     /// Of what was solved for: irradiance/π by patch, in a world.
     pub(crate) fn new(patches: Patches, [direct, indirect]: [Vec<Vec3>; 2], world: &World) -> Self {
-        Self { patches, direct, indirect, sky: OpenSky::of(world) }
+        Self { patches, direct, indirect, sky: OpenSky::from_world(world) }
     }
 
     /// Irradiance/π by patch: direct and indirect. With scene, world and the options it was solved with, all there is to keep.
@@ -45,8 +45,9 @@ impl Irradiance {
     }
 
     /// Irradiance/π that a spot receives whose shaded normal is this.
-    pub(crate) fn received(&self, world: &World, received: &Received, normal: DVec3) -> DVec3 {
-        (self.unshaded(world, normal).unwrap_or_default() + received.at(normal).as_dvec3()).max(DVec3::ZERO)
+    pub(crate) fn shaded(&self, world: &World, shaded: &IncidentLight, normal: DVec3) -> DVec3 {
+        (self.unshaded(world, normal).unwrap_or_default() + shaded.irradiance_over_pi(normal).as_dvec3())
+            .max(DVec3::ZERO)
     }
 
     /// The side of a patch, world units.
@@ -56,18 +57,18 @@ impl Irradiance {
 
     /// Indirect irradiance/π at a place; `None` where no patch is.
     pub(crate) fn indirect(&self, place: &Place) -> Option<Vec3> {
-        self.interpolated(place, |patch| self.indirect[patch])
+        self.interpolate(place, |patch| self.indirect[patch])
     }
 
     /// All irradiance/π at a place; `None` where no patch is.
     pub(crate) fn total(&self, place: &Place) -> Option<Vec3> {
-        self.interpolated(place, |patch| self.direct[patch] + self.indirect[patch])
+        self.interpolate(place, |patch| self.direct[patch] + self.indirect[patch])
     }
 
-    fn interpolated(&self, place: &Place, of: impl Fn(usize) -> Vec3) -> Option<Vec3> {
+    fn interpolate(&self, place: &Place, value: impl Fn(usize) -> Vec3) -> Option<Vec3> {
         let (mut sum, mut weights) = (Vec3::ZERO, 0.0);
         self.patches.visit_around(place, |patch, weight| {
-            sum += of(patch as usize) * weight;
+            sum += value(patch as usize) * weight;
             weights += weight;
         });
         (weights > 0.0).then(|| sum / weights)

@@ -9,7 +9,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 /// A light as the tree sees it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Light {
+pub(crate) struct LightBounds {
     pub low: DVec3,
     pub high: DVec3,
     /// Unit.
@@ -29,21 +29,21 @@ pub(crate) struct LightTree {
 
 #[derive(Clone, Copy, Debug)]
 struct Node {
-    bounds: Bounds,
-    below: Below,
+    bounds: NodeBounds,
+    kind: NodeKind,
 }
 
 #[derive(Clone, Copy, Debug)]
-enum Below {
+enum NodeKind {
     /// The light of this number.
-    Light(u32),
+    Leaf(u32),
     /// Two nodes, the second of them this one.
-    Nodes(u32),
+    Inner(u32),
 }
 
 /// What is known of some lights.
 #[derive(Clone, Copy, Debug)]
-struct Bounds {
+struct NodeBounds {
     low: DVec3,
     high: DVec3,
     /// The axis of a cone that all normals lie in, and its half angle, rad.
@@ -54,36 +54,36 @@ struct Bounds {
 }
 
 /// Splits are looked for between so many slices of an axis.
-const SLICES: usize = 12;
+const BUCKETS: usize = 12;
 /// Below so many nodes lights are halved by their number, so that a trail has bits enough.
-const DEEP: usize = 32;
+const MAX_SPLIT_DEPTH: usize = 32;
 
 impl LightTree {
     /// Of lights with power.
-    pub fn of(lights: &[Light]) -> Self {
+    pub fn new(lights: &[LightBounds]) -> Self {
         let mut tree = Self { nodes: Vec::new(), trails: vec![0; lights.len()] };
-        let mut numbers: Vec<u32> = (0..lights.len() as u32).collect();
-        if !numbers.is_empty() {
-            tree.grow(lights, &mut numbers, 0, 0);
+        let mut lights_left: Vec<u32> = (0..lights.len() as u32).collect();
+        if !lights_left.is_empty() {
+            tree.build(lights, &mut lights_left, 0, 0);
         }
         tree
     }
 
-    fn grow(&mut self, lights: &[Light], numbers: &mut [u32], depth: usize, trail: u64) {
-        let all = numbers.iter().map(|&number| Bounds::of(&lights[number as usize]));
-        let bounds = all.reduce(Bounds::and).expect("a node has lights");
+    fn build(&mut self, lights: &[LightBounds], numbers: &mut [u32], depth: usize, trail: u64) {
+        let all = numbers.iter().map(|&number| NodeBounds::from_light(&lights[number as usize]));
+        let bounds = all.reduce(NodeBounds::union).expect("a node has lights");
         let place = self.nodes.len();
         if let [number] = *numbers {
             self.trails[number as usize] = trail;
-            self.nodes.push(Node { bounds, below: Below::Light(number) });
+            self.nodes.push(Node { bounds, kind: NodeKind::Leaf(number) });
             return;
         }
-        self.nodes.push(Node { bounds, below: Below::Nodes(0) });
-        let middle = part(lights, numbers, depth);
+        self.nodes.push(Node { bounds, kind: NodeKind::Inner(0) });
+        let middle = split_lights(lights, numbers, depth);
         let (first, second) = numbers.split_at_mut(middle);
-        self.grow(lights, first, depth + 1, trail);
-        self.nodes[place].below = Below::Nodes(self.nodes.len() as u32);
-        self.grow(lights, second, depth + 1, trail | 1 << depth);
+        self.build(lights, first, depth + 1, trail);
+        self.nodes[place].kind = NodeKind::Inner(self.nodes.len() as u32);
+        self.build(lights, second, depth + 1, trail | 1 << depth);
     }
 
     /// Draws a light for a position by a uniform number: its number, and its probability. `None` where none can arrive of those it
@@ -91,13 +91,13 @@ impl LightTree {
     pub fn draw(&self, position: DVec3, mut choice: f64) -> Option<(usize, f64)> {
         let (mut node, mut probability) = (0, 1.0);
         loop {
-            match self.nodes[node].below {
-                Below::Light(number) => return Some((number as usize, probability)),
-                Below::Nodes(second) => {
-                    let of_first = self.share_of_first(node, second as usize, position)?;
-                    let is_first = choice < of_first;
-                    let share = if is_first { of_first } else { 1.0 - of_first };
-                    choice = if is_first { choice / share } else { (choice - of_first) / share };
+            match self.nodes[node].kind {
+                NodeKind::Leaf(number) => return Some((number as usize, probability)),
+                NodeKind::Inner(second) => {
+                    let first_probability = self.first_child_probability(node, second as usize, position)?;
+                    let is_first = choice < first_probability;
+                    let share = if is_first { first_probability } else { 1.0 - first_probability };
+                    choice = if is_first { choice / share } else { (choice - first_probability) / share };
                     probability *= share;
                     node = if is_first { node + 1 } else { second as usize };
                 }
@@ -108,25 +108,28 @@ impl LightTree {
     /// The probability with which [`Self::draw`] draws a light.
     pub fn probability(&self, position: DVec3, number: usize) -> f64 {
         let (mut node, mut probability, mut trail) = (0, 1.0, self.trails[number]);
-        while let Below::Nodes(second) = self.nodes[node].below {
-            let Some(of_first) = self.share_of_first(node, second as usize, position) else { return 0.0 };
+        while let NodeKind::Inner(second) = self.nodes[node].kind {
+            let Some(first_probability) = self.first_child_probability(node, second as usize, position)
+            else {
+                return 0.0;
+            };
             let is_first = trail & 1 == 0;
-            probability *= if is_first { of_first } else { 1.0 - of_first };
+            probability *= if is_first { first_probability } else { 1.0 - first_probability };
             node = if is_first { node + 1 } else { second as usize };
             trail >>= 1;
         }
         probability
     }
 
-    fn share_of_first(&self, node: usize, second: usize, position: DVec3) -> Option<f64> {
-        let [first, second] = [node + 1, second].map(|child| self.nodes[child].bounds.arriving(position));
+    fn first_child_probability(&self, node: usize, second: usize, position: DVec3) -> Option<f64> {
+        let [first, second] = [node + 1, second].map(|child| self.nodes[child].bounds.importance(position));
         let sum = first + second;
         (sum > 0.0).then(|| first / sum)
     }
 }
 
 /// Parts lights in two, neither of them empty: where what is known of both is least in all (the surface area orientation heuristic).
-fn part(lights: &[Light], numbers: &mut [u32], depth: usize) -> usize {
+fn split_lights(lights: &[LightBounds], numbers: &mut [u32], depth: usize) -> usize {
     let middle_of = |number: u32| {
         let light = &lights[number as usize];
         0.5 * (light.low + light.high)
@@ -137,43 +140,43 @@ fn part(lights: &[Light], numbers: &mut [u32], depth: usize) -> usize {
         .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), at| (low.min(at), high.max(at)));
     let extent = high - low;
     let axis = (0..3).fold(0, |best, axis| if extent[axis] > extent[best] { axis } else { best });
-    if depth >= DEEP || !(extent[axis] > 0.0 && extent[axis].is_finite()) {
+    if depth >= MAX_SPLIT_DEPTH || !(extent[axis] > 0.0 && extent[axis].is_finite()) {
         return numbers.len() / 2;
     }
     let slice_of = |number: u32| {
         let share = (middle_of(number)[axis] - low[axis]) / extent[axis];
-        ((share * SLICES as f64) as usize).min(SLICES - 1)
+        ((share * BUCKETS as f64) as usize).min(BUCKETS - 1)
     };
-    let mut slices: [Option<Bounds>; SLICES] = [None; SLICES];
+    let mut slices: [Option<NodeBounds>; BUCKETS] = [None; BUCKETS];
     for &number in numbers.iter() {
-        let bounds = Bounds::of(&lights[number as usize]);
+        let bounds = NodeBounds::from_light(&lights[number as usize]);
         let slice = &mut slices[slice_of(number)];
-        *slice = Some(slice.map_or(bounds, |sum| sum.and(bounds)));
+        *slice = Some(slice.map_or(bounds, |sum| sum.union(bounds)));
     }
     // What the slices up to each, from either end, are joined to.
-    let join = |sum: &mut Option<Bounds>, slice: &Option<Bounds>| {
+    let join = |sum: &mut Option<NodeBounds>, slice: &Option<NodeBounds>| {
         *sum = match (*sum, *slice) {
-            (Some(sum), Some(slice)) => Some(sum.and(slice)),
+            (Some(sum), Some(slice)) => Some(sum.union(slice)),
             (sum, slice) => sum.or(slice),
         };
         Some(sum.map_or(f64::INFINITY, |bounds| bounds.cost()))
     };
     let below: Vec<f64> = slices.iter().scan(None, join).collect();
     let above: Vec<f64> = slices.iter().rev().scan(None, join).collect();
-    let cost_at = |end: usize| below[end - 1] + above[SLICES - 1 - end];
-    let best = (1..SLICES).min_by(|&a, &b| cost_at(a).total_cmp(&cost_at(b))).expect("there are slices");
+    let cost_at = |end: usize| below[end - 1] + above[BUCKETS - 1 - end];
+    let best = (1..BUCKETS).min_by(|&a, &b| cost_at(a).total_cmp(&cost_at(b))).expect("there are slices");
     // Those of the first slice and those of the last are never on one side.
     numbers.sort_by_key(|&number| slice_of(number) >= best);
     numbers.partition_point(|&number| slice_of(number) < best)
 }
 
-impl Bounds {
-    fn of(light: &Light) -> Self {
-        let &Light { low, high, normal, both_sides, power } = light;
+impl NodeBounds {
+    fn from_light(light: &LightBounds) -> Self {
+        let &LightBounds { low, high, normal, both_sides, power } = light;
         Self { low, high, axis: normal, spread: 0.0, both_sides, power }
     }
 
-    fn and(self, other: Self) -> Self {
+    fn union(self, other: Self) -> Self {
         let (axis, spread) = joint_cone((self.axis, self.spread), (other.axis, other.spread));
         Self {
             low: self.low.min(other.low),
@@ -186,7 +189,7 @@ impl Bounds {
     }
 
     /// How much of the power may arrive at a position, up to a factor that all have in common.
-    fn arriving(&self, position: DVec3) -> f64 {
+    fn importance(&self, position: DVec3) -> f64 {
         let toward = position - 0.5 * (self.low + self.high);
         let radius2 = 0.25 * (self.high - self.low).length_squared();
         let d2 = toward.length_squared();
@@ -196,9 +199,9 @@ impl Bounds {
         }
         let along = self.axis.dot(toward) / d2.sqrt();
         let along = if self.both_sides { along.abs() } else { along };
-        let seen_as = (radius2 / d2).sqrt().asin();
-        let least = along.clamp(-1.0, 1.0).acos() - self.spread - seen_as;
-        if least >= FRAC_PI_2 { 0.0 } else { self.power * least.max(0.0).cos() / d2 }
+        let angular_radius = (radius2 / d2).sqrt().asin();
+        let min_angle = along.clamp(-1.0, 1.0).acos() - self.spread - angular_radius;
+        if min_angle >= FRAC_PI_2 { 0.0 } else { self.power * min_angle.max(0.0).cos() / d2 }
     }
 
     /// Power by how large it is and how much of all directions it lights.
@@ -218,20 +221,20 @@ impl Bounds {
 }
 
 /// The narrowest cone around two, by axis and half angle.
-fn joint_cone((a, of_a): (DVec3, f64), (b, of_b): (DVec3, f64)) -> (DVec3, f64) {
+fn joint_cone((a, spread_a): (DVec3, f64), (b, spread_b): (DVec3, f64)) -> (DVec3, f64) {
     let between = a.angle_between(b);
-    if (between + of_b).min(PI) <= of_a {
-        return (a, of_a);
+    if (between + spread_b).min(PI) <= spread_a {
+        return (a, spread_a);
     }
-    if (between + of_a).min(PI) <= of_b {
-        return (b, of_b);
+    if (between + spread_a).min(PI) <= spread_b {
+        return (b, spread_b);
     }
-    let spread = 0.5 * (of_a + between + of_b);
+    let spread = 0.5 * (spread_a + between + spread_b);
     let across = a.cross(b);
     if spread >= PI || across == DVec3::ZERO {
         return (a, PI);
     }
-    let axis = glam::DQuat::from_axis_angle(across.normalize(), spread - of_a) * a;
+    let axis = glam::DQuat::from_axis_angle(across.normalize(), spread - spread_a) * a;
     (axis.normalize(), spread)
 }
 
@@ -251,18 +254,24 @@ mod tests {
         DVec3::new(random(seed), random(seed + 1), random(seed + 2))
     }
 
-    fn lights(count: u64) -> Vec<Light> {
+    fn lights(count: u64) -> Vec<LightBounds> {
         let light = |k: u64| {
             let low = place(10 * k + 1) * 10.0;
             let normal = (place(10 * k + 4) - 0.5).normalize();
             let power = 0.1 + random(10 * k + 8);
-            Light { low, high: low + place(10 * k + 7) * 0.2, normal, both_sides: k.is_multiple_of(3), power }
+            LightBounds {
+                low,
+                high: low + place(10 * k + 7) * 0.2,
+                normal,
+                both_sides: k.is_multiple_of(3),
+                power,
+            }
         };
         (0..count).map(light).collect()
     }
 
     /// What a light's middle sends, and whether any corner of its box may be seen from its front.
-    fn sends(light: &Light, position: DVec3) -> f64 {
+    fn sends(light: &LightBounds, position: DVec3) -> f64 {
         let toward = position - 0.5 * (light.low + light.high);
         let facing = light.normal.dot(toward.normalize());
         let facing = if light.both_sides { facing.abs() } else { facing.max(0.0) };
@@ -272,7 +281,7 @@ mod tests {
     #[test]
     fn probabilities_are_those_of_draws() {
         let lights = lights(57);
-        let tree = LightTree::of(&lights);
+        let tree = LightTree::new(&lights);
         for eye in 0..40 {
             let position = place(1000 + 5 * eye) * 14.0 - 2.0;
             let all: Vec<f64> = (0..lights.len()).map(|k| tree.probability(position, k)).collect();
@@ -281,17 +290,17 @@ mod tests {
             }
             // The choices of a light are as wide as it is probable.
             const STEPS: usize = 20_000;
-            let mut found = vec![0; lights.len()];
+            let mut counts = vec![0; lights.len()];
             for k in 0..STEPS {
                 // A node that may be lit from need not have a child that may.
                 let Some((number, probability)) = tree.draw(position, (k as f64 + 0.5) / STEPS as f64) else {
                     continue;
                 };
                 assert!((probability - all[number]).abs() < 1e-12);
-                found[number] += 1;
+                counts[number] += 1;
             }
-            for (found, probability) in found.into_iter().zip(all) {
-                assert!((f64::from(found) / STEPS as f64 - probability).abs() < 1e-4);
+            for (count, probability) in counts.into_iter().zip(all) {
+                assert!((f64::from(count) / STEPS as f64 - probability).abs() < 1e-4);
             }
         }
     }
@@ -299,7 +308,7 @@ mod tests {
     #[test]
     fn what_is_far_or_turned_away_is_drawn_less() {
         let lights = lights(3000);
-        let tree = LightTree::of(&lights);
+        let tree = LightTree::new(&lights);
         let power: f64 = lights.iter().map(|light| light.power).sum();
         // The second moment of sent/probability, over the square of the mean: 1 of what has no noise.
         let (mut by_tree, mut by_power) = (0.0, 0.0);
@@ -319,7 +328,7 @@ mod tests {
 
     #[test]
     fn lights_in_one_place_or_far_apart_have_trails_that_lead_to_them() {
-        let at = |x: f64| Light {
+        let at = |x: f64| LightBounds {
             low: DVec3::splat(x),
             high: DVec3::splat(x),
             normal: DVec3::Z,
@@ -327,13 +336,13 @@ mod tests {
             power: 1.0,
         };
         // Each twice as far as the one before: the worst for slices.
-        let far: Vec<Light> = (0..200).map(|k| at(2f64.powi(k))).collect();
+        let far: Vec<LightBounds> = (0..200).map(|k| at(2f64.powi(k))).collect();
         for lights in [vec![at(1.0); 100], far, vec![at(0.0)]] {
-            let tree = LightTree::of(&lights);
+            let tree = LightTree::new(&lights);
             let position = DVec3::new(0.3, -4.0, 9.0);
             let all = (0..lights.len()).map(|k| tree.probability(position, k));
             assert!((all.sum::<f64>() - 1.0).abs() < 1e-9);
         }
-        assert!(LightTree::of(&[]).nodes.is_empty());
+        assert!(LightTree::new(&[]).nodes.is_empty());
     }
 }

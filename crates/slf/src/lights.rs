@@ -2,7 +2,7 @@
 
 use crate::emitters::Emitters;
 use crate::environment_light::EnvironmentLight;
-use crate::punctual::{Arrival, arrival};
+use crate::punctual::{PunctualLight, unshadowed_light};
 use glam::{DVec3, Vec3};
 use scene::{Scene, World};
 
@@ -14,14 +14,14 @@ pub(crate) struct Lights {
     /// How many punctual lights there are.
     punctual: usize,
     /// Longer than the scene is wide.
-    beyond: f64,
+    outside_distance: f64,
 }
 
 /// Light that may arrive from one direction.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LightSample {
     /// Unit, toward the light.
-    pub from: DVec3,
+    pub direction: DVec3,
     /// The world position between which and the point nothing may stand.
     pub source: DVec3,
     /// Whether that is the light itself; else it lies beyond the scene.
@@ -31,34 +31,34 @@ pub(crate) struct LightSample {
     /// Of the direction, 1/sr; none of a punctual light, which no other way of sampling finds.
     pub density: Option<f64>,
     /// Which of the scene's lights it is, if it is punctual.
-    pub number: Option<usize>,
+    pub punctual_index: Option<usize>,
 }
 
 impl LightSample {
     /// Whether it is a direction of the environment.
-    pub fn is_of_sky(&self) -> bool {
+    pub fn is_sky(&self) -> bool {
         self.density.is_some() && !self.is_near
     }
 }
 
 /// How often lights are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Draws {
+pub(crate) struct DrawCounts {
     /// Draws in all.
-    pub all: u32,
+    pub total: u32,
     /// The first of them, in which punctual lights are among them.
     pub punctual: u32,
 }
 
 /// So many punctual lights are all asked; of more one is drawn by what it would send.
-const FEW: usize = 3;
+const MAX_PUNCTUAL_ENUMERATED: usize = 3;
 
 impl Lights {
-    pub fn of(scene: &Scene, world: &World) -> Self {
+    pub fn new(scene: &Scene, world: &World) -> Self {
         let (low, high) = scene.bounds();
-        let beyond = 2.0 * (high - low).length();
-        let (emitters, environment) = (Emitters::of(scene), EnvironmentLight::of(world));
-        Self { emitters, environment, punctual: scene.lights.len(), beyond }
+        let outside_distance = 2.0 * (high - low).length();
+        let (emitters, environment) = (Emitters::from_scene(scene), EnvironmentLight::from_world(world));
+        Self { emitters, environment, punctual: scene.lights.len(), outside_distance }
     }
 
     /// How many punctual lights there are.
@@ -78,9 +78,9 @@ impl Lights {
 
     /// How often lamps and sky are to be drawn, and how often punctual lights, where so often would do: what is the same every time
     /// is asked once.
-    pub fn draws(&self, wanted: u32) -> Draws {
-        let punctual = if self.punctual <= FEW { 1 } else { wanted.min(4) };
-        Draws { all: if self.has_areas() { wanted.max(punctual) } else { punctual }, punctual }
+    pub fn draw_counts(&self, requested: u32) -> DrawCounts {
+        let punctual = if self.punctual <= MAX_PUNCTUAL_ENUMERATED { 1 } else { requested.min(4) };
+        DrawCounts { total: if self.has_areas() { requested.max(punctual) } else { punctual }, punctual }
     }
 
     /// Draws lights for a position, each kind once, punctual ones if they are wanted; `draw` gives uniform numbers.
@@ -95,7 +95,7 @@ impl Lights {
     ) {
         self.sample_areas(scene, world, position, &mut draw, &mut visit);
         if with_punctual {
-            self.sample_punctual(scene, position, FEW, draw, visit);
+            self.sample_punctual(scene, position, MAX_PUNCTUAL_ENUMERATED, draw, visit);
         }
     }
 
@@ -110,22 +110,29 @@ impl Lights {
     ) {
         if let Some(environment) = &self.environment {
             let (direction, density) = environment.sample([draw(), draw()]);
-            let from = world.turned(direction);
-            let light = world.radiance(from) / density as f32;
-            let source = position + from * self.beyond;
+            let world_direction = world.world_from_environment(direction);
+            let light = world.radiance(world_direction) / density as f32;
+            let source = position + world_direction * self.outside_distance;
             let density = Some(density);
-            visit(LightSample { from, source, is_near: false, light, density, number: None });
+            visit(LightSample {
+                direction: world_direction,
+                source,
+                is_near: false,
+                light,
+                density,
+                punctual_index: None,
+            });
         }
         if !self.emitters.is_empty() {
             let (choice, place) = (draw(), [draw(), draw()]);
             if let Some(sample) = self.emitters.sample(scene, position, choice, place) {
                 visit(LightSample {
-                    from: sample.from,
+                    direction: sample.direction,
                     source: sample.place,
                     is_near: true,
                     light: sample.radiance / sample.density as f32,
                     density: Some(sample.density),
-                    number: None,
+                    punctual_index: None,
                 });
             }
         }
@@ -136,24 +143,24 @@ impl Lights {
         &self,
         scene: &Scene,
         position: DVec3,
-        few: usize,
+        max_enumerated: usize,
         mut draw: impl FnMut() -> f64,
         mut visit: impl FnMut(LightSample),
     ) {
         let near = |light: &scene::Light| light.kind != scene::LightKind::Directional;
         let arrivals = || {
             let lights = scene.lights.iter().enumerate();
-            lights.filter_map(|(number, light)| {
-                Some((number, arrival(light, position, self.beyond)?, near(light)))
+            lights.filter_map(|(index, light)| {
+                Some((index, unshadowed_light(light, position, self.outside_distance)?, near(light)))
             })
         };
-        let mut punctual = |(number, arrival, is_near): (usize, Arrival, bool), share: f32| {
-            let Arrival { from, source, irradiance } = arrival;
-            let (light, number) = (irradiance / share, Some(number));
-            visit(LightSample { from, source, is_near, light, density: None, number });
+        let mut visit_light = |(index, arrival, is_near): (usize, PunctualLight, bool), share: f32| {
+            let PunctualLight { direction, source, irradiance } = arrival;
+            let (light, punctual_index) = (irradiance / share, Some(index));
+            visit(LightSample { direction, source, is_near, light, density: None, punctual_index });
         };
-        if scene.lights.len() <= few {
-            arrivals().for_each(|light| punctual(light, 1.0));
+        if scene.lights.len() <= max_enumerated {
+            arrivals().for_each(|light| visit_light(light, 1.0));
             return;
         }
         let sum: f32 = arrivals().map(|(_, arrival, _)| arrival.irradiance.element_sum()).sum();
@@ -164,17 +171,19 @@ impl Lights {
         });
         if let Some(light) = chosen.filter(|_| sum > 0.0) {
             let share = light.1.irradiance.element_sum() / sum;
-            punctual(light, share);
+            visit_light(light, share);
         }
     }
 
     /// The density, 1/sr, with which [`Self::sample`] draws a direction (unit) from the environment.
-    pub fn density_of_environment(&self, world: &World, direction: DVec3) -> f64 {
-        self.environment.as_ref().map_or(0.0, |environment| environment.density(world.unturned(direction)))
+    pub fn environment_density(&self, world: &World, direction: DVec3) -> f64 {
+        self.environment
+            .as_ref()
+            .map_or(0.0, |environment| environment.density(world.environment_from_world(direction)))
     }
 
     /// The same of a place on a triangle.
-    pub fn density_of_emitter(&self, triangle: u32, place: DVec3, position: DVec3) -> f64 {
+    pub fn emitter_density(&self, triangle: u32, place: DVec3, position: DVec3) -> f64 {
         self.emitters.density(triangle, place, position)
     }
 }

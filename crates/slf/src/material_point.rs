@@ -1,6 +1,6 @@
 //! What a surface point is made of and how it lies, its textures looked up.
 
-use crate::media::ior_of;
+use crate::media::effective_ior;
 use glam::{DVec2, DVec3, Vec3};
 use material::{Clearcoat, Film, Frame, Scattering, Sheen, Surface};
 use scene::{Anisotropy, Scene, SurfacePoint, Workflow};
@@ -20,7 +20,7 @@ pub(crate) struct MaterialPoint {
 
 impl MaterialPoint {
     /// Looks a point up.
-    pub fn of(scene: &Scene, point: SurfacePoint, scattering: Scattering) -> Self {
+    pub fn new(scene: &Scene, point: SurfacePoint, scattering: Scattering) -> Self {
         let material = scene.part_of(point.triangle).material;
         Self {
             position: point.position(scene),
@@ -36,7 +36,7 @@ pub(crate) fn emitted(scene: &Scene, point: SurfacePoint, outgoing: DVec3) -> Ve
     let material = scene.material_of(point.triangle);
     let shows =
         material.double_sided || material.unlit || scene.area_normal(point.triangle).dot(outgoing) >= 0.0;
-    if shows { scene.emitted(point) } else { Vec3::ZERO }
+    if shows { scene.emitted_radiance(point) } else { Vec3::ZERO }
 }
 
 fn frame(scene: &Scene, point: SurfacePoint) -> Frame {
@@ -48,7 +48,7 @@ fn frame(scene: &Scene, point: SurfacePoint) -> Frame {
     };
     let tangent = material.anisotropy.as_ref().and_then(|anisotropy| {
         let [tangent, bitangent] = scene.tangents_at(point, scene.shading_normal(point))?;
-        let direction = along(scene, anisotropy, point);
+        let direction = anisotropy_direction(scene, anisotropy, point);
         Some(tangent * direction.x + bitangent * direction.y)
     });
     let frame = Frame::new(geometric, normal, tangent.unwrap_or(DVec3::ZERO));
@@ -63,8 +63,8 @@ fn frame(scene: &Scene, point: SurfacePoint) -> Frame {
 }
 
 /// The direction of anisotropy in tangent space.
-fn along(scene: &Scene, anisotropy: &Anisotropy, point: SurfacePoint) -> DVec2 {
-    let own = anisotropy.texture.as_ref().map(|texture| scene.texture_at(texture, point));
+fn anisotropy_direction(scene: &Scene, anisotropy: &Anisotropy, point: SurfacePoint) -> DVec2 {
+    let own = anisotropy.texture.as_ref().map(|texture| scene.sample_texture_at(texture, point));
     let own = own.map_or(DVec2::X, |rgba| DVec2::new(f64::from(rgba.x), f64::from(rgba.y)) * 2.0 - 1.0);
     DVec2::from_angle(f64::from(anisotropy.rotation)).rotate(own)
 }
@@ -79,12 +79,12 @@ fn surface(scene: &Scene, point: SurfacePoint, scattering: Scattering) -> Surfac
             base_color,
             metallic: scalar(metallic),
             roughness: scalar(roughness),
-            ior: ior_of(material),
+            ior: effective_ior(material),
             specular: scalar(&material.specular),
             specular_color: scene.tint_at(&material.specular_color, point).as_dvec3(),
             ..Surface::default()
         },
-        Workflow::SpecularGlossiness { specular, glossiness } => Surface::of_specular_glossiness(
+        Workflow::SpecularGlossiness { specular, glossiness } => Surface::from_specular_glossiness(
             base_color,
             color(scene.tint_at(specular, point)),
             scalar(glossiness),
@@ -92,7 +92,9 @@ fn surface(scene: &Scene, point: SurfacePoint, scattering: Scattering) -> Surfac
     };
     let anisotropy = material.anisotropy.as_ref().map_or(0.0, |anisotropy| {
         let texture = anisotropy.texture.as_ref();
-        f64::from(anisotropy.strength * texture.map_or(1.0, |texture| scene.texture_at(texture, point).z))
+        f64::from(
+            anisotropy.strength * texture.map_or(1.0, |texture| scene.sample_texture_at(texture, point).z),
+        )
     });
     let through = material.diffuse_transmission.as_ref();
     Surface {
@@ -103,13 +105,14 @@ fn surface(scene: &Scene, point: SurfacePoint, scattering: Scattering) -> Surfac
         diffuse_transmission_color: through
             .map_or(DVec3::ONE, |through| color(scene.tint_at(&through.color, point))),
         film: material.iridescence.as_ref().map(|film| {
-            let [least, most] = film.thickness.map(f64::from);
-            let share =
-                film.thickness_texture.map_or(1.0, |texture| f64::from(scene.texture_at(&texture, point).y));
+            let [min, max] = film.thickness.map(f64::from);
+            let share = film
+                .thickness_texture
+                .map_or(1.0, |texture| f64::from(scene.sample_texture_at(&texture, point).y));
             Film {
                 factor: scalar(&film.factor),
                 ior: f64::from(film.ior),
-                thickness: least + (most - least) * share,
+                thickness: min + (max - min) * share,
             }
         }),
         clearcoat: material

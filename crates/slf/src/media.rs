@@ -10,7 +10,7 @@ use std::sync::OnceLock;
 const INFINITE_IOR: f64 = 1e6;
 
 /// The index of refraction of a material.
-pub(crate) fn ior_of(material: &Material) -> f64 {
+pub(crate) fn effective_ior(material: &Material) -> f64 {
     if material.ior == 0.0 { INFINITE_IOR } else { f64::from(material.ior) }
 }
 
@@ -21,7 +21,7 @@ const WAVELENGTHS: [f64; 3] = [611.4, 549.1, 464.2];
 #[derive(Debug)]
 pub(crate) struct Media {
     /// By material: what its body is filled with.
-    fillings: Vec<Filling>,
+    interiors: Vec<Interior>,
     /// Different indices of refraction; vacuum's is the first.
     iors: Vec<f64>,
     /// From one index to another, by front and back.
@@ -29,7 +29,7 @@ pub(crate) struct Media {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Filling {
+struct Interior {
     /// Whether there is a body at all.
     is_solid: bool,
     disperses: bool,
@@ -40,19 +40,19 @@ struct Filling {
 }
 
 /// How many bodies within each other are kept apart.
-const MOST_NESTED: usize = 8;
+const MAX_NESTED: usize = 8;
 
 /// The bodies that a path is in, the innermost last.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Inside {
-    materials: [u32; MOST_NESTED],
+pub(crate) struct MediumStack {
+    materials: [u32; MAX_NESTED],
     count: usize,
     /// The colour that is followed, 0 to 2, once the path was dispersed.
     pub channel: Option<usize>,
 }
 
 impl Media {
-    pub fn of(scene: &Scene) -> Self {
+    pub fn from_scene(scene: &Scene) -> Self {
         let mut numbers = HashMap::from([(1.0f64.to_bits(), 0u16)]);
         let mut iors = vec![1.0];
         let mut number = |ior: f64| {
@@ -62,45 +62,45 @@ impl Media {
                 next
             })
         };
-        let fillings = scene
+        let interiors = scene
             .materials
             .iter()
             .map(|material| {
-                let ior = ior_of(material);
+                let ior = effective_ior(material);
                 let dispersion = f64::from(material.dispersion);
                 let is_solid = material.volume.is_some() && material.transmission.factor > 0.0;
                 let plain = number(ior);
-                let of_color = WAVELENGTHS.map(|wavelength| match is_solid && dispersion > 0.0 {
+                let channel_iors = WAVELENGTHS.map(|wavelength| match is_solid && dispersion > 0.0 {
                     true => number(dispersed_ior(ior, dispersion, wavelength)),
                     false => plain,
                 });
-                Filling {
+                Interior {
                     is_solid,
                     disperses: is_solid && dispersion > 0.0,
-                    ior: [plain, of_color[0], of_color[1], of_color[2]],
+                    ior: [plain, channel_iors[0], channel_iors[1], channel_iors[2]],
                     color: material.volume.map_or(DVec3::ONE, |volume| volume.attenuation_color.as_dvec3()),
                     distance: material.volume.map_or(f64::INFINITY, |volume| volume.attenuation_distance),
                 }
             })
             .collect();
         let interfaces = (0..iors.len() * iors.len()).map(|_| OnceLock::new()).collect();
-        Self { fillings, iors, interfaces }
+        Self { interiors, iors, interfaces }
     }
 
     /// Whether a material's glass bends each colour differently.
     pub fn disperses(&self, material: u32) -> bool {
-        self.fillings[material as usize].disperses
+        self.interiors[material as usize].disperses
     }
 
     /// The two sides of a surface of a material that a path meets on its front or its back.
-    pub fn interface(&self, material: u32, inside: &Inside, is_front: bool) -> &Interface {
+    pub fn interface(&self, material: u32, inside: &MediumStack, is_front: bool) -> &Interface {
         let own = self.ior(material, inside);
         let mut around = *inside;
         if !is_front {
             around.leave(material);
         }
         let outside = match around.innermost() {
-            Some(outer) if self.fillings[material as usize].is_solid => self.ior(outer, inside),
+            Some(outer) if self.interiors[material as usize].is_solid => self.ior(outer, inside),
             _ => 0,
         };
         let (front, back) = (usize::from(outside), usize::from(own));
@@ -108,40 +108,40 @@ impl Media {
         interface.get_or_init(|| Interface::between(self.iors[front], self.iors[back]))
     }
 
-    fn ior(&self, material: u32, inside: &Inside) -> u16 {
-        self.fillings[material as usize].ior[inside.channel.map_or(0, |channel| channel + 1)]
+    fn ior(&self, material: u32, inside: &MediumStack) -> u16 {
+        self.interiors[material as usize].ior[inside.channel.map_or(0, |channel| channel + 1)]
     }
 
     /// What is left of light after a way through the innermost body.
-    pub fn attenuation(&self, inside: &Inside, length: f64) -> DVec3 {
+    pub fn attenuation(&self, inside: &MediumStack, length: f64) -> DVec3 {
         inside.innermost().map_or(DVec3::ONE, |material| {
-            let filling = &self.fillings[material as usize];
-            attenuation(filling.color, filling.distance, length)
+            let interior = &self.interiors[material as usize];
+            attenuation(interior.color, interior.distance, length)
         })
     }
 
     /// Goes through a surface of a material, from its front or out of it.
-    pub fn cross(&self, inside: &mut Inside, material: u32, enters: bool) {
-        if !self.fillings[material as usize].is_solid {
+    pub fn cross(&self, inside: &mut MediumStack, material: u32, enters: bool) {
+        if !self.interiors[material as usize].is_solid {
             return;
         }
         if !enters {
             inside.leave(material);
-        } else if inside.count < MOST_NESTED {
+        } else if inside.count < MAX_NESTED {
             inside.materials[inside.count] = material;
             inside.count += 1;
         }
     }
 
     /// Where light is that leaves a surface of a material toward its front or its back.
-    pub fn beside(&self, material: u32, is_front: bool) -> Inside {
-        let mut inside = Inside::default();
+    pub fn outgoing_medium(&self, material: u32, is_front: bool) -> MediumStack {
+        let mut inside = MediumStack::default();
         self.cross(&mut inside, material, !is_front);
         inside
     }
 }
 
-impl Inside {
+impl MediumStack {
     fn innermost(&self) -> Option<u32> {
         self.count.checked_sub(1).map(|last| self.materials[last])
     }

@@ -18,15 +18,15 @@ const CELLS: [usize; 2] = [128, 64];
 
 impl OpenSky {
     /// None where the world is dark or the same everywhere: such light is not drawn.
-    pub fn of(world: &World) -> Option<Self> {
+    pub fn from_world(world: &World) -> Option<Self> {
         match &world.environment {
-            Environment::Map(map) if world.strength > 0.0 => Some(Self::of_map(map)),
+            Environment::Map(map) if world.strength > 0.0 => Some(Self::from_map(map)),
             _ => None,
         }
     }
 
-    fn of_map(map: &EnvironmentMap) -> Self {
-        let cells = cells(map);
+    fn from_map(map: &EnvironmentMap) -> Self {
+        let cells = binned_flux(map);
         let mut values =
             EnvironmentMap { name: String::new(), width: NORMALS[0], height: NORMALS[1], texels: Vec::new() };
         let at = |k: u32| {
@@ -46,25 +46,25 @@ impl OpenSky {
 
     /// At a normal (unit) in the world that it was made of.
     pub fn at(&self, world: &World, normal: DVec3) -> DVec3 {
-        self.values.radiance(world.unturned(normal)).as_dvec3() * f64::from(world.strength)
+        self.values.radiance(world.environment_from_world(normal)).as_dvec3() * f64::from(world.strength)
     }
 }
 
 /// Directions (their length below 1 where light of a cell comes from several) and radiance times solid angle.
-fn cells(map: &EnvironmentMap) -> Vec<(DVec3, DVec3)> {
+fn binned_flux(map: &EnvironmentMap) -> Vec<(DVec3, DVec3)> {
     /// Texels are cut so finely that the bilinear radiance between their centres is summed well.
     const CUTS: u32 = 2;
     let (width, height) = (map.width * CUTS, map.height * CUTS);
     let mut sums = vec![(DVec3::ZERO, DVec3::ZERO, 0.0); CELLS[0] * CELLS[1]];
     for y in 0..height {
-        let edge = |row: u32| map.latitude(f64::from(row) / f64::from(CUTS)).sin();
+        let edge = |row: u32| map.row_latitude(f64::from(row) / f64::from(CUTS)).sin();
         let solid_angle = (edge(y) - edge(y + 1)) * TAU / f64::from(width);
         for x in 0..width {
             let position = (DVec2::new(f64::from(x), f64::from(y)) + 0.5) / f64::from(CUTS);
             let direction = map.direction_at(position);
             let flux = map.radiance(direction).as_dvec3() * solid_angle;
-            let of = |place: u32, cells: usize, whole: u32| place as usize * cells / whole as usize;
-            let cell = of(y, CELLS[1], height) * CELLS[0] + of(x, CELLS[0], width);
+            let bin = |place: u32, cells: usize, whole: u32| place as usize * cells / whole as usize;
+            let cell = bin(y, CELLS[1], height) * CELLS[0] + bin(x, CELLS[0], width);
             let (toward, sum, weight) = &mut sums[cell];
             let bright = flux.element_sum();
             *toward += direction * bright;
@@ -92,18 +92,18 @@ mod tests {
         let map = EnvironmentMap { name: "sky".into(), width, height, texels };
         let world =
             World { environment: Environment::Map(map.clone().into()), ..World::uniform(glam::Vec3::ZERO) };
-        let sky = OpenSky::of(&world).unwrap();
-        assert!(OpenSky::of(&World::uniform(glam::Vec3::ONE)).is_none());
+        let sky = OpenSky::from_world(&world).unwrap();
+        assert!(OpenSky::from_world(&World::uniform(glam::Vec3::ONE)).is_none());
         let sun = map.direction_at(DVec2::new(70.5, 16.5));
-        let texel = (PI / f64::from(height)).powi(2) * map.latitude(16.5).cos();
+        let texel = (PI / f64::from(height)).powi(2) * map.row_latitude(16.5).cos();
         for normal in
             [DVec3::Y, DVec3::NEG_Y, DVec3::X, DVec3::new(0.3, 0.8, -0.52), DVec3::new(-0.7, 0.1, 0.7)]
         {
             let normal = normal.normalize();
             let share = (1.0 + normal.y) / 2.0;
             let expected = share + 0.25 * (1.0 - share) + 1999.0 * texel * normal.dot(sun).max(0.0) / PI;
-            let found = sky.at(&world, normal).x;
-            assert!((found / expected - 1.0).abs() < 0.012, "{normal}: {found}, not {expected}");
+            let irradiance = sky.at(&world, normal).x;
+            assert!((irradiance / expected - 1.0).abs() < 0.012, "{normal}: {irradiance}, not {expected}");
         }
     }
 }

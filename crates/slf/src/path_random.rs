@@ -13,12 +13,12 @@ pub(crate) struct PathRandom {
     seed: u32,
     dimension: u32,
     /// The four dimensions that this one is among.
-    four: [f32; 4],
+    batch: [f32; 4],
     state: u64,
 }
 
 /// Numbers that are spread evenly: of the first two scatterings.
-const SPREAD: u32 = 24;
+const SOBOL_DIMENSIONS: u32 = 24;
 
 impl PathRandom {
     /// The seed for light from a point toward an eye.
@@ -35,19 +35,19 @@ impl PathRandom {
             index: index & 0xffff,
             seed: scramble as u32,
             dimension: 0,
-            four: [0.0; 4],
+            batch: [0.0; 4],
             state: mix(seed ^ u64::from(index) << 32),
         }
     }
 
     pub fn next(&mut self) -> f64 {
-        if self.dimension < SPREAD {
+        if self.dimension < SOBOL_DIMENSIONS {
             let within = self.dimension % 4;
             if within == 0 {
-                self.four = sobol_burley::sample_4d(self.index, self.dimension / 4, self.seed);
+                self.batch = sobol_burley::sample_4d(self.index, self.dimension / 4, self.seed);
             }
             self.dimension += 1;
-            return f64::from(self.four[within as usize]);
+            return f64::from(self.batch[within as usize]);
         }
         self.state = mix(self.state);
         (self.state >> 11) as f64 / (1u64 << 53) as f64

@@ -34,12 +34,12 @@ pub use texture::LightTexture;
 
 use alignment::Displacement;
 use glam::{DVec3, Vec3};
-use odd::Belonging;
-use places::{Sphere, TexelGrid};
+use odd::InlierMap;
+use places::{DirectionGrid, TexelGrid};
 use scene::SurfacePoint;
 use std::sync::Arc;
-use telling::{Mirrored, Residuals, is_blocked, toward};
-use trace::{Leaving, Radiance, Tracer};
+use telling::{Mirrored, Residuals, direction_to_eye, is_reflection_blocked};
+use trace::{OutgoingRadiance, Radiance, Tracer};
 
 /// Radiance of a surface as photographs of it show it, kept at the texels of an atlas.
 pub struct PhotographLight {
@@ -50,17 +50,17 @@ pub struct PhotographLight {
     /// By view, how far it is off.
     displacements: Vec<Displacement>,
     /// By view, what of it belongs.
-    belonging: Vec<Belonging>,
+    inlier_maps: Vec<InlierMap>,
     /// By texel: what goes toward all directions alike.
     constant: Vec<Vec3>,
     /// By texel, 1 photographed, 0 filled.
-    seen: Vec<f32>,
+    observed_share: Vec<f32>,
     /// By texel, how many photographs see it.
-    seeing: Vec<u16>,
+    observation_counts: Vec<u16>,
     residuals: Residuals,
     /// Cells at infinity, and the light from them.
-    sphere: Sphere,
-    beyond: Vec<Vec3>,
+    sphere: DirectionGrid,
+    background: Vec<Vec3>,
     mirrored: Mirrored,
 }
 
@@ -71,21 +71,21 @@ impl PhotographLight {
     }
 
     /// By photograph, how many pixels it was moved at most to agree with the others; 0 where it is as its camera says.
-    pub fn moved_px(&self) -> Vec<f64> {
-        self.displacements.iter().map(Displacement::most).collect()
+    pub fn max_displacements_px(&self) -> Vec<f64> {
+        self.displacements.iter().map(Displacement::max_px).collect()
     }
 
     /// How far a point was photographed: 1 it was, 0 it is filled from around.
-    pub fn seen(&self, point: SurfacePoint) -> f32 {
-        self.interpolated(point, |texel| self.seen[texel])
+    pub fn observed_share(&self, point: SurfacePoint) -> f32 {
+        self.interpolate(point, |texel| self.observed_share[texel])
     }
 
     /// How many photographs see a point, at least; glancing and blocked ones not counted.
-    pub fn seeing(&self, point: SurfacePoint) -> u16 {
+    pub fn observation_count(&self, point: SurfacePoint) -> u16 {
         let around = self.grid.around(point).into_iter().flatten();
         around
             .filter(|(_, share)| *share > 0.0)
-            .map(|(texel, _)| self.seeing[texel as usize])
+            .map(|(texel, _)| self.observation_counts[texel as usize])
             .min()
             .unwrap_or(0)
     }
@@ -98,26 +98,32 @@ impl PhotographLight {
     }
 
     /// What a point that mirrors by `strength` mirrors of the surroundings toward a direction, and its share.
-    fn mirrored(&self, point: SurfacePoint, strength: f32, normal: Vec3, outgoing: Vec3) -> (Vec3, f32) {
-        if strength <= 0.0 || is_blocked(&self.tracer, point, normal, outgoing) {
+    fn mirrored_light(
+        &self,
+        point: SurfacePoint,
+        strength: f32,
+        normal: Vec3,
+        outgoing: Vec3,
+    ) -> (Vec3, f32) {
+        if strength <= 0.0 || is_reflection_blocked(&self.tracer, point, normal, outgoing) {
             return (Vec3::ZERO, 0.0);
         }
-        let light = self.mirrored.sent(normal, outgoing) * strength;
-        (light, self.mirrored.share_of(strength, normal, outgoing))
+        let light = self.mirrored.unit_light(normal, outgoing) * strength;
+        (light, self.mirrored.carried_share(strength, normal, outgoing))
     }
 
-    fn interpolated(&self, point: SurfacePoint, of: impl Fn(usize) -> f32) -> f32 {
+    fn interpolate(&self, point: SurfacePoint, value: impl Fn(usize) -> f32) -> f32 {
         let around = self.grid.around(point);
-        around.map_or(0.0, |around| around.iter().map(|&(texel, share)| of(texel as usize) * share).sum())
+        around.map_or(0.0, |around| around.iter().map(|&(texel, share)| value(texel as usize) * share).sum())
     }
 }
 
 impl Radiance for PhotographLight {
-    fn leaving(&self, point: SurfacePoint, eye: DVec3) -> Leaving {
-        let Some(around) = self.grid.around(point) else { return Leaving::default() };
+    fn outgoing(&self, point: SurfacePoint, eye: DVec3) -> OutgoingRadiance {
+        let Some(around) = self.grid.around(point) else { return OutgoingRadiance::default() };
         let scene = self.tracer.scene();
         let position = point.position(scene);
-        let outgoing = toward(position, eye);
+        let outgoing = direction_to_eye(position, eye);
         let normal = scene.shading_normal(point).as_vec3();
         let (mut sum, mut strength) = (Vec3::ZERO, 0.0);
         for (texel, share) in around {
@@ -128,7 +134,7 @@ impl Radiance for PhotographLight {
             let mut light = self.constant[texel];
             for residual in self.residuals.of_texel(texel) {
                 let toward = (self.eyes[usize::from(residual.view)] - position).as_vec3();
-                let factor = self.residuals.kernel.between(toward, outgoing);
+                let factor = self.residuals.kernel.between_directions(toward, outgoing);
                 if factor > 0.0 {
                     light += residual.alpha() * factor;
                 }
@@ -136,14 +142,14 @@ impl Radiance for PhotographLight {
             sum += light * share;
             strength += self.mirrored.strength(texel) * share;
         }
-        let (carried, carried_share) = self.mirrored(point, strength, normal, outgoing);
+        let (carried, carried_share) = self.mirrored_light(point, strength, normal, outgoing);
         // What was left over may be below 0 where less is mirrored than was thought.
         let own = sum.max(-carried);
-        Leaving { own, carried, carried_share, ..Leaving::default() }
+        OutgoingRadiance { own, carried, carried_share, ..OutgoingRadiance::default() }
     }
 
-    fn from_infinity(&self, direction: DVec3) -> Vec3 {
+    fn environment(&self, direction: DVec3) -> Vec3 {
         let around = self.sphere.around(direction.as_vec3().normalize_or(Vec3::Y));
-        around.iter().map(|&(cell, share)| self.beyond[cell] * share).sum()
+        around.iter().map(|&(cell, share)| self.background[cell] * share).sum()
     }
 }

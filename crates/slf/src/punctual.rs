@@ -5,9 +5,9 @@ use scene::{Light, LightKind};
 
 /// Light that arrives at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Arrival {
+pub(crate) struct PunctualLight {
     /// Unit direction from which it comes.
-    pub from: DVec3,
+    pub direction: DVec3,
     /// The world position between which and the point nothing may stand.
     pub source: DVec3,
     /// Irradiance on a surface that faces it.
@@ -22,25 +22,29 @@ pub(crate) struct Arrival {
 /// | point | I·w/r², w = max(0, min(1, 1 − (r/range)⁴)) |
 /// | spot | the same, times clamp((cos θ − cos outer)/(cos inner − cos outer), 0, 1)², θ off the axis |
 /// | directional | E |
-pub(crate) fn arrival(light: &Light, position: DVec3, beyond: f64) -> Option<Arrival> {
+pub(crate) fn unshadowed_light(light: &Light, position: DVec3, beyond: f64) -> Option<PunctualLight> {
     let share = |share: f64| (share > 0.0).then(|| light.intensity * share as f32);
     match light.kind {
         LightKind::Directional => {
-            let from = -light.direction;
-            Some(Arrival { from, source: position + from * beyond, irradiance: light.intensity })
+            let direction = -light.direction;
+            Some(PunctualLight {
+                direction,
+                source: position + direction * beyond,
+                irradiance: light.intensity,
+            })
         }
         LightKind::Point | LightKind::Spot { .. } => {
             let toward = light.position - position;
             let r2 = toward.length_squared();
-            let from = toward.normalize_or_zero();
+            let direction = toward.normalize_or_zero();
             let window = (1.0 - (r2 / light.range.powi(2)).powi(2)).clamp(0.0, 1.0);
             let cone = match light.kind {
-                LightKind::Spot { inner, outer } => cone(light.direction.dot(-from), inner, outer),
+                LightKind::Spot { inner, outer } => cone(light.direction.dot(-direction), inner, outer),
                 _ => 1.0,
             };
             // At the light itself there is no direction, and no finite irradiance.
             let irradiance = if r2 > 0.0 { share(window * cone / r2) } else { None };
-            Some(Arrival { from, source: light.position, irradiance: irradiance? })
+            Some(PunctualLight { direction, source: light.position, irradiance: irradiance? })
         }
     }
 }

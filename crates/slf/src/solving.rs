@@ -9,7 +9,7 @@
 use crate::irradiance::Irradiance;
 use crate::irradiance::patches::{Patch, Patches};
 use crate::irradiance::place::Place;
-use crate::transport::{Found, Transport};
+use crate::transport::{PatchRay, Transport};
 use glam::Vec3;
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;
@@ -17,12 +17,12 @@ use scene::{Scene, World};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Passes after which light has died away, whatever the albedo (0.9⁶⁴ is a thousandth).
-const PASSES: u32 = 64;
+const MAX_BOUNCES: u32 = 64;
 /// Neighbours within so many harmonic means of the distances are joined.
-const REACH: f64 = 0.25;
+const SMOOTHING_RADIUS: f64 = 0.25;
 
 /// What the rays of a patch found, each a share of irradiance/π.
-struct Gathered {
+struct PatchLight {
     direct: Vec3,
     /// Light that came by another way than from a light that is drawn.
     indirect: Vec3,
@@ -56,20 +56,20 @@ impl Irradiance {
         options: IrradianceOptions,
         progress: &dyn Progress,
     ) -> Result<Self, Cancelled> {
-        let patches = Patches::of(transport.scene(), options.patches);
-        let values = solve(transport, &patches, options.rays.max(1), progress)?;
+        let patches = Patches::new(transport.scene(), options.patches);
+        let values = solve_bounces(transport, &patches, options.rays.max(1), progress)?;
         Ok(Self::new(patches, values, transport.world()))
     }
 
     /// The irradiance whose values ([`Irradiance::values`]) were kept, of the same scene, world and options; `None` if they cannot be
     /// its.
-    pub fn of_values(
+    pub fn from_values(
         scene: &Scene,
         world: &World,
         options: IrradianceOptions,
         values: [Vec<Vec3>; 2],
     ) -> Option<Self> {
-        let patches = Patches::of(scene, options.patches);
+        let patches = Patches::new(scene, options.patches);
         let fits = |values: &Vec<Vec3>| {
             values.len() == patches.all().len() && values.iter().all(|value| value.is_finite())
         };
@@ -78,7 +78,7 @@ impl Irradiance {
 }
 
 /// Direct and indirect irradiance/π of all patches.
-fn solve(
+fn solve_bounces(
     transport: &Transport,
     patches: &Patches,
     rays: u32,
@@ -86,80 +86,83 @@ fn solve(
 ) -> Result<[Vec<Vec3>; 2], Cancelled> {
     let done = AtomicUsize::new(0);
     let all = patches.all();
-    let gathered: Vec<Gathered> = all
+    let patch_light: Vec<PatchLight> = all
         .par_iter()
         .map(|patch| {
             progress.check()?;
-            let found = gather(transport, patches, patch, rays);
+            let light = trace_patch_rays(transport, patches, patch, rays);
             progress.report((done.fetch_add(1, Ordering::Relaxed) + 1) as f32 / all.len() as f32);
-            Ok(found)
+            Ok(light)
         })
         .collect::<Result<_, Cancelled>>()?;
-    let direct: Vec<Vec3> = gathered.iter().map(|found| found.direct).collect();
-    let mut indirect: Vec<Vec3> = gathered.iter().map(|found| found.indirect).collect();
-    let passes = transport.world().bounces.map_or(PASSES, |bounces| bounces.min(PASSES));
+    let direct: Vec<Vec3> = patch_light.iter().map(|light| light.direct).collect();
+    let mut indirect: Vec<Vec3> = patch_light.iter().map(|light| light.indirect).collect();
+    let passes = transport.world().bounces.map_or(MAX_BOUNCES, |bounces| bounces.min(MAX_BOUNCES));
     for _ in 0..passes {
         progress.check()?;
-        let next: Vec<Vec3> = gathered
+        let next: Vec<Vec3> = patch_light
             .par_iter()
-            .map(|found| {
+            .map(|light| {
                 let sent = |&(patch, weight): &(u32, Vec3)| {
                     weight * (direct[patch as usize] + indirect[patch as usize])
                 };
-                found.indirect + found.links.iter().map(sent).sum::<Vec3>()
+                light.indirect + light.links.iter().map(sent).sum::<Vec3>()
             })
             .collect();
         let change =
             next.iter().zip(&indirect).map(|(a, b)| (*a - *b).abs().max_element()).fold(0.0, f32::max);
-        let most = next.iter().map(|light| light.max_element()).fold(0.0, f32::max);
+        let brightest = next.iter().map(|light| light.max_element()).fold(0.0, f32::max);
         indirect = next;
-        if change <= 1e-5 * most {
+        if change <= 1e-5 * brightest {
             break;
         }
     }
-    let smooth = (0..all.len()).into_par_iter().map(|at| joined(patches, &gathered, &indirect, at)).collect();
+    let smooth = (0..all.len())
+        .into_par_iter()
+        .map(|at| smoothed_indirect(patches, &patch_light, &indirect, at))
+        .collect();
     Ok([direct, smooth])
 }
 
 /// Sends the rays of a patch.
-fn gather(transport: &Transport, patches: &Patches, patch: &Patch, rays: u32) -> Gathered {
+fn trace_patch_rays(transport: &Transport, patches: &Patches, patch: &Patch, rays: u32) -> PatchLight {
     let points = patches.points(patch);
     let share = 1.0 / rays as f32;
     let (mut direct, mut indirect, mut links) = (Vec3::ZERO, Vec3::ZERO, Vec::new());
     let mut nearness = 0.0;
     for ray in 0..rays {
         let point = points[ray as usize % points.len()];
-        let Found { drawn, other, distance, onward } =
-            transport.look_around(points[0].point, point, ray, patches);
+        let PatchRay { direct: drawn, indirect: other, distance, link: onward } =
+            transport.trace_patch_ray(points[0].point, point, ray, patches);
         direct += drawn * share;
         indirect += other * share;
         nearness += 1.0 / distance;
         if let Some((place, weight, choice)) = onward
-            && let Some(target) = chosen(patches, &place, choice)
+            && let Some(target) = choose_patch(patches, &place, choice)
         {
             links.push((target, weight * share));
         }
     }
-    Gathered { direct, indirect, links, distance: f64::from(rays) / nearness }
+    PatchLight { direct, indirect, links, distance: f64::from(rays) / nearness }
 }
 
 /// A patch around a place, drawn by what it has to say.
-fn chosen(patches: &Patches, place: &Place, choice: f64) -> Option<u32> {
+fn choose_patch(patches: &Patches, place: &Place, choice: f64) -> Option<u32> {
     let mut sum = 0.0;
     patches.visit_around(place, |_, weight| sum += weight);
     let mut rest = choice as f32 * sum;
-    let mut found = None;
+    let mut chosen = None;
     patches.visit_around(place, |patch, weight| {
         if rest >= 0.0 {
-            found = Some(patch);
+            chosen = Some(patch);
         }
         rest -= weight;
     });
-    found
+    chosen
 }
 
 /// The indirect light of a patch, joined with its neighbours'.
-fn joined(patches: &Patches, gathered: &[Gathered], indirect: &[Vec3], at: usize) -> Vec3 {
+fn smoothed_indirect(patches: &Patches, patch_light: &[PatchLight], indirect: &[Vec3], at: usize) -> Vec3 {
     let patch = &patches.all()[at];
     let (mut sum, mut weights) = (indirect[at] * patch.area as f32, patch.area as f32);
     patches.visit_neighbors(patch, |other| {
@@ -168,7 +171,7 @@ fn joined(patches: &Patches, gathered: &[Gathered], indirect: &[Vec3], at: usize
             return;
         }
         let neighbor = &patches.all()[other];
-        let reach = REACH * gathered[at].distance.min(gathered[other].distance);
+        let reach = SMOOTHING_RADIUS * patch_light[at].distance.min(patch_light[other].distance);
         let near = (1.0 - patch.position.distance(neighbor.position) / reach).max(0.0);
         let weight = (near * neighbor.area) as f32;
         sum += indirect[other] * weight;

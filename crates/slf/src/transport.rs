@@ -11,15 +11,15 @@ use crate::irradiance::patches::{PatchPoint, Patches};
 use crate::irradiance::place::Place;
 use crate::lights::{LightSample, Lights};
 use crate::material_point::{MaterialPoint, emitted};
-use crate::media::{Inside, Media};
+use crate::media::{Media, MediumStack};
 use crate::path_random::PathRandom;
-use gathered::{Gathered, most, split};
+use gathered::{ScatteredLight, max_split, scale_split};
 use glam::{DVec3, Vec3};
-use known::{Kept, Known};
-use material::{Bsdf, Frame, Parts, Scattered, Scattering, Split, Surface, Toward};
+use known::{CacheMode, IrradianceLookup};
+use material::{Bsdf, Frame, OutgoingBsdf, Parts, Scattered, Scattering, Split, Surface};
 use scene::{Scene, SurfacePoint, World};
 use std::sync::{Arc, OnceLock};
-use trace::{Among, Leaving, Radiance, Received, Spot, Tracer};
+use trace::{IncidentLight, OutgoingRadiance, Radiance, SampleSlot, ShadingPoint, Tracer};
 
 /// How light is gathered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,44 +63,44 @@ pub struct Transport {
     options: TransportOptions,
     lights: Lights,
     media: Media,
-    kept: Kept,
+    cache_mode: CacheMode,
     /// Whether any surface receives light.
     is_lit: bool,
     /// Directions of the sky, once they are asked for.
-    sky: OnceLock<Vec<LightSample>>,
+    sky_samples: OnceLock<Vec<LightSample>>,
 }
 
 /// Where a path has come to.
 struct Path {
     random: PathRandom,
-    inside: Inside,
+    inside: MediumStack,
     /// How many lights were drawn at its first surface for each direction that was.
-    lights: LightsAPath,
+    lights: LightsPerDirection,
 }
 
 /// How many directions of the sky and places on lamps are drawn for each direction that a surface scatters to.
 #[derive(Clone, Copy)]
-struct LightsAPath {
+struct LightsPerDirection {
     sky: f64,
     lamps: f64,
 }
 
-impl LightsAPath {
+impl LightsPerDirection {
     /// As many of either.
-    fn each(lights: f64) -> Self {
+    fn uniform(lights: f64) -> Self {
         Self { sky: lights, lamps: lights }
     }
 
     /// Of what is drawn where this one is.
-    fn of(&self, sample: &LightSample) -> f64 {
-        if sample.is_of_sky() { self.sky } else { self.lamps }
+    fn for_sample(&self, sample: &LightSample) -> f64 {
+        if sample.is_sky() { self.sky } else { self.lamps }
     }
 }
 
 /// Light on its way back along a path: from where, in which direction, and how likely that was drawn.
 #[derive(Clone, Copy)]
 struct Step {
-    from: SurfacePoint,
+    origin: SurfacePoint,
     position: DVec3,
     direction: DVec3,
     /// 1/sr; none where no light that is drawn could have been it.
@@ -108,33 +108,42 @@ struct Step {
 }
 
 /// What a patch finds in one direction, as irradiance/π.
-pub(crate) struct Found {
-    pub drawn: Vec3,
-    pub other: Vec3,
+pub(crate) struct PatchRay {
+    pub direct: Vec3,
+    pub indirect: Vec3,
     pub distance: f64,
     /// Where more comes from, the share of it, and a uniform number.
-    pub onward: Option<(Place, Vec3, f64)>,
+    pub link: Option<(Place, Vec3, f64)>,
 }
 
 impl Transport {
     /// Prepares the scene in `tracer` in a world.
     pub fn new(tracer: Arc<Tracer>, world: World, options: TransportOptions) -> Self {
         let scene = tracer.scene();
-        let (lights, media) = (Lights::of(scene, &world), Media::of(scene));
+        let (lights, media) = (Lights::new(scene, &world), Media::from_scene(scene));
         let is_lit = scene.parts.iter().any(|part| !scene.materials[part.material as usize].unlit);
-        Self { tracer, world, options, lights, media, kept: Kept::Nothing, is_lit, sky: OnceLock::new() }
+        Self {
+            tracer,
+            world,
+            options,
+            lights,
+            media,
+            cache_mode: CacheMode::Disabled,
+            is_lit,
+            sky_samples: OnceLock::new(),
+        }
     }
 
     /// The same with light that is known already, of the same scene and world.
     pub fn with_irradiance(self, irradiance: Arc<Irradiance>) -> Self {
-        Self { kept: Kept::Trusted(irradiance), ..self }
+        Self { cache_mode: CacheMode::Trusted(irradiance), ..self }
     }
 
     /// The same with light that is known but not trusted: what it tells is used, and one path of a few checks it by going on to the
     /// end. So the mean over points and paths is exact, as without it, whatever it tells; the noise is that of
     /// [`TransportOptions::paths`].
-    pub fn checking(self, irradiance: Arc<Irradiance>) -> Self {
-        Self { kept: Kept::Checked(irradiance), ..self }
+    pub fn with_control_variate(self, irradiance: Arc<Irradiance>) -> Self {
+        Self { cache_mode: CacheMode::ControlVariate(irradiance), ..self }
     }
 
     /// The scene it lights.
@@ -148,16 +157,16 @@ impl Transport {
     }
 
     /// What one ray of a patch finds, `index` of those of the patch that begins with `seed`.
-    pub(crate) fn look_around(
+    pub(crate) fn trace_patch_ray(
         &self,
         seed: SurfacePoint,
         from: PatchPoint,
         index: u32,
         patches: &Patches,
-    ) -> Found {
+    ) -> PatchRay {
         let scene = self.scene();
         let PatchPoint { point, is_front } = from;
-        let place = Place::of(scene, point, is_front);
+        let place = Place::new(scene, point, is_front);
         let geometric = scene.area_normal(point.triangle).normalize_or_zero();
         let geometric = if is_front { geometric } else { -geometric };
         let at = MaterialPoint {
@@ -166,63 +175,67 @@ impl Transport {
             frame: Frame::new(geometric, place.normal, DVec3::ZERO),
             material: scene.parts[place.part as usize].material,
         };
-        let inside = self.media.beside(at.material, is_front);
+        let inside = self.media.outgoing_medium(at.material, is_front);
         let random = PathRandom::new(PathRandom::seed(seed, place.normal), index);
-        let mut path = Path { random, inside, lights: LightsAPath::each(1.0) };
+        let mut path = Path { random, inside, lights: LightsPerDirection::uniform(1.0) };
         let interface = self.media.interface(at.material, &inside, is_front);
         let bsdf = Bsdf::new(&at.surface, at.frame, interface);
         let lobes = bsdf.toward(place.normal);
-        let mut found = Found {
-            drawn: self.direct(point, &at, &lobes, &mut path).total().as_vec3(),
-            other: Vec3::ZERO,
+        let mut ray = PatchRay {
+            direct: self.direct(point, &at, &lobes, &mut path).total().as_vec3(),
+            indirect: Vec3::ZERO,
             distance: f64::INFINITY,
-            onward: None,
+            link: None,
         };
         if let Some(scattered) = lobes.sample(path.random.next3()) {
             let step = self.step(point, &at, &scattered, &mut path);
             let weight = scattered.weight.own;
-            let arriving = self.arriving(step, &mut path, Known::Patches(patches));
-            found.drawn += (weight * arriving.drawn).as_vec3();
-            found.other = (weight * arriving.other).as_vec3();
-            found.distance = arriving.distance;
-            found.onward = arriving
-                .onward
+            let incident = self.trace_path(step, &mut path, IrradianceLookup::Unsolved(patches));
+            ray.direct += (weight * incident.direct).as_vec3();
+            ray.indirect = (weight * incident.indirect).as_vec3();
+            ray.distance = incident.distance;
+            ray.link = incident
+                .cached_end
                 .map(|(reached, share)| (reached.place, (weight * share).as_vec3(), path.random.next()));
         }
-        found
+        ray
     }
 
     /// What a surface scatters toward the eye of light that one path finds.
-    fn scattered(
+    fn scatter_path(
         &self,
         point: SurfacePoint,
         at: &MaterialPoint,
         outgoing: DVec3,
         path: &mut Path,
-        known: Known<'_>,
-    ) -> Gathered {
+        lookup: IrradianceLookup<'_>,
+    ) -> ScatteredLight {
         let dispersed = self.disperse(at, path);
         let is_front = at.frame.geometric.dot(outgoing) >= 0.0;
         let interface = self.media.interface(at.material, &path.inside, is_front);
         let bsdf = Bsdf::new(&at.surface, at.frame, interface);
         let lobes = bsdf.toward(outgoing);
-        let mut sum = Gathered { light: self.direct(point, at, &lobes, path), by_chance: Split::default() };
+        let mut sum = ScatteredLight { light: self.direct(point, at, &lobes, path), noisy: Split::default() };
         if let Some(scattered) = lobes.sample(path.random.next3()) {
             let step = self.step(point, at, &scattered, path);
-            let arriving = self.arriving(step, path, known);
-            sum += Gathered::by(&scattered, arriving.drawn + arriving.sent_on(), arriving.other);
+            let incident = self.trace_path(step, path, lookup);
+            sum += ScatteredLight::from_direction(
+                &scattered,
+                incident.direct + incident.cached_light(),
+                incident.indirect,
+            );
         }
-        sum.split(dispersed)
+        sum.scaled(dispersed)
     }
 
     /// Goes where a surface scatters, through it if it must.
-    fn step(&self, from: SurfacePoint, at: &MaterialPoint, scattered: &Scattered, path: &mut Path) -> Step {
+    fn step(&self, origin: SurfacePoint, at: &MaterialPoint, scattered: &Scattered, path: &mut Path) -> Step {
         if scattered.crosses {
             let enters = at.frame.geometric.dot(scattered.incident) < 0.0;
             self.media.cross(&mut path.inside, at.material, enters);
         }
         let (direction, density) = (scattered.incident, scattered.density);
-        Step { from, position: at.position, direction, density }
+        Step { origin, position: at.position, direction, density }
     }
 
     /// Follows one colour from here on, where the glass bends each differently: its share of the light.
@@ -243,12 +256,12 @@ impl Transport {
         &self,
         point: SurfacePoint,
         at: &MaterialPoint,
-        lobes: &Toward<'_, '_>,
+        lobes: &OutgoingBsdf<'_, '_>,
         path: &mut Path,
     ) -> Split {
-        self.direct_by(point, at, path, true, |sample| {
-            let (sent, own) = lobes.scatter(sample.from);
-            sent * sample.density.map_or(1.0, |density| heuristic(density, own))
+        self.sum_direct(point, at, path, true, |sample| {
+            let (sent, own) = lobes.scatter(sample.direction);
+            sent * sample.density.map_or(1.0, |density| power_heuristic(density, own))
         })
     }
 
@@ -257,19 +270,19 @@ impl Transport {
         &self,
         point: SurfacePoint,
         at: &MaterialPoint,
-        lobes: &Toward<'_, '_>,
+        lobes: &OutgoingBsdf<'_, '_>,
         path: &mut Path,
     ) -> DVec3 {
-        let sent = self.direct_by(point, at, path, true, |sample| {
-            let (Parts { sharp, .. }, own) = lobes.scatter_parts(sample.from);
-            let share = sample.density.map_or(1.0, |density| heuristic(density, own));
+        let sent = self.sum_direct(point, at, path, true, |sample| {
+            let (Parts { sharp, .. }, own) = lobes.scatter_parts(sample.direction);
+            let share = sample.density.map_or(1.0, |density| power_heuristic(density, own));
             Split { own: DVec3::ZERO, carried: sharp.carried * share }
         });
         sent.carried
     }
 
     /// The same by what is sent on of the light of a sample.
-    fn direct_by(
+    fn sum_direct(
         &self,
         point: SurfacePoint,
         at: &MaterialPoint,
@@ -290,23 +303,23 @@ impl Transport {
                     return;
                 }
                 let sent = send(&sample);
-                if sent.total() == DVec3::ZERO || self.tracer.occluded(point, sample.source) {
+                if sent.total() == DVec3::ZERO || self.tracer.is_occluded(point, sample.source) {
                     return;
                 }
-                sum += split(sent, self.light_of(&sample, at.position, &inside));
+                sum += scale_split(sent, self.attenuated_light(&sample, at.position, &inside));
             },
         );
         sum
     }
 
     /// The light of a sample, past what absorbs it on the way to a position.
-    fn light_of(&self, sample: &LightSample, position: DVec3, inside: &Inside) -> DVec3 {
-        let way = if sample.is_near { position.distance(sample.source) } else { f64::INFINITY };
-        sample.light.as_dvec3() * self.media.attenuation(inside, way)
+    fn attenuated_light(&self, sample: &LightSample, position: DVec3, inside: &MediumStack) -> DVec3 {
+        let distance = if sample.is_near { position.distance(sample.source) } else { f64::INFINITY };
+        sample.light.as_dvec3() * self.media.attenuation(inside, distance)
     }
 
     /// What a lamp sends straight from a direction that was drawn with a density, less what lamps that are drawn tell of it.
-    fn lamp_along(
+    fn emitter_light_along(
         &self,
         from: SurfacePoint,
         position: DVec3,
@@ -314,141 +327,146 @@ impl Transport {
         density: f64,
         path: &Path,
     ) -> DVec3 {
-        let Some(hit) = self.tracer.first_met(from, direction) else { return DVec3::ZERO };
+        let Some(hit) = self.tracer.first_hit_from(from, direction) else { return DVec3::ZERO };
         let place = hit.point.position(self.scene());
-        let of_light = self.lights.density_of_emitter(hit.point.triangle, place, position);
-        if of_light == 0.0 {
+        let light_density = self.lights.emitter_density(hit.point.triangle, place, position);
+        if light_density == 0.0 {
             return DVec3::ZERO;
         }
-        let share = heuristic(density, of_light * path.lights.lamps);
+        let share = power_heuristic(density, light_density * path.lights.lamps);
         let light = emitted(self.scene(), hit.point, -direction).as_dvec3() * share;
         light * self.media.attenuation(&path.inside, hit.t)
     }
 }
 
 /// How many of `wanted` each of so many points takes, whose mean is wanted: as many as it would alone, up to four points.
-fn each_of(among: Among, wanted: u32) -> u32 {
-    const ALONE: u32 = 4;
-    (wanted * ALONE).div_ceil(among.count.max(ALONE)).max(1)
+fn samples_per_point(slot: SampleSlot, requested: u32) -> u32 {
+    const FULL_SAMPLING_POINTS: u32 = 4;
+    (requested * FULL_SAMPLING_POINTS).div_ceil(slot.count.max(FULL_SAMPLING_POINTS)).max(1)
 }
 
 /// The share of a way of sampling with density `own` in what another with density `other` finds as well (Veach and Guibas 1995,
 /// the power heuristic): own²/(own² + other²).
-fn heuristic(own: f64, other: f64) -> f64 {
+fn power_heuristic(own: f64, other: f64) -> f64 {
     let ratio = other / own;
     1.0 / (1.0 + ratio * ratio)
 }
 
 impl Radiance for Transport {
-    fn leaving(&self, point: SurfacePoint, eye: DVec3) -> Leaving {
-        self.leaving_among(point, eye, Among::alone(PathRandom::seed(point, eye)))
+    fn outgoing(&self, point: SurfacePoint, eye: DVec3) -> OutgoingRadiance {
+        self.outgoing_sample(point, eye, SampleSlot::single(PathRandom::seed(point, eye)))
     }
 
-    fn leaving_among(&self, point: SurfacePoint, eye: DVec3, among: Among) -> Leaving {
+    fn outgoing_sample(&self, point: SurfacePoint, eye: DVec3, slot: SampleSlot) -> OutgoingRadiance {
         let scene = self.scene();
         if scene.material_of(point.triangle).unlit {
-            return Leaving::own((scene.emitted(point) + scene.picture_gloss(point, eye)).max(Vec3::ZERO));
+            return OutgoingRadiance::from_own(
+                (scene.emitted_radiance(point) + scene.picture_gloss_radiance(point, eye)).max(Vec3::ZERO),
+            );
         }
         let outgoing = (eye - point.position(scene)).normalize_or_zero();
         let emitted = emitted(scene, point, outgoing);
         if outgoing == DVec3::ZERO {
-            return Leaving::own(emitted);
+            return OutgoingRadiance::from_own(emitted);
         }
-        let at = MaterialPoint::of(scene, point, self.options.scattering);
+        let at = MaterialPoint::new(scene, point, self.options.scattering);
         let is_front = at.frame.geometric.dot(outgoing) >= 0.0;
-        let inside = self.media.beside(at.material, is_front);
+        let inside = self.media.outgoing_medium(at.material, is_front);
         let interface = self.media.interface(at.material, &inside, is_front);
         let bsdf = Bsdf::new(&at.surface, at.frame, interface);
         let lobes = bsdf.toward(outgoing);
-        let known = self.kept.trusted().and_then(|known| {
-            let irradiance = match among.received {
-                Some(received) => known.received(&self.world, &received, lobes.normal()),
-                None => known.indirect(&Place::of(scene, point, is_front))?.as_dvec3(),
+        let cached = self.cache_mode.trusted().and_then(|cached| {
+            let irradiance = match slot.incident {
+                Some(received) => cached.shaded(&self.world, &received, lobes.normal()),
+                None => cached.indirect(&Place::new(scene, point, is_front))?.as_dvec3(),
             };
-            Some((known, irradiance))
+            Some((cached, irradiance))
         });
-        let Gathered { light, by_chance } = match known {
-            Some((known, irradiance)) => {
+        let ScatteredLight { light, noisy } = match cached {
+            Some((cache, irradiance)) => {
                 let spread = lobes.spread_albedo();
                 let Split { own, carried } = lobes.albedo();
-                let gloss = among.received.and_then(|received| received.gloss);
-                let told = irradiance * spread
+                let gloss = slot.incident.and_then(|received| received.gloss);
+                let interpolated = irradiance * spread
                     + gloss.map_or(DVec3::ZERO, |gloss| gloss.as_dvec3() * (own - spread).max(DVec3::ZERO));
-                let asks = match (among.received, gloss) {
+                let needs_tracing = match (slot.incident, gloss) {
                     (None, _) => true,
                     (Some(_), None) => !lobes.is_spread(),
-                    (Some(_), Some(_)) => !among.own_only && carried != DVec3::ZERO,
+                    (Some(_), Some(_)) => !slot.own_only && carried != DVec3::ZERO,
                 };
-                let mut beside = match asks {
-                    true => self.scattered_beside(point, &at, (&lobes, outgoing), inside, (known, among)),
-                    false => Gathered::default(),
+                let mut traced = match needs_tracing {
+                    true => self.trace_uncached(point, &at, (&lobes, outgoing), inside, (cache, slot)),
+                    false => ScatteredLight::default(),
                 };
-                beside.light += Split { own: told, carried: DVec3::ZERO };
-                beside
+                traced.light += Split { own: interpolated, carried: DVec3::ZERO };
+                traced
             }
             None => {
-                let paths = each_of(among, self.options.paths);
-                let known = self.kept.to_be_checked().map_or(Known::Nothing, Known::Checked);
+                let paths = samples_per_point(slot, self.options.paths);
+                let lookup = self
+                    .cache_mode
+                    .control_variate()
+                    .map_or(IrradianceLookup::Unavailable, IrradianceLookup::ControlVariate);
                 // Of another number of paths all are others: how far two means are apart tells their noise.
                 let seed =
-                    if known.is_to_be_checked() { among.seed ^ u64::from(paths) << 1 } else { among.seed };
-                let mut sum = Gathered::default();
-                let mut most_by_chance = Split::default();
+                    if lookup.is_control_variate() { slot.seed ^ u64::from(paths) << 1 } else { slot.seed };
+                let mut sum = ScatteredLight::default();
+                let mut max_noisy = Split::default();
                 for index in 0..paths {
-                    let random = PathRandom::new(seed, among.index * paths + index);
-                    let mut path = Path { random, inside, lights: LightsAPath::each(1.0) };
-                    let found = self.scattered(point, &at, outgoing, &mut path, known);
-                    most_by_chance = most(most_by_chance, found.by_chance);
-                    sum += found;
+                    let random = PathRandom::new(seed, slot.index * paths + index);
+                    let mut path = Path { random, inside, lights: LightsPerDirection::uniform(1.0) };
+                    let path_light = self.scatter_path(point, &at, outgoing, &mut path, lookup);
+                    max_noisy = max_split(max_noisy, path_light.noisy);
+                    sum += path_light;
                 }
-                if known.is_to_be_checked() {
+                if lookup.is_control_variate() {
                     // Many paths together are no chance: one that found more than all others may be.
-                    sum.by_chance = most_by_chance;
+                    sum.noisy = max_noisy;
                 }
                 sum * (1.0 / f64::from(paths))
             }
         };
         let [_, carried_share] = lobes.coverage_shares();
-        Leaving {
+        OutgoingRadiance {
             own: emitted + light.own.as_vec3(),
             carried: light.carried.as_vec3(),
             carried_share: carried_share as f32,
-            by_chance: [by_chance.own, by_chance.carried].map(|light| light.as_vec3()),
+            noisy: [noisy.own, noisy.carried].map(|light| light.as_vec3()),
         }
     }
 
-    fn tells_many(&self) -> bool {
-        self.is_lit && self.kept.trusted().is_some()
+    fn supports_batches(&self) -> bool {
+        self.is_lit && self.cache_mode.trusted().is_some()
     }
 
-    fn received(&self, spots: &[Spot], eye: DVec3) -> Vec<Option<Received>> {
-        self.receive(spots, eye)
+    fn incident_batch(&self, spots: &[ShadingPoint], eye: DVec3) -> Vec<Option<IncidentLight>> {
+        self.measure_batch(spots, eye)
     }
 
-    fn varies_within(&self, point: SurfacePoint) -> bool {
+    fn varies_within_pixel(&self, point: SurfacePoint) -> bool {
         let scene = self.scene();
         let material = scene.material_of(point.triangle);
         // Where few points would be taken for all, the mean would not be exact.
-        let is_exact = self.kept.to_be_checked().is_some();
+        let is_exact = self.cache_mode.control_variate().is_some();
         is_exact || material.unlit || !scene.colors.is_empty() || material.has_textures()
     }
 
-    fn carried_width(&self, point: SurfacePoint) -> Option<f64> {
+    fn carried_lobe_width(&self, point: SurfacePoint) -> Option<f64> {
         let scene = self.scene();
         if scene.material_of(point.triangle).unlit {
             return None;
         }
-        MaterialPoint::of(scene, point, self.options.scattering).surface.carried_width()
+        MaterialPoint::new(scene, point, self.options.scattering).surface.carried_width()
     }
 
-    fn own_width(&self, point: SurfacePoint) -> Option<f64> {
+    fn own_lobe_width(&self, point: SurfacePoint) -> Option<f64> {
         /// Angles of the captured aperture: eight cells of a light field are one.
-        const CAPTURED: f64 = 0.75;
-        self.scene().picture_gloss_angle(point).map(|angle| CAPTURED * angle)
+        const CAPTURED_APERTURES: f64 = 0.75;
+        self.scene().picture_gloss_angle(point).map(|angle| CAPTURED_APERTURES * angle)
     }
 
-    fn from_infinity(&self, direction: DVec3) -> Vec3 {
-        self.world.seen(direction.normalize_or_zero())
+    fn environment(&self, direction: DVec3) -> Vec3 {
+        self.world.backdrop_radiance(direction.normalize_or_zero())
     }
 }
 

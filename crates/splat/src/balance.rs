@@ -23,8 +23,8 @@
 //! sum of a painted picture is off by some 0.05 %; but for live ones, a further gain for each colour of the light that shares
 //! makes it what it was ([`rest`]).
 
-use crate::knots::{KnotSums, Knots, SPACING, SharedSums, place};
-use crate::widest::with_widest_instructions;
+use crate::knots::{KnotSums, Knots, SPACING, SharedSums, position};
+use crate::widest::with_widest_simd;
 use rayon::prelude::*;
 
 /// Which light is scaled: that of the sharing samples, where the picture is not evened out; else all.
@@ -48,21 +48,21 @@ pub struct Balance {
 
 impl Balance {
     /// Of a picture of this width and height, px, of which nothing is known.
-    pub fn none(size: [usize; 2]) -> Self {
+    pub fn neutral(size: [usize; 2]) -> Self {
         let knots = Knots::new(size);
         let rows = vec![KnotSums::default(); size[1] * knots.columns()];
         let shared = vec![SharedSums::default(); size[1] * knots.spans()];
-        Self { gains: Gains::none(knots), knots, rest: NO_REST, rows, shared }
+        Self { gains: Gains::neutral(knots), knots, rest: NO_REST, rows, shared }
     }
 
     /// Forgets the gains.
-    pub fn forget(&mut self) {
-        self.gains = Gains::none(self.knots);
+    pub fn reset(&mut self) {
+        self.gains = Gains::neutral(self.knots);
     }
 
     /// Finds the gains from the rows, of a standard picture.
-    pub fn settle(&mut self) {
-        self.gains = Gains::of(self.knots, &self.knots.sums(&self.rows));
+    pub fn find_gains(&mut self) {
+        self.gains = Gains::from_sums(self.knots, &self.knots.sums(&self.rows));
     }
 
     /// Finds what is left to give back in a painted picture, from its spans.
@@ -73,7 +73,7 @@ impl Balance {
     /// Bytes in memory.
     pub fn bytes(&self) -> usize {
         let rows = size_of_val(self.rows.as_slice()) + size_of_val(self.shared.as_slice());
-        rows + size_of_val(self.gains.of_knots.as_slice())
+        rows + size_of_val(self.gains.knot_gains.as_slice())
     }
 }
 
@@ -85,13 +85,13 @@ const LARGEST_RATIO: f64 = 1.05;
 pub struct Gains {
     knots: Knots,
     /// Of each knot, by [`Scaled`].
-    of_knots: Vec<[[f32; 3]; 2]>,
+    knot_gains: Vec<[[f32; 3]; 2]>,
 }
 
 impl Gains {
     /// Those of a picture of which nothing is known: 1.
-    pub fn none(knots: Knots) -> Self {
-        Self { of_knots: vec![[[1.0; 3]; 2]; knots.columns() * knots.rows()], knots }
+    pub fn neutral(knots: Knots) -> Self {
+        Self { knot_gains: vec![[[1.0; 3]; 2]; knots.columns() * knots.rows()], knots }
     }
 
     /// Those that give back what the sums of all knots say was taken.
@@ -99,9 +99,9 @@ impl Gains {
     /// r_k stays within 5 % of 1: a knot may have next to no light, or a lamp that outshines all about it. A light field that
     /// covers the picture by 0.1 % too little or too much or more has holes or surfaces twice: what evening mends of that
     /// is not given back, but all that it takes up to 0.05 %. G stays within 1 % of 1. So what is white stays white to 0.05 %.
-    pub fn of(knots: Knots, sums: &[KnotSums]) -> Self {
+    pub fn from_sums(knots: Knots, sums: &[KnotSums]) -> Self {
         const RIPPLE: f64 = 5e-4;
-        let mut of_knots = vec![[[1.0; 3]; 2]; sums.len()];
+        let mut knot_gains = vec![[[1.0; 3]; 2]; sums.len()];
         for (kind, c) in
             [Scaled::Sharing, Scaled::All].into_iter().flat_map(|kind| (0..3).map(move |c| (kind, c)))
         {
@@ -120,13 +120,13 @@ impl Gains {
             let (light, coverage) = (before / after, covered / evened);
             // All of a ripple is given back, none of a fault.
             let excess = coverage - 1.0;
-            let given_back = excess * (2.0 - excess.abs() / RIPPLE).clamp(0.0, 1.0);
-            let gain = within(1.01, light / coverage * (1.0 + given_back));
-            for (knot, sums) in of_knots.iter_mut().zip(sums) {
+            let returned = excess * (2.0 - excess.abs() / RIPPLE).clamp(0.0, 1.0);
+            let gain = within(1.01, light / coverage * (1.0 + returned));
+            for (knot, sums) in knot_gains.iter_mut().zip(sums) {
                 knot[kind][c] = (gain * ratio(sums)) as f32;
             }
         }
-        Self { knots, of_knots }
+        Self { knots, knot_gains }
     }
 
     /// Scales a picture that is evened out.
@@ -137,27 +137,27 @@ impl Gains {
 
     /// Scales a row of it.
     pub fn scale_row(&self, y: usize, row: &mut [[f32; 3]]) {
-        let gains = self.of_row(y, Scaled::All);
-        with_widest_instructions(
+        let gains = self.row_gains(y, Scaled::All);
+        with_widest_simd(
             #[inline(always)]
             || gains.scale(row),
         );
     }
 
     /// Those of knots, row by row, by [`Scaled`].
-    pub fn of_knots(&self) -> &[[[f32; 3]; 2]] {
-        &self.of_knots
+    pub fn knot_gains(&self) -> &[[[f32; 3]; 2]] {
+        &self.knot_gains
     }
 
     /// Those of a row of pixels, at each column of knots.
-    pub fn of_row(&self, y: usize, scaled: Scaled) -> GainsOfRow {
-        let ((row, behind), columns) = (place(y), self.knots.columns());
+    pub fn row_gains(&self, y: usize, scaled: Scaled) -> RowGains {
+        let ((row, behind), columns) = (position(y), self.knots.columns());
         let of_knot = |knot: &[[f32; 3]; 2]| {
             let [r, g, b] = knot[scaled as usize];
             [r, g, b, 1.0]
         };
-        let of_row = |row: usize| self.of_knots[row * columns..][..columns].iter().map(of_knot);
-        GainsOfRow(of_row(row).zip(of_row(row + 1)).map(|(a, b)| mix(a, b, behind)).collect())
+        let of_row = |row: usize| self.knot_gains[row * columns..][..columns].iter().map(of_knot);
+        RowGains(of_row(row).zip(of_row(row + 1)).map(|(a, b)| mix(a, b, behind)).collect())
     }
 }
 
@@ -177,13 +177,13 @@ fn within(largest: f64, gain: f64) -> f64 {
 }
 
 /// Gains of a row of pixels, at each column of knots: of red, green, blue and, always 1, coverage.
-pub struct GainsOfRow(Vec<[f32; 4]>);
+pub struct RowGains(Vec<[f32; 4]>);
 
-impl GainsOfRow {
+impl RowGains {
     /// Those of a pixel.
     #[inline(always)]
     pub fn at(&self, x: usize) -> [f32; 4] {
-        let (knot, behind) = place(x);
+        let (knot, behind) = position(x);
         mix(self.0[knot], self.0[knot + 1], behind)
     }
 
@@ -213,7 +213,7 @@ const BEHIND: [[f32; 3]; SPACING] = {
     let mut weights = [[0.0; 3]; SPACING];
     let mut x = 0;
     while x < SPACING {
-        weights[x] = [place(x).1; 3];
+        weights[x] = [position(x).1; 3];
         x += 1;
     }
     weights
@@ -258,7 +258,7 @@ mod tests {
     }
 
     fn shares(picture: &[([f32; 4], [f32; 4])]) -> Vec<Share> {
-        picture.iter().map(|(free, sharing)| Share::of(free[3], sharing[3])).collect()
+        picture.iter().map(|(free, sharing)| Share::new(free[3], sharing[3])).collect()
     }
 
     fn gains(picture: &[([f32; 4], [f32; 4])], shares: &[Share]) -> Gains {
@@ -270,7 +270,7 @@ mod tests {
                 .map(|of| pixels.iter().map(of).collect::<Vec<_>>());
             knots.sum_row(Parts { free: &free, sharing: &sharing }, shares, sums, true);
         }
-        Gains::of(knots, &knots.sums(&rows))
+        Gains::from_sums(knots, &knots.sums(&rows))
     }
 
     /// The sum of a colour: before, and after with gains and without, of sharing light and of all.
@@ -279,7 +279,7 @@ mod tests {
         for (k, ((free, sharing), share)) in picture.iter().zip(shares).enumerate() {
             let (x, y) = (k % SIZE[0], k / SIZE[0]);
             let [own, all] =
-                [Scaled::Sharing, Scaled::All].map(|scaled| f64::from(gains.of_row(y, scaled).at(x)[c]));
+                [Scaled::Sharing, Scaled::All].map(|scaled| f64::from(gains.row_gains(y, scaled).at(x)[c]));
             let shared = f64::from(share.partial * sharing[c]);
             let evened = f64::from(share.even) * (f64::from(free[c]) + shared);
             let of_pixel = [
@@ -308,8 +308,8 @@ mod tests {
     fn what_is_white_stays_uniform() {
         let white: Vec<_> = picture().iter().map(|(free, sharing)| ([free[3]; 4], [sharing[3]; 4])).collect();
         let gains = gains(&white, &shares(&white));
-        let first = gains.of_knots[0];
-        for knot in &gains.of_knots {
+        let first = gains.knot_gains[0];
+        for knot in &gains.knot_gains {
             (0..2).for_each(|kind| {
                 (0..3).for_each(|c| {
                     assert!((knot[kind][c] / first[kind][c] - 1.0).abs() < 1e-5, "{knot:?} {first:?}")
@@ -321,6 +321,6 @@ mod tests {
     #[test]
     fn nothing_is_given_to_black_pictures() {
         let black = vec![([0.0; 4], [0.0; 4]); SIZE[0] * SIZE[1]];
-        assert_eq!(gains(&black, &shares(&black)), Gains::none(Knots::new(SIZE)));
+        assert_eq!(gains(&black, &shares(&black)), Gains::neutral(Knots::new(SIZE)));
     }
 }

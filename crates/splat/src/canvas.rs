@@ -8,7 +8,7 @@
 //! Beside every row stands how much coverage was thrown at it. If the pixels of the row do not sum to that, one of
 //! them has wrapped: it is never unseen.
 
-use crate::widest::ask_for;
+use crate::widest::prefetch;
 use salf::tree::{BLOCK_PX, LEVELS};
 
 /// Bits behind the point of positions: 1/4096 px.
@@ -32,9 +32,9 @@ pub trait Word: Copy + Default + Ord + Send + Sync {
     /// Of a value that fits.
     fn bits(value: u64) -> Self::Bits;
     /// The integer of these bits.
-    fn of(bits: Self::Bits) -> Self;
+    fn from_bits(bits: Self::Bits) -> Self;
     /// ⌊bits·part/4096⌋ of a value that fits; `part` ≤ 4096.
-    fn near(bits: Self::Bits, part: u32) -> Self;
+    fn scaled(bits: Self::Bits, part: u32) -> Self;
 }
 
 impl Word for i32 {
@@ -60,11 +60,11 @@ impl Word for i32 {
         value as u32
     }
     #[inline(always)]
-    fn of(bits: u32) -> Self {
+    fn from_bits(bits: u32) -> Self {
         bits as i32
     }
     #[inline(always)]
-    fn near(bits: u32, part: u32) -> Self {
+    fn scaled(bits: u32, part: u32) -> Self {
         ((bits as u64 * part as u64) >> POSITION_BITS) as i32
     }
 }
@@ -92,11 +92,11 @@ impl Word for i64 {
         value
     }
     #[inline(always)]
-    fn of(bits: u64) -> Self {
+    fn from_bits(bits: u64) -> Self {
         bits as i64
     }
     #[inline(always)]
-    fn near(bits: u64, part: u32) -> Self {
+    fn scaled(bits: u64, part: u32) -> Self {
         ((bits * part as u64) >> POSITION_BITS) as i64
     }
 }
@@ -163,12 +163,12 @@ impl<W> Row<'_, W> {
     }
 
     /// Asks for the memory of what was drawn on: stretches are too short for a processor to foresee them.
-    pub fn ask_for_all(&self) {
+    pub fn prefetch(&self) {
         let (mut patches, pixels) = (self.patches, self.differences);
         while patches != 0 {
             let first = (patches.trailing_zeros() as usize) << self.patch_bits;
             for column in (first..first + (1 << self.patch_bits)).step_by(LINE / size_of::<Pixel<W>>()) {
-                ask_for(pixels.get(column));
+                prefetch(pixels.get(column));
             }
             patches &= patches - 1;
         }
@@ -328,14 +328,14 @@ impl<W: Word> Rows<'_, W> {
     }
 
     /// Asks for the memory of the block of pixels about a position (1/4096 px).
-    pub fn ask_for_block(&self, [x, y]: [i32; 2]) {
+    pub fn prefetch_block(&self, [x, y]: [i32; 2]) {
         const SIDE: i32 = BLOCK_PX;
         let [column, row] = [x, y].map(|at| (at >> POSITION_BITS) & -SIDE);
         for row in row.max(self.first)..(row + SIDE).min(self.end) {
             let line = &self.cells[(row - self.first) as usize * (self.width + 3)..];
             // Four pixels a line of the cache.
             for column in (column + 1..column + 1 + SIDE).step_by(4) {
-                ask_for(line.get(column as usize));
+                prefetch(line.get(column as usize));
             }
         }
     }
@@ -358,7 +358,7 @@ impl<W: Word> Rows<'_, W> {
         let first = (column + 1) as usize;
         let mut whole = [W::default(); 4];
         for c in 0..4 {
-            whole[c] = W::of(W::bits(value[c]));
+            whole[c] = W::from_bits(W::bits(value[c]));
         }
         let cells = &mut self.cells[place * (self.width + 3) + first..][..2];
         add(&mut cells[0], &whole, sign);
@@ -381,9 +381,9 @@ impl<W: Word> Rows<'_, W> {
         let total = if first + 1 < line.len() && second + 1 < line.len() {
             let Ends { whole, begun, ended } = run.ends::<W>();
             add(&mut line[first], &begun, sign);
-            add(&mut line[first + 1], &rest(&whole, &begun), sign);
+            add(&mut line[first + 1], &remaining_part(&whole, &begun), sign);
             add(&mut line[second], &ended, -sign);
-            add(&mut line[second + 1], &rest(&whole, &ended), -sign);
+            add(&mut line[second + 1], &remaining_part(&whole, &ended), -sign);
             touched.touch(first, patch_bits);
             touched.touch(second, patch_bits);
             whole[3].wide() * (second as i64 - first as i64) + begun[3].wide() - ended[3].wide()
@@ -422,9 +422,9 @@ impl Run {
         let (mut bits, mut whole) = ([W::Bits::default(); 4], [W::default(); 4]);
         for c in 0..4 {
             bits[c] = W::bits(self.value[c]);
-            whole[c] = W::of(bits[c]);
+            whole[c] = W::from_bits(bits[c]);
         }
-        Ends { whole, begun: near::<W>(&bits, self.start), ended: near::<W>(&bits, self.end) }
+        Ends { whole, begun: near_part::<W>(&bits, self.start), ended: near_part::<W>(&bits, self.end) }
     }
 
     /// Adds it to a row that it leaves. Returns the coverage thrown at the row.
@@ -440,7 +440,7 @@ impl Run {
         let Ends { whole, begun, ended } = self.ends::<W>();
         let last = line.len() - 1;
         let mut throw = |at: i32, near: &Pixel<W>, sign: i32| {
-            let far = rest(&whole, near);
+            let far = remaining_part(&whole, near);
             let column = (at >> POSITION_BITS) + 1;
             let [first, second] = [column, column + 1].map(|column| column.clamp(0, last as i32) as usize);
             add(&mut line[first], near, sign);
@@ -454,18 +454,18 @@ impl Run {
 
 /// What of a pixel's `value` falls into the nearer of the two columns that the position `at` lies between.
 #[inline(always)]
-fn near<W: Word>(value: &[W::Bits; 4], at: i32) -> Pixel<W> {
+fn near_part<W: Word>(value: &[W::Bits; 4], at: i32) -> Pixel<W> {
     let part = (PIXEL - (at & (PIXEL - 1))) as u32;
     let mut near = [W::default(); 4];
     for c in 0..4 {
-        near[c] = W::near(value[c], part);
+        near[c] = W::scaled(value[c], part);
     }
     near
 }
 
 /// What `near` leaves of `whole`.
 #[inline(always)]
-fn rest<W: Word>(whole: &Pixel<W>, near: &Pixel<W>) -> Pixel<W> {
+fn remaining_part<W: Word>(whole: &Pixel<W>, near: &Pixel<W>) -> Pixel<W> {
     let mut rest = [W::default(); 4];
     for c in 0..4 {
         rest[c] = whole[c].minus(near[c]);

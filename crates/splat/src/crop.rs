@@ -23,7 +23,7 @@ mod row;
 mod sums;
 
 pub use integers::{Integers, Kind};
-pub use joining::Joining;
+pub use joining::CropJoiner;
 pub use picture::{CropFacts, CropPicture};
 pub use row::{CropForm, CropRow, KNOT_NUMBERS};
 pub use sums::{CropError, CropOptions, CropSums};

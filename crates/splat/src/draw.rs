@@ -94,9 +94,9 @@ impl Pen<'_> {
                         self.draw_image(&mut image, None, paper, sign);
                     }
                     Form::Tilted(share) => self.draw_image(&mut image, Some((&ALL, share)), paper, sign),
-                    Form::SeenBox => self.draw_seen_box(&mut image, paper, sign),
-                    Form::Seen => {
-                        self.draw_image(&mut image, Some(self.seen_of(node)), paper, sign);
+                    Form::PartialBox => self.draw_partial_box(&mut image, paper, sign),
+                    Form::PartialImage => {
+                        self.draw_image(&mut image, Some(self.visible_part(node)), paper, sign);
                     }
                 }
             },

@@ -4,7 +4,7 @@ use crate::draw::Pen;
 use crate::lens_in_use::{LensInUse, NodeFocus, Placed};
 use crate::nodes::{Nodes, SplatNode};
 use crate::paint::Paint;
-use crate::widest::{ask_for, with_widest_instructions};
+use crate::widest::{prefetch, with_widest_simd};
 use rayon::prelude::*;
 use std::cmp::Ordering;
 use std::ops::Range;
@@ -25,7 +25,7 @@ impl Scene<'_> {
     /// Calls `visit` with each node of a block that is drawn, painted as `paint` says, and the rows that its light may reach: in
     /// the order of the nodes.
     #[inline(always)]
-    pub fn drawn(
+    pub fn visit_drawn(
         &self,
         block: usize,
         paint: Option<&[NodeFocus]>,
@@ -41,7 +41,7 @@ impl Scene<'_> {
             next += 1;
             for index in span {
                 let node = &nodes[index as usize];
-                ask_for(nodes.get(index as usize + AHEAD));
+                prefetch(nodes.get(index as usize + AHEAD));
                 let focus = paint.map_or(NodeFocus::STANDARD, |paint| paint[(index - first) as usize]);
                 let placed = self.lens.place(node, &focus);
                 if node.is_leaf() || self.lens.may_merge(node, &focus, placed) {
@@ -57,7 +57,7 @@ impl Scene<'_> {
                 match spans[next..].last_mut() {
                     Some(last) if last.end == children.start => last.end = children.end,
                     _ => {
-                        ask_for(nodes.get(children.start as usize));
+                        prefetch(nodes.get(children.start as usize));
                         spans.push(children);
                     }
                 }
@@ -74,11 +74,11 @@ impl Scene<'_> {
         BlockList { drawn, rows: all_rows, cost }: &mut BlockList,
     ) {
         drawn.clear();
-        (*all_rows, *cost) = with_widest_instructions(
+        (*all_rows, *cost) = with_widest_simd(
             #[inline(always)]
             || {
                 let (mut first, mut end, mut cost) = (u32::MAX, 0, 0);
-                self.drawn(
+                self.visit_drawn(
                     block,
                     paint,
                     spans,
@@ -86,7 +86,7 @@ impl Scene<'_> {
                     |index, node, placed, rows| {
                         (first, end) = (first.min(rows.start), end.max(rows.end));
                         cost += self.pen.cost(node, placed);
-                        drawn.push(Drawn { index, placed, rows: [rows.start, rows.end] });
+                        drawn.push(DrawnNode { index, placed, rows: [rows.start, rows.end] });
                     },
                 );
                 (first.min(end)..end, cost)
@@ -102,12 +102,12 @@ impl Scene<'_> {
         changes.resize_with(count, BlockChanges::default);
         let all = lists.par_iter_mut().zip(changes).enumerate();
         all.for_each_init(<(Spans, BlockList)>::default, |(spans, painted), (block, (list, changes))| {
-            let paint = self.paint.of_block(block);
+            let paint = self.paint.block(block);
             self.list(block, paint, spans, list);
             changes.clear();
-            if let Some(then) = then.map(|then| then.of_block(block)).filter(|then| *then != paint) {
+            if let Some(then) = then.map(|then| then.block(block)).filter(|then| *then != paint) {
                 self.list(block, then, spans, painted);
-                changes.find(list, painted);
+                changes.update(list, painted);
             }
         });
     }
@@ -119,14 +119,14 @@ pub struct Spans(Vec<Range<u32>>);
 
 /// A node that is drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Drawn {
+pub struct DrawnNode {
     pub index: u32,
     pub placed: Placed,
     /// The first pixel row that its light may reach, and the one behind the last.
     rows: [u32; 2],
 }
 
-impl Drawn {
+impl DrawnNode {
     /// The pixel rows that its light may reach.
     #[inline(always)]
     pub fn rows(&self) -> Range<u32> {
@@ -138,7 +138,7 @@ impl Drawn {
 #[derive(Clone, Debug, Default)]
 pub struct BlockList {
     /// In the order of the nodes.
-    pub drawn: Vec<Drawn>,
+    pub drawn: Vec<DrawnNode>,
     /// The pixel rows that its light may reach.
     pub rows: Range<u32>,
     /// About what it costs to draw it, in nanoseconds.
@@ -147,13 +147,13 @@ pub struct BlockList {
 
 impl BlockList {
     /// About what it costs to draw a part of it.
-    fn cost_of(&self, part: &[Drawn]) -> u64 {
+    fn cost_of(&self, part: &[DrawnNode]) -> u64 {
         self.cost * part.len() as u64 / self.drawn.len().max(1) as u64
     }
 
     /// Bytes in memory.
     pub fn bytes(&self) -> usize {
-        self.drawn.capacity() * size_of::<Drawn>()
+        self.drawn.capacity() * size_of::<DrawnNode>()
     }
 }
 
@@ -163,18 +163,18 @@ pub struct Changes(pub Vec<BlockChanges>);
 
 impl Changes {
     /// Makes them those of some blocks that were painted otherwise before.
-    pub fn find(&mut self, scene: &Scene, blocks: &[(usize, Option<&[NodeFocus]>)]) {
+    pub fn update(&mut self, scene: &Scene, blocks: &[(usize, Option<&[NodeFocus]>)]) {
         self.0.resize_with(blocks.len(), BlockChanges::default);
         let room = <(Spans, [BlockList; 2])>::default;
         self.0.par_iter_mut().zip(blocks).for_each_init(
             room,
             |(spans, [old, new]), (changes, (block, before))| {
-                let now = scene.paint.of_block(*block);
+                let now = scene.paint.block(*block);
                 changes.clear();
                 if *before != now {
                     scene.list(*block, *before, spans, old);
                     scene.list(*block, now, spans, new);
-                    changes.find(old, new);
+                    changes.update(old, new);
                 }
             },
         );
@@ -188,22 +188,22 @@ impl Changes {
     /// The rows, and the columns of a picture `width` px wide, that they change.
     pub fn window(&self, nodes: &Nodes, width: u32) -> [Range<u32>; 2] {
         let all = || self.0.iter().flat_map(|block| block.removed.iter().chain(&block.added));
-        let columns = |drawn: &Drawn| drawn.placed.reach(&nodes.nodes[drawn.index as usize], 0, width);
+        let columns = |drawn: &DrawnNode| drawn.placed.reach(&nodes.nodes[drawn.index as usize], 0, width);
         [self.rows(), hull(all().map(columns).filter(|columns| !columns.is_empty()))]
     }
 
     /// Bytes in memory.
     pub fn bytes(&self) -> usize {
         let drawn: usize = self.0.iter().map(|block| block.removed.capacity() + block.added.capacity()).sum();
-        drawn * size_of::<Drawn>()
+        drawn * size_of::<DrawnNode>()
     }
 }
 
 /// What is no longer drawn of a block, and what is now: each in the order of the nodes.
 #[derive(Clone, Debug, Default)]
 pub struct BlockChanges {
-    pub removed: Vec<Drawn>,
-    pub added: Vec<Drawn>,
+    pub removed: Vec<DrawnNode>,
+    pub added: Vec<DrawnNode>,
     /// The pixel rows that their light may reach.
     pub rows: Range<u32>,
     /// About what it costs to draw them, in nanoseconds.
@@ -218,7 +218,7 @@ impl BlockChanges {
     }
 
     /// Adds what is in one list alone; they are empty.
-    fn find(&mut self, old: &BlockList, new: &BlockList) {
+    fn update(&mut self, old: &BlockList, new: &BlockList) {
         let Self { removed, added, .. } = self;
         let (mut was, mut is) = (old.drawn.as_slice(), new.drawn.as_slice());
         loop {
@@ -239,7 +239,7 @@ impl BlockChanges {
                 added.extend(is.split_off_first());
             }
         }
-        self.rows = hull(removed.iter().chain(&*added).map(Drawn::rows));
+        self.rows = hull(removed.iter().chain(&*added).map(DrawnNode::rows));
         self.cost = old.cost_of(removed) + new.cost_of(added);
     }
 

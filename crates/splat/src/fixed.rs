@@ -61,7 +61,7 @@ pub struct Reciprocal {
 impl Reciprocal {
     /// Of a number from 1 to 2¹⁸.
     #[inline(always)]
-    pub fn of(number: u32) -> Self {
+    pub fn new(number: u32) -> Self {
         let size = number.ilog2();
         let bits = size.min(30 - size);
         Self { value: ((1u64 << (31 + bits)) / number as u64) as u32, bits }
@@ -135,7 +135,7 @@ mod tests {
             }
         }
         for number in [1u32, 3, 128, 4096, 40961, 65535, 131073, 1 << 18] {
-            let found = Reciprocal::of(number);
+            let found = Reciprocal::new(number);
             let exact = (1u64 << (31 + found.bits)) as f64 / number as f64;
             assert!(
                 (found.value as f64 - exact).abs() <= 1.0 && found.value >= 1 << 25,

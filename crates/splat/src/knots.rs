@@ -2,7 +2,7 @@
 
 use crate::partition::{Parts, Share};
 use crate::resolve::Light;
-use crate::widest::with_widest_instructions;
+use crate::widest::with_widest_simd;
 use glam::Vec4;
 use rayon::prelude::*;
 
@@ -41,8 +41,8 @@ impl SharedSums {
 
     /// The sum of those of all turns.
     #[inline(always)]
-    pub fn of_turns([mut sum, odd]: [Self; Self::TURNS]) -> Self {
-        let [before, after] = &odd.0;
+    pub fn from_turns([mut sum, second]: [Self; Self::TURNS]) -> Self {
+        let [before, after] = &second.0;
         sum.add(before, after);
         sum
     }
@@ -57,7 +57,7 @@ pub struct Knots {
 
 /// A pixel's place among knots: the one before it, and the weight of the one behind.
 #[inline(always)]
-pub const fn place(pixel: usize) -> (usize, f32) {
+pub const fn position(pixel: usize) -> (usize, f32) {
     (pixel / SPACING, ((pixel % SPACING) as f32 + 0.5) / SPACING as f32)
 }
 
@@ -86,12 +86,12 @@ impl Knots {
     /// asked for.
     pub fn sum_row(&self, parts: Parts<'_>, shares: &[Share], sums: &mut [KnotSums], has_picture: bool) {
         if has_picture {
-            with_widest_instructions(
+            with_widest_simd(
                 #[inline(always)]
                 || sum_pixels::<true>(parts, shares, sums),
             );
         } else {
-            with_widest_instructions(
+            with_widest_simd(
                 #[inline(always)]
                 || sum_pixels::<false>(parts, shares, sums),
             );
@@ -105,7 +105,7 @@ impl Knots {
             let (row, column) = (knot / columns, knot % columns);
             let mut sum = KnotSums::default();
             for y in (row.max(1) - 1) * SPACING..((row + 1) * SPACING).min(self.size[1]) {
-                let (before, behind) = place(y);
+                let (before, behind) = position(y);
                 sum.add(if before == row { 1.0 - behind } else { behind }, &rows[y * columns + column]);
             }
             sum
@@ -144,7 +144,7 @@ impl SpanSum {
     }
 
     /// Weighted by the tents of the knot before the span and of the one behind it, if that many pixels were added.
-    fn of_ends(mut self, count: usize) -> [Vec4; 2] {
+    fn weighted_ends(mut self, count: usize) -> [Vec4; 2] {
         (count..SPACING).for_each(|_| self.add(Vec4::ZERO));
         let before = (self.ramp - 0.5 * self.sum) / SPACING as f32;
         [before, self.sum - before]
@@ -167,7 +167,7 @@ fn sum_pixels<const HAS_PICTURE: bool>(parts: Parts<'_>, shares: &[Share], sums:
                 evened.add(share.even * (free + shared));
             }
         }
-        let ends = [before, after, picture, evened].map(|sum| sum.of_ends(free.len()));
+        let ends = [before, after, picture, evened].map(|sum| sum.weighted_ends(free.len()));
         for ((sum, of_knot), [before, behind]) in sum.0.iter_mut().zip(&mut of_knot).zip(ends) {
             *sum = (*of_knot + before).to_array();
             *of_knot = behind;

@@ -63,7 +63,7 @@ impl NodeFocus {
     /// Nothing is painted.
     pub const STANDARD: Self = Self { t: 1.0, anchor: 0.0, t_apart: 0.0, anchor_apart: 0.0 };
 
-    pub fn of(offset: FocusOffset) -> Self {
+    pub fn new(offset: FocusOffset) -> Self {
         let t = (offset.t as f32).clamp(-LARGEST_OFFSET, LARGEST_OFFSET);
         Self { t, anchor: offset.anchor as f32, ..Self::STANDARD }.without_subnormals()
     }
@@ -176,7 +176,7 @@ pub enum Detail {
 }
 
 impl Detail {
-    fn of(Tolerance { share_of_circle }: Tolerance) -> Self {
+    fn for_tolerance(Tolerance { share_of_circle }: Tolerance) -> Self {
         match share_of_circle {
             share if share < 0.1 => Self::Exact,
             share if share < 0.3 => Self::Fine,
@@ -201,7 +201,7 @@ impl Fineness {
     const FINER: [f64; 4] = [1.0, 1.25, 4.0, f64::INFINITY];
 
     #[inline(always)]
-    fn of(node: &SplatNode) -> Self {
+    fn classify(node: &SplatNode) -> Self {
         match node {
             SplatNode { is_bright: true, .. } => Self::Bright,
             SplatNode { is_highlight: true, .. } => Self::Highlight,
@@ -238,7 +238,7 @@ impl LensInUse {
             radius_at_infinity: rate(optics.standard_kappa(0.0)),
             radius_per_kappa: rate(1.0),
             radius_per_offset: rate(1.0 / optics.image_distance),
-            detail: Detail::of(tolerance),
+            detail: Detail::for_tolerance(tolerance),
             smallest_radius: Fineness::FINER.map(|finer| smallest(finer, 1.0)),
             smallest_joint_radius: std::array::from_fn(|contrast| {
                 Fineness::FINER.map(|finer| smallest(finer, wider_by_contrast(contrast as u8)))
@@ -266,7 +266,7 @@ impl LensInUse {
         let radius = radius.clamp(-LARGEST_RADIUS, LARGEST_RADIUS).round_ties_even() as i32;
         let depth_share = of_depth * ONE as f32;
         let mut level = 0;
-        let fineness = Fineness::of(node);
+        let fineness = Fineness::classify(node);
         while level + 1 < LEVELS as u8 && self.is_far_out(fineness, level + 1, radius) {
             level += 1;
         }
@@ -293,7 +293,7 @@ impl LensInUse {
         let size = placed.radius.unsigned_abs();
         let is_sharp = node.level == 0 && size <= SHARP;
         let of_contrast = &self.smallest_joint_radius[node.contrast as usize];
-        let smallest = of_contrast[Fineness::of(node) as usize][node.level as usize];
+        let smallest = of_contrast[Fineness::classify(node) as usize][node.level as usize];
         if !is_sharp && size < smallest {
             return false;
         }

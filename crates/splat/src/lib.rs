@@ -40,7 +40,7 @@ mod sums;
 mod widest;
 
 pub use crop::{
-    Crop, CropError, CropFacts, CropForm, CropOptions, CropPicture, CropRow, CropSums, Integers, Joining,
+    Crop, CropError, CropFacts, CropForm, CropJoiner, CropOptions, CropPicture, CropRow, CropSums, Integers,
     KNOT_NUMBERS, Kind,
 };
 pub use gpu::{AdapterDescription, BackendChoice, Gpu, GpuAbsent, PictureOnCard, adapters};

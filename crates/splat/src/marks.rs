@@ -29,14 +29,14 @@ pub struct Marks<W> {
 
 impl<W: Word> Marks<W> {
     /// Of rows of `columns` columns in memory that hold nothing.
-    pub fn none(rows: Range<i32>, columns: usize) -> Self {
+    pub fn empty(rows: Range<i32>, columns: usize) -> Self {
         let marks_a_row = columns.div_ceil(SPAN);
         Self { first: rows.start, marks_a_row, marks: vec![Mark::default(); rows.len() * marks_a_row] }
     }
 
     /// Those of a row.
     #[inline(always)]
-    pub fn of_row(&mut self, row: i32) -> &mut [Mark<W>] {
+    pub fn row(&mut self, row: i32) -> &mut [Mark<W>] {
         let at = (row - self.first) as usize * self.marks_a_row;
         &mut self.marks[at..at + self.marks_a_row]
     }

@@ -310,7 +310,7 @@ impl Nodes {
     }
 
     /// The nodes of a block.
-    pub fn of_block(&self, block: usize) -> &[SplatNode] {
+    pub fn block_nodes(&self, block: usize) -> &[SplatNode] {
         let range = &self.blocks[block];
         &self.nodes[range.start as usize..range.end as usize]
     }

@@ -19,22 +19,22 @@ pub static STANDARD: Paint = Paint { blocks: Vec::new() };
 
 impl Paint {
     /// Looks up the focus of every sample.
-    pub fn look_up(nodes: &Nodes, samples: &Samples, focus: &dyn SurfaceField<FocusOffset>) -> Self {
-        let focus = SampleFocus::of(focus);
+    pub fn sample(nodes: &Nodes, samples: &Samples, focus: &dyn SurfaceField<FocusOffset>) -> Self {
+        let focus = SampleFocus::new(focus);
         let blocks = (0..nodes.blocks.len()).into_par_iter().map(|block| {
             let first = nodes.blocks[block].start as usize;
-            let of_nodes = nodes.of_block(block);
+            let of_nodes = nodes.block_nodes(block);
             let mut addresses = samples.addresses();
             let mut painted: Option<Box<[NodeFocus]>> = None;
             for index in (0..of_nodes.len()).filter(|&index| of_nodes[index].is_leaf()) {
-                let found = offset(addresses.of(nodes.sample_of_node[first + index]), focus);
-                if found != NodeFocus::STANDARD {
+                let focus_of_node = offset(addresses.get(nodes.sample_of_node[first + index]), focus);
+                if focus_of_node != NodeFocus::STANDARD {
                     painted.get_or_insert_with(|| vec![NodeFocus::STANDARD; of_nodes.len()].into())[index] =
-                        found;
+                        focus_of_node;
                 }
             }
             if let Some(painted) = &mut painted {
-                (0..of_nodes.len()).rev().for_each(|index| take_up(nodes, block, painted, index));
+                (0..of_nodes.len()).rev().for_each(|index| combine_children(nodes, block, painted, index));
             }
             painted
         });
@@ -61,7 +61,7 @@ impl Paint {
         samples: &Samples,
         focus: &dyn SurfaceField<FocusOffset>,
     ) -> Vec<(usize, Option<Box<[NodeFocus]>>)> {
-        let focus = SampleFocus::of(focus);
+        let focus = SampleFocus::new(focus);
         let block_of = |leaf: &u32| nodes.block_of_node[*leaf as usize] as usize;
         let groups: Vec<&[u32]> = leaves.chunk_by(|a, b| block_of(a) == block_of(b)).collect();
         let updated = groups.par_iter().map(|leaves| {
@@ -87,31 +87,31 @@ impl Paint {
         let first = nodes.blocks[block].start;
         let mut painted = self.blocks[block]
             .clone()
-            .unwrap_or_else(|| vec![NodeFocus::STANDARD; nodes.of_block(block).len()].into());
+            .unwrap_or_else(|| vec![NodeFocus::STANDARD; nodes.block_nodes(block).len()].into());
         let mut addresses = samples.addresses();
         for &leaf in leaves {
             painted[(leaf - first) as usize] =
-                offset(addresses.of(nodes.sample_of_node[leaf as usize]), focus);
+                offset(addresses.get(nodes.sample_of_node[leaf as usize]), focus);
         }
-        (0..painted.len()).rev().for_each(|index| take_up(nodes, block, &mut painted, index));
+        (0..painted.len()).rev().for_each(|index| combine_children(nodes, block, &mut painted, index));
         let is_standard = painted.iter().all(|focus| *focus == NodeFocus::STANDARD);
         (!is_standard).then_some(painted)
     }
 
     /// Focus of the nodes of a block; `None` if nothing is painted.
-    pub fn of_block(&self, block: usize) -> Option<&[NodeFocus]> {
+    pub fn block(&self, block: usize) -> Option<&[NodeFocus]> {
         self.blocks.get(block)?.as_deref()
     }
 }
 
 /// What is painted at a surface address, or on the background; an offset that is not valid counts as nothing.
 fn offset(address: Address, focus: SampleFocus) -> NodeFocus {
-    NodeFocus::of(focus.at(address).or_standard())
+    NodeFocus::new(focus.offset(address).or_standard())
 }
 
 /// Sets the focus of a node from those below it; a sample keeps its own.
-fn take_up(nodes: &Nodes, block: usize, painted: &mut [NodeFocus], index: usize) {
-    let of_nodes = nodes.of_block(block);
+fn combine_children(nodes: &Nodes, block: usize, painted: &mut [NodeFocus], index: usize) {
+    let of_nodes = nodes.block_nodes(block);
     let node = &of_nodes[index];
     if node.is_leaf() {
         return;

@@ -20,7 +20,7 @@
 
 use crate::fixed::{floored, ratio};
 use crate::resolve::Light;
-use crate::widest::with_widest_instructions;
+use crate::widest::with_widest_simd;
 
 /// A pixel's factors.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,13 +40,13 @@ impl Share {
     /// The share of partial samples stays within [0, 8]: where almost nothing partial lies, what is left is the error of
     /// the open ones, and is not blown up.
     #[inline(always)]
-    pub fn of(open: f32, partial: f32) -> Self {
+    pub fn new(open: f32, partial: f32) -> Self {
         const LARGEST: u32 = 8;
-        const LEAST_PARTIAL: f32 = 1e-3;
+        const MIN_PARTIAL: f32 = 1e-3;
         const RIPPLE: f32 = 0.1;
         // Divided in integers: graphics cards round quotients of floats in ways of their own.
-        let fixed = |covered: f32| floored((covered * (ONE as f32)).clamp(0.0, MOST).into());
-        let share = if partial < LEAST_PARTIAL {
+        let fixed = |covered: f32| floored((covered * (ONE as f32)).clamp(0.0, MAX_QUANTA).into());
+        let share = if partial < MIN_PARTIAL {
             1.0
         } else {
             (ratio(ONE.saturating_sub(fixed(open)), fixed(partial), LARGEST) >> 3) as f32 / (1 << 21) as f32
@@ -71,11 +71,11 @@ pub struct Parts<'a> {
 impl Parts<'_> {
     /// Finds the factors of the pixels of a standard picture.
     pub fn find_shares(self, shares: &mut [Share]) {
-        with_widest_instructions(
+        with_widest_simd(
             #[inline(always)]
             || {
                 for (share, (free, sharing)) in shares.iter_mut().zip(self.free.iter().zip(self.sharing)) {
-                    *share = Share::of(free[3], sharing[3]);
+                    *share = Share::new(free[3], sharing[3]);
                 }
             },
         );
@@ -86,7 +86,7 @@ impl Parts<'_> {
 const ONE: u32 = 1 << 22;
 
 /// More than any pixel is covered by a standard picture.
-const MOST: f32 = ((1u32 << 26) - 1) as f32;
+const MAX_QUANTA: f32 = ((1u32 << 26) - 1) as f32;
 
 #[cfg(test)]
 mod tests {
@@ -94,10 +94,10 @@ mod tests {
 
     #[test]
     fn what_is_left_is_shared() {
-        assert_eq!(Share::of(0.25, 0.5), Share { partial: 1.5, even: 1.0 });
-        assert_eq!(Share::of(0.0, 0.01).partial, 8.0);
-        assert_eq!(Share::of(0.5, 0.0), Share::NONE, "a hole is no ripple");
-        let evened = Share::of(1.005, 0.5);
+        assert_eq!(Share::new(0.25, 0.5), Share { partial: 1.5, even: 1.0 });
+        assert_eq!(Share::new(0.0, 0.01).partial, 8.0);
+        assert_eq!(Share::new(0.5, 0.0), Share::NONE, "a hole is no ripple");
+        let evened = Share::new(1.005, 0.5);
         assert!(evened.partial == 0.0 && (evened.even * 1.005 - 1.0).abs() < 1e-6, "{evened:?}");
     }
 }

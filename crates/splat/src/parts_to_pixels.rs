@@ -1,22 +1,22 @@
 //! The parts of a row's pixels, joined to a picture: what is free, and what shares the rest, scaled by its gains.
 
-use crate::balance::GainsOfRow;
+use crate::balance::RowGains;
 use crate::knots::{SPACING, SharedSums};
 use crate::partition::{Parts, Share};
 use crate::resolve::{BLACK, Light};
-use crate::widest::with_widest_instructions;
+use crate::widest::with_widest_simd;
 
 impl Parts<'_> {
     /// Joins them to pixels, which `gains` scale if they are known; evened out if asked for: only where nothing is painted.
-    pub fn join(self, shares: &[Share], gains: Option<&GainsOfRow>, is_evened: bool, pixels: Pixels<'_>) {
+    pub fn join(self, shares: &[Share], gains: Option<&RowGains>, is_evened: bool, pixels: Pixels<'_>) {
         let first = pixels.first;
         let mut row = RowToJoin { parts: self, shares, pixels, is_evened };
         match gains {
-            Some(gains) => with_widest_instructions(
+            Some(gains) => with_widest_simd(
                 #[inline(always)]
                 || row.join(|x| gains.at(first + x)),
             ),
-            None => with_widest_instructions(
+            None => with_widest_simd(
                 #[inline(always)]
                 || row.join(|_| [1.0; 4]),
             ),
@@ -25,10 +25,10 @@ impl Parts<'_> {
 
     /// Sets the pixels of a whole row to what shares, scaled by `gains`, and a sum for each span of [`SPACING`] pixels to what
     /// they hold.
-    pub fn share(self, shares: &[Share], gains: &GainsOfRow, pixels: Pixels<'_>, sums: &mut [SharedSums]) {
+    pub fn share(self, shares: &[Share], gains: &RowGains, pixels: Pixels<'_>, sums: &mut [SharedSums]) {
         let pixels = pixels.radiance.chunks_mut(SPACING).zip(pixels.coverage.chunks_mut(SPACING));
         let lights = self.sharing.chunks(SPACING).zip(shares.chunks(SPACING));
-        with_widest_instructions(
+        with_widest_simd(
             #[inline(always)]
             || {
                 for (span, ((pixels, lights), sums)) in pixels.zip(lights).zip(sums).enumerate() {
@@ -40,10 +40,10 @@ impl Parts<'_> {
 
     /// Joins what is free to pixels that were set to what shares, scaled by `rest` too.
     pub fn join_shared(self, rest: [f32; 3], pixels: Pixels<'_>) {
-        with_widest_instructions(
+        with_widest_simd(
             #[inline(always)]
             || {
-                for ((radiance, coverage), free) in pixels.each().zip(self.free) {
+                for ((radiance, coverage), free) in pixels.zip_pixels().zip(self.free) {
                     for c in 0..3 {
                         radiance[c] = free[c] + radiance[c] * rest[c];
                     }
@@ -71,7 +71,7 @@ fn share_span(
         sums[x % SharedSums::TURNS].add(sharing, &scaled);
         (*radiance, *coverage) = ([scaled[0], scaled[1], scaled[2]], scaled[3]);
     }
-    SharedSums::of_turns(sums)
+    SharedSums::from_turns(sums)
 }
 
 /// Some pixels of a row of a picture.
@@ -84,7 +84,7 @@ pub struct Pixels<'a> {
 
 impl<'a> Pixels<'a> {
     #[inline(always)]
-    fn each(self) -> impl Iterator<Item = (&'a mut [f32; 3], &'a mut f32)> {
+    fn zip_pixels(self) -> impl Iterator<Item = (&'a mut [f32; 3], &'a mut f32)> {
         self.radiance.iter_mut().zip(self.coverage)
     }
 }

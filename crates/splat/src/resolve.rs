@@ -2,7 +2,7 @@
 
 use crate::canvas::{Accumulator, Level, Pixel, Row, Word};
 use crate::marks::{Mark, Marks, SPAN, spans};
-use crate::widest::with_widest_instructions;
+use crate::widest::with_widest_simd;
 use std::ops::Range;
 
 /// A pixel holds more light than its integers are sure to hold.
@@ -70,7 +70,7 @@ impl Room {
     }
 
     /// Pixels that nobody needs any more.
-    pub fn give_back(&mut self, pixels: Vec<Light>) {
+    pub fn recycle(&mut self, pixels: Vec<Light>) {
         self.0.push(pixels);
     }
 }
@@ -107,7 +107,7 @@ pub struct LevelRows<'a, W: Word> {
 
 impl<'a, W: Word> LevelRows<'a, W> {
     /// Those of a sum in a window of the picture.
-    pub fn of_sum(
+    pub fn for_sum(
         accumulator: &'a Accumulator<W>,
         quanta: Quanta,
         window: &Window,
@@ -121,12 +121,12 @@ impl<'a, W: Word> LevelRows<'a, W> {
             }
             let mut here = Self::new(level, quanta, Columns::unmarked(&window.columns, level), coarser, room);
             let mut pixels = room.take(window.rows.len() * window.columns.len());
-            let mut unkept = Marks::none(0..1, level.columns());
+            let mut unkept = Marks::empty(0..1, level.columns());
             for (row, line) in window.rows.clone().zip(pixels.chunks_exact_mut(window.columns.len().max(1))) {
-                here.read(row, unkept.of_row(0), line)?;
+                here.read(row, unkept.row(0), line)?;
             }
             largest = largest.max(here.largest);
-            here.give_back(room);
+            here.recycle(room);
             coarser = Some(Lines { window, pixels });
         }
         let finest =
@@ -146,15 +146,15 @@ impl<'a, W: Word> LevelRows<'a, W> {
     }
 
     /// What they needed room for.
-    pub fn give_back(self, room: &mut Room) {
-        room.give_back(self.mixed);
-        self.coarser.into_iter().for_each(|coarser| room.give_back(coarser.pixels));
+    pub fn recycle(self, room: &mut Room) {
+        room.recycle(self.mixed);
+        self.coarser.into_iter().for_each(|coarser| room.recycle(coarser.pixels));
     }
 
     /// Sets a line to the pixels of a row. `marks` are the row's.
     pub fn read(&mut self, row: i32, marks: &mut [Mark<W>], line: &mut [Light]) -> Result<(), Overflow> {
         match &self.coarser {
-            Some(coarser) => with_widest_instructions(
+            Some(coarser) => with_widest_simd(
                 #[inline(always)]
                 || upsample(coarser, row, self.columns.in_memory.start as i32 - 1, &mut self.mixed, line),
             ),
@@ -199,13 +199,13 @@ pub fn add_row<W: Word, const CHANNELS: usize>(
     line: &mut [Light],
 ) -> Result<i64, Overflow> {
     if let Some(next) = level.row(row + 1) {
-        next.ask_for_all();
+        next.prefetch();
     }
     let Some(row) = level.row(row) else {
         marks.fill(Mark::default());
         return Ok(0);
     };
-    let largest = with_widest_instructions(
+    let largest = with_widest_simd(
         #[inline(always)]
         || integrate::<W, CHANNELS>(&row, quanta, in_memory, line, &mut marks[spans.clone()], spans.start),
     )?;
@@ -369,15 +369,15 @@ mod tests {
 
     fn part(accumulator: &Accumulator<i32>, window: &Window) -> Vec<Light> {
         let level = &accumulator.levels[0];
-        let mut marks = Marks::none(-1..level.height as i32 + 1, level.columns());
+        let mut marks = Marks::empty(-1..level.height as i32 + 1, level.columns());
         let mut room = Room::default();
         let mut read = |window: &Window, marks: &mut Marks<i32>| {
-            let mut rows = LevelRows::of_sum(accumulator, FINE, window, &mut room).unwrap();
+            let mut rows = LevelRows::for_sum(accumulator, FINE, window, &mut room).unwrap();
             let mut pixels = vec![[7.0; 4]; window.columns.len() * window.rows.len()];
             for (row, line) in window.rows.clone().zip(pixels.chunks_mut(window.columns.len())) {
-                rows.read(row, marks.of_row(row), line).unwrap();
+                rows.read(row, marks.row(row), line).unwrap();
             }
-            rows.give_back(&mut room);
+            rows.recycle(&mut room);
             pixels
         };
         let whole = Window { rows: -1..level.height as i32 + 1, columns: -1..level.width as i32 + 1 };

@@ -53,7 +53,7 @@ impl Shape {
         let (mut mean, mut square) = (DVec2::ZERO, DVec2::ZERO);
         let height = 2.0 / rows.len() as f64;
         let mut moments_below = vec![DVec4::ZERO];
-        for (row, v) in rows.iter().zip(middles(rows.len())) {
+        for (row, v) in rows.iter().zip(cell_centers(rows.len())) {
             let mut below = moments_below[moments_below.len() - 1];
             for run in row {
                 let width = run.end - run.start;
@@ -93,7 +93,7 @@ impl Shape {
                 }
             }
         }
-        parts.into_iter().filter(|part| part.share > 0.0).map(Part::about_its_mean).collect()
+        parts.into_iter().filter(|part| part.share > 0.0).map(Part::about_mean).collect()
     }
 
     /// Of what lies between two v: its light as a share of all, and that times u, u² and v.
@@ -127,7 +127,7 @@ impl Shape {
 
     /// The runs of the row that v (times 16384) lies in.
     #[inline(always)]
-    pub fn at(&self, v: i32) -> &[ShapeRun] {
+    pub fn runs_at(&self, v: i32) -> &[ShapeRun] {
         let count = self.firsts.len() as u32 - 1;
         let row = mul_shift((v + ONE).max(0) as u32, count, 15).min(count - 1) as usize;
         &self.runs[self.firsts[row] as usize..self.firsts[row + 1] as usize]
@@ -175,7 +175,7 @@ impl Part {
     }
 
     /// From sums of moments to mean and variance.
-    fn about_its_mean(self) -> Self {
+    fn about_mean(self) -> Self {
         let mean = self.mean / self.share;
         Self { mean, variance: (self.variance / self.share - mean * mean).max(DVec2::ZERO), ..self }
     }
@@ -183,11 +183,11 @@ impl Part {
 
 /// All runs with the v of the middle of their row.
 fn with_middle(rows: &[Vec<Run>]) -> impl Iterator<Item = (f64, &Run)> {
-    rows.iter().zip(middles(rows.len())).flat_map(|(row, v)| row.iter().map(move |run| (v, run)))
+    rows.iter().zip(cell_centers(rows.len())).flat_map(|(row, v)| row.iter().map(move |run| (v, run)))
 }
 
 /// The middles of so many rows.
-fn middles(count: usize) -> impl Iterator<Item = f64> {
+fn cell_centers(count: usize) -> impl Iterator<Item = f64> {
     (0..count).map(move |row| -1.0 + (2 * row + 1) as f64 / count as f64)
 }
 

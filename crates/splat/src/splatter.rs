@@ -27,7 +27,7 @@ use salf::Salf;
 use scene::SurfaceField;
 use std::ops::Range;
 use std::sync::Arc;
-use wanted::{Finish, Summed, Wanted};
+use wanted::{Finish, ResolveOutput, SummedPaint};
 
 /// A SALF being looked at: sums that follow the focus as it is painted.
 pub struct Splatter {
@@ -59,19 +59,19 @@ impl Splatter {
     pub fn new(salf: Arc<Salf>) -> Self {
         let nodes = Nodes::new(&salf, Scale::FINEST).map(Arc::new);
         let aperture = ApertureInUse::new(&salf.camera.aperture, 1.0, nodes.as_deref());
-        Self::of(salf, nodes, Arc::new(aperture))
+        Self::with_nodes(salf, nodes, Arc::new(aperture))
     }
 
     /// Another one of the same light field, with sums of its own: quick to make, since the hierarchy is shared. It renders as
     /// one that is new, on the same card.
     pub fn twin(&self) -> Self {
-        let mut twin = Self::of(self.salf.clone(), self.nodes.clone(), self.aperture.clone());
+        let mut twin = Self::with_nodes(self.salf.clone(), self.nodes.clone(), self.aperture.clone());
         twin.card = self.card.twin();
         twin.set_live(self.is_live);
         twin
     }
 
-    fn of(salf: Arc<Salf>, nodes: Option<Arc<Nodes>>, aperture: Arc<ApertureInUse>) -> Self {
+    fn with_nodes(salf: Arc<Salf>, nodes: Option<Arc<Nodes>>, aperture: Arc<ApertureInUse>) -> Self {
         let camera = &salf.camera;
         let (width, height) = (camera.width as usize, camera.height as usize);
         let tolerance = Tolerance::default();
@@ -163,29 +163,29 @@ impl Splatter {
         focus: &dyn SurfaceField<FocusOffset>,
         progress: &dyn Progress,
     ) -> Result<(), SplatError> {
-        self.take_up(camera);
+        self.set_lens(camera);
         let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
-        self.paint = Paint::look_up(nodes, &self.salf.samples, focus);
-        self.card.forget_paint();
+        self.paint = Paint::sample(nodes, &self.salf.samples, focus);
+        self.card.invalidate_paint();
         self.sum(progress)
     }
 
     /// Sums the whole picture for another lens, with the focus of before.
     pub fn refocus(&mut self, camera: &Camera, progress: &dyn Progress) -> Result<(), SplatError> {
-        self.take_up(camera);
+        self.set_lens(camera);
         let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
         assert_eq!(self.paint.blocks.len(), nodes.blocks.len(), "refocus follows a render");
         self.sum(progress)
     }
 
     /// Puts on a lens.
-    fn take_up(&mut self, camera: &Camera) {
+    fn set_lens(&mut self, camera: &Camera) {
         let (optics, baked_radius) = (camera.optics(), self.salf.camera.aperture_radius);
         let stop = LensInUse::stop(&optics, baked_radius);
         if (&self.aperture.aperture, self.aperture.stop) != (&camera.aperture, stop) {
             self.aperture = Arc::new(ApertureInUse::new(&camera.aperture, stop, self.nodes.as_deref()));
             self.shares_of = None;
-            self.card.forget_aperture();
+            self.card.invalidate_aperture();
         }
         self.lens = LensInUse::new(optics, &self.aperture.stencils.shape, self.tolerance);
     }
@@ -194,7 +194,7 @@ impl Splatter {
     fn sum(&mut self, progress: &dyn Progress) -> Result<(), SplatError> {
         if let Some(nodes) = &self.nodes {
             let camera = &self.salf.camera;
-            self.card.take_up(nodes, [camera.width as usize, camera.height as usize]);
+            self.card.upload_nodes(nodes, [camera.width as usize, camera.height as usize]);
         }
         self.card.begin();
         let summed = self.sum_all(progress);
@@ -211,15 +211,15 @@ impl Splatter {
         let painted = Stage::new(progress, if has_shares { 0.0 } else { 0.5 }, 1.0);
         if !has_shares {
             self.shares_of = None;
-            let wanted = if is_painted { Wanted::Shares } else { Wanted::SharesAndPicture };
+            let output = if is_painted { ResolveOutput::Shares } else { ResolveOutput::SharesAndPicture };
             // Where most is painted, summing all of it again is less work than painting over, and so it is on a card.
             let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
             let is_painted_over =
                 is_painted && !self.card.has_sums() && self.paint.is_of_less_than_half(nodes);
-            let summed = if is_painted_over { Summed::ToPaintOver } else { Summed::Standard };
+            let summed = if is_painted_over { SummedPaint::ToPaintOver } else { SummedPaint::Standard };
             self.in_finest_integers(|splatter| {
                 splatter.sum_nodes(summed, &standard)?;
-                splatter.resolve(splatter.frame(), wanted)
+                splatter.resolve(splatter.frame(), output)
             })?;
             self.shares_of = Some((self.lens.clone(), self.finish() == Finish::Evened));
             if !is_painted || is_painted_over && self.paint_over()? {
@@ -227,17 +227,17 @@ impl Splatter {
             }
         }
         self.in_finest_integers(|splatter| {
-            splatter.sum_nodes(Summed::Painted, &painted)?;
-            splatter.resolve(splatter.frame(), Wanted::Picture)
+            splatter.sum_nodes(SummedPaint::Painted, &painted)?;
+            splatter.resolve(splatter.frame(), ResolveOutput::Picture)
         })
     }
 
     /// Whether the shares are those of the lens, and all gains that are needed are known.
     fn has_shares(&self) -> bool {
-        let is_known = |(lens, has_gains_of_all): &(LensInUse, bool)| {
+        let is_current = |(lens, has_gains_of_all): &(LensInUse, bool)| {
             *lens == self.lens && (*has_gains_of_all || self.finish() != Finish::Evened)
         };
-        self.shares_of.as_ref().is_some_and(is_known)
+        self.shares_of.as_ref().is_some_and(is_current)
     }
 
     /// Does `work` with the finest integers that hold its sums.
@@ -258,14 +258,14 @@ impl Splatter {
         Err(SplatError::Overflow)
     }
 
-    fn sum_nodes(&mut self, summed: Summed, progress: &dyn Progress) -> Result<(), SplatError> {
+    fn sum_nodes(&mut self, summed: SummedPaint, progress: &dyn Progress) -> Result<(), SplatError> {
         let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
         let paint = summed.paint(&self.paint);
         let scene = self.aperture.scene(nodes, &self.lens, paint, &self.salf.camera);
         if let Some(summed) = self.card.sum(&scene, progress) {
             return summed;
         }
-        let then = (summed == Summed::ToPaintOver).then_some(&self.paint);
+        let then = (summed == SummedPaint::ToPaintOver).then_some(&self.paint);
         scene.list_all(then, &mut self.lists, &mut self.changes);
         Ok(self.sums.set(&scene.pen, &self.lists, &mut self.pace, progress)?)
     }
@@ -286,10 +286,10 @@ impl Splatter {
         leaves.par_sort_unstable();
         self.card.begin();
         let before = self.paint.update(nodes, &leaves, &self.salf.samples, focus);
-        self.card.forget_paint();
+        self.card.invalidate_paint();
         let scene = self.aperture.scene(nodes, &self.lens, &self.paint, &self.salf.camera);
         let before = before.iter().map(|(block, paint)| (*block, paint.as_deref()));
-        self.changes.find(&scene, &before.collect::<Vec<_>>());
+        self.changes.update(&scene, &before.collect::<Vec<_>>());
         let mut window = self.changes.window(nodes, self.salf.camera.width);
         // Once nothing is painted any more, the picture is evened.
         if nodes.scale != Scale::FINEST || !self.has_shares() {
@@ -314,7 +314,7 @@ impl Splatter {
             Some(changed) => changed?,
             None => self.sums.change(&pen, &self.changes, &self.pace),
         }
-        self.resolve(window, Wanted::Picture)
+        self.resolve(window, ResolveOutput::Picture)
     }
 
     /// Paints over the sums of the standard picture. Returns whether that could be done.
@@ -335,26 +335,26 @@ impl Splatter {
     }
 
     /// Integrates the sums in some rows and columns; on a card in whole rows.
-    fn resolve(&mut self, [rows, columns]: [Range<u32>; 2], wanted: Wanted) -> Result<(), SplatError> {
+    fn resolve(&mut self, [rows, columns]: [Range<u32>; 2], output: ResolveOutput) -> Result<(), SplatError> {
         if rows.is_empty() || columns.is_empty() {
             return Ok(());
         }
         if self.card.has_sums() {
-            return self.resolve_there(rows, wanted);
+            return self.resolve_on_card(rows, output);
         }
         let finish = self.finish();
         let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
-        Ok(self.resolver.resolve(nodes, &self.sums, [rows, columns], wanted, finish)?)
+        Ok(self.resolver.resolve(nodes, &self.sums, [rows, columns], output, finish)?)
     }
 
     /// The same on the card.
-    fn resolve_there(&mut self, rows: Range<u32>, wanted: Wanted) -> Result<(), SplatError> {
+    fn resolve_on_card(&mut self, rows: Range<u32>, output: ResolveOutput) -> Result<(), SplatError> {
         let finish = self.finish();
         let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
-        if wanted.has_shares() {
+        if output.has_shares() {
             self.resolver.balance.gains = self.card.find_shares(nodes)?;
         }
-        if wanted.has_picture() {
+        if output.has_picture() {
             let Resolver { balance, picture, .. } = &mut self.resolver;
             self.card.make_picture(nodes, rows, finish, &balance.gains, picture)?;
         }

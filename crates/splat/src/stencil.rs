@@ -65,15 +65,15 @@ pub struct Place {
 impl Place {
     /// That of a radius, whose half of the table begins at `half`.
     #[inline(always)]
-    fn of(index: usize, half: usize) -> Self {
+    fn from_index(index: usize, half: usize) -> Self {
         let [coarser, coarsest] = [COARSER[0], COARSER[1]].map(|first| u32::from(index >= first));
         Self { index: half + index, phase_bits: PHASE_BITS - coarser - coarsest }
     }
 
     /// One of the table's [`Stencils::PLACES`].
-    pub fn at(index: usize) -> Self {
+    pub fn from_table_index(index: usize) -> Self {
         let half = if index < Stencils::PLACES / 2 { 0 } else { Stencils::PLACES / 2 };
-        Self::of(index - half, half)
+        Self::from_index(index - half, half)
     }
 
     /// The height of a stencil of the place, and the pixel row, of a centre at `y` (1/4096 px).
@@ -112,7 +112,7 @@ const MANTISSA_BITS: u32 = 7;
 impl StencilSize {
     /// Of a radius squared, (1/4096 px)²; less than 0 counts as 0. `None` if it is too large for a stencil.
     #[inline(always)]
-    pub fn of(square: i64, is_turned: bool) -> Option<Self> {
+    pub fn from_radius_square(square: i64, is_turned: bool) -> Option<Self> {
         const LARGEST: i64 = (LARGEST_RADIUS_PX as i64 * PIXEL as i64).pow(2);
         let square_64 = square.max(0) >> (2 * (POSITION_BITS - RADIUS_BITS));
         (square <= LARGEST).then_some(Self { square: square_64 as u32, is_turned })
@@ -153,13 +153,13 @@ impl Stencils {
     /// Cuts the stencils of all places now, unless they are no longer wanted.
     pub fn cut_all(&self, progress: &dyn Progress) {
         (0..Self::PLACES).into_par_iter().filter(|_| !progress.cancelled()).for_each(|index| {
-            self.at_place(Place::at(index));
+            self.at_place(Place::from_table_index(index));
         });
     }
 
     /// The stencil of a size for a centre at the height `y` (1/4096 px), and the pixel row of that centre.
     #[inline(always)]
-    pub fn at(&self, size: StencilSize, y: i32) -> (&Stencil, i32) {
+    pub fn stencil_at(&self, size: StencilSize, y: i32) -> (&Stencil, i32) {
         let (place, phase, row) = self.place(size, y);
         (&self.at_place(place)[phase], row)
     }
@@ -168,7 +168,7 @@ impl Stencils {
     #[inline(always)]
     pub fn place(&self, size: StencilSize, y: i32) -> (Place, usize, i32) {
         let turned = if size.is_turned { Self::PLACES / 2 } else { 0 };
-        let place = Place::of(index_of(size.square), turned);
+        let place = Place::from_index(index_of(size.square), turned);
         let (phase, row) = place.phase(y);
         (place, phase, row)
     }
@@ -196,7 +196,9 @@ impl Stencils {
             let v_at = |y: f64| if size > 0.0 { (phase - y) / radius_px } else { (phase - y).signum() };
             let [a, b] = [v_at(row.into()), v_at((row + 1).into())];
             let between = [a.min(b), a.max(b)];
-            let Some(whole) = WeightedRun::of(self.shape.moments(between), radius_px) else { continue };
+            let Some(whole) = WeightedRun::from_moments(self.shape.moments(between), radius_px) else {
+                continue;
+            };
             let mut add = |run: &WeightedRun| runs.extend(run.quantised(row, height_bits));
             if self.shape.is_picture {
                 let parts = self.shape.runs_between(between);
@@ -224,7 +226,7 @@ const NARROWEST_PX: f64 = 1.0 / 16.0;
 
 impl WeightedRun {
     /// One run with the light, mean and variance of these moments (see [`Shape::moments`]). `None` without light.
-    fn of(moments: DVec4, radius_px: f64) -> Option<Self> {
+    fn from_moments(moments: DVec4, radius_px: f64) -> Option<Self> {
         let [light, u, u_squared, v] = moments.to_array();
         if light <= 0.0 {
             return None;
@@ -301,16 +303,20 @@ mod tests {
             assert_eq!(index_of(square.round() as u32), index, "{square}");
         }
         for radius in 1..1i64 << 12 {
-            let size = StencilSize::of((64 * radius).pow(2), false).expect("it is small");
+            let size = StencilSize::from_radius_square((64 * radius).pow(2), false).expect("it is small");
             let apart = (radius_at(index_of(size.square)) * 64.0 - radius as f64).abs();
             assert!(apart <= radius as f64 / 511.0);
         }
         let largest = (LARGEST_RADIUS_PX as i64 * PIXEL as i64).pow(2);
-        assert!(StencilSize::of(largest, true).is_some() && StencilSize::of(largest + 1, true).is_none());
+        assert!(
+            StencilSize::from_radius_square(largest, true).is_some()
+                && StencilSize::from_radius_square(largest + 1, true).is_none()
+        );
     }
 
     fn size_of(radius_px: f64) -> StencilSize {
-        StencilSize::of((radius_px * 4096.0).powi(2) as i64, radius_px < 0.0).expect("it is small")
+        StencilSize::from_radius_square((radius_px * 4096.0).powi(2) as i64, radius_px < 0.0)
+            .expect("it is small")
     }
 
     fn letter() -> ApertureShape {
@@ -326,7 +332,7 @@ mod tests {
         let mask = ApertureMask { width: 64, height: 64, transmission, file: String::new() };
         let stencils = Stencils::new(Shape::new(&ApertureShape::Mask(Arc::new(mask)).into()));
         for radius in [1.7, 3.0, 20.0, 60.0] {
-            let (stencil, base) = stencils.at(size_of(radius), PIXEL / 2);
+            let (stencil, base) = stencils.stencil_at(size_of(radius), PIXEL / 2);
             let (mut light, mut mean) = (0.0, [0.0; 2]);
             for run in &stencil.runs {
                 let share = (run.end - run.start) as f64 * run.height as f64;
@@ -375,7 +381,7 @@ mod tests {
             let stencils = Stencils::new(Shape::new(&shape.clone().into()));
             for radius in [1.7, -2.2, 4.0, -11.3, 63.0] {
                 for y in [0.5, 0.125, 0.875] {
-                    let (stencil, base) = stencils.at(size_of(radius), (y * 4096.0) as i32);
+                    let (stencil, base) = stencils.stencil_at(size_of(radius), (y * 4096.0) as i32);
                     let (mut light, mut mean, mut square) = (0.0, [0.0; 2], [0.0; 2]);
                     for run in &stencil.runs {
                         let [a, b] = [run.start, run.end].map(|x| x as f64 / PIXEL as f64);

@@ -3,12 +3,12 @@
 use crate::bands::{Pace, Work};
 use crate::canvas::{Accumulator, Level, Word};
 use crate::draw::{Paper, Pen};
-use crate::drawn::{AHEAD, BlockList, Changes, Drawn};
+use crate::drawn::{AHEAD, BlockList, Changes, DrawnNode};
 use crate::lens_in_use::Placed;
 use crate::marks::Marks;
 use crate::nodes::SplatNode;
 use crate::resolve::{Columns, LevelRows, Light, Overflow, Quanta, Room, Window, add_row};
-use crate::widest::{ask_for, with_widest_instructions};
+use crate::widest::{prefetch, with_widest_simd};
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;
 use salf::tree::{BLOCK_PX, LEVELS};
@@ -21,14 +21,14 @@ use std::time::Instant;
 const BAND_ROWS: u32 = 64;
 
 /// How many nodes ahead what they see of the aperture is asked for: they must have come by then.
-const SEEN_AHEAD: usize = 4;
+const CELLS_AHEAD: usize = 4;
 
 /// How many blocks, a row or two of them, are changed before the next: what is added to one lies in memory that taking away from
 /// it has brought near.
-const CHANGED: usize = 128;
+const BLOCKS_PER_CHANGE: usize = 128;
 
 /// How many blocks are drawn from one report of progress to the next.
-const REPORTED: usize = 64;
+const BLOCKS_PER_REPORT: usize = 64;
 
 /// One kind of samples: ordinary ones, and bright ones if there are any.
 #[derive(Clone, PartialEq)]
@@ -75,7 +75,7 @@ impl Sum {
     fn marks(&self, rows: Range<i32>) -> SumMarks {
         let columns = self.dim.levels[0].columns();
         let bright = if self.bright.is_some() { rows.clone() } else { 0..0 };
-        (Marks::none(rows, columns), Marks::none(bright, columns))
+        (Marks::empty(rows, columns), Marks::empty(bright, columns))
     }
 
     fn bytes(&self) -> usize {
@@ -95,7 +95,7 @@ impl Sum {
         Ok(SumRows {
             columns: Columns::marked(&window.columns),
             largest_bright: 0,
-            dim: LevelRows::of_sum(&self.dim, dim, window, room)?,
+            dim: LevelRows::for_sum(&self.dim, dim, window, room)?,
             dim_marks,
             bright: self.bright.as_ref().map(of_bright),
         })
@@ -114,10 +114,10 @@ pub struct SumRows<'a> {
 impl SumRows<'_> {
     /// Sets a line to the pixels of a row.
     pub fn read(&mut self, row: i32, line: &mut [Light]) -> Result<(), Overflow> {
-        self.dim.read(row, self.dim_marks.of_row(row), line)?;
+        self.dim.read(row, self.dim_marks.row(row), line)?;
         if let Some((level, quanta, marks)) = &mut self.bright {
             // Their coverage is among the ordinary ones'.
-            let largest = add_row::<i64, 3>(level, row, &self.columns, *quanta, marks.of_row(row), line)?;
+            let largest = add_row::<i64, 3>(level, row, &self.columns, *quanta, marks.row(row), line)?;
             self.largest_bright = self.largest_bright.max(largest);
         }
         Ok(())
@@ -129,13 +129,13 @@ impl SumRows<'_> {
     }
 
     /// Of coverage alone: it is all among the ordinary samples'. Colours are what they may.
-    pub fn of_coverage(self) -> Self {
+    pub fn coverage_only(self) -> Self {
         Self { bright: None, ..self }
     }
 
     /// What they needed room for.
-    pub fn give_back(self, room: &mut Room) {
-        self.dim.give_back(room);
+    pub fn recycle(self, room: &mut Room) {
+        self.dim.recycle(room);
     }
 }
 
@@ -212,7 +212,7 @@ impl Sums {
     }
 
     /// Makes room for bright samples, if there is none yet.
-    pub fn hold_bright(&mut self) {
+    pub fn ensure_bright(&mut self) {
         for sum in [&mut self.free, &mut self.sharing] {
             let level = &sum.dim.levels[0];
             let size = [level.width, level.height];
@@ -230,23 +230,24 @@ impl Sums {
         progress: &dyn Progress,
     ) -> Result<(), Cancelled> {
         let height = self.height();
-        let mut work = Work::none(height);
+        let mut work = Work::empty(height);
         for list in lists {
             let Some(first) = list.drawn.first() else { continue };
             work.add(pen.nodes.row_of(first.index), list.cost);
         }
         let bands = self.bands(&work, pace, height);
-        let reach = |band: &Band| lists.iter().filter(|list| meet(&list.rows, &band.rows)).count();
+        let reach = |band: &Band| lists.iter().filter(|list| overlap(&list.rows, &band.rows)).count();
         let (count, done) = (bands.iter().map(reach).sum::<usize>(), AtomicUsize::new(0));
         let summed = bands.into_par_iter().with_max_len(1).map(|mut band| {
             progress.check()?;
             let begun = Instant::now();
             prepare(&mut band);
             let here = band.rows.clone();
-            let lists = lists.iter().filter(|list| meet(&list.rows, &here)).map(|list| list.drawn.as_slice());
+            let lists =
+                lists.iter().filter(|list| overlap(&list.rows, &here)).map(|list| list.drawn.as_slice());
             band.draw_each(pen, lists, 1, || {
                 let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-                if done % REPORTED == 0 {
+                if done % BLOCKS_PER_REPORT == 0 {
                     progress.report(done as f32 / count as f32);
                 }
                 progress.check()
@@ -260,19 +261,19 @@ impl Sums {
     /// Takes away what is no longer drawn, and adds what is now.
     pub fn change(&mut self, pen: &Pen, changes: &Changes, pace: &Pace) {
         let changed: Vec<_> = changes.0.iter().filter(|block| !block.is_empty()).collect();
-        let mut work = Work::none(self.height());
+        let mut work = Work::empty(self.height());
         for (first, cost) in changed.iter().filter_map(|block| Some((block.first()?, block.cost))) {
             work.add(pen.nodes.row_of(first), cost);
         }
         let rows = changes.rows();
         let mut bands = self.bands(&work, pace, rows.len() as u32);
-        bands.retain(|band| meet(&rows, &band.rows));
+        bands.retain(|band| overlap(&rows, &band.rows));
         bands.into_par_iter().with_max_len(1).for_each(|mut band| {
             let here = band.rows.clone();
-            for blocks in changed.chunks(CHANGED) {
-                let blocks = || blocks.iter().filter(|block| meet(&block.rows, &here));
-                let Ok(()) = band.draw_each(pen, blocks().map(|block| &*block.removed), -1, unwatched);
-                let Ok(()) = band.draw_each(pen, blocks().map(|block| &*block.added), 1, unwatched);
+            for blocks in changed.chunks(BLOCKS_PER_CHANGE) {
+                let blocks = || blocks.iter().filter(|block| overlap(&block.rows, &here));
+                let Ok(()) = band.draw_each(pen, blocks().map(|block| &*block.removed), -1, never_cancelled);
+                let Ok(()) = band.draw_each(pen, blocks().map(|block| &*block.added), 1, never_cancelled);
             }
         });
     }
@@ -285,7 +286,7 @@ impl Sums {
     /// Bands for work in so many rows: one for each thread, but few if there are few rows.
     fn bands(&mut self, work: &Work, pace: &Pace, rows: u32) -> Vec<Band<'_>> {
         let count = rayon::current_num_threads().min(rows.div_ceil(BAND_ROWS) as usize).max(1);
-        let starts = work.divided(count, pace);
+        let starts = work.band_starts(count, pace);
         let ends = starts.iter().skip(1).copied().chain([u32::MAX]);
         let rows = starts.iter().copied().zip(ends).map(|(start, end)| start..end);
         let both = self.free.bands(&starts).into_iter().zip(self.sharing.bands(&starts));
@@ -294,13 +295,13 @@ impl Sums {
 }
 
 /// Nobody waits for so little.
-fn unwatched() -> Result<(), Infallible> {
+fn never_cancelled() -> Result<(), Infallible> {
     Ok(())
 }
 
 /// Whether two ranges have anything in common.
 #[inline(always)]
-fn meet(a: &Range<u32>, b: &Range<u32>) -> bool {
+fn overlap(a: &Range<u32>, b: &Range<u32>) -> bool {
     a.start < b.end && b.start < a.end
 }
 
@@ -322,14 +323,14 @@ impl Band<'_> {
     fn draw_each<'l, E>(
         &mut self,
         pen: &Pen,
-        lists: impl Iterator<Item = &'l [Drawn]>,
+        lists: impl Iterator<Item = &'l [DrawnNode]>,
         sign: i32,
         mut check: impl FnMut() -> Result<(), E>,
     ) -> Result<(), E> {
         let mut lists = lists.peekable();
         while let Some(list) = lists.next() {
             if let Some(next) = lists.peek() {
-                self.ask_for(pen, next);
+                self.prefetch_block(pen, next);
             }
             self.draw(pen, list, sign);
             check()?;
@@ -339,15 +340,15 @@ impl Band<'_> {
     }
 
     /// Adds (`sign` 1) the nodes of a list, or takes them away (−1): at the latest when it is finished with that sign.
-    fn draw(&mut self, pen: &Pen, list: &[Drawn], sign: i32) {
+    fn draw(&mut self, pen: &Pen, list: &[DrawnNode], sign: i32) {
         // Compiled for either sign.
         if sign > 0 {
-            with_widest_instructions(
+            with_widest_simd(
                 #[inline(always)]
                 || self.draw_signed(pen, list, 1),
             );
         } else {
-            with_widest_instructions(
+            with_widest_simd(
                 #[inline(always)]
                 || self.draw_signed(pen, list, -1),
             );
@@ -355,19 +356,19 @@ impl Band<'_> {
     }
 
     #[inline(always)]
-    fn draw_signed(&mut self, pen: &Pen, list: &[Drawn], sign: i32) {
+    fn draw_signed(&mut self, pen: &Pen, list: &[DrawnNode], sign: i32) {
         let node_at = |at: usize| list.get(at).map(|drawn| &pen.nodes.nodes[drawn.index as usize]);
-        let ask_for_seen = |at: usize| {
+        let prefetch_cells = |at: usize| {
             if let Some(node) = node_at(at) {
-                ask_for(pen.nodes.cells(node));
-                ask_for(pen.seen.get(node.cells as usize));
+                prefetch(pen.nodes.cells(node));
+                prefetch(pen.moments.get(node.cells as usize));
             }
         };
-        (0..SEEN_AHEAD).for_each(ask_for_seen);
+        (0..CELLS_AHEAD).for_each(prefetch_cells);
         for (at, drawn) in list.iter().enumerate() {
-            ask_for(node_at(at + AHEAD));
-            ask_for_seen(at + SEEN_AHEAD);
-            if !meet(&drawn.rows(), &self.rows) {
+            prefetch(node_at(at + AHEAD));
+            prefetch_cells(at + CELLS_AHEAD);
+            if !overlap(&drawn.rows(), &self.rows) {
                 continue;
             }
             let node = &pen.nodes.nodes[drawn.index as usize];
@@ -379,15 +380,15 @@ impl Band<'_> {
 
     /// Asks for the first nodes of a block, and for the finest level's pixels if it has samples to be drawn there: they lie in
     /// many rows, which a processor does not foresee.
-    fn ask_for(&self, pen: &Pen, list: &[Drawn]) {
-        list.iter().take(AHEAD).for_each(|drawn| ask_for(pen.nodes.nodes.get(drawn.index as usize)));
+    fn prefetch_block(&self, pen: &Pen, list: &[DrawnNode]) {
+        list.iter().take(AHEAD).for_each(|drawn| prefetch(pen.nodes.nodes.get(drawn.index as usize)));
         const MANY: usize = (BLOCK_PX * BLOCK_PX / 4) as usize;
         let Some(first) = list.first().filter(|first| list.len() >= MANY && first.placed.level == 0) else {
             return;
         };
         let node = &pen.nodes.nodes[first.index as usize];
         let canvas = if is_sharing(node, first.placed) { &self.sharing } else { &self.free };
-        canvas.dim[0].rows.ask_for_block(node.center);
+        canvas.dim[0].rows.prefetch_block(node.center);
     }
 
     /// Draws what waits.

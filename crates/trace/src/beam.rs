@@ -2,7 +2,7 @@
 
 use crate::hierarchy::Halfspaces;
 use crate::local_space::LocalSpace;
-use crate::watertight::ShearedRays;
+use crate::watertight::ShearedRayPacket;
 use glam::DVec3;
 
 /// A pyramid of rays.
@@ -18,7 +18,7 @@ pub struct Beam {
 
 impl Beam {
     /// How many rays can be traced together.
-    pub const MOST_RAYS: usize = ShearedRays::MOST;
+    pub const MAX_RAYS: usize = ShearedRayPacket::MAX;
 
     /// The part of the world that its rays pass through, generously, and the direction in which it widens.
     pub(crate) fn shaft(&self, space: &LocalSpace) -> Halfspaces {

@@ -47,8 +47,8 @@ struct Pending {
 pub(crate) trait Visit {
     /// Those of a node's boxes, a bit each, that are worth a visit; `reached` are those that reach into the part of space.
     #[inline(always)]
-    fn wanted(&mut self, _node: &Node, reached: u32) -> u32 {
-        reached
+    fn select_children(&mut self, _node: &Node, overlapping: u32) -> u32 {
+        overlapping
     }
 
     /// Visits the items of a leaf; returns how far the walk goes on: −∞ ends it.
@@ -71,7 +71,7 @@ impl Hierarchy {
         let params = BvhBuildParams { max_prims_per_leaf: 4, ..BvhBuildParams::medium_build() };
         let binary = build_bvh2(boxes, params, &mut std::time::Duration::default());
         let mut joined =
-            Joining { binary: &binary, nodes: Vec::new(), order: Vec::with_capacity(boxes.len()) };
+            NodeMerger { binary: &binary, nodes: Vec::new(), order: Vec::with_capacity(boxes.len()) };
         let depth = joined.join();
         let (nodes, order) = (joined.nodes, joined.order);
         (Self { nodes, stack_size: 3 * depth + 4 }, order)
@@ -95,16 +95,16 @@ impl Hierarchy {
 
     /// Visits the items of every leaf whose box reaches into `space` and comes nearer than `far` (see
     /// [`Halfspaces::height`]), nearer ones first by and large; the visit of a leaf returns the new `far`.
-    pub fn walk_within(&self, space: &Halfspaces, far: f32, visit: &mut impl Visit) {
+    pub fn walk_halfspaces(&self, space: &Halfspaces, far: f32, visit: &mut impl Visit) {
         if self.stack_size <= SHALLOW_STACK {
-            self.walk_within_with(&mut [Pending::default(); SHALLOW_STACK], space, far, visit);
+            self.walk_halfspaces_with(&mut [Pending::default(); SHALLOW_STACK], space, far, visit);
         } else {
-            self.walk_within_with(&mut vec![Pending::default(); self.stack_size], space, far, visit);
+            self.walk_halfspaces_with(&mut vec![Pending::default(); self.stack_size], space, far, visit);
         }
     }
 
     #[inline(always)]
-    fn walk_within_with(
+    fn walk_halfspaces_with(
         &self,
         stack: &mut [Pending],
         space: &Halfspaces,
@@ -126,14 +126,14 @@ impl Hierarchy {
                 continue;
             }
             let node = &self.nodes[first as usize];
-            let (mut reached, near) = space.reached(node);
-            reached &= near.cmple(Vec4::splat(far)).bitmask();
-            reached = visit.wanted(node, reached);
+            let (mut overlapping, near) = space.overlap(node);
+            overlapping &= near.cmple(Vec4::splat(far)).bitmask();
+            overlapping = visit.select_children(node, overlapping);
             let near = near.to_array();
             let base = waiting;
-            while reached != 0 {
-                let child = (reached.trailing_zeros() & 3) as usize;
-                reached &= reached - 1;
+            while overlapping != 0 {
+                let child = (overlapping.trailing_zeros() & 3) as usize;
+                overlapping &= overlapping - 1;
                 let new = Pending { near: near[child], first: node.first[child], count: node.count[child] };
                 // The nearest on top.
                 let mut place = waiting;
@@ -217,14 +217,14 @@ impl Hierarchy {
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Halfspaces {
     /// Normal and offset: n·x + offset ≥ 0 inside.
-    planes: [(Vec3, f32); Self::MOST],
+    planes: [(Vec3, f32); Self::MAX_PLANES],
     count: usize,
     /// What lies low along this is looked at first.
     toward: Vec3,
 }
 
 impl Halfspaces {
-    const MOST: usize = 5;
+    const MAX_PLANES: usize = 5;
 
     /// What f32 may be wrong by, as a share of what is summed.
     const SLACK: f64 = 1.0 / (1u32 << 20) as f64;
@@ -252,38 +252,38 @@ impl Halfspaces {
 
     /// A bit for each of a node's boxes that reaches in here, and where each begins along `toward`.
     #[inline(always)]
-    fn reached(&self, node: &Node) -> (u32, Vec4) {
+    fn overlap(&self, node: &Node) -> (u32, Vec4) {
         let [low, high] = node.sides[0];
-        let mut reached = low.cmple(high).bitmask();
+        let mut overlapping = low.cmple(high).bitmask();
         for (normal, offset) in &self.planes[..self.count] {
             let mut farthest = Vec4::splat(*offset);
             for axis in 0..3 {
                 farthest += node.sides[axis][usize::from(normal[axis] >= 0.0)] * normal[axis];
             }
-            reached &= farthest.cmpge(Vec4::ZERO).bitmask();
+            overlapping &= farthest.cmpge(Vec4::ZERO).bitmask();
         }
         let mut nearest = Vec4::ZERO;
         for axis in 0..3 {
             nearest += node.sides[axis][usize::from(self.toward[axis] < 0.0)] * self.toward[axis];
         }
-        (reached, nearest)
+        (overlapping, nearest)
     }
 }
 
 /// The join of a binary tree's nodes by fours.
-struct Joining<'a> {
+struct NodeMerger<'a> {
     binary: &'a Bvh2,
     nodes: Vec<Node>,
     order: Vec<u32>,
 }
 
-impl Joining<'_> {
+impl NodeMerger<'_> {
     /// Fills `nodes` and `order`; returns the depth. Works off a list, not the call stack: trees can be as
     /// deep as they have items.
     fn join(&mut self) -> usize {
         let mut deepest = 0;
         self.nodes.push(Node::EMPTY);
-        let root = if self.binary.nodes[0].is_leaf() { vec![0] } else { self.four_under(0) };
+        let root = if self.binary.nodes[0].is_leaf() { vec![0] } else { self.four_descendants(0) };
         let mut open = vec![(0, root, 1)];
         while let Some((node, children, depth)) = open.pop() {
             deepest = deepest.max(depth);
@@ -298,7 +298,7 @@ impl Joining<'_> {
                     self.order.extend_from_slice(&self.binary.primitive_indices[items]);
                 } else {
                     self.nodes[node].first[slot] = self.nodes.len() as u32;
-                    let grandchildren = self.four_under(child);
+                    let grandchildren = self.four_descendants(child);
                     open.push((self.nodes.len(), grandchildren, depth + 1));
                     self.nodes.push(Node::EMPTY);
                 }
@@ -309,7 +309,7 @@ impl Joining<'_> {
 
     /// Up to four descendants of a binary node: its children, the largest of them opened until there are
     /// four.
-    fn four_under(&self, node: usize) -> Vec<usize> {
+    fn four_descendants(&self, node: usize) -> Vec<usize> {
         let pair = |node: usize| {
             let first = self.binary.nodes[node].first_index as usize;
             [first, first + 1]

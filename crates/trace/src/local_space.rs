@@ -52,7 +52,7 @@ pub(crate) struct LocalRay {
 
 impl LocalSpace {
     /// The space of a scene between two corners.
-    pub fn around(low: DVec3, high: DVec3) -> Self {
+    pub fn enclosing(low: DVec3, high: DVec3) -> Self {
         let center = low * 0.5 + high * 0.5;
         let half = ((high - center).max(center - low)).max_element();
         let scale = if half > 0.0 { (-half.log2().ceil()).exp2() } else { 1.0 };

@@ -6,26 +6,26 @@ use scene::{Scene, SurfacePoint};
 
 /// How surfaces that are half there are met.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Presence {
+pub(crate) enum TransparencyMode {
     /// By this ray or not, by chance: the mean over many rays is right.
-    Drawn,
+    Stochastic,
     /// By every ray, if they are there at all: whoever asks shares its light out by opacity.
-    Shared,
+    Fractional,
 }
 
-impl Presence {
+impl TransparencyMode {
     /// Whether `point` is there for `ray`. Under a mask the opacity is 0 or 1, and both agree.
-    pub fn is_met(self, scene: &Scene, point: SurfacePoint, ray: &Ray) -> bool {
+    pub fn is_hit(self, scene: &Scene, point: SurfacePoint, ray: &Ray) -> bool {
         let opacity = f64::from(scene.opacity(point));
         match self {
-            Self::Drawn => draw(ray, point.triangle) < opacity,
-            Self::Shared => opacity > 0.0,
+            Self::Stochastic => random_threshold(ray, point.triangle) < opacity,
+            Self::Fractional => opacity > 0.0,
         }
     }
 }
 
 /// A number in [0, 1), uniform over rays and triangles, the same every time.
-fn draw(ray: &Ray, triangle: u32) -> f64 {
+fn random_threshold(ray: &Ray, triangle: u32) -> f64 {
     let words = [ray.origin, ray.direction].into_iter().flat_map(|v| v.to_array().map(f64::to_bits));
     unit(words.fold(u64::from(triangle), |hash, word| mix(hash ^ word)))
 }

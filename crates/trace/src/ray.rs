@@ -25,7 +25,7 @@ impl Ray {
     ///
     /// Every aperture point sees the same directions: what is infinitely far away has the same `pixel` for all of them. The
     /// direction has depth 1, so that t along the ray is axial depth.
-    pub fn of_pinhole(camera: &Camera, u: DVec2, pixel: DVec2) -> Self {
+    pub fn pinhole(camera: &Camera, u: DVec2, pixel: DVec2) -> Self {
         let direction = camera.q_from_pixel(pixel) * (camera.yfov / 2.0).tan();
         Self {
             origin: camera.world_from_camera(u.extend(0.0)),

@@ -14,8 +14,8 @@ use crate::hierarchy::{Halfspaces, Node};
 use crate::local_space::LocalSpace;
 use crate::watertight::in_plane;
 use glam::{DVec2, DVec3};
-pub use place_set::PlaceSet;
-pub use places::Places;
+pub use place_set::PointSet;
+pub use places::TargetPoints;
 pub(crate) use projection::Outline;
 use projection::{Boxes, Projection};
 use shadow::Shadow;
@@ -25,49 +25,49 @@ pub use viewpoint::Viewpoint;
 
 /// What a viewpoint sees of places on a square.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Sight {
+pub struct SquareVisibility {
     /// The places that it does not see.
-    pub hidden: PlaceSet,
+    pub hidden: PointSet,
     /// How much of each it sees past what is half there, in (0, 1], whether hidden or not; none where there is no such thing.
-    pub shares: Option<Box<[f32; PlaceSet::MOST]>>,
+    pub shares: Option<Box<[f32; PointSet::MAX]>>,
 }
 
-impl Sight {
+impl SquareVisibility {
     /// All but what is hidden.
-    pub(crate) fn past(hidden: PlaceSet) -> Self {
+    pub(crate) fn from_hidden(hidden: PointSet) -> Self {
         Self { hidden, shares: None }
     }
 
     /// Looks at a place past something of an opacity.
-    pub(crate) fn dim(&mut self, place: usize, opacity: f32) {
+    pub(crate) fn attenuate(&mut self, place: usize, opacity: f32) {
         if opacity >= 1.0 {
             self.hidden |= std::iter::once(place).collect();
         } else if opacity > 0.0 {
-            let shares = self.shares.get_or_insert_with(|| Box::new([1.0; PlaceSet::MOST]));
+            let shares = self.shares.get_or_insert_with(|| Box::new([1.0; PointSet::MAX]));
             shares[place] *= 1.0 - opacity;
         }
     }
 }
 
 /// A viewpoint and the square it looks at.
-pub(crate) struct Looking<'a> {
+pub(crate) struct VisibilityQuery<'a> {
     eye: Eye,
     square: &'a Square,
-    places: &'a Places,
+    points: &'a TargetPoints,
     /// The square's axis, away from the viewpoint.
     axis: DVec3,
     projection: Projection,
 }
 
-impl<'a> Looking<'a> {
-    pub fn new(eye: Eye, square: &'a Square, places: &'a Places, space: &LocalSpace) -> Self {
+impl<'a> VisibilityQuery<'a> {
+    pub fn new(eye: Eye, square: &'a Square, points: &'a TargetPoints, space: &LocalSpace) -> Self {
         let axis = square.axis();
         let away = match eye {
             Eye::At(point) => square.center - point,
             Eye::Toward(direction) => -direction,
         };
         let axis = if axis.dot(away) < 0.0 { -axis } else { axis };
-        Self { eye, square, places, axis, projection: Projection::new(eye, square, axis, space) }
+        Self { eye, square, points, axis, projection: Projection::new(eye, square, axis, space) }
     }
 
     /// The part of the world between the two, generously, and the direction in which it widens.
@@ -92,7 +92,7 @@ impl<'a> Looking<'a> {
 
     /// The ray to a place of the square.
     pub fn ray(&self, place: DVec2) -> Ray {
-        let place = self.square.at(place);
+        let place = self.square.world_position(place);
         match self.eye {
             Eye::At(origin) => Ray { origin, direction: place - origin, t_min: 0.0, t_max: 1.0, skip: None },
             Eye::Toward(direction) => {
@@ -102,7 +102,7 @@ impl<'a> Looking<'a> {
     }
 
     /// Whether the viewpoint lies on the side of a triangle from which its corners run counter-clockwise.
-    pub fn sees_front(&self, corners: &[DVec3; 3]) -> bool {
+    pub fn is_in_front_of(&self, corners: &[DVec3; 3]) -> bool {
         let [a, b, c] = *corners;
         let normal = (b - a).cross(c - a);
         match self.eye {
@@ -113,47 +113,47 @@ impl<'a> Looking<'a> {
 
     /// Calls `visit` with the index of each triangle that may hide some of the places, those of them, and some that it does not.
     #[inline(always)]
-    pub fn each_near(&self, outlines: &[Outline], mut visit: impl FnMut(usize, PlaceSet)) {
-        for (chunk, outlines) in outlines.chunks(Boxes::MOST).enumerate() {
+    pub fn visit_near_triangles(&self, outlines: &[Outline], mut visit: impl FnMut(usize, PointSet)) {
+        for (chunk, outlines) in outlines.chunks(Boxes::MAX).enumerate() {
             let boxes = self.projection.boxes(outlines);
             let mut left = boxes.reaching;
             while left != 0 {
                 let at = left.trailing_zeros() as usize;
                 left &= left - 1;
-                let near = boxes.get(at).map_or(self.places.all(), |bounds| self.places.near(&bounds));
-                visit(chunk * Boxes::MOST + at, near);
+                let near = boxes.get(at).map_or(self.points.all(), |bounds| self.points.near_box(&bounds));
+                visit(chunk * Boxes::MAX + at, near);
             }
         }
     }
 
     /// Those of a node's boxes, of the `reached` ones, in which triangles may hide more of the places than are `hidden`.
     #[inline(always)]
-    pub fn may_hide_more(&self, node: &Node, reached: u32, hidden: PlaceSet) -> u32 {
-        let boxes = self.projection.boxes_of(node);
-        let mut wanted = reached & boxes.reaching;
-        let mut left = wanted;
+    pub fn may_hide_more(&self, node: &Node, reached: u32, hidden: PointSet) -> u32 {
+        let boxes = self.projection.node_boxes(node);
+        let mut candidates = reached & boxes.reaching;
+        let mut left = candidates;
         while left != 0 {
             let at = left.trailing_zeros();
             left &= left - 1;
             if let Some(bounds) = boxes.get(at as usize)
-                && (self.places.near(&bounds) - hidden).is_empty()
+                && (self.points.near_box(&bounds) - hidden).is_empty()
             {
-                wanted &= !(1 << at);
+                candidates &= !(1 << at);
             }
         }
-        wanted
+        candidates
     }
 
     /// Those of the places `near` it that a triangle hides.
     #[inline(always)]
-    pub fn newly_hidden(&self, corners: &[DVec3; 3], near: PlaceSet) -> PlaceSet {
-        let Some(shadow) = Shadow::of(corners, self.eye, self.square) else { return PlaceSet::default() };
-        let behind = self.places.behind(&shadow, near);
+    pub fn newly_hidden(&self, corners: &[DVec3; 3], near: PointSet) -> PointSet {
+        let Some(shadow) = Shadow::cast(corners, self.eye, self.square) else { return PointSet::default() };
+        let behind = self.points.in_shadow(&shadow, near);
         // A line that starts in a plane does not meet it again.
         let starts_there = match self.eye {
             Eye::At(point) => !behind.is_empty() && in_plane(corners, point),
             Eye::Toward(_) => false,
         };
-        if starts_there { PlaceSet::default() } else { behind }
+        if starts_there { PointSet::default() } else { behind }
     }
 }

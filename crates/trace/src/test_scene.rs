@@ -5,7 +5,7 @@ use scene::{Material, Node, Part, Scene, Triangle};
 use std::sync::Arc;
 
 pub fn white() -> Material {
-    Material::of_unlit()
+    Material::unlit_white()
 }
 
 /// The same, seen from its front alone.

@@ -5,7 +5,7 @@ mod sights;
 
 use crate::hierarchy::Hierarchy;
 use crate::local_space::LocalSpace;
-use crate::presence::Presence;
+use crate::presence::TransparencyMode;
 use crate::sight::Outline;
 use crate::watertight::{Crossing, ShearedRay, has_area, in_plane};
 use crate::{Hit, Ray};
@@ -37,7 +37,7 @@ pub struct Tracer {
     triangles: Vec<LeafTriangle>,
     /// Of the same.
     outlines: Vec<Outline>,
-    blends: bool,
+    has_transparency: bool,
 }
 
 /// A triangle as the inner loop wants it.
@@ -65,9 +65,9 @@ impl Tracer {
         let (low, high) =
             corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), p| (l.min(p), h.max(p)));
         let space = if with_area.is_empty() {
-            LocalSpace::around(DVec3::ZERO, DVec3::ZERO)
+            LocalSpace::enclosing(DVec3::ZERO, DVec3::ZERO)
         } else {
-            LocalSpace::around(low, high)
+            LocalSpace::enclosing(low, high)
         };
         let boxes: Vec<_> = with_area.iter().map(|&index| space.bounds(&scene.corners(index))).collect();
         let (hierarchy, order) = Hierarchy::build(&boxes);
@@ -76,13 +76,13 @@ impl Tracer {
             .map(|place| {
                 let index = with_area[place as usize];
                 let may_be_transparent = scene.material_of(index).may_be_transparent();
-                let hides_back = scene.hides_back(index);
+                let hides_back = scene.culls_back_face(index);
                 LeafTriangle { corners: scene.corners(index), index, may_be_transparent, hides_back }
             })
             .collect();
         let outlines = triangles.iter().map(|triangle| Outline::new(&triangle.corners, &space)).collect();
-        let blends = scene.materials.iter().any(|material| material.alpha == AlphaMode::Blend);
-        Self { scene, space, hierarchy, triangles, outlines, blends }
+        let has_transparency = scene.materials.iter().any(|material| material.alpha == AlphaMode::Blend);
+        Self { scene, space, hierarchy, triangles, outlines, has_transparency }
     }
 
     /// The scene it traces.
@@ -91,8 +91,8 @@ impl Tracer {
     }
 
     /// Whether any surface may be half there.
-    pub fn blends(&self) -> bool {
-        self.blends
+    pub fn has_transparency(&self) -> bool {
+        self.has_transparency
     }
 
     /// Bytes that the hierarchy and its triangles take, the scene itself not counted.
@@ -104,22 +104,22 @@ impl Tracer {
 
     /// The first surface that an eye at the ray's origin sees along it.
     pub fn first_hit(&self, ray: &Ray) -> Option<Hit> {
-        self.first(ray, Presence::Drawn)
+        self.first_hit_with(ray, TransparencyMode::Stochastic)
     }
 
     /// The same, where what is there in part is met.
-    fn first_shared(&self, ray: &Ray) -> Option<Hit> {
-        self.first(ray, Presence::Shared)
+    fn first_fractional_hit(&self, ray: &Ray) -> Option<Hit> {
+        self.first_hit_with(ray, TransparencyMode::Fractional)
     }
 
     #[inline(always)]
-    fn first(&self, ray: &Ray, presence: Presence) -> Option<Hit> {
+    fn first_hit_with(&self, ray: &Ray, mode: TransparencyMode) -> Option<Hit> {
         let local = self.space.ray(ray)?;
         let sheared = ShearedRay::new(ray.origin, ray.direction);
         let mut nearest = Nearest { hit: None, t_max: ray.t_max };
         self.hierarchy.walk(&local, local.local_t(ray.t_max), |leaf| {
             for triangle in &self.triangles[leaf] {
-                self.take(&mut nearest, triangle, ray, &sheared, presence);
+                self.accept_triangle(&mut nearest, triangle, ray, &sheared, mode);
             }
             Some(local.local_t(nearest.t_max))
         });
@@ -128,7 +128,7 @@ impl Tracer {
 
     /// The first surface that light from a surface point meets in a direction: from behind, too. Free of self-intersection as
     /// [`Self::occluded`] is.
-    pub fn first_met(&self, from: SurfacePoint, direction: DVec3) -> Option<Hit> {
+    pub fn first_hit_from(&self, from: SurfacePoint, direction: DVec3) -> Option<Hit> {
         let origin = from.position(&self.scene);
         let ray = Ray { origin, direction, t_min: 0.0, t_max: f64::INFINITY, skip: Some(from.triangle) };
         let local = self.space.ray(&ray)?;
@@ -138,7 +138,13 @@ impl Tracer {
             for triangle in &self.triangles[leaf] {
                 let Some(crossing) = sheared.cross(&triangle.corners) else { continue };
                 if !in_plane(&triangle.corners, origin) {
-                    self.take_crossing(&mut nearest, triangle, &ray, &crossing, Presence::Drawn);
+                    self.accept_crossing(
+                        &mut nearest,
+                        triangle,
+                        &ray,
+                        &crossing,
+                        TransparencyMode::Stochastic,
+                    );
                 }
             }
             Some(local.local_t(nearest.t_max))
@@ -148,36 +154,36 @@ impl Tracer {
 
     /// Whether light from a surface point meets anything in a direction: from behind, too. Free of self-intersection as
     /// [`Self::occluded`] is.
-    pub fn meets(&self, from: SurfacePoint, direction: DVec3) -> bool {
+    pub fn any_hit_from(&self, from: SurfacePoint, direction: DVec3) -> bool {
         let origin = from.position(&self.scene);
         let ray = Ray { origin, direction, t_min: 0.0, t_max: f64::INFINITY, skip: Some(from.triangle) };
-        self.any(&ray, |triangle, _| !in_plane(&triangle.corners, origin))
+        self.any_hit_where(&ray, |triangle, _| !in_plane(&triangle.corners, origin))
     }
 
     /// Takes a triangle for the nearest that an eye sees, if it is.
     #[inline(always)]
-    fn take(
+    fn accept_triangle(
         &self,
         nearest: &mut Nearest,
         triangle: &LeafTriangle,
         ray: &Ray,
         sheared: &ShearedRay,
-        presence: Presence,
+        mode: TransparencyMode,
     ) -> bool {
         let Some(crossing) = sheared.cross(&triangle.corners) else { return false };
         (crossing.from_front || !triangle.hides_back)
-            && self.take_crossing(nearest, triangle, ray, &crossing, presence)
+            && self.accept_crossing(nearest, triangle, ray, &crossing, mode)
     }
 
     /// Takes a triangle for the nearest, if it is.
     #[inline(always)]
-    fn take_crossing(
+    fn accept_crossing(
         &self,
         nearest: &mut Nearest,
         triangle: &LeafTriangle,
         ray: &Ray,
         crossing: &Crossing,
-        presence: Presence,
+        mode: TransparencyMode,
     ) -> bool {
         let t = crossing.t;
         let is_nearer = t < nearest.t_max
@@ -186,11 +192,11 @@ impl Tracer {
             return false;
         }
         let point = SurfacePoint { triangle: triangle.index, barycentric: crossing.barycentric };
-        let is_met = !triangle.may_be_transparent || presence.is_met(&self.scene, point, ray);
-        if is_met {
+        let is_hit = !triangle.may_be_transparent || mode.is_hit(&self.scene, point, ray);
+        if is_hit {
             *nearest = Nearest { hit: Some(Hit { point, t }), t_max: t };
         }
-        is_met
+        is_hit
     }
 
     /// Whether light finds anything strictly between a surface point and the world position `source`.
@@ -200,23 +206,23 @@ impl Tracer {
     /// coordinates), because a line that starts in a plane does not meet it again. So neighbours that meet at
     /// the point's edge do not occlude it however they are bent, and shells closer together than any fixed
     /// offset still occlude each other. `source` may itself be on a surface.
-    pub fn occluded(&self, from: SurfacePoint, source: DVec3) -> bool {
-        self.between(from, source, |_, _| true)
+    pub fn is_occluded(&self, from: SurfacePoint, source: DVec3) -> bool {
+        self.any_between(from, source, |_, _| true)
     }
 
     /// Whether an eye at this world position does not see a surface point: for what lies between ([`Self::occluded`], but
     /// for faces that show the eye a back that is not seen), or since it would see the back of the point's own face.
-    pub fn hidden(&self, from: SurfacePoint, eye: DVec3) -> bool {
+    pub fn is_hidden_from(&self, from: SurfacePoint, eye: DVec3) -> bool {
         let shows_back =
             || self.scene.area_normal(from.triangle).dot(eye - from.position(&self.scene)) <= 0.0;
-        self.scene.hides_back(from.triangle) && shows_back()
+        self.scene.culls_back_face(from.triangle) && shows_back()
             // The ray leads to the eye, which sees the other side of what the ray meets.
-            || self.between(from, eye, |triangle, crossing| !triangle.hides_back || !crossing.from_front)
+            || self.any_between(from, eye, |triangle, crossing| !triangle.hides_back || !crossing.from_front)
     }
 
     /// Whether anything that `counts` lies strictly between a surface point and a world position.
     #[inline(always)]
-    fn between(
+    fn any_between(
         &self,
         from: SurfacePoint,
         to: DVec3,
@@ -224,7 +230,7 @@ impl Tracer {
     ) -> bool {
         let origin = from.position(&self.scene);
         let ray = Ray { origin, direction: to - origin, t_min: 0.0, t_max: 1.0, skip: Some(from.triangle) };
-        self.any(&ray, |triangle, crossing| {
+        self.any_hit_where(&ray, |triangle, crossing| {
             counts(triangle, crossing)
                 && !in_plane(&triangle.corners, origin)
                 && !in_plane(&triangle.corners, to)
@@ -233,16 +239,16 @@ impl Tracer {
 
     /// Whether an eye at the ray's origin sees any surface along it.
     pub fn any_hit(&self, ray: &Ray) -> bool {
-        self.any(ray, |triangle, crossing| !triangle.hides_back || crossing.from_front)
+        self.any_hit_where(ray, |triangle, crossing| !triangle.hides_back || crossing.from_front)
     }
 
     /// Whether a ray meets any triangle that `counts`.
     #[inline(always)]
-    fn any(&self, ray: &Ray, counts: impl Fn(&LeafTriangle, &Crossing) -> bool) -> bool {
+    fn any_hit_where(&self, ray: &Ray, counts: impl Fn(&LeafTriangle, &Crossing) -> bool) -> bool {
         let Some(local) = self.space.ray(ray) else { return false };
         let sheared = ShearedRay::new(ray.origin, ray.direction);
         let far = local.local_t(ray.t_max);
-        let mut met = false;
+        let mut has_hit = false;
         self.hierarchy.walk(&local, far, |leaf| {
             for triangle in &self.triangles[leaf] {
                 let Some(crossing) = sheared.cross(&triangle.corners) else { continue };
@@ -251,14 +257,16 @@ impl Tracer {
                     continue;
                 }
                 let point = SurfacePoint { triangle: triangle.index, barycentric: crossing.barycentric };
-                if !triangle.may_be_transparent || Presence::Drawn.is_met(&self.scene, point, ray) {
-                    met = true;
+                if !triangle.may_be_transparent
+                    || TransparencyMode::Stochastic.is_hit(&self.scene, point, ray)
+                {
+                    has_hit = true;
                     return None;
                 }
             }
             Some(far)
         });
-        met
+        has_hit
     }
 }
 

@@ -128,18 +128,18 @@ impl<'a> Truth<'a> {
     /// Which samples of a pixel the next pass takes.
     fn next_pass(&self) -> std::ops::Range<u32> {
         let (first, pass) = (self.samples_per_pixel(), self.options.samples_of_pass());
-        let wanted = self.options.samples_per_pixel.max(1);
+        let total = self.options.samples_per_pixel.max(1);
         let last = first.saturating_add(pass);
-        first..if first < wanted { last.min(wanted) } else { last }
+        first..if first < total { last.min(total) } else { last }
     }
 
     /// Adds a pass of [`TruthOptions::samples_of_pass`] samples a pixel (or as few as are left to do). If it is
     /// cancelled, the estimate stays as it was before.
     pub fn pass(&mut self, progress: &dyn Progress) -> Result<(), Cancelled> {
         progress.check()?;
-        let known = self.rays.take();
+        let retained = self.rays.take();
         let Self { view, radiance, options, sensor, .. } = &*self;
-        let rays = known.unwrap_or_else(|| match options.estimator {
+        let rays = retained.unwrap_or_else(|| match options.estimator {
             Estimator::Sensor => Rays::Sensor(Box::new(FromSensor::new(view, *radiance, sensor, options))),
             Estimator::Surface => Rays::Surfaces(FromSurfaces::new(view, *radiance, sensor, options)),
         });

@@ -74,19 +74,19 @@ impl ShearedRay {
 }
 
 /// Several rays from one origin that are longest along the same axis.
-pub(crate) struct ShearedRays {
+pub(crate) struct ShearedRayPacket {
     origin: DVec3,
     axes: [usize; 3],
     /// dx/dz and dy/dz of each.
-    shear: [[f64; ShearedRays::MOST]; 2],
+    shear: [[f64; ShearedRayPacket::MAX]; 2],
 }
 
-impl ShearedRays {
+impl ShearedRayPacket {
     /// How many there can be.
-    pub const MOST: usize = 16;
+    pub const MAX: usize = 16;
 
     /// `None` if they are not longest along the same axis.
-    pub fn new(rays: &[ShearedRay; Self::MOST]) -> Option<Self> {
+    pub fn new(rays: &[ShearedRay; Self::MAX]) -> Option<Self> {
         let ShearedRay { origin, axes, .. } = rays[0];
         let shear = [0, 1].map(|k| rays.map(|ray| ray.shear[k]));
         rays.iter().all(|ray| ray.axes == axes).then_some(Self { origin, axes, shear })
@@ -94,10 +94,10 @@ impl ShearedRays {
 
     /// A bit for each ray whose line does not pass beside the triangle: the signs that [`ShearedRay::cross`] looks at.
     #[inline(always)]
-    pub fn near(&self, corners: &[DVec3; 3]) -> u32 {
+    pub fn may_hit(&self, corners: &[DVec3; 3]) -> u32 {
         let [x, y, z] = self.axes;
         let [a, b, c] = corners.map(|corner| (corner - self.origin).to_array());
-        let mut is_near = [false; Self::MOST];
+        let mut is_near = [false; Self::MAX];
         for (at, is_near) in is_near.iter_mut().enumerate() {
             let (sx, sy) = (self.shear[0][at], self.shear[1][at]);
             let (ax, ay) = (a[x] - sx * a[z], a[y] - sy * a[z]);

@@ -2,7 +2,7 @@
 
 use super::noise::{noise, smoothstep};
 use super::solids::tapered;
-use super::surface::{Look, Object, Place, Skin, Surface, plain};
+use super::surface::{Object, Place, Skin, SkinShader, Surface, plain};
 use glam::{EulerRot, Quat, Vec3};
 use std::sync::Arc;
 
@@ -68,7 +68,7 @@ fn hind_wing(v: f32) -> (f32, f32) {
     (angle, 0.62 + 0.10 * (v * 2.6).sin() - 0.08 * v + scallop + tail)
 }
 
-fn scales(hind: bool) -> Look {
+fn scales(hind: bool) -> SkinShader {
     Arc::new(move |place: &Place| {
         let (u, v) = (place.uv.x, place.uv.y);
         let wave = 0.5 + 0.5 * (v * 5.0 + u * 3.0).sin();

@@ -2,7 +2,7 @@
 
 use super::noise::{hash, noise};
 use super::solids::tube;
-use super::surface::{Look, Object, Place, Skin, Surface};
+use super::surface::{Object, Place, Skin, SkinShader, Surface};
 use super::view::View;
 use glam::{Quat, Vec3};
 use std::f32::consts::{PI, TAU};
@@ -18,7 +18,7 @@ pub fn point(along: f32, height: f32) -> Vec3 {
 
 /// The hoops and the wires that hold them.
 pub fn fence() -> Object {
-    let look: Look = Arc::new(|place: &Place| {
+    let shader: SkinShader = Arc::new(|place: &Place| {
         let rust = noise(place.position * 160.0);
         let albedo = Vec3::new(0.020, 0.023, 0.027).lerp(Vec3::new(0.055, 0.028, 0.016), rust * rust);
         Skin { wetness: 0.35, ..Skin::matt(place, albedo) }
@@ -34,11 +34,11 @@ pub fn fence() -> Object {
             point(middle + half * angle.cos(), shoulder + half * angle.sin())
         }));
         path.push(point(middle + half, -0.01));
-        surfaces.push(tube(&path, 0.0042, 8, [8, 40], look.clone()));
+        surfaces.push(tube(&path, 0.0042, 8, [8, 40], shader.clone()));
     }
     for height in [0.035, 0.088] {
         let path: Vec<Vec3> = (0..=10).map(|i| point(-0.40 + 0.08 * i as f32, height)).collect();
-        surfaces.push(tube(&path, 0.0024, 6, [6, 40], look.clone()));
+        surfaces.push(tube(&path, 0.0024, 6, [6, 40], shader.clone()));
     }
     Object::baked("fence", surfaces)
 }
@@ -86,12 +86,12 @@ fn leaf(stalk: Vec3, tip: Vec3, length: f32, id: i32) -> Surface {
     let side = tip.cross(Quat::from_rotation_y(hash(id, 5, 0) * TAU) * Vec3::Z).normalize_or(Vec3::X);
     let up = side.cross(tip);
     let tint = Vec3::new(0.055, 0.150, 0.045).lerp(Vec3::new(0.140, 0.150, 0.030), hash(id, 6, 0));
-    let look: Look = Arc::new(move |place: &Place| {
+    let shader: SkinShader = Arc::new(move |place: &Place| {
         let rib = (place.uv.x - 0.5).abs();
         let color = if rib < 0.05 { tint * 1.6 } else { tint * (0.8 + 0.4 * noise(place.position * 300.0)) };
         Skin { translucency: 0.22, wetness: 0.10, ..Skin::matt(place, color) }
     });
-    Surface::grid(5, 7, [7, 12], look, |u, v| {
+    Surface::grid(5, 7, [7, 12], shader, |u, v| {
         let across = (u - 0.5) * 2.0;
         let width = 0.42 * (PI * v.powf(0.75)).sin().max(0.0) * (1.0 - 0.25 * v) + 0.01;
         let droop = -0.25 * v * v + 0.16 * across.abs() * width;

@@ -1,7 +1,7 @@
 //! The fox: folded from a sheet of orange paper, sitting, its eyes closed. Lengths in centimetres until placed.
 
 use super::noise::{noise, smoothstep};
-use super::surface::{Look, Object, Place, Skin, Surface};
+use super::surface::{Object, Place, Skin, SkinShader, Surface};
 use glam::{Quat, Vec3};
 use std::sync::Arc;
 
@@ -33,7 +33,7 @@ pub fn fox(base: Vec3, yaw: f32, size: f32) -> Object {
 }
 
 /// Paper: a faint grain, and folds that catch the light.
-fn paper(color: Vec3) -> Look {
+fn paper(color: Vec3) -> SkinShader {
     Arc::new(move |place: &Place| {
         let grain = 0.94 + 0.12 * noise(place.position * 900.0);
         let edge = place.uv.x.min(place.uv.y).min(1.0 - place.uv.x - place.uv.y);

@@ -4,12 +4,12 @@ use super::ground::path_middle;
 use super::light::sky;
 use super::noise::{hash, noise, rough};
 use super::solids::{ball, block, tapered};
-use super::surface::{Look, Object, Place, Shine, Skin, Surface};
+use super::surface::{Object, Place, Shine, Skin, SkinShader, Surface};
 use super::view::View;
 use glam::Vec3;
 use std::sync::Arc;
 
-fn foliage(tint: Vec3) -> Look {
+fn foliage(tint: Vec3) -> SkinShader {
     Arc::new(move |place: &Place| {
         let clump = 0.65 * noise(place.position * 16.0) + 0.35 * noise(place.position * 33.0);
         Skin::matt(place, tint * (0.35 + 1.7 * clump * clump))
@@ -43,8 +43,8 @@ pub fn trees() -> Object {
     let bark = Arc::new(|place: &Place| Skin::matt(place, Vec3::new(0.05, 0.035, 0.025)));
     for ((center, radius), (_, _, height, _, stretch)) in crowns().into_iter().zip(TREES) {
         let foot = center.with_y(0.0);
-        let look = foliage(Vec3::new(0.085, 0.19, 0.06));
-        surfaces.push(ball(center, 20, [64, 36], look, move |direction: Vec3| {
+        let shader = foliage(Vec3::new(0.085, 0.19, 0.06));
+        surfaces.push(ball(center, 20, [64, 36], shader, move |direction: Vec3| {
             let stretched = radius / Vec3::new(direction.x, direction.y / stretch, direction.z).length();
             stretched * (0.90 + 0.22 * noise(direction * 6.0 + foot * 3.0))
         }));
@@ -58,8 +58,8 @@ pub fn trees() -> Object {
 pub fn hedges() -> Object {
     let mut surfaces = Vec::new();
     for (side, near, far) in [(-1.0f32, 1.1f32, 6.0f32), (1.0, 1.5, 5.2)] {
-        let look = foliage(Vec3::new(0.075, 0.16, 0.05));
-        surfaces.push(Surface::grid(12, 46, [26, 110], look, |u, v| {
+        let shader = foliage(Vec3::new(0.075, 0.16, 0.05));
+        surfaces.push(Surface::grid(12, 46, [26, 110], shader, |u, v| {
             let depth = near * (far / near).powf(v);
             // Around the section, over the top, from left to right.
             let around = (1.0 - u) * std::f32::consts::PI;
@@ -106,9 +106,9 @@ pub fn houses() -> Object {
     let mut surfaces = Vec::new();
     for (k, house) in row_of_houses().iter().enumerate() {
         let shade = 0.16 + 0.10 * hash(k as i32, 1, 1);
-        let plaster: Look =
+        let plaster: SkinShader =
             Arc::new(move |place: &Place| Skin::matt(place, Vec3::new(1.0, 0.85, 0.75) * shade));
-        let tiles: Look = Arc::new(|place: &Place| Skin::matt(place, Vec3::new(0.13, 0.06, 0.05)));
+        let tiles: SkinShader = Arc::new(|place: &Place| Skin::matt(place, Vec3::new(0.13, 0.06, 0.05)));
         surfaces.extend(block(house.base, house.half, house.yaw, [16, 20], &plaster));
         let turn = glam::Quat::from_rotation_y(house.yaw);
         let at = |x: f32, y: f32, z: f32| {
@@ -128,7 +128,7 @@ pub fn houses() -> Object {
 
 /// Lit windows of the houses.
 pub fn windows() -> Object {
-    let look: Look = Arc::new(|place: &Place| Skin::matt(place, Vec3::ZERO));
+    let shader: SkinShader = Arc::new(|place: &Place| Skin::matt(place, Vec3::ZERO));
     let mut surfaces = Vec::new();
     for (k, house) in row_of_houses().iter().enumerate() {
         let turn = glam::Quat::from_rotation_y(house.yaw);
@@ -146,7 +146,7 @@ pub fn windows() -> Object {
                 surfaces.push(Surface::quad(
                     [at(-1., -1.), at(1., -1.), at(1., 1.), at(-1., 1.)],
                     [4, 4],
-                    look.clone(),
+                    shader.clone(),
                 ));
             }
         }
@@ -156,12 +156,12 @@ pub fn windows() -> Object {
 
 /// Hills against the sky.
 pub fn hills() -> Object {
-    let look: Look = Arc::new(|place: &Place| {
+    let shader: SkinShader = Arc::new(|place: &Place| {
         let haze = Vec3::new(0.045, 0.060, 0.110)
             .lerp(Vec3::new(0.16, 0.10, 0.12), (place.uv.x - 0.25).clamp(0.0, 1.0) * 0.7);
         Skin { glow: haze, ..Skin::matt(place, Vec3::ZERO) }
     });
-    let surface = Surface::grid(40, 3, [80, 4], look, |u, v| {
+    let surface = Surface::grid(40, 3, [80, 4], shader, |u, v| {
         let x = -4.3 + 8.6 * u;
         let crest =
             0.40 + 0.40 * noise(Vec3::new(u * 4.0, 3.3, 0.0)) + 0.12 * noise(Vec3::new(u * 17.0, 1.0, 0.0));
@@ -173,7 +173,7 @@ pub fn hills() -> Object {
 /// The sky behind it all, a curved sheet.
 pub fn backdrop(view: &View) -> Object {
     let eye = view.eye;
-    let look: Look = Arc::new(move |place: &Place| {
+    let shader: SkinShader = Arc::new(move |place: &Place| {
         let direction = (place.position - eye).normalize();
         let streak = rough(Vec3::new(direction.x * 4.0, direction.y * 26.0, 2.0));
         let cloud = Vec3::new(0.30, 0.13, 0.13)
@@ -181,7 +181,7 @@ pub fn backdrop(view: &View) -> Object {
             * (1.0 - direction.y * 1.8).clamp(0.0, 1.0);
         Skin { glow: sky(direction) + cloud, ..Skin::matt(place, Vec3::ZERO) }
     });
-    let surface = Surface::grid(25, 9, [150, 64], look, |u, v| {
+    let surface = Surface::grid(25, 9, [150, 64], shader, |u, v| {
         let angle = (u - 0.5) * 1.12;
         Vec3::new(8.0 * angle.sin(), 0.25 + 1.95 * v, -8.0 * angle.cos())
     });

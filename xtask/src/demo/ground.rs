@@ -19,7 +19,7 @@ pub fn path_middle(depth: f32) -> f32 {
 
 /// The ground.
 pub fn ground() -> Object {
-    let look = Arc::new(|place: &super::surface::Place| {
+    let shader = Arc::new(|place: &super::surface::Place| {
         let (x, z) = (place.position.x, place.position.z);
         let step = 4e-4 * (-z).max(0.5);
         let slope =
@@ -32,7 +32,7 @@ pub fn ground() -> Object {
         let ripple = 0.006 + (0.0004 - 0.006) * puddle;
         Skin { normal, wetness, ripple, ..Skin::matt(place, albedo * (1.0 - 0.55 * puddle)) }
     });
-    let surface = Surface::grid(104, 124, [720, 512], look, |u, v| {
+    let surface = Surface::grid(104, 124, [720, 512], shader, |u, v| {
         let depth = DEPTHS[0] * (DEPTHS[1] / DEPTHS[0]).powf(v);
         let half_width = 0.08 + 0.53 * depth;
         let x = (2.0 * u - 1.0) * half_width;

@@ -4,7 +4,7 @@ use super::ground::path_middle;
 use super::light::Lamp;
 use super::noise::hash;
 use super::solids::{block, sphere, tube, turned};
-use super::surface::{Look, Object, Place, Shine, Skin, Surface, plain};
+use super::surface::{Object, Place, Shine, Skin, SkinShader, Surface, plain};
 use super::view::View;
 use glam::Vec3;
 use std::sync::Arc;
@@ -34,7 +34,7 @@ const FLAME: f32 = 0.118;
 
 /// The lanterns' iron.
 pub fn lantern_frames() -> Object {
-    let iron: Look =
+    let iron: SkinShader =
         Arc::new(|place: &Place| Skin { wetness: 0.3, ..Skin::matt(place, Vec3::new(0.05, 0.05, 0.055)) });
     let mut surfaces = Vec::new();
     for (foot, size) in lanterns() {

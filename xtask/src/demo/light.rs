@@ -84,7 +84,7 @@ impl Lighting<'_> {
         for k in 0..self.sky_rays {
             let direction = hemisphere(normal, (spread(k) + jitter).fract());
             if direction.dot(geometric) > 0.0 {
-                sum += self.seen(origin, direction, false);
+                sum += self.incoming_radiance(origin, direction, false);
             }
         }
         sum *= PI / self.sky_rays as f32;
@@ -147,12 +147,12 @@ impl Lighting<'_> {
             }
             let fresnel = 0.03 + 0.97 * (1.0 - cosine).powi(5);
             // A lone bright bulb in the lobe would be a speck: limit what one ray brings.
-            sum += self.seen(origin, direction, true).min(Vec3::splat(2.5)) * fresnel;
+            sum += self.incoming_radiance(origin, direction, true).min(Vec3::splat(2.5)) * fresnel;
         }
         sum / count as f32
     }
 
-    fn seen(&self, origin: Vec3, direction: Vec3, with_glow: bool) -> Vec3 {
+    fn incoming_radiance(&self, origin: Vec3, direction: Vec3, with_glow: bool) -> Vec3 {
         match self.rays.first(origin, direction, f32::INFINITY) {
             None => sky(direction),
             Some(hit) => {

@@ -148,18 +148,18 @@ mod tests {
 
     #[test]
     fn solids_face_outward() {
-        let look = surface::plain(Vec3::ONE);
+        let shader = surface::plain(Vec3::ONE);
         let center = Vec3::new(1.0, 2.0, 3.0);
-        let mut closed = vec![solids::sphere(center, 0.5, 8, [2, 2], look.clone())];
+        let mut closed = vec![solids::sphere(center, 0.5, 8, [2, 2], shader.clone())];
         closed.push(solids::tube(
             &[center - Vec3::Y, center, center + Vec3::Y],
             0.1,
             6,
             [2, 2],
-            look.clone(),
+            shader.clone(),
         ));
-        closed.push(solids::turned(center, &[(0.2, -0.1), (0.1, 0.3)], 6, [2, 2], look.clone()));
-        closed.extend(solids::block(center - Vec3::Y * 0.5, Vec3::new(0.3, 1.0, 0.2), 0.4, [2, 2], &look));
+        closed.push(solids::turned(center, &[(0.2, -0.1), (0.1, 0.3)], 6, [2, 2], shader.clone()));
+        closed.extend(solids::block(center - Vec3::Y * 0.5, Vec3::new(0.3, 1.0, 0.2), 0.4, [2, 2], &shader));
         for surface in &closed {
             for corners in surface.triangles() {
                 let [a, b, c] = corners.map(|i| surface.points[i as usize]);

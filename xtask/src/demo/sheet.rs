@@ -117,7 +117,7 @@ fn bake_block(surface: &Surface, block: &Block, lighting: &Lighting) -> Vec<Vec3
     (0..w * h)
         .map(|k| {
             let place = surface.place(Vec2::new(at(k % w, w), at(k / w, h)));
-            let skin = (surface.look)(&place);
+            let skin = (surface.shader)(&place);
             let seed = ((block.y + k / w) * 4096 + block.x + k % w) as i32;
             lighting.radiance(&place, &skin, surface.thin, seed)
         })
@@ -132,7 +132,7 @@ fn gather(objects: &[Object]) -> (Vec<[Vec3; 3]>, Vec<Facing>) {
             for corners in surface.triangles() {
                 triangles.push(corners.map(|i| surface.points[i as usize]));
                 let uv = corners.iter().map(|&i| surface.uv_of(i as usize)).sum::<Vec2>() / 3.0;
-                let skin = (surface.look)(&surface.place(uv));
+                let skin = (surface.shader)(&surface.place(uv));
                 let glow = match object.shine {
                     Shine::Baked => skin.glow,
                     Shine::Emitter(color, strength) => color * strength,

@@ -46,10 +46,10 @@ impl Skin {
 }
 
 /// A look: what a surface is like everywhere.
-pub type Look = Arc<dyn Fn(&Place) -> Skin + Send + Sync>;
+pub type SkinShader = Arc<dyn Fn(&Place) -> Skin + Send + Sync>;
 
 /// The look of one matt colour.
-pub fn plain(albedo: Vec3) -> Look {
+pub fn plain(albedo: Vec3) -> SkinShader {
     Arc::new(move |place| Skin::matt(place, albedo))
 }
 
@@ -65,7 +65,7 @@ pub struct Surface {
     /// Texels along u and v.
     pub texels: [usize; 2],
     /// What it is like.
-    pub look: Look,
+    pub shader: SkinShader,
     /// Whether both sides are seen, and lit alike.
     pub thin: bool,
 }
@@ -76,7 +76,7 @@ impl Surface {
         columns: usize,
         rows: usize,
         texels: [usize; 2],
-        look: Look,
+        shader: SkinShader,
         f: impl Fn(f32, f32) -> Vec3,
     ) -> Self {
         let at = |i: usize, n: usize| i as f32 / (n - 1) as f32;
@@ -84,18 +84,18 @@ impl Surface {
             .flat_map(|j| (0..columns).map(move |i| (i, j)))
             .map(|(i, j)| f(at(i, columns), at(j, rows)));
         let points = points.collect();
-        Self { columns, rows, points, texels, look, thin: false }
+        Self { columns, rows, points, texels, shader, thin: false }
     }
 
     /// One flat triangle, counter-clockwise from the front.
-    pub fn facet(corners: [Vec3; 3], texels: usize, look: Look) -> Self {
-        Self { columns: 0, rows: 0, points: corners.to_vec(), texels: [texels; 2], look, thin: false }
+    pub fn facet(corners: [Vec3; 3], texels: usize, shader: SkinShader) -> Self {
+        Self { columns: 0, rows: 0, points: corners.to_vec(), texels: [texels; 2], shader, thin: false }
     }
 
     /// A flat quadrilateral, counter-clockwise from the front; u runs from the first corner to the second.
-    pub fn quad(corners: [Vec3; 4], texels: [usize; 2], look: Look) -> Self {
+    pub fn quad(corners: [Vec3; 4], texels: [usize; 2], shader: SkinShader) -> Self {
         let [a, b, c, d] = corners;
-        Self { columns: 2, rows: 2, points: vec![a, b, d, c], texels, look, thin: false }
+        Self { columns: 2, rows: 2, points: vec![a, b, d, c], texels, shader, thin: false }
     }
 
     /// The same, seen and lit from both sides.

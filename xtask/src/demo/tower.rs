@@ -2,7 +2,7 @@
 
 use super::noise::{hash, noise, smoothstep};
 use super::solids::block;
-use super::surface::{Look, Object, Place, Skin, Surface};
+use super::surface::{Object, Place, Skin, SkinShader, Surface};
 use glam::{Quat, Vec2, Vec3};
 use std::f32::consts::TAU;
 use std::sync::Arc;
@@ -40,7 +40,7 @@ pub fn tower(base: Vec3) -> Object {
 
 /// The clock's face.
 pub fn clock(base: Vec3) -> Object {
-    let look: Look = Arc::new(|place: &Place| {
+    let shader: SkinShader = Arc::new(|place: &Place| {
         let p = (place.uv - 0.5) * 2.0;
         let radius = p.length();
         // Clockwise from twelve, in turns.
@@ -60,7 +60,7 @@ pub fn clock(base: Vec3) -> Object {
         let glow = glass.lerp(Vec3::new(0.035, 0.025, 0.025), ink);
         Skin { glow, ..Skin::matt(place, Vec3::splat(0.05)) }
     });
-    Object::baked("clock", vec![disc(base, 0.188, 0.030, [112, 112], look)])
+    Object::baked("clock", vec![disc(base, 0.188, 0.030, [112, 112], shader)])
 }
 
 fn band(x: f32, middle: f32, half_width: f32) -> f32 {
@@ -78,19 +78,19 @@ fn hand(p: Vec2, turns: f32, length: f32, half_width: f32) -> f32 {
 }
 
 /// An upright disc on the tower's front, `proud` of the wall. Mapped as the square around it.
-fn disc(base: Vec3, radius: f32, proud: f32, texels: [usize; 2], look: Look) -> Surface {
+fn disc(base: Vec3, radius: f32, proud: f32, texels: [usize; 2], shader: SkinShader) -> Surface {
     let turn = Quat::from_rotation_y(YAW);
     let center = base + Vec3::Y * CLOCK + turn * Vec3::Z * (HALF_WIDTH * 0.98 + proud);
     // A square grid bent to a disc.
-    Surface::grid(17, 17, texels, round(look), |u, v| {
+    Surface::grid(17, 17, texels, round(shader), |u, v| {
         let p = to_disc(Vec2::new(u, v) * 2.0 - 1.0) * radius;
         center + turn * p.extend(0.0)
     })
 }
 
 /// Shows a look that is drawn on a square on the grid that [`to_disc`] bends.
-fn round(look: Look) -> Look {
-    Arc::new(move |place: &Place| look(&Place { uv: to_disc(place.uv * 2.0 - 1.0) * 0.5 + 0.5, ..*place }))
+fn round(shader: SkinShader) -> SkinShader {
+    Arc::new(move |place: &Place| shader(&Place { uv: to_disc(place.uv * 2.0 - 1.0) * 0.5 + 0.5, ..*place }))
 }
 
 fn to_disc(p: Vec2) -> Vec2 {
@@ -101,7 +101,7 @@ fn roof(base: Vec3, half: f32, height: f32) -> Vec<Surface> {
     let turn = Quat::from_rotation_y(YAW);
     let corner = |x: f32, z: f32| base + turn * Vec3::new(x * half, 0.0, z * half);
     let top = base + Vec3::Y * height;
-    let slate: Look = Arc::new(|place: &Place| {
+    let slate: SkinShader = Arc::new(|place: &Place| {
         let course = (place.position.y * 42.0).floor();
         let tile = hash(course as i32, (place.position.x * 30.0 + course * 0.5).floor() as i32, 3);
         let line = smoothstep(0.0, 0.25, (place.position.y * 42.0).fract());
@@ -115,7 +115,7 @@ fn roof(base: Vec3, half: f32, height: f32) -> Vec<Surface> {
 }
 
 /// Coursed stone, with narrow windows that are lit.
-fn masonry(base: Vec3) -> Look {
+fn masonry(base: Vec3) -> SkinShader {
     Arc::new(move |place: &Place| {
         let height = place.position.y - base.y;
         let course = (height / 0.052).floor();
@@ -136,7 +136,7 @@ fn masonry(base: Vec3) -> Look {
 }
 
 /// The open storey of the bells: arches, warm inside.
-fn belfry() -> Look {
+fn belfry() -> SkinShader {
     let stone = stone();
     Arc::new(move |place: &Place| {
         let across = (place.uv.x * 3.0).fract() - 0.5;
@@ -160,7 +160,7 @@ fn arch(p: Vec2, half_width: f32, height: f32) -> f32 {
     (1.0 - smoothstep(-0.08 * half_width, 0.08 * half_width, edge)) * smoothstep(-0.004, 0.004, p.y)
 }
 
-fn stone() -> Look {
+fn stone() -> SkinShader {
     Arc::new(|place: &Place| {
         Skin::matt(place, Vec3::new(0.46, 0.40, 0.33) * (0.8 + 0.4 * noise(place.position * 45.0)))
     })

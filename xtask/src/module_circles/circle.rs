@@ -17,9 +17,9 @@ pub fn circles_of(arrows: &[Arrow]) -> Vec<Circle> {
     let files: BTreeSet<usize> = arrows.iter().map(|arrow| arrow.from).collect();
     let mut circles: Vec<Circle> = Vec::new();
     for file in files {
-        let known = circles.iter().any(|circle| circle.files.contains(&file));
+        let is_listed = circles.iter().any(|circle| circle.files.contains(&file));
         let reached = reached_from(file, arrows);
-        if known || !reached.contains(&file) {
+        if is_listed || !reached.contains(&file) {
             continue;
         }
         let files: Vec<usize> =

@@ -87,8 +87,8 @@ impl CrateModules {
         for name in child_files {
             let inner = folder.join(&name);
             let places = [folder.join(format!("{name}.rs")), inner.join("mod.rs")];
-            let found = places.iter().find_map(|place| Some((place, read(place)?)));
-            let Some((place, text)) = found else {
+            let source = places.iter().find_map(|place| Some((place, read(place)?)));
+            let Some((place, text)) = source else {
                 return Err(format!("{}: module {name} has no file", self.files[file].display()));
             };
             let child = self.add_file(Some(this), place, &inner, &text, read)?;
@@ -146,7 +146,7 @@ impl CrateModules {
         &self,
         module: usize,
         path: &[String],
-        asked: &mut Vec<(usize, String, bool)>,
+        visited: &mut Vec<(usize, String, bool)>,
     ) -> Option<Named> {
         let mut at = module;
         let mut rest = path;
@@ -162,7 +162,7 @@ impl CrateModules {
         let anchored = rest.len() < path.len();
         for (index, name) in rest.iter().enumerate() {
             let leads_on = index + 1 < rest.len();
-            match self.look_up(at, name, leads_on, asked) {
+            match self.find_name(at, name, leads_on, visited) {
                 Some(Named::Module(inner)) => at = inner,
                 Some(item) => return Some(item),
                 // A name that leads to another crate, or a local one.
@@ -175,29 +175,29 @@ impl CrateModules {
     }
 
     /// What `name` means within `module`. Where it leads on to another name, a module goes before a function of its name.
-    fn look_up(
+    fn find_name(
         &self,
         module: usize,
         name: &str,
         leads_on: bool,
-        asked: &mut Vec<(usize, String, bool)>,
+        visited: &mut Vec<(usize, String, bool)>,
     ) -> Option<Named> {
         let question = (module, name.to_string(), leads_on);
-        if asked.contains(&question) {
+        if visited.contains(&question) {
             return None;
         }
-        asked.push(question);
-        let answer = self.answer(module, name, leads_on, asked);
-        asked.pop();
+        visited.push(question);
+        let answer = self.resolve_name(module, name, leads_on, visited);
+        visited.pop();
         answer
     }
 
-    fn answer(
+    fn resolve_name(
         &self,
         module: usize,
         name: &str,
         leads_on: bool,
-        asked: &mut Vec<(usize, String, bool)>,
+        visited: &mut Vec<(usize, String, bool)>,
     ) -> Option<Named> {
         let here = &self.modules[module];
         let child =
@@ -210,15 +210,15 @@ impl CrateModules {
         }
         let imports = &here.source.imports;
         let mut by_name = imports.iter().filter(|import| import.name.as_deref() == Some(name));
-        if let Some(named) = by_name.find_map(|import| self.resolve(module, &import.path, asked)) {
+        if let Some(named) = by_name.find_map(|import| self.resolve(module, &import.path, visited)) {
             return Some(named);
         }
         if child.is_some() {
             return child;
         }
         imports.iter().filter(|import| import.name.is_none()).find_map(|glob| {
-            match self.resolve(module, &glob.path, asked)? {
-                Named::Module(of) => self.look_up(of, name, leads_on, asked),
+            match self.resolve(module, &glob.path, visited)? {
+                Named::Module(inner) => self.find_name(inner, name, leads_on, visited),
                 Named::Item { .. } => None,
             }
         })

@@ -144,17 +144,17 @@ pub fn after_brackets(tokens: &[Token], mut at: usize) -> usize {
 
 /// `tokens` without what `#[cfg(test)]` and `#[cfg(all(test, …))]` stand before.
 pub fn without_tests(tokens: &[Token]) -> Vec<Token> {
-    let mut kept = Vec::with_capacity(tokens.len());
+    let mut product_tokens = Vec::with_capacity(tokens.len());
     let mut at = 0;
     while at < tokens.len() {
         if is_for_tests(&tokens[at..]) {
             at = after_item(tokens, at);
         } else {
-            kept.push(tokens[at].clone());
+            product_tokens.push(tokens[at].clone());
             at += 1;
         }
     }
-    kept
+    product_tokens
 }
 
 fn is_for_tests(tokens: &[Token]) -> bool {

@@ -78,9 +78,9 @@ fn copyright(root: &Path) -> Result<(), Failure> {
 fn depends(release: &Release, program: &Path) -> Result<String, Failure> {
     let place = empty_folder(release, "shlibdeps")?;
     write(&place.join("debian/control"), "Source: focus-brush\n\nPackage: focus-brush\nArchitecture: any\n")?;
-    let mut ask = Command::new("dpkg-shlibdeps");
-    let told = trimmed(output_of(ask.arg("-O").arg("-e").arg(program).current_dir(&place))?);
-    Ok(told.strip_prefix("shlibs:Depends=").unwrap_or(&told).to_owned())
+    let mut shlibdeps = Command::new("dpkg-shlibdeps");
+    let dependencies = trimmed(output_of(shlibdeps.arg("-O").arg("-e").arg(program).current_dir(&place))?);
+    Ok(dependencies.strip_prefix("shlibs:Depends=").unwrap_or(&dependencies).to_owned())
 }
 
 fn trimmed(bytes: Vec<u8>) -> String {

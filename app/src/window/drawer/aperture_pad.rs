@@ -7,7 +7,7 @@ use lens::SUB_APERTURE_RADIUS;
 use session::{Command, Session};
 
 /// What is said of the field.
-pub const TIP: &str = "The aperture from behind the camera. Drag over it to see the scene through that point of it; let go with Shift held to \
+pub const APERTURE_TIP: &str = "The aperture from behind the camera. Drag over it to see the scene through that point of it; let go with Shift held to \
      keep looking through it, until Esc. Where a point of the scene was chosen, it is shown as that sees it.";
 
 /// Follows the pointer over a field that shows the aperture from behind the camera, and marks the point that is looked
@@ -17,12 +17,12 @@ pub fn aperture_pad(ui: &Ui, response: &Response, session: &Session, actions: &m
     if response.dragged()
         && let Some(pointer) = response.interact_pointer_pos()
     {
-        actions.push(Command::LookThrough(Some(point_at(rect, pointer))).into());
+        actions.push(Command::SetSubAperture(Some(aperture_point(rect, pointer))).into());
     }
     if response.drag_stopped() && !ui.input(|input| input.modifiers.shift) {
-        actions.push(Command::LookThrough(None).into());
+        actions.push(Command::SetSubAperture(None).into());
     }
-    if let Some(point) = session.looked_through() {
+    if let Some(point) = session.sub_aperture_point() {
         let half = rect.size() / 2.0;
         let place = rect.center() + vec2(point.x as f32, -point.y as f32) * half;
         let radius = (SUB_APERTURE_RADIUS as f32 * half.x).max(4.0);
@@ -33,7 +33,7 @@ pub fn aperture_pad(ui: &Ui, response: &Response, session: &Session, actions: &m
 }
 
 /// The aperture point at a place of the field: where a sub-aperture may lie.
-fn point_at(rect: Rect, place: egui::Pos2) -> DVec2 {
+fn aperture_point(rect: Rect, place: egui::Pos2) -> DVec2 {
     let from_middle = (place - rect.center()) / (rect.size() / 2.0);
     let most = DVec2::splat(1.0 - SUB_APERTURE_RADIUS);
     DVec2::new(from_middle.x.into(), (-from_middle.y).into()).clamp(-most, most)

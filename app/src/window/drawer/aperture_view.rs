@@ -1,13 +1,13 @@
 //! The aperture as one point of the scene sees it: what it sends where, what stands between, and how that lands in the
 //! picture.
 
-use super::aperture_pad::{TIP, aperture_pad};
+use super::aperture_pad::{APERTURE_TIP, aperture_pad};
 use crate::window::controls::{self, row, rows};
 use crate::window::{Action, keys};
 use egui::{Color32, Mesh, Rect, Response, Sense, Shape, Stroke, Ui, pos2, vec2};
 use glam::{DVec2, DVec3};
 use lens::Aperture;
-use session::{ApertureImage, CommandId, KeptVisibility, Session, SurfaceHit};
+use session::{ApertureImage, BakedVisibility, CommandId, Session, SurfaceHit};
 
 /// The grey of a closed aperture.
 const CLOSED: u8 = 16;
@@ -18,7 +18,7 @@ pub struct ApertureView {
     point: Option<SurfaceHit>,
     image: Option<ApertureImage>,
     /// What the image was made for.
-    made_for: Option<(DVec3, lens::Camera, lens::FocusOffset, u64)>,
+    image_key: Option<(DVec3, lens::Camera, lens::FocusOffset, u64)>,
 }
 
 impl ApertureView {
@@ -46,21 +46,23 @@ impl ApertureView {
         }
         if let Some(hit) = self.point {
             let focus = session.focus_at(&hit).unwrap_or(lens::FocusOffset::STANDARD);
-            let made_for = (hit.position, document.camera.clone(), focus, session.light_fields());
-            if self.made_for.as_ref() != Some(&made_for) {
+            let image_key = (hit.position, document.camera.clone(), focus, session.light_field_count());
+            if self.image_key.as_ref() != Some(&image_key) {
                 self.image = session.aperture_image(&hit);
-                self.made_for = Some(made_for);
+                self.image_key = Some(image_key);
             }
         }
         ui.horizontal_top(|ui| {
             let response =
-                captioned(ui, "from behind the camera", TIP, Sense::drag(), |ui, rect| match &self.image {
-                    Some(image) => paint_seen(ui, rect, image, 1.0),
+                captioned(ui, "from behind the camera", APERTURE_TIP, Sense::drag(), |ui, rect| match &self
+                    .image
+                {
+                    Some(image) => paint_visible_aperture(ui, rect, image, 1.0),
                     None => paint_open(ui, rect, &document.camera.aperture),
                 });
             aperture_pad(ui, &response, session, actions);
             match &self.image {
-                Some(image) => seen(ui, image),
+                Some(image) => point_details(ui, image),
                 None if self.point.is_some() => {
                     ui.weak("The point stands behind the camera: it sees nothing of the aperture.");
                 }
@@ -70,8 +72,8 @@ impl ApertureView {
             }
             ui.vertical(|ui| {
                 let choose = if self.point.is_some() { "Another point" } else { "Choose a point" };
-                for (id, label) in [(CommandId::Inspect, choose), (CommandId::LookRound, "Look round")] {
-                    if ui.button(label).on_hover_text(keys::tip(ui.ctx(), id)).clicked() {
+                for (id, label) in [(CommandId::Inspect, choose), (CommandId::OrbitAperture, "Look round")] {
+                    if ui.button(label).on_hover_text(keys::command_tooltip(ui.ctx(), id)).clicked() {
                         actions.push(id.into());
                     }
                 }
@@ -81,30 +83,35 @@ impl ApertureView {
 }
 
 /// What a point sees beyond the first picture: as it lands, as it is kept, in numbers.
-fn seen(ui: &mut Ui, image: &ApertureImage) {
+fn point_details(ui: &mut Ui, image: &ApertureImage) {
     let tip = "The aperture as the point sees it, as it lands in the picture: turned by half a turn for near blur. Hatched \
                where something stands between, dark where the aperture's shape is closed; its brightest light is shown \
                as white.";
     let sign = if image.circle_px < 0.0 { -1.0 } else { 1.0 };
-    captioned(ui, "as it lands", tip, Sense::hover(), |ui, rect| paint_seen(ui, rect, image, sign));
-    if let Some(kept) = &image.kept {
+    captioned(ui, "as it lands", tip, Sense::hover(), |ui, rect| {
+        paint_visible_aperture(ui, rect, image, sign)
+    });
+    if let Some(sampled) = &image.baked {
         let tip = "What the light field keeps of it, as one colour: the cells that the nearest sample sees. The picture is \
                    made of these.";
-        captioned(ui, "as it is kept", tip, Sense::hover(), |ui, rect| paint_kept(ui, rect, kept));
+        captioned(ui, "as it is kept", tip, Sense::hover(), |ui, rect| {
+            paint_sampled_visibility(ui, rect, sampled)
+        });
     }
     rows(ui, "aperture", |ui| {
         let mut line = |label: &str, tip: &str, value: String| {
             row(ui, label, tip, |ui| ui.label(value));
         };
-        let seen = format!("{:.0} %", image.visible_share() * 100.0);
-        line("Sees", "How much of the open aperture the point sees, by rays.", seen);
-        let kept = image.kept.as_ref().map_or("–".into(), |kept| {
-            let cells = if kept.side == 1 { "all".into() } else { format!("{0} × {0} cells", kept.side) };
-            format!("{:.0} % ({cells})", kept.visible_share() * 100.0)
+        let visible_percent = format!("{:.0} %", image.visible_share() * 100.0);
+        line("Sees", "How much of the open aperture the point sees, by rays.", visible_percent);
+        let sampled_text = image.baked.as_ref().map_or("–".into(), |sampled| {
+            let cells =
+                if sampled.side == 1 { "all".into() } else { format!("{0} × {0} cells", sampled.side) };
+            format!("{:.0} % ({cells})", sampled.visible_share() * 100.0)
         });
-        line("Light field", "How much of it the light field keeps as seen, and how finely.", kept);
-        line("Depth", "Axial depth in the shot camera.", controls::length(image.depth));
-        let circle = controls::circle(image.circle_px);
+        line("Light field", "How much of it the light field keeps as seen, and how finely.", sampled_text);
+        line("Depth", "Axial depth in the shot camera.", controls::length_text(image.depth));
+        let circle = controls::circle_text(image.circle_px);
         line("Lands as", "Its circle of confusion on the full-size picture.", circle);
         let lens::FocusOffset { t, anchor, gloss } = image.focus;
         let gloss = if gloss > 0.0 { format!(", gloss {gloss:.2}") } else { String::new() };
@@ -146,12 +153,12 @@ fn paint_open(ui: &Ui, rect: Rect, aperture: &Aperture) {
 }
 
 /// Draws what a point sees, turned by half a turn where `sign` is −1.
-fn paint_seen(ui: &Ui, rect: Rect, image: &ApertureImage, sign: f32) {
+fn paint_visible_aperture(ui: &Ui, rect: Rect, image: &ApertureImage, sign: f32) {
     let brightest = image.cells.iter().flat_map(|cell| cell.radiance).fold(0.0f32, f32::max);
     let gain = if brightest > 0.0 { 1.0 / brightest } else { 1.0 };
     paint_cells(ui, rect, image.side, sign, |column, row| {
         let cell = &image.cells[row * image.side + column];
-        let color = if cell.is_seen {
+        let color = if cell.is_visible {
             let [r, g, b] = cell.radiance.map(|c| encoded(c * gain));
             Color32::from_rgb(r, g, b)
         } else {
@@ -181,19 +188,19 @@ fn paint_cells(ui: &Ui, rect: Rect, side: usize, sign: f32, color: impl Fn(usize
 }
 
 /// Draws the cells that a sample of the light field keeps, in its colour.
-fn paint_kept(ui: &Ui, rect: Rect, kept: &KeptVisibility) {
+fn paint_sampled_visibility(ui: &Ui, rect: Rect, sampled: &BakedVisibility) {
     let painter = ui.painter_at(rect);
     painter.rect_filled(rect, 2.0, Color32::from_gray(CLOSED));
-    let brightest = kept.radiance.into_iter().fold(0.0f32, f32::max);
+    let brightest = sampled.radiance.into_iter().fold(0.0f32, f32::max);
     let gain = if brightest > 0.0 { 1.0 / brightest } else { 1.0 };
-    let [r, g, b] = kept.radiance.map(|c| encoded(c * gain));
-    let cell_side = rect.width() / kept.side as f32;
+    let [r, g, b] = sampled.radiance.map(|c| encoded(c * gain));
+    let cell_side = rect.width() / sampled.side as f32;
     let mut mesh = Mesh::default();
-    for (k, is_seen) in kept.cells.iter().enumerate() {
-        let corner = vec2((k % kept.side) as f32, (k / kept.side) as f32) * cell_side;
+    for (k, is_visible) in sampled.cells.iter().enumerate() {
+        let corner = vec2((k % sampled.side) as f32, (k / sampled.side) as f32) * cell_side;
         let place = Rect::from_min_size(rect.min + corner, vec2(cell_side, cell_side));
-        let color = if *is_seen { Color32::from_rgb(r, g, b) } else { Color32::from_gray(34) };
-        mesh.add_colored_rect(place.shrink(if kept.side > 1 { 0.5 } else { 0.0 }), color);
+        let color = if *is_visible { Color32::from_rgb(r, g, b) } else { Color32::from_gray(34) };
+        mesh.add_colored_rect(place.shrink(if sampled.side > 1 { 0.5 } else { 0.0 }), color);
     }
     painter.add(Shape::mesh(mesh));
 }

@@ -1,6 +1,6 @@
 //! The atlas flat: every chart in the false colours of its blur, painted on in 2D.
 
-use crate::window::hand::Hand;
+use crate::window::hand::ActiveTool;
 use crate::window::{Action, controls, false_colour};
 use egui::{Color32, ColorImage, Pos2, Rect, Sense, TextureHandle, TextureOptions, Ui, pos2, vec2};
 use focus::FocusMap;
@@ -9,14 +9,14 @@ use rayon::prelude::*;
 use session::{Command, Document, Session, StrokePoint, StrokeTarget};
 
 /// Longest side of the picture of the atlas, px: larger maps are thinned out.
-const LONGEST: u32 = 1024;
+const MAX_SIDE_PX: u32 = 1024;
 
 /// The atlas's state between frames.
 #[derive(Default)]
 pub struct AtlasView {
     texture: Option<TextureHandle>,
     /// What the texture was made of.
-    made_of: Option<(FocusMap, lens::Camera)>,
+    texture_key: Option<(FocusMap, lens::Camera)>,
     rect: Option<Rect>,
     painting: bool,
 }
@@ -28,11 +28,17 @@ impl AtlasView {
     }
 
     /// Draws the atlas and turns the pointer into strokes.
-    pub fn ui(&mut self, ui: &mut Ui, session: &Session, hand: &Hand, actions: &mut Vec<Action>) {
+    pub fn ui(
+        &mut self,
+        ui: &mut Ui,
+        session: &Session,
+        active_tool: &ActiveTool,
+        actions: &mut Vec<Action>,
+    ) {
         let Some(document) = session.document() else { return };
         let (area, response) =
             ui.allocate_exact_size(ui.available_size().max(vec2(8.0, 8.0)), Sense::click_and_drag());
-        controls::named(&response, "Atlas view");
+        controls::set_accessible_name(&response, "Atlas view");
         self.draw(ui, document);
         let [width, height] = document.map.size().map(|side| side as f32);
         let scale = (area.width() / width).min(area.height() / height).max(1e-3);
@@ -42,15 +48,15 @@ impl AtlasView {
             let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
             ui.painter_at(area).image(texture.id(), rect, whole, Color32::WHITE);
         }
-        let place_of = |at: Pos2| {
+        let atlas_position = |at: Pos2| {
             let share = (at - rect.min) / rect.size();
             DVec2::new(share.x.into(), share.y.into())
         };
-        let hit_at = |at: Pos2| document.stage.surface_at(place_of(at));
+        let hit_at = |at: Pos2| document.stage.surface_at(atlas_position(at));
         if response.hovered() {
             ui.set_cursor_icon(egui::CursorIcon::Crosshair);
         }
-        self.paint(ui, &response, session, hand, place_of, actions);
+        self.paint(ui, &response, session, active_tool, atlas_position, actions);
         if let Some(hit) = response.hover_pos().and_then(hit_at) {
             let chart = document.stage.atlas.chart_of[hit.point.triangle as usize];
             let part = document.scene().triangles[hit.point.triangle as usize].part;
@@ -69,20 +75,22 @@ impl AtlasView {
         ui: &Ui,
         response: &egui::Response,
         session: &Session,
-        hand: &Hand,
+        active_tool: &ActiveTool,
         place_of: impl Fn(Pos2) -> DVec2,
         actions: &mut Vec<Action>,
     ) {
-        let Some(document) = session.document().filter(|_| hand.tool.paints() && !hand.is_busy) else {
+        let Some(document) =
+            session.document().filter(|_| active_tool.tool.paints() && !active_tool.is_adjusting_brush)
+        else {
             return;
         };
-        let point = |at| StrokePoint { at: StrokeTarget::Atlas(at), pressure: 1.0 };
+        let point = |at| StrokePoint { target: StrokeTarget::Atlas(at), pressure: 1.0 };
         let pointer = response.interact_pointer_pos().map(place_of);
         let is_here = response.is_pointer_button_down_on() || response.clicked();
         let pressed = is_here && ui.input(|input| input.pointer.primary_pressed());
         self.painting &= session.is_painting();
         if pressed && let Some(at) = pointer.filter(|at| document.stage.surface_at(*at).is_some()) {
-            let mode = hand.tool.mode(document.brush.mode);
+            let mode = active_tool.tool.mode(document.brush.mode);
             if mode != document.brush.mode {
                 actions.push(Command::SetBrush(focus::Brush { mode, ..document.brush.clone() }).into());
             }
@@ -105,11 +113,11 @@ impl AtlasView {
         let fits = |(map, camera): &(FocusMap, lens::Camera)| {
             map.shares_tiles_with(&document.map) && *camera == document.camera
         };
-        if self.made_of.as_ref().is_some_and(fits) {
+        if self.texture_key.as_ref().is_some_and(fits) {
             return;
         }
         let [width, height] = document.map.size();
-        let step = width.max(height).div_ceil(LONGEST).max(1);
+        let step = width.max(height).div_ceil(MAX_SIDE_PX).max(1);
         let size = [width.div_ceil(step), height.div_ceil(step)];
         let (camera, optics) = (&document.camera, document.camera.optics());
         let empty = ui.visuals().extreme_bg_color;
@@ -131,6 +139,6 @@ impl AtlasView {
             Some(texture) => texture.set(image, TextureOptions::LINEAR),
             None => self.texture = Some(ui.ctx().load_texture("atlas", image, TextureOptions::LINEAR)),
         }
-        self.made_of = Some((document.map.clone(), document.camera.clone()));
+        self.texture_key = Some((document.map.clone(), document.camera.clone()));
     }
 }

@@ -5,7 +5,7 @@ use egui::{Align2, Color32, FontId, Rect, Sense, Stroke, Ui, pos2, vec2};
 use session::{BlurHistogram, Session};
 
 /// Places of the picture that are looked at.
-const PLACES: [usize; 2] = [96, 64];
+const PROBES: [usize; 2] = [96, 64];
 /// Bars from the nearest blur to the farthest.
 const BARS: usize = 81;
 
@@ -14,7 +14,7 @@ const BARS: usize = 81;
 pub struct HistogramView {
     histogram: Option<BlurHistogram>,
     /// What it was made of.
-    made_of: Option<(focus::FocusMap, lens::Camera)>,
+    histogram_key: Option<(focus::FocusMap, lens::Camera)>,
 }
 
 impl HistogramView {
@@ -25,12 +25,14 @@ impl HistogramView {
             map.shares_tiles_with(&document.map) && *camera == document.camera
         };
         // While a stroke goes on there is something better to do than to count.
-        if !self.made_of.as_ref().is_some_and(fits) && (self.histogram.is_none() || !session.is_painting()) {
-            self.histogram = session.blur_histogram(PLACES);
-            self.made_of = Some((document.map.clone(), document.camera.clone()));
+        if !self.histogram_key.as_ref().is_some_and(fits)
+            && (self.histogram.is_none() || !session.is_painting())
+        {
+            self.histogram = session.blur_histogram(PROBES);
+            self.histogram_key = Some((document.map.clone(), document.camera.clone()));
         }
         let Some(histogram) = &self.histogram else { return };
-        let in_words = |px: Option<f64>| px.map_or("–".into(), controls::circle);
+        let in_words = |px: Option<f64>| px.map_or("–".into(), controls::circle_text);
         ui.label(format!(
             "{:.0} % of the picture is sharper than 1 px; blur from {} over {} (median) to {}.",
             histogram.sharper_than(1.0) * 100.0,
@@ -40,7 +42,7 @@ impl HistogramView {
         ));
         let (rect, response) =
             ui.allocate_exact_size(ui.available_size().max(vec2(40.0, 30.0)), Sense::hover());
-        controls::named(&response, "Histogram of circles of confusion");
+        controls::set_accessible_name(&response, "Histogram of circles of confusion");
         paint(ui, rect, histogram);
         response.on_hover_text(
             "How much of the picture has which circle of confusion. The scale is logarithmic.",

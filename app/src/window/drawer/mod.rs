@@ -9,7 +9,7 @@ mod photograph_strip;
 mod timeline;
 
 use super::Action;
-use super::hand::Hand;
+use super::hand::ActiveTool;
 use super::layout::Pane;
 use aperture_view::ApertureView;
 use atlas_view::AtlasView;
@@ -66,13 +66,20 @@ impl Drawer {
     }
 
     /// Draws one of its panels into the rest of `ui`; the others draw nothing.
-    pub fn ui(&mut self, ui: &mut Ui, session: &Session, pane: Pane, hand: &Hand, actions: &mut Vec<Action>) {
+    pub fn ui(
+        &mut self,
+        ui: &mut Ui,
+        session: &Session,
+        pane: Pane,
+        active_tool: &ActiveTool,
+        actions: &mut Vec<Action>,
+    ) {
         if session.document().is_none() {
             ui.weak("Nothing is open.");
             return;
         }
         match pane {
-            Pane::Atlas => self.atlas.ui(ui, session, hand, actions),
+            Pane::Atlas => self.atlas.ui(ui, session, active_tool, actions),
             Pane::Aperture => self.aperture.ui(ui, session, actions),
             Pane::Histogram => self.histogram.ui(ui, session),
             Pane::Photographs => self.photographs.ui(ui, session, actions),

@@ -10,9 +10,9 @@ use std::collections::HashMap;
 /// Room beneath a picture for its name.
 const NAME_HEIGHT: f32 = 16.0;
 /// Pictures are not drawn smaller.
-const LEAST_HEIGHT: f32 = 40.0;
+const MIN_HEIGHT: f32 = 40.0;
 /// Textures that are kept; those not looked at for longest go first.
-const KEPT: usize = 400;
+const MAX_TEXTURES: usize = 400;
 
 /// The strip's state between frames.
 #[derive(Default)]
@@ -22,7 +22,7 @@ pub struct PhotographStrip {
     /// The path between two photographs: their numbers, and where on it the camera stands.
     path: Option<Path>,
     /// Whether the picture that the camera looks through was brought into view.
-    shown: Option<usize>,
+    scrolled_to: Option<usize>,
 }
 
 struct Path {
@@ -36,19 +36,19 @@ impl PhotographStrip {
     pub fn ui(&mut self, ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         let Some(document) = session.document() else { return };
         let scene = &document.stage.scene;
-        let count = scene.photographs().count();
+        let count = scene.all_views().count();
         if count == 0 {
             ui.weak("This is no capture: it has no photographs (File, Open a capture…).");
             return;
         }
-        if !self.thumbnails.as_ref().is_some_and(|known| known.is_of(scene)) {
+        if !self.thumbnails.as_ref().is_some_and(|thumbnails| thumbnails.is_for_scene(scene)) {
             let context = ui.ctx().clone();
             let waker = std::sync::Arc::new(move || context.request_repaint());
             // The same photographs in another world keep their pictures only if they are read again.
-            *self = Self { thumbnails: Some(Thumbnails::of(scene.clone(), waker)), ..Self::default() };
+            *self = Self { thumbnails: Some(Thumbnails::new(scene.clone(), waker)), ..Self::default() };
         }
         self.path_ui(ui, document, actions);
-        let height = (ui.available_height() - NAME_HEIGHT - 14.0).max(LEAST_HEIGHT);
+        let height = (ui.available_height() - NAME_HEIGHT - 14.0).max(MIN_HEIGHT);
         // A wheel turns the only way there is.
         ui.style_mut().always_scroll_the_only_direction = true;
         ScrollArea::horizontal().auto_shrink(false).show(ui, |ui| {
@@ -70,13 +70,13 @@ impl PhotographStrip {
         actions: &mut Vec<Action>,
     ) {
         let scene = &document.stage.scene;
-        let Some(view) = scene.photographs().nth(number) else { return };
+        let Some(view) = scene.all_views().nth(number) else { return };
         let [columns, rows] = view.lens.size_px().map(|side| side as f32);
         let size = vec2(height * columns / rows, height + NAME_HEIGHT);
         let (rect, response) = ui.allocate_exact_size(size, Sense::click());
-        controls::named(&response, &view.name);
+        controls::set_accessible_name(&response, &view.name);
         let is_current = document.photograph().is_some_and(|current| current.name == view.name);
-        if is_current && self.shown.replace(number) != Some(number) && !ui.is_rect_visible(rect) {
+        if is_current && self.scrolled_to.replace(number) != Some(number) && !ui.is_rect_visible(rect) {
             response.scroll_to_me(Some(egui::Align::Center));
         }
         if !ui.is_rect_visible(rect) {
@@ -84,7 +84,7 @@ impl PhotographStrip {
         }
         let picture = rect.with_max_y(rect.bottom() - NAME_HEIGHT);
         let is_left_out = number >= scene.views.len() && scene.picture.is_none();
-        let why_not = self.paint(ui, picture, number, is_left_out);
+        let error_text = self.paint_photograph(ui, picture, number, is_left_out);
         let is_end = self.path.as_ref().is_some_and(|path| [path.from, path.to].contains(&number));
         let visuals = ui.visuals();
         if is_current || is_end || response.hovered() {
@@ -102,7 +102,7 @@ impl PhotographStrip {
         let below = pos2((rect.center().x - galley.size().x / 2.0).max(rect.left()), picture.bottom() + 1.0);
         ui.painter().with_clip_rect(rect.intersect(ui.clip_rect())).galley(below, galley, color);
         let left_out = if is_left_out { "\nLeft out: its light is not used." } else { "" };
-        let tip = why_not.unwrap_or_else(|| {
+        let tip = error_text.unwrap_or_else(|| {
             format!(
                 "{}, {columns} × {rows} px{left_out}\nClick to look through it; Shift and click for the way to it from where the camera is.",
                 view.name
@@ -110,33 +110,33 @@ impl PhotographStrip {
         });
         let response = response.on_hover_text(tip);
         if response.clicked() {
-            let from = self.current(document);
+            let from = self.current_photograph(document);
             match from.filter(|&from| from != number && ui.input(|input| input.modifiers.shift)) {
                 Some(from) => self.path = Some(Path { from, to: number, share: 0.0 }),
                 None => {
                     self.path = None;
-                    look_through(document, number, actions);
+                    use_photograph_camera(document, number, actions);
                 }
             }
         }
     }
 
     /// The photograph that the camera looks through, or that its path began at.
-    fn current(&self, document: &Document) -> Option<usize> {
+    fn current_photograph(&self, document: &Document) -> Option<usize> {
         let scene = &document.stage.scene;
         let name = document.photograph().map(|view| &view.name);
-        let mut views = scene.photographs();
+        let mut views = scene.all_views();
         let current = name.and_then(|name| views.position(|view| view.name == *name));
         current.or(self.path.as_ref().map(|path| path.from))
     }
 
     /// Paints a photograph, if it was read. Returns why it cannot be.
-    fn paint(&mut self, ui: &Ui, rect: Rect, number: usize, is_left_out: bool) -> Option<String> {
+    fn paint_photograph(&mut self, ui: &Ui, rect: Rect, number: usize, is_left_out: bool) -> Option<String> {
         let painter = ui.painter();
         if !self.textures.contains_key(&number) {
             match self.thumbnails.as_ref().and_then(|thumbnails| thumbnails.get(number)) {
                 Some(Ok(small)) => {
-                    if self.textures.len() >= KEPT {
+                    if self.textures.len() >= MAX_TEXTURES {
                         self.textures.clear();
                     }
                     let image = ColorImage::from_rgba_unmultiplied(small.size, small.pixels.as_flattened());
@@ -173,7 +173,7 @@ impl PhotographStrip {
     fn path_ui(&mut self, ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) {
         let Some(path) = &mut self.path else { return };
         let scene = &document.stage.scene;
-        let name = |number: usize| scene.photographs().nth(number).map_or("", |view| view.name.as_str());
+        let name = |number: usize| scene.all_views().nth(number).map_or("", |view| view.name.as_str());
         let mut is_over = false;
         ui.horizontal(|ui| {
             ui.label(name(path.from));
@@ -181,15 +181,16 @@ impl PhotographStrip {
             let slider = Slider::new(&mut path.share, 0.0..=1.0).show_value(false);
             let response =
                 ui.add(slider).on_hover_text("The camera on its way from one photograph to the other.");
-            controls::named(&response, "Way between two photographs");
+            controls::set_accessible_name(&response, "Way between two photographs");
             ui.label(name(path.to));
             if response.changed()
-                && let (Some(from), Some(to)) = (camera(document, path.from), camera(document, path.to))
+                && let (Some(from), Some(to)) =
+                    (photograph_camera(document, path.from), photograph_camera(document, path.to))
             {
                 let camera = camera_between(&from, &to, path.share);
-                actions.push(Command::Camera(CameraEdit::Whole(camera)).into());
+                actions.push(Command::EditCamera(CameraEdit::Whole(camera)).into());
             }
-            controls::finish(&response, actions);
+            controls::finish_edit(&response, actions);
             is_over =
                 ui.button("Done").on_hover_text("Ends the way; the camera stays where it is.").clicked();
         });
@@ -199,13 +200,13 @@ impl PhotographStrip {
     }
 }
 
-fn camera(document: &Document, number: usize) -> Option<lens::Camera> {
+fn photograph_camera(document: &Document, number: usize) -> Option<lens::Camera> {
     document.photograph_cameras().nth(number)
 }
 
-fn look_through(document: &Document, number: usize, actions: &mut Vec<Action>) {
-    if let Some(camera) = camera(document, number) {
-        actions.push(Command::Camera(CameraEdit::Whole(camera)).into());
+fn use_photograph_camera(document: &Document, number: usize, actions: &mut Vec<Action>) {
+    if let Some(camera) = photograph_camera(document, number) {
+        actions.push(Command::EditCamera(CameraEdit::Whole(camera)).into());
         actions.push(Command::FinishEdit.into());
     }
 }

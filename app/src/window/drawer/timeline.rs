@@ -9,9 +9,9 @@ use session::{Command, CommandId, Document, Session};
 /// Frames a second of the numbers that are shown, and that times snap to.
 const FRAMES_PER_SECOND: f64 = 24.0;
 /// What is shown at least, s.
-const SHORTEST: f64 = 4.0;
+const MIN_SPAN_SECONDS: f64 = 4.0;
 /// What is shown beyond the last key, s.
-const ROOM_BEHIND: f64 = 1.0;
+const TRAILING_SECONDS: f64 = 1.0;
 /// Height of a row of keys, and of the ruler, points.
 const ROW: f32 = 26.0;
 const RULER: f32 = 18.0;
@@ -28,7 +28,7 @@ pub struct Timeline {
     /// Whether it plays, and since when: the window's time and the timeline's, s.
     playing: Option<Option<[f64; 2]>>,
     /// The key that is being dragged: its row and its time.
-    held: Option<(Row, f64)>,
+    dragged_key: Option<(Row, f64)>,
 }
 
 /// A row of keys.
@@ -44,13 +44,13 @@ impl Row {
         [(Self::Focus, "Focus"), (Self::FNumber, "f-number"), (Self::Opacity, "Opacity")];
 
     fn times(self, document: &Document) -> Vec<f64> {
-        fn of<T>(keys: &Keys<T>) -> Vec<f64> {
+        fn key_seconds<T>(keys: &Keys<T>) -> Vec<f64> {
             keys.keys().iter().map(|key| key.seconds).collect()
         }
         match self {
-            Self::Focus => of(&document.lens_motion.focus),
-            Self::FNumber => of(&document.lens_motion.f_number),
-            Self::Opacity => of(&document.layers.active().motion.opacity),
+            Self::Focus => key_seconds(&document.lens_motion.focus),
+            Self::FNumber => key_seconds(&document.lens_motion.f_number),
+            Self::Opacity => key_seconds(&document.layers.active().motion.opacity),
         }
     }
 
@@ -60,25 +60,25 @@ impl Row {
         match self {
             Self::Focus if document.lens_motion.focus.is_empty() => None,
             Self::Focus => {
-                let place = |point: scene::SurfacePoint| point.position_if_there(scene);
+                let place = |point: scene::SurfacePoint| point.checked_position(scene);
                 // Far is up.
-                Some(-1.0 / document.lens_motion.at(seconds, &document.camera, &place).focus_distance)
+                Some(-1.0 / document.lens_motion.camera_at(seconds, &document.camera, &place).focus_distance)
             }
-            Self::FNumber => document.lens_motion.f_number(seconds).map(f64::ln),
+            Self::FNumber => document.lens_motion.f_number_at(seconds).map(f64::ln),
             Self::Opacity => {
-                document.layers.active().motion.opacity.around(seconds).map(|around| around.number())
+                document.layers.active().motion.opacity.span_at(seconds).map(|around| around.interpolate())
             }
         }
     }
 
     /// Moves a key to another time.
-    fn moved(self, document: &Document, from: f64, to: f64) -> Option<Command> {
+    fn move_key_command(self, document: &Document, from: f64, to: f64) -> Option<Command> {
         fn shift<T: Clone>(keys: &mut Keys<T>, from: f64, to: f64) -> bool {
             let Some(mut key) = keys.keys().iter().find(|key| key.seconds == from).cloned() else {
                 return false;
             };
             key.seconds = to;
-            keys.remove(from) && keys.put(key)
+            keys.remove(from) && keys.insert(key)
         }
         let mut lens = document.lens_motion.clone();
         let mut layer = document.layers.active().motion.clone();
@@ -91,7 +91,8 @@ impl Row {
             }
             Self::Opacity => {
                 let index = document.layers.active_index();
-                shift(&mut layer.opacity, from, to).then_some(Command::Layer(LayerEdit::Motion(index, layer)))
+                shift(&mut layer.opacity, from, to)
+                    .then_some(Command::EditLayers(LayerEdit::Motion(index, layer)))
             }
         }
     }
@@ -125,13 +126,13 @@ impl Timeline {
     pub fn ui(&mut self, ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         let Some(document) = session.document() else { return };
         let last = Row::ALL.iter().flat_map(|(row, _)| row.times(document)).fold(0.0, f64::max);
-        let seconds = (last + ROOM_BEHIND).max(SHORTEST);
+        let seconds = (last + TRAILING_SECONDS).max(MIN_SPAN_SECONDS);
         self.play(ui, document, seconds, actions);
         self.buttons(ui, document, actions);
         let height = RULER + Row::ALL.len() as f32 * ROW;
         let (all, response) =
             ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::click_and_drag());
-        controls::named(&response, "Keys over time");
+        controls::set_accessible_name(&response, "Keys over time");
         let scale = Scale { rect: all.with_min_x(all.left() + NAMES).shrink2(vec2(KEY, 0.0)), seconds };
         self.scrub(&response, &scale, actions);
         ruler(ui, &scale, all);
@@ -166,8 +167,9 @@ impl Timeline {
     fn buttons(&mut self, ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) {
         ui.horizontal(|ui| {
             let label = if self.playing.is_some() { "Stop" } else { "Play" };
-            let play = ui.button(label).on_hover_text(keys::tip(ui.ctx(), CommandId::PlayTimeline));
-            controls::named(&play, "Play");
+            let play =
+                ui.button(label).on_hover_text(keys::command_tooltip(ui.ctx(), CommandId::PlayTimeline));
+            controls::set_accessible_name(&play, "Play");
             if play.clicked() {
                 self.toggle_playing();
             }
@@ -176,7 +178,7 @@ impl Timeline {
                 DragValue::new(&mut frame).range(1.0..=1e6).speed(0.2).max_decimals(1).prefix("frame ");
             let tip = "The frame that is shown, 24 a second: frame 1 is at 0 s.";
             let response = ui.add(value).on_hover_text(tip);
-            controls::named(&response, "Frame");
+            controls::set_accessible_name(&response, "Frame");
             if response.changed() {
                 self.playing = None;
                 actions.push(Command::GoToTime((frame - 1.0) / FRAMES_PER_SECOND).into());
@@ -188,7 +190,7 @@ impl Timeline {
                 let has_key = document.lens_motion.times().any(|seconds| seconds == document.seconds);
                 let button = egui::Button::new(id.info().name);
                 let response = ui.add_enabled(id != CommandId::RemoveKeys || has_key, button);
-                let tip = keys::tip(ui.ctx(), id);
+                let tip = keys::command_tooltip(ui.ctx(), id);
                 if response.on_hover_text(&tip).on_disabled_hover_text(tip).clicked() {
                     actions.push(id.into());
                 }
@@ -221,20 +223,22 @@ impl Timeline {
             let id = ui.scope_id().with(("key", name, number));
             let rect = Rect::from_center_size(middle, egui::Vec2::splat(2.0 * KEY));
             let response = ui.interact(rect, id, Sense::click_and_drag());
-            controls::named(&response, &format!("{name} key at {seconds:.2} s"));
+            controls::set_accessible_name(&response, &format!("{name} key at {seconds:.2} s"));
             if response.clicked() {
                 self.playing = None;
                 actions.push(Command::GoToTime(seconds).into());
             }
             if response.drag_started() {
-                self.held = Some((row, seconds));
+                self.dragged_key = Some((row, seconds));
             }
-            let is_held = self.held == Some((row, seconds));
+            let is_held = self.dragged_key == Some((row, seconds));
             let pointer = response.interact_pointer_pos().filter(|_| is_held);
             if let Some(at) = pointer.filter(|_| response.drag_stopped()) {
-                self.held = None;
+                self.dragged_key = None;
                 let to = scale.seconds(at.x);
-                actions.extend(row.moved(document, seconds, to).filter(|_| to != seconds).map(Action::from));
+                actions.extend(
+                    row.move_key_command(document, seconds, to).filter(|_| to != seconds).map(Action::from),
+                );
             }
             let x = pointer.map_or(middle.x, |at| scale.x(scale.seconds(at.x)));
             let is_now = seconds == document.seconds;
@@ -247,7 +251,7 @@ impl Timeline {
 fn diamond(ui: &Ui, at: Pos2, is_bright: bool) {
     let visuals = ui.visuals();
     let fill = if is_bright { visuals.selection.stroke.color } else { visuals.text_color() };
-    let points = [vec2(0.0, -KEY), vec2(KEY, 0.0), vec2(0.0, KEY), vec2(-KEY, 0.0)].map(|way| at + way);
+    let points = [vec2(0.0, -KEY), vec2(KEY, 0.0), vec2(0.0, KEY), vec2(-KEY, 0.0)].map(|offset| at + offset);
     let edge = Stroke::new(1.0, Color32::from_black_alpha(160));
     ui.painter().add(Shape::convex_polygon(points.to_vec(), fill, edge));
 }
@@ -258,14 +262,14 @@ fn ruler(ui: &Ui, scale: &Scale, all: Rect) {
     painter.rect_filled(all.with_min_x(scale.rect.left() - KEY), 2.0, ui.visuals().extreme_bg_color);
     let faint = ui.visuals().weak_text_color();
     /// Marks that have room.
-    const MOST: f64 = 12.0;
+    const MAX_MARKS: f64 = 12.0;
     let step = [0.25, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0, 60.0, 300.0, 3600.0];
-    let step = step.into_iter().find(|step| scale.seconds / step <= MOST).unwrap_or(scale.seconds);
+    let step = step.into_iter().find(|step| scale.seconds / step <= MAX_MARKS).unwrap_or(scale.seconds);
     let mut seconds = 0.0;
     while seconds <= scale.seconds {
         let at = pos2(scale.x(seconds), all.top());
         painter.vline(at.x, all.y_range(), Stroke::new(0.5, faint.gamma_multiply(0.4)));
-        let text = format!("{} s", controls::significant(seconds));
+        let text = format!("{} s", controls::significant_digits(seconds));
         painter.text(at + vec2(3.0, 1.0), Align2::LEFT_TOP, text, FontId::proportional(10.0), faint);
         seconds += step;
     }

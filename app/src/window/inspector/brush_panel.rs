@@ -2,12 +2,12 @@
 
 use super::falloff_editor::{falloff_choice, falloff_editor};
 use super::preset_row::preset_row;
-use crate::window::controls::{self, format_number, proportional, row, rows};
-use crate::window::tool_bar::{HARDNESS_TIP, SIZE_TIP, STRENGTH_TIP, largest_radius, push_brush};
+use crate::window::controls::{self, format_number, proportional_value, row, rows};
+use crate::window::tool_bar::{HARDNESS_TIP, SIZE_TIP, STRENGTH_TIP, largest_radius, push_brush_change};
 use crate::window::{Action, ViewSettings};
 use egui::{ComboBox, DragValue, Slider, Ui};
 use focus::{Brush, BrushMode, Channels};
-use project::{PresetKind, PresetShelf};
+use project::{PresetKind, PresetLibrary};
 use session::{Document, SurfaceHit};
 
 /// Size, strength, hardness, spacing, mode and limits.
@@ -15,21 +15,27 @@ pub fn brush_panel(
     ui: &mut Ui,
     document: &Document,
     settings: &mut ViewSettings,
-    presets: &PresetShelf,
+    presets: &PresetLibrary,
     hover: Option<SurfaceHit>,
     actions: &mut Vec<Action>,
 ) {
     let mut brush = document.brush.clone();
     rows(ui, "brush", |ui| {
         let current = &document.brush;
-        preset_row(ui, presets, PresetKind::Brush, |preset| preset.is_of_brush(current), actions);
+        preset_row(ui, presets, PresetKind::Brush, |preset| preset.matches_brush(current), actions);
         row(ui, "Size", SIZE_TIP, |ui| {
             ui.horizontal(|ui| {
                 let largest = largest_radius(document);
-                let value = proportional(&mut brush.radius, largest * 1e-4..=largest).custom_formatter(format_number);
+                let value = proportional_value(&mut brush.radius, largest * 1e-4..=largest)
+                    .custom_formatter(format_number);
                 let response = ui.add(value.suffix(" m"));
-                ui.weak(format!("{} px", controls::significant(radius_px(document, hover, brush.radius))))
-                    .on_hover_text("The same on the picture, at the depth under the pointer or else at the focus distance.");
+                ui.weak(format!(
+                    "{} px",
+                    controls::significant_digits(radius_px(document, hover, brush.radius))
+                ))
+                .on_hover_text(
+                    "The same on the picture, at the depth under the pointer or else at the focus distance.",
+                );
                 response
             })
             .inner
@@ -97,11 +103,11 @@ pub fn brush_panel(
     });
     falloff_editor(ui, &mut brush);
     rows(ui, "brush manner", |ui| {
-        mirror_row(ui, document, &mut brush);
+        mirror_rows(ui, document, &mut brush);
         let tip =
             "How often every stroke is painted around the vertical through the mirror's middle; 1 is once.";
         row(ui, "Radial", tip, |ui| {
-            ui.add(DragValue::new(&mut brush.radial).range(1..=focus::Symmetry::MOST_RADIAL).speed(0.05))
+            ui.add(DragValue::new(&mut brush.radial).range(1..=focus::Symmetry::MAX_RADIAL).speed(0.05))
         });
         let tip =
             "The pointer pulls the brush by a string of this length: the longer, the steadier the line.";
@@ -125,11 +131,11 @@ pub fn brush_panel(
             ui.add(Slider::new(&mut brush.pressure_to_radius, 0.0..=1.0).max_decimals(2))
         });
     });
-    push_brush(document, brush, actions);
+    push_brush_change(document, brush, actions);
 }
 
 /// Which axes are mirrored, and about what.
-fn mirror_row(ui: &mut Ui, document: &Document, brush: &mut Brush) {
+fn mirror_rows(ui: &mut Ui, document: &Document, brush: &mut Brush) {
     let tip = "Paint the mirror image of every stroke as well: X is left and right, Y up and down, Z front and back.";
     row(ui, "Mirror", tip, |ui| {
         ui.horizontal(|ui| {
@@ -138,7 +144,7 @@ fn mirror_row(ui: &mut Ui, document: &Document, brush: &mut Brush) {
             let was_off = brush.mirror == [false; 3];
             for (axis, name) in ["X", "Y", "Z"].into_iter().enumerate() {
                 let response = ui.toggle_value(&mut brush.mirror[axis], name).on_hover_text(tip);
-                controls::named(&response, &format!("Mirror {name}"));
+                controls::set_accessible_name(&response, &format!("Mirror {name}"));
             }
             let is_on = !brush.symmetry().is_none();
             if was_off && is_on && brush.mirror_center == [0.0; 3] {
@@ -151,40 +157,40 @@ fn mirror_row(ui: &mut Ui, document: &Document, brush: &mut Brush) {
     let is_on = !brush.symmetry().is_none();
     let (low, high) = document.stage.bounds;
     let middle = ((low + high) / 2.0).to_array();
-    let before = match brush.mirror_by_object {
-        true => About::Object,
-        false if brush.mirror_center == middle => About::Scene,
-        false => About::World,
+    let previous_pivot = match brush.mirror_by_object {
+        true => MirrorPivot::Object,
+        false if brush.mirror_center == middle => MirrorPivot::Scene,
+        false => MirrorPivot::World,
     };
-    let mut about = before;
+    let mut pivot = previous_pivot;
     row(ui, "Mirror at", tip, |ui| {
-        let combo = ComboBox::from_id_salt("mirror at").selected_text(about.name()).width(150.0);
+        let combo = ComboBox::from_id_salt("mirror at").selected_text(pivot.name()).width(150.0);
         let add = |ui: &mut Ui| {
             let choice = combo.show_ui(ui, |ui| {
-                for choice in [About::Scene, About::World, About::Object] {
-                    ui.selectable_value(&mut about, choice, choice.name());
+                for choice in [MirrorPivot::Scene, MirrorPivot::World, MirrorPivot::Object] {
+                    ui.selectable_value(&mut pivot, choice, choice.name());
                 }
             });
             choice.response
         };
         ui.add_enabled_ui(is_on, add).inner
     });
-    if about != before {
-        brush.mirror_by_object = about == About::Object;
+    if pivot != previous_pivot {
+        brush.mirror_by_object = pivot == MirrorPivot::Object;
         brush.mirror_axes = focus::WORLD_AXES;
-        brush.mirror_center = if about == About::World { [0.0; 3] } else { middle };
+        brush.mirror_center = if pivot == MirrorPivot::World { [0.0; 3] } else { middle };
     }
 }
 
 /// What is mirrored about.
 #[derive(Clone, Copy, PartialEq)]
-enum About {
+enum MirrorPivot {
     Scene,
     World,
     Object,
 }
 
-impl About {
+impl MirrorPivot {
     fn name(self) -> &'static str {
         match self {
             Self::Scene => "the scene's middle",

@@ -1,7 +1,7 @@
 //! A focal surface as a curve: blur over depth, drawn by dragging points.
 
 use crate::window::Action;
-use crate::window::controls::{self, finish, format_number, proportional};
+use crate::window::controls::{self, finish_edit, format_number, proportional_value};
 use crate::window::false_colour;
 use crate::window::tool_bar::signed_circle_px;
 use egui::{
@@ -32,13 +32,13 @@ pub fn curve_editor(
         return;
     }
     let mut points = curve.curve.points().to_vec();
-    drawing(ui, &optics, document.camera.focus_distance, curve, &mut points, actions);
-    numbers(ui, &optics, &mut points, actions);
+    edit_by_pointer(ui, &optics, document.camera.focus_distance, curve, &mut points, actions);
+    edit_by_number(ui, &optics, &mut points, actions);
     if points != curve.curve.points()
         && let Some(changed) = Curve::new(points)
     {
         let curve = DepthCurve { curve: changed, ..curve.clone() };
-        actions.push(Command::Layer(LayerEdit::Curve(index, curve)).into());
+        actions.push(Command::EditLayers(LayerEdit::Curve(index, curve)).into());
     }
 }
 
@@ -69,17 +69,17 @@ impl Axes {
         let x = ((at.x - self.rect.left()) / self.rect.width()).clamp(0.0, 1.0) as f64;
         let y = (2.0 * (self.rect.center().y - at.y) / self.rect.height()).clamp(-1.0, 1.0) as f64;
         let circle_px = if y.abs() < SNAP { 0.0 } else { false_colour::circle_px(y) };
-        Some([low + x * (high - low), t_for_circle(optics, circle_px)?])
+        Some([low + x * (high - low), offset_for_circle(optics, circle_px)?])
     }
 }
 
 /// The t that gives a signed circle of confusion, px, whatever the depth.
-fn t_for_circle(optics: &Optics, circle_px: f64) -> Option<f64> {
+fn offset_for_circle(optics: &Optics, circle_px: f64) -> Option<f64> {
     let kappa = optics.kappa_for_circle_px(circle_px)?;
     optics.offset_for_kappa(kappa, optics.inverse_focus_distance, 1.0)
 }
 
-fn drawing(
+fn edit_by_pointer(
     ui: &mut Ui,
     optics: &Optics,
     focus_distance: f64,
@@ -89,7 +89,7 @@ fn drawing(
 ) {
     let size = vec2(ui.available_width(), HEIGHT);
     let (outer, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
-    controls::named(&response, "Blur over depth");
+    controls::set_accessible_name(&response, "Blur over depth");
     let rect = outer.shrink2(vec2(6.0, 14.0));
     // While a point is dragged the axes stand still.
     let id = response.id.with("held");
@@ -111,7 +111,7 @@ fn drawing(
             actions.push(Command::FinishEdit.into());
         } else if ui.input(|input| input.pointer.primary_pressed()) && response.is_pointer_button_down_on() {
             let k = near(points, at).or_else(|| {
-                let point = axes.curve(optics, at).filter(|_| points.len() < Curve::MOST_POINTS)?;
+                let point = axes.curve(optics, at).filter(|_| points.len() < Curve::MAX_POINTS)?;
                 let k = points.partition_point(|p| p[0] < point[0]);
                 points.insert(k, point);
                 Some(k)
@@ -181,7 +181,7 @@ fn paint(
     let mut last: Option<Pos2> = None;
     for k in 0..=160 {
         let ln_depth = axes.ends[0] + (axes.ends[1] - axes.ends[0]) * k as f64 / 160.0;
-        let t = curve.curve.at(ln_depth);
+        let t = curve.curve.evaluate(ln_depth);
         let at = axes.screen(optics, [ln_depth, t]);
         if let Some(last) = last {
             let color = false_colour::color(signed_circle_px(optics, t));
@@ -197,7 +197,7 @@ fn paint(
     let label = |at: Pos2, align: Align2, text: String| {
         painter.text(at, align, text, FontId::proportional(10.0), grey(170));
     };
-    let depth = |ln_depth: f64| controls::length(ln_depth.exp());
+    let depth = |ln_depth: f64| controls::length_text(ln_depth.exp());
     label(outer.left_bottom() + vec2(6.0, -1.0), Align2::LEFT_BOTTOM, depth(axes.ends[0]));
     label(outer.right_bottom() + vec2(-6.0, -1.0), Align2::RIGHT_BOTTOM, depth(axes.ends[1]));
     label(outer.center_bottom() + vec2(0.0, -1.0), Align2::CENTER_BOTTOM, "near blur".into());
@@ -205,31 +205,32 @@ fn paint(
 }
 
 /// Depth and blur of every point, to be typed.
-fn numbers(ui: &mut Ui, optics: &Optics, points: &mut Vec<[f64; 2]>, actions: &mut Vec<Action>) {
+fn edit_by_number(ui: &mut Ui, optics: &Optics, points: &mut Vec<[f64; 2]>, actions: &mut Vec<Action>) {
     let mut removed = None;
     let removable = points.len() > 1;
     for (k, point) in points.iter_mut().enumerate() {
         ui.horizontal(|ui| {
             let mut depth = point[0].exp();
-            let value = proportional(&mut depth, 1e-6..=1e9).custom_formatter(format_number).suffix(" m");
+            let value =
+                proportional_value(&mut depth, 1e-6..=1e9).custom_formatter(format_number).suffix(" m");
             let response = ui.add(value).on_hover_text("Depth of this point.");
-            controls::named(&response, &format!("Depth of point {}", k + 1));
+            controls::set_accessible_name(&response, &format!("Depth of point {}", k + 1));
             if response.changed() {
                 point[0] = depth.ln();
             }
-            finish(&response, actions);
+            finish_edit(&response, actions);
             let mut circle_px = signed_circle_px(optics, point[1]);
             let value = DragValue::new(&mut circle_px).speed(0.1).max_decimals(2).suffix(" px");
             let response = ui.add(value).on_hover_text("Blur at that depth: negative is near, positive far.");
-            controls::named(&response, &format!("Blur of point {}", k + 1));
+            controls::set_accessible_name(&response, &format!("Blur of point {}", k + 1));
             if response.changed()
-                && let Some(t) = t_for_circle(optics, circle_px)
+                && let Some(t) = offset_for_circle(optics, circle_px)
             {
                 point[1] = t;
             }
-            finish(&response, actions);
+            finish_edit(&response, actions);
             let remove = ui.add_enabled(removable, egui::Button::new("Remove"));
-            controls::named(&remove, &format!("Remove point {}", k + 1));
+            controls::set_accessible_name(&remove, &format!("Remove point {}", k + 1));
             if remove.on_hover_text("Take this point away.").clicked() {
                 removed = Some(k);
             }

@@ -40,7 +40,7 @@ pub fn falloff_editor(ui: &mut Ui, brush: &mut Brush) {
     let Some(curve) = &brush.drawn_falloff else { return };
     let (outer, response) =
         ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::click_and_drag());
-    controls::named(&response, "Falloff of the brush");
+    controls::set_accessible_name(&response, "Falloff of the brush");
     let rect = outer.shrink(6.0);
     let mut points = curve.points().to_vec();
     let screen = |[x, y]: [f64; 2]| {
@@ -93,7 +93,7 @@ pub fn falloff_editor(ui: &mut Ui, brush: &mut Brush) {
 fn paint(ui: &Ui, outer: Rect, rect: Rect, curve: &Curve, screen: impl Fn([f64; 2]) -> Pos2) {
     let painter = ui.painter_at(outer);
     painter.rect_filled(outer, 3.0, ui.visuals().extreme_bg_color);
-    let line: Vec<Pos2> = (0..=64).map(|k| k as f64 / 64.0).map(|x| screen([x, curve.at(x)])).collect();
+    let line: Vec<Pos2> = (0..=64).map(|k| k as f64 / 64.0).map(|x| screen([x, curve.evaluate(x)])).collect();
     painter.line(line, Stroke::new(2.0, ui.visuals().text_color()));
     painter
         .line_segment([rect.left_bottom(), rect.right_bottom()], Stroke::new(1.0, Color32::from_gray(110)));

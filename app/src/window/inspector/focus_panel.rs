@@ -1,8 +1,8 @@
 //! What is painted: blur first, the raw numbers for who wants them.
 
 use crate::window::Action;
-use crate::window::controls::{self, format_number, proportional, row, rows};
-use crate::window::tool_bar::{push_brush, signed_circle_px, target_slider};
+use crate::window::controls::{self, format_number, proportional_value, row, rows};
+use crate::window::tool_bar::{push_brush_change, signed_circle_px, target_slider};
 use egui::{Button, Checkbox, DragValue, RichText, Ui};
 use lens::FocusOffset;
 use session::{Command, CommandId, Document};
@@ -53,7 +53,7 @@ pub fn focus_panel(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) 
                 let mix = ui.add(
                     DragValue::new(&mut brush.target.anchor).range(0.0..=1.0).speed(0.005).fixed_decimals(2),
                 );
-                controls::named(&mix, "Anchor mix");
+                controls::set_accessible_name(&mix, "Anchor mix");
                 mix
             })
             .inner
@@ -69,7 +69,7 @@ pub fn focus_panel(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) 
             response
         });
     });
-    ui.add(egui::Label::new(RichText::new(in_words(brush.target, px)).weak()).wrap());
+    ui.add(egui::Label::new(RichText::new(target_sentence(brush.target, px)).weak()).wrap());
     ui.horizontal_wrapped(|ui| {
         fill_button(ui, CommandId::FillAll, "Fill everything", actions);
         let tip = "Give the background, what lies behind everything, the chosen focus.";
@@ -78,7 +78,7 @@ pub fn focus_panel(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) 
         }
         fill_button(ui, CommandId::ResetMap, "Reset all", actions);
     });
-    push_brush(document, brush, actions);
+    push_brush_change(document, brush, actions);
 }
 
 /// The same blur in other measures, each to be typed.
@@ -116,11 +116,12 @@ fn exact_rows(ui: &mut Ui, document: &Document, target: &mut FocusOffset) {
     let tip = "The depth at which the unpainted lens would blur a thing as much. What is blurred more than infinity looks like nothing that could be.";
     let response = row(ui, "looks like at", tip, |ui| {
         let beyond = inverse < 0.0;
-        let value = proportional(&mut depth, 1e-6..=f64::INFINITY).custom_formatter(move |n, d| match n {
-            _ if beyond => "beyond ∞".into(),
-            n if n.is_finite() => format!("{} m", format_number(n, d)),
-            _ => "∞".into(),
-        });
+        let value =
+            proportional_value(&mut depth, 1e-6..=f64::INFINITY).custom_formatter(move |n, d| match n {
+                _ if beyond => "beyond ∞".into(),
+                n if n.is_finite() => format!("{} m", format_number(n, d)),
+                _ => "∞".into(),
+            });
         ui.add(value.custom_parser(|text| match text.trim().trim_end_matches('m').trim() {
             "inf" | "∞" | "infinity" => Some(f64::INFINITY),
             number => number.parse().ok(),
@@ -141,8 +142,8 @@ fn fill_button(ui: &mut Ui, id: CommandId, label: &str, actions: &mut Vec<Action
 }
 
 /// What the focus does, in one sentence.
-fn in_words(target: FocusOffset, px: f64) -> String {
-    let blur = controls::circle_amount(px);
+fn target_sentence(target: FocusOffset, px: f64) -> String {
+    let blur = controls::circle_amount_text(px);
     let painted = match target.anchor {
         _ if target.is_standard() => return "Paints the ordinary lens.".into(),
         1.0 if target.t == 1.0 => "Paints perfectly sharp, wherever the lens focuses".into(),

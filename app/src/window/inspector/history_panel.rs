@@ -5,12 +5,12 @@ use crate::window::false_colour;
 use crate::window::tool_bar::signed_circle_px;
 use crate::window::{Action, keys};
 use egui::{Color32, Rect, RichText, ScrollArea, Sense, Ui, pos2, vec2};
-use focus::Thumbnail;
+use focus::EditThumbnail;
 use lens::Optics;
 use session::{Command, CommandId, Document, HistoryStep};
 
 /// Side of a step's picture, points.
-const PICTURE: f32 = 28.0;
+const THUMBNAIL_SIDE: f32 = 28.0;
 
 /// The steps, the latest on top, and where one is among them.
 pub fn history_panel(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) {
@@ -21,7 +21,7 @@ pub fn history_panel(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>
         return;
     }
     let optics = document.camera.optics();
-    let height = PICTURE + 2.0;
+    let height = THUMBNAIL_SIDE + 2.0;
     // The latest step is on top, the document as it was opened at the bottom.
     let rows = steps.len() + 1;
     let area = ScrollArea::vertical().id_salt("history").max_height(240.0).min_scrolled_height(160.0);
@@ -30,7 +30,7 @@ pub fn history_panel(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>
             let number = rows - 1 - row;
             let step = number.checked_sub(1).map(|index| &steps[index]);
             if step_row(ui, &optics, number, step, number == done) && number != done {
-                actions.push(Command::GoTo(number).into());
+                actions.push(Command::GoToHistoryStep(number).into());
             }
         }
     });
@@ -38,11 +38,11 @@ pub fn history_panel(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>
         for (id, name) in [(CommandId::Undo, document.undo_name()), (CommandId::Redo, document.redo_name())] {
             let button = egui::Button::new(id.info().name);
             let response = ui.add_enabled(name.is_some(), button);
-            if response.on_hover_text(keys::tip(ui.ctx(), id)).clicked() {
+            if response.on_hover_text(keys::command_tooltip(ui.ctx(), id)).clicked() {
                 actions.push(id.into());
             }
         }
-        let [held, budget] = document.undo_bytes().map(controls::bytes);
+        let [held, budget] = document.undo_bytes().map(controls::bytes_text);
         ui.weak(format!("{held} of {budget}"))
             .on_hover_text("Memory that the steps hold, and may hold before the oldest are forgotten.");
     });
@@ -50,7 +50,7 @@ pub fn history_panel(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>
 
 /// One step; whether it was clicked.
 fn step_row(ui: &mut Ui, optics: &Optics, number: usize, step: Option<&HistoryStep<'_>>, here: bool) -> bool {
-    let size = vec2(ui.available_width(), PICTURE);
+    let size = vec2(ui.available_width(), THUMBNAIL_SIDE);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     let name = step.map_or("As opened", |step| step.name);
     let text = format!("{number}  {name}");
@@ -60,7 +60,7 @@ fn step_row(ui: &mut Ui, optics: &Optics, number: usize, step: Option<&HistorySt
     if here || response.hovered() || response.has_focus() {
         ui.painter().rect_filled(rect, visuals.corner_radius, visuals.weak_bg_fill);
     }
-    let picture = Rect::from_min_size(rect.min, vec2(PICTURE, PICTURE)).shrink(1.0);
+    let picture = Rect::from_min_size(rect.min, vec2(THUMBNAIL_SIDE, THUMBNAIL_SIDE)).shrink(1.0);
     ui.painter().rect_filled(picture, 2.0, ui.visuals().extreme_bg_color);
     if let Some(thumbnail) = step.and_then(|step| step.thumbnail) {
         paint_thumbnail(ui, picture, thumbnail, optics);
@@ -78,11 +78,11 @@ fn step_row(ui: &mut Ui, optics: &Optics, number: usize, step: Option<&HistorySt
 }
 
 /// The cells that changed, in the colours of the blur that they have now.
-fn paint_thumbnail(ui: &Ui, rect: Rect, thumbnail: &Thumbnail, optics: &Optics) {
-    let side = rect.width() / Thumbnail::SIDE as f32;
+fn paint_thumbnail(ui: &Ui, rect: Rect, thumbnail: &EditThumbnail, optics: &Optics) {
+    let side = rect.width() / EditThumbnail::SIDE as f32;
     let mut mesh = egui::Mesh::default();
     for (k, cell) in thumbnail.cells().iter().enumerate().filter(|(_, cell)| cell.changed > 0.0) {
-        let corner = vec2((k % Thumbnail::SIDE) as f32, (k / Thumbnail::SIDE) as f32) * side;
+        let corner = vec2((k % EditThumbnail::SIDE) as f32, (k / EditThumbnail::SIDE) as f32) * side;
         let color = false_colour::color(signed_circle_px(optics, f64::from(cell.t)));
         let [r, g, b, _] = color.to_array();
         let alpha = (100.0 + 155.0 * cell.changed) as u8;

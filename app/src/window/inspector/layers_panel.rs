@@ -2,10 +2,10 @@
 
 use super::curve_editor::curve_editor;
 use super::plane_editor::plane_editor;
-use crate::window::controls::{self, finish, row, rows};
+use crate::window::controls::{self, finish_edit, row, rows};
 use crate::window::{Action, keys};
 use egui::{Button, ComboBox, Slider, TextEdit, Ui};
-use focus::{Adjustment, Blend, FocusLayer, LayerEdit};
+use focus::{Adjustment, BlendMode, FocusLayer, LayerEdit};
 use session::{Command, CommandId, Document};
 
 /// The list of layers, and what can be changed of the one that is painted on.
@@ -17,11 +17,11 @@ pub fn layers_panel(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>)
             let mut visible = layer.is_visible;
             let tip = if visible { "Hide this layer." } else { "Show this layer." };
             let shown = ui.checkbox(&mut visible, "").on_hover_text(tip);
-            controls::named(&shown, &format!("Show {}", layer.name));
+            controls::set_accessible_name(&shown, &format!("Show {}", layer.name));
             if shown.changed() {
-                actions.push(Command::Layer(LayerEdit::Visible(index, visible)).into());
+                actions.push(Command::EditLayers(LayerEdit::Visible(index, visible)).into());
             }
-            let chosen = controls::list_row(ui, index == active, &title(layer));
+            let chosen = controls::list_row(ui, index == active, &layer_title(layer));
             if chosen.on_hover_text("Paint on this layer.").clicked() {
                 actions.push(Command::ActivateLayer(index).into());
             }
@@ -30,7 +30,7 @@ pub fn layers_panel(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>)
     ui.horizontal_wrapped(|ui| {
         let mut button = |id: CommandId, label: &str| {
             let response = ui.add_enabled(is_layer_command_possible(id, document), Button::new(label));
-            let tip = keys::tip(ui.ctx(), id);
+            let tip = keys::command_tooltip(ui.ctx(), id);
             if response.on_hover_text(&tip).on_disabled_hover_text(tip).clicked() {
                 actions.push(id.into());
             }
@@ -43,7 +43,7 @@ pub fn layers_panel(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>)
         button(CommandId::LowerLayer, "Down");
         button(CommandId::RemoveLayer, "Remove");
     });
-    active_layer(ui, document, active, &layers[active], actions);
+    layer_settings(ui, document, active, &layers[active], actions);
 }
 
 /// Whether a command about layers can do something now.
@@ -60,9 +60,9 @@ pub fn is_layer_command_possible(id: CommandId, document: &Document) -> bool {
 }
 
 /// What the list says of a layer.
-fn title(layer: &FocusLayer) -> String {
+fn layer_title(layer: &FocusLayer) -> String {
     let mut title = layer.name.clone();
-    if layer.blend != Blend::Set {
+    if layer.blend != BlendMode::Set {
         title += &format!("  · {}", blend_name(layer.blend).to_lowercase());
     }
     if layer.opacity < 1.0 {
@@ -71,14 +71,14 @@ fn title(layer: &FocusLayer) -> String {
     title
 }
 
-fn active_layer(
+fn layer_settings(
     ui: &mut Ui,
     document: &Document,
     index: usize,
     layer: &FocusLayer,
     actions: &mut Vec<Action>,
 ) {
-    let edit = |edit: LayerEdit| Action::from(Command::Layer(edit));
+    let edit = |edit: LayerEdit| Action::from(Command::EditLayers(edit));
     rows(ui, "layer", |ui| {
         let mut name = layer.name.clone();
         let response = row(ui, "Name", "What this layer is called.", |ui| {
@@ -87,7 +87,7 @@ fn active_layer(
         if response.changed() {
             actions.push(edit(LayerEdit::Rename(index, name)));
         }
-        finish(&response, actions);
+        finish_edit(&response, actions);
 
         let mut opacity = layer.opacity * 100.0;
         let response = row(ui, "Opacity", "How much this layer counts.", |ui| {
@@ -96,7 +96,7 @@ fn active_layer(
         if response.changed() {
             actions.push(edit(LayerEdit::Opacity(index, opacity / 100.0)));
         }
-        finish(&response, actions);
+        finish_edit(&response, actions);
 
         let tip = "How this layer joins what lies beneath it. Set: t and anchor each move toward this layer's. Mix: the blur does, at every depth. Add: its offset is added. Multiply: the blur beneath is multiplied by its t.";
         row(ui, "Blending", tip, |ui| {
@@ -104,7 +104,7 @@ fn active_layer(
                 ComboBox::from_id_salt("layer blend").selected_text(blend_name(layer.blend)).width(150.0);
             combo
                 .show_ui(ui, |ui| {
-                    for blend in Blend::ALL {
+                    for blend in BlendMode::ALL {
                         if ui.selectable_label(blend == layer.blend, blend_name(blend)).clicked() {
                             actions.push(edit(LayerEdit::Blend(index, blend)));
                         }
@@ -143,11 +143,11 @@ fn active_layer(
     }
 }
 
-fn blend_name(blend: Blend) -> &'static str {
+fn blend_name(blend: BlendMode) -> &'static str {
     match blend {
-        Blend::Set => "Set",
-        Blend::Mix => "Mix blur",
-        Blend::Add => "Add",
-        Blend::MultiplyDefocus => "Multiply blur",
+        BlendMode::Set => "Set",
+        BlendMode::Mix => "Mix blur",
+        BlendMode::Add => "Add",
+        BlendMode::MultiplyDefocus => "Multiply blur",
     }
 }

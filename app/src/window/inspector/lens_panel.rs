@@ -2,32 +2,32 @@
 
 use super::preset_row::preset_row;
 use super::shape_panel::shape_panel;
-use crate::window::controls::{self, finish, format_number, proportional, row, rows};
+use crate::window::controls::{self, finish_edit, format_number, proportional_value, row, rows};
 use crate::window::view_settings::LARGEST_TOLERANCE_PX;
 use crate::window::{Action, ViewSettings};
 use egui::{Button, ComboBox, DragValue, Slider, Ui};
 use lens::{Camera, Exposure};
-use project::{PresetKind, PresetShelf};
+use project::{PresetKind, PresetLibrary};
 use session::{CameraEdit, Command, CommandId, Document, OcioViews, Session, ToneCurve};
 
 /// Full stops that the f-number's menu offers.
 const STOPS: [f64; 9] = [0.7, 1.0, 1.4, 2.0, 2.8, 4.0, 5.6, 8.0, 16.0];
 
 /// f-number, focal length, focus distance, aperture radius and shape, pose and angle of view.
-pub fn lens_panel(ui: &mut Ui, document: &Document, presets: &PresetShelf, actions: &mut Vec<Action>) {
+pub fn lens_panel(ui: &mut Ui, document: &Document, presets: &PresetLibrary, actions: &mut Vec<Action>) {
     let camera = &document.camera;
     let optics = camera.optics();
-    let edit = |edit: CameraEdit| Action::from(Command::Camera(edit));
+    let edit = |edit: CameraEdit| Action::from(Command::EditCamera(edit));
     rows(ui, "lens", |ui| {
         if document.scene_cameras().count() > 1 {
             scene_camera_row(ui, document, actions);
         }
-        preset_row(ui, presets, PresetKind::Lens, |preset| preset.is_of_camera(camera), actions);
+        preset_row(ui, presets, PresetKind::Lens, |preset| preset.matches_camera(camera), actions);
         let mut number = camera.f_number();
         let tip = "The f-number: focal length over the aperture's diameter. Smaller means more blur. Keys: + and −.";
         let response = row(ui, "f-number", tip, |ui| {
             ui.horizontal(|ui| {
-                let value = proportional(&mut number, 0.05..=1e6)
+                let value = proportional_value(&mut number, 0.05..=1e6)
                     .prefix("f/")
                     .custom_formatter(|n, d| if n.is_finite() { format_number(n, d) } else { "∞".into() });
                 let response = ui.add(value);
@@ -49,21 +49,21 @@ pub fn lens_panel(ui: &mut Ui, document: &Document, presets: &PresetShelf, actio
         if response.changed() {
             actions.push(edit(CameraEdit::FNumber(number)));
         }
-        finish(&response, actions);
+        finish_edit(&response, actions);
 
         let mut radius = camera.aperture_radius * 1e3;
         let tip = "Half the width of the square that the aperture lies in, mm if the scene is in metres. 0 is a pinhole.";
         let response = row(ui, "Aperture radius", tip, |ui| {
-            ui.add(proportional(&mut radius, 0.0..=1e6).suffix(" mm").custom_formatter(format_number))
+            ui.add(proportional_value(&mut radius, 0.0..=1e6).suffix(" mm").custom_formatter(format_number))
         });
         if response.changed() {
             actions.push(edit(CameraEdit::ApertureRadius(radius / 1e3)));
         }
-        finish(&response, actions);
+        finish_edit(&response, actions);
 
         let tip = "Thin lens: follows from sensor height, angle of view and focus distance.";
         row(ui, "Focal length", tip, |ui| {
-            ui.label(format!("{} mm", controls::significant(optics.focal_length() * 1e3)))
+            ui.label(format!("{} mm", controls::significant_digits(optics.focal_length() * 1e3)))
         });
         focus_distance_row(ui, document, actions);
 
@@ -74,28 +74,28 @@ pub fn lens_panel(ui: &mut Ui, document: &Document, presets: &PresetShelf, actio
         if response.changed() {
             actions.push(edit(CameraEdit::YFov(degrees.to_radians())));
         }
-        finish(&response, actions);
+        finish_edit(&response, actions);
 
         let mut sensor = camera.sensor_height * 1e3;
         let tip = "Height of the sensor: decides how much blur a focus offset means.";
         let response = row(ui, "Sensor height", tip, |ui| {
-            ui.add(proportional(&mut sensor, 1e-3..=1e6).suffix(" mm").custom_formatter(format_number))
+            ui.add(proportional_value(&mut sensor, 1e-3..=1e6).suffix(" mm").custom_formatter(format_number))
         });
         if response.changed() {
             actions.push(edit(CameraEdit::SensorHeight(sensor / 1e3)));
         }
-        finish(&response, actions);
+        finish_edit(&response, actions);
         shift_rows(ui, camera, actions);
-        preset_row(ui, presets, PresetKind::Bokeh, |preset| preset.is_of_camera(camera), actions);
+        preset_row(ui, presets, PresetKind::Bokeh, |preset| preset.matches_camera(camera), actions);
         shape_panel(ui, camera, actions);
     });
 }
 
 fn shift_rows(ui: &mut Ui, camera: &Camera, actions: &mut Vec<Action>) {
     let reach = 100.0 * Camera::LARGEST_SHIFT;
-    for (axis, label, way) in [(0, "Shift right", "to the right"), (1, "Shift up", "upwards")] {
+    for (axis, label, direction) in [(0, "Shift right", "to the right"), (1, "Shift up", "upwards")] {
         let tip = format!(
-            "How far the sensor is moved {way}, in picture heights: what is seen moves, perspective stays."
+            "How far the sensor is moved {direction}, in picture heights: what is seen moves, perspective stays."
         );
         let mut percent = 100.0 * camera.shift[axis];
         let response = row(ui, label, &tip, |ui| {
@@ -104,9 +104,9 @@ fn shift_rows(ui: &mut Ui, camera: &Camera, actions: &mut Vec<Action>) {
         if response.changed() {
             let mut shift = camera.shift;
             shift[axis] = percent / 100.0;
-            actions.push(Command::Camera(CameraEdit::Shift(shift)).into());
+            actions.push(Command::EditCamera(CameraEdit::Shift(shift)).into());
         }
-        finish(&response, actions);
+        finish_edit(&response, actions);
     }
 }
 
@@ -116,7 +116,7 @@ fn focus_distance_row(ui: &mut Ui, document: &Document, actions: &mut Vec<Action
     let tip = "Distance to the plane that the lens focuses on, along its axis. Keys: Shift+, and Shift+.";
     let response = row(ui, "Focus distance", tip, |ui| {
         ui.horizontal(|ui| {
-            let value = proportional(&mut distance, 1e-6..=f64::INFINITY).custom_formatter(|n, d| {
+            let value = proportional_value(&mut distance, 1e-6..=f64::INFINITY).custom_formatter(|n, d| {
                 if n.is_finite() { format!("{} m", format_number(n, d)) } else { "∞".into() }
             });
             let value = value.custom_parser(|text| match text.trim().trim_end_matches('m').trim() {
@@ -134,7 +134,7 @@ fn focus_distance_row(ui: &mut Ui, document: &Document, actions: &mut Vec<Action
                 .clicked()
             {
                 let distance = if distance.is_infinite() { 10.0 } else { f64::INFINITY };
-                actions.push(Command::Camera(CameraEdit::FocusDistance(distance)).into());
+                actions.push(Command::EditCamera(CameraEdit::FocusDistance(distance)).into());
                 actions.push(Command::FinishEdit.into());
             }
             response
@@ -142,9 +142,9 @@ fn focus_distance_row(ui: &mut Ui, document: &Document, actions: &mut Vec<Action
         .inner
     });
     if response.changed() && distance != camera.focus_distance {
-        actions.push(Command::Camera(CameraEdit::FocusDistance(distance)).into());
+        actions.push(Command::EditCamera(CameraEdit::FocusDistance(distance)).into());
     }
-    finish(&response, actions);
+    finish_edit(&response, actions);
 }
 
 fn scene_camera_row(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) {
@@ -162,7 +162,7 @@ fn scene_camera_row(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>)
                 .show_ui(ui, |ui| {
                     for (candidate, camera) in document.scene_cameras() {
                         if ui.selectable_label(candidate == name, candidate).clicked() {
-                            actions.push(Command::Camera(CameraEdit::Whole(camera)).into());
+                            actions.push(Command::EditCamera(CameraEdit::Whole(camera)).into());
                             actions.push(Command::FinishEdit.into());
                         }
                     }
@@ -189,19 +189,19 @@ pub fn picture_panel(
             ui.horizontal(|ui| {
                 let first =
                     ui.add(DragValue::new(&mut width).range(side.clone()).update_while_editing(false));
-                controls::named(&first, "Picture width, px");
+                controls::set_accessible_name(&first, "Picture width, px");
                 ui.label("×");
                 let second = ui.add(DragValue::new(&mut height).range(side).update_while_editing(false));
-                controls::named(&second, "Picture height, px");
+                controls::set_accessible_name(&second, "Picture height, px");
                 ui.label("px");
                 first.union(second)
             })
             .inner
         });
         if (width, height) != (camera.width, camera.height) {
-            actions.push(Command::Camera(CameraEdit::Size(width, height)).into());
+            actions.push(Command::EditCamera(CameraEdit::Size(width, height)).into());
         }
-        finish(&response, actions);
+        finish_edit(&response, actions);
 
         let tip = "Normalise keeps a white scene white. Conserve shows the energy of the model, with rims where the focus steps. Key: N.";
         row(ui, "Exposure", tip, |ui| {
@@ -236,7 +236,7 @@ pub fn picture_panel(
                     for curve in ToneCurve::ALL {
                         ui.selectable_value(&mut settings.tone_curve, curve, curve.name());
                     }
-                    let views = OcioViews::of_environment();
+                    let views = OcioViews::from_environment();
                     for curve in (0..views.len() as u16).map(ToneCurve::Ocio) {
                         ui.selectable_value(&mut settings.tone_curve, curve, curve.name());
                     }
@@ -270,17 +270,17 @@ pub fn picture_panel(
             ui.add(slider.max_decimals(1).suffix(" px"))
         });
     });
-    if let Some(saved) = saved(session) {
-        ui.weak(saved).on_hover_text("What the tolerance costs: how close the live picture comes to the exact one (PSNR), and how long either takes to draw whole.");
+    if let Some(summary) = tolerance_summary(session) {
+        ui.weak(summary).on_hover_text("What the tolerance costs: how close the live picture comes to the exact one (PSNR), and how long either takes to draw whole.");
     }
 }
 
 /// What the tolerance saves and costs, once that is known.
-fn saved(session: &Session) -> Option<String> {
+fn tolerance_summary(session: &Session) -> Option<String> {
     let costs = session.preview()?.costs;
-    let live = costs.viewing_seconds.map(|seconds| format!("live {}", controls::seconds(seconds)));
-    let exact = costs.exact_seconds.map(|seconds| format!("exact {}", controls::seconds(seconds)));
+    let live = costs.viewing_seconds.map(|seconds| format!("live {}", controls::seconds_text(seconds)));
+    let exact = costs.exact_seconds.map(|seconds| format!("exact {}", controls::seconds_text(seconds)));
     let close = costs.viewing_psnr.map(|psnr| format!("{psnr:.0} dB"));
-    let known: Vec<String> = [live, exact, close].into_iter().flatten().collect();
-    (!known.is_empty()).then(|| known.join(" · "))
+    let parts: Vec<String> = [live, exact, close].into_iter().flatten().collect();
+    (!parts.is_empty()).then(|| parts.join(" · "))
 }

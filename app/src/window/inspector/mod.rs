@@ -17,11 +17,11 @@ mod variant_panel;
 mod world_panel;
 
 pub use layers_panel::is_layer_command_possible;
-pub use tool_panel::selected;
+pub use tool_panel::selection_summary;
 
 use super::{Action, Tool, ViewSettings};
 use egui::{CollapsingHeader, ScrollArea, Ui};
-use project::PresetShelf;
+use project::PresetLibrary;
 use session::{Session, SurfaceHit};
 
 /// What the inspector keeps between frames.
@@ -35,7 +35,7 @@ pub struct Inspected<'a> {
     /// The session.
     pub session: &'a Session,
     /// All presets.
-    pub presets: &'a PresetShelf,
+    pub presets: &'a PresetLibrary,
     /// The tool in hand.
     pub tool: Tool,
     /// What lies under the pointer.

@@ -1,6 +1,6 @@
 //! What the light field holds: only what the scene needs. The table is that of `info` and `report`.
 
-use crate::window::controls::{bytes, count, row, rows, seconds};
+use crate::window::controls::{bytes_text, count_text, row, rows, seconds_text};
 use egui::{RichText, Ui};
 use session::{Document, LivePicture, Modelled, Session};
 
@@ -10,7 +10,7 @@ pub fn modelled_panel(ui: &mut Ui, session: &Session, document: &Document) {
         ui.weak("Nothing yet.");
         return;
     };
-    kinds(ui, &preview.modelled);
+    kinds_table(ui, &preview.modelled);
     ui.add_space(4.0);
     rows(ui, "modelled", |ui| {
         let mut line = |label: &str, tip: &str, value: String| {
@@ -21,18 +21,18 @@ pub fn modelled_panel(ui: &mut Ui, session: &Session, document: &Document) {
         let size = format!("{} × {} px", preview.camera.width, preview.camera.height);
         line("Drawn at", "Size of the live picture.", size);
         let by = match &preview.picture {
-            LivePicture::Here(_) => "the processor",
-            LivePicture::There(picture) => picture.card_name(),
+            LivePicture::InMemory(_) => "the processor",
+            LivePicture::OnCard(picture) => picture.card_name(),
         };
         line("Drawn by", "What sums the picture.", by.into());
-        line("Drawn in", "How long the last picture took.", seconds(preview.seconds));
+        line("Drawn in", "How long the last picture took.", seconds_text(preview.seconds));
         let map = format!("{} × {}", document.map.width(), document.map.height());
         line("Focus map", "Texels of the painted map.", map);
     });
 }
 
 /// The table of kinds.
-fn kinds(ui: &mut Ui, modelled: &Modelled) {
+fn kinds_table(ui: &mut Ui, modelled: &Modelled) {
     egui::Grid::new("kinds").num_columns(4).spacing([10.0, 4.0]).striped(true).show(ui, |ui| {
         for (title, tip) in [
             ("kind", "What is counted."),
@@ -46,9 +46,9 @@ fn kinds(ui: &mut Ui, modelled: &Modelled) {
         for row in modelled.rows() {
             ui.label(row.kind).on_hover_text(row.what);
             let cell = |value: Option<String>| value.unwrap_or_else(|| "–".into());
-            ui.label(cell(row.texels.map(count)));
-            ui.label(cell(row.samples.map(count)));
-            ui.label(cell(row.bytes.map(bytes)));
+            ui.label(cell(row.texels.map(count_text)));
+            ui.label(cell(row.samples.map(count_text)));
+            ui.label(cell(row.bytes.map(bytes_text)));
             ui.end_row();
         }
     });

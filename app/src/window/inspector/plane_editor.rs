@@ -1,6 +1,6 @@
 //! A focal plane in numbers: how it is turned, where it stands, how it is bent.
 
-use crate::window::controls::{finish, format_number, row, rows};
+use crate::window::controls::{finish_edit, format_number, row, rows};
 use crate::window::{Action, keys};
 use egui::{DragValue, Slider, SliderClamping, Ui};
 use focus::{FocalPlane, LayerEdit};
@@ -18,8 +18,8 @@ pub fn plane_editor(
     actions: &mut Vec<Action>,
 ) {
     let camera = &document.camera;
-    let edit = |plane: FocalPlane| Action::from(Command::Layer(LayerEdit::Plane(index, plane)));
-    let turn = plane.turn(camera);
+    let edit = |plane: FocalPlane| Action::from(Command::EditLayers(LayerEdit::Plane(index, plane)));
+    let turn = plane.tilt_and_swing(camera);
     rows(ui, "focal plane", |ui| {
         let tips = [
             ("Tilt", "Turns the plane about the picture's horizontal: above 0 its upper part comes nearer."),
@@ -33,11 +33,11 @@ pub fn plane_editor(
                 ui.add(slider.clamping(SliderClamping::Edits).custom_formatter(|n, _| format!("{n:.1}")))
             });
             if response.changed() {
-                let mut wanted = turn;
-                wanted[axis] = degrees.to_radians();
-                actions.push(edit(plane.turned(camera, wanted)));
+                let mut target_turn = turn;
+                target_turn[axis] = degrees.to_radians();
+                actions.push(edit(plane.with_tilt_and_swing(camera, target_turn)));
             }
-            finish(&response, actions);
+            finish_edit(&response, actions);
         }
         let mut depth = plane.depth_on_axis(camera);
         let tip = "Where the plane crosses the middle of the picture: distance along the camera's axis.";
@@ -46,9 +46,9 @@ pub fn plane_editor(
             ui.add(DragValue::new(&mut depth).speed(speed).suffix(" m").custom_formatter(format_number))
         });
         if response.changed() {
-            actions.push(edit(plane.at_depth_on_axis(camera, depth)));
+            actions.push(edit(plane.with_depth_on_axis(camera, depth)));
         }
-        finish(&response, actions);
+        finish_edit(&response, actions);
         let mut curvature = plane.curvature;
         let tip = "Bends the plane as a simple lens does, by dioptres at the picture's upper edge: above 0 toward the camera \
                    all around, below 0 away from it.";
@@ -58,10 +58,10 @@ pub fn plane_editor(
         if response.changed() {
             actions.push(edit(FocalPlane { curvature, ..plane.clone() }));
         }
-        finish(&response, actions);
+        finish_edit(&response, actions);
     });
     let id = CommandId::PlaceFocalPlane;
-    if ui.button("Place by three points").on_hover_text(keys::tip(ui.ctx(), id)).clicked() {
+    if ui.button("Place by three points").on_hover_text(keys::command_tooltip(ui.ctx(), id)).clicked() {
         actions.push(id.into());
     }
 }

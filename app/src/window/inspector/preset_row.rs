@@ -1,10 +1,10 @@
 //! The presets of one kind: chosen, saved, renamed, deleted, carried in and out.
 
-use crate::window::action::PresetWish;
+use crate::window::action::PresetAction;
 use crate::window::controls::row;
 use crate::window::{Action, keys};
 use egui::{Button, Ui};
-use project::{Preset, PresetKind, PresetShelf, ShelfEntry};
+use project::{LibraryEntry, Preset, PresetKind, PresetLibrary};
 use session::CommandId;
 
 /// Width of the menu, points.
@@ -15,7 +15,7 @@ const LIST_HEIGHT: f32 = 420.0;
 /// A row with the preset that `is_current` says is in use, and the menu of all.
 pub fn preset_row(
     ui: &mut Ui,
-    shelf: &PresetShelf,
+    shelf: &PresetLibrary,
     kind: PresetKind,
     is_current: impl Fn(&Preset) -> bool,
     actions: &mut Vec<Action>,
@@ -33,17 +33,17 @@ pub fn preset_row(
         ),
         PresetKind::Bokeh => ("Bokeh preset", CommandId::SaveBokehPreset, "A shape of the aperture."),
     };
-    let current = |entry: &&ShelfEntry| entry.preset.as_ref().is_ok_and(&is_current);
-    let name = shelf.of_kind(kind).find(current).map_or("Own".to_string(), ShelfEntry::name);
+    let current = |entry: &&LibraryEntry| entry.preset.as_ref().is_ok_and(&is_current);
+    let name = shelf.entries_of_kind(kind).find(current).map_or("Own".to_string(), LibraryEntry::name);
     row(ui, label, tip, |ui| {
         let menu = ui.menu_button(&name, |ui| {
             ui.set_width(MENU_WIDTH);
             let list = egui::ScrollArea::vertical().max_height(LIST_HEIGHT);
             list.show(ui, |ui| {
-                for entry in shelf.of_kind(kind).filter(|entry| entry.file.is_none()) {
+                for entry in shelf.entries_of_kind(kind).filter(|entry| entry.file.is_none()) {
                     entry_button(ui, entry, current(&entry), actions);
                 }
-                let own: Vec<_> = shelf.of_kind(kind).filter(|entry| entry.file.is_some()).collect();
+                let own: Vec<_> = shelf.entries_of_kind(kind).filter(|entry| entry.file.is_some()).collect();
                 if !own.is_empty() {
                     ui.separator();
                 }
@@ -53,7 +53,7 @@ pub fn preset_row(
             });
             ui.separator();
             for (id, label) in [(save, "Save as preset…"), (CommandId::ImportPreset, "Import preset…")] {
-                if ui.button(label).on_hover_text(keys::tip(ui.ctx(), id)).clicked() {
+                if ui.button(label).on_hover_text(keys::command_tooltip(ui.ctx(), id)).clicked() {
                     actions.push(id.into());
                     ui.close();
                 }
@@ -64,11 +64,11 @@ pub fn preset_row(
 }
 
 /// One that can be chosen.
-fn entry_button(ui: &mut Ui, entry: &ShelfEntry, is_current: bool, actions: &mut Vec<Action>) {
+fn entry_button(ui: &mut Ui, entry: &LibraryEntry, is_current: bool, actions: &mut Vec<Action>) {
     match &entry.preset {
         Ok(preset) => {
             if ui.add(Button::selectable(is_current, &preset.name)).clicked() {
-                actions.push(PresetWish::Use(Box::new(preset.clone())).into());
+                actions.push(PresetAction::Use(Box::new(preset.clone())).into());
                 ui.close();
             }
         }
@@ -80,28 +80,28 @@ fn entry_button(ui: &mut Ui, entry: &ShelfEntry, is_current: bool, actions: &mut
 }
 
 /// One of the user's own: it has a menu of its own.
-fn own_entry(ui: &mut Ui, entry: &ShelfEntry, is_current: bool, actions: &mut Vec<Action>) {
+fn own_entry(ui: &mut Ui, entry: &LibraryEntry, is_current: bool, actions: &mut Vec<Action>) {
     let Some(file) = entry.file.clone() else { return };
     ui.horizontal(|ui| {
         entry_button(ui, entry, is_current, actions);
         let more = ui.menu_button("…", |ui| {
             if let Ok(preset) = &entry.preset {
                 if ui.button("Rename…").on_hover_text("Give this preset another name.").clicked() {
-                    actions.push(PresetWish::Rename(file.clone(), preset.name.clone()).into());
+                    actions.push(PresetAction::Rename(file.clone(), preset.name.clone()).into());
                     ui.close();
                 }
                 let tip = "Write this preset to a file of your choice, to be imported elsewhere.";
                 if ui.button("Export…").on_hover_text(tip).clicked() {
-                    actions.push(PresetWish::Export(Box::new(preset.clone())).into());
+                    actions.push(PresetAction::Export(Box::new(preset.clone())).into());
                     ui.close();
                 }
             }
             let tip = "Take this preset off the list; its file is kept in the folder \"deleted\" beside it.";
             if ui.button("Delete").on_hover_text(tip).clicked() {
-                actions.push(PresetWish::Delete(file.clone()).into());
+                actions.push(PresetAction::Delete(file.clone()).into());
                 ui.close();
             }
         });
-        crate::window::controls::named(&more.response, &format!("{}: more", entry.name()));
+        crate::window::controls::set_accessible_name(&more.response, &format!("{}: more", entry.name()));
     });
 }

@@ -42,7 +42,7 @@ impl ScenePanel {
             ui.selectable_value(&mut self.by_material, true, "Materials")
                 .on_hover_text("List the scene's materials.");
             let edit = egui::TextEdit::singleline(&mut self.filter).hint_text("filter").desired_width(110.0);
-            crate::window::controls::named(&ui.add(edit), "Filter the list");
+            crate::window::controls::set_accessible_name(&ui.add(edit), "Filter the list");
         });
         let rows = if self.by_material { material_rows(scene) } else { object_rows(scene) };
         let filter = self.filter.to_lowercase();
@@ -84,7 +84,7 @@ fn object_rows(scene: &Scene) -> Vec<Row> {
         scene.parts.iter().find(|part| part.node as usize == node && !part.triangles.is_empty())
     };
     let row = |(index, node): (usize, &scene::Node)| {
-        Some(Row { name: node.name.clone(), hit: hit_of(scene, first(index)?.triangles.start) })
+        Some(Row { name: node.name.clone(), hit: triangle_center(scene, first(index)?.triangles.start) })
     };
     scene.nodes.iter().enumerate().filter_map(row).collect()
 }
@@ -94,13 +94,13 @@ fn material_rows(scene: &Scene) -> Vec<Row> {
         scene.parts.iter().find(|part| part.material as usize == material && !part.triangles.is_empty())
     };
     let row = |(index, material): (usize, &scene::Material)| {
-        Some(Row { name: material.name.clone(), hit: hit_of(scene, first(index)?.triangles.start) })
+        Some(Row { name: material.name.clone(), hit: triangle_center(scene, first(index)?.triangles.start) })
     };
     scene.materials.iter().enumerate().filter_map(row).collect()
 }
 
 /// The middle of a triangle.
-fn hit_of(scene: &Scene, triangle: u32) -> SurfaceHit {
+fn triangle_center(scene: &Scene, triangle: u32) -> SurfaceHit {
     let point = SurfacePoint { triangle, barycentric: DVec2::splat(1.0 / 3.0) };
     let normal = scene.area_normal(triangle).normalize_or_zero();
     SurfaceHit { point, position: point.position(scene), normal, distance: 0.0 }

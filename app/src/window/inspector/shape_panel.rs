@@ -1,7 +1,7 @@
 //! The aperture's shape: what out-of-focus lights look like.
 
 use crate::window::Action;
-use crate::window::controls::{finish, row};
+use crate::window::controls::{finish_edit, row};
 use egui::{ComboBox, DragValue, Ui};
 use lens::{Aperture, ApertureShape, Camera};
 use session::{CameraEdit, Command};
@@ -15,13 +15,13 @@ pub fn shape_panel(ui: &mut Ui, camera: &Camera, actions: &mut Vec<Action>) {
     let tip = "What a light far out of focus looks like.";
     row(ui, "Bokeh", tip, |ui| {
         let combo =
-            ComboBox::from_id_salt("aperture shape").selected_text(name(&aperture.shape)).width(150.0);
+            ComboBox::from_id_salt("aperture shape").selected_text(shape_name(&aperture.shape)).width(150.0);
         combo
             .show_ui(ui, |ui| {
                 let polygon = ApertureShape::Polygon { blades: BLADES, rotation: 0.0, roundness: 0.0 };
                 for shape in [ApertureShape::Disc, polygon, ApertureShape::Square] {
-                    let chosen = name(&shape) == name(&aperture.shape);
-                    if ui.selectable_label(chosen, name(&shape)).clicked() && !chosen {
+                    let chosen = shape_name(&shape) == shape_name(&aperture.shape);
+                    if ui.selectable_label(chosen, shape_name(&shape)).clicked() && !chosen {
                         aperture.shape = shape;
                     }
                 }
@@ -61,19 +61,19 @@ pub fn shape_panel(ui: &mut Ui, camera: &Camera, actions: &mut Vec<Action>) {
     responses.push(row(ui, "Ratio", tip, |ui| {
         ui.add(DragValue::new(&mut aperture.ratio).range(0.05..=20.0).speed(0.01).max_decimals(3))
     }));
-    emit(camera, aperture, actions);
+    push_aperture(camera, aperture, actions);
     for response in responses {
-        finish(&response, actions);
+        finish_edit(&response, actions);
     }
 }
 
-fn emit(camera: &Camera, aperture: Aperture, actions: &mut Vec<Action>) {
+fn push_aperture(camera: &Camera, aperture: Aperture, actions: &mut Vec<Action>) {
     if aperture != camera.aperture {
-        actions.push(Command::Camera(CameraEdit::Aperture(aperture)).into());
+        actions.push(Command::EditCamera(CameraEdit::Aperture(aperture)).into());
     }
 }
 
-fn name(shape: &ApertureShape) -> &'static str {
+fn shape_name(shape: &ApertureShape) -> &'static str {
     match shape {
         ApertureShape::Disc => "Disc",
         ApertureShape::Polygon { .. } => "Polygon",

@@ -38,14 +38,14 @@ pub fn tool_panel(
             ui.add(value.range(0.0..=180.0).speed(0.5).suffix("°").max_decimals(0))
         });
         let tip = "How much of the surface may be painted; the rest is frozen.";
-        row(ui, "Selected", tip, |ui| ui.label(selected(document)));
+        row(ui, "Selected", tip, |ui| ui.label(selection_summary(document)));
     });
     ui.horizontal_wrapped(|ui| {
         let commands = [CommandId::SelectAll, CommandId::InvertSelection, CommandId::MaskFromSelection];
         for (id, label) in commands.into_iter().zip(["Everything", "Invert", "Make a mask of it"]) {
             let possible = document.selection.is_some();
             let response = ui.add_enabled(possible, Button::new(label));
-            let tip = keys::tip(ui.ctx(), id);
+            let tip = keys::command_tooltip(ui.ctx(), id);
             if response.on_hover_text(&tip).on_disabled_hover_text(tip).clicked() {
                 actions.push(id.into());
             }
@@ -54,13 +54,13 @@ pub fn tool_panel(
 }
 
 /// How much is selected, in words.
-pub fn selected(document: &Document) -> String {
+pub fn selection_summary(document: &Document) -> String {
     let all = document.stage.canvas.texels().len();
     match &document.selection {
         None => "everything".into(),
         Some(selection) => {
             let share = selection.count() as f64 / all.max(1) as f64 * 100.0;
-            format!("{} % of all texels", controls::significant(share))
+            format!("{} % of all texels", controls::significant_digits(share))
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The world: what lies beyond all surfaces, lights them, and is seen where none is.
 
 use crate::window::Action;
-use crate::window::controls::{proportional, row, rows};
+use crate::window::controls::{proportional_value, row, rows};
 use egui::{Button, ComboBox, DragValue, Ui};
 use glam::{DVec3, Vec3};
 use scene::{Backdrop, Environment, Scene, World};
@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 /// What shines from infinity, as the panel offers it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
+enum EnvironmentKind {
     Own,
     Studio,
     Color,
@@ -21,12 +21,12 @@ enum Kind {
 pub fn world_panel(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) {
     let scene = document.scene();
     let background = document.camera.background.map(|color| DVec3::from_array(color).as_vec3());
-    let shown = World::of_scene(scene, background);
-    let kind = kind_of(scene);
+    let shown = World::from_scene(scene, background);
+    let kind = environment_kind(scene);
     rows(ui, "world", |ui| {
         let tip = "What shines on the scene from everywhere. Drop an equirectangular .hdr or .exr on the window to use it.";
         row(ui, "Environment", tip, |ui| environment_choice(ui, kind, &shown, actions));
-        if let Some(source) = source(&shown, scene) {
+        if let Some(source) = source_name(&shown, scene) {
             row(ui, "Source", "Where the environment is from.", |ui| {
                 ui.add(egui::Label::new(source).truncate())
             });
@@ -45,7 +45,7 @@ pub fn world_panel(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) 
         }
         let mut strength = f64::from(world.strength);
         let tip = "Scales the environment's light.";
-        if row(ui, "Strength", tip, |ui| ui.add(proportional(&mut strength, 0.0..=1e6))).changed() {
+        if row(ui, "Strength", tip, |ui| ui.add(proportional_value(&mut strength, 0.0..=1e6))).changed() {
             world.strength = strength as f32;
         }
         row(ui, "Backdrop", "What the camera sees where no surface is. It lights nothing.", |ui| {
@@ -64,19 +64,19 @@ pub fn world_panel(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) 
     });
 }
 
-fn kind_of(scene: &Scene) -> Kind {
+fn environment_kind(scene: &Scene) -> EnvironmentKind {
     match scene.world.as_ref().map(|world| &world.environment) {
-        None => Kind::Own,
-        Some(environment) if is_own(environment, scene) => Kind::Own,
-        Some(Environment::Uniform(_)) => Kind::Color,
-        Some(environment) if *environment == World::studio().environment => Kind::Studio,
-        Some(_) => Kind::File,
+        None => EnvironmentKind::Own,
+        Some(environment) if is_scene_environment(environment, scene) => EnvironmentKind::Own,
+        Some(Environment::Uniform(_)) => EnvironmentKind::Color,
+        Some(environment) if *environment == World::studio().environment => EnvironmentKind::Studio,
+        Some(_) => EnvironmentKind::File,
     }
 }
 
 /// Whether an environment is the one that the scene's file brings.
-fn is_own(environment: &Environment, scene: &Scene) -> bool {
-    let own = scene.own_world.as_ref().map(|own| &own.environment);
+fn is_scene_environment(environment: &Environment, scene: &Scene) -> bool {
+    let own = scene.embedded_world.as_ref().map(|own| &own.environment);
     match (environment, own) {
         // The usual case, told without a look at the texels.
         (Environment::Map(map), Some(Environment::Map(own))) if Arc::ptr_eq(map, own) => true,
@@ -85,49 +85,54 @@ fn is_own(environment: &Environment, scene: &Scene) -> bool {
 }
 
 /// The name of an environment's file, or what the scene calls its own.
-fn source(world: &World, scene: &Scene) -> Option<String> {
+fn source_name(world: &World, scene: &Scene) -> Option<String> {
     let Environment::Map(map) = &world.environment else { return None };
-    if is_own(&world.environment, scene) {
+    if is_scene_environment(&world.environment, scene) {
         return Some(format!("{} of the scene", map.name));
     }
     let name = std::path::Path::new(&map.name).file_name();
     Some(name.map_or_else(|| map.name.clone(), |name| name.to_string_lossy().into_owned()))
 }
 
-fn environment_choice(ui: &mut Ui, kind: Kind, shown: &World, actions: &mut Vec<Action>) -> egui::Response {
+fn environment_choice(
+    ui: &mut Ui,
+    kind: EnvironmentKind,
+    shown: &World,
+    actions: &mut Vec<Action>,
+) -> egui::Response {
     let choices = [
         (
-            Kind::Own,
+            EnvironmentKind::Own,
             "The scene's own",
             "What the scene brings (EXT_lights_image_based); a scene without light has the studio.",
         ),
-        (Kind::Studio, "Studio", "A soft neutral studio."),
-        (Kind::Color, "Color", "The same radiance from everywhere."),
-        (Kind::File, "Picture…", "An equirectangular picture, .hdr or .exr."),
+        (EnvironmentKind::Studio, "Studio", "A soft neutral studio."),
+        (EnvironmentKind::Color, "Color", "The same radiance from everywhere."),
+        (EnvironmentKind::File, "Picture…", "An equirectangular picture, .hdr or .exr."),
     ];
-    let label = choices.iter().find(|(of, ..)| *of == kind).map_or("", |(_, label, _)| label);
+    let label = choices.iter().find(|(choice, ..)| *choice == kind).map_or("", |(_, label, _)| label);
     let mut chosen = None;
     let response = ComboBox::from_id_salt("environment")
         .selected_text(label)
         .show_ui(ui, |ui| {
-            for (of, label, tip) in choices {
-                if ui.selectable_label(kind == of, label).on_hover_text(tip).clicked() {
-                    chosen = Some(of);
+            for (choice, label, tip) in choices {
+                if ui.selectable_label(kind == choice, label).on_hover_text(tip).clicked() {
+                    chosen = Some(choice);
                 }
             }
         })
         .response;
     match chosen {
-        Some(Kind::Own) => actions.push(Command::SetWorld(None).into()),
-        Some(Kind::Studio) => actions.push(Command::SetWorld(Some(World::studio())).into()),
-        Some(Kind::Color) => {
+        Some(EnvironmentKind::Own) => actions.push(Command::SetWorld(None).into()),
+        Some(EnvironmentKind::Studio) => actions.push(Command::SetWorld(Some(World::studio())).into()),
+        Some(EnvironmentKind::Color) => {
             let color = match shown.environment {
                 Environment::Uniform(color) if color != Vec3::ZERO => color,
                 _ => Vec3::splat(0.5),
             };
             actions.push(Command::SetWorld(Some(World::uniform(color))).into());
         }
-        Some(Kind::File) => actions.push(Action::ChooseEnvironment),
+        Some(EnvironmentKind::File) => actions.push(Action::ChooseEnvironment),
         None => {}
     }
     response

@@ -8,12 +8,12 @@ mod panes;
 mod sizes;
 
 pub use pane::Pane;
-pub use panes::{Docked, Panes};
+pub use panes::{DockState, PaneContents};
 
 use egui::{Rect, Ui, Vec2, pos2, vec2};
 use egui_tiles::{Container, Linear, LinearDir, Tile, TileId, Tiles, Tree};
 use serde::{Deserialize, Serialize};
-use sizes::NOMINAL;
+use sizes::NOMINAL_SIZE;
 use std::collections::HashSet;
 
 /// Width of the inspector at first, points.
@@ -55,20 +55,20 @@ impl Default for Layout {
         let views = tiles.insert_container(views);
         let drawer = tiles.insert_tab_tile(vec![atlas, aperture, histogram, photographs, timeline]);
         tiles.set_visible(drawer, false);
-        let drawer_share = DRAWER_HEIGHT / NOMINAL[1];
+        let drawer_share = DRAWER_HEIGHT / NOMINAL_SIZE[1];
         let left = Linear::new_binary(LinearDir::Vertical, [views, drawer], 1.0 - drawer_share);
         let left = tiles.insert_container(left);
-        let inspector_share = INSPECTOR_WIDTH / NOMINAL[0];
+        let inspector_share = INSPECTOR_WIDTH / NOMINAL_SIZE[0];
         let root = Linear::new_binary(LinearDir::Horizontal, [left, inspector], 1.0 - inspector_share);
         let root = tiles.insert_container(root);
         let tree = Tree::new(egui::Id::unique("panels"), root, tiles);
-        Self { tree, floating: Vec::new(), enlarged: None, size: NOMINAL }
+        Self { tree, floating: Vec::new(), enlarged: None, size: NOMINAL_SIZE }
     }
 }
 
 impl Layout {
     /// One that was stored: none unless every panel is there once, and one of the views is to be seen.
-    pub fn stored(text: &str) -> Option<Self> {
+    pub fn from_stored(text: &str) -> Option<Self> {
         let layout: Self = serde_json::from_str(text).ok()?;
         let panes = layout.tree.tiles.tiles().filter_map(|tile| match tile {
             Tile::Pane(pane) => Some(*pane),
@@ -82,7 +82,7 @@ impl Layout {
         (is_whole && has_place && has_size && has_view).then_some(layout)
     }
 
-    fn tile_of(&self, pane: Pane) -> Option<TileId> {
+    fn tile_with(&self, pane: Pane) -> Option<TileId> {
         self.tree.tiles.find_pane(&pane)
     }
 
@@ -96,7 +96,7 @@ impl Layout {
         let is_visible = |tile: TileId| {
             self.containers_of(tile).into_iter().chain([tile]).all(|tile| self.tree.is_visible(tile))
         };
-        self.is_floating(pane) || self.tile_of(pane).is_some_and(is_visible)
+        self.is_floating(pane) || self.tile_with(pane).is_some_and(is_visible)
     }
 
     /// Whether it is to be seen.
@@ -104,7 +104,7 @@ impl Layout {
         if let Some(enlarged) = self.enlarged {
             return enlarged == pane;
         }
-        let Some(tile) = self.tile_of(pane) else { return false };
+        let Some(tile) = self.tile_with(pane) else { return false };
         let mut child = tile;
         let is_behind = self.containers_of(tile).into_iter().any(|id| {
             let container = self.tree.tiles.get_container(id);
@@ -131,7 +131,7 @@ impl Layout {
         if self.is_floating(pane) {
             return;
         }
-        let Some(tile) = self.tile_of(pane) else { return };
+        let Some(tile) = self.tile_with(pane) else { return };
         self.tree.set_visible(tile, true);
         let mut child = tile;
         for id in self.containers_of(tile) {
@@ -153,7 +153,7 @@ impl Layout {
             self.floating.retain(|floating| floating.pane != pane);
             return;
         }
-        let Some(tile) = self.tile_of(pane) else { return };
+        let Some(tile) = self.tile_with(pane) else { return };
         let tabs = self.tree.tiles.parent_of(tile).filter(|parent| {
             let container = self.tree.tiles.get_container(*parent);
             container.is_some_and(|container| {
@@ -185,7 +185,7 @@ impl Layout {
             self.open(pane);
             return;
         }
-        let Some(tile) = self.tile_of(pane) else { return };
+        let Some(tile) = self.tile_with(pane) else { return };
         let rect = self.tree.tiles.rect(tile).filter(|_| self.is_shown(pane));
         let rect = rect.unwrap_or(Rect::from_min_size(pos2(120.0, 120.0), vec2(420.0, 320.0)));
         self.tree.set_visible(tile, false);
@@ -194,7 +194,7 @@ impl Layout {
     }
 
     /// The panels whose names stand on tabs.
-    fn in_tabs(&self) -> HashSet<Pane> {
+    fn tabbed_panes(&self) -> HashSet<Pane> {
         let tiles = &self.tree.tiles;
         let tabs = tiles.tiles().filter_map(|tile| match tile {
             Tile::Container(Container::Tabs(tabs)) => Some(tabs),
@@ -204,21 +204,21 @@ impl Layout {
     }
 
     /// Draws all panels into the rest of `ui`.
-    pub fn ui(&mut self, ui: &mut Ui, panes: &mut dyn Panes) {
+    pub fn ui(&mut self, ui: &mut Ui, panes: &mut dyn PaneContents) {
         if let Some(pane) = self.enlarged {
-            panes::named(ui, pane);
-            panes.pane_ui(ui, pane, Docked::Alone);
+            panes::set_accessible_name(ui, pane);
+            panes.pane_ui(ui, pane, DockState::Enlarged);
             return;
         }
         let size: Vec2 = ui.available_size();
-        sizes::fit(&mut self.tree, &mut self.size, size.into());
-        let in_tabs = self.in_tabs();
-        self.tree.ui(&mut panes::Tiling { panes, in_tabs }, ui);
+        sizes::fit_to_size(&mut self.tree, &mut self.size, size.into());
+        let tabbed = self.tabbed_panes();
+        self.tree.ui(&mut panes::TileBehavior { panes, tabbed }, ui);
         self.floating_ui(ui, panes);
     }
 
-    fn floating_ui(&mut self, ui: &Ui, panes: &mut dyn Panes) {
-        let mut docked = None;
+    fn floating_ui(&mut self, ui: &Ui, panes: &mut dyn PaneContents) {
+        let mut closed = None;
         for floating in &mut self.floating {
             let (pane, [left, top, width, height]) = (floating.pane, floating.place);
             let mut is_open = true;
@@ -232,8 +232,8 @@ impl Layout {
                 .default_size([width, height])
                 .min_size([180.0, 120.0]);
             let shown = window.show(ui.ctx(), |ui| {
-                panes::named(ui, pane);
-                panes.pane_ui(ui, pane, Docked::Floats);
+                panes::set_accessible_name(ui, pane);
+                panes.pane_ui(ui, pane, DockState::Floating);
                 ui.min_rect().size()
             });
             if let Some(shown) = shown {
@@ -241,9 +241,9 @@ impl Layout {
                 let size = shown.inner.unwrap_or(vec2(width, height));
                 floating.place = [at.x, at.y, size.x, size.y];
             }
-            docked = docked.or((!is_open).then_some(pane));
+            closed = closed.or((!is_open).then_some(pane));
         }
-        if let Some(pane) = docked {
+        if let Some(pane) = closed {
             self.toggle_floating(pane);
         }
     }
@@ -293,11 +293,11 @@ mod tests {
         layout.toggle_floating(Pane::Histogram);
         layout.toggle(Pane::Inspector);
         let text = serde_json::to_string(&layout).unwrap();
-        let again = Layout::stored(&text).expect("it is whole");
+        let again = Layout::from_stored(&text).expect("it is whole");
         assert_eq!(shown(&again), shown(&layout));
-        assert_eq!(Layout::stored(&text.replace("Histogram", "Atlas")), None, "a panel twice");
-        assert_eq!(Layout::stored("{}"), None);
+        assert_eq!(Layout::from_stored(&text.replace("Histogram", "Atlas")), None, "a panel twice");
+        assert_eq!(Layout::from_stored("{}"), None);
         let text = serde_json::to_string(&Layout { size: [0.0, 4.0], ..layout }).unwrap();
-        assert_eq!(Layout::stored(&text), None);
+        assert_eq!(Layout::from_stored(&text), None);
     }
 }

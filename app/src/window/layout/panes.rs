@@ -8,28 +8,28 @@ use std::collections::HashSet;
 
 /// How a panel stands among the others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Docked {
+pub enum DockState {
     /// Beside others: its header names it, and drags it elsewhere.
-    Beside,
+    Tiled,
     /// In a tab, which does that.
     Tab,
     /// Over the others, in a window with its name.
-    Floats,
+    Floating,
     /// Instead of all others.
-    Alone,
+    Enlarged,
 }
 
 /// What is in the panels.
-pub trait Panes {
+pub trait PaneContents {
     /// Draws one. Returns whether it is being dragged elsewhere by its header.
-    fn pane_ui(&mut self, ui: &mut Ui, pane: Pane, docked: Docked) -> bool;
+    fn pane_ui(&mut self, ui: &mut Ui, pane: Pane, docked: DockState) -> bool;
 
     /// Draws what stands at the right end of the bar of tabs, of which `pane` is in front.
     fn tabs_ui(&mut self, ui: &mut Ui, pane: Pane);
 }
 
 /// Names a panel for screen readers.
-pub fn named(ui: &Ui, pane: Pane) {
+pub fn set_accessible_name(ui: &Ui, pane: Pane) {
     ui.ctx().accesskit_node_builder(ui.unique_id(), |node| {
         node.set_role(Role::Pane);
         node.set_label(format!("{} panel", pane.title()));
@@ -37,15 +37,15 @@ pub fn named(ui: &Ui, pane: Pane) {
 }
 
 /// The tiles.
-pub struct Tiling<'a> {
-    pub panes: &'a mut dyn Panes,
-    pub in_tabs: HashSet<Pane>,
+pub struct TileBehavior<'a> {
+    pub panes: &'a mut dyn PaneContents,
+    pub tabbed: HashSet<Pane>,
 }
 
-impl Behavior<Pane> for Tiling<'_> {
+impl Behavior<Pane> for TileBehavior<'_> {
     fn pane_ui(&mut self, ui: &mut Ui, _tile: TileId, pane: &mut Pane) -> UiResponse {
-        named(ui, *pane);
-        let docked = if self.in_tabs.contains(pane) { Docked::Tab } else { Docked::Beside };
+        set_accessible_name(ui, *pane);
+        let docked = if self.tabbed.contains(pane) { DockState::Tab } else { DockState::Tiled };
         if self.panes.pane_ui(ui, *pane, docked) { UiResponse::DragStarted } else { UiResponse::None }
     }
 

@@ -4,28 +4,28 @@ use super::pane::Pane;
 use egui_tiles::{Container, LinearDir, Tile, TileId, Tiles, Tree};
 
 /// Width and height, points, for which the shares of the first layout are made.
-pub const NOMINAL: [f32; 2] = [1280.0, 640.0];
+pub const NOMINAL_SIZE: [f32; 2] = [1280.0, 640.0];
 
 /// What panels that keep their size may take of a row or a column.
 const LARGEST_SHARE: f32 = 0.5;
 
 /// A change by fewer points than this is none.
-const LEAST_CHANGE: f32 = 0.5;
+const MIN_CHANGE: f32 = 0.5;
 
 /// Takes up another `size` of the whole, points, in place of the one that it `had`.
-pub fn fit(tree: &mut Tree<Pane>, had: &mut [f32; 2], size: [f32; 2]) {
-    let growth = [0, 1].map(|axis| size[axis] / had[axis]);
-    let is_other = [0, 1].map(|axis| (size[axis] - had[axis]).abs() > LEAST_CHANGE);
-    if !(is_other[0] || is_other[1]) || size.iter().any(|side| *side < 1.0) {
+pub fn fit_to_size(tree: &mut Tree<Pane>, previous_size: &mut [f32; 2], size: [f32; 2]) {
+    let growth = [0, 1].map(|axis| size[axis] / previous_size[axis]);
+    let has_changed = [0, 1].map(|axis| (size[axis] - previous_size[axis]).abs() > MIN_CHANGE);
+    if !(has_changed[0] || has_changed[1]) || size.iter().any(|side| *side < 1.0) {
         return;
     }
-    *had = size;
+    *previous_size = size;
     let ids: Vec<TileId> = tree.tiles.tile_ids().collect();
     for id in ids {
         let Some(Tile::Container(Container::Linear(linear))) = tree.tiles.get(id) else { continue };
         let axis = usize::from(linear.dir == LinearDir::Vertical);
-        let is_kept = |child: &TileId| keeps_size(&tree.tiles, *child);
-        let shares = linear.children.iter().map(|child| (linear.shares[*child], is_kept(child)));
+        let is_fixed = |child: &TileId| keeps_size(&tree.tiles, *child);
+        let shares = linear.children.iter().map(|child| (linear.shares[*child], is_fixed(child)));
         let new = rescaled(&shares.collect::<Vec<_>>(), growth[axis]);
         if let Some(Tile::Container(Container::Linear(linear))) = tree.tiles.get_mut(id) {
             for (child, share) in linear.children.clone().into_iter().zip(new) {
@@ -47,14 +47,14 @@ fn keeps_size(tiles: &Tiles<Pane>, tile: TileId) -> bool {
 /// Shares of a row that grew: those that keep their size have less of it, the others more.
 fn rescaled(shares: &[(f32, bool)], growth: f32) -> Vec<f32> {
     let total: f32 = shares.iter().map(|(share, _)| share).sum();
-    let kept: f32 = shares.iter().filter(|(_, is_kept)| *is_kept).map(|(share, _)| share).sum();
-    let rest = total - kept;
-    if kept <= 0.0 || rest <= 0.0 || growth <= 0.0 {
+    let fixed: f32 = shares.iter().filter(|(_, is_fixed)| *is_fixed).map(|(share, _)| share).sum();
+    let rest = total - fixed;
+    if fixed <= 0.0 || rest <= 0.0 || growth <= 0.0 {
         return shares.iter().map(|(share, _)| *share).collect();
     }
-    let kept_after = (kept / total / growth).min(LARGEST_SHARE.max(kept / total));
-    let after = |(share, is_kept): &(f32, bool)| {
-        if *is_kept { share / kept * kept_after } else { share / rest * (1.0 - kept_after) }
+    let fixed_after = (fixed / total / growth).min(LARGEST_SHARE.max(fixed / total));
+    let after = |(share, is_fixed): &(f32, bool)| {
+        if *is_fixed { share / fixed * fixed_after } else { share / rest * (1.0 - fixed_after) }
     };
     shares.iter().map(after).collect()
 }
@@ -82,14 +82,14 @@ mod tests {
     fn the_inspector_is_as_wide_whatever_the_windows_size() {
         let mut layout = Layout::default();
         let width = |layout: &Layout| {
-            let tile = layout.tile_of(Pane::Inspector).unwrap();
+            let tile = layout.tile_with(Pane::Inspector).unwrap();
             let root = layout.tree.root().and_then(|root| layout.tree.tiles.get_container(root));
             let Some(Container::Linear(linear)) = root else { panic!("a row") };
             let total: f32 = linear.children.iter().map(|child| linear.shares[*child]).sum();
             linear.shares[tile] / total * layout.size[0]
         };
         for size in [[1440.0, 800.0], [800.0, 450.0], [1920.0, 1000.0]] {
-            fit(&mut layout.tree, &mut layout.size, size);
+            fit_to_size(&mut layout.tree, &mut layout.size, size);
             assert!((width(&layout) - 300.0).abs() < 0.1, "{} at {size:?}", width(&layout));
         }
     }

@@ -6,7 +6,7 @@ use std::ops::Range;
 
 /// How far beyond the centre of a texel its value is read, in texels: it is mixed with its neighbours', and charts are cut
 /// out with a texel's play.
-const REACH: f64 = 2.0;
+const REACH_TEXELS: f64 = 2.0;
 
 /// The pixels of a view of `size` px that show rectangles of the atlas (columns and rows), and some around them.
 pub fn changed_pixels(
@@ -23,8 +23,8 @@ pub fn changed_pixels(
         let columns = wider(columns, texels.width);
         for row in wider(rows, texels.height) {
             let first = row as usize * texels.width as usize;
-            let of_row = &texels.index[first + columns.start as usize..first + columns.end as usize];
-            for &index in of_row {
+            let row_texels = &texels.index[first + columns.start as usize..first + columns.end as usize];
+            for &index in row_texels {
                 let (Some(position), Some(texel)) =
                     (texels.positions.get(index as usize), texels.texels.get(index as usize))
                 else {
@@ -32,7 +32,7 @@ pub fn changed_pixels(
                 };
                 // Around what stands beside the eye lies much of the view.
                 let Some(at) = camera.project(*position, width / height) else { return Stale::AllColors };
-                let reach = REACH * texel.area.sqrt() * camera.pixels_per_unit(*position, height);
+                let reach = REACH_TEXELS * texel.area.sqrt() * camera.pixels_per_unit(*position, height);
                 let at = [(at.x + 1.0) / 2.0 * width, (1.0 - at.y) / 2.0 * height];
                 for axis in [0, 1] {
                     low[axis] = low[axis].min(at[axis] - reach);
@@ -46,6 +46,6 @@ pub fn changed_pixels(
         let start = (low[axis].floor() as u32).min(size[axis]);
         start..(high[axis].ceil() as u32).min(size[axis]).max(start)
     };
-    let found = [range(0), range(1)];
-    if found.iter().any(Range::is_empty) { Stale::Nothing } else { Stale::Colors(found) }
+    let ranges = [range(0), range(1)];
+    if ranges.iter().any(Range::is_empty) { Stale::Nothing } else { Stale::Colors(ranges) }
 }

@@ -11,14 +11,14 @@ use session::{PhotographLight, Stage};
 
 /// What the surface is shown in.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Coating {
+pub enum OverlayKind {
     /// Its own materials.
     #[default]
     Materials,
     /// What its photographs show.
     Photographs,
     /// How many photographs see it.
-    Seeing,
+    PhotographCount,
     /// How far it is from the camera that took the picture it was made from.
     Depth,
     /// Its picture, and what no picture showed.
@@ -26,7 +26,7 @@ pub enum Coating {
 }
 
 /// Texels of an atlas, sRGB-encoded.
-pub struct Coat {
+pub struct SurfaceOverlay {
     /// Columns.
     pub width: u32,
     /// Rows.
@@ -36,25 +36,27 @@ pub struct Coat {
 }
 
 /// What no photograph sees, sRGB-encoded.
-pub const UNSEEN: [u8; 3] = [200, 40, 140];
+pub const UNOBSERVED_COLOR: [u8; 3] = [200, 40, 140];
 /// From so many on it does not matter how many there are.
-pub const MANY: f32 = 32.0;
+pub const MAX_COUNTED: f32 = 32.0;
 
-impl Coat {
+impl SurfaceOverlay {
     /// A surface's coat; none where it is to be shown in its materials. What photographs show of it they show toward all directions alike.
-    pub fn of(stage: &Stage, light: Option<&PhotographLight>, coating: Coating) -> Option<Self> {
+    pub fn build(stage: &Stage, light: Option<&PhotographLight>, kind: OverlayKind) -> Option<Self> {
         let scene = &stage.scene;
-        match (coating, light) {
-            (Coating::Photographs, Some(light)) => {
-                Some(Self::colored(&stage.texels, |point| encoded(light.constant(point))))
+        match (kind, light) {
+            (OverlayKind::Photographs, Some(light)) => {
+                Some(Self::from_texel_colors(&stage.texels, |point| encoded(light.constant(point))))
             }
-            (Coating::Seeing, Some(light)) => {
-                Some(Self::colored(&stage.texels, |point| match light.seen(point) < 0.5 {
-                    true => UNSEEN,
-                    false => color_of_count(light.seeing(point)),
+            (OverlayKind::PhotographCount, Some(light)) => {
+                Some(Self::from_texel_colors(&stage.texels, |point| {
+                    match light.observed_share(point) < 0.5 {
+                        true => UNOBSERVED_COLOR,
+                        false => color_of_count(light.observation_count(point)),
+                    }
                 }))
             }
-            (Coating::Depth, _) => {
+            (OverlayKind::Depth, _) => {
                 let camera_from_world = scene.cameras.first()?.camera_to_world.inverse();
                 let nearness = |position: DVec3| -1.0 / camera_from_world.transform_point3(position).z;
                 let [low, high] = scene
@@ -66,11 +68,11 @@ impl Coat {
                     });
                 let range = if high > low { high - low } else { 1.0 };
                 let share = |point: SurfacePoint| (nearness(point.position(scene)) - low) / range;
-                Some(Self::colored(&stage.texels, |point| nearness_color(share(point) as f32)))
+                Some(Self::from_texel_colors(&stage.texels, |point| nearness_color(share(point) as f32)))
             }
-            (Coating::Invented, _) => {
-                Some(Self::colored(&stage.texels, |point| match scene.photographed(point) {
-                    Some(0.0) => UNSEEN,
+            (OverlayKind::Invented, _) => {
+                Some(Self::from_texel_colors(&stage.texels, |point| match scene.photographed_share(point) {
+                    Some(0.0) => UNOBSERVED_COLOR,
                     _ => encoded(scene.base_color(point).truncate()),
                 }))
             }
@@ -79,7 +81,7 @@ impl Coat {
     }
 
     /// A colour a texel, by the middle of what it covers.
-    fn colored(map: &TexelMap, color: impl Fn(SurfacePoint) -> [u8; 3] + Sync) -> Self {
+    fn from_texel_colors(map: &TexelMap, color: impl Fn(SurfacePoint) -> [u8; 3] + Sync) -> Self {
         let colors: Vec<[u8; 3]> = map.texels.par_iter().map(|texel| color(texel.centroid)).collect();
         let mut rgba = vec![255; 4 * map.width as usize * map.height as usize];
         let mut set = |place: usize, color: [u8; 3]| rgba[4 * place..4 * place + 3].copy_from_slice(&color);
@@ -107,7 +109,7 @@ fn color_of_count(count: u16) -> [u8; 3] {
 
 /// By the logarithm of the count: the first photographs matter most. 0 for one, 1 for [`MANY`].
 pub fn share_of_count(count: u16) -> f32 {
-    (f32::from(count.max(1)).ln() / MANY.ln()).min(1.0)
+    (f32::from(count.max(1)).ln() / MAX_COUNTED.ln()).min(1.0)
 }
 
 #[cfg(test)]

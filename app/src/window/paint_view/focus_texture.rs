@@ -1,12 +1,12 @@
 //! The focus map on the graphics card, kept up to date rectangle by rectangle.
 
-use super::graphics::{GraphicsError, guarded};
+use super::graphics::{GraphicsError, catch_device_errors};
 use focus::FocusMap;
 use session::Document;
 use std::ops::Range;
 
 /// What is added to the anchor of what is frozen. Twin of the shader's.
-const FROZEN: f32 = 2.0;
+const FROZEN_ANCHOR_OFFSET: f32 = 2.0;
 
 /// t and anchor a texel, as floats: t is too close to 1 for half floats to tell a pixel of blur.
 ///
@@ -23,7 +23,7 @@ impl FocusTexture {
 
     /// Copies the whole map.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, map: &FocusMap) -> Result<Self, GraphicsError> {
-        let texture = guarded(device, || {
+        let texture = catch_device_errors(device, || {
             let texture = device.create_texture(&wgpu::TextureDescriptor {
                 label: Some("focus map"),
                 size: wgpu::Extent3d { width: map.width(), height: map.height(), depth_or_array_layers: 1 },
@@ -60,11 +60,11 @@ impl FocusTexture {
     }
 
     /// t and anchor as the shader is told them.
-    fn shown(&self, map: &FocusMap, x: u32, y: u32) -> [f32; 2] {
+    fn encoded_texel(&self, map: &FocusMap, x: u32, y: u32) -> [f32; 2] {
         let [t, anchor] = map.texel(x, y);
         let place = y as usize * map.width() as usize + x as usize;
         let is_frozen = self.frozen.as_ref().is_some_and(|frozen| frozen.get(place) == Some(&true));
-        [t, anchor + if is_frozen { FROZEN } else { 0.0 }]
+        [t, anchor + if is_frozen { FROZEN_ANCHOR_OFFSET } else { 0.0 }]
     }
 
     /// Columns and rows.
@@ -86,7 +86,7 @@ impl FocusTexture {
         }
         let mut texels = Vec::with_capacity(columns.len() * rows.len());
         for y in rows.clone() {
-            texels.extend(columns.clone().map(|x| self.shown(map, x, y)));
+            texels.extend(columns.clone().map(|x| self.encoded_texel(map, x, y)));
         }
         queue.write_texture(
             wgpu::TexelCopyTextureInfo {

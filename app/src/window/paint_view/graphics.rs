@@ -18,22 +18,22 @@ pub enum GraphicsError {
 }
 
 /// Runs `work` and returns what went wrong on `device` meanwhile.
-pub fn guarded<T>(device: &wgpu::Device, work: impl FnOnce() -> T) -> Result<T, GraphicsError> {
+pub fn catch_device_errors<T>(device: &wgpu::Device, work: impl FnOnce() -> T) -> Result<T, GraphicsError> {
     let refused = device.push_error_scope(wgpu::ErrorFilter::Validation);
     let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
     let done = work();
-    if ready(memory.pop()).flatten().is_some() {
+    if poll_ready(memory.pop()).flatten().is_some() {
         drop(refused);
         return Err(GraphicsError::OutOfMemory);
     }
-    match ready(refused.pop()).flatten() {
+    match poll_ready(refused.pop()).flatten() {
         Some(error) => Err(GraphicsError::Refused(first_line(&error.to_string()))),
         None => Ok(done),
     }
 }
 
 /// The result of a future that native wgpu has ready at once.
-fn ready<T>(future: impl Future<Output = T>) -> Option<T> {
+fn poll_ready<T>(future: impl Future<Output = T>) -> Option<T> {
     match std::pin::pin!(future).poll(&mut Context::from_waker(Waker::noop())) {
         Poll::Ready(value) => Some(value),
         Poll::Pending => None,

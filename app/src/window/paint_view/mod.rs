@@ -23,5 +23,5 @@ pub use focus_texture::FocusTexture;
 pub use graphics::GraphicsError;
 pub use orbit_camera::OrbitCamera;
 pub use surface_mesh::SurfaceMesh;
-pub use surface_renderer::{Stale, SurfaceFrame, SurfaceLook, SurfaceRenderer};
-pub use view::{PaintView, hint};
+pub use surface_renderer::{Stale, SurfaceAppearance, SurfaceFrame, SurfaceRenderer};
+pub use view::{PaintView, paint_hint};

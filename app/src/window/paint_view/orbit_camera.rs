@@ -62,9 +62,13 @@ impl OrbitCamera {
         let forward = turned * DVec3::NEG_Z;
         let elevation = forward.y.clamp(-1.0, 1.0).asin();
         let limit = std::f64::consts::FRAC_PI_2 - POLE_MARGIN_RAD;
-        let wanted = (elevation - delta.y * ORBIT_RAD_PER_POINT).clamp(-limit, limit);
+        let target_elevation = (elevation - delta.y * ORBIT_RAD_PER_POINT).clamp(-limit, limit);
         // A view that already stands beyond the limit (a shot camera that looks straight down) may leave it only.
-        let pitch = if elevation.abs() > limit && wanted.abs() >= limit { 0.0 } else { wanted - elevation };
+        let pitch = if elevation.abs() > limit && target_elevation.abs() >= limit {
+            0.0
+        } else {
+            target_elevation - elevation
+        };
         self.orientation = (turned * DQuat::from_rotation_x(pitch)).normalize();
     }
 
@@ -154,8 +158,8 @@ mod tests {
         let frame = camera.view(1.5);
         // (0.65, 0.85) of the way from the upper left corner is (0.3, −0.7) from the middle.
         let (origin, direction) = frame.ray(DVec2::new(0.65, 0.85));
-        let found = camera.project(origin + direction * 7.0, 1.5).unwrap();
-        assert!(found.distance(DVec2::new(0.3, -0.7)) < 1e-12, "{found}");
+        let projected = camera.project(origin + direction * 7.0, 1.5).unwrap();
+        assert!(projected.distance(DVec2::new(0.3, -0.7)) < 1e-12, "{projected}");
         assert_eq!(camera.project(origin - direction, 1.5), None, "behind the eye");
     }
 
@@ -185,8 +189,8 @@ mod tests {
         let mut camera = camera();
         let old = camera.pivot;
         camera.pan(DVec2::new(50.0, 20.0), 400.0);
-        let found = camera.project(old, 1.0).unwrap();
-        assert!(found.distance(DVec2::new(50.0 / 200.0, -20.0 / 200.0)) < 1e-9, "{found}");
+        let projected = camera.project(old, 1.0).unwrap();
+        assert!(projected.distance(DVec2::new(50.0 / 200.0, -20.0 / 200.0)) < 1e-9, "{projected}");
     }
 
     #[test]
@@ -199,8 +203,8 @@ mod tests {
                 let pick = |bit: u32, a: f64, b: f64| if i >> bit & 1 == 0 { a } else { b };
                 let corner =
                     DVec3::new(pick(0, low.x, high.x), pick(1, low.y, high.y), pick(2, low.z, high.z));
-                let seen = camera.project(corner, aspect).unwrap();
-                assert!(seen.abs().max_element() <= 1.0 + 1e-9, "{corner} at {seen}");
+                let projected = camera.project(corner, aspect).unwrap();
+                assert!(projected.abs().max_element() <= 1.0 + 1e-9, "{corner} at {projected}");
             }
         }
         let before = camera;

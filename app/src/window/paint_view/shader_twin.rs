@@ -1,6 +1,8 @@
 //! The shader's κ and colours against `lens` and the Rust colour map, on the graphics adapter of the tests.
 
-use super::{FocusTexture, OrbitCamera, Stale, SurfaceFrame, SurfaceLook, SurfaceMesh, SurfaceRenderer};
+use super::{
+    FocusTexture, OrbitCamera, Stale, SurfaceAppearance, SurfaceFrame, SurfaceMesh, SurfaceRenderer,
+};
 use crate::window::false_colour;
 use atlas::Atlas;
 use focus::FocusMap;
@@ -12,7 +14,7 @@ use scene::{Image, ImageLevel, Material, Node, Part, Scene, TextureRef, Triangle
 const SIDE: u32 = 64;
 
 /// A white unlit square that fills the view of a camera at the origin, at depth `z`.
-fn square(z: f64) -> Scene {
+fn square_scene(z: f64) -> Scene {
     let half = 2.0 * z;
     let corner = |x: f64, y: f64| DVec3::new(x * half, y * half, -z);
     let image =
@@ -33,7 +35,7 @@ fn square(z: f64) -> Scene {
         materials: vec![Material {
             name: "white".into(),
             base_color_texture: Some(texture),
-            ..Material::of_unlit()
+            ..Material::unlit_white()
         }],
         images: vec![image],
         ..Scene::default()
@@ -46,20 +48,27 @@ fn atlas() -> Atlas {
 }
 
 /// The pixel in the middle of what the renderer draws.
-fn drawn(renderer: &mut SurfaceRenderer, z: f64, focus: FocusOffset, shot: &Camera, share: f32) -> [f32; 3] {
+fn drawn_pixel(
+    renderer: &mut SurfaceRenderer,
+    z: f64,
+    focus: FocusOffset,
+    shot: &Camera,
+    share: f32,
+) -> [f32; 3] {
     let (device, queue) = renderer.device();
-    let mesh = SurfaceMesh::upload(device, queue, &square(z), &atlas(), None).unwrap();
+    let mesh = SurfaceMesh::upload(device, queue, &square_scene(z), &atlas(), None).unwrap();
     let texture = FocusTexture::new(device, queue, &FocusMap::new(8, 8, focus)).unwrap();
     let view = OrbitCamera::from_shot(shot, z);
-    let look = SurfaceLook { focus_share: share, contours: false, seeing: false, depth: false };
-    let shown = SurfaceFrame { view: &view, shot, look, size: [SIDE, SIDE] };
+    let appearance =
+        SurfaceAppearance { focus_share: share, contours: false, photograph_counts: false, depth: false };
+    let shown = SurfaceFrame { view: &view, shot, appearance, size: [SIDE, SIDE] };
     renderer.draw(&mesh, &texture, shown, Stale::Everything).unwrap();
-    let pixels = read(renderer);
+    let pixels = read_pixels(renderer);
     let middle = (SIDE / 2 * SIDE + SIDE / 3) as usize * 4;
     std::array::from_fn(|c| pixels[middle + c] as f32 / 255.0)
 }
 
-fn read(renderer: &SurfaceRenderer) -> Vec<u8> {
+fn read_pixels(renderer: &SurfaceRenderer) -> Vec<u8> {
     let (device, queue) = renderer.device();
     let buffer = device.create_buffer(&wgpu::BufferDescriptor {
         label: None,
@@ -82,7 +91,7 @@ fn read(renderer: &SurfaceRenderer) -> Vec<u8> {
 }
 
 /// What the shader should show of white that faces the eye: the map's colour, a little lighter.
-fn expected(shot: &Camera, z: f64, focus: FocusOffset) -> [f32; 3] {
+fn expected_color(shot: &Camera, z: f64, focus: FocusOffset) -> [f32; 3] {
     let optics = shot.optics();
     let circle_px = 2.0 * optics.splat_radius_px(optics.kappa(1.0 / z, focus));
     false_colour::color_at(false_colour::position(circle_px)).map(|c| (c * (0.78 + 0.3)).min(1.0))
@@ -109,16 +118,17 @@ fn the_shader_colours_what_the_lens_blurs() {
     for shot in [&shot, &at_infinity, &pinhole] {
         for z in [focal_length, 1.5, 3.0, 40.0] {
             for focus in hard {
-                let (found, wanted) = (drawn(&mut renderer, z, focus, shot, 1.0), expected(shot, z, focus));
-                let error = (0..3).map(|c| (found[c] - wanted[c]).abs()).fold(0.0, f32::max);
-                assert!(error < 2.5 / 255.0, "{z} {focus:?}: {found:?} for {wanted:?}");
+                let (actual, expected) =
+                    (drawn_pixel(&mut renderer, z, focus, shot, 1.0), expected_color(shot, z, focus));
+                let error = (0..3).map(|c| (actual[c] - expected[c]).abs()).fold(0.0, f32::max);
+                assert!(error < 2.5 / 255.0, "{z} {focus:?}: {actual:?} for {expected:?}");
             }
         }
     }
     // And it can fail: another t is another colour; and without false colour it is the surface's white.
     let (near, far) = (FocusOffset::new(0.99, 1.0), FocusOffset::new(1.01, 1.0));
-    let found = drawn(&mut renderer, 3.0, near, &shot, 1.0);
-    let wrong = expected(&shot, 3.0, far);
-    assert!((found[2] - wrong[2]).abs() > 0.2, "{found:?} and {wrong:?}");
-    assert_eq!(drawn(&mut renderer, 3.0, near, &shot, 0.0), [1.0; 3]);
+    let near_color = drawn_pixel(&mut renderer, 3.0, near, &shot, 1.0);
+    let far_color = expected_color(&shot, 3.0, far);
+    assert!((near_color[2] - far_color[2]).abs() > 0.2, "{near_color:?} and {far_color:?}");
+    assert_eq!(drawn_pixel(&mut renderer, 3.0, near, &shot, 0.0), [1.0; 3]);
 }

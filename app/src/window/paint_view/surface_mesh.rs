@@ -2,8 +2,8 @@
 //!
 //! Built on a worker thread ([`SurfaceMesh::upload`]), because textures of a big scene take a while.
 
-use super::coat::Coat;
-use super::graphics::{GraphicsError, guarded};
+use super::coat::SurfaceOverlay;
+use super::graphics::{GraphicsError, catch_device_errors};
 use atlas::Atlas;
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec2, Vec3};
@@ -109,9 +109,9 @@ impl SurfaceMesh {
         queue: &wgpu::Queue,
         scene: &Scene,
         atlas: &Atlas,
-        coat: Option<&Coat>,
+        coat: Option<&SurfaceOverlay>,
     ) -> Result<Self, GraphicsError> {
-        guarded(device, || {
+        catch_device_errors(device, || {
             let (low, high) = scene.bounds();
             let (origin, extent) = if low.is_finite() && high.is_finite() {
                 ((low + high) / 2.0, (high - low).length())
@@ -143,7 +143,7 @@ impl SurfaceMesh {
             }
             let upload = MaterialUpload::new(device, queue, scene);
             let materials = match coat {
-                Some(coat) => vec![upload.bind_group_of(coat); scene.materials.len()],
+                Some(coat) => vec![upload.overlay_bind_group(coat); scene.materials.len()],
                 None => upload.bind_groups(),
             };
             Self { buffers, draws, materials, origin, extent }
@@ -220,10 +220,10 @@ impl<'a> MaterialUpload<'a> {
     }
 
     /// Everything under one coat, lit by itself.
-    fn bind_group_of(mut self, coat: &Coat) -> wgpu::BindGroup {
+    fn overlay_bind_group(mut self, coat: &SurfaceOverlay) -> wgpu::BindGroup {
         let image = 0;
         let level = Level { width: coat.width, height: coat.height, rgba: coat.rgba.clone() };
-        self.views.insert(image, create_texture(self.device, self.queue, "coat", &level.fitting()));
+        self.views.insert(image, create_texture(self.device, self.queue, "coat", &level.reduced_to_limit()));
         let texture = TextureRef {
             image,
             is_color: true,
@@ -232,7 +232,7 @@ impl<'a> MaterialUpload<'a> {
             wrap: [Wrap::Clamp; 2],
             nearest: false,
         };
-        self.bind_group(&Material { base_color_texture: Some(texture), ..Material::of_unlit() })
+        self.bind_group(&Material { base_color_texture: Some(texture), ..Material::unlit_white() })
     }
 
     fn bind_group(&mut self, material: &Material) -> wgpu::BindGroup {
@@ -247,7 +247,7 @@ impl<'a> MaterialUpload<'a> {
             kind: [
                 f32::from(material.unlit),
                 cutoff,
-                f32::from(material.hides_back(self.scene.back_faces)),
+                f32::from(material.culls_back_faces(self.scene.back_faces)),
                 0.0,
             ],
         };
@@ -277,14 +277,14 @@ impl<'a> MaterialUpload<'a> {
     }
 
     fn view(&mut self, texture: Option<&TextureRef>) -> wgpu::TextureView {
-        if let Some(known) = texture.and_then(|t| self.views.get(&t.image)) {
-            return known.clone();
+        if let Some(cached) = texture.and_then(|t| self.views.get(&t.image)) {
+            return cached.clone();
         }
         let image =
             texture.and_then(|t| self.scene.images.get(t.image as usize).map(|image| (t.image, image)));
         let Some((index, image)) = image else { return self.white.clone() };
         let (device, queue) = (self.device, self.queue);
-        let view = create_texture(device, queue, &image.name, &Level::of(image));
+        let view = create_texture(device, queue, &image.name, &Level::from_image(image));
         self.views.insert(index, view.clone());
         view
     }
@@ -318,7 +318,7 @@ struct Level {
 
 impl Level {
     /// The image, halved until it fits [`LARGEST_TEXTURE_PX`].
-    fn of(image: &Image) -> Self {
+    fn from_image(image: &Image) -> Self {
         let rgba = match &image.texels {
             ImageLevel::Bits8(texels) => texels.clone(),
             ImageLevel::Bits16(texels) => texels.iter().map(|t| (t >> 8) as u8).collect(),
@@ -326,10 +326,10 @@ impl Level {
                 texels.iter().map(|&light| (255.0 * srgb_from_linear(light.min(1.0))).round() as u8).collect()
             }
         };
-        Self { width: image.width, height: image.height, rgba }.fitting()
+        Self { width: image.width, height: image.height, rgba }.reduced_to_limit()
     }
 
-    fn fitting(self) -> Self {
+    fn reduced_to_limit(self) -> Self {
         let mut level = self;
         while level.width.max(level.height) > LARGEST_TEXTURE_PX {
             level = level.half();

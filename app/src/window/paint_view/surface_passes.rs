@@ -6,17 +6,17 @@ use std::ops::Range;
 /// Of the picture: encoded for the screen.
 pub const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 /// Atlas positions need the precision of f32.
-const PLACE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
+const ATLAS_POSITION_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
 /// What is seen of the surface at every pixel.
-pub struct Seen {
+pub struct GBuffer {
     color: wgpu::TextureView,
-    place: wgpu::TextureView,
+    atlas_position: wgpu::TextureView,
     depth: wgpu::TextureView,
 }
 
-impl Seen {
+impl GBuffer {
     /// Nothing yet, at this size, px.
     pub fn new(device: &wgpu::Device, size: [u32; 2]) -> Self {
         let view = |label, format, usage| {
@@ -26,7 +26,7 @@ impl Seen {
         let read = wgpu::TextureUsages::TEXTURE_BINDING;
         Self {
             color: view("surface colour", COLOR_FORMAT, read),
-            place: view("surface place", PLACE_FORMAT, read),
+            atlas_position: view("surface place", ATLAS_POSITION_FORMAT, read),
             depth: view("surface depth", DEPTH_FORMAT, wgpu::TextureUsages::empty()),
         }
     }
@@ -56,8 +56,8 @@ pub fn target_texture(
 pub struct Passes {
     frame_layout: wgpu::BindGroupLayout,
     color_layout: wgpu::BindGroupLayout,
-    see: wgpu::RenderPipeline,
-    color: wgpu::RenderPipeline,
+    geometry_pipeline: wgpu::RenderPipeline,
+    color_pipeline: wgpu::RenderPipeline,
 }
 
 impl Passes {
@@ -89,18 +89,18 @@ impl Passes {
         };
         let frame_layout = layout("surface frame", &[uniform]);
         let color_layout = layout("surface colours", &[uniform, texture(1), texture(2), texture(3)]);
-        let see = see_pipeline(device, &module, &frame_layout);
-        let color = color_pipeline(device, &module, &color_layout);
-        Self { frame_layout, color_layout, see, color }
+        let geometry_pipeline = create_geometry_pipeline(device, &module, &frame_layout);
+        let color_pipeline = create_shading_pipeline(device, &module, &color_layout);
+        Self { frame_layout, color_layout, geometry_pipeline, color_pipeline }
     }
 
     /// First pass: `mesh` draws what is seen.
-    pub fn see(
+    pub fn draw_geometry(
         &self,
         device: &wgpu::Device,
         encoder: &mut wgpu::CommandEncoder,
         frame: &wgpu::Buffer,
-        seen: &Seen,
+        gbuffer: &GBuffer,
         mesh: impl FnOnce(&mut wgpu::RenderPass<'_>),
     ) {
         let bound = device.create_bind_group(&wgpu::BindGroupDescriptor {
@@ -121,9 +121,9 @@ impl Passes {
         };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("surface"),
-            color_attachments: &[cleared(&seen.color), cleared(&seen.place)],
+            color_attachments: &[cleared(&gbuffer.color), cleared(&gbuffer.atlas_position)],
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: &seen.depth,
+                view: &gbuffer.depth,
                 // Reverse depth: 0 is at infinity.
                 depth_ops: Some(wgpu::Operations {
                     load: wgpu::LoadOp::Clear(0.0),
@@ -133,17 +133,17 @@ impl Passes {
             }),
             ..Default::default()
         });
-        pass.set_pipeline(&self.see);
+        pass.set_pipeline(&self.geometry_pipeline);
         pass.set_bind_group(0, &bound, &[]);
         mesh(&mut pass);
     }
 
     /// Second pass: the colours of a rectangle, from frame, focus map and what is seen.
-    pub fn color(
+    pub fn shade(
         &self,
         device: &wgpu::Device,
         encoder: &mut wgpu::CommandEncoder,
-        (frame, focus, seen): (&wgpu::Buffer, &wgpu::TextureView, &Seen),
+        (frame, focus, gbuffer): (&wgpu::Buffer, &wgpu::TextureView, &GBuffer),
         color: &wgpu::TextureView,
         [columns, rows]: &[Range<u32>; 2],
     ) {
@@ -160,8 +160,8 @@ impl Passes {
             entries: &[
                 wgpu::BindGroupEntry { binding: 0, resource: frame.as_entire_binding() },
                 view(1, focus),
-                view(2, &seen.color),
-                view(3, &seen.place),
+                view(2, &gbuffer.color),
+                view(3, &gbuffer.atlas_position),
             ],
         });
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -174,14 +174,14 @@ impl Passes {
             })],
             ..Default::default()
         });
-        pass.set_pipeline(&self.color);
+        pass.set_pipeline(&self.color_pipeline);
         pass.set_bind_group(0, &bound, &[]);
         pass.set_scissor_rect(columns.start, rows.start, columns.len() as u32, rows.len() as u32);
         pass.draw(0..3, 0..1);
     }
 }
 
-fn see_pipeline(
+fn create_geometry_pipeline(
     device: &wgpu::Device,
     module: &wgpu::ShaderModule,
     frame_layout: &wgpu::BindGroupLayout,
@@ -214,14 +214,14 @@ fn see_pipeline(
             module,
             entry_point: Some("seen_fragment"),
             compilation_options: wgpu::PipelineCompilationOptions::default(),
-            targets: &[Some(COLOR_FORMAT.into()), Some(PLACE_FORMAT.into())],
+            targets: &[Some(COLOR_FORMAT.into()), Some(ATLAS_POSITION_FORMAT.into())],
         }),
         multiview_mask: None,
         cache: None,
     })
 }
 
-fn color_pipeline(
+fn create_shading_pipeline(
     device: &wgpu::Device,
     module: &wgpu::ShaderModule,
     color_layout: &wgpu::BindGroupLayout,

@@ -1,8 +1,8 @@
 //! Draws the surface into a texture. What is seen of the surface is drawn again only from another place; its colours only
 //! where they changed.
 
-use super::graphics::{GraphicsError, guarded};
-use super::surface_passes::{COLOR_FORMAT, Passes, Seen, target_texture};
+use super::graphics::{GraphicsError, catch_device_errors};
+use super::surface_passes::{COLOR_FORMAT, GBuffer, Passes, target_texture};
 use super::{FocusTexture, OrbitCamera, SurfaceMesh};
 use crate::window::false_colour;
 use bytemuck::{Pod, Zeroable};
@@ -11,20 +11,20 @@ use std::ops::Range;
 
 /// What the surface looks like.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SurfaceLook {
+pub struct SurfaceAppearance {
     /// Share of the false colour of blur, in [0, 1]; the rest is the scene's own colour.
     pub focus_share: f32,
     /// Lines where the circle of confusion is 1, 4 and 16 px.
     pub contours: bool,
     /// How many photographs see the surface, or what of it none showed, instead of what they show.
-    pub seeing: bool,
+    pub photograph_counts: bool,
     /// How far the surface of a picture is, instead of what it shows.
     pub depth: bool,
 }
 
-impl Default for SurfaceLook {
+impl Default for SurfaceAppearance {
     fn default() -> Self {
-        Self { focus_share: 0.65, contours: false, seeing: false, depth: false }
+        Self { focus_share: 0.65, contours: false, photograph_counts: false, depth: false }
     }
 }
 
@@ -36,7 +36,7 @@ pub struct SurfaceFrame<'a> {
     /// Whose blur is shown.
     pub shot: &'a Camera,
     /// How it looks.
-    pub look: SurfaceLook,
+    pub appearance: SurfaceAppearance,
     /// Columns and rows, px.
     pub size: [u32; 2],
 }
@@ -49,13 +49,13 @@ struct FrameUniform {
     eye: [f32; 4],
     shot_axis: [f32; 4],
     optics: [f32; 4],
-    look: [f32; 4],
+    appearance: [f32; 4],
     stops: [[f32; 4]; 7],
 }
 
 /// Where it is drawn: what is seen, and its colours.
 struct Target {
-    seen: Seen,
+    gbuffer: GBuffer,
     /// Side by side, with as many pixels.
     color: wgpu::Texture,
     color_view: wgpu::TextureView,
@@ -82,7 +82,7 @@ impl Stale {
         *self = match (std::mem::take(self), other) {
             (Self::Everything, _) | (_, Self::Everything) => Self::Everything,
             (Self::AllColors, _) | (_, Self::AllColors) => Self::AllColors,
-            (Self::Colors(a), Self::Colors(b)) => Self::Colors(focus::union(&a, &b)),
+            (Self::Colors(a), Self::Colors(b)) => Self::Colors(focus::rectangle_union(&a, &b)),
             (Self::Nothing, some) | (some, Self::Nothing) => some,
         }
     }
@@ -105,7 +105,7 @@ impl SurfaceRenderer {
     pub fn new(state: &egui_wgpu::RenderState) -> Result<Self, GraphicsError> {
         let (device, queue) = (state.device.clone(), state.queue.clone());
         let software = state.adapter.get_info().device_type == wgpu::DeviceType::Cpu;
-        let (passes, frame_buffer) = guarded(&device, || {
+        let (passes, frame_buffer) = catch_device_errors(&device, || {
             let frame_buffer = device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("surface frame"),
                 size: size_of::<FrameUniform>() as u64,
@@ -145,9 +145,10 @@ impl SurfaceRenderer {
             (drawn.clip_from_scene, drawn.eye, drawn.shot_axis)
                 == (frame.clip_from_scene, frame.eye, frame.shot_axis)
         };
-        let is_seen = !resized && stale != Stale::Everything && self.drawn.as_ref().is_some_and(same_view);
+        let geometry_is_current =
+            !resized && stale != Stale::Everything && self.drawn.as_ref().is_some_and(same_view);
         let rectangle = match &stale {
-            _ if !is_seen || self.drawn != Some(frame) => size.map(|side| 0..side),
+            _ if !geometry_is_current || self.drawn != Some(frame) => size.map(|side| 0..side),
             Stale::Nothing => return Ok(false),
             Stale::Colors(rectangle) => [0, 1].map(|axis| {
                 let [start, end] = [rectangle[axis].start, rectangle[axis].end]
@@ -157,17 +158,22 @@ impl SurfaceRenderer {
             Stale::AllColors | Stale::Everything => size.map(|side| 0..side),
         };
         if resized {
-            self.target = Some(guarded(&self.device, || Target::new(&self.device, size))?);
+            self.target = Some(catch_device_errors(&self.device, || Target::new(&self.device, size))?);
         }
         let Some(target) = &self.target else { return Ok(false) };
         self.queue.write_buffer(&self.frame_buffer, 0, bytemuck::bytes_of(&frame));
         let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        if !is_seen {
-            self.passes
-                .see(&self.device, &mut encoder, &self.frame_buffer, &target.seen, |pass| mesh.draw(pass));
+        if !geometry_is_current {
+            self.passes.draw_geometry(
+                &self.device,
+                &mut encoder,
+                &self.frame_buffer,
+                &target.gbuffer,
+                |pass| mesh.draw(pass),
+            );
         }
-        let inputs = (&self.frame_buffer, &focus.view(), &target.seen);
-        self.passes.color(&self.device, &mut encoder, inputs, &target.color_view, &rectangle);
+        let inputs = (&self.frame_buffer, &focus.view(), &target.gbuffer);
+        self.passes.shade(&self.device, &mut encoder, inputs, &target.color_view, &rectangle);
         self.queue.submit([encoder.finish()]);
         self.drawn = Some(frame);
         Ok(resized)
@@ -179,12 +185,12 @@ impl Target {
         let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC;
         let color = target_texture(device, "surface", COLOR_FORMAT, size, usage);
         let color_view = color.create_view(&wgpu::TextureViewDescriptor::default());
-        Self { seen: Seen::new(device, size), color, color_view, size }
+        Self { gbuffer: GBuffer::new(device, size), color, color_view, size }
     }
 }
 
 fn frame_uniform(mesh: &SurfaceMesh, focus: &FocusTexture, shown: SurfaceFrame<'_>) -> FrameUniform {
-    let SurfaceFrame { view, shot, look, size, .. } = shown;
+    let SurfaceFrame { view, shot, appearance, size, .. } = shown;
     let aspect = size[0] as f64 / size[1] as f64;
     let clip = view.clip_from_world(mesh.origin, mesh.extent, aspect).as_mat4();
     let axis = shot.world_direction(glam::DVec3::Z);
@@ -201,7 +207,12 @@ fn frame_uniform(mesh: &SurfaceMesh, focus: &FocusTexture, shown: SurfaceFrame<'
             2.0 * optics.splat_radius_px(1.0) as f32,
             false_colour::LARGEST_CIRCLE_PX.ln_1p() as f32,
         ],
-        look: [look.focus_share, if look.contours { 1.0 } else { 0.0 }, width as f32, height as f32],
+        appearance: [
+            appearance.focus_share,
+            if appearance.contours { 1.0 } else { 0.0 },
+            width as f32,
+            height as f32,
+        ],
         stops: false_colour::STOPS.map(stop),
     }
 }

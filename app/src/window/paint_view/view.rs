@@ -1,15 +1,16 @@
 //! The paint view as a panel: the drawn surface, its pointer, the brush ring, the shot camera's frame.
 
 use super::changed_pixels::changed_pixels;
-use super::coat::{Coat, Coating};
+use super::coat::{OverlayKind, SurfaceOverlay};
 use super::legend;
 use super::{
-    FocusTexture, GraphicsError, OrbitCamera, Stale, SurfaceFrame, SurfaceLook, SurfaceMesh, SurfaceRenderer,
+    FocusTexture, GraphicsError, OrbitCamera, Stale, SurfaceAppearance, SurfaceFrame, SurfaceMesh,
+    SurfaceRenderer,
 };
 use crate::window::blit::{self, Blitter, Drawable, Filter};
 use crate::window::brush_ring;
 use crate::window::drag_tool::DragView;
-use crate::window::hand::Hand;
+use crate::window::hand::ActiveTool;
 use crate::window::navigation::{self, Motion};
 use crate::window::pointer::StrokeInput;
 use crate::window::region_highlight::RegionHighlight;
@@ -39,7 +40,7 @@ pub struct PaintView {
     mesh: Option<SurfaceMesh>,
     upload: Option<mpsc::Receiver<Result<SurfaceMesh, GraphicsError>>>,
     /// What the surface is shown in, or is going to be.
-    coating: Coating,
+    overlay: OverlayKind,
     focus: Option<FocusTexture>,
     /// What of the drawn surface no longer holds.
     stale: Stale,
@@ -54,7 +55,7 @@ pub struct PaintView {
     /// Its columns and rows, px.
     size: [u32; 2],
     /// Whether the view is to look through the shot camera from the next frame on.
-    look_through: bool,
+    snap_to_camera: bool,
     /// The view through the shot camera, while it is followed.
     following: Option<OrbitCamera>,
 }
@@ -78,7 +79,7 @@ impl PaintView {
             renderer,
             mesh: None,
             upload: None,
-            coating: Coating::default(),
+            overlay: OverlayKind::default(),
             focus: None,
             stale: Stale::Everything,
             drawn: None,
@@ -89,18 +90,18 @@ impl PaintView {
             highlight: RegionHighlight::default(),
             rect: Rect::NOTHING,
             size: [1; 2],
-            look_through: false,
+            snap_to_camera: false,
             following: None,
         }
     }
 
     /// Takes up another document: its surface is copied to the graphics card in the background.
     pub fn opened(&mut self, document: &Document, context: &egui::Context) {
-        self.look_through();
-        self.highlight.forget();
+        self.view_through_camera();
+        self.highlight.clear();
         if let Some(camera) = stored_viewpoint(&document.view) {
             self.camera = camera;
-            self.look_through = false;
+            self.snap_to_camera = false;
         }
         let Some(renderer) = &self.renderer else { return };
         let (device, queue) = renderer.device();
@@ -115,32 +116,32 @@ impl PaintView {
     /// Takes up another surface, or the same in other materials.
     pub fn surface_changed(&mut self, document: &Document, context: &egui::Context) {
         self.hover = None;
-        self.highlight.forget();
-        self.upload_surface(document, (Coating::Materials, None), context);
+        self.highlight.clear();
+        self.upload_surface(document, (OverlayKind::Materials, None), context);
     }
 
     /// Has the surface shown as it is to look: as photographs show it, as soon as their light is there, or by how many see it; of a picture by its
     /// depth, or what was invented.
-    fn follow_look(
+    fn update_overlay(
         &mut self,
         session: &Session,
         document: &Document,
-        look: SurfaceLook,
+        appearance: SurfaceAppearance,
         context: &egui::Context,
     ) {
         if self.upload.is_some() {
             return;
         }
         let light = session.photograph_light();
-        let wanted = match document.stage.scene.picture {
-            Some(_) if look.depth => Coating::Depth,
-            Some(_) if look.seeing => Coating::Invented,
-            None if light.is_some() && look.seeing => Coating::Seeing,
-            None if light.is_some() => Coating::Photographs,
-            _ => Coating::Materials,
+        let target_overlay = match document.stage.scene.picture {
+            Some(_) if appearance.depth => OverlayKind::Depth,
+            Some(_) if appearance.photograph_counts => OverlayKind::Invented,
+            None if light.is_some() && appearance.photograph_counts => OverlayKind::PhotographCount,
+            None if light.is_some() => OverlayKind::Photographs,
+            _ => OverlayKind::Materials,
         };
-        if wanted != self.coating {
-            self.upload_surface(document, (wanted, light), context);
+        if target_overlay != self.overlay {
+            self.upload_surface(document, (target_overlay, light), context);
         }
     }
 
@@ -149,7 +150,7 @@ impl PaintView {
     fn upload_surface(
         &mut self,
         document: &Document,
-        (coating, light): (Coating, Option<Arc<PhotographLight>>),
+        (overlay, light): (OverlayKind, Option<Arc<PhotographLight>>),
         context: &egui::Context,
     ) {
         let Some(renderer) = &self.renderer else { return };
@@ -158,9 +159,9 @@ impl PaintView {
         self.upload = Some(receiver);
         let (device, queue, context) = (device.clone(), queue.clone(), context.clone());
         let stage = document.stage.clone();
-        self.coating = coating;
+        self.overlay = overlay;
         let upload = move || {
-            let coat = Coat::of(&stage, light.as_deref(), coating);
+            let coat = SurfaceOverlay::build(&stage, light.as_deref(), overlay);
             // The view may be gone, or show another scene by now.
             let _ =
                 sender.send(SurfaceMesh::upload(&device, &queue, &stage.scene, &stage.atlas, coat.as_ref()));
@@ -211,36 +212,36 @@ impl PaintView {
     }
 
     /// The view is not drawn: nothing lies under the pointer.
-    pub fn left(&mut self) {
+    pub fn pointer_left(&mut self) {
         self.hover = None;
     }
 
     /// Where a world point is on screen.
     pub fn screen_from_world(&self, point: DVec3) -> Option<Pos2> {
         let at = self.camera.project(point, aspect(self.rect))?;
-        Some(screen_from_view(self.rect, at))
+        Some(screen_from_clip(self.rect, at))
     }
 
     /// Looks from where the shot camera stands, with the whole picture in view, and follows it until the view is turned.
-    pub fn look_through(&mut self) {
+    pub fn view_through_camera(&mut self) {
         self.following = None;
-        self.look_through = true;
+        self.snap_to_camera = true;
     }
 
     /// The viewpoint as it is saved with the document: null while the view looks through the shot camera.
     pub fn viewpoint(&self) -> serde_json::Value {
-        if self.look_through || self.following == Some(self.camera) {
+        if self.snap_to_camera || self.following == Some(self.camera) {
             return serde_json::Value::Null;
         }
         serde_json::json!({ VIEWPOINT_KEY: self.camera })
     }
 
     /// Keeps looking through the shot camera, as the view's size or the camera changes, as long as the user does not navigate.
-    fn follow(&mut self, camera: &Camera) {
-        if !self.look_through && self.following != Some(self.camera) {
+    fn follow_camera(&mut self, camera: &Camera) {
+        if !self.snap_to_camera && self.following != Some(self.camera) {
             return;
         }
-        self.look_through = false;
+        self.snap_to_camera = false;
         // The pivot is what the lens focuses on; at infinity, something that one can turn around.
         let distance =
             if camera.focus_distance.is_finite() { camera.focus_distance } else { PIVOT_AT_INFINITY };
@@ -271,19 +272,19 @@ impl PaintView {
         &mut self,
         ui: &mut Ui,
         session: &Session,
-        hand: &Hand,
-        look: SurfaceLook,
+        active_tool: &ActiveTool,
+        appearance: SurfaceAppearance,
         actions: &mut Vec<Action>,
     ) {
         let (rect, response) =
             ui.allocate_exact_size(ui.available_size().max(vec2(8.0, 8.0)), Sense::click_and_drag());
         self.rect = rect;
-        crate::window::controls::named(&response, "Paint view");
+        crate::window::controls::set_accessible_name(&response, "Paint view");
         if self.drawn.is_none() {
             ui.painter().rect_filled(rect, 0.0, Color32::from_gray(32));
         }
         let Some(document) = session.document() else {
-            hint(
+            paint_hint(
                 ui,
                 rect,
                 match session.jobs().is_empty() {
@@ -295,33 +296,33 @@ impl PaintView {
             );
             return;
         };
-        self.follow(&document.camera);
+        self.follow_camera(&document.camera);
         self.receive_mesh(actions);
-        self.follow_look(session, document, look, ui.ctx());
+        self.update_overlay(session, document, appearance, ui.ctx());
         self.navigate(ui, &response);
-        self.draw(ui, document, look, actions);
+        self.draw(ui, document, appearance, actions);
         let frame = self.camera.view(aspect(rect));
-        let position = |at: Pos2| view_position(rect, at);
-        let screen = |at: DVec2| screen_position(rect, at);
+        let position = |at: Pos2| view_from_screen(rect, at);
+        let screen = |at: DVec2| screen_from_position(rect, at);
         let view = DragView { frame, position: &position, screen: &screen };
-        actions.extend(self.stroke.update(ui, &response, session, hand, &view));
+        actions.extend(self.stroke.update(ui, &response, session, active_tool, &view));
         let pointer = response.hover_pos().or_else(|| response.interact_pointer_pos());
-        self.hover = pointer.and_then(|at| hand.hit(session, &view, at));
+        self.hover = pointer.and_then(|at| active_tool.pick(session, &view, at));
         let painter = ui.painter_at(rect);
         self.paint_shot_camera(&painter, &document.camera, document.stage.bounds);
-        legend::paint(&painter, rect, look.focus_share > 0.0, self.coating);
-        self.stroke.paint(ui, rect, session, hand, &view);
-        let targets = hand.targets(session, self.hover.filter(|_| response.hovered()));
+        legend::paint(&painter, rect, appearance.focus_share > 0.0, self.overlay);
+        self.stroke.paint(ui, rect, session, active_tool, &view);
+        let targets = active_tool.targets(session, self.hover.filter(|_| response.hovered()));
         self.highlight.paint(ui, document, (frame, rect, rect), &targets);
-        if let (Some(hit), Some(ring)) = (self.hover, hand.ring) {
+        if let (Some(hit), Some(ring)) = (self.hover, active_tool.ring) {
             brush_ring::paint(&painter, &hit, ring, |point| self.screen_from_world(point));
         }
         if response.hovered() {
             ui.set_cursor_icon(egui::CursorIcon::Crosshair);
         }
         match &self.problem {
-            Some(problem) => hint(ui, rect, problem),
-            None if self.mesh.is_none() => hint(ui, rect, "Preparing the view…"),
+            Some(problem) => paint_hint(ui, rect, problem),
+            None if self.mesh.is_none() => paint_hint(ui, rect, "Preparing the view…"),
             None => {}
         }
     }
@@ -339,14 +340,14 @@ impl PaintView {
             }
             Err(error) => {
                 self.problem = Some(error.to_string());
-                actions.push(Action::Complain(error.to_string()));
+                actions.push(Action::ShowError(error.to_string()));
             }
         }
     }
 
     /// Drags as the key map has them; the wheel comes nearer; two fingers do all.
     fn navigate(&mut self, ui: &Ui, response: &Response) {
-        if let Some((motion, delta)) = navigation::dragged(ui, response) {
+        if let Some((motion, delta)) = navigation::view_drag(ui, response) {
             let delta = DVec2::new(delta.x as f64, delta.y as f64);
             match motion {
                 Motion::Orbit => self.camera.orbit(delta),
@@ -368,16 +369,22 @@ impl PaintView {
         }
     }
 
-    fn draw(&mut self, ui: &Ui, document: &Document, look: SurfaceLook, actions: &mut Vec<Action>) {
+    fn draw(
+        &mut self,
+        ui: &Ui,
+        document: &Document,
+        appearance: SurfaceAppearance,
+        actions: &mut Vec<Action>,
+    ) {
         let (Some(blitter), Some(renderer), Some(mesh), Some(focus)) =
             (&self.blitter, &mut self.renderer, &self.mesh, &self.focus)
         else {
             return;
         };
         let scale = ui.ctx().pixels_per_point();
-        let image = blit::on_pixels(self.rect, scale);
+        let image = blit::snapped_to_pixels(self.rect, scale);
         self.size = [image.width(), image.height()].map(|side| (side * scale).round().max(1.0) as u32);
-        let shown = SurfaceFrame { view: &self.camera, shot: &document.camera, look, size: self.size };
+        let shown = SurfaceFrame { view: &self.camera, shot: &document.camera, appearance, size: self.size };
         match renderer.draw(mesh, focus, shown, std::mem::take(&mut self.stale)) {
             Ok(new_texture) => {
                 if let Some(picture) = renderer.picture().filter(|_| new_texture || self.drawn.is_none()) {
@@ -387,7 +394,7 @@ impl PaintView {
             Err(error) => {
                 let text = error.to_string();
                 if self.problem.as_ref() != Some(&text) {
-                    actions.push(Action::Complain(text.clone()));
+                    actions.push(Action::ShowError(text.clone()));
                     self.problem = Some(text);
                 }
             }
@@ -402,7 +409,7 @@ impl PaintView {
     /// The shot camera: its frame at the focus distance, and, unless one looks through it, the edges from its eye.
     fn paint_shot_camera(&self, painter: &egui::Painter, camera: &Camera, bounds: (DVec3, DVec3)) {
         let extent = (bounds.1 - bounds.0).length();
-        let from_aside = self.camera.eye().distance(camera.position()) > 1e-3 * extent;
+        let is_outside_shot_camera = self.camera.eye().distance(camera.position()) > 1e-3 * extent;
         let depth = if camera.focus_distance.is_finite() { camera.focus_distance } else { extent };
         let half = (camera.yfov / 2.0).tan() * depth;
         let [middle, extent] = camera.frame_q();
@@ -415,7 +422,7 @@ impl PaintView {
         let edge = Stroke::new(1.0, Color32::from_white_alpha(45));
         for k in 0..4 {
             self.paint_segment(painter, corners[k], corners[(k + 1) % 4], frame);
-            if from_aside {
+            if is_outside_shot_camera {
                 self.paint_segment(painter, camera.position(), corners[k], edge);
             }
         }
@@ -441,7 +448,7 @@ impl PaintView {
 }
 
 /// A line of text in the middle of an empty view.
-pub fn hint(ui: &Ui, rect: Rect, text: &str) {
+pub fn paint_hint(ui: &Ui, rect: Rect, text: &str) {
     let width = (rect.width() - 40.0).max(60.0);
     let color = Color32::from_gray(190);
     let galley = ui.painter().layout(text.into(), egui::FontId::proportional(14.0), color, width);
@@ -461,17 +468,17 @@ fn stored_viewpoint(view: &serde_json::Value) -> Option<OrbitCamera> {
 }
 
 /// A screen position in the view: (0, 0) its upper left corner, (1, 1) its lower right.
-fn view_position(rect: Rect, at: Pos2) -> DVec2 {
+fn view_from_screen(rect: Rect, at: Pos2) -> DVec2 {
     let share = |at: f32, from: f32, length: f32| ((at - from) / length.max(1.0)) as f64;
     DVec2::new(share(at.x, rect.left(), rect.width()), share(at.y, rect.top(), rect.height()))
 }
 
 /// And back.
-fn screen_position(rect: Rect, at: DVec2) -> Pos2 {
+fn screen_from_position(rect: Rect, at: DVec2) -> Pos2 {
     rect.min + vec2(at.x as f32, at.y as f32) * rect.size()
 }
 
-fn screen_from_view(rect: Rect, at: DVec2) -> Pos2 {
+fn screen_from_clip(rect: Rect, at: DVec2) -> Pos2 {
     pos2(
         rect.left() + (at.x as f32 + 1.0) / 2.0 * rect.width(),
         rect.top() + (1.0 - at.y as f32) / 2.0 * rect.height(),

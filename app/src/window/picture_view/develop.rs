@@ -7,7 +7,7 @@ use splat::PictureOnCard;
 use std::ops::Range;
 
 /// Exposes, tone maps and encodes pictures on the device that shows them.
-pub struct Developer {
+pub struct ToneMapper {
     device: wgpu::Device,
     queue: wgpu::Queue,
     layout: wgpu::BindGroupLayout,
@@ -16,7 +16,7 @@ pub struct Developer {
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
-impl Developer {
+impl ToneMapper {
     /// For what a blitter draws.
     pub fn new(blitter: &Blitter) -> Self {
         let (device, queue) = (blitter.device().clone(), blitter.queue().clone());
@@ -79,7 +79,7 @@ impl Developer {
     }
 
     /// Develops columns and rows of a picture, which was made by [`Self::picture`] in its size.
-    pub fn develop(
+    pub fn tone_map(
         &self,
         from: &PictureOnCard,
         tone: Tone,
@@ -92,15 +92,15 @@ impl Developer {
         let curve = ToneCurve::ALL.iter().position(|curve| *curve == tone.display.curve).unwrap_or(0);
         let normalises = tone.exposure == Exposure::Normalise;
         let gain = tone.display.stops.exp2();
-        let words = [from.size()[0], normalises.into(), curve as u32, gain.to_bits()];
+        let uniform_words = [from.size()[0], normalises.into(), curve as u32, gain.to_bits()];
         let uniform = self.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("tone"),
-            size: size_of_val(&words) as u64,
+            size: size_of_val(&uniform_words) as u64,
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        self.queue.write_buffer(&uniform, 0, bytemuck::cast_slice(&words));
-        let bound = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        self.queue.write_buffer(&uniform, 0, bytemuck::cast_slice(&uniform_words));
+        let bind_group = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("develop"),
             layout: &self.layout,
             entries: &[
@@ -122,7 +122,7 @@ impl Developer {
                 ..wgpu::RenderPassDescriptor::default()
             });
             pass.set_pipeline(&self.pipeline);
-            pass.set_bind_group(0, &bound, &[]);
+            pass.set_bind_group(0, &bind_group, &[]);
             pass.set_scissor_rect(columns.start, rows.start, columns.len() as u32, rows.len() as u32);
             pass.draw(0..3, 0..1);
         }

@@ -5,14 +5,14 @@ mod shown;
 mod verify;
 mod wipe;
 
-pub use shown::Shown;
+pub use shown::DisplayedPicture;
 
 use super::blit::{Blitter, Filter};
 use super::brush_ring;
 use super::drag_tool::DragView;
-use super::hand::Hand;
+use super::hand::ActiveTool;
 use super::navigation::{self, Motion};
-use super::paint_view::hint;
+use super::paint_view::paint_hint;
 use super::pointer::StrokeInput;
 use super::region_highlight::RegionHighlight;
 use super::{Action, controls, theme};
@@ -47,7 +47,7 @@ pub struct PictureView {
     blitter: Option<Blitter>,
     textures: Textures,
     /// Which picture is shown.
-    pub shown: Shown,
+    pub displayed: DisplayedPicture,
     /// The line across it, and what is on its left.
     pub wipe: Wipe,
     /// The rectangle that rays check.
@@ -66,7 +66,7 @@ impl PictureView {
         Self {
             blitter,
             textures: Textures::default(),
-            shown: Shown::Painted,
+            displayed: DisplayedPicture::Painted,
             wipe: Wipe::default(),
             verify: Verify::default(),
             zoom: Zoom::Fit,
@@ -86,13 +86,13 @@ impl PictureView {
     /// Another surface: what lay under the pointer is no place of it.
     pub fn surface_changed(&mut self) {
         self.hover = None;
-        self.highlight.forget();
+        self.highlight.clear();
     }
 
     /// Shows a picture, on whatever side of the line it is not yet.
-    pub fn show(&mut self, shown: Shown) {
+    pub fn show(&mut self, shown: DisplayedPicture) {
         if !(self.wipe.is_on && self.wipe.against == shown) {
-            self.shown = shown;
+            self.displayed = shown;
         }
     }
 
@@ -102,14 +102,14 @@ impl PictureView {
     }
 
     /// Shows the picture for two eyes: in colours, then side by side, then the live one again.
-    pub fn next_stereo(&mut self) {
-        self.shown = match self.shown {
-            Shown::Anaglyph => Shown::SideBySide,
-            Shown::SideBySide => Shown::Painted,
-            _ => Shown::Anaglyph,
+    pub fn cycle_stereo(&mut self) {
+        self.displayed = match self.displayed {
+            DisplayedPicture::Anaglyph => DisplayedPicture::SideBySide,
+            DisplayedPicture::SideBySide => DisplayedPicture::Painted,
+            _ => DisplayedPicture::Anaglyph,
         };
-        if self.wipe.is_on && self.wipe.against == self.shown {
-            self.wipe.against = Shown::Painted;
+        if self.wipe.is_on && self.wipe.against == self.displayed {
+            self.wipe.against = DisplayedPicture::Painted;
         }
     }
 
@@ -143,12 +143,12 @@ impl PictureView {
     }
 
     /// The view is not drawn: nothing lies under the pointer.
-    pub fn left(&mut self) {
+    pub fn pointer_left(&mut self) {
         self.hover = None;
     }
 
     /// Screen pixels of a picture pixel, in percent.
-    pub fn percent(&self, session: &Session, pixels_per_point: f32) -> Option<f32> {
+    pub fn scale_percent(&self, session: &Session, pixels_per_point: f32) -> Option<f32> {
         let width = session.document()?.camera.width as f32;
         Some(self.image.width() * pixels_per_point / width * 100.0)
     }
@@ -158,84 +158,85 @@ impl PictureView {
         &mut self,
         ui: &mut Ui,
         session: &Session,
-        hand: &Hand,
+        active_tool: &ActiveTool,
         display: Display,
         actions: &mut Vec<Action>,
     ) {
         let (rect, response) =
             ui.allocate_exact_size(ui.available_size().max(vec2(8.0, 8.0)), Sense::click_and_drag());
         self.rect = rect;
-        controls::named(&response, "Picture");
+        controls::set_accessible_name(&response, "Picture");
         let Some(document) = session.document() else {
             ui.painter().rect_filled(rect, 0.0, theme::SURROUNDINGS);
             // What is seen of a scene that is being opened.
             let [width, height] = session.screen().size();
             if width > 0 && height > 0 {
-                self.image = self.place(vec2(width as f32, height as f32));
+                self.image = self.picture_rect(vec2(width as f32, height as f32));
                 let tone = Tone { display, ..Tone::default() };
-                self.paint_picture(ui, session, tone, Shown::Painted, rect);
+                self.paint_picture(ui, session, tone, DisplayedPicture::Painted, rect);
             }
             return;
         };
         let size = vec2(document.camera.width as f32, document.camera.height as f32);
         self.navigate(ui, &response, size);
-        self.image = self.place(size);
-        surroundings(ui, rect, self.whole());
+        self.image = self.picture_rect(size);
+        paint_surroundings(ui, rect, self.whole_rect());
         let tone = Tone { exposure: document.exposure, display };
-        self.paint_picture(ui, session, tone, self.shown, rect);
+        self.paint_picture(ui, session, tone, self.displayed, rect);
         let painter = ui.painter_at(rect);
         let mut is_wiping = false;
-        let is_pair = self.shown.is_pair();
+        let is_pair = self.displayed.is_pair();
         if self.wipe.is_on && !is_pair {
             let left = self.wipe.left_of(self.image).intersect(rect);
             self.paint_picture(ui, session, tone, self.wipe.against, left);
-            is_wiping = self.wipe.handle(ui, self.image, rect, self.shown);
+            is_wiping = self.wipe.handle(ui, self.image, rect, self.displayed);
         }
-        self.ask_for_pictures(session, actions);
+        self.request_pictures(session, actions);
         let image = self.image;
         let shot = &document.camera;
-        let frame = ViewFrame::of(shot);
+        let frame = ViewFrame::from_camera(shot);
         let is_selecting = self.verify.is_selecting();
-        let whole = self.whole();
-        let position = |at: Pos2| picture_position(image, in_left(is_pair, image, at));
+        let whole = self.whole_rect();
+        let position = |at: Pos2| picture_position(image, in_left_picture(is_pair, image, at));
         let screen = |at: DVec2| image.min + vec2(at.x as f32, at.y as f32) * image.size();
         let view = DragView { frame, position: &position, screen: &screen };
         self.verify.select(ui, &response, image, position, actions);
         if !(is_wiping || is_selecting) || session.is_painting() {
-            actions.extend(self.stroke.update(ui, &response, session, hand, &view));
+            actions.extend(self.stroke.update(ui, &response, session, active_tool, &view));
         }
-        self.stroke.paint(ui, rect, session, hand, &view);
+        self.stroke.paint(ui, rect, session, active_tool, &view);
         let pointer = response.hover_pos().or_else(|| response.interact_pointer_pos());
         let pointer = pointer.filter(|at| whole.contains(*at) && !is_wiping && !is_selecting);
-        self.hover = pointer.and_then(|at| hand.hit(session, &view, at));
-        let targets = hand.targets(session, self.hover);
+        self.hover = pointer.and_then(|at| active_tool.pick(session, &view, at));
+        let targets = active_tool.targets(session, self.hover);
         self.highlight.paint(ui, document, (frame, image, rect), &targets);
-        if let (Some(hit), Some(ring)) = (self.hover, hand.ring) {
+        if let (Some(hit), Some(ring)) = (self.hover, active_tool.ring) {
             brush_ring::paint(&painter, &hit, ring, |point| self.screen_from_world(&document.camera, point));
         }
         if response.hovered() && !is_wiping {
             ui.set_cursor_icon(egui::CursorIcon::Crosshair);
         }
         self.verify.show(ui, session, image, rect, tone, actions);
-        self.notice(ui, session);
+        self.paint_notice(ui, session);
     }
 
     /// Where a world point is on screen.
     pub fn screen_from_world(&self, camera: &Camera, point: DVec3) -> Option<Pos2> {
-        let seen = camera.camera_from_world(point);
-        let pixel = camera.pixel_from_q(camera.optics().chief(seen));
+        let camera_point = camera.camera_from_world(point);
+        let pixel = camera.pixel_from_q(camera.optics().chief(camera_point));
         let share = vec2((pixel.x / camera.width as f64) as f32, (pixel.y / camera.height as f64) as f32);
-        (seen.z > 0.0).then(|| self.image.min + share * self.image.size())
+        (camera_point.z > 0.0).then(|| self.image.min + share * self.image.size())
     }
 
     /// Draws what of a picture lies in `part` of the view.
-    fn paint_picture(&mut self, ui: &Ui, session: &Session, tone: Tone, shown: Shown, part: Rect) {
+    fn paint_picture(&mut self, ui: &Ui, session: &Session, tone: Tone, shown: DisplayedPicture, part: Rect) {
         let painter = ui.painter_at(part);
         // Another photograph is no picture of this camera.
-        let is_other = shown == Shown::Photograph && !session.is_reference_current(ReferenceKind::Photograph);
-        let place = if shown.is_pair() { self.whole() } else { self.image };
+        let is_other =
+            shown == DisplayedPicture::Photograph && !session.is_reference_current(ReferenceKind::Photograph);
+        let place = if shown.is_pair() { self.whole_rect() } else { self.image };
         let drawn = self.blitter.as_ref().filter(|_| !is_other).and_then(|blitter| {
-            let drawn = self.textures.of(blitter, session, shown, tone)?;
+            let drawn = self.textures.texture(blitter, session, shown, tone)?;
             let squares = place.width() > SQUARES_FROM * drawn.size()[0] as f32;
             let filter = if squares { Filter::Nearest } else { Filter::Linear };
             blitter.paint(&painter, drawn, place, filter);
@@ -246,30 +247,34 @@ impl PictureView {
             None => {
                 painter.rect_filled(place, 0.0, egui::Color32::from_gray(28));
                 let text = match shown {
-                    Shown::Painted => "Drawing the first picture…",
-                    Shown::Standard => "Drawing the ordinary lens…",
-                    Shown::Pinhole => "Drawing the pinhole…",
-                    Shown::Truth => "Tracing rays…",
-                    Shown::Anaglyph | Shown::SideBySide if is_pinhole(session) => {
+                    DisplayedPicture::Painted => "Drawing the first picture…",
+                    DisplayedPicture::Standard => "Drawing the ordinary lens…",
+                    DisplayedPicture::Pinhole => "Drawing the pinhole…",
+                    DisplayedPicture::Truth => "Tracing rays…",
+                    DisplayedPicture::Anaglyph | DisplayedPicture::SideBySide if is_pinhole(session) => {
                         "A pinhole has no room for two eyes: open the aperture."
                     }
-                    Shown::Anaglyph | Shown::SideBySide => "Drawing for two eyes…",
-                    Shown::Photograph if session.document().is_some_and(|d| d.photograph().is_none()) => {
+                    DisplayedPicture::Anaglyph | DisplayedPicture::SideBySide => "Drawing for two eyes…",
+                    DisplayedPicture::Photograph
+                        if session.document().is_some_and(|d| d.photograph().is_none()) =>
+                    {
                         "Choose a photograph as the camera (Lens, Camera)."
                     }
-                    Shown::Photograph => "Reading the photograph…",
+                    DisplayedPicture::Photograph => "Reading the photograph…",
                 };
-                hint(ui, part.intersect(place), text);
+                paint_hint(ui, part.intersect(place), text);
             }
         }
     }
 
     /// Asks for the pictures that are shown and not there, or no longer true. A ray-traced one takes long: it is
     /// made once, and again when asked for.
-    fn ask_for_pictures(&self, session: &Session, actions: &mut Vec<Action>) {
-        let against = (self.wipe.is_on && !self.shown.is_pair()).then_some(self.wipe.against);
-        for kind in [Some(self.shown), against].into_iter().flatten().filter_map(Shown::kind) {
-            let wanted = match kind {
+    fn request_pictures(&self, session: &Session, actions: &mut Vec<Action>) {
+        let against = (self.wipe.is_on && !self.displayed.is_pair()).then_some(self.wipe.against);
+        for kind in
+            [Some(self.displayed), against].into_iter().flatten().filter_map(DisplayedPicture::reference_kind)
+        {
+            let is_needed = match kind {
                 ReferenceKind::Truth => session.reference(kind).is_none(),
                 ReferenceKind::Photograph => {
                     let is_there = session.document().is_some_and(|document| document.photograph().is_some());
@@ -277,7 +282,7 @@ impl PictureView {
                 }
                 _ => !session.is_reference_current(kind),
             };
-            if wanted && !session.is_making_reference(kind) && session.is_idle() {
+            if is_needed && !session.is_making_reference(kind) && session.is_idle() {
                 actions.push(Command::MakeReference { kind, samples_per_pixel: TRUTH_SAMPLES }.into());
                 return;
             }
@@ -285,9 +290,10 @@ impl PictureView {
     }
 
     /// Whether the ray-traced picture is shown although paint or lens have changed since.
-    fn shows_old_truth(&self, session: &Session) -> bool {
+    fn shows_outdated_truth(&self, session: &Session) -> bool {
         let kind = ReferenceKind::Truth;
-        let is_shown = self.shown == Shown::Truth || (self.wipe.is_on && self.wipe.against == Shown::Truth);
+        let is_shown = self.displayed == DisplayedPicture::Truth
+            || (self.wipe.is_on && self.wipe.against == DisplayedPicture::Truth);
         is_shown && session.reference(kind).is_some() && !session.is_reference_current(kind)
     }
 
@@ -298,10 +304,10 @@ impl PictureView {
             self.zoom = Zoom::Fit;
             return;
         }
-        let dragged = navigation::dragged(ui, response);
+        let dragged = navigation::view_drag(ui, response);
         if let Some((Motion::Orbit | Motion::Slide, delta)) = dragged {
-            let image = self.place(size);
-            self.zoom = self.free(image.translate(delta), size);
+            let image = self.picture_rect(size);
+            self.zoom = self.zoom_showing(image.translate(delta), size);
         }
         let nearer = dragged.filter(|(motion, _)| *motion == Motion::Nearer).map_or(0.0, |(_, d)| -2.0 * d.y);
         let Some(pointer) = response.hover_pos().or_else(|| response.interact_pointer_pos()) else { return };
@@ -311,40 +317,40 @@ impl PictureView {
         };
         let factor = ((scroll + nearer) / POINTS_PER_DOUBLING).exp2() * pinch;
         if factor != 1.0 {
-            let image = self.place(size);
+            let image = self.picture_rect(size);
             let scale = image.width() / size.x;
             let factor = (scale * factor).clamp(0.02, 64.0) / scale;
             let zoomed = Rect::from_min_max(
                 pointer + (image.min - pointer) * factor,
                 pointer + (image.max - pointer) * factor,
             );
-            self.zoom = self.free(zoomed, size);
+            self.zoom = self.zoom_showing(zoomed, size);
         }
     }
 
     /// The zoom that shows the picture at `image`.
-    fn free(&self, image: Rect, size: Vec2) -> Zoom {
+    fn zoom_showing(&self, image: Rect, size: Vec2) -> Zoom {
         let middle = (self.rect.center() - image.min) / image.size();
-        let middle = vec2(middle.x.clamp(0.0, self.pictures()), middle.y.clamp(0.0, 1.0));
+        let middle = vec2(middle.x.clamp(0.0, self.picture_count()), middle.y.clamp(0.0, 1.0));
         Zoom::Free { scale: image.width() / size.x, middle }
     }
 
     /// How many pictures of the camera are beside each other.
-    fn pictures(&self) -> f32 {
-        if self.shown.is_pair() { 2.0 } else { 1.0 }
+    fn picture_count(&self) -> f32 {
+        if self.displayed.is_pair() { 2.0 } else { 1.0 }
     }
 
     /// All of what is shown: the picture, or both of a pair.
-    fn whole(&self) -> Rect {
-        Rect::from_min_size(self.image.min, self.image.size() * vec2(self.pictures(), 1.0))
+    fn whole_rect(&self) -> Rect {
+        Rect::from_min_size(self.image.min, self.image.size() * vec2(self.picture_count(), 1.0))
     }
 
     /// Where the picture of `size` px goes, of a pair the left one.
-    fn place(&self, size: Vec2) -> Rect {
+    fn picture_rect(&self, size: Vec2) -> Rect {
         match self.zoom {
             Zoom::Fit => {
                 let room = self.rect.shrink(8.0).size();
-                let whole = size * vec2(self.pictures(), 1.0);
+                let whole = size * vec2(self.picture_count(), 1.0);
                 let scale = (room.x / whole.x).min(room.y / whole.y).max(1e-3);
                 let corner = Rect::from_center_size(self.rect.center(), whole * scale).min;
                 Rect::from_min_size(corner, size * scale)
@@ -357,7 +363,7 @@ impl PictureView {
     }
 
     /// Says quietly that the picture on screen is not the last word.
-    fn notice(&self, ui: &Ui, session: &Session) {
+    fn paint_notice(&self, ui: &Ui, session: &Session) {
         let pinhole = session.preview().is_some_and(|preview| preview.kind == PreviewKind::Pinhole);
         let text = match session.preview_activity() {
             _ if self.verify.is_selecting() => "drag a rectangle to check it by rays (Esc: no)",
@@ -369,7 +375,9 @@ impl PictureView {
             PreviewActivity::Idle if pinhole => {
                 "shown without blur: the light field was not built (F5 builds it)"
             }
-            _ if self.shows_old_truth(session) => "ray traced before the last change (F12 traces it anew)",
+            _ if self.shows_outdated_truth(session) => {
+                "ray traced before the last change (F12 traces it anew)"
+            }
             _ => return,
         };
         let at = self.rect.left_bottom() + vec2(8.0, -6.0);
@@ -379,18 +387,18 @@ impl PictureView {
 }
 
 /// Fills what of the view the picture leaves: nothing is drawn twice, which an adapter in software would feel.
-fn surroundings(ui: &Ui, rect: Rect, image: Rect) {
-    let seen = image.intersect(rect);
-    if !seen.is_positive() {
+fn paint_surroundings(ui: &Ui, rect: Rect, image: Rect) {
+    let visible = image.intersect(rect);
+    if !visible.is_positive() {
         ui.painter().rect_filled(rect, 0.0, theme::SURROUNDINGS);
         return;
     }
-    let beside = rect.with_min_y(seen.top()).with_max_y(seen.bottom());
+    let beside = rect.with_min_y(visible.top()).with_max_y(visible.bottom());
     let strips = [
-        rect.with_max_y(seen.top()),
-        rect.with_min_y(seen.bottom()),
-        beside.with_max_x(seen.left()),
-        beside.with_min_x(seen.right()),
+        rect.with_max_y(visible.top()),
+        rect.with_min_y(visible.bottom()),
+        beside.with_max_x(visible.left()),
+        beside.with_min_x(visible.right()),
     ];
     for strip in strips.into_iter().filter(Rect::is_positive) {
         ui.painter().rect_filled(strip, 0.0, theme::SURROUNDINGS);
@@ -398,7 +406,7 @@ fn surroundings(ui: &Ui, rect: Rect, image: Rect) {
 }
 
 /// A screen position where the left picture of a pair has what the right one has there: with the eyes' disparity between them.
-fn in_left(is_pair: bool, image: Rect, at: Pos2) -> Pos2 {
+fn in_left_picture(is_pair: bool, image: Rect, at: Pos2) -> Pos2 {
     if is_pair && at.x >= image.right() { at - vec2(image.width(), 0.0) } else { at }
 }
 

@@ -1,7 +1,7 @@
 //! The pictures that the view can show, as textures.
 
 use crate::window::blit::{Blitter, Drawable};
-use crate::window::picture_view::develop::Developer;
+use crate::window::picture_view::develop::ToneMapper;
 use lens::Picture;
 use session::{Document, ReferenceKind, Screen, Session, StereoForm, Tone, to_screen};
 use splat::PictureOnCard;
@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 /// Which picture is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Shown {
+pub enum DisplayedPicture {
     /// The live picture.
     #[default]
     Painted,
@@ -27,7 +27,7 @@ pub enum Shown {
     SideBySide,
 }
 
-impl Shown {
+impl DisplayedPicture {
     /// All, as a menu offers them.
     pub const ALL: [Self; 7] = [
         Self::Painted,
@@ -72,7 +72,7 @@ impl Shown {
     }
 
     /// Whether there is such a picture of what is open.
-    pub fn is_of(self, document: Option<&Document>) -> bool {
+    pub fn exists_for(self, document: Option<&Document>) -> bool {
         match self {
             Self::Photograph => document.is_some_and(|document| !document.stage.scene.views.is_empty()),
             Self::Anaglyph | Self::SideBySide => {
@@ -88,7 +88,7 @@ impl Shown {
     }
 
     /// The session's picture of it.
-    pub fn kind(self) -> Option<ReferenceKind> {
+    pub fn reference_kind(self) -> Option<ReferenceKind> {
         match self {
             Self::Painted => None,
             Self::Standard => Some(ReferenceKind::Standard),
@@ -105,13 +105,13 @@ impl Shown {
 #[derive(Default)]
 pub struct Textures {
     /// From the first picture on a card on.
-    developer: Option<Developer>,
-    held: [Option<Held>; Shown::ALL.len()],
+    developer: Option<ToneMapper>,
+    cached: [Option<CachedTexture>; DisplayedPicture::ALL.len()],
 }
 
-struct Held {
+struct CachedTexture {
     drawn: Drawable,
-    of: Source,
+    source: Source,
 }
 
 /// What a texture holds.
@@ -127,86 +127,90 @@ enum Source {
 
 impl Textures {
     /// The texture of a picture, if there is one.
-    pub fn of(
+    pub fn texture(
         &mut self,
         blitter: &Blitter,
         session: &Session,
-        shown: Shown,
+        shown: DisplayedPicture,
         tone: Tone,
     ) -> Option<&Drawable> {
-        let held = &mut self.held[shown as usize];
-        match shown.kind() {
+        let cached = &mut self.cached[shown as usize];
+        match shown.reference_kind() {
             None => match session.screen().on_card() {
                 Some(on_card) => {
-                    let developer = self.developer.get_or_insert_with(|| Developer::new(blitter));
-                    show_on_card(held, (blitter, developer), session.screen(), on_card);
+                    let developer = self.developer.get_or_insert_with(|| ToneMapper::new(blitter));
+                    show_on_card(cached, (blitter, developer), session.screen(), on_card);
                 }
-                None => show_live(held, blitter, session.screen()),
+                None => show_live(cached, blitter, session.screen()),
             },
             Some(kind) => {
                 let picture = session.reference(kind).map(|reference| &reference.picture);
-                show_reference(held, blitter, picture, tone);
+                show_reference(cached, blitter, picture, tone);
             }
         }
-        held.as_ref().map(|held| &held.drawn)
+        cached.as_ref().map(|held| &held.drawn)
     }
 }
 
 /// Writes what changed on the screen.
-fn show_live(held: &mut Option<Held>, blitter: &Blitter, screen: &Screen) {
+fn show_live(cached: &mut Option<CachedTexture>, blitter: &Blitter, screen: &Screen) {
     let size = screen.size();
     if size.contains(&0) {
-        *held = None;
+        *cached = None;
         return;
     }
-    let old = held.take().filter(|held| held.drawn.size() == size);
-    let (drawn, seen) = match old {
-        Some(Held { drawn, of: Source::Live(seen) }) => (drawn, Some(seen)),
+    let previous = cached.take().filter(|held| held.drawn.size() == size);
+    let (drawn, last_serial) = match previous {
+        Some(CachedTexture { drawn, source: Source::Live(serial) }) => (drawn, Some(serial)),
         _ => (blitter.picture(size), None),
     };
-    let changed = seen.map_or(Some(size.map(|side| 0..side)), |seen| screen.changed_since(seen));
+    let changed = last_serial.map_or(Some(size.map(|side| 0..side)), |serial| screen.changed_since(serial));
     if let Some(rectangle) = changed {
         blitter.write(&drawn, screen.pixels(), &rectangle);
     }
-    *held = Some(Held { drawn, of: Source::Live(screen.serial()) });
+    *cached = Some(CachedTexture { drawn, source: Source::Live(screen.serial()) });
 }
 
 /// Develops what changed of a picture on a graphics card.
 fn show_on_card(
-    held: &mut Option<Held>,
-    (blitter, developer): (&Blitter, &Developer),
+    cached: &mut Option<CachedTexture>,
+    (blitter, developer): (&Blitter, &ToneMapper),
     screen: &Screen,
     (picture, tone): (&PictureOnCard, Tone),
 ) {
     let size = screen.size();
-    let old = held.take().filter(|held| held.drawn.size() == size);
-    let (drawn, changed) = match old {
-        Some(Held { drawn, of: Source::OnCard(seen, by) }) if by == tone => {
-            (drawn, screen.changed_since(seen))
+    let previous = cached.take().filter(|held| held.drawn.size() == size);
+    let (drawn, changed) = match previous {
+        Some(CachedTexture { drawn, source: Source::OnCard(serial, last_tone) }) if last_tone == tone => {
+            (drawn, screen.changed_since(serial))
         }
-        Some(Held { drawn, of: Source::OnCard(..) }) => (drawn, Some(size.map(|side| 0..side))),
+        Some(CachedTexture { drawn, source: Source::OnCard(..) }) => (drawn, Some(size.map(|side| 0..side))),
         _ => (developer.picture(blitter, size), Some(size.map(|side| 0..side))),
     };
     if let Some(rectangle) = changed {
-        developer.develop(picture, tone, &drawn, &rectangle);
+        developer.tone_map(picture, tone, &drawn, &rectangle);
     }
-    *held = Some(Held { drawn, of: Source::OnCard(screen.serial(), tone) });
+    *cached = Some(CachedTexture { drawn, source: Source::OnCard(screen.serial(), tone) });
 }
 
 /// Writes another picture, or the same one by another tone.
-fn show_reference(held: &mut Option<Held>, blitter: &Blitter, picture: Option<&Arc<Picture>>, tone: Tone) {
+fn show_reference(
+    cached: &mut Option<CachedTexture>,
+    blitter: &Blitter,
+    picture: Option<&Arc<Picture>>,
+    tone: Tone,
+) {
     let Some(picture) = picture else {
-        *held = None;
+        *cached = None;
         return;
     };
-    let holds =
-        |of: &Source| matches!(of, Source::Reference(held, by) if Arc::ptr_eq(held, picture) && *by == tone);
-    if held.as_ref().is_some_and(|held| holds(&held.of)) {
+    let holds = |source: &Source| matches!(source, Source::Reference(last_picture, last_tone) if Arc::ptr_eq(last_picture, picture) && *last_tone == tone);
+    if cached.as_ref().is_some_and(|held| holds(&held.source)) {
         return;
     }
     let size = [picture.width, picture.height];
-    let old = held.take().map(|held| held.drawn).filter(|drawn| drawn.size() == size);
-    let drawn = old.unwrap_or_else(|| blitter.picture(size));
+    let previous = cached.take().map(|held| held.drawn).filter(|drawn| drawn.size() == size);
+    let drawn = previous.unwrap_or_else(|| blitter.picture(size));
     blitter.write(&drawn, &to_screen(picture, tone), &size.map(|side| 0..side));
-    *held = Some(Held { drawn, of: Source::Reference(picture.clone(), tone) });
+    *cached = Some(CachedTexture { drawn, source: Source::Reference(picture.clone(), tone) });
 }

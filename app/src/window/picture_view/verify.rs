@@ -10,7 +10,7 @@ use session::{Command, Session, Tone, VerifiedError, to_screen};
 
 /// What is shown in the rectangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-enum Look {
+enum RegionDisplay {
     /// The ray-traced picture.
     #[default]
     Truth,
@@ -25,10 +25,10 @@ enum Look {
 pub struct Verify {
     /// Whether the next drag draws the rectangle, and where it began.
     selecting: Option<Option<Pos2>>,
-    look: Look,
+    display: RegionDisplay,
     texture: Option<TextureHandle>,
     /// What the texture and the numbers were made of: picture, passes, look, tone.
-    made_of: Option<(u64, u32, Look, Tone)>,
+    texture_key: Option<(u64, u32, RegionDisplay, Tone)>,
     error: Option<VerifiedError>,
 }
 
@@ -93,7 +93,7 @@ impl Verify {
         actions: &mut Vec<Action>,
     ) {
         let (Some(verification), Some(preview)) = (session.verification(), session.preview()) else {
-            *self = Self { selecting: self.selecting, look: self.look, ..Self::default() };
+            *self = Self { selecting: self.selecting, display: self.display, ..Self::default() };
             return;
         };
         let (region, camera) = (verification.region, &verification.camera);
@@ -105,27 +105,27 @@ impl Verify {
             corner(region.x + region.width, region.y + region.height),
         );
         let samples = verification.estimate.as_ref().map_or(0, |estimate| estimate.samples_per_pixel);
-        let made_of = Some((preview.id, samples, self.look, tone));
-        if let Some(estimate) = verification.estimate.as_ref().filter(|_| self.made_of != made_of) {
-            self.made_of = made_of;
+        let texture_key = Some((preview.id, samples, self.display, tone));
+        if let Some(estimate) = verification.estimate.as_ref().filter(|_| self.texture_key != texture_key) {
+            self.texture_key = texture_key;
             self.error = verification.error_of(preview, tone.exposure).and_then(Result::ok);
             let size = [region.width as usize, region.height as usize];
-            let pixels = match (self.look, &self.error) {
-                (Look::Truth, _) => {
+            let pixels = match (self.display, &self.error) {
+                (RegionDisplay::Truth, _) => {
                     let rgb = to_screen(&estimate.picture, tone);
                     Some(rgb.iter().map(|[r, g, b, _]| Color32::from_rgb(*r, *g, *b)).collect())
                 }
-                (Look::Error, Some(error)) => {
+                (RegionDisplay::Error, Some(error)) => {
                     let rgb = error.map.chunks_exact(3);
                     Some(rgb.map(|rgb| Color32::from_rgb(rgb[0], rgb[1], rgb[2])).collect())
                 }
-                (Look::Error, None) | (Look::Live, _) => None,
+                (RegionDisplay::Error, None) | (RegionDisplay::Live, _) => None,
             };
             self.texture = pixels.map(|pixels| {
                 ui.ctx().load_texture("verified", ColorImage::new(size, pixels), TextureOptions::LINEAR)
             });
         }
-        if let Some(texture) = self.texture.as_ref().filter(|_| self.look != Look::Live) {
+        if let Some(texture) = self.texture.as_ref().filter(|_| self.display != RegionDisplay::Live) {
             let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
             ui.painter_at(view).image(texture.id(), rect, whole, Color32::WHITE);
         }
@@ -164,16 +164,16 @@ impl Verify {
         };
         ui.scope_builder(UiBuilder::new().max_rect(place.shrink(4.0)), |ui| {
             ui.horizontal(|ui| {
-                let looks = [
-                    (Look::Truth, "Rays", "Show the ray-traced picture in the rectangle."),
-                    (Look::Error, "Error", "Show where the live picture differs: black where it looks alike (FLIP)."),
-                    (Look::Live, "Live", "Show the live picture in the rectangle."),
+                let choices = [
+                    (RegionDisplay::Truth, "Rays", "Show the ray-traced picture in the rectangle."),
+                    (RegionDisplay::Error, "Error", "Show where the live picture differs: black where it looks alike (FLIP)."),
+                    (RegionDisplay::Live, "Live", "Show the live picture in the rectangle."),
                 ];
-                for (look, name, tip) in looks {
-                    ui.selectable_value(&mut self.look, look, name).on_hover_text(tip);
+                for (choice, name, tip) in choices {
+                    ui.selectable_value(&mut self.display, choice, name).on_hover_text(tip);
                 }
                 let close = ui.button("Close").on_hover_text("Stop tracing and take the rectangle away.");
-                controls::named(&close, "Close verification");
+                controls::set_accessible_name(&close, "Close verification");
                 if close.clicked() {
                     actions.push(Command::EndVerification.into());
                 }

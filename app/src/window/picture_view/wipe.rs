@@ -1,6 +1,6 @@
 //! The wipe: a line across the picture, another picture on its left.
 
-use super::shown::Shown;
+use super::shown::DisplayedPicture;
 use crate::window::controls;
 use egui::{Align2, Color32, CursorIcon, FontId, Key, Rect, Sense, Stroke, Ui, pos2, vec2};
 
@@ -15,39 +15,39 @@ pub struct Wipe {
     /// Whether there is one.
     pub is_on: bool,
     /// What is on its left.
-    pub against: Shown,
+    pub against: DisplayedPicture,
     /// Where it is: the share of the picture on its left, in [0, 1].
     pub at: f32,
 }
 
 impl Default for Wipe {
     fn default() -> Self {
-        Self { is_on: false, against: Shown::Standard, at: 0.5 }
+        Self { is_on: false, against: DisplayedPicture::Standard, at: 0.5 }
     }
 }
 
 impl Wipe {
     /// The part of the picture, where it is on screen, that shows what it compares with.
     pub fn left_of(&self, image: Rect) -> Rect {
-        image.with_max_x(self.x(image))
+        image.with_max_x(self.line_x(image))
     }
 
-    fn x(&self, image: Rect) -> f32 {
+    fn line_x(&self, image: Rect) -> f32 {
         image.left() + image.width() * self.at
     }
 
     /// Moves the line by pointer and arrow keys and draws it with the names of both sides. `view` is what is seen
     /// of the picture. Whether the pointer is the line's.
-    pub fn handle(&mut self, ui: &mut Ui, image: Rect, view: Rect, right: Shown) -> bool {
-        let seen = image.intersect(view);
-        if !seen.is_positive() {
+    pub fn handle(&mut self, ui: &mut Ui, image: Rect, view: Rect, right: DisplayedPicture) -> bool {
+        let visible = image.intersect(view);
+        if !visible.is_positive() {
             return false;
         }
         let line =
-            |x: f32| Rect::from_center_size(pos2(x, seen.center().y), vec2(2.0 * REACH, seen.height()));
+            |x: f32| Rect::from_center_size(pos2(x, visible.center().y), vec2(2.0 * REACH, visible.height()));
         let id = ui.scope_id().with("wipe");
-        let mut response = ui.interact(line(self.x(image)), id, Sense::drag());
-        controls::named(&response, "Wipe line");
+        let mut response = ui.interact(line(self.line_x(image)), id, Sense::drag());
+        controls::set_accessible_name(&response, "Wipe line");
         let before = self.at;
         if let Some(pointer) = response.interact_pointer_pos().filter(|_| response.dragged()) {
             self.at = ((pointer.x - image.left()) / image.width()).clamp(0.0, 1.0);
@@ -67,20 +67,20 @@ impl Wipe {
         if active {
             ui.set_cursor_icon(CursorIcon::ResizeHorizontal);
         }
-        self.paint(ui, image, seen, right, active || response.has_focus());
+        self.paint(ui, image, visible, right, active || response.has_focus());
         response.on_hover_text("Drag to compare; arrow keys move it too.");
         active
     }
 
-    fn paint(&self, ui: &Ui, image: Rect, seen: Rect, right: Shown, strong: bool) {
-        let painter = ui.painter_at(seen);
-        let x = self.x(image);
-        let ends = [pos2(x, seen.top()), pos2(x, seen.bottom())];
+    fn paint(&self, ui: &Ui, image: Rect, visible: Rect, right: DisplayedPicture, strong: bool) {
+        let painter = ui.painter_at(visible);
+        let x = self.line_x(image);
+        let ends = [pos2(x, visible.top()), pos2(x, visible.bottom())];
         painter.line_segment(ends, Stroke::new(3.0, Color32::from_black_alpha(140)));
         painter.line_segment(ends, Stroke::new(1.0, Color32::WHITE));
         let radius = if strong { 7.0 } else { 5.0 };
         painter.circle(
-            pos2(x, seen.center().y),
+            pos2(x, visible.center().y),
             radius,
             Color32::WHITE,
             Stroke::new(1.0, Color32::from_gray(20)),
@@ -92,7 +92,7 @@ impl Wipe {
             painter.rect_filled(rect.expand2(vec2(5.0, 2.0)), 3.0, Color32::from_black_alpha(150));
             painter.galley(rect.min, galley, Color32::WHITE);
         };
-        let y = seen.top() + 8.0;
+        let y = visible.top() + 8.0;
         label(pos2(x - 12.0, y), Align2::RIGHT_TOP, self.against.name());
         label(pos2(x + 12.0, y), Align2::LEFT_TOP, right.name());
     }

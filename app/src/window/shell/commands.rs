@@ -1,16 +1,16 @@
 //! What each command of the table does in the window.
 
 use super::Shell;
-use crate::window::brush_gesture::BrushNumber;
+use crate::window::brush_gesture::BrushParameter;
 use crate::window::file_dialog::Purpose;
 use crate::window::layout::{Layout, Pane};
 use crate::window::paint_view::PaintView;
 use crate::window::picture_view::TRUTH_SAMPLES;
 use crate::window::tool_bar::{largest_radius, signed_circle_px};
-use crate::window::unsaved_question::Next;
+use crate::window::unsaved_question::PendingAction;
 use crate::window::{Tool, ViewSettings};
 use egui::{Context, ViewportCommand};
-use focus::{Brush, BrushMode, Combine, LayerEdit};
+use focus::{Brush, BrushMode, CombineMode, LayerEdit};
 use lens::{Exposure, FocusOffset};
 use project::{PresetKind, SelectionShape};
 use session::{CameraEdit, Command, CommandId, FillRegion, KeyMap, ReferenceKind};
@@ -30,29 +30,31 @@ const BLUR_STEP: f64 = 0.05;
 
 impl Shell {
     /// Does what a command of the table says; it is possible now.
-    pub(super) fn carry_out(&mut self, id: CommandId, context: &Context) {
+    pub(super) fn execute(&mut self, id: CommandId, context: &Context) {
         match id {
-            CommandId::Open => self.ask_then(Next::AskOpen, context),
-            CommandId::OpenCapture => self.ask_then(Next::AskCapture, context),
-            CommandId::OpenDemo => self.ask_then(Next::OpenDemo, context),
+            CommandId::Open => self.confirm_then(PendingAction::ChooseFile, context),
+            CommandId::OpenCapture => self.confirm_then(PendingAction::ChooseCapture, context),
+            CommandId::OpenDemo => self.confirm_then(PendingAction::OpenDemo, context),
             CommandId::Save => self.save(context),
-            CommandId::SaveAs => self.ask_for(Purpose::SaveAs, context),
-            CommandId::ExportPicture => self.ask_for(Purpose::ExportPicture, context),
-            CommandId::ExportShown => self.ask_for(Purpose::ExportShown, context),
-            CommandId::ExportFocusMap => self.ask_for(Purpose::ExportFocusMap, context),
-            CommandId::ExportScene => self.ask_for(Purpose::ExportScene, context),
-            CommandId::ExportStrokes => self.ask_for(Purpose::ExportStrokes, context),
-            CommandId::ImportFocusMap => self.ask_for(Purpose::ImportFocusMap, context),
-            CommandId::ImportPreset => self.ask_beside(Purpose::ImportPreset, Path::new(""), context),
+            CommandId::SaveAs => self.open_file_dialog(Purpose::SaveAs, context),
+            CommandId::ExportPicture => self.open_file_dialog(Purpose::ExportPicture, context),
+            CommandId::ExportShown => self.open_file_dialog(Purpose::ExportShown, context),
+            CommandId::ExportFocusMap => self.open_file_dialog(Purpose::ExportFocusMap, context),
+            CommandId::ExportScene => self.open_file_dialog(Purpose::ExportScene, context),
+            CommandId::ExportStrokes => self.open_file_dialog(Purpose::ExportStrokes, context),
+            CommandId::ImportFocusMap => self.open_file_dialog(Purpose::ImportFocusMap, context),
+            CommandId::ImportPreset => {
+                self.open_dialog_in_user_folder(Purpose::ImportPreset, Path::new(""), context)
+            }
             CommandId::SaveBrushPreset => self.save_preset(PresetKind::Brush),
             CommandId::SaveLensPreset => self.save_preset(PresetKind::Lens),
             CommandId::SaveBokehPreset => self.save_preset(PresetKind::Bokeh),
-            CommandId::Quit => self.ask_then(Next::Quit, context),
+            CommandId::Quit => self.confirm_then(PendingAction::Quit, context),
             CommandId::Undo => self.apply(Command::Undo),
             CommandId::Redo => self.apply(Command::Redo),
-            CommandId::FrameAll => self.with_document(|paint, document| paint.frame_all(document)),
-            CommandId::FrameCursor => self.with_document(|paint, document| paint.frame_cursor(document)),
-            CommandId::ViewFromCamera => self.paint.look_through(),
+            CommandId::FrameAll => self.with_paint_view(|paint, document| paint.frame_all(document)),
+            CommandId::FrameCursor => self.with_paint_view(|paint, document| paint.frame_cursor(document)),
+            CommandId::ViewFromCamera => self.paint.view_through_camera(),
             CommandId::PictureFit => self.picture.fit(),
             CommandId::PictureActualSize => self.picture.actual_size(context.pixels_per_point()),
             CommandId::ShowFocus => self.settings.focus_share = ViewSettings::default().focus_share,
@@ -60,8 +62,8 @@ impl Shell {
             CommandId::ResetLayout => {
                 self.layout = Layout::default();
             }
-            CommandId::EnlargePanel => self.layout.toggle_enlarged(self.pointed),
-            CommandId::FloatPanel => self.layout.toggle_floating(self.pointed),
+            CommandId::EnlargePanel => self.layout.toggle_enlarged(self.hovered_pane),
+            CommandId::FloatPanel => self.layout.toggle_floating(self.hovered_pane),
             CommandId::FullScreen => {
                 let is_full = context.input(|input| input.viewport().fullscreen.unwrap_or(false));
                 context.send_viewport_cmd(ViewportCommand::Fullscreen(!is_full));
@@ -80,8 +82,8 @@ impl Shell {
             CommandId::ShowTimeline => self.layout.toggle(Pane::Timeline),
             CommandId::NextToneCurve => self.settings.tone_curve = self.settings.tone_curve.next(),
             CommandId::LightOrDark => self.settings.light_theme = !self.settings.light_theme,
-            CommandId::ScaleUp => self.rescale(1),
-            CommandId::ScaleDown => self.rescale(-1),
+            CommandId::ScaleUp => self.change_scale(1),
+            CommandId::ScaleDown => self.change_scale(-1),
             CommandId::KeysBlender => self.settings.key_map = KeyMap::Blender,
             CommandId::KeysSubstance => self.settings.key_map = KeyMap::Substance,
             CommandId::KeysKrita => self.settings.key_map = KeyMap::Krita,
@@ -112,12 +114,12 @@ impl Shell {
             | CommandId::FixateHere
             | CommandId::RackFocus
             | CommandId::Pick
-            | CommandId::Inspect => self.choose(id),
+            | CommandId::Inspect => self.choose_tool_of(id),
             CommandId::SelectAll => {
-                self.apply(Command::Select(SelectionShape::Everything, Combine::Replace));
+                self.apply(Command::Select(SelectionShape::Everything, CombineMode::Replace));
             }
             CommandId::InvertSelection => {
-                self.apply(Command::Select(SelectionShape::Inverse, Combine::Replace));
+                self.apply(Command::Select(SelectionShape::Inverse, CombineMode::Replace));
             }
             CommandId::MaskFromSelection => self.apply(Command::MaskFromSelection),
             CommandId::FillAll => {
@@ -126,9 +128,9 @@ impl Shell {
                 }
             }
             CommandId::ResetMap => self.apply(Command::ResetMap),
-            CommandId::BrushSize => self.set_brush_number(BrushNumber::Size, context),
-            CommandId::BrushStrength => self.set_brush_number(BrushNumber::Strength, context),
-            CommandId::BrushHardness => self.set_brush_number(BrushNumber::Hardness, context),
+            CommandId::BrushSize => self.set_brush_number(BrushParameter::Size, context),
+            CommandId::BrushStrength => self.set_brush_number(BrushParameter::Strength, context),
+            CommandId::BrushHardness => self.set_brush_number(BrushParameter::Hardness, context),
             CommandId::BrushStronger => {
                 self.edit_brush(|brush, _| brush.strength = (brush.strength + 0.1).min(1.0));
             }
@@ -158,11 +160,11 @@ impl Shell {
             CommandId::ToggleGloss => self.edit_brush(|brush, _| {
                 brush.target.gloss = if brush.target.gloss < 1.0 { 1.0 } else { 0.0 };
             }),
-            CommandId::AddLayer => self.apply(Command::Layer(LayerEdit::AddPaint)),
-            CommandId::AddDepthCurve => self.apply(Command::Layer(LayerEdit::AddCurve)),
+            CommandId::AddLayer => self.apply(Command::EditLayers(LayerEdit::AddPaint)),
+            CommandId::AddDepthCurve => self.apply(Command::EditLayers(LayerEdit::AddCurve)),
             CommandId::AddFocalPlane => {
-                self.apply(Command::Layer(LayerEdit::AddPlane));
-                self.choose(CommandId::PlaceFocalPlane);
+                self.apply(Command::EditLayers(LayerEdit::AddPlane));
+                self.choose_tool_of(CommandId::PlaceFocalPlane);
             }
             CommandId::DuplicateLayer => self.edit_layer(LayerEdit::Duplicate),
             CommandId::RemoveLayer => self.edit_layer(LayerEdit::Remove),
@@ -189,9 +191,9 @@ impl Shell {
                 let pose = self.paint.camera().pose();
                 self.edit_camera(|_| CameraEdit::Pose(pose));
             }
-            CommandId::LookRound => {
-                let toggled = self.looking_round.toggle(&mut self.session, context);
-                self.report(toggled);
+            CommandId::OrbitAperture => {
+                let toggled = self.aperture_orbit.toggle(&mut self.session, context);
+                self.show_failure(toggled);
             }
             CommandId::KeyLens => self.key_lens(),
             CommandId::KeyLayer => self.key_layer(),
@@ -212,7 +214,7 @@ impl Shell {
             CommandId::Bake => self.apply(Command::Bake),
             CommandId::Verify => self.picture.verify.toggle_selecting(),
             CommandId::Wipe => self.picture.toggle_wipe(),
-            CommandId::ShowStereo => self.picture.next_stereo(),
+            CommandId::ShowStereo => self.picture.cycle_stereo(),
             CommandId::FixateFocus => self.apply(Command::Fixate(None)),
             CommandId::RenderTruth => {
                 let kind = ReferenceKind::Truth;
@@ -225,31 +227,32 @@ impl Shell {
         }
     }
 
-    fn with_document(&mut self, act: impl FnOnce(&mut PaintView, &session::Document)) {
+    fn with_paint_view(&mut self, act: impl FnOnce(&mut PaintView, &session::Document)) {
         if let Some(document) = self.session.document() {
             act(&mut self.paint, document);
         }
     }
 
     /// Draws the contents larger or smaller, a step of [`SCALES`] up or down.
-    fn rescale(&mut self, step: isize) {
+    fn change_scale(&mut self, step: isize) {
         let at = SCALES.partition_point(|scale| *scale < self.settings.scale - 1e-3);
         let next = at.saturating_add_signed(step).min(SCALES.len() - 1);
         self.settings.scale = SCALES[next];
     }
 
-    fn set_brush_number(&mut self, number: BrushNumber, context: &Context) {
+    fn set_brush_number(&mut self, number: BrushParameter, context: &Context) {
         if let Some(document) = self.session.document() {
             self.gesture.begin(number, &document.brush, context);
         }
     }
 
     /// Takes the tool of a command in hand.
-    fn choose(&mut self, id: CommandId) {
-        let (Some(document), Some(tool)) = (self.session.document(), Tool::of(id)) else { return };
+    fn choose_tool_of(&mut self, id: CommandId) {
+        let (Some(document), Some(tool)) = (self.session.document(), Tool::for_command(id)) else { return };
         // Back from another tool's mode to one that paints the chosen focus.
-        let own = matches!(document.brush.mode, BrushMode::Set | BrushMode::Add | BrushMode::Subtract);
-        let mode = tool.mode(if own { document.brush.mode } else { BrushMode::Set });
+        let paints_target =
+            matches!(document.brush.mode, BrushMode::Set | BrushMode::Add | BrushMode::Subtract);
+        let mode = tool.mode(if paints_target { document.brush.mode } else { BrushMode::Set });
         self.edit_brush(|brush, _| brush.mode = mode);
         self.tool = tool;
         self.rack_from = None;
@@ -259,7 +262,7 @@ impl Shell {
     fn edit_layer(&mut self, edit: impl FnOnce(usize) -> LayerEdit) {
         let Some(document) = self.session.document() else { return };
         let edit = edit(document.layers.active_index());
-        self.apply(Command::Layer(edit));
+        self.apply(Command::EditLayers(edit));
     }
 
     fn activate_layer(&mut self, step: isize) {
@@ -279,7 +282,7 @@ impl Shell {
     fn edit_camera(&mut self, edit: impl FnOnce(&lens::Camera) -> CameraEdit) {
         let Some(document) = self.session.document() else { return };
         let edit = edit(&document.camera);
-        self.apply(Command::Camera(edit));
+        self.apply(Command::EditCamera(edit));
         self.apply(Command::FinishEdit);
     }
 

@@ -3,11 +3,11 @@
 use super::Shell;
 use crate::window::file_dialog::Purpose;
 use crate::window::layout::Pane;
-use crate::window::unsaved_question::{Answer, Next};
+use crate::window::unsaved_question::{Answer, PendingAction};
 use crate::window::{Tool, demo};
 use egui::{Context, ViewportCommand};
 use project::CaptureChoices;
-use session::{Command, FullSize, NearQuestion, is_capture};
+use session::{Command, DepthPolarityRequest, FullSizeFieldState, is_capture};
 use std::path::{Path, PathBuf};
 
 impl Shell {
@@ -18,7 +18,7 @@ impl Shell {
     }
 
     pub(super) fn open_demo(&mut self) {
-        match demo::project() {
+        match demo::demo_project() {
             Some(project) => {
                 self.opening = None;
                 self.showing_demo = true;
@@ -29,27 +29,28 @@ impl Shell {
     }
 
     /// Does `next` now, or after the question about unsaved changes.
-    pub(super) fn ask_then(&mut self, next: Next, context: &Context) {
+    pub(super) fn confirm_then(&mut self, next: PendingAction, context: &Context) {
         if self.session.document().is_some_and(|document| document.is_unsaved()) {
-            self.question.ask(next);
+            self.unsaved_dialog.open(next);
         } else {
-            self.go_on(next, context);
+            self.proceed(next, context);
         }
     }
 
-    pub(super) fn go_on(&mut self, next: Next, context: &Context) {
+    pub(super) fn proceed(&mut self, next: PendingAction, context: &Context) {
         match next {
-            Next::Quit => {
+            PendingAction::Quit => {
                 self.may_close = true;
                 context.send_viewport_cmd(ViewportCommand::Close);
             }
-            Next::Open(path) => self.open(path),
-            Next::OpenDemo => self.open_demo(),
-            Next::AskOpen | Next::AskCapture => {
-                let purpose = if next == Next::AskCapture { Purpose::OpenCapture } else { Purpose::Open };
+            PendingAction::Open(path) => self.open(path),
+            PendingAction::OpenDemo => self.open_demo(),
+            PendingAction::ChooseFile | PendingAction::ChooseCapture => {
+                let purpose =
+                    if next == PendingAction::ChooseCapture { Purpose::OpenCapture } else { Purpose::Open };
                 let folder = self.settings.recent.first().and_then(|path| Some(path.parent()?.to_path_buf()));
                 let folder = folder.or_else(|| std::env::current_dir().ok()).unwrap_or_default();
-                self.dialog.ask(purpose, folder.join(""), context);
+                self.file_dialog.open(purpose, folder.join(""), context);
             }
         }
     }
@@ -57,26 +58,26 @@ impl Shell {
     pub(super) fn save(&mut self, context: &Context) {
         let Some(document) = self.session.document() else { return };
         if document.path.is_some() {
-            self.keep_viewpoint();
+            self.store_viewpoint();
             self.apply(Command::Save);
         } else {
-            self.ask_for(Purpose::SaveAs, context);
+            self.open_file_dialog(Purpose::SaveAs, context);
         }
     }
 
     /// The viewpoint is saved with the document, but is no change of it.
-    pub(super) fn keep_viewpoint(&mut self) {
+    pub(super) fn store_viewpoint(&mut self) {
         self.apply(Command::SetView(self.paint.viewpoint()));
     }
 
     /// Asks for a file to write, beside the document and named after it.
-    pub(super) fn ask_for(&mut self, purpose: Purpose, context: &Context) {
+    pub(super) fn open_file_dialog(&mut self, purpose: Purpose, context: &Context) {
         let Some(document) = self.session.document() else { return };
         let base = document.path.clone().unwrap_or_else(|| document.scene().path.clone());
         let stem = base.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
         // What is made of the demo does not belong among the program's own files.
         let base = if self.showing_demo && document.path.is_none() {
-            own_folder().join(stem.as_str())
+            user_folder().join(stem.as_str())
         } else {
             base
         };
@@ -94,31 +95,31 @@ impl Shell {
             | Purpose::ImportPreset
             | Purpose::ExportPreset => String::new(),
         };
-        self.dialog.ask(purpose, base.with_file_name("").join(name), context);
-        self.dialog.note(self.export_note(purpose));
+        self.file_dialog.open(purpose, base.with_file_name("").join(name), context);
+        self.file_dialog.note(self.export_size_note(purpose));
     }
 
     /// Asks for a file to write that belongs to no document, among the user's own.
-    pub(super) fn ask_beside(&mut self, purpose: Purpose, name: &Path, context: &Context) {
-        self.dialog.ask(purpose, own_folder().join(name), context);
+    pub(super) fn open_dialog_in_user_folder(&mut self, purpose: Purpose, name: &Path, context: &Context) {
+        self.file_dialog.open(purpose, user_folder().join(name), context);
     }
 
     /// What is to be known before a picture is exported: how large it is, and what will be waited for.
-    fn export_note(&self, purpose: Purpose) -> Option<String> {
+    fn export_size_note(&self, purpose: Purpose) -> Option<String> {
         let size = |camera: &lens::Camera| format!("{} × {} px", camera.width, camera.height);
         let shown = self.session.preview().map(|preview| size(&preview.camera))?;
         let full = self.session.document().map(|document| size(&document.camera))?;
         match purpose {
             Purpose::ExportShown => Some(format!("{shown}, as it is on screen.")),
-            Purpose::ExportPicture => Some(match self.session.full_size() {
-                FullSize::Ready => {
+            Purpose::ExportPicture => Some(match self.session.full_size_field_state() {
+                FullSizeFieldState::Ready => {
                     format!("{full}, exact: rendered in the background, from the light field that is there.")
                 }
-                FullSize::Underway => format!(
+                FullSizeFieldState::InProgress => format!(
                     "{full}, exact: rendered in the background, as soon as the light field of the live picture is \
                      baked. The status line says how long that takes."
                 ),
-                FullSize::Missing => format!(
+                FullSizeFieldState::Missing => format!(
                     "{full}, exact. Its light field is baked first, in the background: the status line says for how \
                      long. At once, but {shown}: File, Export as shown."
                 ),
@@ -127,11 +128,11 @@ impl Shell {
         }
     }
 
-    pub(super) fn answered(&mut self, purpose: Purpose, path: PathBuf) {
+    pub(super) fn file_chosen(&mut self, purpose: Purpose, path: PathBuf) {
         match purpose {
             Purpose::Open | Purpose::OpenCapture => self.open(path),
             Purpose::SaveAs => {
-                self.keep_viewpoint();
+                self.store_viewpoint();
                 self.apply(Command::SaveAs(path));
             }
             Purpose::ExportPicture => self.apply(Command::ExportPicture(path)),
@@ -140,7 +141,7 @@ impl Shell {
             Purpose::ExportScene => self.apply(Command::ExportScene(path)),
             Purpose::ExportStrokes => self.apply(Command::ExportStrokes(path)),
             Purpose::ImportFocusMap => self.apply(Command::ImportFocusMap(path)),
-            Purpose::ApertureMask => self.use_mask(path),
+            Purpose::ApertureMask => self.use_aperture_mask(path),
             Purpose::Environment => self.apply(Command::LoadEnvironment(path)),
             Purpose::ImportPreset => self.import_preset(&path),
             Purpose::ExportPreset => self.export_preset(&path),
@@ -174,13 +175,13 @@ impl Shell {
         }
     }
 
-    pub(super) fn written(&mut self, path: PathBuf, context: &Context) {
+    pub(super) fn file_written(&mut self, path: PathBuf, context: &Context) {
         self.toasts.notice(format!("Wrote {}", path.display()));
         let Some(document) = self.session.document() else { return };
         if document.path.as_ref() == Some(&path) {
             self.settings.remember(&path);
             if let Some(next) = self.after_save.take() {
-                self.go_on(next, context);
+                self.proceed(next, context);
             }
         }
     }
@@ -200,38 +201,38 @@ impl Shell {
     }
 
     /// Asks before the window closes over unsaved changes.
-    pub(super) fn guard_close(&mut self, context: &Context) {
+    pub(super) fn confirm_close(&mut self, context: &Context) {
         let closing = context.input(|input| input.viewport().close_requested());
         let unsaved = self.session.document().is_some_and(|document| document.is_unsaved());
         if closing && unsaved && !self.may_close {
             context.send_viewport_cmd(ViewportCommand::CancelClose);
-            self.question.ask(Next::Quit);
+            self.unsaved_dialog.open(PendingAction::Quit);
         }
     }
 
-    pub(super) fn answer_questions(&mut self, context: &Context) {
+    pub(super) fn show_dialogs(&mut self, context: &Context) {
         let name = self.session.document().map(|document| document.name()).unwrap_or_default();
-        match self.question.show(context, &name) {
+        match self.unsaved_dialog.show(context, &name) {
             Some(Answer::Save(next)) => {
                 self.after_save = Some(next);
                 self.save(context);
             }
-            Some(Answer::Discard(next)) => self.go_on(next, context),
+            Some(Answer::Discard(next)) => self.proceed(next, context),
             Some(Answer::Stay) | None => {}
         }
-        if let Some((NearQuestion { capture, .. }, near)) = self.near.show(context) {
+        if let Some((DepthPolarityRequest { capture, .. }, near)) = self.depth_polarity.show(context) {
             let choices = CaptureChoices { near: Some(near.into()), ..CaptureChoices::default() };
             self.apply(Command::OpenCapture(capture, choices));
         }
-        let was_open = self.dialog.is_open();
-        match self.dialog.show(context) {
-            Some((purpose, path)) => self.answered(purpose, path),
-            None if was_open && !self.dialog.is_open() => self.after_save = None,
+        let was_open = self.file_dialog.is_open();
+        match self.file_dialog.show(context) {
+            Some((purpose, path)) => self.file_chosen(purpose, path),
+            None if was_open && !self.file_dialog.is_open() => self.after_save = None,
             None => {}
         }
     }
 
-    pub(super) fn dropped_files(&mut self, context: &Context) {
+    pub(super) fn open_dropped_file(&mut self, context: &Context) {
         let dropped =
             context.input(|input| input.raw.dropped_files.first().map(|file| file.path().to_path_buf()));
         match dropped {
@@ -243,7 +244,7 @@ impl Shell {
             {
                 self.apply(Command::LoadEnvironment(path));
             }
-            Some(path) => self.ask_then(Next::Open(path), context),
+            Some(path) => self.confirm_then(PendingAction::Open(path), context),
             None => {}
         }
     }
@@ -251,16 +252,17 @@ impl Shell {
 
 /// Whether a file is a picture that may show all directions.
 fn is_environment(path: &Path) -> bool {
-    let is = |extension: &str| path.extension().is_some_and(|own| own.eq_ignore_ascii_case(extension));
-    is("hdr") || is("exr")
+    let has_extension =
+        |extension: &str| path.extension().is_some_and(|own| own.eq_ignore_ascii_case(extension));
+    has_extension("hdr") || has_extension("exr")
 }
 
 /// Where the user's own files go when nothing says where: documents, else home, else here.
-fn own_folder() -> PathBuf {
+fn user_folder() -> PathBuf {
     let folders = directories::UserDirs::new();
-    let own = folders.map(|folders| {
+    let user_folder = folders.map(|folders| {
         let documents = folders.document_dir().filter(|folder| folder.is_dir());
         documents.unwrap_or(folders.home_dir()).to_path_buf()
     });
-    own.or_else(|| std::env::current_dir().ok()).unwrap_or_default()
+    user_folder.or_else(|| std::env::current_dir().ok()).unwrap_or_default()
 }

@@ -11,14 +11,14 @@ impl Shell {
         let (seconds, ease) = (document.seconds, self.settings.tools.rack.ease);
         let mut motion = document.lens_motion.clone();
         let value = FocusTarget::Distance(document.camera.focus_distance);
-        let mut fits = motion.focus.put(Key { seconds, value, ease });
+        let mut has_room = motion.focus.insert(Key { seconds, value, ease });
         let number = document.camera.f_number();
         if number > 0.0 && number.is_finite() {
-            fits &= motion.f_number.put(Key { seconds, value: number, ease });
+            has_room &= motion.f_number.insert(Key { seconds, value: number, ease });
         }
-        match fits {
+        match has_room {
             true => self.apply(Command::SetLensMotion("Key lens", motion)),
-            false => self.toasts.error(too_many()),
+            false => self.toasts.error(too_many_keys_message()),
         }
     }
 
@@ -29,9 +29,11 @@ impl Shell {
         let layer = document.layers.active();
         let mut motion = layer.motion.clone();
         let value = layer.opacity;
-        match motion.opacity.put(Key { seconds, value, ease }) {
-            true => self.apply(Command::Layer(LayerEdit::Motion(document.layers.active_index(), motion))),
-            false => self.toasts.error(too_many()),
+        match motion.opacity.insert(Key { seconds, value, ease }) {
+            true => {
+                self.apply(Command::EditLayers(LayerEdit::Motion(document.layers.active_index(), motion)))
+            }
+            false => self.toasts.error(too_many_keys_message()),
         }
     }
 
@@ -54,11 +56,11 @@ impl Shell {
         };
         let (start, rack) = (document.seconds, &self.settings.tools.rack);
         let (end, ease) = (start + rack.seconds, rack.ease);
-        self.apply(Command::Rack { points: [from, hit], seconds: [start, end], ease });
+        self.apply(Command::RackFocus { points: [from, hit], seconds: [start, end], ease });
         self.apply(Command::GoToTime(end));
     }
 }
 
-fn too_many() -> String {
-    format!("There are {} keys already: take some away first.", Keys::<f64>::MOST)
+fn too_many_keys_message() -> String {
+    format!("There are {} keys already: take some away first.", Keys::<f64>::MAX_KEYS)
 }

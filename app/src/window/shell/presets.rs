@@ -1,27 +1,29 @@
 //! What is done with presets: used, named, saved, carried in and out.
 
 use super::Shell;
-use crate::window::action::PresetWish;
+use crate::window::action::PresetAction;
 use crate::window::file_dialog::Purpose;
-use crate::window::preset_name::Naming;
+use crate::window::preset_name::PresetNaming;
 use egui::Context;
 use project::{LensPreset, Preset, PresetContent, PresetKind};
 use session::{CameraEdit, Command};
 use std::path::{Path, PathBuf};
 
 impl Shell {
-    pub(super) fn preset(&mut self, wish: PresetWish, context: &Context) {
-        match wish {
-            PresetWish::Use(preset) => self.use_preset(&preset),
-            PresetWish::Rename(file, name) => self.preset_name.ask(Naming::Rename(file), name),
-            PresetWish::Delete(file) => match self.presets.delete(&file) {
-                Ok(kept) => self.toasts.notice(format!("The preset is kept as {}", kept.display())),
+    pub(super) fn apply_preset_action(&mut self, action: PresetAction, context: &Context) {
+        match action {
+            PresetAction::Use(preset) => self.use_preset(&preset),
+            PresetAction::Rename(file, name) => {
+                self.preset_name_dialog.open(PresetNaming::Rename(file), name)
+            }
+            PresetAction::Delete(file) => match self.presets.delete(&file) {
+                Ok(backup) => self.toasts.notice(format!("The preset is kept as {}", backup.display())),
                 Err(error) => self.toasts.error(error.to_string()),
             },
-            PresetWish::Export(preset) => {
+            PresetAction::Export(preset) => {
                 let name = PathBuf::from(preset.name.replace(['/', '\\', ':'], "-")).with_extension("json");
                 self.exported_preset = Some(*preset);
-                self.ask_beside(Purpose::ExportPreset, &name, context);
+                self.open_dialog_in_user_folder(Purpose::ExportPreset, &name, context);
             }
         }
     }
@@ -29,8 +31,8 @@ impl Shell {
     /// Uses a preset: a step of undo like the same change by hand.
     pub(super) fn use_preset(&mut self, preset: &Preset) {
         let Some(document) = self.session.document() else { return };
-        let brush = preset.brush(&document.brush);
-        let camera = preset.camera(&document.camera);
+        let brush = preset.apply_to_brush(&document.brush);
+        let camera = preset.apply_to_camera(&document.camera);
         if let Some(brush) = brush {
             self.apply(Command::SetBrush(brush));
         }
@@ -38,7 +40,7 @@ impl Shell {
             Some(Ok(camera)) => {
                 self.apply(Command::FinishEdit);
                 let kind = preset.kind();
-                self.apply(Command::Camera(match kind {
+                self.apply(Command::EditCamera(match kind {
                     PresetKind::Bokeh => CameraEdit::Aperture(camera.aperture),
                     _ => CameraEdit::Whole(camera),
                 }));
@@ -54,10 +56,10 @@ impl Shell {
         let Some(document) = self.session.document() else { return };
         let content = match kind {
             PresetKind::Brush => PresetContent::Brush(Box::new(document.brush.clone())),
-            PresetKind::Lens => PresetContent::Lens(LensPreset::of(&document.camera)),
+            PresetKind::Lens => PresetContent::Lens(LensPreset::from_camera(&document.camera)),
             PresetKind::Bokeh => PresetContent::Bokeh(document.camera.aperture.clone()),
         };
-        self.preset_name.ask(Naming::New(content), String::new());
+        self.preset_name_dialog.open(PresetNaming::New(content), String::new());
     }
 
     pub(super) fn import_preset(&mut self, file: &Path) {
@@ -82,14 +84,16 @@ impl Shell {
     }
 
     /// Takes up the name that was asked for.
-    pub(super) fn take_preset_name(&mut self, context: &Context) {
-        let Some((naming, name)) = self.preset_name.show(context, &self.presets) else { return };
+    pub(super) fn show_preset_name_dialog(&mut self, context: &Context) {
+        let Some((naming, name)) = self.preset_name_dialog.show(context, &self.presets) else { return };
         let done = match naming {
-            Naming::New(content) => match Preset::new(&name, content) {
+            PresetNaming::New(content) => match Preset::new(&name, content) {
                 Ok(preset) => self.presets.save(&preset).map(|_| ()).map_err(|error| error.to_string()),
                 Err(problem) => Err(problem.to_string()),
             },
-            Naming::Rename(file) => self.presets.rename(&file, &name).map_err(|error| error.to_string()),
+            PresetNaming::Rename(file) => {
+                self.presets.rename(&file, &name).map_err(|error| error.to_string())
+            }
         };
         if let Err(problem) = done {
             self.toasts.error(problem);

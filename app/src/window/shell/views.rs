@@ -3,9 +3,9 @@
 use super::Shell;
 use crate::window::brush_ring::BrushRing;
 use crate::window::drawer::Drawer;
-use crate::window::hand::Hand;
+use crate::window::hand::ActiveTool;
 use crate::window::inspector::{Inspected, Inspector};
-use crate::window::layout::{Docked, Pane, Panes};
+use crate::window::layout::{DockState, Pane, PaneContents};
 use crate::window::paint_view::PaintView;
 use crate::window::picture_view::PictureView;
 use crate::window::status_line::Hover;
@@ -13,18 +13,18 @@ use crate::window::tool_bar::signed_circle_px;
 use crate::window::view_header::{ViewHeader, panel_menu};
 use crate::window::{Action, Tool, ViewSettings};
 use egui::{Context, Ui};
-use project::PresetShelf;
+use project::PresetLibrary;
 use session::{PreviewActivity, Session, SurfaceHit};
 
 /// Work shorter than this is not spoken of.
-const NOTICEABLE_SECONDS: f64 = 0.5;
+const MIN_NOTICEABLE_SECONDS: f64 = 0.5;
 
 /// Views lower than this have no room for the hint of the first start, points.
-const LEAST_HEIGHT_FOR_HINT: f32 = 220.0;
+const MIN_HEIGHT_FOR_HINT: f32 = 220.0;
 
 impl Shell {
     /// Whether the picture has been summed for longer than one would not notice.
-    pub(super) fn is_drawing_long(&mut self, context: &Context) -> bool {
+    pub(super) fn is_drawing_noticeably(&mut self, context: &Context) -> bool {
         if self.session.preview_activity() != PreviewActivity::Splatting {
             self.drawing_since = None;
             return false;
@@ -32,16 +32,16 @@ impl Shell {
         let now = context.input(|input| input.time);
         let since = *self.drawing_since.get_or_insert(now);
         context.request_repaint_after_secs(0.25);
-        now - since > NOTICEABLE_SECONDS
+        now - since > MIN_NOTICEABLE_SECONDS
     }
 
-    pub(super) fn hovered(&self) -> Option<session::SurfaceHit> {
+    pub(super) fn hovered_surface(&self) -> Option<session::SurfaceHit> {
         self.paint.hover().or(self.picture.hover())
     }
 
     /// What lies under the pointer, in numbers.
     pub(super) fn hover_numbers(&self) -> Option<Hover> {
-        let hit = self.hovered()?;
+        let hit = self.hovered_surface()?;
         let document = self.session.document()?;
         let focus = self.session.focus_at(&hit)?;
         let depth = document.camera.camera_from_world(hit.position).z;
@@ -65,9 +65,9 @@ impl Shell {
         })
     }
 
-    pub(super) fn ring(&self) -> Option<BrushRing> {
-        let shows_reach = self.tool.paints() || self.tool.depth_repair().is_some();
-        let document = self.session.document().filter(|_| shows_reach)?;
+    pub(super) fn brush_ring(&self) -> Option<BrushRing> {
+        let shows_ring = self.tool.paints() || self.tool.depth_repair().is_some();
+        let document = self.session.document().filter(|_| shows_ring)?;
         let brush = &document.brush;
         let circle_px = match self.tool {
             Tool::Brush => signed_circle_px(&document.camera.optics(), brush.target.t),
@@ -81,23 +81,33 @@ impl Shell {
     }
 
     /// What the user holds.
-    pub(super) fn hand(&self) -> Hand {
-        Hand {
+    pub(super) fn active_tool(&self) -> ActiveTool {
+        ActiveTool {
             tool: self.tool,
             settings: self.settings.tools.clone(),
-            is_busy: self.gesture.has_input(),
-            ring: self.ring(),
-            string: self.settings.stabiliser,
+            is_adjusting_brush: self.gesture.has_input(),
+            ring: self.brush_ring(),
+            stabiliser_points: self.settings.stabiliser,
         }
     }
 
     pub(super) fn panels(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
-        let hand = self.hand();
-        let hover = self.hovered();
+        let active_tool = self.active_tool();
+        let hover = self.hovered_surface();
         let Self {
-            layout, paint, picture, session, settings, presets, inspector, drawer, pointed, tool, ..
+            layout,
+            paint,
+            picture,
+            session,
+            settings,
+            presets,
+            inspector,
+            drawer,
+            hovered_pane: pointed,
+            tool,
+            ..
         } = self;
-        let mut contents = Contents {
+        let mut contents = PanelContents {
             paint,
             picture,
             inspector,
@@ -106,9 +116,9 @@ impl Shell {
             settings,
             presets,
             tool: *tool,
-            hand: &hand,
+            active_tool: &active_tool,
             hover,
-            pointed,
+            hovered_pane: pointed,
             drawn: Vec::new(),
             actions,
         };
@@ -116,16 +126,16 @@ impl Shell {
         let drawn = contents.drawn;
         // Nothing is under the pointer in a view that is not there.
         if !drawn.contains(&Pane::Paint) {
-            self.paint.left();
+            self.paint.pointer_left();
         }
         if !drawn.contains(&Pane::Picture) {
-            self.picture.left();
+            self.picture.pointer_left();
         }
     }
 
     /// The hint of the first start: three lines over the demo, until it is put away.
     pub(super) fn first_hint(&mut self, context: &Context) {
-        if !self.showing_demo || self.settings.hint_seen || self.session.document().is_none() {
+        if !self.showing_demo || self.settings.hint_dismissed || self.session.document().is_none() {
             return;
         }
         if !self.layout.is_shown(Pane::Paint) {
@@ -133,7 +143,7 @@ impl Shell {
         }
         let rect = self.paint.rect();
         // In a small view it would hide what it speaks of.
-        if rect.height() < LEAST_HEIGHT_FOR_HINT {
+        if rect.height() < MIN_HEIGHT_FOR_HINT {
             return;
         }
         let area = egui::Window::new("Try this").collapsible(false).resizable(false).title_bar(false);
@@ -143,46 +153,46 @@ impl Shell {
             ui.label("Move the slider above from near to far to paint blur instead.");
             ui.label("Middle drag (or Alt+drag) turns this view; Ctrl+Z takes anything back.");
             if ui.button("Got it").clicked() {
-                self.settings.hint_seen = true;
+                self.settings.hint_dismissed = true;
             }
         });
     }
 }
 
 /// What is in the panels.
-struct Contents<'a> {
+struct PanelContents<'a> {
     paint: &'a mut PaintView,
     picture: &'a mut PictureView,
     inspector: &'a mut Inspector,
     drawer: &'a mut Drawer,
     session: &'a Session,
     settings: &'a mut ViewSettings,
-    presets: &'a PresetShelf,
+    presets: &'a PresetLibrary,
     tool: Tool,
-    hand: &'a Hand,
+    active_tool: &'a ActiveTool,
     hover: Option<SurfaceHit>,
     /// The panel that the pointer was over last.
-    pointed: &'a mut Pane,
+    hovered_pane: &'a mut Pane,
     /// The panels that are there.
     drawn: Vec<Pane>,
     actions: &'a mut Vec<Action>,
 }
 
-impl Panes for Contents<'_> {
-    fn pane_ui(&mut self, ui: &mut Ui, pane: Pane, docked: Docked) -> bool {
+impl PaneContents for PanelContents<'_> {
+    fn pane_ui(&mut self, ui: &mut Ui, pane: Pane, docked: DockState) -> bool {
         self.drawn.push(pane);
         if ui.rect_contains_pointer(ui.max_rect()) {
-            *self.pointed = pane;
+            *self.hovered_pane = pane;
         }
         // Nothing but the window is beneath a panel that does not float, in the same colour.
-        if pane.is_foldable() && docked == Docked::Floats {
+        if pane.is_foldable() && docked == DockState::Floating {
             ui.painter().rect_filled(ui.max_rect(), 0.0, ui.visuals().panel_fill);
         }
         let spacing = std::mem::take(&mut ui.spacing_mut().item_spacing.y);
-        let Self { session, hand, actions, settings, picture, .. } = self;
+        let Self { session, active_tool: hand, actions, settings, picture, .. } = self;
         let dragged = ViewHeader { pane, docked, session, settings, picture }.show(ui, actions);
         match pane {
-            Pane::Paint => self.paint.ui(ui, session, hand, settings.look(), actions),
+            Pane::Paint => self.paint.ui(ui, session, hand, settings.surface_appearance(), actions),
             Pane::Picture => picture.ui(ui, session, hand, settings.display(), actions),
             Pane::Inspector
             | Pane::Atlas
@@ -206,6 +216,6 @@ impl Panes for Contents<'_> {
     }
 
     fn tabs_ui(&mut self, ui: &mut Ui, pane: Pane) {
-        panel_menu(ui, pane, Docked::Tab, self.actions);
+        panel_menu(ui, pane, DockState::Tab, self.actions);
     }
 }

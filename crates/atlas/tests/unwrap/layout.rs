@@ -58,7 +58,7 @@ pub fn centres_in_two_triangles(atlas: &Atlas) -> usize {
 fn least_gap(atlas: &Atlas, scene: &Scene, gutter: i32) -> Option<i32> {
     let map = atlas.texel_map(scene);
     let chart_at = |x: i32, y: i32| {
-        let texel = (x >= 0 && y >= 0).then(|| map.at(x as u32, y as u32))??;
+        let texel = (x >= 0 && y >= 0).then(|| map.texel_at(x as u32, y as u32))??;
         Some(atlas.chart_of[texel.centroid.triangle as usize])
     };
     let mut least = None;

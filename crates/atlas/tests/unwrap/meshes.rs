@@ -40,7 +40,11 @@ pub fn scene(pieces: Vec<Piece>) -> Scene {
 }
 
 fn material() -> Material {
-    Material { name: "grey".into(), base_color: Vec4::new(0.5, 0.5, 0.5, 1.0), ..Material::of_lambert() }
+    Material {
+        name: "grey".into(),
+        base_color: Vec4::new(0.5, 0.5, 0.5, 1.0),
+        ..Material::lambertian_white()
+    }
 }
 
 /// A sphere without a border, of 4·n·(n − 1) triangles.

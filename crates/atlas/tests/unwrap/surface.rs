@@ -56,9 +56,9 @@ fn a_square_covers_what_geometry_says() {
         let covered = overlap(1.25, 5.25, texel.x) * overlap(2.5, 5.5, texel.y);
         assert!((texel.area - covered / 3.0).abs() < 1e-14, "{texel:?}");
     }
-    let inner = map.at(2, 3).unwrap();
+    let inner = map.texel_at(2, 3).unwrap();
     assert!((atlas.position_of(inner.centroid) - DVec2::new(2.5, 3.5)).length() < 1e-12);
-    assert!(map.at(0, 0).is_none() && map.at(8, 3).is_none());
+    assert!(map.texel_at(0, 0).is_none() && map.texel_at(8, 3).is_none());
     let index = map.index[3 * 8 + 2] as usize;
     assert_eq!(map.texels[index], *inner);
     assert!((map.positions[index] - DVec3::new(0.625, 0.0, 2.0 / 3.0)).length() < 1e-12);
@@ -86,7 +86,7 @@ fn a_texel_is_found_again_from_its_surface_point() {
     let map = atlas.texel_map(&scene);
     for (i, texel) in map.texels.iter().enumerate() {
         let at = atlas.position_of(texel.centroid);
-        let again = map.at(at.x as u32, at.y as u32).expect("a covered texel");
+        let again = map.texel_at(at.x as u32, at.y as u32).expect("a covered texel");
         assert!(
             (again.x.abs_diff(texel.x), again.y.abs_diff(texel.y)) <= (0, 0)
                 || at.fract().min_element() < 1e-3

@@ -26,7 +26,7 @@ fn leaves_a_gap(camera: &Camera, z: f64, f: f64) -> bool {
         // The same camera, moved: where it sees the point.
         let seen = camera.pixel_from_q(camera.optics().chief(point - eye.extend(0.0)));
         [-0.5, 0.5].map(|half_pixel| {
-            let ray = Ray::of_pinhole(camera, eye, seen + DVec2::new(half_pixel, 0.0));
+            let ray = Ray::pinhole(camera, eye, seen + DVec2::new(half_pixel, 0.0));
             let origin = camera.camera_from_world(ray.origin);
             let direction = camera.camera_direction(ray.direction);
             origin.x + direction.x * ((z + f) - origin.z) / direction.z

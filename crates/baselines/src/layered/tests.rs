@@ -7,7 +7,7 @@ use progress::Unwatched;
 
 fn picture(scene: &std::sync::Arc<scene::Scene>, camera: &Camera, layers: u32) -> Picture {
     let hits = first_hits(scene, camera, &unpainted(scene));
-    layered(&hits, camera, &LayeredOptions { layers }, &Unwatched).unwrap()
+    layered_blur(&hits, camera, &LayeredOptions { layers }, &Unwatched).unwrap()
 }
 
 #[test]
@@ -31,7 +31,7 @@ fn a_point_becomes_its_circle_and_keeps_its_energy() {
         let spot = spot(&camera, DVec2::splat(48.5), 3.0, z);
         let scene = scene_of(&[(spot, paint([1.0; 3])), (wall(z * 1.0001), paint([0.0; 3]))]);
         let hits = first_hits(&scene, &camera, &ByPart(scene.clone(), vec![focus]));
-        let found = layered(&hits, &camera, &LayeredOptions { layers: 1 }, &Unwatched).unwrap();
+        let found = layered_blur(&hits, &camera, &LayeredOptions { layers: 1 }, &Unwatched).unwrap();
         assert!((energy(&found) / energy(&hits.picture()) - 1.0).abs() < 1e-4);
         let disc = optics.splat_radius_px(optics.kappa(1.0 / z, focus));
         let expected = (disc * disc + (9.0 + 1.0) / 3.0).sqrt();
@@ -60,7 +60,7 @@ fn layers_of_paint_are_cut_apart() {
     let scene = scene_of(&[(left, paint([1.0; 3])), (right, paint([1.0; 3])), (wall(8.01), black)]);
     let focus = ByPart(scene.clone(), vec![FocusOffset::SHARP, FocusOffset::STANDARD]);
     let hits = first_hits(&scene, &camera, &focus);
-    let found = layered(&hits, &camera, &LayeredOptions { layers: 4 }, &Unwatched).unwrap();
+    let found = layered_blur(&hits, &camera, &LayeredOptions { layers: 4 }, &Unwatched).unwrap();
     let at = |x: usize| found.radiance[64 * 128 + x][0];
     assert!(at(48) > 0.9, "painted sharp: {}", at(48));
     assert!(at(80) < 0.1 && at(80) > 0.05, "unpainted: {}", at(80));
@@ -70,14 +70,14 @@ fn layers_of_paint_are_cut_apart() {
 fn what_cannot_be_is_refused_and_what_is_unwanted_stops() {
     let camera = camera(16);
     let hits = FirstHits::background(16, 16);
-    let with = |layers| layered(&hits, &camera, &LayeredOptions { layers }, &Unwatched);
+    let with = |layers| layered_blur(&hits, &camera, &LayeredOptions { layers }, &Unwatched);
     assert!(matches!(with(0), Err(BaselineError::Option { option: "layers", .. })));
     assert!(matches!(with(257), Err(BaselineError::Option { .. })));
     let options = LayeredOptions::default();
     let other = FirstHits::background(16, 17);
-    let found = layered(&other, &camera, &options, &Unwatched);
-    assert_eq!(found, Err(BaselineError::OtherCamera { found: [16, 17], camera: [16, 16] }));
+    let found = layered_blur(&other, &camera, &options, &Unwatched);
+    assert_eq!(found, Err(BaselineError::OtherCamera { actual: [16, 17], camera: [16, 16] }));
     let broken = Camera { yfov: f64::NAN, ..camera.clone() };
-    assert!(matches!(layered(&hits, &broken, &options, &Unwatched), Err(BaselineError::Camera(_))));
-    assert_eq!(layered(&hits, &camera, &options, &Unwanted), Err(BaselineError::Cancelled));
+    assert!(matches!(layered_blur(&hits, &broken, &options, &Unwatched), Err(BaselineError::Camera(_))));
+    assert_eq!(layered_blur(&hits, &camera, &options, &Unwanted), Err(BaselineError::Cancelled));
 }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 fn picture(scene: &Arc<scene::Scene>, focus: &ByPart, camera: &Camera, rays_a_sample: u32) -> Picture {
     let salf = light_field(scene, camera, focus);
-    scatter(&salf, camera, focus, &ScatterOptions { rays_a_sample, seed: 0 }, &Unwatched).unwrap()
+    scatter_rays(&salf, camera, focus, &ScatterOptions { rays_a_sample, seed: 0 }, &Unwatched).unwrap()
 }
 
 /// The root mean square of the difference of radiances.
@@ -61,13 +61,13 @@ fn it_converges_to_the_splat() {
     splatter.render(&camera, &focus, &Unwatched).unwrap();
     let off_by = |rays_a_sample| {
         let options = ScatterOptions { rays_a_sample, seed: 3 };
-        rmse(&scatter(&salf, &camera, &focus, &options, &Unwatched).unwrap(), splatter.picture())
+        rmse(&scatter_rays(&salf, &camera, &focus, &options, &Unwatched).unwrap(), splatter.picture())
     };
     let (few, many) = (off_by(8), off_by(2048));
     assert!(many < 0.012 && few > 3.0 * many, "{few} with few rays, {many} with many");
     // Negative control: the other focus is another picture.
     splatter.render(&camera, &unpainted(&scene), &Unwatched).unwrap();
-    let unlike = scatter(&salf, &camera, &focus, &ScatterOptions::default(), &Unwatched).unwrap();
+    let unlike = scatter_rays(&salf, &camera, &focus, &ScatterOptions::default(), &Unwatched).unwrap();
     assert!(rmse(&unlike, splatter.picture()) > 0.03);
 }
 
@@ -80,7 +80,7 @@ fn threads_leave_no_trace_and_seeds_differ() {
     let salf = light_field(&scene, &camera, &focus);
     let with = |seed| {
         let options = ScatterOptions { rays_a_sample: 32, seed };
-        scatter(&salf, &camera, &focus, &options, &Unwatched).unwrap()
+        scatter_rays(&salf, &camera, &focus, &options, &Unwatched).unwrap()
     };
     let [one, many] = on_few_and_many_threads(|| with(0));
     assert_eq!(one, many);
@@ -95,13 +95,13 @@ fn what_cannot_be_is_refused_and_what_is_unwanted_stops() {
     let salf = light_field(&scene, &camera, &focus);
     let options = ScatterOptions::default();
     let none = ScatterOptions { rays_a_sample: 0, seed: 0 };
-    let found = scatter(&salf, &camera, &focus, &none, &Unwatched);
+    let found = scatter_rays(&salf, &camera, &focus, &none, &Unwatched);
     assert!(matches!(found, Err(BaselineError::Option { option: "rays a sample", .. })));
     let wider = Camera { aperture_radius: 0.2, ..camera.clone() };
-    let found = scatter(&salf, &wider, &focus, &options, &Unwatched);
+    let found = scatter_rays(&salf, &wider, &focus, &options, &Unwatched);
     assert!(matches!(found, Err(BaselineError::Option { option: "aperture radius", .. })));
     let larger = Camera { width: 17, ..camera.clone() };
-    let found = scatter(&salf, &larger, &focus, &options, &Unwatched);
+    let found = scatter_rays(&salf, &larger, &focus, &options, &Unwatched);
     assert!(matches!(found, Err(BaselineError::OtherCamera { .. })));
-    assert_eq!(scatter(&salf, &camera, &focus, &options, &Unwanted), Err(BaselineError::Cancelled));
+    assert_eq!(scatter_rays(&salf, &camera, &focus, &options, &Unwanted), Err(BaselineError::Cancelled));
 }

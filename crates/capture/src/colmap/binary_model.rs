@@ -18,7 +18,7 @@ pub(super) fn cameras(file: &Path) -> Result<Cameras, CaptureError> {
     for _ in 0..binary.count(CAMERA_BYTES, "cameras")? {
         let id = binary.u32("a camera")?;
         let number = binary.u32("a camera")? as i32;
-        let Some((model, parameters)) = camera_model::numbered(number) else {
+        let Some((model, parameters)) = camera_model::from_number(number) else {
             return Err(binary.malformed(format!("camera {id}: the camera model {number} is not known")));
         };
         let size = [binary.u64("a camera")?, binary.u64("a camera")?].map(u32::try_from);

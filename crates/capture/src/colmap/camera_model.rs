@@ -25,7 +25,7 @@ const MODELS: [(&str, usize); 18] = [
 ];
 
 /// The model of a number in binary files: its name and how many parameters it has.
-pub(super) fn numbered(number: i32) -> Option<(&'static str, usize)> {
+pub(super) fn from_number(number: i32) -> Option<(&'static str, usize)> {
     MODELS.get(usize::try_from(number).ok()?).copied()
 }
 
@@ -62,12 +62,12 @@ pub(super) fn lens(model: &str, size_px: [u32; 2], parameters: &[f64]) -> Result
         skew_px: 0.0,
         principal_px: [principal[0], principal[1]],
     };
-    let (projection, distortion) = flaws(model, rest);
+    let (projection, distortion) = projection_and_distortion(model, rest);
     CalibratedLens::new(intrinsics, projection, distortion).map_err(|error| error.to_string())
 }
 
 /// What a model's parameters after the principal point mean.
-fn flaws(model: &str, rest: &[f64]) -> (Projection, Distortion) {
+fn projection_and_distortion(model: &str, rest: &[f64]) -> (Projection, Distortion) {
     use Projection::{Division, EnhancedUnified, Equidistant, FieldOfView, Perspective};
     let none = Distortion::default();
     match (model, rest) {
@@ -134,18 +134,21 @@ mod tests {
         ("EQUIRECTANGULAR", &[640.0, 480.0], [[326.78057748318287, 260.2080483378401], [264.9533217207582, 284.5484919543782], [371.65262950947044, 183.3817000643882]]),
     ];
 
-    fn of(model: &str, parameters: &[f64]) -> CalibratedLens {
+    fn test_lens(model: &str, parameters: &[f64]) -> CalibratedLens {
         lens(model, [640, 480], parameters).unwrap()
     }
 
     #[test]
     fn every_model_projects_as_colmap_does() {
         for (number, (model, parameters, pixels)) in BY_COLMAP.into_iter().enumerate() {
-            assert_eq!(numbered(number as i32), Some((model, parameters.len())));
-            let lens = of(model, parameters);
+            assert_eq!(from_number(number as i32), Some((model, parameters.len())));
+            let lens = test_lens(model, parameters);
             for (point, [x, y]) in POINTS.into_iter().zip(pixels) {
-                let found = lens.project(DVec3::new(point.x, -point.y, point.z)).unwrap();
-                assert!((found - DVec2::new(x, y)).length() < 1e-9, "{model}: {found} instead of {x}, {y}");
+                let projected = lens.project(DVec3::new(point.x, -point.y, point.z)).unwrap();
+                assert!(
+                    (projected - DVec2::new(x, y)).length() < 1e-9,
+                    "{model}: {projected} instead of {x}, {y}"
+                );
             }
         }
     }
@@ -153,7 +156,7 @@ mod tests {
     #[test]
     fn every_model_projects_back_all_over_the_picture() {
         for (model, parameters, _) in BY_COLMAP {
-            let lens = of(model, parameters);
+            let lens = test_lens(model, parameters);
             let mut met = 0;
             for (row, column) in (0..=12).flat_map(|row| (0..=16).map(move |column| (row, column))) {
                 let pixel = DVec2::new(40.0 * f64::from(column), 40.0 * f64::from(row));
@@ -172,12 +175,12 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_model_is_told() {
+    fn what_is_no_model_is_refused() {
         let error = |model, parameters: &[f64]| lens(model, [640, 480], parameters).unwrap_err();
         assert!(error("PINHOL", &[1.0]).contains("\"PINHOL\" is not known"));
         assert_eq!(error("PINHOLE", &[1.0; 3]), "PINHOLE has 4 parameters, not 3");
         assert_eq!(error("PINHOLE", &[0.0; 4]), "camera: focal length must be above 0 and finite");
-        assert_eq!(numbered(-1), None);
-        assert_eq!(numbered(18), None);
+        assert_eq!(from_number(-1), None);
+        assert_eq!(from_number(18), None);
     }
 }

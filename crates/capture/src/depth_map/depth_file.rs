@@ -3,7 +3,7 @@
 use super::exr_depth::read_exr_depth;
 use super::levels::levels_of;
 use super::map::DepthMap;
-use super::meaning::{DepthAs, Said};
+use super::meaning::{DepthHint, DepthQuantity};
 use super::near_end::NearEnd;
 use super::pfm::read_pfm;
 use crate::CaptureError;
@@ -22,17 +22,17 @@ use std::path::Path;
 /// The file cannot be read, is malformed or beyond the limits, or is relative and nobody says which end is near.
 pub fn read_depth_map(
     file: &Path,
-    as_what: Option<DepthAs>,
+    quantity: Option<DepthQuantity>,
     near: Option<NearEnd>,
     options: &LoadOptions,
 ) -> Result<DepthMap, CaptureError> {
     let extension = file.extension().map(|extension| extension.to_string_lossy().to_lowercase());
-    let mut said = Said { as_what, near };
+    let mut hint = DepthHint { quantity, near };
     let stored = match extension.as_deref() {
         Some("exr") => {
             let (stored, is_named) = read_exr_depth(file, options)?;
             if is_named {
-                said.as_what = as_what.or(Some(DepthAs::Depth));
+                hint.quantity = quantity.or(Some(DepthQuantity::Depth));
             }
             stored
         }
@@ -45,5 +45,5 @@ pub fn read_depth_map(
             levels_of(&bytes, options).map_err(|why| CaptureError::malformed(file, "picture", why))?
         }
     };
-    stored.map(file, said)
+    stored.into_depth_map(file, hint)
 }

@@ -13,7 +13,7 @@ pub(crate) fn read_exr_depth(file: &Path, options: &LoadOptions) -> Result<(Stor
     let is_named = named.is_some();
     let only = || {
         // One channel, or three that are the same.
-        let first = ["R", "Y", "V"].into_iter().find(|known| names.iter().any(|name| name == known));
+        let first = ["R", "Y", "V"].into_iter().find(|candidate| names.iter().any(|name| name == candidate));
         if names.len() == 1 { names.first().cloned() } else { first.map(String::from) }
     };
     let Some(name) = named.or_else(only) else {

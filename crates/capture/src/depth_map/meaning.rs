@@ -11,7 +11,7 @@ use std::path::Path;
 
 /// What a file is given as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum DepthAs {
+pub enum DepthQuantity {
     /// Distances, or relative depth of which [`NearEnd`] tells the end.
     Depth,
     /// Disparities: what is greater, or white, is near.
@@ -20,19 +20,19 @@ pub enum DepthAs {
 
 /// What is known about a file.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Said {
+pub(crate) struct DepthHint {
     /// What it is given as.
-    pub as_what: Option<DepthAs>,
+    pub quantity: Option<DepthQuantity>,
     /// Which end is near.
     pub near: Option<NearEnd>,
 }
 
 /// What the name of a file says it is.
-pub(crate) fn said_by_name(file: &Path) -> Option<DepthAs> {
+pub(crate) fn quantity_from_name(file: &Path) -> Option<DepthQuantity> {
     let name = file.file_stem().unwrap_or_default().to_string_lossy().to_lowercase();
     match () {
-        () if name.contains("disp") => Some(DepthAs::Disparity),
-        () if name.contains("depth") || name.contains("dist") => Some(DepthAs::Depth),
+        () if name.contains("disp") => Some(DepthQuantity::Disparity),
+        () if name.contains("depth") || name.contains("dist") => Some(DepthQuantity::Depth),
         () => None,
     }
 }
@@ -42,17 +42,17 @@ const BACKGROUND: f32 = 1e10;
 
 impl Stored {
     /// The map that these numbers are.
-    pub fn map(self, file: &Path, said: Said) -> Result<DepthMap, CaptureError> {
-        let as_what = said.as_what.or_else(|| said_by_name(file));
-        let known = |value: f32| if value.is_finite() { value } else { f32::NAN };
+    pub fn into_depth_map(self, file: &Path, hint: DepthHint) -> Result<DepthMap, CaptureError> {
+        let quantity = hint.quantity.or_else(|| quantity_from_name(file));
+        let finite_or_nan = |value: f32| if value.is_finite() { value } else { f32::NAN };
         let Self { width, height, mut values, numbers } = self;
-        let meaning = match (said.near, numbers, as_what) {
+        let meaning = match (hint.near, numbers, quantity) {
             (Some(near), ..) => {
                 let [low, high] = match numbers {
                     Numbers::Levels => [0.0, 1.0],
                     Numbers::Floats => finite_range(&values),
                 };
-                let share = |value: f32| (known(value) - low) / (high - low);
+                let share = |value: f32| (finite_or_nan(value) - low) / (high - low);
                 match near {
                     NearEnd::White => values.iter_mut().for_each(|value| *value = share(*value)),
                     NearEnd::Black => values.iter_mut().for_each(|value| *value = 1.0 - share(*value)),
@@ -66,15 +66,15 @@ impl Stored {
                     _ => DepthMeaning::Relative,
                 }
             }
-            (None, Numbers::Levels, Some(DepthAs::Disparity)) => DepthMeaning::Relative,
+            (None, Numbers::Levels, Some(DepthQuantity::Disparity)) => DepthMeaning::Relative,
             (None, Numbers::Levels, _) | (None, Numbers::Floats, None) => {
                 return Err(CaptureError::NearUnknown { file: file.into() });
             }
-            (None, Numbers::Floats, Some(DepthAs::Disparity)) => {
-                values.iter_mut().for_each(|value| *value = known(*value));
+            (None, Numbers::Floats, Some(DepthQuantity::Disparity)) => {
+                values.iter_mut().for_each(|value| *value = finite_or_nan(*value));
                 DepthMeaning::Disparity
             }
-            (None, Numbers::Floats, Some(DepthAs::Depth)) => {
+            (None, Numbers::Floats, Some(DepthQuantity::Depth)) => {
                 values.iter_mut().for_each(|value| *value = distance(*value));
                 DepthMeaning::Distance
             }
@@ -112,9 +112,9 @@ fn finite_range(values: &[f32]) -> [f32; 2] {
 mod tests {
     use super::*;
 
-    fn read(numbers: Numbers, values: &[f32], name: &str, said: Said) -> Result<DepthMap, CaptureError> {
+    fn read(numbers: Numbers, values: &[f32], name: &str, hint: DepthHint) -> Result<DepthMap, CaptureError> {
         let stored = Stored { width: values.len() as u32, height: 1, values: values.to_vec(), numbers };
-        stored.map(Path::new(name), said)
+        stored.into_depth_map(Path::new(name), hint)
     }
 
     const LEVELS: [f32; 3] = [0.0, 0.25, 1.0];
@@ -124,10 +124,10 @@ mod tests {
         for (numbers, name) in
             [(Numbers::Levels, "a_depth.png"), (Numbers::Levels, "a.png"), (Numbers::Floats, "a.pfm")]
         {
-            let error = read(numbers, &LEVELS, name, Said::default()).unwrap_err().to_string();
+            let error = read(numbers, &LEVELS, name, DepthHint::default()).unwrap_err().to_string();
             assert!(error.contains("does not say which end is near (say --near white"), "{error}");
         }
-        let near = |near| Said { near: Some(near), ..Said::default() };
+        let near = |near| DepthHint { near: Some(near), ..DepthHint::default() };
         assert_eq!(read(Numbers::Levels, &LEVELS, "a.png", near(NearEnd::White)).unwrap().values, LEVELS);
         assert_eq!(
             read(Numbers::Levels, &LEVELS, "a.png", near(NearEnd::Black)).unwrap().values,
@@ -145,24 +145,24 @@ mod tests {
     }
 
     #[test]
-    fn names_and_callers_tell_what_floats_are() {
+    fn names_and_callers_decide_what_floats_are() {
         let values = [f32::NAN, f32::INFINITY, 0.0, -1.0, 2.5, 1e10];
-        let depth = read(Numbers::Floats, &values, "x_depth.pfm", Said::default()).unwrap();
+        let depth = read(Numbers::Floats, &values, "x_depth.pfm", DepthHint::default()).unwrap();
         let infinite = |map: &DepthMap| map.values.iter().filter(|value| value.is_infinite()).count();
         let unknown = |map: &DepthMap| map.values.iter().filter(|value| value.is_nan()).count();
         assert_eq!((depth.meaning, infinite(&depth), unknown(&depth)), (DepthMeaning::Distance, 2, 3));
-        let disparity = read(Numbers::Floats, &values, "gt_disp_lowres.pfm", Said::default()).unwrap();
+        let disparity = read(Numbers::Floats, &values, "gt_disp_lowres.pfm", DepthHint::default()).unwrap();
         assert_eq!(
             (disparity.meaning, infinite(&disparity), unknown(&disparity)),
             (DepthMeaning::Disparity, 0, 2)
         );
-        let said = Said { as_what: Some(DepthAs::Depth), near: None };
-        assert_eq!(read(Numbers::Floats, &values, "disp.pfm", said).unwrap().meaning, DepthMeaning::Distance);
+        let hint = DepthHint { quantity: Some(DepthQuantity::Depth), near: None };
+        assert_eq!(read(Numbers::Floats, &values, "disp.pfm", hint).unwrap().meaning, DepthMeaning::Distance);
         assert_eq!(
-            read(Numbers::Levels, &LEVELS, "disp_rel.png", Said::default()).unwrap().meaning,
+            read(Numbers::Levels, &LEVELS, "disp_rel.png", DepthHint::default()).unwrap().meaning,
             DepthMeaning::Relative
         );
-        let nothing = read(Numbers::Floats, &[0.0, f32::NAN], "depth.pfm", Said::default()).unwrap_err();
+        let nothing = read(Numbers::Floats, &[0.0, f32::NAN], "depth.pfm", DepthHint::default()).unwrap_err();
         assert!(nothing.to_string().contains("nothing is known of any"), "{nothing}");
     }
 }

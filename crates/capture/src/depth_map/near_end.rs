@@ -44,7 +44,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn as_they_are_said() {
+    fn parsed_as_documented() {
         assert_eq!("White".parse(), Ok(NearEnd::White));
         assert_eq!("black".parse(), Ok(NearEnd::Black));
         assert_eq!("0.5, inf".parse(), Ok(NearEnd::Distances { black: 0.5, white: f64::INFINITY }));

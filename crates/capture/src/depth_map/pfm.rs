@@ -7,7 +7,7 @@ use crate::text::quoted;
 use std::path::Path;
 
 /// The numbers of a PFM of at most `most` pixels.
-pub(crate) fn read_pfm(file: &Path, bytes: &[u8], most: u64) -> Result<Stored, CaptureError> {
+pub(crate) fn read_pfm(file: &Path, bytes: &[u8], max_pixels: u64) -> Result<Stored, CaptureError> {
     let malformed = |at: usize, what: String| CaptureError::malformed(file, format!("byte {at}"), what);
     let mut at = 0;
     let mut word = || {
@@ -36,8 +36,8 @@ pub(crate) fn read_pfm(file: &Path, bytes: &[u8], most: u64) -> Result<Stored, C
     let scale = text.parse::<f32>().ok().filter(|scale| scale.is_finite() && *scale != 0.0);
     let scale = scale.ok_or_else(|| malformed(start, format!("{} is no scale", quoted(&text))))?;
     let pixels = u64::from(width) * u64::from(height);
-    if pixels > most {
-        let what = format!("is of {width} × {height} px, beyond the limit of {most} px");
+    if pixels > max_pixels {
+        let what = format!("is of {width} × {height} px, beyond the limit of {max_pixels} px");
         return Err(CaptureError::TooBig { file: file.into(), what });
     }
     // One white space, then numbers.
@@ -84,7 +84,7 @@ mod tests {
 
     #[test]
     fn what_is_malformed_names_its_byte() {
-        for (bytes, said) in [
+        for (bytes, message) in [
             (&b"P5 1 1 255 "[..], "byte 0: it begins with \"P5\""),
             (b"Pf 0 1 -1\n....", "byte 3: \"0\" is no width"),
             (b"Pf 1 x -1\n....", "byte 5: \"x\" is no height"),
@@ -94,7 +94,7 @@ mod tests {
             (b"", "byte 0"),
         ] {
             let text = read(bytes).unwrap_err();
-            assert!(text.contains(said), "{text}");
+            assert!(text.contains(message), "{text}");
         }
     }
 }

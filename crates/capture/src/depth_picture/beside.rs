@@ -35,8 +35,8 @@ fn is_no_picture(file: &Path) -> bool {
 
 /// The files of a folder, sorted; at most so many.
 fn files(folder: &Path) -> Vec<PathBuf> {
-    const MOST: usize = 20_000;
-    let entries = std::fs::read_dir(folder).into_iter().flatten().take(MOST).flatten();
+    const MAX_FILES: usize = 20_000;
+    let entries = std::fs::read_dir(folder).into_iter().flatten().take(MAX_FILES).flatten();
     let mut files: Vec<PathBuf> = entries.map(|entry| entry.path()).filter(|path| path.is_file()).collect();
     files.sort();
     files
@@ -89,23 +89,23 @@ pub(super) fn depth_files(picture: &Path) -> Vec<PathBuf> {
         }
     };
     let itself = picture.file_name();
-    let beside = all.into_iter().filter(|file| file.file_name() != itself);
-    let mut found: Vec<(u32, usize, PathBuf)> =
-        beside.filter_map(|file| Some((fit(&file)?, form(&file)?, file))).collect();
+    let siblings = all.into_iter().filter(|file| file.file_name() != itself);
+    let mut matches: Vec<(u32, usize, PathBuf)> =
+        siblings.filter_map(|file| Some((fit(&file)?, form(&file)?, file))).collect();
     for inner in FOLDERS {
         let files = files(&folder.join(inner)).into_iter().filter(|file| stem(file) == name);
-        found.extend(files.filter_map(|file| Some((3, form(&file)?, file))));
+        matches.extend(files.filter_map(|file| Some((3, form(&file)?, file))));
     }
-    found.retain(|(.., file)| keeps_to(folder, file));
-    found.sort();
-    found.into_iter().map(|(.., file)| file).collect()
+    matches.retain(|(.., file)| keeps_to(folder, file));
+    matches.sort();
+    matches.into_iter().map(|(.., file)| file).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn found(files: &[&str], picture: &str) -> Vec<String> {
+    fn matching_files(files: &[&str], picture: &str) -> Vec<String> {
         let folder = tempfile::tempdir().unwrap();
         for file in files.iter().chain([&picture]) {
             let file = folder.path().join(file);
@@ -129,17 +129,20 @@ mod tests {
             "cat-dpt_beit_large_512.png",
             "cat_z.exr",
         ] {
-            assert_eq!(found(&[name, "dog.jpg", "dog_depth.png"], "cat.jpg"), [name]);
+            assert_eq!(matching_files(&[name, "dog.jpg", "dog_depth.png"], "cat.jpg"), [name]);
         }
-        assert_eq!(found(&["dog_depth.png", "cat_small.png", "cats_depth.png"], "cat.jpg"), [""; 0]);
-        assert_eq!(found(&["cat_depth.png", "cat_depth.pfm"], "cat.jpg"), ["cat_depth.pfm", "cat_depth.png"]);
+        assert_eq!(matching_files(&["dog_depth.png", "cat_small.png", "cats_depth.png"], "cat.jpg"), [""; 0]);
+        assert_eq!(
+            matching_files(&["cat_depth.png", "cat_depth.pfm"], "cat.jpg"),
+            ["cat_depth.pfm", "cat_depth.png"]
+        );
     }
 
     #[test]
     fn one_picture_and_one_depth() {
         for name in ["depth.png", "disp_rel.png", "gt_disp_lowres.pfm", "depth_map.exr"] {
-            assert_eq!(found(&[name, "mask.png"], "photo.jpg"), [name]);
-            assert_eq!(found(&[name, "other.jpg"], "photo.jpg"), [""; 0]);
+            assert_eq!(matching_files(&[name, "mask.png"], "photo.jpg"), [name]);
+            assert_eq!(matching_files(&[name, "other.jpg"], "photo.jpg"), [""; 0]);
         }
     }
 }

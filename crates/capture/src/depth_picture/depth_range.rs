@@ -31,7 +31,7 @@ impl DepthRange {
     }
 
     /// The range that a file says, in words; `Err` says what is wrong. `None` if it says none: the map is relative then.
-    pub fn of(
+    pub fn parse(
         format: Option<&str>,
         near: Option<&str>,
         far: Option<&str>,
@@ -92,7 +92,7 @@ mod tests {
     use super::*;
 
     fn range(format: &str, near: &str, far: &str, unit: &str) -> DepthRange {
-        DepthRange::of(Some(format), Some(near), Some(far), Unit::named(Some(unit))).unwrap().unwrap()
+        DepthRange::parse(Some(format), Some(near), Some(far), Unit::named(Some(unit))).unwrap().unwrap()
     }
 
     #[test]
@@ -124,13 +124,13 @@ mod tests {
 
     #[test]
     fn what_is_no_range() {
-        let of = |format, near, far| DepthRange::of(Some(format), Some(near), Some(far), Unit::Metres);
-        assert!(of("Range", "1", "2").unwrap_err().contains("neither RangeInverse nor RangeLinear"));
+        let parse = |format, near, far| DepthRange::parse(Some(format), Some(near), Some(far), Unit::Metres);
+        assert!(parse("Range", "1", "2").unwrap_err().contains("neither RangeInverse nor RangeLinear"));
         for (near, far) in [("0", "1"), ("-1", "2"), ("nan", "2"), ("x", "2"), ("1", "1"), ("inf", "1")] {
-            assert!(of("RangeInverse", near, far).is_err(), "{near} {far}");
+            assert!(parse("RangeInverse", near, far).is_err(), "{near} {far}");
         }
-        assert!(of("RangeInverse", "1", "inf").is_ok());
-        assert!(of("RangeLinear", "1", "inf").is_err());
-        assert_eq!(DepthRange::of(None, None, Some("1"), Unit::Metres), Ok(None));
+        assert!(parse("RangeInverse", "1", "inf").is_ok());
+        assert!(parse("RangeLinear", "1", "inf").is_err());
+        assert_eq!(DepthRange::parse(None, None, Some("1"), Unit::Metres), Ok(None));
     }
 }

@@ -8,7 +8,7 @@
 use super::depth_range::{DepthRange, Unit};
 use super::embedded::Embedded;
 use super::jpeg::{end_of_jpeg, end_of_png, is_picture};
-use super::xmp::{property, property_of};
+use super::xmp::{find_property, property};
 use roxmltree::{Document, Node};
 use scene::LoadOptions;
 
@@ -24,7 +24,7 @@ struct Item<'a> {
 }
 
 /// More are no directory.
-const MOST_ITEMS: usize = 1000;
+const MAX_ITEMS: usize = 1000;
 
 /// What a JPEG holds as Dynamic Depth; none if it has none. `bytes` are those of the file.
 pub(super) fn read_dynamic_depth(
@@ -33,7 +33,7 @@ pub(super) fn read_dynamic_depth(
     options: &LoadOptions,
 ) -> Option<Result<Embedded, String>> {
     let nodes = || documents.iter().flat_map(|document| document.descendants());
-    let items: Vec<Item> = nodes().filter_map(item).take(MOST_ITEMS).collect();
+    let items: Vec<Item> = nodes().filter_map(item).take(MAX_ITEMS).collect();
     let depth = nodes().find(|node| property(*node, "DepthURI").is_some());
     let uri = depth.and_then(|node| property(node, "DepthURI"));
     let is_depth = |item: &Item| match uri {
@@ -47,26 +47,27 @@ pub(super) fn read_dynamic_depth(
         return Some(Err(format!("its depth map {uri} is not in its directory of {} things", items.len())));
     };
     let read = || {
-        let said = |name: &str| match depth {
+        let property_value = |name: &str| match depth {
             Some(node) => property(node, name),
-            None => property_of(documents, "depthmap", name),
+            None => find_property(documents, "depthmap", name),
         };
-        let unit = Unit::named(said("Units"));
-        let range = DepthRange::of(said("Format"), said("Near"), said("Far"), unit)?;
-        let found = located(&items, index, bytes).ok_or_else(|| {
+        let unit = Unit::named(property_value("Units"));
+        let range =
+            DepthRange::parse(property_value("Format"), property_value("Near"), property_value("Far"), unit)?;
+        let depth_bytes = located(&items, index, bytes).ok_or_else(|| {
             let behind = bytes.len() - end_of_jpeg(bytes).unwrap_or(bytes.len());
             format!("its depth map is not there: {behind} bytes follow the picture (the file was shortened, or saved by a program that drops them)")
         })?;
-        let mut embedded = Embedded::of(found, range, options)?;
+        let mut embedded = Embedded::decode(depth_bytes, range, options)?;
         if unit == Unit::Dioptres
             && range.is_some()
-            && said("Near").and_then(number) < said("Far").and_then(number)
+            && property_value("Near").and_then(number) < property_value("Far").and_then(number)
         {
             embedded
                 .notes
                 .push("calls its distances dioptres, which they are not: they are of no scale".into());
         }
-        if said("MeasureType").is_some_and(|kind| kind.trim() == "OpticRay") {
+        if property_value("MeasureType").is_some_and(|kind| kind.trim() == "OpticRay") {
             embedded.notes.push("measures depth along rays, which is taken as along the axis".into());
         }
         // The picture before the camera blurred it.
@@ -111,8 +112,8 @@ fn located<'a>(items: &[Item<'_>], index: usize, bytes: &'a [u8]) -> Option<&'a 
     let picture_end = end_of_jpeg(bytes);
     let at = |start: Option<usize>| {
         let start = start?;
-        let found = bytes.get(start..start.checked_add(length)?)?;
-        (length > 0 && is_picture(found)).then_some(found)
+        let slice = bytes.get(start..start.checked_add(length)?)?;
+        (length > 0 && is_picture(slice)).then_some(slice)
     };
     let from_picture = || {
         let padding = items.first().map_or(0, |first| first.padding);
@@ -127,8 +128,8 @@ fn located<'a>(items: &[Item<'_>], index: usize, bytes: &'a [u8]) -> Option<&'a 
             let start = first_picture(rest)?;
             rest = &rest[end_of_picture(&rest[start..])? + start..];
         }
-        let found = &rest[first_picture(rest)?..];
-        Some(&found[..end_of_picture(found).unwrap_or(found.len())])
+        let picture = &rest[first_picture(rest)?..];
+        Some(&picture[..end_of_picture(picture).unwrap_or(picture.len())])
     };
     at(from_picture()).or_else(|| at(from_end())).or_else(|| if index > 0 { in_order() } else { None })
 }

@@ -19,7 +19,7 @@ pub(super) struct Embedded {
 
 impl Embedded {
     /// Of the bytes of a picture of levels, and what they mean. Without a range levels are relative, black is near.
-    pub fn of(bytes: &[u8], range: Option<DepthRange>, options: &LoadOptions) -> Result<Self, String> {
+    pub fn decode(bytes: &[u8], range: Option<DepthRange>, options: &LoadOptions) -> Result<Self, String> {
         let stored = levels_of(bytes, options).map_err(|why| format!("its depth map {why}"))?;
         let (mut values, mut notes) = (stored.values, Vec::new());
         let meaning = match range {

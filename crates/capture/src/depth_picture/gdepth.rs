@@ -5,7 +5,7 @@ use super::base64_text::decoded;
 use super::depth_range::{DepthRange, Unit};
 use super::embedded::Embedded;
 use super::jpeg::is_picture;
-use super::xmp::property_of;
+use super::xmp::find_property;
 use roxmltree::Document;
 use scene::LoadOptions;
 
@@ -17,21 +17,22 @@ pub(super) fn read_gdepth(
     documents: &[Document<'_>],
     options: &LoadOptions,
 ) -> Option<Result<Embedded, String>> {
-    let data = property_of(documents, DEPTH, "Data")?;
+    let data = find_property(documents, DEPTH, "Data")?;
     Some(read(documents, data, options))
 }
 
 fn read(documents: &[Document<'_>], data: &str, options: &LoadOptions) -> Result<Embedded, String> {
-    let depth = |name| property_of(documents, DEPTH, name);
+    let depth = |name| find_property(documents, DEPTH, name);
     let bytes = decoded(data).map_err(|why| format!("GDepth:Data: {why}"))?;
     let unit = Unit::named(depth("Units"));
-    let range = DepthRange::of(depth("Format"), depth("Near"), depth("Far"), unit)
+    let range = DepthRange::parse(depth("Format"), depth("Near"), depth("Far"), unit)
         .map_err(|why| format!("GDepth: {why}"))?;
-    let mut embedded = Embedded::of(&bytes, range, options).map_err(|why| format!("GDepth:Data: {why}"))?;
+    let mut embedded =
+        Embedded::decode(&bytes, range, options).map_err(|why| format!("GDepth:Data: {why}"))?;
     if depth("MeasureType").is_some_and(|kind| kind.trim() == "OpticRay") {
         embedded.notes.push("measures depth along rays, which is taken as along the axis".into());
     }
-    if let Some(data) = property_of(documents, IMAGE, "Data") {
+    if let Some(data) = find_property(documents, IMAGE, "Data") {
         match decoded(data) {
             Ok(bytes) if is_picture(&bytes) => embedded.original = Some(bytes),
             Ok(_) => embedded.notes.push("holds something in GImage:Data that is no picture; the picture that is shown is taken".into()),

@@ -49,7 +49,7 @@ pub(super) fn is_picture(bytes: &[u8]) -> bool {
 
 impl<'a> Segments<'a> {
     /// The segments before the picture's pixels.
-    pub fn of(bytes: &'a [u8]) -> At<Self> {
+    pub fn parse(bytes: &'a [u8]) -> At<Self> {
         let mut segments = Self::default();
         let mut at = START.len();
         while let Some((marker, data, end)) = segment(bytes, at)? {
@@ -203,7 +203,7 @@ mod tests {
 
     fn extended(segments: &[Vec<u8>]) -> Result<Vec<u8>, String> {
         let bytes = jpeg(segments);
-        let segments = Segments::of(&bytes).map_err(|(_, what)| what)?;
+        let segments = Segments::parse(&bytes).map_err(|(_, what)| what)?;
         segments.extended(&"a".repeat(32)).map_err(|(_, what)| what)
     }
 
@@ -227,6 +227,6 @@ mod tests {
         for end in 0..whole.len() {
             assert_eq!(end_of_jpeg(&whole[..end]), None, "{end}");
         }
-        assert_eq!(Segments::of(&behind).ok().unwrap().exif, Some(&b"\xFF\xD9"[..]));
+        assert_eq!(Segments::parse(&behind).ok().unwrap().exif, Some(&b"\xFF\xD9"[..]));
     }
 }

@@ -6,12 +6,12 @@ use super::embedded::Embedded;
 use super::gdepth::read_gdepth;
 use super::jpeg::{Segments, is_jpeg};
 use super::xmp::XmpTexts;
-use crate::depth_map::{DepthAs, DepthMap, DepthMeaning, NearEnd, read_depth_map, said_by_name};
+use crate::depth_map::{DepthMap, DepthMeaning, DepthQuantity, NearEnd, quantity_from_name, read_depth_map};
 use crate::exif::Exif;
 use crate::exr_channels::{color_channels, depth_channel, exr_names};
 use crate::folder::extension;
-use crate::foreign::foreign;
-use crate::picture_header::header;
+use crate::foreign::unsupported_format_error;
+use crate::picture_header::read_header;
 use crate::picture_source::PictureSource;
 use crate::whole_file::{head, whole_file};
 use crate::{CaptureError, Remark};
@@ -23,7 +23,7 @@ use std::sync::Arc;
 #[derive(Clone, Debug, Default)]
 pub struct DepthPictureOptions {
     /// The file of its depth, wherever that is, and what it is given as; none: looked for in the picture and beside it.
-    pub depth: Option<(PathBuf, DepthAs)>,
+    pub depth: Option<(PathBuf, DepthQuantity)>,
     /// Which end of a relative map is near.
     pub near: Option<NearEnd>,
     /// What reading may use of the machine.
@@ -86,26 +86,26 @@ pub fn open_depth_picture(path: &Path, options: &DepthPictureOptions) -> Result<
             }
         };
     }
-    if let Some(error) = foreign(path) {
+    if let Some(error) = unsupported_format_error(path) {
         return Err(error);
     }
     let opening = Opening { file: path, options };
-    if let Some((depth, as_what)) = &options.depth {
-        return opening.with_file(depth, Some(*as_what), Vec::new());
+    if let Some((depth, quantity)) = &options.depth {
+        return opening.with_file(depth, Some(*quantity), Vec::new());
     }
     if extension(path) == "exr" {
         return opening.exr();
     }
-    if let Some(found) = opening.embedded()? {
-        return Ok(found);
+    if let Some(picture) = opening.embedded()? {
+        return Ok(picture);
     }
-    let found = depth_files(path);
-    let Some(depth) = found.first() else {
+    let depth_maps = depth_files(path);
+    let Some(depth) = depth_maps.first() else {
         // A file that cannot be read is told as such.
-        header(path).map_err(|why| CaptureError::malformed(path, "picture", why))?;
+        read_header(path).map_err(|why| CaptureError::malformed(path, "picture", why))?;
         return Err(CaptureError::NoDepth { path: path.into(), found: " in it or beside it".into() });
     };
-    let others = found[1..].iter().map(|file| file.display().to_string()).collect();
+    let others = depth_maps[1..].iter().map(|file| file.display().to_string()).collect();
     let remark = Remark::about(others, false, |names| {
         format!(
             "{}: is taken for the depth; there are also {names} (name a file if one of those is meant)",
@@ -126,18 +126,18 @@ pub(crate) fn has_depth(file: &Path, options: &LoadOptions) -> bool {
         return true;
     }
     let bytes = head(file, 2);
-    is_jpeg(&bytes) && whole_file(file, options.max_memory / 4).is_ok_and(|bytes| speaks_of_depth(&bytes))
+    is_jpeg(&bytes) && whole_file(file, options.max_memory / 4).is_ok_and(|bytes| mentions_depth(&bytes))
 }
 
 /// Whether a JPEG's XMP has depth of a kind that is known; of a broken one, whether it seems so.
-fn speaks_of_depth(bytes: &[u8]) -> bool {
-    let Ok(segments) = Segments::of(bytes) else { return false };
+fn mentions_depth(bytes: &[u8]) -> bool {
+    let Ok(segments) = Segments::parse(bytes) else { return false };
     let Some(xmp) = segments.xmp else { return false };
     let text = String::from_utf8_lossy(xmp);
-    ["DepthURI", "photos/1.0/depthmap"].iter().any(|word| text.contains(word)) || says_depth_semantic(&text)
+    ["DepthURI", "photos/1.0/depthmap"].iter().any(|word| text.contains(word)) || has_depth_semantic(&text)
 }
 
-fn says_depth_semantic(text: &str) -> bool {
+fn has_depth_semantic(text: &str) -> bool {
     text.contains("Semantic=\"Depth\"") || text.contains("Semantic>Depth<")
 }
 
@@ -152,23 +152,23 @@ pub(crate) enum InFolder {
 /// Looks for pictures with depth in a folder; by names alone, but for JPEGs of a few.
 pub(crate) fn in_folder(folder: &Path) -> InFolder {
     /// A folder of more pictures is one of something else.
-    const MOST: usize = 50;
+    const MAX_PICTURES: usize = 50;
     let mut all = pictures(folder);
     if let Ok(entries) = std::fs::read_dir(folder) {
         let is_exr = |path: &PathBuf| extension(path) == "exr" && path.is_file();
         let mut exrs: Vec<PathBuf> =
-            entries.take(MOST).flatten().map(|entry| entry.path()).filter(is_exr).collect();
+            entries.take(MAX_PICTURES).flatten().map(|entry| entry.path()).filter(is_exr).collect();
         exrs.sort();
         all.extend(exrs);
     }
-    if all.len() > MOST {
+    if all.len() > MAX_PICTURES {
         return InFolder::None;
     }
     let options = LoadOptions::default();
-    let found: Vec<PathBuf> = all.into_iter().filter(|file| has_depth(file, &options)).collect();
-    match &found[..] {
+    let with_depth: Vec<PathBuf> = all.into_iter().filter(|file| has_depth(file, &options)).collect();
+    match &with_depth[..] {
         [] => InFolder::None,
-        [one] => InFolder::One(one.clone()),
+        [only] => InFolder::One(only.clone()),
         several => {
             let names =
                 several.iter().take(4).map(|file| file.file_name().unwrap_or_default().to_string_lossy());
@@ -199,7 +199,7 @@ impl Opening<'_> {
     }
 
     fn header(&self) -> Result<Shown, CaptureError> {
-        let (stored, exif) = header(self.file).map_err(|why| self.malformed("picture", why))?;
+        let (stored, exif) = read_header(self.file).map_err(|why| self.malformed("picture", why))?;
         Ok(Shown { stored, exif })
     }
 
@@ -217,7 +217,7 @@ impl Opening<'_> {
             };
         }
         // Depth in the picture's own file means distances, unless an end is said to be near.
-        let depth = read_depth_map(self.file, Some(DepthAs::Depth), self.options.near, load)?;
+        let depth = read_depth_map(self.file, Some(DepthQuantity::Depth), self.options.near, load)?;
         let Some(channels) = color_channels(&names) else {
             return Err(self.malformed(
                 "EXR",
@@ -241,15 +241,15 @@ impl Opening<'_> {
     fn with_file(
         &self,
         depth_file: &Path,
-        as_what: Option<DepthAs>,
+        quantity: Option<DepthQuantity>,
         mut remarks: Vec<Remark>,
     ) -> Result<DepthPicture, CaptureError> {
         let Self { file, options } = *self;
-        let depth = read_depth_map(depth_file, as_what, options.near, &options.load)?;
+        let depth = read_depth_map(depth_file, quantity, options.near, &options.load)?;
         if options.near.is_none()
-            && as_what.is_none()
+            && quantity.is_none()
             && depth.meaning == DepthMeaning::Relative
-            && said_by_name(depth_file) == Some(DepthAs::Disparity)
+            && quantity_from_name(depth_file) == Some(DepthQuantity::Disparity)
         {
             remarks.push(Remark::note(format!(
                 "{}: is called a disparity, so white is near (else say --near black)",
@@ -268,7 +268,7 @@ impl Opening<'_> {
             let is_turned = is_turned_already(shown.stored, orientation, [depth.width, depth.height]);
             let depth = if is_turned { depth } else { depth.turned(orientation) };
             let picture = PictureSource::File { file: file.into(), orientation };
-            (picture, seen(shown.stored, orientation), depth, focal_px(&shown))
+            (picture, upright_size(shown.stored, orientation), depth, focal_px(&shown))
         };
         remarks.extend(other_shape(depth_file, size, &depth));
         Ok(DepthPicture {
@@ -291,19 +291,20 @@ impl Opening<'_> {
             return Ok(None);
         }
         let bytes = whole_file(file, options.load.max_memory / 4)?;
-        if !speaks_of_depth(&bytes) {
+        if !mentions_depth(&bytes) {
             return Ok(None);
         }
         let at = |(byte, what): (usize, String)| self.malformed(&format!("byte {byte}"), what);
-        let segments = Segments::of(&bytes).map_err(at)?;
-        let texts = XmpTexts::of(&segments).map_err(at)?;
+        let segments = Segments::parse(&bytes).map_err(at)?;
+        let texts = XmpTexts::from_segments(&segments).map_err(at)?;
         let documents = texts.documents().map_err(|why| self.malformed("XMP", why))?;
-        let gdepth = || read_gdepth(&documents, &options.load).map(|found| (found, DepthContainer::GDepth));
+        let gdepth =
+            || read_gdepth(&documents, &options.load).map(|embedded| (embedded, DepthContainer::GDepth));
         let dynamic = || {
-            let found = read_dynamic_depth(&documents, &bytes, &options.load);
-            found.map(|found| (found, DepthContainer::DynamicDepth))
+            let embedded = read_dynamic_depth(&documents, &bytes, &options.load);
+            embedded.map(|embedded| (embedded, DepthContainer::DynamicDepth))
         };
-        let Some((found, container)) = gdepth().or_else(dynamic) else {
+        let Some((embedded, container)) = gdepth().or_else(dynamic) else {
             if texts.mention("GDepth:Near") || texts.mention("GDepth:Format") {
                 return Err(self.malformed(
                     "XMP",
@@ -312,15 +313,19 @@ impl Opening<'_> {
             }
             return Ok(None);
         };
-        let found = found.map_err(|why| self.malformed("XMP", why))?;
-        self.of_embedded(found, container).map(Some)
+        let embedded = embedded.map_err(|why| self.malformed("XMP", why))?;
+        self.from_embedded(embedded, container).map(Some)
     }
 
-    fn of_embedded(&self, found: Embedded, container: DepthContainer) -> Result<DepthPicture, CaptureError> {
+    fn from_embedded(
+        &self,
+        embedded: Embedded,
+        container: DepthContainer,
+    ) -> Result<DepthPicture, CaptureError> {
         let file = self.file;
         let shown = self.header()?;
         let orientation = shown.exif.orientation;
-        let Embedded { map, near_far, original, focal_share, notes } = found;
+        let Embedded { map, near_far, original, focal_share, notes } = embedded;
         let note = |note: String| Remark::note(format!("{}: {note}", file.display()));
         let mut remarks: Vec<Remark> = notes.into_iter().map(note).collect();
         let (picture, stored, picture_orientation) = match original {
@@ -340,7 +345,7 @@ impl Opening<'_> {
             }
             None => (PictureSource::File { file: file.into(), orientation }, shown.stored, orientation),
         };
-        let size = seen(stored, picture_orientation);
+        let size = upright_size(stored, picture_orientation);
         let is_turned = is_turned_already(shown.stored, orientation, [map.width, map.height]);
         let depth = if is_turned { map } else { map.turned(orientation) };
         remarks.extend(other_shape(file, size, &depth));
@@ -362,13 +367,13 @@ impl Opening<'_> {
 }
 
 /// The size of a picture once it is turned.
-fn seen([width, height]: [u32; 2], orientation: u8) -> [u32; 2] {
+fn upright_size([width, height]: [u32; 2], orientation: u8) -> [u32; 2] {
     if orientation >= 5 { [height, width] } else { [width, height] }
 }
 
 /// Whether a depth map is turned as the picture wants to be seen, though the picture is stored otherwise: by which of the two shapes it has.
 fn is_turned_already(stored: [u32; 2], orientation: u8, depth: [u32; 2]) -> bool {
-    orientation >= 5 && mismatch(seen(stored, orientation), depth) < mismatch(stored, depth)
+    orientation >= 5 && mismatch(upright_size(stored, orientation), depth) < mismatch(stored, depth)
 }
 
 /// How far two shapes differ: the logarithm of the ratio of their ratios of width to height.

@@ -4,8 +4,8 @@ use super::jpeg::{At, Segments};
 use roxmltree::{Document, Node, ParsingOptions};
 
 /// The most elements, and the most attributes of one: the parser compares each with each.
-const MOST_NODES: u32 = 100_000;
-const MOST_ATTRIBUTES: usize = 1000;
+const MAX_NODES: u32 = 100_000;
+const MAX_ATTRIBUTES: usize = 1000;
 
 /// The texts of XMP of a file, and of its extended one.
 pub(super) struct XmpTexts {
@@ -14,7 +14,7 @@ pub(super) struct XmpTexts {
 
 impl XmpTexts {
     /// Of a JPEG's segments; none if there is no XMP.
-    pub fn of(segments: &Segments<'_>) -> At<Self> {
+    pub fn from_segments(segments: &Segments<'_>) -> At<Self> {
         let text = |bytes: &[u8]| {
             let text = String::from_utf8_lossy(bytes);
             text.trim_matches(|c: char| c == '\0' || c == '\u{feff}' || c.is_whitespace()).to_owned()
@@ -50,10 +50,10 @@ impl XmpTexts {
 
 fn parsed(text: &str) -> Result<Document<'_>, String> {
     // An element's tag ends before the next begins.
-    if text.split('<').any(|tag| tag.bytes().filter(|byte| *byte == b'=').count() > MOST_ATTRIBUTES) {
-        return Err(format!("has an element of more than {MOST_ATTRIBUTES} attributes"));
+    if text.split('<').any(|tag| tag.bytes().filter(|byte| *byte == b'=').count() > MAX_ATTRIBUTES) {
+        return Err(format!("has an element of more than {MAX_ATTRIBUTES} attributes"));
     }
-    let options = ParsingOptions { nodes_limit: MOST_NODES, ..ParsingOptions::default() };
+    let options = ParsingOptions { nodes_limit: MAX_NODES, ..ParsingOptions::default() };
     Document::parse_with_options(text, options).map_err(|error| {
         // What it quotes may be long.
         let what: String = error.to_string().chars().take(120).collect();
@@ -69,7 +69,11 @@ pub(super) fn property<'a>(node: Node<'a, '_>, name: &str) -> Option<&'a str> {
 }
 
 /// A property of any node, of a namespace that ends so (with or without its last slash).
-pub(super) fn property_of<'a>(documents: &'a [Document<'_>], namespace: &str, name: &str) -> Option<&'a str> {
+pub(super) fn find_property<'a>(
+    documents: &'a [Document<'_>],
+    namespace: &str,
+    name: &str,
+) -> Option<&'a str> {
     let is_meant = |uri: Option<&str>| uri.is_some_and(|uri| uri.trim_end_matches('/').ends_with(namespace));
     let of_node = |node: Node<'a, '_>| {
         let attribute =

@@ -76,9 +76,9 @@ impl Attributes {
             return Err(CaptureError::TooBig { file: file.into(), what });
         }
         let mut values = raw_floats(file, [width, height], options.max_memory / 2)?;
-        let known = |value: f32| if value.is_finite() { value } else { f32::NAN };
+        let finite_or_nan = |value: f32| if value.is_finite() { value } else { f32::NAN };
         for value in &mut values {
-            *value = known(match self.focal_length {
+            *value = finite_or_nan(match self.focal_length {
                 0.0 => *value,
                 focal if *value > 0.0 => (self.base * focal / f64::from(*value) - self.shift) as f32,
                 _ => f32::NAN,

@@ -1,12 +1,12 @@
 //! Where in a folder the views are, and whose names they have.
 
 use super::arrangement::Arrangement;
-use super::hexagon::hexagon;
+use super::hexagon::arrange_hexagon;
 use super::optics::read_parameters;
-use super::row_column::{numbered, positions, row_column};
+use super::row_column::{arrange_by_positions, arrange_by_row_column, arrange_numbered};
 use super::view_list::{NAME, read_view_list};
 use crate::CaptureError;
-use crate::folder::{Folder, Found, extension};
+use crate::folder::{EntryKind, Folder, extension};
 use std::path::{Path, PathBuf};
 
 /// How views' files end.
@@ -20,27 +20,30 @@ const FOLDERS: [&str; 7] = ["lf", "views", "viewpoints", "sai", "images", "recti
 pub(crate) fn find_views(folder: &Folder) -> Result<Option<(Arrangement, Vec<PathBuf>)>, CaptureError> {
     let root = folder.shown.as_path();
     let grid = grid_of(folder, root);
-    if let Some(found) = views_in(folder, root, grid)? {
-        return Ok(Some((found, Vec::new())));
+    if let Some(arrangement) = views_in(folder, root, grid)? {
+        return Ok(Some((arrangement, Vec::new())));
     }
-    let mut found = Vec::new();
+    let mut candidates = Vec::new();
     /// A folder of more folders is none of a light field.
-    const MOST: usize = 64;
-    let inner = folder.entries(root).into_iter().filter(|(_, found)| *found == Found::Folder).take(MOST);
+    const MAX_FOLDERS: usize = 64;
+    let inner =
+        folder.entries(root).into_iter().filter(|(_, kind)| *kind == EntryKind::Folder).take(MAX_FOLDERS);
     for (place, _) in inner {
         let grid = grid_of(folder, &place).or(grid);
         if let Some(arrangement) = views_in(folder, &place, grid)? {
             let name = place.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
-            let is_known = FOLDERS.iter().any(|known| name.starts_with(known));
-            found.push((arrangement.is_certain, is_known, arrangement.views.len(), arrangement));
+            let is_view_folder = FOLDERS.iter().any(|folder_name| name.starts_with(folder_name));
+            candidates.push((arrangement.is_certain, is_view_folder, arrangement.views.len(), arrangement));
         }
     }
     // Of equals the first.
-    found.reverse();
-    let best = (0..found.len()).max_by_key(|at| (found[*at].0, found[*at].1, found[*at].2));
+    candidates.reverse();
+    let best =
+        (0..candidates.len()).max_by_key(|at| (candidates[*at].0, candidates[*at].1, candidates[*at].2));
     Ok(best.map(|best| {
-        let (.., arrangement) = found.swap_remove(best);
-        let others = found.into_iter().filter(|(is_certain, ..)| *is_certain).map(|(.., other)| other.folder);
+        let (.., arrangement) = candidates.swap_remove(best);
+        let others =
+            candidates.into_iter().filter(|(is_certain, ..)| *is_certain).map(|(.., other)| other.folder);
         (arrangement, others.collect())
     }))
 }
@@ -67,12 +70,12 @@ fn views_in(
     };
     let entries = folder.entries(place).into_iter();
     let files: Vec<PathBuf> = entries
-        .filter(|(path, found)| *found == Found::File && is_view(path))
+        .filter(|(path, kind)| *kind == EntryKind::File && is_view(path))
         .map(|(path, _)| path)
         .collect();
-    let found = positions(place, &files)
-        .or_else(|| hexagon(place, &files))
-        .or_else(|| numbered(place, &files, grid))
-        .or_else(|| row_column(place, &files));
-    Ok(found)
+    let arrangement = arrange_by_positions(place, &files)
+        .or_else(|| arrange_hexagon(place, &files))
+        .or_else(|| arrange_numbered(place, &files, grid))
+        .or_else(|| arrange_by_row_column(place, &files));
+    Ok(arrangement)
 }

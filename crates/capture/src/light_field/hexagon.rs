@@ -19,7 +19,7 @@ fn on_ring(number: usize) -> DVec2 {
 }
 
 /// The hexagon of a folder's files, if it is one.
-pub(super) fn hexagon(folder: &Path, files: &[PathBuf]) -> Option<Arrangement> {
+pub(super) fn arrange_hexagon(folder: &Path, files: &[PathBuf]) -> Option<Arrangement> {
     let stem = |file: &PathBuf| file.file_stem().unwrap_or_default().to_string_lossy().to_lowercase();
     let middle = files.iter().find(|file| {
         let stem = stem(file);
@@ -29,7 +29,7 @@ pub(super) fn hexagon(folder: &Path, files: &[PathBuf]) -> Option<Arrangement> {
         .iter()
         .filter(|file| Some(*file) != middle)
         .filter_map(|file| {
-            let name = NumberedName::of(&stem(file))
+            let name = NumberedName::parse(&stem(file))
                 .filter(|name| name.numbers.len() == 1 && name.texts[1].is_empty())?;
             Some((name.numbers[0], name.texts[0].trim_end_matches(['_', '-', ' ']).to_owned(), file))
         })
@@ -76,7 +76,7 @@ mod tests {
 
     fn names(files: &[&str]) -> Option<Vec<String>> {
         let files: Vec<PathBuf> = files.iter().map(PathBuf::from).collect();
-        Some(hexagon(Path::new(""), &files)?.views.into_iter().map(|view| view.name).collect())
+        Some(arrange_hexagon(Path::new(""), &files)?.views.into_iter().map(|view| view.name).collect())
     }
 
     #[test]

@@ -24,7 +24,7 @@ pub struct SubAperture {
 
 /// A disparity map that came with the views.
 #[derive(Clone, Debug)]
-pub struct GivenDisparity {
+pub struct ViewDisparity {
     /// The map.
     pub map: DepthMap,
     /// The view whose pixels it is of, an index of [`LightField::views`].
@@ -51,7 +51,7 @@ pub struct LightField {
     /// The middle view, an index of [`Self::views`]; its position is 0.
     pub reference: usize,
     /// The disparity map that came with them.
-    pub disparity: Option<GivenDisparity>,
+    pub disparity: Option<ViewDisparity>,
     /// A map of the reference's disparities that is coded by colour, and what the code is has to be found out from the views.
     pub coded_disparity: Option<PictureSource>,
     /// What the files say of the camera.

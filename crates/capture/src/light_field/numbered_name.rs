@@ -11,7 +11,7 @@ pub(super) struct NumberedName {
 
 impl NumberedName {
     /// Of a file's name without its ending; none if it has no number, or one that counts nothing.
-    pub fn of(stem: &str) -> Option<Self> {
+    pub fn parse(stem: &str) -> Option<Self> {
         let (mut texts, mut numbers) = (vec![String::new()], Vec::new());
         let mut digits = String::new();
         for c in stem.to_lowercase().chars().chain(['\0']) {
@@ -33,9 +33,9 @@ impl NumberedName {
 }
 
 /// Row, column, y and x of a name of Stanford's light field archive: two whole numbers, then two with decimals.
-pub(super) fn positions_of(stem: &str) -> Option<([u32; 2], [f64; 2])> {
+pub(super) fn parse_positions(stem: &str) -> Option<([u32; 2], [f64; 2])> {
     let fields: Vec<&str> = stem.split('_').collect();
-    let of = |fields: &[&str]| {
+    let parse_fields = |fields: &[&str]| {
         let whole =
             |text: &str| text.bytes().all(|byte| byte.is_ascii_digit()).then(|| text.parse().ok()).flatten();
         let decimal = |text: &str| {
@@ -43,7 +43,7 @@ pub(super) fn positions_of(stem: &str) -> Option<([u32; 2], [f64; 2])> {
         };
         Some(([whole(fields[0])?, whole(fields[1])?], [decimal(fields[2])?, decimal(fields[3])?]))
     };
-    fields.windows(4).find_map(of)
+    fields.windows(4).find_map(parse_fields)
 }
 
 #[cfg(test)]
@@ -52,20 +52,20 @@ mod tests {
 
     #[test]
     fn numbers_and_what_stands_between() {
-        let name = NumberedName::of("LF_03_11b").unwrap();
+        let name = NumberedName::parse("LF_03_11b").unwrap();
         assert_eq!((name.texts, name.numbers), (["lf_", "_", "b"].map(String::from).to_vec(), vec![3, 11]));
-        assert_eq!(NumberedName::of("7").unwrap().numbers, [7]);
-        assert_eq!(NumberedName::of("center"), None);
-        assert_eq!(NumberedName::of("99999999999999999999_1"), None);
+        assert_eq!(NumberedName::parse("7").unwrap().numbers, [7]);
+        assert_eq!(NumberedName::parse("center"), None);
+        assert_eq!(NumberedName::parse("99999999999999999999_1"), None);
     }
 
     #[test]
     fn stanfords_names() {
         let expected = Some(([0, 10], [-383.248383, 1017.387878]));
-        assert_eq!(positions_of("out_00_10_-383.248383_1017.387878"), expected);
-        assert_eq!(positions_of("out_00_10_-383.248383_1017.387878_"), expected);
+        assert_eq!(parse_positions("out_00_10_-383.248383_1017.387878"), expected);
+        assert_eq!(parse_positions("out_00_10_-383.248383_1017.387878_"), expected);
         for other in ["out_00_10", "out_00_10_3_4", "out_a_10_1.5_2.5", "out_00_10_nan._2.5"] {
-            assert_eq!(positions_of(other), None, "{other}");
+            assert_eq!(parse_positions(other), None, "{other}");
         }
     }
 }

@@ -62,7 +62,7 @@ pub(super) fn read_parameters(file: &Path) -> Result<Optics, CaptureError> {
             }
         };
         let count = || {
-            let count = text.parse().ok().filter(|count| (1..=super::row_column::MOST).contains(count));
+            let count = text.parse().ok().filter(|count| (1..=super::row_column::MAX_SIDE).contains(count));
             count.ok_or_else(|| lines.malformed(format!("{key} is {}, no count of views", quoted(text))))
         };
         match key {
@@ -98,14 +98,14 @@ mod tests {
         // What is focused has none; what is infinitely far the file's `offset`, 6.996…
         assert!(optics.disparity(2.3, 512).unwrap().abs() < 1e-12);
         assert!((optics.disparity(f64::INFINITY, 512).unwrap() + 6.9963).abs() < 1e-3);
-        for (wrong, said) in [
+        for (wrong, message) in [
             ("baseline_mm = 0", "line 1: baseline_mm is 0, and has to be above 0"),
             ("\nnum_cams_x = 1000000", "line 2: num_cams_x is \"1000000\", no count of views"),
             ("focal_length_mm = x", "line 1: focal_length_mm is \"x\", no number"),
         ] {
             std::fs::write(&file, wrong).unwrap();
             let text = read_parameters(&file).unwrap_err().to_string();
-            assert!(text.contains(said), "{text}");
+            assert!(text.contains(message), "{text}");
         }
         assert_eq!(Optics::default().disparity(1.0, 512), None);
     }

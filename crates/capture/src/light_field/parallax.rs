@@ -37,9 +37,9 @@ impl GridTurn {
 
 /// What the pictures tell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum GridTurnFound {
+pub enum GridTurnEstimate {
     /// The views lie so.
-    Told(GridTurn),
+    Turned(GridTurn),
     /// All views stand in one line, which is as it is named: nothing tells on which side of it is up.
     OneLine,
     /// There is too little parallax or detail, or no way explains the pictures.
@@ -59,56 +59,56 @@ const REDUCTIONS: [u32; 2] = [1, 4];
 /// are enough. `disparity` is the map of the reference, if there is one.
 ///
 /// Brightness may differ between views by a factor.
-pub fn grid_turn(
+pub fn estimate_grid_turn(
     reference: &Photograph,
     others: &[(DVec2, &Photograph)],
     disparity: Option<&DepthMap>,
-) -> GridTurnFound {
-    let luma = Luma::of(reference);
+) -> GridTurnEstimate {
+    let luma = Luma::from_photograph(reference);
     let others: Vec<(DVec2, Luma)> = others
         .iter()
-        .map(|(position, picture)| (*position, Luma::of(picture).brightened_to(&luma)))
+        .map(|(position, picture)| (*position, Luma::from_photograph(picture).brightened_to(&luma)))
         .collect();
     let groups = groups(&others, disparity.is_some());
     let mut votes = vec![0usize; groups.len()];
-    for by in REDUCTIONS {
+    for factor in REDUCTIONS {
         let reduced: Vec<(DVec2, Luma)> =
-            others.iter().map(|(position, other)| (*position, other.reduced(by))).collect();
-        let view = luma.reduced(by);
+            others.iter().map(|(position, other)| (*position, other.reduced(factor))).collect();
+        let view = luma.reduced(factor);
         if view.width < 4 * BLOCK
             || view.height < 4 * BLOCK
             || reduced.iter().any(|(_, other)| other.size() != view.size())
         {
             continue;
         }
-        count_votes(&view, &reduced, &groups, disparity.map(|map| (map, f64::from(by))), &mut votes);
+        count_votes(&view, &reduced, &groups, disparity.map(|map| (map, f64::from(factor))), &mut votes);
     }
     let all: usize = votes.iter().sum();
     let Some(best) = (0..groups.len()).max_by_key(|group| votes[*group]) else {
-        return GridTurnFound::Unclear;
+        return GridTurnEstimate::Unclear;
     };
     // Two thirds of some, or clearly more than half of many.
     let (count, half) = (votes[best] as f64, 0.5 * all as f64);
     let is_clear = all >= 6 && 3 * votes[best] >= 2 * all || count > half + 3.0 * half.sqrt();
     if !is_clear {
-        return GridTurnFound::Unclear;
+        return GridTurnEstimate::Unclear;
     }
     match &groups[best][..] {
-        [turn] => GridTurnFound::Told(*turn),
-        turns if turns.contains(&GridTurn::default()) => GridTurnFound::OneLine,
-        turns => GridTurnFound::Told(turns[0]),
+        [turn] => GridTurnEstimate::Turned(*turn),
+        turns if turns.contains(&GridTurn::default()) => GridTurnEstimate::OneLine,
+        turns => GridTurnEstimate::Turned(turns[0]),
     }
 }
 
 /// The ways that views can lie, those together that nothing tells apart.
 fn groups(others: &[(DVec2, Luma)], has_map: bool) -> Vec<Vec<GridTurn>> {
     let bools = [false, true];
-    let mut ways = Vec::new();
+    let mut turns = Vec::new();
     for (is_transposed, columns_reversed, rows_reversed) in
         bools.into_iter().flat_map(|a| bools.into_iter().flat_map(move |b| bools.map(move |c| (a, b, c))))
     {
         if has_map || !columns_reversed {
-            ways.push(GridTurn { is_transposed, columns_reversed, rows_reversed });
+            turns.push(GridTurn { is_transposed, columns_reversed, rows_reversed });
         }
     }
     let mut groups: Vec<Vec<GridTurn>> = Vec::new();
@@ -118,10 +118,10 @@ fn groups(others: &[(DVec2, Luma)], has_map: bool) -> Vec<Vec<GridTurn>> {
         // Without a map the sign of all disparities is free.
         sums(1.0) || (!has_map && sums(-1.0))
     };
-    for way in ways {
-        match groups.iter_mut().find(|group| is_same(&group[0], &way)) {
-            Some(group) => group.push(way),
-            None => groups.push(vec![way]),
+    for turn in turns {
+        match groups.iter_mut().find(|group| is_same(&group[0], &turn)) {
+            Some(group) => group.push(turn),
+            None => groups.push(vec![turn]),
         }
     }
     groups
@@ -161,8 +161,8 @@ fn count_votes(
             .map(|group| {
                 let directions: Vec<DVec2> = others.iter().map(|(at, _)| group[0].apply(*at)).collect();
                 match map {
-                    Some((map, by)) => view.error_with(corner, others, &directions, |[x, y]| {
-                        map_at(map, [x, y], view.size()) / by
+                    Some((map, factor)) => view.error_with(corner, others, &directions, |[x, y]| {
+                        map_at(map, [x, y], view.size()) / factor
                     }),
                     None => steps
                         .iter()
@@ -204,8 +204,9 @@ fn movements() -> Vec<f64> {
 
 /// The disparity of a map at a pixel of a picture of this size, NaN where it is unknown.
 fn map_at(map: &DepthMap, [x, y]: [usize; 2], size: [usize; 2]) -> f64 {
-    let place =
-        |at: usize, of: usize, side: u32| ((2 * at + 1) * side as usize / (2 * of)).min(side as usize - 1);
+    let place = |at: usize, count: usize, side: u32| {
+        ((2 * at + 1) * side as usize / (2 * count)).min(side as usize - 1)
+    };
     let (x, y) = (place(x, size[0], map.width), place(y, size[1], map.height));
     f64::from(map.values[y * map.width as usize + x])
 }
@@ -218,7 +219,7 @@ struct Luma {
 }
 
 impl Luma {
-    fn of(picture: &Photograph) -> Self {
+    fn from_photograph(picture: &Photograph) -> Self {
         let values = picture.pixels.iter().map(|[r, g, b]| (0.25 * r + 0.5 * g + 0.25 * b).max(0.0).sqrt());
         Self { width: picture.width as usize, height: picture.height as usize, values: values.collect() }
     }
@@ -239,12 +240,13 @@ impl Luma {
         self
     }
 
-    fn reduced(&self, by: u32) -> Self {
-        let by = by as usize;
-        let [width, height] = [self.width / by, self.height / by];
+    fn reduced(&self, factor: u32) -> Self {
+        let factor = factor as usize;
+        let [width, height] = [self.width / factor, self.height / factor];
         let mean = |x: usize, y: usize| {
-            let rows = (0..by).map(|v| &self.values[(y * by + v) * self.width + x * by..][..by]);
-            rows.flatten().sum::<f32>() / (by * by) as f32
+            let rows =
+                (0..factor).map(|v| &self.values[(y * factor + v) * self.width + x * factor..][..factor]);
+            rows.flatten().sum::<f32>() / (factor * factor) as f32
         };
         let values =
             (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| mean(x, y)).collect();
@@ -253,14 +255,14 @@ impl Luma {
 
     /// Whether a block differs within itself by more than noise.
     fn has_detail(&self, [left, top]: [usize; 2]) -> bool {
-        const LEAST: f32 = 0.03;
+        const MIN_CONTRAST: f32 = 0.03;
         let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
         for y in top..top + BLOCK {
             for value in &self.values[y * self.width + left..][..BLOCK] {
                 (low, high) = (low.min(*value), high.max(*value));
             }
         }
-        high - low > LEAST
+        high - low > MIN_CONTRAST
     }
 
     /// The sum of differences of a block to other views, moved by a disparity along their directions.
@@ -329,65 +331,65 @@ mod tests {
         if x < SIZE / 2 { 1.2 } else { -0.7 }
     }
 
-    fn found(named: &[(f64, f64)], is: GridTurn, map: Option<&DepthMap>) -> GridTurnFound {
+    fn estimate(named: &[(f64, f64)], is: GridTurn, map: Option<&DepthMap>) -> GridTurnEstimate {
         let named: Vec<DVec2> = named.iter().map(|(x, y)| DVec2::new(*x, *y)).collect();
         let pictures: Vec<Photograph> = named.iter().map(|at| view(is.apply(*at), 0.8)).collect();
         let others: Vec<(DVec2, &Photograph)> = named.iter().copied().zip(&pictures).collect();
-        grid_turn(&view(DVec2::ZERO, 1.0), &others, map)
+        estimate_grid_turn(&view(DVec2::ZERO, 1.0), &others, map)
     }
 
     const CROSS: [(f64, f64); 4] = [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)];
 
     #[test]
-    fn rows_are_told_from_rows_reversed_and_from_columns() {
+    fn rows_are_distinguished_from_rows_reversed_and_from_columns() {
         for is_transposed in [false, true] {
             for rows_reversed in [false, true] {
                 let turn = GridTurn { is_transposed, columns_reversed: false, rows_reversed };
-                assert_eq!(found(&CROSS, turn, None), GridTurnFound::Told(turn));
+                assert_eq!(estimate(&CROSS, turn, None), GridTurnEstimate::Turned(turn));
                 // Half a cross is enough, and so is a corner.
-                assert_eq!(found(&CROSS[1..3], turn, None), GridTurnFound::Told(turn));
+                assert_eq!(estimate(&CROSS[1..3], turn, None), GridTurnEstimate::Turned(turn));
                 // And a step of two.
-                assert_eq!(found(&[(2.0, 0.0), (0.0, -2.0)], turn, None), GridTurnFound::Told(turn));
+                assert_eq!(estimate(&[(2.0, 0.0), (0.0, -2.0)], turn, None), GridTurnEstimate::Turned(turn));
             }
         }
     }
 
     #[test]
-    fn a_map_tells_columns_too() {
+    fn a_map_decides_columns_too() {
         let values = (0..SIZE * SIZE).map(|at| disparity(at % SIZE) as f32).collect();
         let map = DepthMap { width: SIZE, height: SIZE, values, meaning: DepthMeaning::Disparity };
         for [is_transposed, columns_reversed, rows_reversed] in
             [[false, true, false], [false, true, true], [true, true, true], [false; 3]]
         {
             let turn = GridTurn { is_transposed, columns_reversed, rows_reversed };
-            assert_eq!(found(&CROSS, turn, Some(&map)), GridTurnFound::Told(turn));
+            assert_eq!(estimate(&CROSS, turn, Some(&map)), GridTurnEstimate::Turned(turn));
         }
         // Without it, a grid turned by 180° is one that is not.
         let half = GridTurn { is_transposed: false, columns_reversed: true, rows_reversed: true };
-        assert_eq!(found(&CROSS, half, None), GridTurnFound::Told(GridTurn::default()));
+        assert_eq!(estimate(&CROSS, half, None), GridTurnEstimate::Turned(GridTurn::default()));
     }
 
     #[test]
-    fn one_line_tells_nothing_of_the_other() {
+    fn one_line_decides_nothing_of_the_other() {
         for rows_reversed in [false, true] {
             let turn = GridTurn { rows_reversed, ..GridTurn::default() };
-            assert_eq!(found(&CROSS[..2], turn, None), GridTurnFound::OneLine);
+            assert_eq!(estimate(&CROSS[..2], turn, None), GridTurnEstimate::OneLine);
         }
         // But that it stands upright.
         let upright = GridTurn { is_transposed: true, ..GridTurn::default() };
-        assert_eq!(found(&CROSS[..2], upright, None), GridTurnFound::Told(upright));
+        assert_eq!(estimate(&CROSS[..2], upright, None), GridTurnEstimate::Turned(upright));
     }
 
     #[test]
-    fn without_parallax_or_detail_nothing_is_told() {
+    fn without_parallax_or_detail_nothing_is_decided() {
         let still = view(DVec2::ZERO, 1.0);
         let others: Vec<(DVec2, &Photograph)> =
             CROSS.iter().map(|(x, y)| (DVec2::new(*x, *y), &still)).collect();
-        assert_eq!(grid_turn(&still, &others, None), GridTurnFound::Unclear);
+        assert_eq!(estimate_grid_turn(&still, &others, None), GridTurnEstimate::Unclear);
         let grey = Photograph { pixels: vec![[0.5; 3]; still.pixels.len()], ..still.clone() };
         let others: Vec<(DVec2, &Photograph)> =
             CROSS.iter().map(|(x, y)| (DVec2::new(*x, *y), &grey)).collect();
-        assert_eq!(grid_turn(&grey, &others, None), GridTurnFound::Unclear);
-        assert_eq!(grid_turn(&grey, &[], None), GridTurnFound::Unclear);
+        assert_eq!(estimate_grid_turn(&grey, &others, None), GridTurnEstimate::Unclear);
+        assert_eq!(estimate_grid_turn(&grey, &[], None), GridTurnEstimate::Unclear);
     }
 }

@@ -2,16 +2,16 @@
 
 use super::arrangement::{Arrangement, Placed, ViewLayout};
 use super::attributes::read_attributes;
-use super::disparity::{FoundDisparity, Wanted, find_disparity};
+use super::disparity::{DisparitySearch, DisparitySource, find_disparity};
 use super::finding::find_views;
-use super::light_field_type::{GivenDisparity, LightField, SubAperture};
+use super::light_field_type::{LightField, SubAperture, ViewDisparity};
 use super::optics::{Optics, read_parameters};
-use super::parallax::{GridTurn, GridTurnFound, grid_turn};
+use super::parallax::{GridTurn, GridTurnEstimate, estimate_grid_turn};
 use crate::depth_map::{DepthMap, DepthMeaning, NearEnd};
 use crate::folder::Folder;
-use crate::foreign::foreign;
-use crate::mosaic::{Mosaic, pitch_of};
-use crate::picture_header::header;
+use crate::foreign::unsupported_format_error;
+use crate::mosaic::{Mosaic, detect_pitch};
+use crate::picture_header::read_header;
 use crate::picture_source::PictureSource;
 use crate::{CaptureError, Remark};
 use glam::DVec2;
@@ -46,12 +46,12 @@ pub fn open_light_field(
     progress: &dyn Progress,
 ) -> Result<LightField, CaptureError> {
     let mut field = if path.is_dir() {
-        of_folder(path, options, &Stage::new(progress, 0.0, 0.6))?
+        open_folder(path, options, &Stage::new(progress, 0.0, 0.6))?
     } else {
-        of_mosaic(path, options)?
+        open_mosaic(path, options)?
     };
     progress.check()?;
-    look_at_parallax(&mut field, options, &Stage::new(progress, 0.6, 1.0))?;
+    orient_by_parallax(&mut field, options, &Stage::new(progress, 0.6, 1.0))?;
     progress.report(1.0);
     Ok(field)
 }
@@ -62,17 +62,20 @@ fn name_of(path: &Path) -> String {
 }
 
 /// The light field in a folder, positions as they are named.
-fn of_folder(
+fn open_folder(
     path: &Path,
     options: &LightFieldOptions,
     progress: &dyn Progress,
 ) -> Result<LightField, CaptureError> {
     let folder = Folder::open(path)?;
-    let none = |found: &str| CaptureError::NoViews { path: path.into(), found: found.into() };
+    let none = |detail: &str| CaptureError::NoViews { path: path.into(), found: detail.into() };
     let Some((arrangement, others)) = find_views(&folder)? else {
         // Lytro's files alone get their sentence.
         let entries = folder.entries(&folder.shown);
-        return Err(entries.iter().find_map(|(file, _)| foreign(file)).unwrap_or_else(|| none("")));
+        return Err(entries
+            .iter()
+            .find_map(|(file, _)| unsupported_format_error(file))
+            .unwrap_or_else(|| none("")));
     };
     let mut remarks = Vec::new();
     let base = arrangement.folder.clone();
@@ -91,7 +94,7 @@ fn of_folder(
         remarks
             .extend(Remark::about(names.clone(), is_incomplete, |names| format!("{shown}: {what}: {names}")));
     }
-    let (placed, size) = of_one_size(&arrangement, &mut remarks, progress)?;
+    let (placed, size) = views_of_one_size(&arrangement, &mut remarks, progress)?;
     if placed.len() < 2 {
         return Err(none(": less than two pictures of one size can be read"));
     }
@@ -120,10 +123,10 @@ fn of_folder(
         optics,
         remarks,
     };
-    let found = match options.disparity.as_ref().or(arrangement.disparity.as_ref()) {
-        Some(file) => Some(FoundDisparity::of(file, options.near, &options.load)?),
+    let source = match options.disparity.as_ref().or(arrangement.disparity.as_ref()) {
+        Some(file) => Some(DisparitySource::from_file(file, options.near, &options.load)?),
         None => {
-            let wanted = Wanted {
+            let search = DisparitySearch {
                 folder: &folder,
                 places: &places,
                 size,
@@ -131,26 +134,26 @@ fn of_folder(
                 near: options.near,
                 load: &options.load,
             };
-            find_disparity(&wanted)?
+            find_disparity(&search)?
         }
     };
-    if let Some(found) = found {
-        take(&mut field, found);
+    if let Some(source) = source {
+        set_disparity_source(&mut field, source);
     }
     Ok(field)
 }
 
 /// The light field that a picture is a mosaic of.
-fn of_mosaic(path: &Path, options: &LightFieldOptions) -> Result<LightField, CaptureError> {
-    if let Some(error) = foreign(path) {
+fn open_mosaic(path: &Path, options: &LightFieldOptions) -> Result<LightField, CaptureError> {
+    if let Some(error) = unsupported_format_error(path) {
         return Err(error);
     }
-    header(path).map_err(|why| CaptureError::malformed(path, "picture", why))?;
-    let pitch = options.pitch.or_else(|| pitch_of(path, &options.load));
+    read_header(path).map_err(|why| CaptureError::malformed(path, "picture", why))?;
+    let pitch = options.pitch.or_else(|| detect_pitch(path, &options.load));
     let Some(pitch) = pitch else {
-        let found =
+        let detail =
             ": it is no mosaic of micro-images, or one whose pitch cannot be seen and has to be said".into();
-        return Err(CaptureError::NoViews { path: path.into(), found });
+        return Err(CaptureError::NoViews { path: path.into(), found: detail });
     };
     let mosaic = Mosaic::open(path, pitch)?;
     let [columns, rows] = pitch;
@@ -192,13 +195,13 @@ fn of_mosaic(path: &Path, options: &LightFieldOptions) -> Result<LightField, Cap
         remarks,
     };
     if let Some(file) = &options.disparity {
-        take(&mut field, FoundDisparity::of(file, options.near, &options.load)?);
+        set_disparity_source(&mut field, DisparitySource::from_file(file, options.near, &options.load)?);
     }
     Ok(field)
 }
 
 /// The views that can be read and are of the size that most are of.
-fn of_one_size(
+fn views_of_one_size(
     arrangement: &Arrangement,
     remarks: &mut Vec<Remark>,
     progress: &dyn Progress,
@@ -209,7 +212,7 @@ fn of_one_size(
     for (index, placed) in arrangement.views.iter().enumerate() {
         progress.check()?;
         progress.report(index as f32 / arrangement.views.len() as f32);
-        match header(&placed.file) {
+        match read_header(&placed.file) {
             Ok((size, _)) => {
                 *sizes.entry(size).or_default() += 1;
                 read.push((placed.clone(), size));
@@ -218,7 +221,8 @@ fn of_one_size(
         }
     }
     let size = sizes.into_iter().max_by_key(|(size, count)| (*count, *size)).map_or([0; 2], |(size, _)| size);
-    let (fit, other): (Vec<_>, Vec<_>) = read.into_iter().partition(|(_, of)| *of == size);
+    let (fit, other): (Vec<_>, Vec<_>) =
+        read.into_iter().partition(|(_, picture_size)| *picture_size == size);
     let other =
         other.iter().map(|(placed, [width, height])| format!("{} ({width} × {height} px)", placed.name));
     remarks
@@ -273,8 +277,8 @@ fn optics(folder: &Folder, places: &[&Path]) -> Result<Optics, CaptureError> {
 
 /// The view that is the list's middle one, or the one nearest the middle of the aperture.
 fn reference(arrangement: &Arrangement, placed: &[Placed]) -> usize {
-    let said = arrangement.reference.map(|index| &arrangement.views[index].file);
-    if let Some(index) = placed.iter().position(|placed| Some(&placed.file) == said) {
+    let listed = arrangement.reference.map(|index| &arrangement.views[index].file);
+    if let Some(index) = placed.iter().position(|placed| Some(&placed.file) == listed) {
         return index;
     }
     let middle = arrangement.middle();
@@ -284,10 +288,10 @@ fn reference(arrangement: &Arrangement, placed: &[Placed]) -> usize {
 }
 
 /// Keeps what was found of disparities.
-fn take(field: &mut LightField, found: FoundDisparity) {
-    match found {
-        FoundDisparity::Map(map, file) => take_disparity(field, map, file),
-        FoundDisparity::Coded(file) => {
+fn set_disparity_source(field: &mut LightField, source: DisparitySource) {
+    match source {
+        DisparitySource::Map(map, file) => set_disparity(field, map, file),
+        DisparitySource::Coded(file) => {
             field.remarks.push(Remark::note(format!(
                 "{}: is coded by colour; what its colours mean is found out from the views",
                 file.display()
@@ -298,7 +302,7 @@ fn take(field: &mut LightField, found: FoundDisparity) {
 }
 
 /// Keeps a disparity map: of the view that its file is named after, else of the middle one.
-fn take_disparity(field: &mut LightField, map: DepthMap, file: PathBuf) {
+fn set_disparity(field: &mut LightField, map: DepthMap, file: PathBuf) {
     let stem = file.file_stem().unwrap_or_default().to_string_lossy().to_lowercase();
     let is_named = |view: &SubAperture| view.name.len() >= 3 && stem.contains(&view.name.to_lowercase());
     let view = field.views.iter().position(is_named).unwrap_or(field.reference);
@@ -318,7 +322,7 @@ fn take_disparity(field: &mut LightField, map: DepthMap, file: PathBuf) {
             file.display()
         )));
     }
-    field.disparity = Some(GivenDisparity { map, view, file });
+    field.disparity = Some(ViewDisparity { map, view, file });
 }
 
 /// The views about the reference that tell which way rows and columns run: two on each axis, else the nearest.
@@ -343,7 +347,7 @@ fn neighbours(field: &LightField) -> Vec<usize> {
 }
 
 /// Turns the positions as the pictures say, and says so.
-fn look_at_parallax(
+fn orient_by_parallax(
     field: &mut LightField,
     options: &LightFieldOptions,
     progress: &dyn Progress,
@@ -357,33 +361,35 @@ fn look_at_parallax(
     let others: Vec<(DVec2, &Photograph)> =
         indices[1..].iter().map(at).zip(others.iter().map(|other| &other.0)).collect();
     // In pixels of the reduced pictures.
-    let map = field
-        .disparity
-        .as_ref()
-        .filter(|given| given.view == field.reference && given.map.meaning == DepthMeaning::Disparity);
-    let map = map.map(|given| {
-        let values = given.map.values.iter().map(|value| value / scale as f32).collect();
-        DepthMap { values, ..given.map.clone() }
+    let map = field.disparity.as_ref().filter(|supplied| {
+        supplied.view == field.reference && supplied.map.meaning == DepthMeaning::Disparity
+    });
+    let map = map.map(|supplied| {
+        let values = supplied.map.values.iter().map(|value| value / scale as f32).collect();
+        DepthMap { values, ..supplied.map.clone() }
     });
     let shown = field.path.display();
-    let found = grid_turn(reference, &others, map.as_ref());
+    let estimate = estimate_grid_turn(reference, &others, map.as_ref());
     // A map that fits nothing, or is of another sign, still leaves what the pictures alone say.
-    let found = match found {
-        GridTurnFound::Unclear if map.is_some() => grid_turn(reference, &others, None),
-        found => found,
+    let estimate = match estimate {
+        GridTurnEstimate::Unclear if map.is_some() => estimate_grid_turn(reference, &others, None),
+        estimate => estimate,
     };
-    let remark = match found {
-        GridTurnFound::Told(turn) if turn == GridTurn::default() => return Ok(()),
-        GridTurnFound::Told(turn) => {
+    let remark = match estimate {
+        GridTurnEstimate::Turned(turn) if turn == GridTurn::default() => return Ok(()),
+        GridTurnEstimate::Turned(turn) => {
             for view in &mut field.views {
                 view.position = turn.apply(view.position);
             }
-            format!("{shown}: {}, as parallax shows; views are placed as the pictures say", said(turn))
+            format!(
+                "{shown}: {}, as parallax shows; views are placed as the pictures say",
+                describe_turn(turn)
+            )
         }
-        GridTurnFound::OneLine => {
+        GridTurnEstimate::OneLine => {
             format!("{shown}: all views stand in one line; which way other rows would run cannot be told")
         }
-        GridTurnFound::Unclear => format!(
+        GridTurnEstimate::Unclear => format!(
             "{shown}: parallax does not show which way rows and columns run; they are taken as they are named"
         ),
     };
@@ -392,7 +398,7 @@ fn look_at_parallax(
 }
 
 /// What is otherwise than named.
-fn said(turn: GridTurn) -> &'static str {
+fn describe_turn(turn: GridTurn) -> &'static str {
     match (turn.is_transposed, turn.columns_reversed, turn.rows_reversed) {
         (false, false, _) => "rows run from the bottom up",
         (false, true, false) => "columns run from right to left",
@@ -415,7 +421,7 @@ fn small_pictures(
 ) -> Result<Option<Vec<(Photograph, u32)>>, CaptureError> {
     /// px
     const WIDEST: u32 = 1024;
-    let by = field.size[0].max(field.size[1]).div_ceil(WIDEST).max(1);
+    let factor = field.size[0].max(field.size[1]).div_ceil(WIDEST).max(1);
     let mosaic = field.views.iter().find_map(|view| match &view.picture {
         PictureSource::MicroImages { mosaic, .. } => Some(mosaic.clone()),
         _ => None,
@@ -424,13 +430,14 @@ fn small_pictures(
         if let Some(mosaic) = &mosaic {
             let cells: Vec<[u32; 2]> = indices.iter().filter_map(|index| field.views[*index].cell).collect();
             let views = mosaic.views(&cells, &options.load)?;
-            return Ok(views.into_iter().map(|view| (view.reduced(by), by)).collect());
+            return Ok(views.into_iter().map(|view| (view.downsampled(factor), factor)).collect());
         }
         let mut pictures = Vec::new();
         for (done, index) in indices.iter().enumerate() {
             progress.check()?;
             progress.report(done as f32 / indices.len() as f32);
-            pictures.push((field.views[*index].picture.photograph(&options.load)?.reduced(by), by));
+            pictures
+                .push((field.views[*index].picture.photograph(&options.load)?.downsampled(factor), factor));
         }
         Ok(pictures)
     };

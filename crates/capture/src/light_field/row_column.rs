@@ -4,13 +4,13 @@
 //! varies, too, the two that do. They may be counted from anywhere and be padded or not. `c03_r01` and `x3_y1` are read as they say.
 
 use super::arrangement::{Arrangement, Placed, ViewLayout};
-use super::numbered_name::{NumberedName, positions_of};
+use super::numbered_name::{NumberedName, parse_positions};
 use glam::DVec2;
 use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
 
 /// The most columns or rows; Stanford's have 17, gantries some more.
-pub(super) const MOST: u32 = 128;
+pub(super) const MAX_SIDE: u32 = 128;
 
 fn stem(file: &Path) -> String {
     file.file_stem().unwrap_or_default().to_string_lossy().into_owned()
@@ -26,26 +26,31 @@ struct Named {
 }
 
 /// The grid numbered row by row (`input_Cam000`), of so many columns and rows, if there is one.
-pub(super) fn numbered(folder: &Path, files: &[PathBuf], grid: Option<[u32; 2]>) -> Option<Arrangement> {
+pub(super) fn arrange_numbered(
+    folder: &Path,
+    files: &[PathBuf],
+    grid: Option<[u32; 2]>,
+) -> Option<Arrangement> {
     /// The benchmark's.
     const GRID: [u32; 2] = [9, 9];
     let number = |file: &PathBuf| {
-        let name = NumberedName::of(&stem(file))?;
+        let name = NumberedName::parse(&stem(file))?;
         let is_camera = name.numbers.len() == 1
             && name.texts[0].trim_end_matches('_').ends_with("cam")
             && name.texts[1].is_empty();
         is_camera.then(|| (name.numbers[0], file.clone()))
     };
-    let found: Vec<(u32, PathBuf)> = files.iter().filter_map(number).collect();
+    let candidates: Vec<(u32, PathBuf)> = files.iter().filter_map(number).collect();
     let [columns, rows] = grid.unwrap_or(GRID);
-    let (fit, beyond): (Vec<_>, Vec<_>) =
-        found.into_iter().partition(|(number, _)| u64::from(*number) < u64::from(columns) * u64::from(rows));
+    let (fit, beyond): (Vec<_>, Vec<_>) = candidates
+        .into_iter()
+        .partition(|(number, _)| u64::from(*number) < u64::from(columns) * u64::from(rows));
     let named = fit.into_iter().map(|(number, file)| Named {
         file,
         cell: [number / columns, number % columns],
         place: None,
     });
-    let mut arrangement = arranged(folder, named.collect(), ViewLayout::Numbered, Some([columns, rows]))?;
+    let mut arrangement = arrange_grid(folder, named.collect(), ViewLayout::Numbered, Some([columns, rows]))?;
     let beyond: Vec<String> = beyond.into_iter().map(|(_, file)| stem(&file)).collect();
     if !beyond.is_empty() {
         let what = format!("numbers beyond a grid of {columns} × {rows}, which are left out");
@@ -55,19 +60,19 @@ pub(super) fn numbered(folder: &Path, files: &[PathBuf], grid: Option<[u32; 2]>)
 }
 
 /// The grid whose names have row, column and positions, if there is one.
-pub(super) fn positions(folder: &Path, files: &[PathBuf]) -> Option<Arrangement> {
+pub(super) fn arrange_by_positions(folder: &Path, files: &[PathBuf]) -> Option<Arrangement> {
     let named = |file: &PathBuf| {
-        let (cell, place) = positions_of(&stem(file))?;
+        let (cell, place) = parse_positions(&stem(file))?;
         Some(Named { file: file.clone(), cell, place: Some(place) })
     };
-    arranged(folder, files.iter().filter_map(named).collect(), ViewLayout::Positions, None)
+    arrange_grid(folder, files.iter().filter_map(named).collect(), ViewLayout::Positions, None)
 }
 
 /// The grid whose names have row and column, if there is one.
-pub(super) fn row_column(folder: &Path, files: &[PathBuf]) -> Option<Arrangement> {
+pub(super) fn arrange_by_row_column(folder: &Path, files: &[PathBuf]) -> Option<Arrangement> {
     let mut groups: HashMap<Vec<String>, Vec<(PathBuf, Vec<u32>)>> = HashMap::new();
     for file in files {
-        if let Some(name) = NumberedName::of(&stem(file)).filter(|name| name.numbers.len() >= 2) {
+        if let Some(name) = NumberedName::parse(&stem(file)).filter(|name| name.numbers.len() >= 2) {
             groups.entry(name.texts).or_default().push((file.clone(), name.numbers));
         }
     }
@@ -91,10 +96,11 @@ pub(super) fn row_column(folder: &Path, files: &[PathBuf]) -> Option<Arrangement
     };
     // What the letters before the numbers say.
     let letters = |at: usize| -> String { texts[at].chars().filter(|c| c.is_ascii_alphabetic()).collect() };
-    let says = |at: usize, words: [&str; 4]| {
+    let names_axis = |at: usize, words: [&str; 4]| {
         words.iter().any(|word| letters(at).ends_with(word) && (word.len() > 1 || letters(at).len() == 1))
     };
-    let is_swapped = says(first, ["column", "col", "c", "x"]) && says(second, ["row", "row", "r", "y"]);
+    let is_swapped =
+        names_axis(first, ["column", "col", "c", "x"]) && names_axis(second, ["row", "row", "r", "y"]);
     let cell = |numbers: &[u32]| {
         if is_swapped { [numbers[second], numbers[first]] } else { [numbers[first], numbers[second]] }
     };
@@ -102,7 +108,7 @@ pub(super) fn row_column(folder: &Path, files: &[PathBuf]) -> Option<Arrangement
         .iter()
         .map(|(file, numbers)| Named { file: file.clone(), cell: cell(numbers), place: None })
         .collect();
-    let mut arrangement = arranged(folder, named, ViewLayout::RowColumn, None)?;
+    let mut arrangement = arrange_grid(folder, named, ViewLayout::RowColumn, None)?;
     let [columns, rows] = arrangement.grid?;
     // Photographs may be numbered by day and number: a grid is filled well, or a line of it is named by little else than numbers.
     let filled = arrangement.views.len() as f64 / f64::from(columns * rows);
@@ -119,7 +125,7 @@ pub(super) fn row_column(folder: &Path, files: &[PathBuf]) -> Option<Arrangement
 }
 
 /// The grid of named files; none if it has less than two views, or more columns or rows than any.
-fn arranged(
+fn arrange_grid(
     folder: &Path,
     named: Vec<Named>,
     layout: ViewLayout,
@@ -141,7 +147,7 @@ fn arranged(
     }
     let count = |axis: usize| by_cell.keys().map(|cell| cell[axis]).max().unwrap_or(0).saturating_add(1);
     let [columns, rows] = grid.unwrap_or([count(1), count(0)]);
-    if columns.max(rows) > MOST {
+    if columns.max(rows) > MAX_SIDE {
         return None;
     }
     let step = |axis: usize| mean_step(by_cell.values(), axis);
@@ -180,10 +186,10 @@ fn mean_step<'a>(views: impl Iterator<Item = &'a Named> + Clone, axis: usize) ->
     let count = pairs.clone().count() as f64;
     let mean =
         pairs.clone().fold([0.0; 2], |[cell, place], pair| [cell + pair.0 / count, place + pair.1 / count]);
-    let [with, of] = pairs.fold([0.0; 2], |[with, of], (cell, place)| {
-        [with + (cell - mean[0]) * (place - mean[1]), of + (cell - mean[0]).powi(2)]
+    let [covariance, variance] = pairs.fold([0.0; 2], |[covariance, variance], (cell, place)| {
+        [covariance + (cell - mean[0]) * (place - mean[1]), variance + (cell - mean[0]).powi(2)]
     });
-    let step = with / of;
+    let step = covariance / variance;
     (step.is_finite() && step != 0.0).then_some(step)
 }
 
@@ -193,7 +199,7 @@ mod tests {
 
     fn cells(names: &[&str]) -> Option<(Vec<[u32; 2]>, [u32; 2], bool)> {
         let files: Vec<PathBuf> = names.iter().map(PathBuf::from).collect();
-        let arrangement = row_column(Path::new(""), &files)?;
+        let arrangement = arrange_by_row_column(Path::new(""), &files)?;
         let cells = arrangement.views.iter().filter_map(|view| view.cell).collect();
         Some((cells, arrangement.grid?, arrangement.is_certain))
     }
@@ -238,7 +244,7 @@ mod tests {
             "out_01_01_110.0_202.0_.png",
         ];
         let files: Vec<PathBuf> = files.iter().map(PathBuf::from).collect();
-        let views = positions(Path::new(""), &files).unwrap().views;
+        let views = arrange_by_positions(Path::new(""), &files).unwrap().views;
         let across = views[1].position - views[0].position;
         let down = views[2].position - views[0].position;
         assert!((across.x - 1.0).abs() < 0.05 && across.y.abs() < 0.05, "{across}");

@@ -23,13 +23,13 @@ use std::path::{Path, PathBuf};
 /// The list's name.
 pub(super) const NAME: &str = "views.json";
 /// The largest list, and the most views.
-const LARGEST: u64 = 4 << 20;
-const MOST: usize = 20_000;
+const MAX_BYTES: u64 = 4 << 20;
+const MAX_VIEWS: usize = 20_000;
 
 /// The views that a list tells of.
 pub(super) fn read_view_list(folder: &Folder, file: &Path) -> Result<Arrangement, CaptureError> {
     let malformed = |place: String, what: String| CaptureError::malformed(file, place, what);
-    let bytes = whole_file(file, LARGEST)?;
+    let bytes = whole_file(file, MAX_BYTES)?;
     let list: Value = serde_json::from_slice(&bytes).map_err(|error| {
         malformed(format!("line {}", error.line()), format!("its JSON is invalid: {error}"))
     })?;
@@ -40,8 +40,8 @@ pub(super) fn read_view_list(folder: &Folder, file: &Path) -> Result<Arrangement
     };
     let all = list.get("views").and_then(Value::as_array);
     let all = all.ok_or_else(|| malformed("views".into(), "there is no such list".into()))?;
-    if all.len() > MOST {
-        return Err(malformed("views".into(), format!("has {} views, the limit is {MOST}", all.len())));
+    if all.len() > MAX_VIEWS {
+        return Err(malformed("views".into(), format!("has {} views, the limit is {MAX_VIEWS}", all.len())));
     }
     let (mut views, mut missing, mut reference) = (Vec::new(), Vec::new(), None);
     for (index, entry) in all.iter().enumerate() {

@@ -2,7 +2,7 @@
 
 use super::png_rows::PngRows;
 use crate::CaptureError;
-use crate::picture_header::header;
+use crate::picture_header::read_header;
 use image::{DynamicImage, ImageBuffer};
 use scene::{LoadOptions, Photograph, PictureError};
 use std::fmt;
@@ -23,7 +23,7 @@ impl Mosaic {
     /// # Errors
     /// The file is no picture, or holds less than two micro-images a side.
     pub fn open(file: &Path, pitch: [u32; 2]) -> Result<Self, CaptureError> {
-        let (size, _) = header(file).map_err(|why| CaptureError::malformed(file, "picture", why))?;
+        let (size, _) = read_header(file).map_err(|why| CaptureError::malformed(file, "picture", why))?;
         let fits = |axis: usize| pitch[axis] > 0 && size[axis] / pitch[axis] >= 2;
         if !(fits(0) && fits(1) && pitch[0].saturating_mul(pitch[1]) > 1) {
             let what = format!(
@@ -66,9 +66,10 @@ impl Mosaic {
     pub fn views(&self, cells: &[[u32; 2]], options: &LoadOptions) -> Result<Vec<Photograph>, CaptureError> {
         assert!(cells.iter().all(|cell| cell[0] < self.pitch[0] && cell[1] < self.pitch[1]));
         let [width, height] = self.view_size().map(u64::from);
-        let wanted = width * height * cells.len() as u64;
+        let requested_pixels = width * height * cells.len() as u64;
         let limit = options.max_memory / (12 + 6);
-        if wanted > limit || u64::from(self.size[0]) * u64::from(self.size[1]) > options.max_texels {
+        if requested_pixels > limit || u64::from(self.size[0]) * u64::from(self.size[1]) > options.max_texels
+        {
             let (width, height) = (self.size[0], self.size[1]);
             return Err(PictureError::TooBig {
                 file: self.file.clone(),
@@ -96,11 +97,11 @@ impl Mosaic {
     }
 
     fn check_size(&self, size: [u32; 2]) -> Result<(), CaptureError> {
-        let [found, wanted] = [size, self.size];
-        if found == wanted {
+        let [actual, expected] = [size, self.size];
+        if actual == expected {
             return Ok(());
         }
-        Err(PictureError::OtherSize { file: self.file.clone(), found, wanted }.into())
+        Err(PictureError::SizeMismatch { file: self.file.clone(), actual, expected }.into())
     }
 
     fn slice(&self, whole: &Photograph, cell: [u32; 2]) -> Photograph {
@@ -151,7 +152,7 @@ impl Mosaic {
         let mut views = Vec::with_capacity(cells.len());
         for bytes in stored {
             let picture = picture(bytes).ok_or_else(|| self.undecodable("it lacks pixels".into()))?;
-            views.push(Photograph::of(picture, rows.profile.as_deref(), &self.file)?);
+            views.push(Photograph::from_image(picture, rows.profile.as_deref(), &self.file)?);
         }
         Ok(views)
     }

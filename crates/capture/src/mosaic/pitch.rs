@@ -22,7 +22,7 @@ const PITCHES: std::ops::RangeInclusive<usize> = 3..=40;
 const ROWS: usize = 480;
 
 /// The pitch of a picture that is a mosaic, across and down; `None` if it is none.
-pub(crate) fn pitch_of(file: &Path, options: &LoadOptions) -> Option<[u32; 2]> {
+pub(crate) fn detect_pitch(file: &Path, options: &LoadOptions) -> Option<[u32; 2]> {
     let (levels, width) = band(file, options)?;
     let rows = levels.len() / width;
     let difference = |a: usize, b: usize| f64::from((levels[a] - levels[b]).abs());
@@ -41,11 +41,11 @@ pub(crate) fn pitch_of(file: &Path, options: &LoadOptions) -> Option<[u32; 2]> {
 
 /// Brightness of rows from the middle of a picture, and its width.
 fn band(file: &Path, options: &LoadOptions) -> Option<(Vec<f32>, usize)> {
-    let keep = |height: u32| {
+    let middle_rows = |height: u32| {
         let rows = (height as usize).min(ROWS);
         (height as usize - rows) / 2..(height as usize - rows) / 2 + rows
     };
-    let is_enough = |size: [u32; 2]| {
+    let is_usable = |size: [u32; 2]| {
         let pixels = u64::from(size[0]) * u64::from(size[1]);
         size.iter().all(|side| *side >= 24)
             && pixels <= options.max_texels
@@ -53,16 +53,16 @@ fn band(file: &Path, options: &LoadOptions) -> Option<(Vec<f32>, usize)> {
     };
     if let Some(rows) = PngRows::open(file, options.max_memory) {
         let mut rows = rows.ok()?;
-        if !is_enough(rows.size) {
+        if !is_usable(rows.size) {
             return None;
         }
-        let (kept, pixel_bytes, is_deep) = (keep(rows.size[1]), rows.pixel_bytes(), rows.is_deep);
+        let (band_rows, pixel_bytes, is_deep) = (middle_rows(rows.size[1]), rows.pixel_bytes(), rows.is_deep);
         // Green, or grey.
         let offset = if rows.channels >= 3 { pixel_bytes / rows.channels } else { 0 };
         let mut levels = Vec::new();
-        for y in 0..kept.end {
+        for y in 0..band_rows.end {
             let row = rows.next().ok()?;
-            if y >= kept.start {
+            if y >= band_rows.start {
                 let level = |pixel: &[u8]| {
                     let high = f32::from(pixel[offset]);
                     if is_deep { high + f32::from(pixel[offset + 1]) / 256.0 } else { high }
@@ -77,11 +77,13 @@ fn band(file: &Path, options: &LoadOptions) -> Option<(Vec<f32>, usize)> {
     limits.max_alloc = Some(options.max_memory / 2);
     reader.limits(limits);
     let picture = reader.decode().ok()?.into_luma8();
-    if !is_enough([picture.width(), picture.height()]) {
+    if !is_usable([picture.width(), picture.height()]) {
         return None;
     }
-    let (kept, width) = (keep(picture.height()), picture.width() as usize);
-    let levels = picture.as_raw()[kept.start * width..kept.end * width].iter().map(|level| f32::from(*level));
+    let (band_rows, width) = (middle_rows(picture.height()), picture.width() as usize);
+    let levels = picture.as_raw()[band_rows.start * width..band_rows.end * width]
+        .iter()
+        .map(|level| f32::from(*level));
     Some((levels.collect(), width))
 }
 

@@ -1,6 +1,6 @@
 //! The tables of a PLY file, row by row.
 
-use super::header::{Element, Format, Kind, Rest, Scalar};
+use super::header::{DataType, Element, Format, Rest, Scalar};
 use crate::CaptureError;
 use crate::text::Lines;
 use scene::LoadOptions;
@@ -81,7 +81,8 @@ impl Body {
 
     /// Passes an element over.
     pub fn skip(&mut self, element: &Element) -> Result<(), CaptureError> {
-        let is_fixed = element.properties.iter().all(|property| matches!(property.kind, Kind::Scalar(_)));
+        let is_fixed =
+            element.properties.iter().all(|property| matches!(property.data_type, DataType::Scalar(_)));
         if let Input::Binary(input) = &mut self.input
             && is_fixed
         {
@@ -108,22 +109,24 @@ impl Body {
         mut list: Option<(usize, &mut Vec<f64>)>,
     ) -> Result<(), CaptureError> {
         for (column, property) in element.properties.iter().enumerate() {
-            match property.kind {
-                Kind::Scalar(scalar) => row[column] = self.value(scalar)?,
-                Kind::List { count, item } => {
+            match property.data_type {
+                DataType::Scalar(scalar) => row[column] = self.value(scalar)?,
+                DataType::List { count, item } => {
                     let count = self.value(count)?;
                     let left = self.size.saturating_sub(self.at) as f64;
                     if !(count >= 0.0 && count <= left) {
                         return Err(self.malformed(format!("a list of {count} does not fit the file")));
                     }
-                    let mut kept =
-                        list.as_mut().filter(|(wanted, _)| *wanted == column).map(|(_, list)| &mut **list);
-                    if let Some(list) = &mut kept {
+                    let mut target = list
+                        .as_mut()
+                        .filter(|(target_column, _)| *target_column == column)
+                        .map(|(_, list)| &mut **list);
+                    if let Some(list) = &mut target {
                         list.clear();
                     }
                     for _ in 0..count as u64 {
                         let value = self.value(item)?;
-                        if let Some(list) = &mut kept {
+                        if let Some(list) = &mut target {
                             list.push(value);
                         }
                     }

@@ -39,11 +39,11 @@ pub(super) struct Element {
 #[derive(Debug)]
 pub(super) struct Property {
     pub name: String,
-    pub kind: Kind,
+    pub data_type: DataType,
 }
 
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Kind {
+pub(super) enum DataType {
     Scalar(Scalar),
     List { count: Scalar, item: Scalar },
 }
@@ -94,7 +94,7 @@ impl Scalar {
     }
 }
 
-impl Kind {
+impl DataType {
     /// What stands for full intensity of a colour of this type.
     pub fn white(self) -> f64 {
         match self {
@@ -107,13 +107,13 @@ impl Kind {
 impl Element {
     /// Bytes that a row takes at least.
     pub fn least_bytes(&self, format: Format) -> u64 {
-        let of = |property: &Property| match (format, property.kind) {
+        let min_size = |property: &Property| match (format, property.data_type) {
             // A digit and what parts it from the next.
             (Format::Ascii, _) => 2,
-            (_, Kind::Scalar(scalar)) => scalar.size() as u64,
-            (_, Kind::List { count, .. }) => count.size() as u64,
+            (_, DataType::Scalar(scalar)) => scalar.size() as u64,
+            (_, DataType::List { count, .. }) => count.size() as u64,
         };
-        self.properties.iter().map(of).sum()
+        self.properties.iter().map(min_size).sum()
     }
 }
 
@@ -152,16 +152,16 @@ impl Header {
                     elements.push(Element { name: name.into(), count, properties: Vec::new() });
                 }
                 ["property", .., name] => {
-                    let kind = match fields[1..fields.len() - 1] {
+                    let data_type = match fields[1..fields.len() - 1] {
                         ["list", count, item] => Scalar::named(count)
                             .zip(Scalar::named(item))
-                            .map(|(count, item)| Kind::List { count, item }),
-                        [scalar] => Scalar::named(scalar).map(Kind::Scalar),
+                            .map(|(count, item)| DataType::List { count, item }),
+                        [scalar] => Scalar::named(scalar).map(DataType::Scalar),
                         _ => None,
                     };
-                    let kind = kind.ok_or_else(|| wrong("is no property of a known type"))?;
+                    let data_type = data_type.ok_or_else(|| wrong("is no property of a known type"))?;
                     let element = elements.last_mut().ok_or_else(|| wrong("is a property of no element"))?;
-                    element.properties.push(Property { name: name.into(), kind });
+                    element.properties.push(Property { name: name.into(), data_type });
                 }
                 ["end_header"] => {
                     let format = format.ok_or_else(|| wrong("no format was given"))?;
@@ -180,14 +180,14 @@ impl Header {
     }
 
     /// The elements up to the last of these, and whether each is the first of one of them.
-    pub fn until(&self, wanted: &[&str]) -> Vec<(&Element, bool)> {
+    pub fn until(&self, names: &[&str]) -> Vec<(&Element, bool)> {
         let first = |name: &&str| self.elements.iter().position(|element| element.name == **name);
-        let wanted: Vec<usize> = wanted.iter().filter_map(first).collect();
-        let end = wanted.iter().max().map_or(0, |last| last + 1);
+        let indices: Vec<usize> = names.iter().filter_map(first).collect();
+        let end = indices.iter().max().map_or(0, |last| last + 1);
         self.elements[..end]
             .iter()
             .enumerate()
-            .map(|(index, element)| (element, wanted.contains(&index)))
+            .map(|(index, element)| (element, indices.contains(&index)))
             .collect()
     }
 }

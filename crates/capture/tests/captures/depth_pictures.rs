@@ -5,8 +5,8 @@ use crate::made_light::{
     turned_jpeg,
 };
 use capture::{
-    CaptureError, CaptureKind, DepthAs, DepthContainer, DepthMeaning, DepthPicture, DepthPictureOptions,
-    NearEnd, capture_kind, open_depth_picture,
+    CaptureError, CaptureKind, DepthContainer, DepthMeaning, DepthPicture, DepthPictureOptions,
+    DepthQuantity, NearEnd, detect_capture_kind, open_depth_picture,
 };
 use image::{ImageFormat, Rgb, RgbImage};
 use scene::{LoadOptions, Photograph};
@@ -29,7 +29,7 @@ fn refused(path: &Path) -> String {
 
 /// Opens a file that is recognised.
 fn opened(path: &Path) -> DepthPicture {
-    assert_eq!(capture_kind(path).unwrap(), CaptureKind::Depth);
+    assert_eq!(detect_capture_kind(path).unwrap(), CaptureKind::Depth);
     open(path).unwrap()
 }
 
@@ -85,7 +85,9 @@ fn exrs_without_depth_or_without_a_picture() {
     let one = |_: usize, _: usize| 1.0;
     exr(&file, 4, 4, &[("R", &one), ("G", &one), ("B", &one), ("N.X", &one), ("N.Z", &one)]);
     assert!(refused(&file).contains("no depth among its channels (Z, depth.Z"));
-    assert!(capture_kind(&file).unwrap_err().to_string().contains("an EXR without a channel of depth"));
+    assert!(
+        detect_capture_kind(&file).unwrap_err().to_string().contains("an EXR without a channel of depth")
+    );
     // Depth beside it.
     let depth = folder.path().join("a_depth.exr");
     exr(&depth, 4, 4, &[("V", &|x, _| 2.0 + x as f32)]);
@@ -104,7 +106,7 @@ fn relative_depth_asks_which_end_is_near() {
     put(&file, jpeg(60, 40, 90));
     assert!(refused(&file).contains("no depth in it or beside it (put it beside as NAME_depth.png"));
     put(&folder.path().join("cat_depth.png"), levels_png(30, 20));
-    assert_eq!(capture_kind(&file).unwrap(), CaptureKind::Depth);
+    assert_eq!(detect_capture_kind(&file).unwrap(), CaptureKind::Depth);
     assert!(
         refused(&file)
             .contains("cat_depth.png: does not say which end is near (say --near white or --near black")
@@ -118,7 +120,7 @@ fn relative_depth_asks_which_end_is_near() {
     let picture = near(&file, NearEnd::White).unwrap();
     assert_eq!((picture.size, picture.depth.width, picture.remarks.len()), ([60, 40], 30, 0));
     // A folder of one picture and its depth is that picture.
-    assert_eq!(capture_kind(folder.path()).unwrap(), CaptureKind::Depth);
+    assert_eq!(detect_capture_kind(folder.path()).unwrap(), CaptureKind::Depth);
     let options = DepthPictureOptions { near: Some(NearEnd::White), ..DepthPictureOptions::default() };
     assert_eq!(open_depth_picture(folder.path(), &options).unwrap().name, "cat.jpg");
     put(&folder.path().join("dog.jpg"), jpeg(60, 40, 90));
@@ -151,10 +153,10 @@ fn floats_beside_a_picture_and_files_that_are_named() {
             .depth
     };
     assert_eq!(
-        (named(DepthAs::Disparity).meaning, named(DepthAs::Depth).meaning),
+        (named(DepthQuantity::Disparity).meaning, named(DepthQuantity::Depth).meaning),
         (DepthMeaning::Disparity, DepthMeaning::Distance)
     );
-    assert_eq!(named(DepthAs::Depth).range(), Some([1.0, 59.0]));
+    assert_eq!(named(DepthQuantity::Depth).range(), Some([1.0, 59.0]));
     // A grey disparity is near where it is white, and that is told.
     std::fs::remove_file(folder.path().join("cat_disp.pfm")).unwrap();
     levels8(60, 40).save(folder.path().join("cat_disp.png")).unwrap();
@@ -356,7 +358,7 @@ fn an_heic_gets_the_command_that_keeps_its_depth() {
     for (name, bytes) in [("IMG_1.HEIC", &b"nothing"[..]), ("IMG_2.jpg", b"\0\0\0\x24ftypheic\0\0\0\0mif1")] {
         let file = folder.path().join(name);
         put(&file, bytes);
-        for text in [refused(&file), capture_kind(&file).unwrap_err().to_string()] {
+        for text in [refused(&file), detect_capture_kind(&file).unwrap_err().to_string()] {
             assert!(text.contains("is an HEIC picture, which cannot be read (bring out picture and depth with libheif: heif-convert --with-aux"), "{text}");
             assert!(text.contains("a conversion to JPEG alone drops the depth"));
         }

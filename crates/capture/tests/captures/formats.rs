@@ -1,7 +1,7 @@
 //! The cameras of every program: the same ones, written as each has them, are the same views.
 
 use crate::made::{Camera, FOCAL, SIZE, cameras, names, open, pictures_and_mesh, refused};
-use capture::{CaptureOptions, Kind, recognise};
+use capture::{CameraFormat, CaptureOptions, recognise};
 use glam::{DMat3, DMat4, DVec2, DVec3};
 use progress::Unwatched;
 use std::fs::{create_dir_all, write};
@@ -10,7 +10,7 @@ use std::path::Path;
 const NAMES: [&str; 3] = ["a.jpg", "sub/b.jpg", "sub/c.jpg"];
 
 /// Opens what `write` makes of the cameras in a folder with pictures and mesh; the views must be theirs, and see what they see.
-fn same_cameras(kind: Kind, write: impl Fn(&Path, &[Camera])) -> capture::Capture {
+fn same_cameras(kind: CameraFormat, write: impl Fn(&Path, &[Camera])) -> capture::Capture {
     let folder = tempfile::tempdir().unwrap();
     let cameras = cameras(&NAMES);
     pictures_and_mesh(folder.path(), &cameras);
@@ -18,7 +18,7 @@ fn same_cameras(kind: Kind, write: impl Fn(&Path, &[Camera])) -> capture::Captur
     write(folder.path(), &cameras);
     assert_eq!(recognise(folder.path()), Some(kind));
     let capture = open(folder.path()).unwrap();
-    assert_eq!((capture.kind, names(&capture)), (kind, NAMES.to_vec()));
+    assert_eq!((capture.camera_format, names(&capture)), (kind, NAMES.to_vec()));
     for (view, camera) in capture.views.iter().zip(&cameras) {
         assert!((view.position() - camera.center).length() < 1e-9, "{}", view.name);
         for point in [DVec3::ZERO, DVec3::new(0.3, 0.2, -0.4)] {
@@ -35,8 +35,10 @@ fn same_cameras(kind: Kind, write: impl Fn(&Path, &[Camera])) -> capture::Captur
 
 #[test]
 fn colmap_text_and_binary() {
-    same_cameras(Kind::Colmap, |folder, cameras| crate::made::colmap_text(&folder.join("sparse/0"), cameras));
-    same_cameras(Kind::Colmap, |folder, cameras| colmap_binary(&folder.join("sparse"), cameras));
+    same_cameras(CameraFormat::Colmap, |folder, cameras| {
+        crate::made::colmap_text(&folder.join("sparse/0"), cameras)
+    });
+    same_cameras(CameraFormat::Colmap, |folder, cameras| colmap_binary(&folder.join("sparse"), cameras));
 }
 
 /// COLMAP's binary model; with a rigs.bin of nonsense, which nobody asks for.
@@ -108,7 +110,7 @@ fn transforms(folder: &Path, cameras: &[Camera], lens: &str, name: impl Fn(&str)
 #[test]
 fn nerfstudio_with_a_lens_for_all() {
     let lens = r#""camera_model": "OPENCV", "fl_x": 50, "fl_y": 50.0, "cx": 30, "cy": 20, "w": 60.0, "h": 40, "k1": 0"#;
-    same_cameras(Kind::Nerfstudio, |folder, cameras| {
+    same_cameras(CameraFormat::Nerfstudio, |folder, cameras| {
         transforms(folder, cameras, lens, |name| format!("./images/{name}"))
     });
 }
@@ -117,7 +119,7 @@ fn nerfstudio_with_a_lens_for_all() {
 fn nerfstudio_by_an_angle_without_extensions() {
     // 2·atan(30/50)
     let lens = r#""camera_angle_x": 1.0808390005411683, "odd": 1"#;
-    let capture = same_cameras(Kind::Nerfstudio, |folder, cameras| {
+    let capture = same_cameras(CameraFormat::Nerfstudio, |folder, cameras| {
         transforms(folder, cameras, lens, |name| format!("images/{}", name.trim_end_matches(".jpg")))
     });
     assert!(capture.remarks.iter().any(|remark| remark.text.contains("\"odd\"")), "{:?}", capture.remarks);
@@ -147,7 +149,7 @@ fn nerfstudio_with_a_lens_and_a_mask_for_each() {
 
 #[test]
 fn bundler() {
-    let capture = same_cameras(Kind::Bundler, |folder, cameras| {
+    let capture = same_cameras(CameraFormat::Bundler, |folder, cameras| {
         let mut text = format!("# Bundle file v0.3\n{} 0\n", cameras.len() + 1);
         text += "0 0 0\n0 0 0\n0 0 0\n0 0 0\n0 0 0\n";
         for camera in cameras {
@@ -181,7 +183,7 @@ fn visual_sfm() {
         text += "\n1\n0 0 0 255 255 255 2 0 5 1.5 2.5 1 6 3.5 4.5\n\n0\n\n# PLY\n0\n";
         write(folder.join("model.nvm"), text).unwrap();
     };
-    same_cameras(Kind::Nvm, |folder, cameras| written(folder, cameras, 0.0));
+    same_cameras(CameraFormat::Nvm, |folder, cameras| written(folder, cameras, 0.0));
     // What is measured at m is ideally at m(1 + r·m²).
     let folder = tempfile::tempdir().unwrap();
     pictures_and_mesh(folder.path(), &cameras(&NAMES));
@@ -225,7 +227,7 @@ fn metashape_xml() {
     let cameras = cameras(&NAMES);
     pictures_and_mesh(folder.path(), &cameras);
     metashape(folder.path(), &cameras, "<f>50</f>");
-    assert_eq!(recognise(folder.path()), Some(Kind::Metashape));
+    assert_eq!(recognise(folder.path()), Some(CameraFormat::Metashape));
     let capture = open(folder.path()).unwrap();
     assert_eq!(names(&capture), NAMES);
     for (view, camera) in capture.views.iter().zip(&cameras) {
@@ -274,11 +276,12 @@ fn a_kind_may_be_chosen() {
     let folder = crate::made::colmap(&NAMES);
     transforms(folder.path(), &cameras(&NAMES[..2]), "\"fl_x\": 50", |name| format!("images/{name}"));
     let capture = open(folder.path()).unwrap();
-    assert_eq!((capture.kind, capture.views.len()), (Kind::Colmap, 3));
+    assert_eq!((capture.camera_format, capture.views.len()), (CameraFormat::Colmap, 3));
     assert!(capture.remarks[0].text.contains("transforms.json"), "{:?}", capture.remarks);
-    let options = CaptureOptions { kind: Some(Kind::Nerfstudio), ..CaptureOptions::default() };
+    let options =
+        CaptureOptions { camera_format: Some(CameraFormat::Nerfstudio), ..CaptureOptions::default() };
     let capture = capture::open(folder.path(), &options, &Unwatched).unwrap();
-    assert_eq!((capture.kind, capture.views.len()), (Kind::Nerfstudio, 2));
+    assert_eq!((capture.camera_format, capture.views.len()), (CameraFormat::Nerfstudio, 2));
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use crate::made_light::{PARAMETERS, SIDE, attributes, disparity_pfm, grid, pfm, put, save, view};
 use capture::{
     CaptureError, CaptureKind, DepthMeaning, LightField, LightFieldOptions, PictureSource, ViewLayout,
-    capture_kind, open_light_field,
+    detect_capture_kind, open_light_field,
 };
 use glam::DVec2;
 use progress::Unwatched;
@@ -23,7 +23,7 @@ fn refused(path: &Path) -> String {
 
 /// Opens a folder that is recognised as a light field.
 fn opened(folder: &Path) -> LightField {
-    assert_eq!(capture_kind(folder).unwrap(), CaptureKind::LightField);
+    assert_eq!(detect_capture_kind(folder).unwrap(), CaptureKind::LightField);
     open(folder).unwrap()
 }
 
@@ -333,21 +333,21 @@ fn disparities_of_the_files_that_lie_with_the_views() {
 fn folders_of_nothing_get_their_sentence() {
     let folder = tempfile::tempdir().unwrap();
     assert!(refused(folder.path()).contains("no views of a light field (name them by row and column"));
-    let text = capture_kind(folder.path()).unwrap_err().to_string();
+    let text = detect_capture_kind(folder.path()).unwrap_err().to_string();
     assert!(
         text.contains(
             "is neither photographs with cameras nor a light field nor a picture with depth (give a folder"
         ),
         "{text}"
     );
-    assert!(capture_kind(&folder.path().join("gone")).is_err());
+    assert!(detect_capture_kind(&folder.path().join("gone")).is_err());
     // Photographs without cameras are no light field.
     for k in 0..9 {
         save(&view(f64::from(k), 0.0), &folder.path().join(format!("IMG_2023_{k:04}.jpg")));
     }
-    assert!(capture_kind(folder.path()).unwrap_err().to_string().contains("is neither"));
+    assert!(detect_capture_kind(folder.path()).unwrap_err().to_string().contains("is neither"));
     for (name, kind) in CaptureKind::ALL {
-        assert_eq!(CaptureKind::named(name), Some(kind));
+        assert_eq!(CaptureKind::from_name(name), Some(kind));
     }
 }
 
@@ -377,8 +377,8 @@ fn misfit(field: &LightField) -> [f64; 2] {
                     (at % map.width as usize) as f64 + 0.5,
                     (at / map.width as usize) as f64 + 0.5,
                 );
-                let there = other.at(here - sign * f64::from(*d) * step);
-                *sum += f64::from((there - reference.at(here)).abs().y);
+                let there = other.sample(here - sign * f64::from(*d) * step);
+                *sum += f64::from((there - reference.sample(here)).abs().y);
             }
         }
     }
@@ -436,11 +436,11 @@ fn the_real_lfp_files_get_their_sentence() {
         ("lfp/IMG_0002-dm.lfp", "a depth map without picture"),
     ] {
         let Some(file) = shared(name) else { continue };
-        for text in [refused(&file), capture_kind(&file).unwrap_err().to_string()] {
+        for text in [refused(&file), detect_capture_kind(&file).unwrap_err().to_string()] {
             assert!(text.contains(holds) && text.contains("PlenoptiCam") && text.contains("ESLF"), "{text}");
         }
         let folder = file.parent().unwrap();
-        assert!(capture_kind(folder).unwrap_err().to_string().contains("PlenoptiCam"));
+        assert!(detect_capture_kind(folder).unwrap_err().to_string().contains("PlenoptiCam"));
         assert!(refused(folder).contains("PlenoptiCam"));
     }
 }

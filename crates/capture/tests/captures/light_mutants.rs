@@ -10,7 +10,7 @@ use crate::made_light::{
 use crate::mutants::{peak_memory, restructure};
 use crate::mutation::{Random, damage};
 use capture::{
-    CaptureError, DepthPictureOptions, LightFieldOptions, NearEnd, capture_kind, open_depth_picture,
+    CaptureError, DepthPictureOptions, LightFieldOptions, NearEnd, detect_capture_kind, open_depth_picture,
     open_light_field,
 };
 use image::{DynamicImage, ImageFormat, RgbImage};
@@ -75,7 +75,7 @@ fn survive(seed: impl Fn(&Path, usize) -> Vec<PathBuf>, open: impl Fn(&Path) -> 
 fn light_field(folder: &Path) -> Result<(), CaptureError> {
     let mosaic = folder.join("mosaic.png");
     let path = if mosaic.exists() { &mosaic } else { folder };
-    let _ = capture_kind(path);
+    let _ = detect_capture_kind(path);
     let pitch = mosaic.exists().then_some([4, 4]);
     let options = LightFieldOptions { pitch, ..LightFieldOptions::default() };
     let field = open_light_field(path, &options, &Unwatched)?;
@@ -93,7 +93,7 @@ fn light_field(folder: &Path) -> Result<(), CaptureError> {
 fn depth_picture(folder: &Path) -> Result<(), CaptureError> {
     let file =
         ["a.jpg", "a.exr"].map(|name| folder.join(name)).into_iter().find(|file| file.exists()).unwrap();
-    let _ = capture_kind(&file);
+    let _ = detect_capture_kind(&file);
     let options = DepthPictureOptions {
         near: folder.join("near").exists().then_some(NearEnd::White),
         ..DepthPictureOptions::default()

@@ -2,7 +2,7 @@
 
 use crate::made_light::{SIDE, encoded, put, view};
 use capture::{
-    CaptureKind, LightField, LightFieldOptions, Mosaic, PictureSource, ViewLayout, capture_kind,
+    CaptureKind, LightField, LightFieldOptions, Mosaic, PictureSource, ViewLayout, detect_capture_kind,
     micro_images, open_light_field,
 };
 use image::{ImageBuffer, ImageFormat, Rgb, RgbImage};
@@ -35,7 +35,7 @@ fn there_and_back() {
         let file = folder.path().join("eslf.png");
         whole.save(&file).unwrap();
         if pitch.is_none() {
-            assert_eq!(capture_kind(&file).unwrap(), CaptureKind::LightField, "{columns} × {rows}");
+            assert_eq!(detect_capture_kind(&file).unwrap(), CaptureKind::LightField, "{columns} × {rows}");
         }
         let field = open(&file, pitch).unwrap();
         assert_eq!(
@@ -113,7 +113,7 @@ fn pictures_that_are_no_mosaic() {
         put(&file, encoded(big.clone(), form));
         let text = open(&file, None).unwrap_err();
         assert!(text.contains("it is no mosaic of micro-images"), "{text}");
-        let text = capture_kind(&file).unwrap_err().to_string();
+        let text = detect_capture_kind(&file).unwrap_err().to_string();
         assert!(text.contains("a picture alone"), "{text}");
     }
     let file = folder.path().join("picture");

@@ -1,7 +1,7 @@
 //! The real capture of the shared reference data: 66 photographs of a skull, its cameras as text and as binary, its mesh.
 
 use crate::made::open;
-use capture::{Kind, recognise};
+use capture::{CameraFormat, recognise};
 use scene::{LoadOptions, View};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -19,7 +19,7 @@ fn skull() -> Option<PathBuf> {
 #[test]
 fn it_opens_without_a_word_of_help() {
     let Some(folder) = skull() else { return };
-    assert_eq!(recognise(&folder), Some(Kind::Colmap));
+    assert_eq!(recognise(&folder), Some(CameraFormat::Colmap));
     let start = Instant::now();
     let capture = open(&folder).unwrap();
     assert!(start.elapsed() < Duration::from_secs(5), "{:?}", start.elapsed());
@@ -84,7 +84,7 @@ fn the_skull_is_where_its_mesh_is() {
     let Some(folder) = skull() else { return };
     let capture = open(&folder).unwrap();
     for view in capture.views.iter().step_by(5) {
-        let picture = view.photograph(&LoadOptions::default()).unwrap();
+        let picture = view.read_photograph(&LoadOptions::default()).unwrap();
         let [width, height] = [picture.width, picture.height].map(i64::from);
         let mut covered = vec![false; (width * height) as usize];
         for position in &capture.scene.positions {

@@ -147,7 +147,7 @@ fn trap_4_exif_rotation_is_followed_only_where_the_camera_was_turned_too() {
         capture.views.iter().map(|view| [view.orientation, view.exif_orientation]).collect();
     assert_eq!(orientations, [[1, 6], [6, 6], [1, 1]]);
     for view in &capture.views {
-        let pixels = view.photograph(&LoadOptions::default()).unwrap();
+        let pixels = view.read_photograph(&LoadOptions::default()).unwrap();
         assert_eq!([pixels.width, pixels.height], SIZE);
     }
     assert_eq!(capture.remarks.len(), 1);
@@ -244,10 +244,10 @@ fn trap_6_ten_views_of_which_a_fifth_has_a_person_masked_out_and_exposures_diffe
     let capture = open(folder.path()).unwrap();
     assert_eq!(capture.views.len(), 10);
     for (index, view) in capture.views.iter().enumerate() {
-        let mask = view.mask(&LoadOptions::default()).unwrap();
+        let mask = view.read_mask(&LoadOptions::default()).unwrap();
         assert_eq!(mask.is_some(), index == 3 || index == 8, "{}", view.name);
         if let Some(mask) = mask {
-            assert_eq!(mask.counts.iter().filter(|counts| **counts).count() as u32, SIZE[0] * SIZE[1] / 2);
+            assert_eq!(mask.is_valid.iter().filter(|counts| **counts).count() as u32, SIZE[0] * SIZE[1] / 2);
         }
         assert_eq!(view.exposure_hint, None);
     }

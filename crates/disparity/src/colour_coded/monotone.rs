@@ -12,11 +12,11 @@ const PARTS: usize = 48;
 
 /// The function, as places and values.
 #[derive(Clone, Debug)]
-pub struct Growth {
+pub struct MonotoneFunction {
     knots: Vec<(f32, f32)>,
 }
 
-impl Growth {
+impl MonotoneFunction {
     /// Through samples of (place, value); `None` if it does not grow.
     pub fn fit(samples: &[(f32, f32)]) -> Option<Self> {
         let mut sorted = samples.to_vec();
@@ -24,9 +24,9 @@ impl Growth {
         let rough = Self::of_parts(&sorted, middle)?;
         let mut residuals: Vec<f32> = sorted.iter().map(|(place, v)| (rough.at(*place) - v).abs()).collect();
         let cut = 4.0 * middle(&mut residuals);
-        let kept: Vec<(f32, f32)> =
+        let inliers: Vec<(f32, f32)> =
             sorted.into_iter().filter(|(place, v)| (rough.at(*place) - v).abs() <= cut).collect();
-        let fine = Self::of_parts(&kept, |values| values.iter().sum::<f32>() / values.len() as f32);
+        let fine = Self::of_parts(&inliers, |values| values.iter().sum::<f32>() / values.len() as f32);
         fine.or(Some(rough))
     }
 
@@ -73,18 +73,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_square_is_found_though_a_fifth_of_the_samples_is_wrong() {
+    fn a_square_is_fitted_though_a_fifth_of_the_samples_is_wrong() {
         let samples: Vec<(f32, f32)> = (0..400)
             .map(|i| {
                 let place = (i * 37 % 400) as f32 / 399.0;
                 (place, if i % 5 == 0 { (i * 13 % 7) as f32 / 7.0 } else { place * place })
             })
             .collect();
-        let growth = Growth::fit(&samples).unwrap();
+        let growth = MonotoneFunction::fit(&samples).unwrap();
         for k in 0..=20 {
             let place = k as f32 / 20.0;
             assert!((growth.at(place) - place * place).abs() < 0.02, "{place}: {}", growth.at(place));
         }
-        assert!(Growth::fit(&[(0.5, 1.0); 50]).is_none());
+        assert!(MonotoneFunction::fit(&[(0.5, 1.0); 50]).is_none());
     }
 }

@@ -19,7 +19,7 @@ const WINDOWS: [f32; 8] = [0.08, 0.06, 0.05, 0.04, 0.03, 0.025, 0.02, 0.02];
 const FAR: f32 = 0.25;
 
 /// The curve that runs through the colours of a map, from a first idea of it.
-pub fn drawn_in(start: Palette, map: &[[f32; 3]]) -> Palette {
+pub fn fit_principal_curve(start: Palette, map: &[[f32; 3]]) -> Palette {
     let colours = frequent(map);
     let mut palette = start;
     for window in WINDOWS {
@@ -77,18 +77,18 @@ fn local_line(placed: &[(f32, f32, [f32; 3])], place: f32, window: f32) -> Optio
     let (mut sum, mut first, mut second) = (0.0, 0.0, 0.0);
     let (mut value, mut slope) = ([0.0; 3], [0.0; 3]);
     for (there, weight, colour) in placed {
-        let apart = there - place;
-        let share = apart / window;
+        let offset = there - place;
+        let share = offset / window;
         if share.abs() > 3.0 {
             continue;
         }
         let weight = weight * (-0.5 * share * share).exp();
         sum += weight;
-        first += weight * apart;
-        second += weight * apart * apart;
+        first += weight * offset;
+        second += weight * offset * offset;
         for c in 0..3 {
             value[c] += weight * colour[c];
-            slope[c] += weight * apart * colour[c];
+            slope[c] += weight * offset * colour[c];
         }
     }
     let determinant = sum * second - first * first;

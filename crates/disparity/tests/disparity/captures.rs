@@ -5,7 +5,7 @@
 use crate::field::Field;
 use crate::score::score;
 use crate::still_life::StillLife;
-use disparity::{Asked, DisparityMap, find};
+use disparity::{DisparityMap, DisparityRequest, estimate_disparities};
 use progress::Unwatched;
 use std::path::{Path, PathBuf};
 
@@ -57,13 +57,13 @@ fn show(name: &str, map: &DisparityMap, field: &Field) {
 }
 
 fn measure(name: &str, field: &Field, others: &[[f64; 2]]) -> Vec<DisparityMap> {
-    let asked = Asked {
+    let asked = DisparityRequest {
         reference: field.at([0.0, 0.0]),
         others: others.iter().map(|p| field.at(*p)).collect(),
         range: None,
     };
     let start = std::time::Instant::now();
-    let maps = find(&field.views(), &asked, &Unwatched).expect("disparities");
+    let maps = estimate_disparities(&field.views(), &asked, &Unwatched).expect("disparities");
     eprintln!("{name}: {:.2} s for {} maps", start.elapsed().as_secs_f32(), maps.len());
     for (k, map) in maps.iter().enumerate() {
         let mut sorted = map.disparity.clone();

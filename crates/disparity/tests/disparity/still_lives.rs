@@ -3,7 +3,7 @@
 use crate::field::{Field, grid};
 use crate::score::{Score, score, score_where};
 use crate::still_life::StillLife;
-use disparity::{Asked, DisparityMap, find};
+use disparity::{DisparityMap, DisparityRequest, estimate_disparities};
 use progress::Unwatched;
 
 /// Pixels a side: seconds, not minutes.
@@ -17,8 +17,8 @@ fn photographed(positions: Vec<[f64; 2]>, parallax: f32, noise: f32) -> (Field, 
 }
 
 fn found(field: &Field, others: Vec<usize>, range: Option<(f32, f32)>) -> Vec<DisparityMap> {
-    let asked = Asked { reference: field.at([0.0, 0.0]), others, range };
-    let maps = find(&field.views(), &asked, &Unwatched).expect("disparities");
+    let asked = DisparityRequest { reference: field.at([0.0, 0.0]), others, range };
+    let maps = estimate_disparities(&field.views(), &asked, &Unwatched).expect("disparities");
     for map in &maps {
         assert_eq!(map.disparity.len(), SIZE * SIZE);
         assert!(map.disparity.iter().all(|d| d.is_finite()));

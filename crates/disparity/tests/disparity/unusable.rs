@@ -1,6 +1,6 @@
 //! What is no light field is told.
 
-use disparity::{Asked, DisparityError, Picture, View, find};
+use disparity::{DisparityError, DisparityRequest, Picture, View, estimate_disparities};
 use progress::{Progress, Unwatched};
 
 fn view(rgb: &[[f32; 3]], position: [f64; 2]) -> View<'_> {
@@ -13,11 +13,13 @@ fn each_mistake_has_its_sentence() {
     let mut broken = rgb.clone();
     broken[45][1] = f32::NAN;
     let two = [view(&rgb, [0.0, 0.0]), view(&rgb, [1.0, 0.0])];
-    let asked = |reference, range| Asked { reference, others: Vec::new(), range };
-    let told = |views: &[View<'_>], asked: &Asked| find(views, asked, &Unwatched).unwrap_err();
+    let asked = |reference, range| DisparityRequest { reference, others: Vec::new(), range };
+    let told = |views: &[View<'_>], asked: &DisparityRequest| {
+        estimate_disparities(views, asked, &Unwatched).unwrap_err()
+    };
     assert_eq!(told(&two[..1], &asked(0, None)), DisparityError::TooFewViews { views: 1 });
     assert_eq!(told(&two, &asked(2, None)), DisparityError::NoSuchView { view: 2, views: 2 });
-    let others = Asked { others: vec![7], ..Asked::default() };
+    let others = DisparityRequest { others: vec![7], ..DisparityRequest::default() };
     assert_eq!(told(&two, &others), DisparityError::NoSuchView { view: 7, views: 2 });
     let nan = [two[0], view(&broken, [1.0, 0.0])];
     assert_eq!(told(&nan, &asked(0, None)), DisparityError::NotFinite { view: 1, x: 5, y: 2 });
@@ -36,7 +38,12 @@ fn a_picture_without_texture_has_finite_disparities_and_no_confidence() {
     let rgb = vec![[0.5; 3]; 320];
     let views = [view(&rgb, [0.0, 0.0]), view(&rgb, [1.0, 0.0]), view(&rgb, [0.0, 3.5])];
     for range in [None, Some((-0.5, 0.5)), Some((-1e30, 1e30))] {
-        let maps = find(&views, &Asked { range, others: vec![2], ..Asked::default() }, &Unwatched).unwrap();
+        let maps = estimate_disparities(
+            &views,
+            &DisparityRequest { range, others: vec![2], ..DisparityRequest::default() },
+            &Unwatched,
+        )
+        .unwrap();
         for map in maps {
             assert!(map.disparity.iter().all(|d| d.is_finite()));
             assert!(map.confidence.iter().all(|c| *c == 0.0));
@@ -55,5 +62,8 @@ fn it_stops_when_nobody_wants_it() {
     }
     let rgb = vec![[0.5; 3]; 320];
     let views = [view(&rgb, [0.0, 0.0]), view(&rgb, [1.0, 0.0])];
-    assert!(matches!(find(&views, &Asked::default(), &Stop), Err(DisparityError::Cancelled(_))));
+    assert!(matches!(
+        estimate_disparities(&views, &DisparityRequest::default(), &Stop),
+        Err(DisparityError::Cancelled(_))
+    ));
 }

@@ -21,8 +21,8 @@ impl Ease {
         [("hold", Ease::Hold), ("linear", Ease::Linear), ("smooth", Ease::Smooth)];
 
     /// The one of this name.
-    pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.iter().find(|(known, _)| *known == name).map(|(_, ease)| *ease)
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.iter().find(|(candidate, _)| *candidate == name).map(|(_, ease)| *ease)
     }
 
     /// How far the way is gone, in [0, 1], after a share u in [0, 1] of the time.
@@ -60,7 +60,7 @@ impl<T> Default for Keys<T> {
 
 /// Two neighbouring values, and how far the way from one to the other is gone, in [0, 1].
 #[derive(Debug, PartialEq)]
-pub struct Between<'a, T> {
+pub struct KeySpan<'a, T> {
     /// The value before.
     pub from: &'a T,
     /// The value after.
@@ -69,9 +69,9 @@ pub struct Between<'a, T> {
     pub share: f64,
 }
 
-impl Between<'_, f64> {
+impl KeySpan<'_, f64> {
     /// The number between, never beyond either.
-    pub fn number(&self) -> f64 {
+    pub fn interpolate(&self) -> f64 {
         mix(*self.from, *self.to, self.share)
     }
 }
@@ -83,7 +83,7 @@ pub(crate) fn mix(a: f64, b: f64, share: f64) -> f64 {
 
 impl<T> Keys<T> {
     /// Keys that one thing may have.
-    pub const MOST: usize = 4096;
+    pub const MAX_KEYS: usize = 4096;
 
     /// The keys, by time.
     pub fn keys(&self) -> &[Key<T>] {
@@ -97,11 +97,11 @@ impl<T> Keys<T> {
 
     /// Sets a key; one at the same time is replaced. False, and nothing is done, where there are too many already.
     #[must_use]
-    pub fn put(&mut self, key: Key<T>) -> bool {
+    pub fn insert(&mut self, key: Key<T>) -> bool {
         let at = self.0.partition_point(|other| other.seconds < key.seconds);
         if self.0.get(at).is_some_and(|other| other.seconds == key.seconds) {
             self.0[at] = key;
-        } else if self.0.len() < Self::MOST {
+        } else if self.0.len() < Self::MAX_KEYS {
             self.0.insert(at, key);
         } else {
             return false;
@@ -117,16 +117,16 @@ impl<T> Keys<T> {
     }
 
     /// The values around a time; `None` without keys.
-    pub fn around(&self, seconds: f64) -> Option<Between<'_, T>> {
+    pub fn span_at(&self, seconds: f64) -> Option<KeySpan<'_, T>> {
         let after = self.0.partition_point(|key| key.seconds <= seconds);
         let before = after.checked_sub(1).and_then(|before| self.0.get(before));
         Some(match (before, self.0.get(after)) {
             (Some(before), Some(after)) => {
                 let u = ((seconds - before.seconds) / (after.seconds - before.seconds)).clamp(0.0, 1.0);
-                Between { from: &before.value, to: &after.value, share: before.ease.share(u) }
+                KeySpan { from: &before.value, to: &after.value, share: before.ease.share(u) }
             }
             (Some(only), None) | (None, Some(only)) => {
-                Between { from: &only.value, to: &only.value, share: 0.0 }
+                KeySpan { from: &only.value, to: &only.value, share: 0.0 }
             }
             (None, None) => return None,
         })
@@ -134,7 +134,7 @@ impl<T> Keys<T> {
 
     /// Whether times ascend and are finite, and all values are usable: a file may hold others.
     pub fn is_valid(&self, is_usable: impl Fn(&T) -> bool) -> bool {
-        self.0.len() <= Self::MOST
+        self.0.len() <= Self::MAX_KEYS
             && self.0.iter().all(|key| key.seconds.is_finite() && is_usable(&key.value))
             && self.0.windows(2).all(|pair| pair[0].seconds < pair[1].seconds)
     }
@@ -151,20 +151,20 @@ mod tests {
     #[test]
     fn values_run_from_key_to_key() {
         let mut keys = Keys::default();
-        assert!(keys.around(0.0).is_none());
+        assert!(keys.span_at(0.0).is_none());
         for (seconds, value, ease) in
             [(2.0, 1.0, Ease::Hold), (0.0, 3.0, Ease::Smooth), (1.0, 5.0, Ease::Linear)]
         {
-            assert!(keys.put(key(seconds, value, ease)));
+            assert!(keys.insert(key(seconds, value, ease)));
         }
-        let at = |seconds: f64| keys.around(seconds).unwrap().number();
+        let at = |seconds: f64| keys.span_at(seconds).unwrap().interpolate();
         assert_eq!(
             [at(-1.0), at(0.0), at(0.5), at(1.0), at(1.25), at(2.0), at(9.0)],
             [3.0, 3.0, 4.0, 5.0, 4.0, 1.0, 1.0]
         );
         assert!((at(0.25) - (3.0 + 2.0 * 0.15625)).abs() < 1e-12, "slowly at first");
-        assert!(keys.put(key(1.0, 7.0, Ease::Hold)) && keys.keys().len() == 3, "one at a time");
-        assert_eq!(keys.around(1.9).unwrap().number(), 7.0);
+        assert!(keys.insert(key(1.0, 7.0, Ease::Hold)) && keys.keys().len() == 3, "one at a time");
+        assert_eq!(keys.span_at(1.9).unwrap().interpolate(), 7.0);
         assert!(keys.remove(1.0) && !keys.remove(1.0));
     }
 

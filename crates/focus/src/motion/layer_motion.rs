@@ -1,6 +1,6 @@
 //! A layer in motion.
 
-use super::keys::{Between, Keys, mix};
+use super::keys::{KeySpan, Keys, mix};
 use crate::{Canvas, Curve, FocusMap};
 use lens::Camera;
 use serde::{Deserialize, Serialize};
@@ -35,25 +35,25 @@ impl LayerMotion {
     }
 
     /// Multiplies the mask of a time into that of a map, for what lies where `canvas` says, as `camera` sees it.
-    pub(crate) fn mask(&self, seconds: f64, map: &mut FocusMap, canvas: &Canvas, camera: &Camera) {
-        let Some(around) = self.mask.around(seconds) else { return };
+    pub(crate) fn apply_mask(&self, seconds: f64, map: &mut FocusMap, canvas: &Canvas, camera: &Camera) {
+        let Some(span) = self.mask.span_at(seconds) else { return };
         let [width, height] = map.size();
         let mut rows = map.mask_rows().unwrap_or_else(|| vec![1.0; width as usize * height as usize]);
         let mut scale =
             |[x, y]: [u32; 2], share: f32| rows[y as usize * width as usize + x as usize] *= share;
         for (index, texel) in canvas.texels().iter().enumerate() {
-            let share = share_at(&around, camera.camera_from_world(texel.position).z);
+            let share = share_at(&span, camera.camera_from_world(texel.position).z);
             scale([texel.x, texel.y], share);
             canvas.gutters_of(index).iter().for_each(|&gutter| scale(gutter, share));
         }
-        let background = map.background_mask * share_at(&around, f64::INFINITY);
+        let background = map.background_mask * share_at(&span, f64::INFINITY);
         let _ = map.set_mask_rows(Some(&rows));
         map.background_mask = background;
     }
 }
 
 /// How much counts at a depth; what lies behind the camera is as near as can be.
-fn share_at(around: &Between<'_, Curve>, depth: f64) -> f32 {
+fn share_at(span: &KeySpan<'_, Curve>, depth: f64) -> f32 {
     let at = depth.max(f64::MIN_POSITIVE).ln();
-    mix(around.from.at(at), around.to.at(at), around.share).clamp(0.0, 1.0) as f32
+    mix(span.from.evaluate(at), span.to.evaluate(at), span.share).clamp(0.0, 1.0) as f32
 }

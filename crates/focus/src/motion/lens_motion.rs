@@ -76,36 +76,36 @@ impl LensMotion {
 
     /// `camera` with the lens as it is at a time. `position` tells where a point of the surface is then; nothing where that is
     /// not there.
-    pub fn at(
+    pub fn camera_at(
         &self,
         seconds: f64,
         camera: &Camera,
         position: &dyn Fn(SurfacePoint) -> Option<DVec3>,
     ) -> Camera {
         let mut moved = camera.clone();
-        if let Some(around) = self.focus.around(seconds) {
-            let [from, to] = [around.from, around.to].map(|target| target.inverse_depth(camera, position));
-            moved.focus_distance = match around.from {
+        if let Some(span) = self.focus.span_at(seconds) {
+            let [from, to] = [span.from, span.to].map(|target| target.inverse_depth(camera, position));
+            moved.focus_distance = match span.from {
                 // What stands still is exactly what it was set to.
-                FocusTarget::Distance(distance) if around.from == around.to => *distance,
-                _ => 1.0 / mix(from, to, around.share),
+                FocusTarget::Distance(distance) if span.from == span.to => *distance,
+                _ => 1.0 / mix(from, to, span.share),
             };
         }
-        if let Some(number) = self.f_number(seconds).filter(|number| *number != moved.f_number()) {
+        if let Some(number) = self.f_number_at(seconds).filter(|number| *number != moved.f_number()) {
             moved.aperture_radius = moved.optics().focal_length() / (2.0 * number);
         }
         moved
     }
 
     /// The f-number at a time, if it moves.
-    pub fn f_number(&self, seconds: f64) -> Option<f64> {
-        let around = self.f_number.around(seconds)?;
+    pub fn f_number_at(&self, seconds: f64) -> Option<f64> {
+        let span = self.f_number.span_at(seconds)?;
         // Equal ones stay exactly what they are.
-        if around.from == around.to {
-            return Some(*around.from);
+        if span.from == span.to {
+            return Some(*span.from);
         }
-        let number = mix(around.from.ln(), around.to.ln(), around.share).exp();
-        Some(number.clamp(around.from.min(*around.to), around.from.max(*around.to)))
+        let number = mix(span.from.ln(), span.to.ln(), span.share).exp();
+        Some(number.clamp(span.from.min(*span.to), span.from.max(*span.to)))
     }
 }
 
@@ -166,13 +166,13 @@ mod tests {
         let mut motion = LensMotion::default();
         for (seconds, triangle) in [(0.0, 1), (1.0, 4)] {
             let value = FocusTarget::Point(point(triangle));
-            assert!(motion.focus.put(Key { seconds, value, ease: Ease::Linear }));
+            assert!(motion.focus.insert(Key { seconds, value, ease: Ease::Linear }));
         }
         // Triangle n stands n in front of the camera.
         let camera = Camera::default();
         let place = |point: SurfacePoint| Some(DVec3::NEG_Z * f64::from(point.triangle));
         let distance = |seconds, place: &dyn Fn(SurfacePoint) -> Option<DVec3>| {
-            motion.at(seconds, &camera, place).focus_distance
+            motion.camera_at(seconds, &camera, place).focus_distance
         };
         assert_eq!([0.0, 1.0].map(|seconds| distance(seconds, &place)), [1.0, 4.0]);
         assert_eq!(distance(0.5, &place), 1.0 / 0.625, "in the reciprocal");
@@ -185,9 +185,9 @@ mod tests {
     #[test]
     fn stops_are_counted_by_their_logarithm() {
         let mut motion = LensMotion::default();
-        assert!(motion.f_number.put(Key { seconds: 0.0, value: 2.0, ease: Ease::Linear }));
-        assert!(motion.f_number.put(Key { seconds: 2.0, value: 8.0, ease: Ease::Linear }));
-        let camera = motion.at(1.0, &Camera::default(), &|_| None);
+        assert!(motion.f_number.insert(Key { seconds: 0.0, value: 2.0, ease: Ease::Linear }));
+        assert!(motion.f_number.insert(Key { seconds: 2.0, value: 8.0, ease: Ease::Linear }));
+        let camera = motion.camera_at(1.0, &Camera::default(), &|_| None);
         assert!((camera.f_number() - 4.0).abs() < 1e-12);
         assert_eq!(camera.focus_distance, Camera::default().focus_distance);
     }
@@ -199,7 +199,7 @@ mod tests {
         for (seconds, value) in
             [(0.0, FocusTarget::Distance(f64::INFINITY)), (1.0, FocusTarget::Point(point))]
         {
-            assert!(motion.focus.put(Key { seconds, value, ease: Ease::Smooth }));
+            assert!(motion.focus.insert(Key { seconds, value, ease: Ease::Smooth }));
         }
         let text = serde_json::to_string(&motion).unwrap();
         assert!(text.contains("\"inf\"") && !text.contains("f_number"), "{text}");

@@ -1,6 +1,6 @@
 //! The coat, which lies over all and may have bumps of its own (KHR_materials_clearcoat's normal texture).
 
-use super::{Bsdf, Scattered, Seen, half, mirror};
+use super::{Bsdf, OutgoingFrame, Scattered, half, mirror};
 use crate::Split;
 use crate::albedo::Gloss;
 use crate::fresnel::rise;
@@ -22,11 +22,11 @@ impl Bsdf<'_> {
     }
 
     /// What a rough one mirrors, 1/sr: by its own cosine over that of the frame, which is counted elsewhere.
-    pub(super) fn coated(&self, seen: &Seen, i: DVec3) -> Split {
+    pub(super) fn coated(&self, view: &OutgoingFrame, i: DVec3) -> Split {
         let Some(coat) = self.surface.clearcoat.filter(|_| !self.coat.is_smooth()) else {
             return Split::default();
         };
-        let [of_eye, of_light] = [seen.o, i].map(|w| seen.coat.local(w));
+        let [of_eye, of_light] = [view.o, i].map(|w| view.coat.local(w));
         if of_eye.z <= 0.0 || of_light.z <= 0.0 {
             return Split::default();
         }
@@ -37,27 +37,27 @@ impl Bsdf<'_> {
     }
 
     /// A direction that a rough one mirrors toward the eye.
-    pub(super) fn toward_coat(&self, seen: &Seen, u: DVec2) -> DVec3 {
-        let of_eye = seen.coat.local(seen.o);
-        seen.coat.back(mirror(of_eye, self.coat.visible_normal(of_eye, u)))
+    pub(super) fn sample_coat(&self, view: &OutgoingFrame, u: DVec2) -> DVec3 {
+        let of_eye = view.coat.local(view.o);
+        view.coat.back(mirror(of_eye, self.coat.visible_normal(of_eye, u)))
     }
 
     /// How likely that is, 1/sr; 0 of a smooth one.
-    pub(super) fn density_of_coat(&self, seen: &Seen, i: DVec3) -> f64 {
+    pub(super) fn density_of_coat(&self, view: &OutgoingFrame, i: DVec3) -> f64 {
         if self.coat.is_smooth() {
             return 0.0;
         }
-        let [of_eye, of_light] = [seen.o, i].map(|w| seen.coat.local(w));
+        let [of_eye, of_light] = [view.o, i].map(|w| view.coat.local(w));
         half(of_eye, of_light)
             .map_or(0.0, |h| self.coat.density_of_visible(of_eye, h) / (4.0 * of_eye.dot(h)))
     }
 
     /// What a smooth one mirrors, drawn with these odds.
-    pub(super) fn mirrored_by_coat(&self, seen: &Seen, odds: f64) -> Option<Scattered> {
-        let of_eye = seen.coat.local(seen.o);
-        let weight = DVec3::splat(self.coat_albedo(of_eye) / odds);
-        let i = seen.coat.back(mirror(of_eye, DVec3::Z));
+    pub(super) fn mirrored_by_coat(&self, view: &OutgoingFrame, probability: f64) -> Option<Scattered> {
+        let of_eye = view.coat.local(view.o);
+        let weight = DVec3::splat(self.coat_albedo(of_eye) / probability);
+        let i = view.coat.back(mirror(of_eye, DVec3::Z));
         // Bumps may turn it into what lies beneath: it is lost.
-        if i.z > 0.0 { self.single(seen, i, Split::carried(weight)) } else { None }
+        if i.z > 0.0 { self.single(view, i, Split::carried(weight)) } else { None }
     }
 }

@@ -1,6 +1,6 @@
 //! Glass: what it mirrors, what it lets through, and what multiple scattering on its facets gives back.
 
-use super::{Bsdf, Scattered, Seen, cosine_weighted, flipped, half};
+use super::{Bsdf, OutgoingFrame, Scattered, cosine_weighted, flipped, half};
 use crate::Split;
 use crate::fresnel::dielectric_reflectance;
 use crate::ggx::Ggx;
@@ -10,7 +10,7 @@ use std::f64::consts::{FRAC_1_PI, TAU};
 /// Multiple scattering on rough glass seen from one side: what is lost by single scattering, and the share of it that comes back on
 /// that side.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Returned {
+pub(super) struct MultipleScattering {
     /// What single scattering sends to neither side.
     pub lost: f64,
     /// The share of it that comes back on the eye's side.
@@ -19,21 +19,21 @@ pub(super) struct Returned {
 
 impl Bsdf<'_> {
     /// What rough glass mirrors.
-    pub(super) fn glass(&self, seen: &Seen, o: DVec3, i: DVec3) -> Split {
-        let (share, eta) = (self.shares[2], self.eta(seen));
+    pub(super) fn glass(&self, view: &OutgoingFrame, o: DVec3, i: DVec3) -> Split {
+        let (share, eta) = (self.shares[2], self.eta(view));
         if share == 0.0 || self.is_clear(eta) {
             return Split::default();
         }
         let single = half(o, i)
             .map_or(0.0, |h| dielectric_reflectance(o.dot(h), eta) * self.microfacets(&self.ggx, o, i, h));
-        let stays = self.glass_returned(seen, i);
+        let stays = self.glass_returned(view, i);
         (Split::mirrored(DVec3::splat(single), self.ggx.mean_alpha()) + Split::own(DVec3::splat(stays)))
             * share
     }
 
     /// What rough glass lets through.
-    pub(super) fn across(&self, seen: &Seen, o: DVec3, i: DVec3) -> Split {
-        let (share, eta) = (self.shares[2], self.eta(seen));
+    pub(super) fn across(&self, view: &OutgoingFrame, o: DVec3, i: DVec3) -> Split {
+        let (share, eta) = (self.shares[2], self.eta(view));
         if share == 0.0 || self.is_clear(eta) {
             return Split::default();
         }
@@ -43,13 +43,13 @@ impl Bsdf<'_> {
             }),
             false => through_facets(&self.ggx, o, i, eta),
         };
-        let crosses = self.glass_returned(seen, i);
+        let crosses = self.glass_returned(view, i);
         Split::carried(self.surface.base_color * (single + crosses)) * share
     }
 
     /// The density, 1/sr, with which light from beyond is found by single scattering.
-    pub(super) fn density_across(&self, seen: &Seen, i: DVec3) -> f64 {
-        let (o, eta) = (seen.o, self.eta(seen));
+    pub(super) fn density_across(&self, view: &OutgoingFrame, i: DVec3) -> f64 {
+        let (o, eta) = (view.o, self.eta(view));
         if !self.surface.is_thin {
             return density_through(&self.ggx, o, i, eta);
         }
@@ -60,25 +60,27 @@ impl Bsdf<'_> {
     }
 
     /// What single scattering on glass loses toward the eye, and the share of that which stays on its side.
-    pub(super) fn glass_lost(&self, seen: &Seen) -> Returned {
-        let eta = self.eta(seen);
+    pub(super) fn glass_lost(&self, view: &OutgoingFrame) -> MultipleScattering {
+        let eta = self.eta(view);
         if self.shares[2] == 0.0 || self.is_clear(eta) {
-            return Returned { lost: 0.0, stays: 1.0 };
+            return MultipleScattering { lost: 0.0, stays: 1.0 };
         }
         match &self.rough_glass {
-            Some(glass) => Returned {
-                lost: glass.from(seen.from_front).lost(seen.o.z),
-                stays: glass.stays(seen.from_front),
+            Some(glass) => MultipleScattering {
+                lost: glass.side(view.from_front).lost(view.o.z),
+                stays: glass.returned_share(view.from_front),
             },
-            None => Returned { lost: self.lost(self.gloss_shares(seen.o)), stays: dielectric_mean(eta) },
+            None => {
+                MultipleScattering { lost: self.lost(self.gloss_shares(view.o)), stays: dielectric_mean(eta) }
+            }
         }
     }
 
     /// How it is spread over where it comes back from, 1/sr: as (1 − E(i))/(π(1 − Ē)) on that side.
-    fn spread_of_lost(&self, seen: &Seen, i: DVec3) -> f64 {
+    fn spread_of_lost(&self, view: &OutgoingFrame, i: DVec3) -> f64 {
         let (lost, mean) = match &self.rough_glass {
             Some(glass) => {
-                let row = glass.from(seen.from_front == (i.z > 0.0));
+                let row = glass.side(view.from_front == (i.z > 0.0));
                 (row.lost(i.z.abs()), row.mean_lost())
             }
             None => (self.lost(self.gloss_shares(i)), self.lost(self.mean_gloss_shares())),
@@ -87,8 +89,8 @@ impl Bsdf<'_> {
     }
 
     /// What of the light that single scattering on glass loses comes back on the eye's side, or from beyond.
-    fn glass_returned(&self, seen: &Seen, i: DVec3) -> f64 {
-        let Returned { lost, stays } = self.glass_lost(seen);
+    fn glass_returned(&self, view: &OutgoingFrame, i: DVec3) -> f64 {
+        let MultipleScattering { lost, stays } = self.glass_lost(view);
         if lost == 0.0 {
             return 0.0;
         }
@@ -96,55 +98,61 @@ impl Bsdf<'_> {
         let (share, scale) = match (i.z > 0.0, self.surface.is_thin) {
             (true, _) => (stays, 1.0),
             (false, true) => (1.0 - stays, 1.0),
-            (false, false) => (1.0 - stays, self.eta(seen).powi(2)),
+            (false, false) => (1.0 - stays, self.eta(view).powi(2)),
         };
-        share * lost * self.spread_of_lost(seen, i) / scale
+        share * lost * self.spread_of_lost(view, i) / scale
     }
 
     /// A direction that lost light comes back from, and whether it crosses; `which` and `u` are uniform.
-    pub(super) fn come_back(&self, seen: &Seen, which: f64, u: DVec2) -> (DVec3, bool) {
-        let crosses = which >= self.glass_lost(seen).stays;
+    pub(super) fn sample_returned(&self, view: &OutgoingFrame, which: f64, u: DVec2) -> (DVec3, bool) {
+        let crosses = which >= self.glass_lost(view).stays;
         let Some(glass) = &self.rough_glass else {
             let i = cosine_weighted(u);
             return (if crosses { flipped(i) } else { i }, crosses);
         };
-        let cos = glass.from(seen.from_front != crosses).cosine_of_lost(u.y);
+        let cos = glass.side(view.from_front != crosses).cosine_of_lost(u.y);
         let (sin, around) = (TAU * u.x).sin_cos();
         let flat = (1.0 - cos * cos).max(0.0).sqrt();
         (DVec3::new(flat * around, flat * sin, if crosses { -cos } else { cos }), crosses)
     }
 
     /// The density of [`Self::come_back`], 1/sr.
-    pub(super) fn density_of_returned(&self, seen: &Seen, i: DVec3) -> f64 {
-        let stays = self.glass_lost(seen).stays;
+    pub(super) fn density_of_returned(&self, view: &OutgoingFrame, i: DVec3) -> f64 {
+        let stays = self.glass_lost(view).stays;
         let share = if i.z > 0.0 { stays } else { 1.0 - stays };
-        let spread = if self.rough_glass.is_none() { FRAC_1_PI } else { self.spread_of_lost(seen, i) };
+        let spread = if self.rough_glass.is_none() { FRAC_1_PI } else { self.spread_of_lost(view, i) };
         share * spread * i.z.abs()
     }
 
     /// What glass sends back to the eye's side in all.
-    pub(super) fn glass_mirrors(&self, seen: &Seen) -> f64 {
-        let eta = self.eta(seen);
+    pub(super) fn glass_mirrors(&self, view: &OutgoingFrame) -> f64 {
+        let eta = self.eta(view);
         if self.shares[2] == 0.0 || self.is_clear(eta) {
-            return dielectric_reflectance(seen.o.z, eta);
+            return dielectric_reflectance(view.o.z, eta);
         }
-        let Returned { lost, stays } = self.glass_lost(seen);
+        let MultipleScattering { lost, stays } = self.glass_lost(view);
         let mirrored = match &self.rough_glass {
-            Some(glass) => glass.from(seen.from_front).mirrored(seen.o.z),
-            None => self.interface.rough(self.surface.roughness).from(true).mirrored(seen.o.z),
+            Some(glass) => glass.side(view.from_front).mirrored(view.o.z),
+            None => self.interface.rough(self.surface.roughness).side(true).mirrored(view.o.z),
         };
         mirrored + lost * stays
     }
 
     /// One of clear glass; `odds` of the glass.
-    pub(super) fn clear(&self, seen: &Seen, odds: f64, is_mirrored: bool, i: DVec3) -> Option<Scattered> {
-        let scale = self.shares[2] * self.beneath(&seen.side, &self.side(i, &seen.coat)) / odds;
+    pub(super) fn clear(
+        &self,
+        view: &OutgoingFrame,
+        probability: f64,
+        is_mirrored: bool,
+        i: DVec3,
+    ) -> Option<Scattered> {
+        let scale = self.shares[2] * self.beneath(&view.side, &self.side(i, &view.coat)) / probability;
         let weight = match is_mirrored {
             true => DVec3::splat(scale),
             false if self.surface.is_thin => self.surface.base_color * scale,
-            false => self.surface.base_color * scale / self.eta(seen).powi(2),
+            false => self.surface.base_color * scale / self.eta(view).powi(2),
         };
-        self.single(seen, i, Split::carried(weight))
+        self.single(view, i, Split::carried(weight))
     }
 }
 
@@ -160,8 +168,8 @@ fn through_facets(ggx: &Ggx, o: DVec3, i: DVec3, eta: f64) -> f64 {
     let Some(h) = refracting(o, i, eta) else { return 0.0 };
     let (from, to) = (o.dot(h), i.dot(h));
     let crosses = 1.0 - dielectric_reflectance(from, eta);
-    let seen = ggx.seen_from_each(o, flipped_up(i)) * ggx.density_of_normals(h);
-    let value = (from * to / (o.z * i.z)).abs() * crosses * seen / (from + eta * to).powi(2);
+    let facet_density = ggx.uncorrelated_masking_shadowing(o, flipped_up(i)) * ggx.density_of_normals(h);
+    let value = (from * to / (o.z * i.z)).abs() * crosses * facet_density / (from + eta * to).powi(2);
     // Equal media bend nothing: all normals refract alike, and the lobe is the direction itself.
     if value.is_finite() { value } else { 0.0 }
 }

@@ -1,52 +1,52 @@
 //! How a point scatters light toward one direction.
 
-use super::odds::Odds;
-use super::{Bsdf, Parts, Scattered, Seen, cosine_weighted};
+use super::odds::LobeProbabilities;
+use super::{Bsdf, OutgoingFrame, Parts, Scattered, cosine_weighted};
 use crate::{Split, sheen};
 use glam::{DVec2, DVec3};
 use std::f64::consts::FRAC_1_PI;
 
 /// How a point scatters light toward one direction: what is the same for light from everywhere is worked out once.
-pub struct Toward<'b, 'a> {
+pub struct OutgoingBsdf<'b, 'a> {
     bsdf: &'b Bsdf<'a>,
-    seen: Seen,
-    odds: Odds,
+    view: OutgoingFrame,
+    probabilities: LobeProbabilities,
 }
 
 impl<'a> Bsdf<'a> {
     /// For light toward one direction.
-    pub fn toward(&self, outgoing: DVec3) -> Toward<'_, 'a> {
-        let seen = self.seen(outgoing);
-        let odds = self.odds(&seen);
-        Toward { bsdf: self, seen, odds }
+    pub fn toward(&self, outgoing: DVec3) -> OutgoingBsdf<'_, 'a> {
+        let view = self.outgoing_frame(outgoing);
+        let probabilities = self.lobe_probabilities(&view);
+        OutgoingBsdf { bsdf: self, view, probabilities }
     }
 }
 
-impl Toward<'_, '_> {
+impl OutgoingBsdf<'_, '_> {
     /// [`Bsdf::evaluate`] times the cosine, and [`Bsdf::density`].
     pub fn scatter(&self, incident: DVec3) -> (Split, f64) {
-        let value = self.bsdf.value(&self.seen, incident);
+        let value = self.bsdf.value(&self.view, incident);
         if value.total() == DVec3::ZERO {
             return (value, 0.0);
         }
-        let cosine = self.seen.frame.local(incident).z.abs();
-        (value * cosine, self.bsdf.density_of(&self.seen, &self.odds, incident))
+        let cosine = self.view.frame.local(incident).z.abs();
+        (value * cosine, self.bsdf.density_of(&self.view, &self.probabilities, incident))
     }
 
     /// [`Bsdf::sample`].
     pub fn sample(&self, u: [f64; 3]) -> Option<Scattered> {
-        self.bsdf.drawn(&self.seen, &self.odds, u)
+        self.bsdf.sample_lobes(&self.view, &self.probabilities, u)
     }
 
     /// What is sent of light that is the same from everywhere, in both parts.
     pub fn albedo(&self) -> Split {
-        self.bsdf.albedo_of(&self.seen)
+        self.bsdf.albedo_toward(&self.view)
     }
 
     /// What spread lobes ([`Parts`]) send of light that is the same from everywhere.
     pub fn spread_albedo(&self) -> DVec3 {
-        let (bsdf, side) = (self.bsdf, &self.seen.side);
-        if self.seen.o.z <= 0.0 {
+        let (bsdf, side) = (self.bsdf, &self.view.side);
+        if self.view.o.z <= 0.0 {
             return DVec3::ZERO;
         }
         let [metal, dielectric, _] = bsdf.shares;
@@ -56,60 +56,66 @@ impl Toward<'_, '_> {
         let ground = side.beneath * bsdf.surface.base_color * share;
         let mut all = (multiple + ground) * (1.0 - side.sheen);
         if let Some(cloth) = bsdf.surface.sheen {
-            all += cloth.color * sheen::albedo(self.seen.o.z, cloth.roughness);
+            all += cloth.color * sheen::albedo(self.view.o.z, cloth.roughness);
         }
         all * (1.0 - side.coat)
     }
 
     /// Value times cosine by parts, and the density, 1/sr, with which [`Self::sample_sharp`] finds `incident`.
     pub fn scatter_parts(&self, incident: DVec3) -> (Parts, f64) {
-        let Parts { spread, sharp } = self.bsdf.parts(&self.seen, incident);
-        let cosine = self.seen.frame.local(incident).z.abs();
+        let Parts { spread, sharp } = self.bsdf.parts(&self.view, incident);
+        let cosine = self.view.frame.local(incident).z.abs();
         let has_sharp = sharp.total() != DVec3::ZERO;
         let density = if has_sharp { self.sharp_density(incident) } else { 0.0 };
         (Parts { spread: spread * cosine, sharp: sharp * cosine }, density)
     }
 
     fn sharp_density(&self, incident: DVec3) -> f64 {
-        self.odds.without_spread().map_or(0.0, |odds| self.bsdf.density_of(&self.seen, &odds, incident))
+        self.probabilities
+            .without_spread()
+            .map_or(0.0, |probabilities| self.bsdf.density_of(&self.view, &probabilities, incident))
     }
 
     /// Draws where light comes from that spread lobes ([`Parts`]) send on, and tells its density, 1/sr. `None` where nothing is spread.
     pub fn sample_spread(&self, u: [f64; 2]) -> Option<(DVec3, f64)> {
-        if self.odds.spread == 0.0 || self.seen.o.z <= 0.0 {
+        if self.probabilities.spread == 0.0 || self.view.o.z <= 0.0 {
             return None;
         }
         let i = cosine_weighted(DVec2::from_array(u));
-        (i.z > 0.0).then(|| (self.seen.frame.world(i), i.z * FRAC_1_PI))
+        (i.z > 0.0).then(|| (self.view.frame.world(i), i.z * FRAC_1_PI))
     }
 
     /// The density, 1/sr, with which [`Self::sample_spread`] finds `incident`.
     pub fn spread_density(&self, incident: DVec3) -> f64 {
-        if self.odds.spread == 0.0 { 0.0 } else { self.seen.frame.local(incident).z.max(0.0) * FRAC_1_PI }
+        if self.probabilities.spread == 0.0 {
+            0.0
+        } else {
+            self.view.frame.local(incident).z.max(0.0) * FRAC_1_PI
+        }
     }
 
     /// Draws where light comes from that sharp lobes ([`Parts`]) send on.
     pub fn sample_sharp(&self, u: [f64; 3]) -> Option<Scattered> {
-        let odds = self.odds.without_spread()?;
-        let scattered = self.bsdf.drawn(&self.seen, &odds, u)?;
+        let probabilities = self.probabilities.without_spread()?;
+        let scattered = self.bsdf.sample_lobes(&self.view, &probabilities, u)?;
         let Some(density) = scattered.density else { return Some(scattered) };
-        let sharp = self.bsdf.parts(&self.seen, scattered.incident).sharp;
-        let weight = sharp * (self.seen.frame.local(scattered.incident).z.abs() / density);
+        let sharp = self.bsdf.parts(&self.view, scattered.incident).sharp;
+        let weight = sharp * (self.view.frame.local(scattered.incident).z.abs() / density);
         (weight.total() != DVec3::ZERO).then_some(Scattered { weight, ..scattered })
     }
 
     /// Whether all lobes are spread ([`Parts`]).
     pub fn is_spread(&self) -> bool {
-        self.odds.without_spread().is_none()
+        self.probabilities.without_spread().is_none()
     }
 
     /// The normal as it is shaded, on the eye's side.
     pub fn normal(&self) -> DVec3 {
-        self.seen.frame.normal
+        self.view.frame.normal
     }
 
     /// [`Bsdf::coverage_shares`].
     pub fn coverage_shares(&self) -> [f64; 2] {
-        self.bsdf.shares_of(self.bsdf.albedo_of(&self.seen))
+        self.bsdf.shares_of(self.bsdf.albedo_toward(&self.view))
     }
 }

@@ -60,7 +60,7 @@ pub fn all() -> Vec<(&'static str, Surface)> {
 
 /// The media that meet at a surface.
 pub fn interface(surface: &Surface) -> Interface {
-    Interface::of_ior(surface.ior)
+    Interface::from_ior(surface.ior)
 }
 
 /// A direction by the cosine to z and the azimuth.

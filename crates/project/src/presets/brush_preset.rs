@@ -6,11 +6,11 @@ use serde_json::{Map, Value};
 use std::path::Path;
 
 /// Fields that belong to the scene, or to what is being painted in it: size, where cloning takes from, symmetry.
-const OF_THE_SCENE: [&str; 7] =
+const SCENE_FIELDS: [&str; 7] =
     ["radius", "clone_offset", "mirror", "radial", "mirror_center", "mirror_axes", "mirror_by_object"];
 
 /// `current` with all that a preset says of a brush.
-pub(super) fn applied(preset: &Brush, current: &Brush) -> Brush {
+pub(super) fn apply_to_brush(preset: &Brush, current: &Brush) -> Brush {
     Brush {
         radius: current.radius,
         clone_offset: current.clone_offset,
@@ -28,9 +28,9 @@ pub(super) fn read(file: &Path, value: &Value) -> Result<Brush, ProjectError> {
     let error = |field: String, problem: String, cure: &str| {
         Err(ProjectError::Field { file: file.to_owned(), field, problem, cure: cure.into() })
     };
-    if let Some(own) = OF_THE_SCENE.into_iter().find(|name| value.get(name).is_some()) {
+    if let Some(scene_field) = SCENE_FIELDS.into_iter().find(|name| value.get(name).is_some()) {
         return error(
-            format!("brush.{own}"),
+            format!("brush.{scene_field}"),
             "belongs to the scene and not to a preset".into(),
             "leave it out",
         );
@@ -49,5 +49,5 @@ pub(super) fn read(file: &Path, value: &Value) -> Result<Brush, ProjectError> {
 /// Inverse of [`read`].
 pub(super) fn to_json(brush: &Brush) -> Value {
     let Ok(Value::Object(fields)) = serde_json::to_value(brush) else { return Value::Object(Map::new()) };
-    Value::Object(fields.into_iter().filter(|(name, _)| !OF_THE_SCENE.contains(&name.as_str())).collect())
+    Value::Object(fields.into_iter().filter(|(name, _)| !SCENE_FIELDS.contains(&name.as_str())).collect())
 }

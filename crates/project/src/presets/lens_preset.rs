@@ -19,7 +19,7 @@ pub struct LensPreset {
 
 impl LensPreset {
     /// The lens of a camera.
-    pub fn of(camera: &Camera) -> Self {
+    pub fn from_camera(camera: &Camera) -> Self {
         Self {
             focal_length: camera.optics().focal_length(),
             f_number: camera.f_number(),
@@ -29,7 +29,7 @@ impl LensPreset {
 
     /// The camera with this lens, focused where it was: 1/d = 1/f − 1/s decides how far the sensor is, and that the angle of
     /// view. `None` where the camera focuses nearer than the focal length, which a lens cannot.
-    pub fn applied_to(&self, camera: &Camera) -> Option<Camera> {
+    pub fn apply_to(&self, camera: &Camera) -> Option<Camera> {
         let inverse_image_distance = 1.0 / self.focal_length - 1.0 / camera.focus_distance;
         (inverse_image_distance > 0.0).then(|| Camera {
             sensor_height: self.sensor_height,
@@ -41,7 +41,7 @@ impl LensPreset {
 
     /// Reads the fields of `"lens"`.
     pub(super) fn read(fields: &Fields<'_>) -> Result<Self, ProjectError> {
-        fields.only(&["focal_length", "f_number", "sensor_height"])?;
+        fields.allow_only(&["focal_length", "f_number", "sensor_height"])?;
         let positive = |name| match fields.get(name) {
             Some(field) if name == "f_number" && field.text().is_ok_and(|text| text == "inf") => {
                 Ok(f64::INFINITY)
@@ -74,13 +74,13 @@ mod tests {
     fn a_lens_on_another_camera_is_the_same_lens() {
         let preset = LensPreset { focal_length: 0.085, f_number: 1.4, sensor_height: 0.024 };
         for focus_distance in [0.3, 2.0, f64::INFINITY] {
-            let camera = preset.applied_to(&Camera { focus_distance, ..Camera::default() }).unwrap();
+            let camera = preset.apply_to(&Camera { focus_distance, ..Camera::default() }).unwrap();
             camera.validate().unwrap();
-            let found = LensPreset::of(&camera);
-            assert!((found.focal_length / 0.085 - 1.0).abs() < 1e-12, "{found:?}");
-            assert!((found.f_number / 1.4 - 1.0).abs() < 1e-12, "{found:?}");
+            let preset = LensPreset::from_camera(&camera);
+            assert!((preset.focal_length / 0.085 - 1.0).abs() < 1e-12, "{preset:?}");
+            assert!((preset.f_number / 1.4 - 1.0).abs() < 1e-12, "{preset:?}");
         }
         let too_near = Camera { focus_distance: 0.085, ..Camera::default() };
-        assert_eq!(preset.applied_to(&too_near), None);
+        assert_eq!(preset.apply_to(&too_near), None);
     }
 }

@@ -12,4 +12,4 @@ mod shipped;
 
 pub use lens_preset::LensPreset;
 pub use preset::{Preset, PresetContent, PresetKind};
-pub use shelf::{PresetShelf, ShelfEntry};
+pub use shelf::{LibraryEntry, PresetLibrary};

@@ -23,7 +23,7 @@ const FORMAT: &str = "focus-brush preset";
 const VERSION: u32 = 1;
 
 /// The longest name, characters.
-const LONGEST_NAME: usize = 80;
+const MAX_NAME_CHARS: usize = 80;
 
 /// What a preset is of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -77,7 +77,7 @@ impl Preset {
         if name.is_empty() {
             return Err("a preset needs a name");
         }
-        if name.chars().count() > LONGEST_NAME || name.chars().any(char::is_control) {
+        if name.chars().count() > MAX_NAME_CHARS || name.chars().any(char::is_control) {
             return Err("a preset's name has at most 80 characters, all in one line");
         }
         Ok(Self { name: name.to_string(), content })
@@ -93,18 +93,18 @@ impl Preset {
     }
 
     /// The brush with this preset, where it is one of brushes: size and symmetry stay.
-    pub fn brush(&self, current: &Brush) -> Option<Brush> {
+    pub fn apply_to_brush(&self, current: &Brush) -> Option<Brush> {
         match &self.content {
-            PresetContent::Brush(brush) => Some(brush_preset::applied(brush, current)),
+            PresetContent::Brush(brush) => Some(brush_preset::apply_to_brush(brush, current)),
             _ => None,
         }
     }
 
     /// The camera with this preset, where it is one of lenses or bokeh. An error in words where the camera cannot have it.
-    pub fn camera(&self, current: &Camera) -> Option<Result<Camera, String>> {
+    pub fn apply_to_camera(&self, current: &Camera) -> Option<Result<Camera, String>> {
         match &self.content {
             PresetContent::Brush(_) => None,
-            PresetContent::Lens(lens) => Some(lens.applied_to(current).ok_or_else(|| {
+            PresetContent::Lens(lens) => Some(lens.apply_to(current).ok_or_else(|| {
                 let distance = current.focus_distance;
                 format!(
                     "{}: no such lens focuses as near as {distance} (focus farther away first)",
@@ -118,21 +118,21 @@ impl Preset {
     }
 
     /// Whether the brush is as this preset says.
-    pub fn is_of_brush(&self, brush: &Brush) -> bool {
-        self.brush(brush).is_some_and(|own| own == *brush)
+    pub fn matches_brush(&self, brush: &Brush) -> bool {
+        self.apply_to_brush(brush).is_some_and(|own| own == *brush)
     }
 
     /// Whether the camera's lens, or its aperture's shape, is as this preset says: to a millionth.
-    pub fn is_of_camera(&self, camera: &Camera) -> bool {
+    pub fn matches_camera(&self, camera: &Camera) -> bool {
         let near = |a: f64, b: f64| a == b || (a / b - 1.0).abs() < 1e-6;
         match &self.content {
             PresetContent::Brush(_) => false,
             PresetContent::Bokeh(aperture) => *aperture == camera.aperture,
             PresetContent::Lens(lens) => {
-                let own = LensPreset::of(camera);
-                near(own.focal_length, lens.focal_length)
-                    && near(own.f_number, lens.f_number)
-                    && near(own.sensor_height, lens.sensor_height)
+                let current = LensPreset::from_camera(camera);
+                near(current.focal_length, lens.focal_length)
+                    && near(current.f_number, lens.f_number)
+                    && near(current.sensor_height, lens.sensor_height)
             }
         }
     }
@@ -146,31 +146,34 @@ impl Preset {
     pub(super) fn parse(file: &Path, text: &str) -> Result<Self, ProjectError> {
         let json = Json::parse(file, text)?;
         let fields = Field::root(file, &json).object()?;
-        let whole = |problem: &str, cure: &str| ProjectError::content(file, problem, cure);
+        let file_error = |problem: &str, cure: &str| ProjectError::content(file, problem, cure);
         match fields.get("format") {
             Some(format) if format.text().is_ok_and(|text| text == FORMAT) => {}
             _ => {
-                return Err(whole(
+                return Err(file_error(
                     "is no preset",
                     "give a file that says \"format\": \"focus-brush preset\"",
                 ));
             }
         }
-        match fields.get("version").map_or(Ok(VERSION), |field| field.whole())? {
+        match fields.get("version").map_or(Ok(VERSION), |field| field.whole_number())? {
             version if version > VERSION => {
                 let (file, version, newest) = (file.to_owned(), version.into(), VERSION.into());
                 return Err(ProjectError::Newer { file, version, newest });
             }
             _ => {}
         }
-        fields.only(&["format", "version", "name", "brush", "lens", "bokeh"])?;
+        fields.allow_only(&["format", "version", "name", "brush", "lens", "bokeh"])?;
         let kinds = PresetKind::ALL.map(PresetKind::name);
-        let given: Vec<_> = kinds.into_iter().filter(|name| fields.get(name).is_some()).collect();
-        let [kind] = given[..] else {
-            return Err(whole("holds not one of brush, lens and bokeh", "give one, and only one, of them"));
+        let present: Vec<_> = kinds.into_iter().filter(|name| fields.get(name).is_some()).collect();
+        let [kind] = present[..] else {
+            return Err(file_error(
+                "holds not one of brush, lens and bokeh",
+                "give one, and only one, of them",
+            ));
         };
         let Some(field) = fields.get(kind) else {
-            return Err(whole("is empty", "give brush, lens or bokeh"));
+            return Err(file_error("is empty", "give brush, lens or bokeh"));
         };
         let content = match kind {
             "brush" => {
@@ -182,8 +185,8 @@ impl Preset {
             "lens" => PresetContent::Lens(LensPreset::read(&field.object()?)?),
             _ => {
                 let mask = |name: &str| {
-                    let beside = file.parent().unwrap_or(Path::new("")).join(name);
-                    crate::read_aperture_mask(&beside, name)
+                    let mask_file = file.parent().unwrap_or(Path::new("")).join(name);
+                    crate::read_aperture_mask(&mask_file, name)
                 };
                 let aperture = aperture_from_json(&field.object()?, &mask)?;
                 aperture.validate().map_err(|error| {
@@ -193,7 +196,7 @@ impl Preset {
                 PresetContent::Bokeh(aperture)
             }
         };
-        let Some(name) = fields.get("name") else { return Err(whole("has no name", "add \"name\"")) };
+        let Some(name) = fields.get("name") else { return Err(file_error("has no name", "add \"name\"")) };
         Self::new(name.text()?, content).map_err(|problem| name.error(problem, "give another name"))
     }
 

@@ -1,16 +1,16 @@
 //! All presets there are: those that come with the program, and the user's own in a folder.
 
 use super::preset::{Preset, PresetKind};
-use super::shipped::shipped;
+use super::shipped::bundled_presets;
 use crate::ProjectError;
 use std::path::{Path, PathBuf};
 
 /// Where deleted presets go, in the folder.
-const DELETED: &str = "deleted";
+const DELETED_FOLDER: &str = "deleted";
 
 /// A preset on the shelf.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ShelfEntry {
+pub struct LibraryEntry {
     /// Its kind.
     pub kind: PresetKind,
     /// The user's own file; none for one that comes with the program.
@@ -19,7 +19,7 @@ pub struct ShelfEntry {
     pub preset: Result<Preset, String>,
 }
 
-impl ShelfEntry {
+impl LibraryEntry {
     /// What it is called: its own name, or that of a file that cannot be read.
     pub fn name(&self) -> String {
         match &self.preset {
@@ -31,14 +31,14 @@ impl ShelfEntry {
 
 /// The presets of a user: a folder with a folder for each kind, and in it a file a preset.
 #[derive(Clone, Debug)]
-pub struct PresetShelf {
+pub struct PresetLibrary {
     folder: Option<PathBuf>,
-    entries: Vec<ShelfEntry>,
+    entries: Vec<LibraryEntry>,
 }
 
-impl PresetShelf {
+impl PresetLibrary {
     /// The folder of this user's own presets; none where the system has no place for such.
-    pub fn usual_folder() -> Option<PathBuf> {
+    pub fn default_folder() -> Option<PathBuf> {
         let folders = directories::ProjectDirs::from("", "", "focus-brush")?;
         Some(folders.config_dir().join("presets"))
     }
@@ -46,17 +46,20 @@ impl PresetShelf {
     /// Looks what there is. A folder that is not there is empty.
     pub fn open(folder: Option<PathBuf>) -> Self {
         let mut shelf = Self { folder, entries: Vec::new() };
-        shelf.look();
+        shelf.reload();
         shelf
     }
 
     /// Looks again.
-    pub fn look(&mut self) {
-        let own = |kind| self.files(kind).into_iter().map(move |file| (kind, file));
-        let own: Vec<_> = PresetKind::ALL.into_iter().flat_map(own).collect();
-        let shipped =
-            shipped().map(|preset| ShelfEntry { kind: preset.kind(), file: None, preset: Ok(preset) });
-        let own = own.into_iter().map(|(kind, file)| {
+    pub fn reload(&mut self) {
+        let files_of_kind = |kind| self.files(kind).into_iter().map(move |file| (kind, file));
+        let user_files: Vec<_> = PresetKind::ALL.into_iter().flat_map(files_of_kind).collect();
+        let shipped = bundled_presets().map(|preset| LibraryEntry {
+            kind: preset.kind(),
+            file: None,
+            preset: Ok(preset),
+        });
+        let user_entries = user_files.into_iter().map(|(kind, file)| {
             let preset = match Preset::read(&file) {
                 Ok(preset) if preset.kind() == kind => Ok(preset),
                 Ok(preset) => {
@@ -65,9 +68,9 @@ impl PresetShelf {
                 }
                 Err(error) => Err(error.to_string()),
             };
-            ShelfEntry { kind, file: Some(file), preset }
+            LibraryEntry { kind, file: Some(file), preset }
         });
-        self.entries = shipped.chain(own).collect();
+        self.entries = shipped.chain(user_entries).collect();
     }
 
     /// The files of one kind, by name.
@@ -82,24 +85,25 @@ impl PresetShelf {
     }
 
     /// All of one kind: first those that come with the program.
-    pub fn of_kind(&self, kind: PresetKind) -> impl Iterator<Item = &ShelfEntry> {
+    pub fn entries_of_kind(&self, kind: PresetKind) -> impl Iterator<Item = &LibraryEntry> {
         self.entries.iter().filter(move |entry| entry.kind == kind)
     }
 
     /// The preset of this name; of several the user's own.
-    pub fn named(&self, kind: PresetKind, name: &str) -> Option<&Preset> {
-        let presets = self.of_kind(kind).filter_map(|entry| entry.preset.as_ref().ok());
+    pub fn find(&self, kind: PresetKind, name: &str) -> Option<&Preset> {
+        let presets = self.entries_of_kind(kind).filter_map(|entry| entry.preset.as_ref().ok());
         presets.filter(|preset| preset.name == name).last()
     }
 
     /// Puts a preset on the shelf, in the place of the user's own one of that name. Its file.
     pub fn save(&mut self, preset: &Preset) -> Result<PathBuf, ProjectError> {
-        let folder = self.folder_of(preset.kind())?;
-        let same = |entry: &&ShelfEntry| entry.preset.as_ref().is_ok_and(|own| own.name == preset.name);
-        let own = self.of_kind(preset.kind()).filter(same).filter_map(|entry| entry.file.clone()).next();
-        let file = own.unwrap_or_else(|| free_file(&folder, &preset.name));
+        let folder = self.create_folder(preset.kind())?;
+        let same = |entry: &&LibraryEntry| entry.preset.as_ref().is_ok_and(|own| own.name == preset.name);
+        let existing =
+            self.entries_of_kind(preset.kind()).filter(same).filter_map(|entry| entry.file.clone()).next();
+        let file = existing.unwrap_or_else(|| unused_file(&folder, &preset.name));
         preset.write(&file)?;
-        self.look();
+        self.reload();
         Ok(file)
     }
 
@@ -115,30 +119,30 @@ impl PresetShelf {
         let wrong = |problem: String| ProjectError::content(file, problem, "give another name");
         let preset = Preset::read(file)?;
         let renamed = Preset::new(name, preset.content).map_err(|problem| wrong(problem.into()))?;
-        let is_taken = self.of_kind(renamed.kind()).any(|entry| {
+        let is_taken = self.entries_of_kind(renamed.kind()).any(|entry| {
             entry.file.as_deref() != Some(file) && entry.preset.as_ref().is_ok_and(|p| p.name == renamed.name)
         });
         if is_taken {
             return Err(wrong(format!("there is another \"{}\"", renamed.name)));
         }
         renamed.write(file)?;
-        self.look();
+        self.reload();
         Ok(())
     }
 
     /// Takes the user's own preset of `file` off the shelf; the file goes to the folder `deleted`, where it now lies.
     pub fn delete(&mut self, file: &Path) -> Result<PathBuf, ProjectError> {
         let write = |source| ProjectError::Write { file: file.to_owned(), source };
-        let folder = file.parent().unwrap_or(Path::new("")).join(DELETED);
+        let folder = file.parent().unwrap_or(Path::new("")).join(DELETED_FOLDER);
         std::fs::create_dir_all(&folder).map_err(write)?;
-        let kept = free_file(&folder, &stem(file));
-        std::fs::rename(file, &kept).map_err(write)?;
-        self.look();
-        Ok(kept)
+        let deleted = unused_file(&folder, &stem(file));
+        std::fs::rename(file, &deleted).map_err(write)?;
+        self.reload();
+        Ok(deleted)
     }
 
     /// The folder of one kind, made if it is missing.
-    fn folder_of(&self, kind: PresetKind) -> Result<PathBuf, ProjectError> {
+    fn create_folder(&self, kind: PresetKind) -> Result<PathBuf, ProjectError> {
         let Some(folder) = &self.folder else {
             let nowhere = std::io::Error::other("the system has no folder for a user's settings");
             return Err(ProjectError::Write { file: PathBuf::from("presets"), source: nowhere });
@@ -155,7 +159,7 @@ fn stem(file: &Path) -> String {
 }
 
 /// A file in the folder that is not there yet, named after a preset: of letters, digits and dashes, which every system takes.
-fn free_file(folder: &Path, name: &str) -> PathBuf {
+fn unused_file(folder: &Path, name: &str) -> PathBuf {
     let plain = |c: char| if c.is_alphanumeric() { c } else { '-' };
     let stem: String = name.to_lowercase().chars().map(plain).take(60).collect();
     let stem = stem.trim_matches('-');

@@ -53,7 +53,7 @@ const FILES: &[(&str, &str)] = &[
 ];
 
 /// All of them.
-pub(super) fn shipped() -> impl Iterator<Item = Preset> {
+pub(super) fn bundled_presets() -> impl Iterator<Item = Preset> {
     let read = |(name, text): &(&str, &str)| {
         Preset::parse(Path::new(name), text).unwrap_or_else(|error| panic!("a shipped preset: {error}"))
     };
@@ -69,15 +69,17 @@ mod tests {
     #[test]
     fn every_shipped_preset_can_be_used_and_is_written_as_it_is_read() {
         let mut names = HashSet::new();
-        for (preset, (file, _)) in shipped().zip(FILES) {
+        for (preset, (file, _)) in bundled_presets().zip(FILES) {
             assert!(file.starts_with(preset.kind().name()), "{file}");
             assert!(names.insert((preset.kind(), preset.name.clone())), "{file}: its name is taken");
             assert_eq!(Preset::parse(Path::new(file), &preset.to_text()).unwrap(), preset, "{file}");
-            if let Some(camera) = preset.camera(&lens::Camera::default()) {
+            if let Some(camera) = preset.apply_to_camera(&lens::Camera::default()) {
                 camera.unwrap().validate().unwrap();
             }
         }
-        assert!(PresetKind::ALL.iter().all(|kind| shipped().filter(|p| p.kind() == *kind).count() >= 10));
+        assert!(
+            PresetKind::ALL.iter().all(|kind| bundled_presets().filter(|p| p.kind() == *kind).count() >= 10)
+        );
     }
 
     #[test]

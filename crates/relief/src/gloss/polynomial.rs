@@ -7,7 +7,7 @@
 //! The picture is shown as it is: its own place, the middle, has the terms of the constant alone, so that what is told of a view is the
 //! polynomial there less that in the middle.
 
-use super::sightings::Sighting;
+use super::sightings::Observation;
 use std::borrow::Cow;
 
 /// Degrees that are tried, 0 among them.
@@ -20,14 +20,14 @@ const TERMS_A_VIEW: f64 = 0.5;
 /// Added to the squares of each term, of their number: what views do not tell apart (a row, a cross) is told by as little as may be.
 const RIDGE: f64 = 1e-3;
 /// Views that are farther off than so many times as the middle one of them count less (Huber 1964).
-const FAR_OFF: f64 = 3.0;
+const OUTLIER_FACTOR: f64 = 3.0;
 /// Noise is never called far off: linear light, all channels together.
 const NOISE: f64 = 0.02;
 /// By a polynomial of this degree, over so many rounds.
-const JUDGES: usize = 2;
+const OUTLIER_DEGREE: usize = 2;
 const ROUNDS: usize = 3;
 /// Where no degree leaves less than this of the squared error, no view that is far off is looked for.
-const HOPELESS: f32 = 0.85;
+const MAX_ERROR_RATIO: f32 = 0.85;
 
 /// Terms of a degree and all below.
 const fn terms_of(degree: usize) -> usize {
@@ -52,7 +52,7 @@ struct Factor {
 }
 
 /// A polynomial that is not solved for yet.
-struct Solved<'a> {
+struct NormalEquations<'a> {
     factor: Cow<'a, Factor>,
     z: [[f64; 3]; TERMS],
     weights: Vec<f64>,
@@ -61,7 +61,7 @@ struct Solved<'a> {
 
 impl Regression {
     /// Of views from these places, in [−1, 1], in the middle of which the picture is.
-    pub fn of(places: &[[f32; 2]]) -> Self {
+    pub fn new(places: &[[f32; 2]]) -> Self {
         let terms = |place: &[f32; 2]| {
             let [x, y] = place.map(f64::from);
             let mut terms = [0.0; TERMS];
@@ -74,32 +74,33 @@ impl Regression {
             terms
         };
         let terms: Vec<_> = places.iter().chain([&[0.0; 2]]).map(terms).collect();
-        let alike = Factor::of(&terms, &vec![1.0; terms.len()]);
+        let alike = Factor::new(&terms, &vec![1.0; terms.len()]);
         Self { terms, alike }
     }
 
     /// By degree, the mean squared error of views that are left out (all channels); of 0 that of the picture alone. None where that is
     /// at most `least`, and where no view tells of the block; infinite where too few do for a degree.
-    pub fn errors(&self, sightings: &[Sighting], least: f32) -> Option<[f32; DEGREES]> {
-        let square = |sighting: &Sighting| sighting.more.iter().map(|more| more * more).sum::<f32>();
-        let off: f32 = sightings.iter().map(|sighting| sighting.weight * square(sighting)).sum();
-        let seen: f32 = sightings.iter().map(|sighting| sighting.weight).sum();
-        if off <= least * seen {
+    pub fn errors(&self, sightings: &[Observation], least: f32) -> Option<[f32; DEGREES]> {
+        let square = |sighting: &Observation| sighting.difference.iter().map(|more| more * more).sum::<f32>();
+        let total_error: f32 = sightings.iter().map(|sighting| sighting.weight * square(sighting)).sum();
+        let total_weight: f32 = sightings.iter().map(|sighting| sighting.weight).sum();
+        if total_error <= least * total_weight {
             return None;
         }
         let first = self.weighted(sightings, self.counts(sightings)?);
         let errors = first.errors(sightings);
-        if errors[1..].iter().all(|error| *error > HOPELESS * errors[0]) {
+        if errors[1..].iter().all(|error| *error > MAX_ERROR_RATIO * errors[0]) {
             return Some(errors);
         }
-        Some(self.without_far_off(sightings, first).errors(sightings))
+        Some(self.reweight_outliers(sightings, first).errors(sightings))
     }
 
     /// The coefficients of the polynomial of a degree, but for the constant.
-    pub fn told(&self, sightings: &[Sighting], degree: usize) -> [[f32; 3]; TERMS - 1] {
+    pub fn fit_coefficients(&self, sightings: &[Observation], degree: usize) -> [[f32; 3]; TERMS - 1] {
         let mut coefficients = [[0.0; 3]; TERMS];
         let Some(counts) = self.counts(sightings) else { return [[0.0; 3]; TERMS - 1] };
-        let Solved { factor, z, .. } = self.without_far_off(sightings, self.weighted(sightings, counts));
+        let NormalEquations { factor, z, .. } =
+            self.reweight_outliers(sightings, self.weighted(sightings, counts));
         let triangle = &factor.triangle;
         let count = terms_of(degree);
         for t in (0..count).rev() {
@@ -112,43 +113,53 @@ impl Regression {
     }
 
     /// How much each view counts, and the picture; none where no view does: the picture alone tells nothing.
-    fn counts(&self, sightings: &[Sighting]) -> Option<Vec<f64>> {
+    fn counts(&self, sightings: &[Observation]) -> Option<Vec<f64>> {
         let counts = sightings.iter().map(|sighting| f64::from(sighting.weight)).chain([1.0]);
         sightings.iter().any(|sighting| sighting.weight > 0.0).then(|| counts.collect())
     }
 
     /// In rounds: views count less that are far off what was told in the round before.
-    fn without_far_off<'a>(&'a self, sightings: &[Sighting], first: Solved<'a>) -> Solved<'a> {
+    fn reweight_outliers<'a>(
+        &'a self,
+        sightings: &[Observation],
+        first: NormalEquations<'a>,
+    ) -> NormalEquations<'a> {
         let counts = first.weights.clone();
         let mut solved = first;
         for _ in 0..ROUNDS {
-            let off: Vec<f64> =
-                (0..counts.len()).map(|view| solved.off(view, more(sightings, view))).collect();
-            let mut sorted: Vec<f64> =
-                off.iter().zip(&counts).filter(|(_, count)| **count > 0.0).map(|(off, _)| *off).collect();
+            let residuals: Vec<f64> =
+                (0..counts.len()).map(|view| solved.residual(view, difference_of(sightings, view))).collect();
+            let mut sorted: Vec<f64> = residuals
+                .iter()
+                .zip(&counts)
+                .filter(|(_, count)| **count > 0.0)
+                .map(|(residual, _)| *residual)
+                .collect();
             let middle = sorted.len() / 2;
-            let far = FAR_OFF * *sorted.select_nth_unstable_by(middle, f64::total_cmp).1;
+            let far = OUTLIER_FACTOR * *sorted.select_nth_unstable_by(middle, f64::total_cmp).1;
             let far = far.max(NOISE);
-            if off.iter().zip(&counts).all(|(&off, &count)| off <= far || count == 0.0) {
+            if residuals.iter().zip(&counts).all(|(&residual, &count)| residual <= far || count == 0.0) {
                 break;
             }
-            let weight = |(&count, &off): (&f64, &f64)| if off > far { count * far / off } else { count };
-            solved = self.weighted(sightings, counts.iter().zip(&off).map(weight).collect());
+            let weight = |(&count, &residual): (&f64, &f64)| {
+                if residual > far { count * far / residual } else { count }
+            };
+            solved = self.weighted(sightings, counts.iter().zip(&residuals).map(weight).collect());
         }
         solved
     }
 
-    fn weighted(&self, sightings: &[Sighting], weights: Vec<f64>) -> Solved<'_> {
+    fn weighted(&self, sightings: &[Observation], weights: Vec<f64>) -> NormalEquations<'_> {
         let factor = match weights.iter().all(|weight| *weight == 1.0) {
             true => Cow::Borrowed(&self.alike),
-            false => Cow::Owned(Factor::of(&self.terms, &weights)),
+            false => Cow::Owned(Factor::new(&self.terms, &weights)),
         };
         let mut z = [[0.0; 3]; TERMS];
         // The picture shows no more than itself.
         for ((sighting, terms), weight) in sightings.iter().zip(&self.terms).zip(&weights) {
-            let more = sighting.more.map(|more| weight * f64::from(more));
+            let difference = sighting.difference.map(|more| weight * f64::from(more));
             for (z, term) in z.iter_mut().zip(terms) {
-                (0..3).for_each(|c| z[c] += term * more[c]);
+                (0..3).for_each(|c| z[c] += term * difference[c]);
             }
         }
         for i in 0..TERMS {
@@ -157,22 +168,22 @@ impl Regression {
             z[i] = std::array::from_fn(|c| (z[i][c] - before(c)) / row[i]);
         }
         let all = weights.iter().sum();
-        Solved { factor, z, weights, all }
+        NormalEquations { factor, z, weights, all }
     }
 }
 
 /// How much more than the picture a view shows; the last is the picture.
-fn more(sightings: &[Sighting], view: usize) -> [f32; 3] {
-    sightings.get(view).map_or([0.0; 3], |sighting| sighting.more)
+fn difference_of(sightings: &[Observation], view: usize) -> [f32; 3] {
+    sightings.get(view).map_or([0.0; 3], |sighting| sighting.difference)
 }
 
 impl Factor {
-    fn of(terms: &[[f64; TERMS]], weights: &[f64]) -> Self {
+    fn new(terms: &[[f64; TERMS]], weights: &[f64]) -> Self {
         let mut triangle = [[0.0; TERMS]; TERMS];
         for (terms, &weight) in terms.iter().zip(weights).filter(|(_, weight)| **weight > 0.0) {
             for i in 0..TERMS {
-                let by = weight * terms[i];
-                (0..=i).for_each(|j| triangle[i][j] += by * terms[j]);
+                let weighted = weight * terms[i];
+                (0..=i).for_each(|j| triangle[i][j] += weighted * terms[j]);
             }
         }
         let all: f64 = weights.iter().sum();
@@ -198,9 +209,9 @@ impl Factor {
     }
 }
 
-impl Solved<'_> {
+impl NormalEquations<'_> {
     /// See [`Regression::errors`].
-    fn errors(&self, sightings: &[Sighting]) -> [f32; DEGREES] {
+    fn errors(&self, sightings: &[Observation]) -> [f32; DEGREES] {
         let mut errors = [0.0; DEGREES];
         let mut all = 0.0;
         let Factor { q: of_views, .. } = &*self.factor;
@@ -211,7 +222,7 @@ impl Solved<'_> {
                 continue;
             }
             all += counts;
-            let more = sighting.more.map(f64::from);
+            let difference = sighting.difference.map(f64::from);
             // Here, and here less in the middle; what this view does to either.
             let (mut here, mut beyond, mut own, mut own_beyond) = ([0.0; 3], [0.0; 3], 0.0, 0.0);
             for (degree, error) in errors.iter_mut().enumerate() {
@@ -225,31 +236,31 @@ impl Solved<'_> {
                 }
                 let left_out = weight / (1.0 - weight * own).max(f64::EPSILON);
                 // Of degree 0 that is the picture itself.
-                let told = |c: usize| match degree {
+                let prediction = |c: usize| match degree {
                     0 => 0.0,
-                    _ => beyond[c] - own_beyond * left_out * (more[c] - here[c]),
+                    _ => beyond[c] - own_beyond * left_out * (difference[c] - here[c]),
                 };
-                *error += counts * (0..3).map(|c| (more[c] - told(c)).powi(2)).sum::<f64>();
+                *error += counts * (0..3).map(|c| (difference[c] - prediction(c)).powi(2)).sum::<f64>();
             }
         }
-        let is_told = |degree: usize| degree == 0 || self.tells(degree);
+        let is_supported = |degree: usize| degree == 0 || self.supports(degree);
         std::array::from_fn(
-            |degree| if is_told(degree) { (errors[degree] / all) as f32 } else { f32::INFINITY },
+            |degree| if is_supported(degree) { (errors[degree] / all) as f32 } else { f32::INFINITY },
         )
     }
 
     /// How far off a view is that shows so much more, told by the others: what it does to the polynomial itself would hide that.
-    fn off(&self, view: usize, more: [f32; 3]) -> f64 {
-        let degree = (1..=JUDGES).rev().find(|&degree| self.tells(degree)).unwrap_or(0);
+    fn residual(&self, view: usize, difference: [f32; 3]) -> f64 {
+        let degree = (1..=OUTLIER_DEGREE).rev().find(|&degree| self.supports(degree)).unwrap_or(0);
         let q = &self.factor.q[view][..terms_of(degree)];
-        let told = |c: usize| -> f64 { q.iter().zip(&self.z).map(|(q, z)| q * z[c]).sum() };
-        let square = |c: usize| (f64::from(more[c]) - told(c)).powi(2);
+        let prediction = |c: usize| -> f64 { q.iter().zip(&self.z).map(|(q, z)| q * z[c]).sum() };
+        let square = |c: usize| (f64::from(difference[c]) - prediction(c)).powi(2);
         let own = self.weights[view] * q.iter().map(|q| q * q).sum::<f64>();
         (0..3).map(square).sum::<f64>().sqrt() / (1.0 - own).max(f64::EPSILON)
     }
 
     /// Whether views are enough for a degree.
-    fn tells(&self, degree: usize) -> bool {
+    fn supports(&self, degree: usize) -> bool {
         terms_of(degree) as f64 <= TERMS_A_VIEW * self.all
     }
 }
@@ -263,36 +274,41 @@ mod tests {
         all.filter(|place| *place != [0.0; 2]).collect()
     }
 
-    fn sightings(of: impl Fn([f32; 2]) -> f32) -> Vec<Sighting> {
-        places().into_iter().map(|place| Sighting { more: [of(place); 3], weight: 1.0 }).collect()
+    fn sightings(value_at: impl Fn([f32; 2]) -> f32) -> Vec<Observation> {
+        places()
+            .into_iter()
+            .map(|place| Observation { difference: [value_at(place); 3], weight: 1.0 })
+            .collect()
     }
 
     #[test]
-    fn a_polynomial_is_told_by_its_own_degree() {
-        let regression = Regression::of(&places());
+    fn a_polynomial_is_fitted_by_its_own_degree() {
+        let regression = Regression::new(&places());
         let all = sightings(|[x, y]| 0.2 * x - 0.1 * y + 0.3 * x * y);
         let errors = regression.errors(&all, 0.0).unwrap();
         assert!(errors[2] < 1e-3 * errors[1] && errors[1] < errors[0], "{errors:?}");
         assert_eq!(errors[4], f32::INFINITY, "25 views do not tell 15 terms");
-        let told = regression.told(&all, 2);
-        for (found, expected) in told.iter().zip([0.2, -0.1, 0.0, 0.3, 0.0, 0.0]) {
-            assert!((found[1] - expected).abs() < 2e-3, "{told:?}");
+        let coefficients = regression.fit_coefficients(&all, 2);
+        for (fitted, expected) in coefficients.iter().zip([0.2, -0.1, 0.0, 0.3, 0.0, 0.0]) {
+            assert!((fitted[1] - expected).abs() < 2e-3, "{coefficients:?}");
         }
-        assert_eq!(told[5..], [[0.0; 3]; TERMS - 6]);
+        assert_eq!(coefficients[5..], [[0.0; 3]; TERMS - 6]);
     }
 
     #[test]
-    fn what_is_left_out_is_what_the_others_tell() {
-        let regression = Regression::of(&places());
+    fn what_is_left_out_is_predicted_by_the_others() {
+        let regression = Regression::new(&places());
         let noisy = sightings(|[x, y]| 0.2 * x + 0.05 * (7.0 * x + 11.0 * y).sin());
         let (mut by_hand, degree) = (0.0, 1);
         for out in 0..noisy.len() {
             let mut others = noisy.clone();
             others[out].weight = 0.0;
             // All count alike here: none is far off.
-            let told = regression.told(&others, degree);
+            let coefficients = regression.fit_coefficients(&others, degree);
             let [x, y] = places()[out];
-            let square = (0..3).map(|c| (noisy[out].more[c] - told[0][c] * x - told[1][c] * y).powi(2));
+            let square = (0..3).map(|c| {
+                (noisy[out].difference[c] - coefficients[0][c] * x - coefficients[1][c] * y).powi(2)
+            });
             by_hand += square.sum::<f32>() / noisy.len() as f32;
         }
         let error = regression.errors(&noisy, 0.0).unwrap()[degree];
@@ -300,36 +316,36 @@ mod tests {
     }
 
     #[test]
-    fn noise_is_told_by_nothing() {
-        let regression = Regression::of(&places());
+    fn noise_is_predicted_by_nothing() {
+        let regression = Regression::new(&places());
         let mut state = 1u32;
         let mut noise = sightings(|_| 0.0);
         for sighting in &mut noise {
             state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            sighting.more = [(state >> 8) as f32 / (1 << 24) as f32 * 0.1 - 0.05; 3];
+            sighting.difference = [(state >> 8) as f32 / (1 << 24) as f32 * 0.1 - 0.05; 3];
         }
         let errors = regression.errors(&noise, 0.0).unwrap();
         assert!((1..4).all(|degree| errors[degree] > 0.9 * errors[0]), "{errors:?}");
         assert_eq!(regression.errors(&noise, 0.1), None, "little");
-        assert_eq!(regression.errors(&[Sighting::default(); 24], 0.0), None, "unseen");
+        assert_eq!(regression.errors(&[Observation::default(); 24], 0.0), None, "unseen");
     }
 
     #[test]
     fn one_view_that_is_far_off_moves_little() {
-        let regression = Regression::of(&places());
+        let regression = Regression::new(&places());
         let mut all = sightings(|[x, y]| 0.2 * x + 0.004 * (37.0 * y).sin());
-        all[0].more = [3.0; 3];
-        let told = regression.told(&all, 1);
-        assert!((told[0][0] - 0.2).abs() < 0.05, "{told:?}");
+        all[0].difference = [3.0; 3];
+        let coefficients = regression.fit_coefficients(&all, 1);
+        assert!((coefficients[0][0] - 0.2).abs() < 0.05, "{coefficients:?}");
     }
 
     #[test]
-    fn views_in_a_row_tell_nothing_of_the_other_direction() {
+    fn views_in_a_row_constrain_nothing_across_it() {
         let row: Vec<[f32; 2]> = (0..9).filter(|k| *k != 4).map(|k| [k as f32 / 4.0 - 1.0, 0.0]).collect();
-        let regression = Regression::of(&row);
-        let all: Vec<Sighting> =
-            row.iter().map(|[x, _]| Sighting { more: [0.3 * x; 3], weight: 1.0 }).collect();
-        let told = regression.told(&all, 1);
-        assert!((told[0][0] - 0.3).abs() < 2e-3 && told[1] == [0.0; 3], "{told:?}");
+        let regression = Regression::new(&row);
+        let all: Vec<Observation> =
+            row.iter().map(|[x, _]| Observation { difference: [0.3 * x; 3], weight: 1.0 }).collect();
+        let coefficients = regression.fit_coefficients(&all, 1);
+        assert!((coefficients[0][0] - 0.3).abs() < 2e-3 && coefficients[1] == [0.0; 3], "{coefficients:?}");
     }
 }

@@ -1,50 +1,50 @@
 //! What views show of blocks of pixels, beside what the picture does.
 
 use crate::cells::Grid;
-use crate::covers::place;
+use crate::covers::project_cell;
 use crate::error::ReliefError;
-use crate::look::distance;
+use crate::look::squared_distance;
 use crate::other_view::OtherView;
-use crate::other_views::{Seen, interpolated, nearest};
+use crate::other_views::{FrontLayer, interpolate, nearest_disparity};
 use progress::Progress;
 use rayon::prelude::*;
 
 /// What one view shows of a block.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Sighting {
+pub(super) struct Observation {
     /// How much more than the picture, linear RGB; the mean of the pixels that the view shows.
-    pub more: [f32; 3],
+    pub difference: [f32; 3],
     /// The share of the block's pixels that it shows, in [0, 1].
     pub weight: f32,
 }
 
 /// The same as it is kept.
 #[derive(Clone, Copy, Debug, Default)]
-struct Kept {
+struct QuantizedObservation {
     /// In steps of [`STEP`].
-    more: [i16; 3],
+    difference: [i16; 3],
     /// In steps of 1/65,535.
     weight: u16,
 }
 
-impl Kept {
-    fn of(sighting: &Sighting) -> Self {
+impl QuantizedObservation {
+    fn quantize(sighting: &Observation) -> Self {
         Self {
-            more: sighting.more.map(|more| (more / STEP + 0.5f32.copysign(more)) as i16),
+            difference: sighting.difference.map(|more| (more / STEP + 0.5f32.copysign(more)) as i16),
             weight: (sighting.weight * f32::from(u16::MAX) + 0.5) as u16,
         }
     }
 
-    fn sighting(&self) -> Sighting {
-        Sighting {
-            more: self.more.map(|steps| f32::from(steps) * STEP),
+    fn dequantize(&self) -> Observation {
+        Observation {
+            difference: self.difference.map(|steps| f32::from(steps) * STEP),
             weight: f32::from(self.weight) / f32::from(u16::MAX),
         }
     }
 }
 
 /// What all views show.
-pub(super) struct Sightings {
+pub(super) struct Observations {
     /// Pixels that a block is wide and high.
     pub side: usize,
     pub blocks: Grid,
@@ -54,13 +54,13 @@ pub(super) struct Sightings {
     pub steepest: Vec<f32>,
     views: usize,
     /// By block, then by view.
-    all: Vec<Kept>,
+    all: Vec<QuantizedObservation>,
 }
 
 /// Steps of light: 8 bits tell several of them apart in the dark, and an i16 holds eight times white.
 const STEP: f32 = 1.0 / 4096.0;
 /// Bytes that sightings take at most: blocks are of several pixels where they would not fit.
-const MOST_BYTES: usize = 192 << 20;
+const MAX_BYTES: usize = 192 << 20;
 /// Views in which something nearer is as near as this are left out, px: their edges are mixed.
 const BESIDE: usize = 1;
 /// Blocks darker than this tell nothing of how bright a view is as a whole.
@@ -68,24 +68,24 @@ const DARK: f32 = 0.02;
 /// How bright a view is as a whole is told by about so many blocks.
 const RATIOS: usize = 20_000;
 
-impl Sightings {
+impl Observations {
     /// Looks at the whole pixels in each view.
-    pub fn of<E: Send>(
-        seen: &Seen<'_>,
+    pub fn collect<E: Send>(
+        layer: &FrontLayer<'_>,
         shown: &[[f32; 3]],
         whole: &[bool],
         views: &[OtherView<'_, E>],
         progress: &dyn Progress,
     ) -> Result<Self, ReliefError<E>> {
-        let [width, height] = seen.frame.picture();
+        let [width, height] = layer.frame.picture();
         let picture = Grid { width, height };
         let bytes = |side: usize| {
             let blocks = width.div_ceil(side) * height.div_ceil(side);
-            blocks.saturating_mul(views.len()).saturating_mul(size_of::<Kept>())
+            blocks.saturating_mul(views.len()).saturating_mul(size_of::<QuantizedObservation>())
         };
-        let side = (1..).find(|&side| bytes(side) <= MOST_BYTES).unwrap_or(width.max(height));
+        let side = (1..).find(|&side| bytes(side) <= MAX_BYTES).unwrap_or(width.max(height));
         let blocks = Grid { width: width.div_ceil(side), height: height.div_ceil(side) };
-        let (frame, grid) = (seen.frame, seen.frame.grid);
+        let (frame, grid) = (layer.frame, layer.frame.grid);
         let margin = frame.margin;
         // The pixels of a block that are told of, in the grid of cells.
         let pixels = |block: usize| {
@@ -105,68 +105,75 @@ impl Sightings {
             if 2.0 * count >= (side * side) as f32 { sum.map(|sum| sum / count) } else { [f32::NAN; 3] }
         };
         let step = |cell: usize| -> f32 {
-            grid.around(cell).map(|(_, other)| distance(shown[cell], shown[other])).fold(0.0, f32::max)
+            grid.around(cell)
+                .map(|(_, other)| squared_distance(shown[cell], shown[other]))
+                .fold(0.0, f32::max)
         };
         let steepest = |block: usize| pixels(block).map(step).fold(0.0, f32::max);
         let steepest = (0..blocks.count()).into_par_iter().map(steepest).collect();
         let means: Vec<[f32; 3]> = (0..blocks.count()).into_par_iter().map(mean).collect();
-        let mut all = vec![Kept::default(); blocks.count() * views.len()];
+        let mut all = vec![QuantizedObservation::default(); blocks.count() * views.len()];
         for (number, view) in views.iter().enumerate() {
             progress.check().map_err(ReliefError::Cancelled)?;
             progress.report(number as f32 / views.len() as f32);
-            let looked_at = (view.read)().map_err(ReliefError::View)?;
+            let view_pixels = (view.read)().map_err(ReliefError::View)?;
             // A picture of another size shows nothing that could be found in it.
-            if looked_at.len() != picture.count() {
+            if view_pixels.len() != picture.count() {
                 continue;
             }
-            let nearest = largest_around(grid, &nearest(grid, seen.front, view.offset), BESIDE);
+            let nearest = largest_around(grid, &nearest_disparity(grid, layer.front, view.offset), BESIDE);
             let sighting = |block: usize| {
-                let (mut more, mut count) = ([0.0; 3], 0.0f32);
+                let (mut total, mut count) = ([0.0; 3], 0.0f32);
                 for cell in pixels(block) {
-                    let disparity = seen.front[cell];
-                    let at = place(grid, cell, disparity, view.offset);
-                    let is_open = open_at(grid, &nearest, at, disparity + seen.jump);
+                    let disparity = layer.front[cell];
+                    let at = project_cell(grid, cell, disparity, view.offset);
+                    let is_open = open_at(grid, &nearest, at, disparity + layer.jump);
                     let at = at.map(|at| at - margin as f32);
-                    if is_open && let Some(color) = interpolated(picture, &looked_at, at) {
-                        (0..3).for_each(|c| more[c] += color[c] - shown[cell][c]);
+                    if is_open && let Some(color) = interpolate(picture, &view_pixels, at) {
+                        (0..3).for_each(|c| total[c] += color[c] - shown[cell][c]);
                         count += 1.0;
                     }
                 }
                 match count > 0.0 {
-                    true => {
-                        Sighting { more: more.map(|sum| sum / count), weight: count / (side * side) as f32 }
-                    }
-                    false => Sighting::default(),
+                    true => Observation {
+                        difference: total.map(|sum| sum / count),
+                        weight: count / (side * side) as f32,
+                    },
+                    false => Observation::default(),
                 }
             };
             let of_block = |block: usize| match means[block][0].is_nan() {
-                true => Sighting::default(),
+                true => Observation::default(),
                 false => sighting(block),
             };
-            let mut of_view: Vec<Sighting> = (0..blocks.count()).into_par_iter().map(of_block).collect();
+            let mut of_view: Vec<Observation> = (0..blocks.count()).into_par_iter().map(of_block).collect();
             even_out(&means, &mut of_view);
             let of_blocks = all.par_chunks_mut(views.len()).zip(&of_view);
-            of_blocks.for_each(|(kept, sighting)| kept[number] = Kept::of(sighting));
+            of_blocks.for_each(|(row, sighting)| row[number] = QuantizedObservation::quantize(sighting));
         }
         Ok(Self { side, blocks, picture: means, steepest, views: views.len(), all })
     }
 
     /// What views show of a block, in their order.
-    pub fn of_block(&self, block: usize) -> Vec<Sighting> {
-        self.all[block * self.views..(block + 1) * self.views].iter().map(Kept::sighting).collect()
+    pub fn of_block(&self, block: usize) -> Vec<Observation> {
+        self.all[block * self.views..(block + 1) * self.views]
+            .iter()
+            .map(QuantizedObservation::dequantize)
+            .collect()
     }
 }
 
 /// A view that is darker as a whole, as outer ones of a plenoptic camera are, is made as bright as the picture.
-fn even_out(picture: &[[f32; 3]], of_view: &mut [Sighting]) {
+fn even_out(picture: &[[f32; 3]], observations: &mut [Observation]) {
     for channel in 0..3 {
         // The median of some that are spread evenly tells enough.
-        let apart = picture.len().div_ceil(RATIOS);
-        let ratio = |(picture, sighting): (&[f32; 3], &Sighting)| {
-            let tells = picture[channel] > DARK && sighting.weight > 0.0;
-            tells.then(|| 1.0 + sighting.more[channel] / picture[channel])
+        let stride = picture.len().div_ceil(RATIOS);
+        let ratio = |(picture, sighting): (&[f32; 3], &Observation)| {
+            let is_usable = picture[channel] > DARK && sighting.weight > 0.0;
+            is_usable.then(|| 1.0 + sighting.difference[channel] / picture[channel])
         };
-        let mut ratios: Vec<f32> = picture.iter().zip(&*of_view).filter_map(ratio).step_by(apart).collect();
+        let mut ratios: Vec<f32> =
+            picture.iter().zip(&*observations).filter_map(ratio).step_by(stride).collect();
         if ratios.is_empty() {
             continue;
         }
@@ -175,19 +182,19 @@ fn even_out(picture: &[[f32; 3]], of_view: &mut [Sighting]) {
         if *ratio <= 0.0 {
             continue;
         }
-        let by = 1.0 / *ratio;
-        for (picture, sighting) in picture.iter().zip(&mut *of_view).filter(|(_, s)| s.weight > 0.0) {
-            let all = picture[channel] + sighting.more[channel];
-            sighting.more[channel] = all * by - picture[channel];
+        let gain = 1.0 / *ratio;
+        for (picture, sighting) in picture.iter().zip(&mut *observations).filter(|(_, s)| s.weight > 0.0) {
+            let all = picture[channel] + sighting.difference[channel];
+            sighting.difference[channel] = all * gain - picture[channel];
         }
     }
 }
 
 /// Whether nothing of more disparity than `most` is where `nearest` has the largest around.
-fn open_at(grid: Grid, nearest: &[f32], at: [f32; 2], most: f32) -> bool {
+fn open_at(grid: Grid, nearest: &[f32], at: [f32; 2], max_disparity: f32) -> bool {
     let [x, y] = at.map(|at| at.floor() as isize);
     let is_in = (0..grid.width as isize).contains(&x) && (0..grid.height as isize).contains(&y);
-    is_in && nearest[grid.at(x as usize, y as usize)] <= most
+    is_in && nearest[grid.at(x as usize, y as usize)] <= max_disparity
 }
 
 /// The largest value within so many cells of each, along rows and columns.
@@ -210,19 +217,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_largest_around_is_found_up_to_the_border() {
+    fn the_largest_around_reaches_the_border() {
         let grid = Grid { width: 7, height: 5 };
         let mut values = vec![0.0; grid.count()];
         values[grid.at(1, 1)] = 2.0;
         values[grid.at(6, 4)] = 1.0;
-        let found = largest_around(grid, &values, 2);
+        let largest = largest_around(grid, &values, 2);
         let expected = |x: usize, y: usize| match () {
             () if x <= 3 && y <= 3 => 2.0,
             () if x >= 4 && y >= 2 => 1.0,
             () => 0.0,
         };
-        for (cell, found) in found.iter().enumerate() {
-            assert_eq!(*found, expected(cell % 7, cell / 7), "{cell}");
+        for (cell, value) in largest.iter().enumerate() {
+            assert_eq!(*value, expected(cell % 7, cell / 7), "{cell}");
         }
     }
 }

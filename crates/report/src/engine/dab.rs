@@ -1,7 +1,7 @@
 //! Painting while the picture is watched: what one dab costs.
 
 use lens::FocusOffset;
-use salf::{Salf, Spot};
+use salf::{Salf, SampleLocation};
 use scene::{SurfaceField, SurfacePoint};
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -14,7 +14,7 @@ const SAMPLES: usize = 5000;
 const CIRCLE_PX: f64 = 48.0;
 
 /// A focus with a dab on it: the samples at some points are blurred.
-pub struct Dabbed {
+pub struct DabbedFocus {
     focus: Arc<dyn SurfaceField<FocusOffset> + Send>,
     points: HashSet<[u64; 3]>,
     offset: FocusOffset,
@@ -22,17 +22,17 @@ pub struct Dabbed {
     pub samples: Vec<u32>,
 }
 
-impl Dabbed {
+impl DabbedFocus {
     /// A dab on the samples of surfaces nearest to the picture's middle.
     pub fn new(salf: &Salf, focus: Arc<dyn SurfaceField<FocusOffset> + Send>) -> Self {
         let middle = glam::Vec2::new(salf.camera.width as f32, salf.camera.height as f32) / 2.0;
-        let spots = salf.samples.runs().flat_map(|run| run.indices.clone().zip(run.spots()));
-        let mut nearest: Vec<(u32, Spot)> =
+        let spots = salf.samples.runs().flat_map(|run| run.indices.clone().zip(run.locations()));
+        let mut nearest: Vec<(u32, SampleLocation)> =
             spots.filter(|(_, spot)| spot.address.surface.is_some()).collect();
-        let distance = |spot: &Spot| spot.center.distance_squared(middle);
+        let distance = |spot: &SampleLocation| spot.center.distance_squared(middle);
         nearest.sort_by(|(_, a), (_, b)| distance(a).total_cmp(&distance(b)));
         nearest.truncate(SAMPLES);
-        let points = nearest.iter().filter_map(|(_, spot)| spot.address.surface.map(key)).collect();
+        let points = nearest.iter().filter_map(|(_, spot)| spot.address.surface.map(point_key)).collect();
         let optics = salf.camera.optics();
         // With an anchor of 1 the blur is the same at any depth; without an aperture there is none.
         let kappa = optics.kappa_for_circle_px(CIRCLE_PX).unwrap_or(0.0);
@@ -41,13 +41,13 @@ impl Dabbed {
     }
 }
 
-fn key(point: SurfacePoint) -> [u64; 3] {
+fn point_key(point: SurfacePoint) -> [u64; 3] {
     [point.triangle.into(), point.barycentric.x.to_bits(), point.barycentric.y.to_bits()]
 }
 
-impl SurfaceField<FocusOffset> for Dabbed {
+impl SurfaceField<FocusOffset> for DabbedFocus {
     fn at(&self, point: SurfacePoint) -> FocusOffset {
-        if self.points.contains(&key(point)) { self.offset } else { self.focus.at(point) }
+        if self.points.contains(&point_key(point)) { self.offset } else { self.focus.at(point) }
     }
     fn at_infinity(&self) -> FocusOffset {
         self.focus.at_infinity()

@@ -9,7 +9,7 @@ use std::time::Instant;
 const BAND_ROWS: i64 = 64;
 
 /// About as many additions to a pixel are timed, and what all would take is told from them.
-const ENOUGH: f64 = 3e9;
+const TIMED_ADDITIONS: f64 = 3e9;
 
 /// The seconds that dense scatter of a field takes: all samples see the whole disc. Where that is too long only every so
 /// many-th sample is thrown, and the time is multiplied.
@@ -28,10 +28,10 @@ pub fn dense_seconds(salf: &Salf) -> f64 {
         })
         .collect();
     let additions: f64 = discs.iter().map(|(_, radius, _)| f64::from(4.0 * radius * radius)).sum();
-    let stride = (additions / ENOUGH).ceil().max(1.0) as usize;
+    let stride = (additions / TIMED_ADDITIONS).ceil().max(1.0) as usize;
     let (width, height) = (i64::from(camera.width), i64::from(camera.height));
     let mut sums = vec![[0.0f32; 4]; (width * height) as usize];
-    let mut once = || {
+    let mut time_once = || {
         let start = Instant::now();
         sums.par_chunks_mut((BAND_ROWS * width) as usize).enumerate().for_each(|(band, sums)| {
             let first = band as i64 * BAND_ROWS;
@@ -55,5 +55,5 @@ pub fn dense_seconds(salf: &Salf) -> f64 {
         std::hint::black_box(&sums);
         start.elapsed().as_secs_f64() * stride as f64
     };
-    median(&mut [once(), once(), once()])
+    median(&mut [time_once(), time_once(), time_once()])
 }

@@ -22,11 +22,11 @@ impl Timing {
 }
 
 /// Work is repeated until all of it took this long, s …
-const ENOUGH_SECONDS: f64 = 3.0;
+const MIN_SECONDS_PER_TASK: f64 = 3.0;
 /// … or was done this often.
-const MOST_ROUNDS: usize = 11;
+const MAX_ROUNDS: usize = 11;
 /// Copies after each piece of work.
-const COPIES: usize = 3;
+const COPIES_PER_ROUND: usize = 3;
 
 /// Two RGB float frames, one of which is copied to the other with all threads.
 pub struct FrameCopy {
@@ -48,28 +48,28 @@ impl FrameCopy {
     }
 
     /// What took so many seconds just now.
-    pub fn beside(&mut self, seconds: f64) -> Timing {
+    pub fn timing_of(&mut self, seconds: f64) -> Timing {
         let before = self.times.len();
-        (0..MOST_ROUNDS).for_each(|_| self.copy());
+        (0..MAX_ROUNDS).for_each(|_| self.copy());
         Timing { seconds, frame_copy: median(&mut self.times[before..].to_vec()) }
     }
 
     /// Times pieces of work in turn, frames copied between them: the longer it takes, the less often.
-    pub fn in_turn(
+    pub fn time_interleaved(
         &mut self,
-        works: &mut [impl FnMut() -> Result<(), SessionError>],
+        tasks: &mut [impl FnMut() -> Result<(), SessionError>],
     ) -> Result<Vec<Timing>, SessionError> {
         let before = self.times.len();
-        let mut times = vec![Vec::new(); works.len()];
+        let mut times = vec![Vec::new(); tasks.len()];
         let begun = Instant::now();
-        while times.iter().any(|times| times.len() < MOST_ROUNDS) {
-            for (work, times) in works.iter_mut().zip(&mut times) {
+        while times.iter().any(|times| times.len() < MAX_ROUNDS) {
+            for (task, times) in tasks.iter_mut().zip(&mut times) {
                 let start = Instant::now();
-                work()?;
+                task()?;
                 times.push(start.elapsed().as_secs_f64());
-                (0..COPIES).for_each(|_| self.copy());
+                (0..COPIES_PER_ROUND).for_each(|_| self.copy());
             }
-            if begun.elapsed().as_secs_f64() >= ENOUGH_SECONDS * works.len() as f64 {
+            if begun.elapsed().as_secs_f64() >= MIN_SECONDS_PER_TASK * tasks.len() as f64 {
                 break;
             }
         }
@@ -95,20 +95,20 @@ mod tests {
     fn works_take_turns_with_copies_between() {
         let mut frame = FrameCopy::new(64);
         let order = std::cell::RefCell::new(Vec::new());
-        let mut works = ["a", "b"].map(|name| {
+        let mut tasks = ["a", "b"].map(|name| {
             let order = &order;
             move || {
                 order.borrow_mut().push(name);
                 Ok(())
             }
         });
-        let timings = frame.in_turn(&mut works).unwrap();
-        assert_eq!(order.borrow().len(), 2 * MOST_ROUNDS);
+        let timings = frame.time_interleaved(&mut tasks).unwrap();
+        assert_eq!(order.borrow().len(), 2 * MAX_ROUNDS);
         assert!(order.borrow().chunks(2).all(|turn| turn == ["a", "b"]));
-        assert_eq!(frame.times.len(), 2 * MOST_ROUNDS * COPIES);
+        assert_eq!(frame.times.len(), 2 * MAX_ROUNDS * COPIES_PER_ROUND);
         assert!(timings.len() == 2 && timings.iter().all(|timing| timing.frame_copy == frame.seconds()));
         let timing = Timing { seconds: 3.0, frame_copy: 0.5 };
         assert_eq!(timing.frame_copies(), 6.0);
-        assert!(frame.in_turn(&mut [|| Err(SessionError::Cancelled)]).is_err());
+        assert!(frame.time_interleaved(&mut [|| Err(SessionError::Cancelled)]).is_err());
     }
 }

@@ -7,7 +7,7 @@ use splat::Gpu;
 use std::path::PathBuf;
 
 /// What has been found so far.
-pub struct Measured {
+pub struct EngineMeasurements {
     /// What times are told in.
     pub frame: FrameCopy,
     /// The measurements.

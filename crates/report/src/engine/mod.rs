@@ -19,14 +19,14 @@ mod write;
 pub use measured::{Check, EngineReport};
 pub use record::EngineRecord;
 
-use crate::band::{Band, inverse_depths};
+use crate::band::{OutlineBand, inverse_depths};
 use crate::contender::Shot;
 use crate::machine::Machine;
 use crate::options::{ReportOptions, SceneRequest};
 use crate::subject::Subject;
-use field::{Field, Truth};
+use field::{GroundTruth, LightFieldCase};
 use frame_copy::FrameCopy;
-use measured::Measured;
+use measured::EngineMeasurements;
 use ray_tracer::RayTracer;
 use session::{RenderOptions, SessionError, Steps, bake};
 use splat::Gpu;
@@ -47,7 +47,7 @@ pub fn run_engine(
     std::fs::create_dir_all(folder).map_err(|error| SessionError::io(folder, &error))?;
     let [width, height] = options.size.unwrap_or([1920, 1080]);
     let frame = FrameCopy::new(width as usize * height as usize);
-    let mut measured = Measured { frame, records: Vec::new(), checks: Vec::new(), gpu: None };
+    let mut measured = EngineMeasurements { frame, records: Vec::new(), checks: Vec::new(), gpu: None };
     for gpu in backends {
         measured.gpu.clone_from(gpu);
         for field in synthetic::fields([width, height]) {
@@ -61,10 +61,10 @@ pub fn run_engine(
         let subject = Subject::open(request, &options, steps)?;
         measure_scene(&subject, options.reference_spp, backends, &mut measured, steps, note)?;
     }
-    let Measured { records, checks, frame, .. } = measured;
+    let EngineMeasurements { records, checks, frame, .. } = measured;
     note(&format!("copying one frame of {width} × {height} takes {:.2} ms", frame.seconds() * 1e3));
-    let mut report = EngineReport { records, checks, machine: Machine::here(), files: Vec::new() };
-    report.files = write::write(&report, frame.seconds(), folder)?;
+    let mut report = EngineReport { records, checks, machine: Machine::current(), files: Vec::new() };
+    report.files = write::write_engine_report(&report, frame.seconds(), folder)?;
     Ok(report)
 }
 
@@ -73,7 +73,7 @@ fn measure_scene(
     subject: &Subject,
     reference_spp: u32,
     backends: &[Option<Gpu>],
-    measured: &mut Measured,
+    measured: &mut EngineMeasurements,
     steps: &dyn Steps,
     note: &dyn Fn(&str),
 ) -> Result<(), SessionError> {
@@ -82,18 +82,18 @@ fn measure_scene(
     let start = Instant::now();
     let salf = Arc::new(bake(&subject.tracer, &subject.camera, painted, tolerance_px, steps)?);
     let seconds = start.elapsed().as_secs_f64();
-    let timing = measured.frame.beside(seconds);
-    let mut record = EngineRecord::of(&subject.name, "bake", &salf, timing);
+    let timing = measured.frame.timing_of(seconds);
+    let mut record = EngineRecord::new(&subject.name, "bake", &salf, timing);
     record.bytes = salf.statistics().bytes as u64;
-    note(&record.line());
+    note(&record.summary_line());
     measured.records.push(record);
     let depths = inverse_depths(&subject.tracer, &subject.camera);
-    let band = Band::of_depths(&depths, &subject.camera);
+    let band = OutlineBand::from_depths(&depths, &subject.camera);
     let coc_px = circle_of_confusion_px(&depths, &subject.camera);
     for named in &subject.focuses {
         let shot = Shot { tracer: &subject.tracer, camera: &subject.camera, focus: &named.focus };
         let ray_tracer = RayTracer::measure(shot, reference_spp, steps)?;
-        let field = Field {
+        let field = LightFieldCase {
             scene: subject.name.clone(),
             what: named.name,
             salf: salf.clone(),
@@ -102,9 +102,9 @@ fn measure_scene(
             coc_px,
             with_dense: false,
             with_dab: true,
-            truth: Some(Truth { ray_tracer, bake_seconds: seconds }),
+            truth: Some(GroundTruth { ray_tracer, bake_seconds: seconds }),
         };
-        field.traced(measured, note);
+        field.record_ray_tracer(measured, note);
         for gpu in backends {
             measured.gpu.clone_from(gpu);
             field.measure(measured, steps, note)?;

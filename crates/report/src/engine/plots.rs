@@ -5,7 +5,7 @@ use crate::page::plots::{error_axis, time_axis};
 use crate::plot::{Axis, Chart, Kind, Point, Series, plain, seconds};
 
 /// Pictures that are at least so close, dB, are the converged one: there is no error to draw.
-const EXACT: f64 = 150.0;
+const EXACT_PSNR: f64 = 150.0;
 
 /// Error against tolerance, time against error, time against circle of confusion; and for each scene and focus, the splat
 /// and the ray tracer against the ground truth.
@@ -16,40 +16,44 @@ pub fn plots(records: &[EngineRecord]) -> Vec<Chart> {
             title: "error against tolerance".into(),
             x: Axis { label: "tolerance (log)".into(), kind: Kind::Log, number: plain },
             y: error_axis(),
-            series: sweeps(records, |record| Some((tolerance(record)?, rmse(record.psnr)?))),
+            series: tolerance_lines(records, |record| {
+                Some((tolerance(record)?, rmse_from_psnr(record.psnr)?))
+            }),
             rules: Vec::new(),
         },
         Chart {
             title: "time of a full splat against error".into(),
             x: time_axis(),
             y: error_axis(),
-            series: sweeps(records, |record| Some((record.ms_median / 1e3, rmse(record.psnr)?))),
+            series: tolerance_lines(records, |record| {
+                Some((record.ms_median / 1e3, rmse_from_psnr(record.psnr)?))
+            }),
             rules: Vec::new(),
         },
         Chart {
             title: "time of a full splat against circle of confusion".into(),
             x: Axis { label: "circle of confusion (px)".into(), kind: Kind::Linear, number: plain },
             y: Axis { label: "time".into(), kind: Kind::Linear, number: seconds },
-            series: circles(records),
+            series: circle_lines(records),
             rules: Vec::new(),
         },
     ];
     let traced = records.iter().filter(|record| record.renderer == "truth");
-    let mut names: Vec<String> = traced.map(name).collect();
+    let mut names: Vec<String> = traced.map(line_name).collect();
     names.dedup();
-    charts.extend(names.into_iter().map(|name| against_truth(name, records)));
+    charts.extend(names.into_iter().map(|name| ground_truth_chart(name, records)));
     charts
 }
 
 /// A scene and focus: the splat and the ray tracer, time against error.
-fn against_truth(of: String, records: &[EngineRecord]) -> Chart {
+fn ground_truth_chart(title: String, records: &[EngineRecord]) -> Chart {
     let line = |what: &str, style, is_dashed| {
-        let own = records.iter().filter(|record| name(record) == of && record.what.starts_with(what));
+        let own = records.iter().filter(|record| line_name(record) == title && record.what.starts_with(what));
         let point = |record: &EngineRecord| {
             let psnr = record.truth.as_ref().map(|truth| truth.psnr).or(record.psnr);
             let spp = record.spp.map(|spp| format!("{spp} rays"));
             let label = spp.or(record.tolerance.map(plain)).unwrap_or_default();
-            Some(Point { x: record.ms_median / 1e3, y: rmse(psnr)?, label })
+            Some(Point { x: record.ms_median / 1e3, y: rmse_from_psnr(psnr)?, label })
         };
         Series { name: what.replace('_', " "), style, is_dashed, points: own.filter_map(point).collect() }
     };
@@ -59,7 +63,7 @@ fn against_truth(of: String, records: &[EngineRecord]) -> Chart {
         line("ray tracer", 1, false),
     ];
     Chart {
-        title: format!("{of}: time against error, the ground truth's"),
+        title: format!("{title}: time against error, the ground truth's"),
         x: time_axis(),
         y: error_axis(),
         series,
@@ -68,18 +72,21 @@ fn against_truth(of: String, records: &[EngineRecord]) -> Chart {
 }
 
 /// From the PSNR on a range of 1.
-fn rmse(psnr: Option<f64>) -> Option<f64> {
-    psnr.filter(|&psnr| psnr < EXACT).map(|psnr| 10f64.powf(-psnr / 20.0))
+fn rmse_from_psnr(psnr: Option<f64>) -> Option<f64> {
+    psnr.filter(|&psnr| psnr < EXACT_PSNR).map(|psnr| 10f64.powf(-psnr / 20.0))
 }
 
 /// A line for each field and focus that was splatted at several tolerances, as `of` places its records.
-fn sweeps(records: &[EngineRecord], of: impl Fn(&EngineRecord) -> Option<(f64, f64)>) -> Vec<Series> {
+fn tolerance_lines(
+    records: &[EngineRecord],
+    position: impl Fn(&EngineRecord) -> Option<(f64, f64)>,
+) -> Vec<Series> {
     let mut lines: Vec<Series> = Vec::new();
     let splats =
         records.iter().filter(|record| record.renderer == "splat" && record.what.starts_with("full_splat"));
     for record in splats {
-        let Some((x, y)) = of(record) else { continue };
-        let name = name(record);
+        let Some((x, y)) = position(record) else { continue };
+        let name = line_name(record);
         let label = record.tolerance.map_or(String::new(), plain);
         let point = Point { x, y, label };
         match lines.iter_mut().find(|line| line.name == name) {
@@ -93,14 +100,14 @@ fn sweeps(records: &[EngineRecord], of: impl Fn(&EngineRecord) -> Option<(f64, f
 }
 
 /// The scene or field, its focus, and the graphics card, if that is one.
-fn name(record: &EngineRecord) -> String {
+fn line_name(record: &EngineRecord) -> String {
     let focus = record.what.split_once(", ").map(|(_, focus)| focus);
     let parts = [Some(record.scene.as_str()), focus, record.adapter.as_deref()];
     parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
 }
 
 /// Planes of growing circles, a line for each thing that sums.
-fn circles(records: &[EngineRecord]) -> Vec<Series> {
+fn circle_lines(records: &[EngineRecord]) -> Vec<Series> {
     let planes: Vec<_> = records.iter().filter(|record| record.what == "against circle").collect();
     let line = |planes: &[&EngineRecord]| {
         let point = |record: &&EngineRecord| Point {
@@ -190,8 +197,11 @@ mod tests {
         let [_, _, _, chart] = &charts[..] else { panic!("{} charts", charts.len()) };
         let points: Vec<_> =
             chart.series.iter().flat_map(|line| &line.points).map(|p| (p.x * 1e3, p.y)).collect();
-        for (found, expected) in points.iter().zip([(5.0, 0.1), (2.0, 0.1), (2.0, 10f64.powf(-1.5))]) {
-            assert!((found.0 - expected.0).abs() < 1e-9 && (found.1 - expected.1).abs() < 1e-9, "{points:?}");
+        for (actual, expected) in points.iter().zip([(5.0, 0.1), (2.0, 0.1), (2.0, 10f64.powf(-1.5))]) {
+            assert!(
+                (actual.0 - expected.0).abs() < 1e-9 && (actual.1 - expected.1).abs() < 1e-9,
+                "{points:?}"
+            );
         }
         assert_eq!(points.len(), 3);
     }

@@ -1,9 +1,9 @@
 //! When the ray tracer gets as close to the ground truth as the splat.
 
-use crate::band::Band;
+use crate::band::OutlineBand;
 use crate::contender::{Contender, Shot};
 use crate::findings::{CurvePoint, seconds_at};
-use crate::reference::{ReferenceError, conserved, trace_reference};
+use crate::reference::{ReferenceError, conserved_picture, trace_reference};
 use lens::Picture;
 use project::{LinearPicture, compare};
 use serde::Serialize;
@@ -52,42 +52,42 @@ impl RayTracer {
         let mut curve = Vec::new();
         for samples_per_pixel in SPPS.into_iter().filter(|&spp| 2 * spp < error.spp) {
             let drawn = Contender::Truth { samples_per_pixel }.draw(shot, steps)?;
-            let rmse = compare(&conserved(&drawn.picture), &reference)?.rmse;
+            let rmse = compare(&conserved_picture(&drawn.picture), &reference)?.rmse;
             let point = CurvePoint { seconds: drawn.picture_seconds, rmse };
             curve.push(Traced { spp: samples_per_pixel, point });
         }
-        curve.extend(of_reference(&error));
+        curve.extend(points_from_reference(&error));
         Ok(Self { reference, curve })
     }
 
     /// Compares a picture of the same scene and focus.
-    pub fn against(&self, picture: &Picture, band: &Band) -> Result<AgainstTruth, SessionError> {
-        let picture = conserved(picture);
-        let found = compare(&picture, &self.reference)?;
-        let at = reached(&self.curve, found.rmse);
+    pub fn against(&self, picture: &Picture, band: &OutlineBand) -> Result<AgainstTruth, SessionError> {
+        let picture = conserved_picture(picture);
+        let errors = compare(&picture, &self.reference)?;
+        let equal_error = time_to_error(&self.curve, errors.rmse);
         Ok(AgainstTruth {
-            psnr: found.psnr,
+            psnr: errors.psnr,
             band_psnr: band.psnr(&picture.rgb, &self.reference.rgb),
-            flip: found.flip,
-            ray_tracer_ms: at.seconds * 1e3,
-            ray_tracer_takes_longer: at.takes_longer,
+            flip: errors.flip,
+            ray_tracer_ms: equal_error.seconds * 1e3,
+            ray_tracer_takes_longer: equal_error.takes_longer,
         })
     }
 }
 
 /// What the reference tells of the ray tracer. If r is its error, a half of it errs by √2 r, and would be √(2 + 1) r from
 /// another reference, as a picture like itself would be √(1 + 1) r.
-fn of_reference(reference: &ReferenceError) -> [Traced; 2] {
-    let of = |spp, share: f64, squares: f64| {
+fn points_from_reference(reference: &ReferenceError) -> [Traced; 2] {
+    let point = |spp, share: f64, squares: f64| {
         let seconds = reference.seconds * share;
         Traced { spp, point: CurvePoint { seconds, rmse: reference.rmse * squares.sqrt() } }
     };
-    [of(reference.spp / 2, 0.5, 3.0), of(reference.spp, 1.0, 2.0)]
+    [point(reference.spp / 2, 0.5, 3.0), point(reference.spp, 1.0, 2.0)]
 }
 
 /// When an error is reached.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Reached {
+struct TimeToError {
     seconds: f64,
     /// Later than all of the curve.
     takes_longer: bool,
@@ -95,15 +95,15 @@ struct Reached {
 
 /// When a curve, from few rays to many, has come down to `rmse`: never before its first picture, and no further than it was
 /// traced.
-fn reached(curve: &[Traced], rmse: f64) -> Reached {
+fn time_to_error(curve: &[Traced], rmse: f64) -> TimeToError {
     let points: Vec<_> = curve.iter().map(|traced| traced.point).collect();
-    let of = |point: Option<&CurvePoint>| point.map_or(f64::NAN, |point| point.seconds);
+    let seconds = |point: Option<&CurvePoint>| point.map_or(f64::NAN, |point| point.seconds);
     match seconds_at(&points, rmse) {
-        Some((seconds, false)) => Reached { seconds, takes_longer: false },
+        Some((seconds, false)) => TimeToError { seconds, takes_longer: false },
         _ if points.first().is_some_and(|first| rmse > first.rmse) => {
-            Reached { seconds: of(points.first()), takes_longer: false }
+            TimeToError { seconds: seconds(points.first()), takes_longer: false }
         }
-        _ => Reached { seconds: of(points.last()), takes_longer: true },
+        _ => TimeToError { seconds: seconds(points.last()), takes_longer: true },
     }
 }
 
@@ -118,20 +118,20 @@ mod tests {
             spp,
             point: CurvePoint { seconds: spp.into(), rmse: f64::from(spp).powf(-0.5) },
         });
-        let at = |rmse| reached(&curve, rmse);
+        let at = |rmse| time_to_error(&curve, rmse);
         for (rmse, seconds) in [(0.5, 4.0), (0.125, 64.0), (1.0 / 16.0, 256.0)] {
             assert!((at(rmse).seconds - seconds).abs() < 1e-9 && !at(rmse).takes_longer, "{rmse}");
         }
-        assert_eq!(at(2.0), Reached { seconds: 1.0, takes_longer: false });
-        assert_eq!(at(0.01), Reached { seconds: 256.0, takes_longer: true });
-        assert_eq!(at(0.0), Reached { seconds: 256.0, takes_longer: true });
-        assert!(reached(&[], 0.1).seconds.is_nan());
+        assert_eq!(at(2.0), TimeToError { seconds: 1.0, takes_longer: false });
+        assert_eq!(at(0.01), TimeToError { seconds: 256.0, takes_longer: true });
+        assert_eq!(at(0.0), TimeToError { seconds: 256.0, takes_longer: true });
+        assert!(time_to_error(&[], 0.1).seconds.is_nan());
     }
 
     #[test]
     fn the_reference_counts_as_a_picture_seen_from_another_reference() {
         let error = ReferenceError { spp: 64, seconds: 8.0, rmse: 0.01, psnr: 40.0 };
-        let [half, whole] = of_reference(&error);
+        let [half, whole] = points_from_reference(&error);
         assert_eq!((half.spp, half.point.seconds, whole.spp, whole.point.seconds), (32, 4.0, 64, 8.0));
         // Its error and the other reference's, squared and added.
         let squares = [half, whole].map(|traced| traced.point.rmse.powi(2));

@@ -54,7 +54,7 @@ pub struct EngineRecord {
 
 impl EngineRecord {
     /// A time with nothing to compare it with.
-    pub(super) fn of(scene: &str, what: &str, salf: &Salf, timing: Timing) -> Self {
+    pub(super) fn new(scene: &str, what: &str, salf: &Salf, timing: Timing) -> Self {
         Self {
             scene: scene.into(),
             what: what.into(),
@@ -77,11 +77,11 @@ impl EngineRecord {
             truth: None,
             bytes: 0,
         }
-        .lasting(timing)
+        .with_timing(timing)
     }
 
     /// The same with another time.
-    pub(super) fn lasting(self, timing: Timing) -> Self {
+    pub(super) fn with_timing(self, timing: Timing) -> Self {
         let Timing { seconds, frame_copy } = timing;
         Self {
             ms_median: seconds * 1e3,
@@ -92,7 +92,7 @@ impl EngineRecord {
     }
 
     /// The same of what a splatter sums, where it does.
-    pub(super) fn by(self, splatter: &Splatter) -> Self {
+    pub(super) fn summed_by(self, splatter: &Splatter) -> Self {
         let bytes = splatter.bytes().iter().sum::<usize>() as u64;
         match splatter.gpu() {
             Some(gpu) => Self { backend: "gpu".into(), adapter: Some(gpu.name().into()), bytes, ..self },
@@ -101,12 +101,12 @@ impl EngineRecord {
     }
 
     /// How many times as fast as the ray tracer it comes to its error; at least so many, if that takes longer than known.
-    pub(super) fn times_as_fast(&self) -> Option<f64> {
+    pub(super) fn speedup_over_ray_tracer(&self) -> Option<f64> {
         self.truth.as_ref().map(|truth| truth.ray_tracer_ms / self.ms_median)
     }
 
     /// It in a line.
-    pub(super) fn line(&self) -> String {
+    pub(super) fn summary_line(&self) -> String {
         let decibels =
             |name: &str, value: Option<f64>| value.map_or(String::new(), |v| format!(", {name}{v:.1} dB"));
         format!(
@@ -121,12 +121,14 @@ impl EngineRecord {
             self.card_ms.map_or(String::new(), |ms| format!(", {ms:.1} ms by its clock")),
             decibels("", self.psnr),
             decibels("outlines ", self.band_psnr),
-            self.against_truth(),
+            self.truth_sentence(),
         )
     }
 
-    fn against_truth(&self) -> String {
-        let (Some(truth), Some(times)) = (&self.truth, self.times_as_fast()) else { return String::new() };
+    fn truth_sentence(&self) -> String {
+        let (Some(truth), Some(times)) = (&self.truth, self.speedup_over_ray_tracer()) else {
+            return String::new();
+        };
         let least = if truth.ray_tracer_takes_longer { "at least " } else { "" };
         let AgainstTruth { psnr, flip, .. } = truth;
         format!("; truth {psnr:.1} dB, FLIP {flip:.4}, {least}{times:.2} times as fast as the ray tracer")

@@ -1,9 +1,9 @@
 //! Light fields that are made up: a case each, whose circles of confusion are known.
 
-use crate::band::Band;
+use crate::band::OutlineBand;
 use crate::engine::EngineRecord;
-use crate::engine::field::{Field, other_lenses};
-use crate::engine::measured::Measured;
+use crate::engine::field::{LightFieldCase, nudged_lenses};
+use crate::engine::measured::EngineMeasurements;
 use glam::{Vec2, Vec3};
 use lens::{Camera, FocusOffset};
 use salf::{Cell, Domain, Salf, Sample, Visibility};
@@ -13,9 +13,9 @@ use splat::{Splatter, Tolerance};
 use std::sync::Arc;
 
 /// Nothing is painted.
-struct Unpainted;
+struct UnpaintedFocus;
 
-impl SurfaceField<FocusOffset> for Unpainted {
+impl SurfaceField<FocusOffset> for UnpaintedFocus {
     fn at(&self, _point: SurfacePoint) -> FocusOffset {
         FocusOffset::STANDARD
     }
@@ -61,10 +61,10 @@ fn sample(cell: Cell, inverse_depth: f32, visibility: Visibility) -> Sample {
 }
 
 /// A sample a pixel of the frame and a cell of its margin, where `of` gives them.
-fn salf(camera: &Camera, margin_px: f64, of: impl Fn(Cell, &mut Vec<Sample>)) -> Arc<Salf> {
+fn salf(camera: &Camera, margin_px: f64, add_samples: impl Fn(Cell, &mut Vec<Sample>)) -> Arc<Salf> {
     let domain = Domain::new(camera.width, camera.height, margin_px);
     let mut samples = Vec::new();
-    domain.block_rows().into_iter().flatten().for_each(|cell| of(cell, &mut samples));
+    domain.block_rows().into_iter().flatten().for_each(|cell| add_samples(cell, &mut samples));
     Arc::new(Salf {
         camera: camera.clone(),
         margin_px: domain.margin as u32,
@@ -87,7 +87,7 @@ fn ramp(size: [u32; 2]) -> (Arc<Salf>, i32) {
     let camera = camera(size);
     let edge = size[0] as i32 * 2 / 3;
     let occluder = inverse_depth(&camera, OCCLUDER);
-    let made = salf(&camera, OCCLUDER / 2.0, |cell, samples| {
+    let salf = salf(&camera, OCCLUDER / 2.0, |cell, samples| {
         // Cells above and below the frame are wider than a pixel; the edge goes on there to a cell's precision.
         if cell.corner.x >= edge {
             samples.push(sample(cell, occluder, Visibility::Open));
@@ -112,27 +112,28 @@ fn ramp(size: [u32; 2]) -> (Arc<Salf>, i32) {
             samples.push(sample(cell, inverse_depth(&camera, diameter), visibility));
         }
     });
-    (made, edge)
+    (salf, edge)
 }
 
 /// The five fields.
-pub fn fields(size: [u32; 2]) -> impl Iterator<Item = Field> {
+pub fn fields(size: [u32; 2]) -> impl Iterator<Item = LightFieldCase> {
     let (width, height) = (size[0] as usize, size[1] as usize);
     let planes =
         [("in focus", 0.0), ("circle 10 px", 10.0), ("circle 40 px", 40.0), ("circle 150 px", 150.0)];
-    let planes =
-        planes.into_iter().map(move |(name, coc_px)| (name, coc_px, plane(size, coc_px), Band::default()));
+    let planes = planes
+        .into_iter()
+        .map(move |(name, coc_px)| (name, coc_px, plane(size, coc_px), OutlineBand::default()));
     let ramp = std::iter::once_with(move || {
         let (salf, edge) = ramp(size);
         let is_edge = |x: usize, _| x as i32 + 1 == edge;
-        ("ramp behind an edge", 80.0, salf, Band::around(width, height, is_edge))
+        ("ramp behind an edge", 80.0, salf, OutlineBand::from_edges(width, height, is_edge))
     });
-    planes.chain(ramp).map(|(name, coc_px, salf, band)| Field {
+    planes.chain(ramp).map(|(name, coc_px, salf, band)| LightFieldCase {
         scene: name.into(),
         what: "",
         with_dense: salf.statistics().partial == 0,
         salf,
-        focus: Arc::new(Unpainted),
+        focus: Arc::new(UnpaintedFocus),
         band,
         coc_px,
         with_dab: false,
@@ -143,7 +144,7 @@ pub fn fields(size: [u32; 2]) -> impl Iterator<Item = Field> {
 /// Cost against the circle of confusion, at the tolerance of viewing.
 pub fn sweep_circles(
     size: [u32; 2],
-    measured: &mut Measured,
+    measured: &mut EngineMeasurements,
     steps: &dyn Steps,
     note: &dyn Fn(&str),
 ) -> Result<(), SessionError> {
@@ -156,12 +157,13 @@ pub fn sweep_circles(
 /// Cost against the number of samples, which is that of pixels: in turn, for it is compared.
 pub fn sweep_sizes(
     [width, height]: [u32; 2],
-    measured: &mut Measured,
+    measured: &mut EngineMeasurements,
     steps: &dyn Steps,
     note: &dyn Fn(&str),
 ) -> Result<(), SessionError> {
-    let of_share = |share: f64| [width, height].map(|side| (f64::from(side) * share.sqrt()).round() as u32);
-    time_planes(&[0.25, 0.5, 0.75, 1.0].map(of_share), 10.0, "against size", measured, steps, note)
+    let size_for_share =
+        |share: f64| [width, height].map(|side| (f64::from(side) * share.sqrt()).round() as u32);
+    time_planes(&[0.25, 0.5, 0.75, 1.0].map(size_for_share), 10.0, "against size", measured, steps, note)
 }
 
 /// Times planes of one circle of confusion and several sizes, in turn.
@@ -169,7 +171,7 @@ fn time_planes(
     sizes: &[[u32; 2]],
     diameter: f64,
     what: &str,
-    measured: &mut Measured,
+    measured: &mut EngineMeasurements,
     steps: &dyn Steps,
     note: &dyn Fn(&str),
 ) -> Result<(), SessionError> {
@@ -181,25 +183,25 @@ fn time_planes(
         splatter.keep_on_card(true);
         splatter.set_tolerance(Tolerance::VIEWING);
         let camera = splatter.salf().camera.clone();
-        splatter.render(&camera, &Unpainted, &*progress)?;
+        splatter.render(&camera, &UnpaintedFocus, &*progress)?;
         planes.push((splatter, camera));
     }
     let progress = &*progress;
-    let mut works: Vec<_> = planes
+    let mut tasks: Vec<_> = planes
         .iter_mut()
         .map(|(splatter, camera)| {
-            let mut lenses = other_lenses(camera);
+            let mut lenses = nudged_lenses(camera);
             move || Ok(splatter.refocus(&lenses.next().expect("endless"), progress)?)
         })
         .collect();
-    let timings = measured.frame.in_turn(&mut works)?;
+    let timings = measured.frame.time_interleaved(&mut tasks)?;
     for ((splatter, _), timing) in planes.iter().zip(timings) {
         let scene = format!("plane, circle {diameter} px");
-        let mut record = EngineRecord::of(&scene, what, splatter.salf(), timing).by(splatter);
+        let mut record = EngineRecord::new(&scene, what, splatter.salf(), timing).summed_by(splatter);
         record.card_ms = splatter.seconds_on_card().map(|seconds| seconds * 1e3);
         record.coc_px = diameter;
         record.tolerance = Some(Tolerance::VIEWING.share_of_circle);
-        note(&record.line());
+        note(&record.summary_line());
         measured.records.push(record);
     }
     Ok(())
@@ -228,7 +230,7 @@ mod tests {
     fn the_ramp_covers_the_picture_once() {
         let (salf, edge) = ramp([96, 48]);
         let mut splatter = Splatter::new(salf.clone());
-        splatter.render(&salf.camera, &Unpainted, &progress::Unwatched).unwrap();
+        splatter.render(&salf.camera, &UnpaintedFocus, &progress::Unwatched).unwrap();
         let row = &splatter.picture().coverage[24 * 96..25 * 96];
         // Beside the edge the aperture's cells are what limits it.
         for (x, covered) in row.iter().enumerate() {

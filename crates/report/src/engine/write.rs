@@ -12,7 +12,11 @@ use session::SessionError;
 use std::path::{Path, PathBuf};
 
 /// Writes them into `folder`. Returns the files.
-pub fn write(report: &EngineReport, copy: f64, folder: &Path) -> Result<Vec<PathBuf>, SessionError> {
+pub fn write_engine_report(
+    report: &EngineReport,
+    copy: f64,
+    folder: &Path,
+) -> Result<Vec<PathBuf>, SessionError> {
     let about = json!({ "machine": report.machine, "frame_copy_ms": copy * 1e3, "checks": report.checks });
     let files = [
         ("report.json", to_json(&report.records)?),
@@ -96,8 +100,9 @@ fn row(record: &EngineRecord) -> Vec<String> {
         |value: Option<f64>, digits: usize| value.map_or(String::new(), |v| format!("{v:.digits$}"));
     let truth = record.truth.as_ref();
     let least = if truth.is_some_and(|truth| truth.ray_tracer_takes_longer) { "> " } else { "" };
-    let times =
-        record.times_as_fast().map_or(String::new(), |times| format!("{least}{}", significant(times)));
+    let times = record
+        .speedup_over_ray_tracer()
+        .map_or(String::new(), |times| format!("{least}{}", significant(times)));
     vec![
         record.scene.clone(),
         record.what.clone(),

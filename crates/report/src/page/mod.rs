@@ -6,7 +6,7 @@ pub mod plots;
 use crate::findings::equal_errors;
 use crate::machine::Machine;
 use crate::markup::escaped;
-use crate::photographs::{Photographs, Sparse};
+use crate::photographs::{Photographs, SparseLightField};
 use crate::plan::cost_note;
 use crate::plot::{Chart, bytes, seconds, significant};
 use crate::record::{Record, Series};
@@ -95,9 +95,9 @@ fn scene_section(scene: &SceneSummary, measured: &[Measured]) -> Result<String, 
     let mut html = format!(
         "<h2>{}</h2>\n<p>{} in {}, {}; aperture radius {}, focused at {distance} (scene units). Lens: {}. Hierarchy: {}.</p>\n",
         escaped(&scene.name),
-        counted(scene.triangles, "triangle"),
-        counted(scene.parts, "part"),
-        counted(scene.lights, "light"),
+        count_phrase(scene.triangles, "triangle"),
+        count_phrase(scene.parts, "part"),
+        count_phrase(scene.lights, "light"),
         significant(scene.aperture_radius),
         escaped(&scene.lens),
         bytes(scene.hierarchy_bytes as f64),
@@ -127,7 +127,7 @@ fn scene_section(scene: &SceneSummary, measured: &[Measured]) -> Result<String, 
              class=\"ramp\"></span> 1.</p>\n",
             escaped(&scene.name),
             escaped(&focus.name),
-            escaped(&sentence(&focus.what)),
+            escaped(&capitalized(&focus.what)),
             pictures::figures(scene, focus, &shown)?
         );
     }
@@ -149,7 +149,10 @@ fn scene_section(scene: &SceneSummary, measured: &[Measured]) -> Result<String, 
     if let Some(views) = &scene.views {
         html += &format!(
             "<h3>Views of the light field</h3>\n{}<p class=\"caption\">{}</p>\n",
-            views.disparity.as_ref().map_or_else(String::new, |found| tables::disparity(found).to_html()),
+            views
+                .disparity
+                .as_ref()
+                .map_or_else(String::new, |disparity| tables::disparity(disparity).to_html()),
             escaped(&views_sentence(views))
         );
     }
@@ -199,22 +202,22 @@ pub fn views_sentence(views: &Views) -> String {
 }
 
 /// Where pictures that are shifted and added up do not ghost.
-fn sparse_sentence(pictures: &str, sparse: &Sparse) -> String {
-    let Sparse { depth, spacing, ghost_free: [near, far] } = sparse;
-    let told = |depth: &Option<f64>| depth.map_or_else(|| "infinity".into(), significant);
+fn sparse_sentence(pictures: &str, sparse: &SparseLightField) -> String {
+    let SparseLightField { depth, spacing, ghost_free: [near, far] } = sparse;
+    let depth_text = |depth: &Option<f64>| depth.map_or_else(|| "infinity".into(), significant);
     format!(
         "As a light field of views that are shifted and added up, {pictures} {} apart would show what lies at {} without \
          ghosts only if focused between {} and {}. The surface light field has no such bound.",
         significant(*spacing),
         significant(*depth),
-        told(near),
-        told(far),
+        depth_text(near),
+        depth_text(far),
     )
 }
 
 /// A plot, and what has no place in it.
 pub fn figure(chart: &Chart) -> String {
-    let caption = match chart.left_out() {
+    let caption = match chart.left_out_count() {
         0 => String::new(),
         n => format!("<figcaption>{n} marks at 0 have no place on a logarithmic axis.</figcaption>"),
     };
@@ -222,10 +225,10 @@ pub fn figure(chart: &Chart) -> String {
 }
 
 fn hard_section(outcomes: &[Outcome]) -> String {
-    let right = outcomes.iter().filter(|outcome| outcome.pass && outcome.control_fails).count();
+    let passed = outcomes.iter().filter(|outcome| outcome.pass && outcome.control_fails).count();
     format!(
         "<h2>Hard cases</h2>\n<p>Awkward inputs, each with what must come out and with a deliberately wrong computation that the same \
-         check must refuse: {right} of {} come out as they must.</p>\n{}\n",
+         check must refuse: {passed} of {} come out as they must.</p>\n{}\n",
         outcomes.len(),
         tables::hard_cases(outcomes).to_html()
     )
@@ -255,8 +258,8 @@ pub fn saving_sentence(scene: &ModelledScene) -> String {
     let ModelledScene { modelled, tolerance_px, saving_psnr, saving_flip, finest_bytes } = scene;
     let dense = modelled.dense_bytes() as f64;
     let texels = match modelled.texels {
-        Some(texels) if texels.asked < texels.exist => {
-            format!(" Texels are estimated from {} of them.", texels.asked)
+        Some(texels) if texels.sampled < texels.exist => {
+            format!(" Texels are estimated from {} of them.", texels.sampled)
         }
         _ => String::new(),
     };
@@ -275,12 +278,12 @@ pub fn saving_sentence(scene: &ModelledScene) -> String {
 }
 
 /// A number of things.
-fn counted(count: usize, what: &str) -> String {
+fn count_phrase(count: usize, what: &str) -> String {
     format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
 
 /// With a capital letter.
-fn sentence(text: &str) -> String {
+fn capitalized(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }

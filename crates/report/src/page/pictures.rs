@@ -29,9 +29,9 @@ pub fn figures(
     );
     let mut html = format!(
         "<div class=\"pictures\"><figure>{}<figcaption>{caption}</figcaption></figure>\n",
-        image(&focus.picture, "reference")?
+        image_element(&focus.picture, "reference")?
     );
-    for shown in shown(measured) {
+    for shown in select_shown(measured) {
         let Some([picture, flip]) = &shown.pictures else { continue };
         let Record { renderer, psnr, flip: mean_flip, seconds: took, .. } = &shown.record;
         let value = significant(shown.record.value);
@@ -54,8 +54,8 @@ pub fn figures(
         );
         html += &format!(
             "<figure>{}{}<figcaption>{caption}</figcaption></figure>\n",
-            image(picture, &format!("{renderer}{knob}"))?,
-            image(flip, &format!("FLIP error of {renderer}{knob}"))?
+            image_element(picture, &format!("{renderer}{knob}"))?,
+            image_element(flip, &format!("FLIP error of {renderer}{knob}"))?
         );
     }
     Ok(html + "</div>")
@@ -63,11 +63,11 @@ pub fn figures(
 
 /// The splat at its usual tolerance, the ray tracer at the number of rays that takes the most similar time, and every other
 /// renderer where it comes closest.
-fn shown<'a>(measured: &[&'a Measured]) -> Vec<&'a Measured> {
-    let usual = Contender::usual_splat();
+fn select_shown<'a>(measured: &[&'a Measured]) -> Vec<&'a Measured> {
+    let usual = Contender::default_splat();
     let splat = measured
         .iter()
-        .find(|m| m.record.renderer == usual.renderer() && m.record.value == usual.value())
+        .find(|m| m.record.renderer == usual.renderer() && m.record.value == usual.knob_value())
         .copied();
     let target = splat.map_or(1.0, |splat| splat.record.seconds);
     let away = |m: &Measured| (m.record.seconds / target).ln().abs();
@@ -75,8 +75,8 @@ fn shown<'a>(measured: &[&'a Measured]) -> Vec<&'a Measured> {
     let truth = truths.min_by(|a, b| away(a).total_cmp(&away(b)));
     let mut shown: Vec<_> = splat.into_iter().chain(truth).collect();
     for m in measured.iter().filter(|m| !["splat", "truth"].contains(&m.record.renderer.as_str())) {
-        match shown.iter_mut().find(|known| known.record.renderer == m.record.renderer) {
-            Some(known) if known.record.rmse > m.record.rmse => *known = m,
+        match shown.iter_mut().find(|chosen| chosen.record.renderer == m.record.renderer) {
+            Some(chosen) if chosen.record.rmse > m.record.rmse => *chosen = m,
             Some(_) => {}
             None => shown.push(m),
         }
@@ -103,22 +103,22 @@ fn ghosting(camera: &Camera, record: &Record) -> String {
 /// Photographs that were left out above what light tells of them.
 pub fn left_out(photographs: &Photographs) -> Result<String, SessionError> {
     let mut html = String::from("<div class=\"pictures\">\n");
-    let light = photographs.told.iter().filter(|told| told.told_by == "light");
-    for (told, [photograph, shown]) in light.zip(&photographs.pictures) {
-        let name = escaped(&told.photograph);
+    let light = photographs.reconstructions.iter().filter(|reconstruction| reconstruction.method == "light");
+    for (reconstruction, [photograph, shown]) in light.zip(&photographs.pictures) {
+        let name = escaped(&reconstruction.photograph);
         html += &format!(
             "<figure>{}{}<figcaption><b>{name}</b>, and below it the light of the others: {:.1} dB, FLIP {:.4}</figcaption></figure>\n",
-            image(photograph, &told.photograph)?,
-            image(shown, &format!("{} by the light of the others", told.photograph))?,
-            told.psnr,
-            told.flip
+            image_element(photograph, &reconstruction.photograph)?,
+            image_element(shown, &format!("{} by the light of the others", reconstruction.photograph))?,
+            reconstruction.psnr,
+            reconstruction.flip
         );
     }
     Ok(html + "</div>\n")
 }
 
 /// A picture as an element that needs no other file.
-fn image(file: &Path, what: &str) -> Result<String, SessionError> {
+fn image_element(file: &Path, what: &str) -> Result<String, SessionError> {
     let bytes = std::fs::read(file).map_err(|error| SessionError::io(file, &error))?;
     let data = BASE64_STANDARD.encode(bytes);
     Ok(format!(r#"<img alt="{}" src="data:image/png;base64,{data}">"#, escaped(what)))

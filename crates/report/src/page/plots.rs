@@ -17,7 +17,7 @@ fn renderers(records: &[&Record]) -> Vec<String> {
 }
 
 fn style(renderer: &str) -> usize {
-    STYLES.iter().position(|known| *known == renderer).unwrap_or(STYLES.len())
+    STYLES.iter().position(|name| *name == renderer).unwrap_or(STYLES.len())
 }
 
 /// The knob's place, as written beside marks.
@@ -54,7 +54,7 @@ fn time_lines(records: &[&Record], point: impl Fn(&Record, f64) -> Point) -> Vec
             lines.push(line(format!("{renderer}: bake + picture"), &renderer, false, records, whole));
             lines.push(line(format!("{renderer}: refocus"), &renderer, true, records, again));
         } else {
-            let name = format!("{renderer}: {}", Contender::what(&renderer));
+            let name = format!("{renderer}: {}", Contender::description(&renderer));
             lines.push(line(name, &renderer, false, records, whole));
         }
     }

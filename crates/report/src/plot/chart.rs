@@ -83,17 +83,17 @@ pub struct Chart {
 }
 
 /// The scales of a chart, and the way from values to pixels.
-struct Frame {
+struct ChartFrame {
     x: Scale,
     y: Scale,
 }
 
-impl Frame {
+impl ChartFrame {
     fn px(&self, x: f64) -> Option<f64> {
-        self.x.place(x).map(|place| LEFT + place * (WIDTH - LEFT - RIGHT))
+        self.x.position(x).map(|place| LEFT + place * (WIDTH - LEFT - RIGHT))
     }
     fn py(&self, y: f64) -> Option<f64> {
-        self.y.place(y).map(|place| TOP + (1.0 - place) * PLOT_HEIGHT)
+        self.y.position(y).map(|place| TOP + (1.0 - place) * PLOT_HEIGHT)
     }
     fn at(&self, point: &Point) -> Option<(f64, f64)> {
         Some((self.px(point.x)?, self.py(point.y)?))
@@ -102,18 +102,18 @@ impl Frame {
 
 impl Chart {
     /// How many marks have no place: on a logarithmic axis, those at 0.
-    pub fn left_out(&self) -> usize {
+    pub fn left_out_count(&self) -> usize {
         let frame = self.frame();
         let points = self.series.iter().flat_map(|series| &series.points);
         points.filter(|point| frame.at(point).is_none()).count()
     }
 
-    fn frame(&self) -> Frame {
+    fn frame(&self) -> ChartFrame {
         let points = || self.series.iter().flat_map(|series| &series.points);
         let levels = self.rules.iter().map(|rule| rule.y);
-        Frame {
-            x: Scale::around(self.x.kind, points().map(|point| point.x)),
-            y: Scale::around(self.y.kind, points().map(|point| point.y).chain(levels)),
+        ChartFrame {
+            x: Scale::from_values(self.x.kind, points().map(|point| point.x)),
+            y: Scale::from_values(self.y.kind, points().map(|point| point.y).chain(levels)),
         }
     }
 
@@ -128,15 +128,15 @@ impl Chart {
             escaped(&self.title)
         );
         let title = escaped(&self.title);
-        add(&mut svg, format_args!(r#"<text x="{LEFT}" y="20" class="title">{title}</text>"#));
+        append(&mut svg, format_args!(r#"<text x="{LEFT}" y="20" class="title">{title}</text>"#));
         self.grid(&mut svg, &frame);
-        let mut labels = Labels::between(LEFT, WIDTH);
+        let mut labels = Labels::new(LEFT, WIDTH);
         for rule in &self.rules {
             let Some(y) = frame.py(rule.y) else { continue };
             let (right, label) = (WIDTH - RIGHT, escaped(&rule.label));
-            labels.keep_free([right - rule.label.chars().count() as f64 * LETTER, y - 16.0, right, y]);
-            add(&mut svg, format_args!(r#"<path class="rule" d="M{LEFT} {y:.1}H{right}"/>"#));
-            add(
+            labels.reserve([right - rule.label.chars().count() as f64 * LETTER, y - 16.0, right, y]);
+            append(&mut svg, format_args!(r#"<path class="rule" d="M{LEFT} {y:.1}H{right}"/>"#));
+            append(
                 &mut svg,
                 format_args!(
                     r#"<text class="note" x="{:.1}" y="{:.1}" text-anchor="end">{label}</text>"#,
@@ -151,44 +151,47 @@ impl Chart {
             draw_series(&mut svg, &mut texts, &frame, series, &mut labels);
         }
         svg += &texts;
-        for Entry { series, x, line } in legend {
+        for LegendEntry { series, x, line } in legend {
             let y = TOP + PLOT_HEIGHT + BOTTOM + LEGEND_LINE * line as f64 + 10.0;
             let name = escaped(&series.name);
-            add(&mut svg, format_args!(r#"<path {} d="M{x:.1} {y:.1}h22"/>"#, stroke(series)));
+            append(&mut svg, format_args!(r#"<path {} d="M{x:.1} {y:.1}h22"/>"#, stroke(series)));
             mark(&mut svg, series.style, x + 11.0, y);
-            add(&mut svg, format_args!(r#"<text x="{:.1}" y="{:.1}">{name}</text>"#, x + 28.0, y + 4.0));
+            append(&mut svg, format_args!(r#"<text x="{:.1}" y="{:.1}">{name}</text>"#, x + 28.0, y + 4.0));
         }
         svg.push_str("</svg>");
         svg
     }
 
     /// Grid, numbers and names of the axes.
-    fn grid(&self, svg: &mut String, frame: &Frame) {
+    fn grid(&self, svg: &mut String, frame: &ChartFrame) {
         let (right, bottom) = (WIDTH - RIGHT, TOP + PLOT_HEIGHT);
         for tick in frame.x.ticks() {
             let Some(x) = frame.px(tick.value) else { continue };
             let class = if tick.has_label { "grid" } else { "fine" };
-            add(svg, format_args!(r#"<path class="{class}" d="M{x:.1} {TOP}V{bottom}"/>"#));
+            append(svg, format_args!(r#"<path class="{class}" d="M{x:.1} {TOP}V{bottom}"/>"#));
             if tick.has_label {
                 let (y, number) = (bottom + 16.0, escaped(&(self.x.number)(tick.value)));
-                add(svg, format_args!(r#"<text x="{x:.1}" y="{y}" text-anchor="middle">{number}</text>"#));
+                append(svg, format_args!(r#"<text x="{x:.1}" y="{y}" text-anchor="middle">{number}</text>"#));
             }
         }
         for tick in frame.y.ticks() {
             let Some(y) = frame.py(tick.value) else { continue };
             let class = if tick.has_label { "grid" } else { "fine" };
-            add(svg, format_args!(r#"<path class="{class}" d="M{LEFT} {y:.1}H{right}"/>"#));
+            append(svg, format_args!(r#"<path class="{class}" d="M{LEFT} {y:.1}H{right}"/>"#));
             if tick.has_label {
                 let (x, y, number) = (LEFT - 7.0, y + 4.0, escaped(&(self.y.number)(tick.value)));
-                add(svg, format_args!(r#"<text x="{x}" y="{y:.1}" text-anchor="end">{number}</text>"#));
+                append(svg, format_args!(r#"<text x="{x}" y="{y:.1}" text-anchor="end">{number}</text>"#));
             }
         }
-        add(svg, format_args!(r#"<path class="axis" d="M{LEFT} {TOP}V{bottom}H{right}"/>"#));
+        append(svg, format_args!(r#"<path class="axis" d="M{LEFT} {TOP}V{bottom}H{right}"/>"#));
         let (x, y) = ((LEFT + right) / 2.0, bottom + 36.0);
         let label = escaped(&self.x.label);
-        add(svg, format_args!(r#"<text class="label" x="{x}" y="{y}" text-anchor="middle">{label}</text>"#));
+        append(
+            svg,
+            format_args!(r#"<text class="label" x="{x}" y="{y}" text-anchor="middle">{label}</text>"#),
+        );
         let (y, label) = (TOP + PLOT_HEIGHT / 2.0, escaped(&self.y.label));
-        add(
+        append(
             svg,
             format_args!(
                 r#"<text class="label" x="15" y="{y}" text-anchor="middle" transform="rotate(-90 15 {y})">{label}</text>"#
@@ -197,7 +200,7 @@ impl Chart {
     }
 
     /// Where the names of the series go: in lines below the plot.
-    fn legend(&self) -> Vec<Entry<'_>> {
+    fn legend(&self) -> Vec<LegendEntry<'_>> {
         let (mut x, mut line) = (LEFT, 0);
         let mut entries = Vec::new();
         for series in &self.series {
@@ -205,21 +208,27 @@ impl Chart {
             if x > LEFT && x + width > WIDTH - RIGHT + 16.0 {
                 (x, line) = (LEFT, line + 1);
             }
-            entries.push(Entry { series, x, line });
+            entries.push(LegendEntry { series, x, line });
             x += width;
         }
         entries
     }
 }
 
-struct Entry<'a> {
+struct LegendEntry<'a> {
     series: &'a Series,
     x: f64,
     line: usize,
 }
 
 /// Draws lines and marks to `svg` and their labels to `texts`.
-fn draw_series(svg: &mut String, texts: &mut String, frame: &Frame, series: &Series, labels: &mut Labels) {
+fn draw_series(
+    svg: &mut String,
+    texts: &mut String,
+    frame: &ChartFrame,
+    series: &Series,
+    labels: &mut Labels,
+) {
     let placed: Vec<(f64, f64, &str)> = series
         .points
         .iter()
@@ -228,21 +237,21 @@ fn draw_series(svg: &mut String, texts: &mut String, frame: &Frame, series: &Ser
     if placed.len() > 1 {
         let mut d = String::new();
         for (k, (x, y, _)) in placed.iter().enumerate() {
-            add(&mut d, format_args!("{}{x:.1} {y:.1}", if k == 0 { 'M' } else { 'L' }));
+            append(&mut d, format_args!("{}{x:.1} {y:.1}", if k == 0 { 'M' } else { 'L' }));
         }
-        add(svg, format_args!(r#"<path {} d="{d}"/>"#, stroke(series)));
+        append(svg, format_args!(r#"<path {} d="{d}"/>"#, stroke(series)));
     }
     for (k, &(x, y, label)) in placed.iter().enumerate() {
         let text = escaped(label);
-        add(svg, format_args!("<g><title>{}: {text}</title>", escaped(&series.name)));
+        append(svg, format_args!("<g><title>{}: {text}</title>", escaped(&series.name)));
         mark(svg, series.style, x, y);
         svg.push_str("</g>");
         let is_end = k == 0 || k + 1 == placed.len();
         if is_end && !label.is_empty() {
             // Where there is no room the mark's title has to do.
-            let Some(Place { x, y, anchor }) = labels.place(x, y, label) else { continue };
+            let Some(Place { x, y, anchor }) = labels.place_label(x, y, label) else { continue };
             let colour = colour(series.style);
-            add(
+            append(
                 texts,
                 format_args!(
                     r#"<text class="mark" fill="{colour}" x="{x:.1}" y="{y:.1}" text-anchor="{anchor}">{text}</text>"#
@@ -273,11 +282,11 @@ fn mark(svg: &mut String, style: usize, x: f64, y: f64) {
         5 => format!(r#"<path d="M{:.1} {:.1}h3v3h3v3h-3v3h-3v-3h-3v-3h3z""#, x - 1.5, y - 4.5),
         _ => format!(r#"<rect x="{:.1}" y="{:.1}" width="10" height="4""#, x - 5.0, y - 2.0),
     };
-    add(svg, format_args!(r##"{shape} fill="{colour}" stroke="#fff" stroke-width="0.8"/>"##));
+    append(svg, format_args!(r##"{shape} fill="{colour}" stroke="#fff" stroke-width="0.8"/>"##));
 }
 
 /// Appends; a String takes everything.
-fn add(to: &mut String, text: std::fmt::Arguments<'_>) {
+fn append(to: &mut String, text: std::fmt::Arguments<'_>) {
     let _ = to.write_fmt(text);
 }
 
@@ -332,9 +341,9 @@ mod tests {
         let frame = chart.frame();
         assert!(frame.py(0.02) < frame.py(0.005), "SVG counts from the top");
         assert!(frame.px(0.1) < frame.px(10.0));
-        assert_eq!(chart.left_out(), 0);
+        assert_eq!(chart.left_out_count(), 0);
         chart.series[0].points[1].y = 0.0;
-        assert_eq!(chart.left_out(), 1);
+        assert_eq!(chart.left_out_count(), 1);
         assert_eq!(chart.to_svg().matches("<g><title>").count(), 5);
     }
 

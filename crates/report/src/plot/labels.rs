@@ -27,18 +27,18 @@ pub struct Place {
 
 impl Labels {
     /// No labels yet; all will stay between `left` and `right`, px.
-    pub fn between(left: f64, right: f64) -> Self {
+    pub fn new(left: f64, right: f64) -> Self {
         Self { left, right, taken: Vec::new() }
     }
 
     /// Keeps a box free.
-    pub fn keep_free(&mut self, taken: [f64; 4]) {
+    pub fn reserve(&mut self, taken: [f64; 4]) {
         self.taken.push(taken);
     }
 
     /// The first free place for a text at the mark at (`x`, `y`): right or left of it, above before below. `None` if
     /// there is no room.
-    pub fn place(&mut self, x: f64, y: f64, text: &str) -> Option<Place> {
+    pub fn place_label(&mut self, x: f64, y: f64, text: &str) -> Option<Place> {
         let width = text.chars().count() as f64 * LETTER;
         let sides = [(-6.0, "start"), (-6.0, "end"), (14.0, "start"), (14.0, "end")];
         sides.into_iter().find_map(|(down, anchor)| {
@@ -66,20 +66,20 @@ mod tests {
 
     #[test]
     fn labels_of_one_place_go_around_it_and_then_are_left_out() {
-        let mut labels = Labels::between(0.0, 200.0);
-        let places: Vec<_> = (0..5).map(|_| labels.place(100.0, 50.0, "64 spp")).collect();
+        let mut labels = Labels::new(0.0, 200.0);
+        let places: Vec<_> = (0..5).map(|_| labels.place_label(100.0, 50.0, "64 spp")).collect();
         let anchors: Vec<_> = places.iter().flatten().map(|place| (place.anchor, place.y < 50.0)).collect();
         assert_eq!(anchors, [("start", true), ("end", true), ("start", false), ("end", false)]);
         assert_eq!(places[4], None);
-        assert!(labels.place(100.0, 90.0, "64 spp").is_some(), "elsewhere there is room");
+        assert!(labels.place_label(100.0, 90.0, "64 spp").is_some(), "elsewhere there is room");
     }
 
     #[test]
     fn labels_stay_inside_and_off_what_is_kept_free() {
-        let mut labels = Labels::between(0.0, 200.0);
-        assert_eq!(labels.place(190.0, 50.0, "64 spp").unwrap().anchor, "end");
-        assert_eq!(labels.place(3.0, 90.0, "64 spp").unwrap().anchor, "start");
-        labels.keep_free([0.0, 100.0, 200.0, 200.0]);
-        assert_eq!(labels.place(100.0, 150.0, "64 spp"), None);
+        let mut labels = Labels::new(0.0, 200.0);
+        assert_eq!(labels.place_label(190.0, 50.0, "64 spp").unwrap().anchor, "end");
+        assert_eq!(labels.place_label(3.0, 90.0, "64 spp").unwrap().anchor, "start");
+        labels.reserve([0.0, 100.0, 200.0, 200.0]);
+        assert_eq!(labels.place_label(100.0, 150.0, "64 spp"), None);
     }
 }

@@ -8,7 +8,7 @@ pub fn significant(value: f64) -> String {
     let magnitude = value.abs().log10().floor() as i32;
     if !(-4..6).contains(&magnitude) {
         let mantissa = value / 10f64.powi(magnitude);
-        let rounded = trimmed(&format!("{mantissa:.2}"));
+        let rounded = without_trailing_zeros(&format!("{mantissa:.2}"));
         return match rounded.as_str() {
             "1" => power_of_ten(magnitude),
             "10" => power_of_ten(magnitude + 1),
@@ -16,7 +16,7 @@ pub fn significant(value: f64) -> String {
         };
     }
     let decimals = (2 - magnitude).max(0) as usize;
-    with_minus(trimmed(&format!("{value:.decimals$}")))
+    with_minus(without_trailing_zeros(&format!("{value:.decimals$}")))
 }
 
 /// The same for a value without a unit, as on an axis.
@@ -48,7 +48,7 @@ pub fn with_minus(number: String) -> String {
     number.replace('-', "−")
 }
 
-fn trimmed(text: &str) -> String {
+fn without_trailing_zeros(text: &str) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').into() } else { text.into() }
 }
 

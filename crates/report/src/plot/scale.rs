@@ -27,11 +27,11 @@ pub struct Scale {
 }
 
 /// Labels that an axis has at least.
-const FEWEST_LABELS: usize = 3;
+const MIN_LABELS: usize = 3;
 
 impl Scale {
     /// A scale that holds all values that have a place on it, its ends at round numbers. Without any, 0 to 1 (or 1 to 10).
-    pub fn around(kind: Kind, values: impl Iterator<Item = f64>) -> Self {
+    pub fn from_values(kind: Kind, values: impl Iterator<Item = f64>) -> Self {
         let values = values.filter(|&v| v.is_finite() && (kind == Kind::Linear || v > 0.0));
         let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
         match kind {
@@ -50,7 +50,7 @@ impl Scale {
     }
 
     /// Where a value lies: 0 at the low end, 1 at the high one. `None` where it has no place.
-    pub fn place(&self, value: f64) -> Option<f64> {
+    pub fn position(&self, value: f64) -> Option<f64> {
         let place = match self.kind {
             Kind::Linear => (value - self.low) / (self.high - self.low),
             Kind::Log if value > 0.0 => (value / self.low).ln() / (self.high / self.low).ln(),
@@ -82,7 +82,7 @@ impl Scale {
             .collect();
         let count = |labelled: &[i32]| inside.iter().filter(|(k, _)| labelled.contains(k)).count();
         let choices: [&[i32]; 4] = [&[1], &[1, 3], &[1, 2, 5], &[1, 2, 3, 4, 5, 6, 7, 8]];
-        let labelled = choices.into_iter().find(|labelled| count(labelled) >= FEWEST_LABELS);
+        let labelled = choices.into_iter().find(|labelled| count(labelled) >= MIN_LABELS);
         let labelled = labelled.unwrap_or(&[1, 2, 3, 4, 5, 6, 7, 8, 9]);
         // Over many decades not every power has room for its number.
         let powers = count(&[1]);
@@ -124,22 +124,22 @@ mod tests {
 
     #[test]
     fn a_log_scale_places_factors_evenly() {
-        let scale = Scale::around(Kind::Log, [0.012, 40.0].into_iter());
-        let steps: Vec<f64> = [0.1, 1.0, 10.0].iter().map(|&v| scale.place(v).unwrap()).collect();
+        let scale = Scale::from_values(Kind::Log, [0.012, 40.0].into_iter());
+        let steps: Vec<f64> = [0.1, 1.0, 10.0].iter().map(|&v| scale.position(v).unwrap()).collect();
         assert!(((steps[1] - steps[0]) - (steps[2] - steps[1])).abs() < 1e-12);
-        assert_eq!((scale.place(0.01), scale.place(50.0)), (Some(0.0), Some(1.0)));
-        assert_eq!(scale.place(0.0), None);
-        assert_eq!(scale.place(-1.0), None);
-        assert_eq!(scale.place(f64::NAN), None);
+        assert_eq!((scale.position(0.01), scale.position(50.0)), (Some(0.0), Some(1.0)));
+        assert_eq!(scale.position(0.0), None);
+        assert_eq!(scale.position(-1.0), None);
+        assert_eq!(scale.position(f64::NAN), None);
     }
 
     #[test]
     fn all_values_lie_on_their_scale() {
         for kind in [Kind::Log, Kind::Linear] {
             for values in [[1e-9, 1e9], [3.0, 3.0], [0.99, 1.01], [7.0, 45.0], [1e-3, 0.5]] {
-                let scale = Scale::around(kind, values.into_iter());
+                let scale = Scale::from_values(kind, values.into_iter());
                 for value in values {
-                    let place = scale.place(value).unwrap();
+                    let place = scale.position(value).unwrap();
                     assert!((0.0..=1.0).contains(&place), "{kind:?} {value} of {values:?} is at {place}");
                 }
                 assert!(labels(&scale).len() >= 2, "{kind:?} {values:?}: {scale:?}");
@@ -150,18 +150,18 @@ mod tests {
 
     #[test]
     fn few_decades_get_more_labels_and_many_get_fewer() {
-        assert_eq!(labels(&Scale::around(Kind::Log, [0.11, 90.0].into_iter())), [0.1, 1.0, 10.0, 100.0]);
-        assert!(labels(&Scale::around(Kind::Log, [2.2, 4.5].into_iter())).len() >= 3);
-        let wide = labels(&Scale::around(Kind::Log, [1e-12, 1e12].into_iter()));
+        assert_eq!(labels(&Scale::from_values(Kind::Log, [0.11, 90.0].into_iter())), [0.1, 1.0, 10.0, 100.0]);
+        assert!(labels(&Scale::from_values(Kind::Log, [2.2, 4.5].into_iter())).len() >= 3);
+        let wide = labels(&Scale::from_values(Kind::Log, [1e-12, 1e12].into_iter()));
         assert!((4..=10).contains(&wide.len()), "{wide:?}");
     }
 
     #[test]
     fn a_linear_scale_starts_at_nought_and_has_round_steps() {
-        let scale = Scale::around(Kind::Linear, [3.0, 47.0].into_iter());
+        let scale = Scale::from_values(Kind::Linear, [3.0, 47.0].into_iter());
         assert_eq!(labels(&scale), [0.0, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0]);
-        assert_eq!(scale.place(25.0), Some(0.5));
-        let nothing = Scale::around(Kind::Linear, std::iter::empty());
-        assert_eq!(nothing.place(10.0), Some(1.0));
+        assert_eq!(scale.position(25.0), Some(0.5));
+        let nothing = Scale::from_values(Kind::Linear, std::iter::empty());
+        assert_eq!(nothing.position(10.0), Some(1.0));
     }
 }

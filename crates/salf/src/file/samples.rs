@@ -43,19 +43,19 @@ pub fn read_samples(from: &mut impl Read, triangles: u32) -> Result<Samples, Sal
         return Err(SalfFileError::Damaged(format!("{records} samples")));
     }
     let samples = Samples {
-        chunks: many(from, chunks, read_chunk)?,
-        records: many(from, records, |from| Ok(Record::from_bytes(bytes(from)?)))?,
-        planes: many(from, planes, |from| Ok(Plane::from_bytes(bytes(from)?)))?,
-        sub_cells: many(from, sub_cells, |from| Ok(u16::from_le_bytes(bytes(from)?)))?,
-        patches: many(from, patches, |from| Ok(Patch::from_bytes(bytes(from)?)))?,
+        chunks: read_many(from, chunks, read_chunk)?,
+        records: read_many(from, records, |from| Ok(Record::from_bytes(bytes(from)?)))?,
+        planes: read_many(from, planes, |from| Ok(Plane::from_bytes(bytes(from)?)))?,
+        sub_cells: read_many(from, sub_cells, |from| Ok(u16::from_le_bytes(bytes(from)?)))?,
+        patches: read_many(from, patches, |from| Ok(Patch::from_bytes(bytes(from)?)))?,
         codes: read_codes(from, codes)?,
-        loose: many(from, loose, read_sample)?,
+        loose: read_many(from, loose, read_sample)?,
     };
     samples.check(triangles).map_err(SalfFileError::Damaged)?;
     Ok(samples)
 }
 
-fn many<R: Read, T>(
+fn read_many<R: Read, T>(
     from: &mut R,
     count: u64,
     mut read: impl FnMut(&mut R) -> Result<T, SalfFileError>,
@@ -115,8 +115,8 @@ fn read_sample(from: &mut impl Read) -> Result<Sample, SalfFileError> {
             Some(SurfacePoint { triangle, barycentric })
         }
     };
-    let [told] = bytes(from)?;
-    let visibility = match told & !CARRIED {
+    let [flags] = bytes(from)?;
+    let visibility = match flags & !CARRIED {
         0 => Visibility::Open,
         count @ (1 | 4) => {
             let words = (0..count).map(|_| Ok(u64::from_le_bytes(bytes(from)?)));
@@ -137,7 +137,7 @@ fn read_sample(from: &mut impl Read) -> Result<Sample, SalfFileError> {
         tilt: Vec2::new(tx, ty),
         radiance: Vec3::new(r, g, b),
         surface,
-        is_carried: told & CARRIED != 0,
+        is_carried: flags & CARRIED != 0,
         visibility,
     })
 }

@@ -10,15 +10,15 @@ use crate::sample::Visibility;
 
 /// How likely a bit is 0 (a cell is hidden), as far as is known.
 #[derive(Clone, Copy)]
-struct Chance {
+struct BitModel {
     /// In 1/65536.
     hidden: u16,
     /// How many cells tell it, at most [`Chance::MEMORY`].
-    known: u8,
+    observations: u8,
 }
 
-impl Chance {
-    const EVEN: Self = Self { hidden: 1 << 15, known: 0 };
+impl BitModel {
+    const EVEN: Self = Self { hidden: 1 << 15, observations: 0 };
     /// The last so many cells count.
     const MEMORY: usize = 60;
     /// No chance is 0 or 1.
@@ -27,20 +27,20 @@ impl Chance {
     /// What share of the way to certainty a cell moves it, in 1/65536.
     const STEPS: [i64; Self::MEMORY + 1] = {
         let mut steps = [0; Self::MEMORY + 1];
-        let mut known = 0;
-        while known <= Self::MEMORY {
-            steps[known] = (1 << 17) / (2 * known as i64 + 3);
-            known += 1;
+        let mut observations = 0;
+        while observations <= Self::MEMORY {
+            steps[observations] = (1 << 17) / (2 * observations as i64 + 3);
+            observations += 1;
         }
         steps
     };
 
-    fn learn(&mut self, is_seen: bool) {
-        let (hidden, known) = (i64::from(self.hidden), self.known as usize);
-        let target = if is_seen { 0 } else { 1 << 16 };
-        let moved = hidden + (((target - hidden) * Self::STEPS[known]) >> 16);
+    fn update(&mut self, is_visible: bool) {
+        let (hidden, observations) = (i64::from(self.hidden), self.observations as usize);
+        let target = if is_visible { 0 } else { 1 << 16 };
+        let moved = hidden + (((target - hidden) * Self::STEPS[observations]) >> 16);
         self.hidden = moved.clamp(Self::LEAST, (1 << 16) - Self::LEAST) as u16;
-        self.known = (known + 1).min(Self::MEMORY) as u8;
+        self.observations = (observations + 1).min(Self::MEMORY) as u8;
     }
 }
 
@@ -52,8 +52,8 @@ const ROW_PATTERNS: usize = 1 << 4;
 
 /// What was learned of the cells so far.
 struct Model {
-    cells: Box<[Chance; PATTERNS]>,
-    rows: [Chance; ROW_PATTERNS],
+    cells: Box<[BitModel; PATTERNS]>,
+    rows: [BitModel; ROW_PATTERNS],
     /// The last field of 8 and that of 16 cells a side, row by row.
     last: [[u16; 16]; 2],
 }
@@ -61,8 +61,8 @@ struct Model {
 impl Model {
     fn new() -> Self {
         Self {
-            cells: Box::new([Chance::EVEN; PATTERNS]),
-            rows: [Chance::EVEN; ROW_PATTERNS],
+            cells: Box::new([BitModel::EVEN; PATTERNS]),
+            rows: [BitModel::EVEN; ROW_PATTERNS],
             last: [[u16::MAX; 16]; 2],
         }
     }
@@ -70,7 +70,7 @@ impl Model {
     /// Goes through the rows and cells of a field: `code` is given how likely each bit is and what it is, and tells what it
     /// is.
     #[inline(always)]
-    fn pass(&mut self, rows: &mut [u16; 16], side: usize, mut code: impl FnMut(&mut Chance, bool) -> bool) {
+    fn pass(&mut self, rows: &mut [u16; 16], side: usize, mut code: impl FnMut(&mut BitModel, bool) -> bool) {
         // A row with two cells more on either side, like its outermost ones.
         let padded = |row: u16| {
             let row = u32::from(row) & ((1 << side) - 1);
@@ -83,7 +83,7 @@ impl Model {
         for r in 0..side {
             let chance = &mut self.rows[alike | is_fine << 3];
             let is_alike = code(chance, padded(rows[r]) == last[r]);
-            chance.learn(is_alike);
+            chance.update(is_alike);
             alike = (alike << 1 | usize::from(is_alike)) & 7;
             if is_alike {
                 rows[r] = (last[r] >> 2 & ((1 << side) - 1)) as u16;
@@ -100,9 +100,9 @@ impl Model {
                     | (before >> (c + 2) & 1) << 9
                     | (below >> (c + 2) & 1) << 10;
                 let chance = &mut self.cells[pattern as usize | is_fine << 11];
-                let is_seen = code(chance, rows[r] >> c & 1 == 1);
-                chance.learn(is_seen);
-                row |= u32::from(is_seen) << (c + 2);
+                let is_visible = code(chance, rows[r] >> c & 1 == 1);
+                chance.update(is_visible);
+                row |= u32::from(is_visible) << (c + 2);
             }
             rows[r] = (row >> 2) as u16;
             (two_above, above) = (above, padded(rows[r]));
@@ -135,9 +135,9 @@ impl MaskWriter {
         let mut rows =
             std::array::from_fn(|row| if row < side { Visibility::row(words, row) as u16 } else { 0 });
         let (low, range, codes) = (&mut self.low, &mut self.range, &mut self.codes);
-        self.model.pass(&mut rows, side, |chance, is_seen| {
+        self.model.pass(&mut rows, side, |chance, is_visible| {
             let hidden = (*range >> 16) * u32::from(chance.hidden);
-            if is_seen {
+            if is_visible {
                 raise(low, hidden, codes);
                 *range -= hidden;
             } else {
@@ -147,7 +147,7 @@ impl MaskWriter {
                 codes.push((*low >> 24) as u8);
                 (*low, *range) = (*low << 8, *range << 8);
             }
-            is_seen
+            is_visible
         });
     }
 
@@ -203,8 +203,8 @@ impl<'a> MaskReader<'a> {
         let (code, range, codes) = (&mut self.code, &mut self.range, &mut self.codes);
         self.model.pass(&mut rows, side, |chance, _| {
             let hidden = (*range >> 16) * u32::from(chance.hidden);
-            let is_seen = *code >= hidden;
-            if is_seen {
+            let is_visible = *code >= hidden;
+            if is_visible {
                 *code -= hidden;
                 *range -= hidden;
             } else {
@@ -214,7 +214,7 @@ impl<'a> MaskReader<'a> {
                 *code = *code << 8 | next(codes);
                 *range <<= 8;
             }
-            is_seen
+            is_visible
         });
         let rows_a_word = 64 / side;
         rows[..side]

@@ -34,8 +34,8 @@ pub struct Rgb40(pub [u8; 5]);
 impl Rgb40 {
     const MANTISSA_BITS: i32 = 11;
     /// The least exponent: what is below 2⁻⁷⁵ is taken for 0.
-    const LEAST: i32 = -64;
-    const MOST: i32 = 63;
+    const MIN_EXPONENT: i32 = -64;
+    const MAX_EXPONENT: i32 = 63;
 
     /// `None` if one is negative or not finite, or from 2⁶⁴ on. `chance` decides, evenly spread over [0, 1), what is rounded
     /// up: red, green and blue.
@@ -43,16 +43,16 @@ impl Rgb40 {
         if !(rgb.is_finite() && rgb.cmpge(Vec3::ZERO).all()) {
             return None;
         }
-        let exponent = ((rgb.max_element().to_bits() >> 23) as i32 - 127).max(Self::LEAST);
+        let exponent = ((rgb.max_element().to_bits() >> 23) as i32 - 127).max(Self::MIN_EXPONENT);
         let mantissas = |exponent: i32| {
             let quantum = f64::from(exponent - Self::MANTISSA_BITS + 1).exp2();
             let quanta = rgb.as_dvec3() / quantum;
             (quanta + DVec3::from_array(chance)).to_array().map(|value| value as u64)
         };
         let fits = |exponent: &i32| mantissas(*exponent).iter().all(|&m| m < 1 << Self::MANTISSA_BITS);
-        let exponent = (exponent..=Self::MOST).find(fits)?;
+        let exponent = (exponent..=Self::MAX_EXPONENT).find(fits)?;
         let [r, g, b] = mantissas(exponent);
-        let bits = (exponent - Self::LEAST) as u64 | r << 7 | g << 18 | b << 29;
+        let bits = (exponent - Self::MIN_EXPONENT) as u64 | r << 7 | g << 18 | b << 29;
         let [a, b, c, d, e, ..] = bits.to_le_bytes();
         Some(Self([a, b, c, d, e]))
     }
@@ -60,7 +60,7 @@ impl Rgb40 {
     pub fn get(self) -> Vec3 {
         let [a, b, c, d, e] = self.0;
         let bits = u64::from_le_bytes([a, b, c, d, e, 0, 0, 0]);
-        let exponent = (bits & 0x7F) as i32 + Self::LEAST - Self::MANTISSA_BITS + 1;
+        let exponent = (bits & 0x7F) as i32 + Self::MIN_EXPONENT - Self::MANTISSA_BITS + 1;
         // All of these exponents are those of ordinary numbers.
         let quantum = f32::from_bits(((exponent + 127) as u32) << 23);
         Vec3::from_array([7, 18, 29].map(|at| (bits >> at & 0x7FF) as f32 * quantum))

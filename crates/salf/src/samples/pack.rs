@@ -14,12 +14,12 @@ use std::collections::HashMap;
 
 /// A sample, and how it was found.
 #[derive(Clone, Debug)]
-pub struct Found {
+pub struct BakedSample {
     pub sample: Sample,
     /// The cell that it is a part of, and which sub-cells (a bit each); none for a patch of surface.
     pub part_of: Option<(Cell, u64)>,
     /// What of its radiance was found by chance ([`trace::Leaving::by_chance`]).
-    pub by_chance: Vec3,
+    pub noisy: Vec3,
 }
 
 /// Packs the samples of one block.
@@ -48,12 +48,12 @@ impl Packer {
     }
 
     /// Takes up a sample: packed, or as it is if it cannot be.
-    pub fn push(&mut self, found: Found) {
+    pub fn push(&mut self, baked: BakedSample) {
         if self.plane_of.len() >= Record::BACKGROUND as usize {
             self.close();
         }
-        if self.pack(&found).is_none() {
-            self.part.loose.push(found.sample);
+        if self.pack(&baked).is_none() {
+            self.part.loose.push(baked.sample);
         }
     }
 
@@ -74,8 +74,8 @@ impl Packer {
     }
 
     /// `None` if what it is made of is beyond what packed samples can tell.
-    fn pack(&mut self, found: &Found) -> Option<()> {
-        let Found { sample, part_of, .. } = found;
+    fn pack(&mut self, baked: &BakedSample) -> Option<()> {
+        let BakedSample { sample, part_of, .. } = baked;
         let (pixel, level) = match part_of {
             Some((cell, _)) => (cell.corner, cell.side.ilog2() as u8),
             None => (sample.center.floor().as_ivec2(), 0),

@@ -76,7 +76,7 @@ impl Kind {
     }
 
     /// `None` if it makes no sense.
-    fn of(place: u16) -> Option<Self> {
+    fn from_place(place: u16) -> Option<Self> {
         let bits = |at: u32, count: u32| i32::from(place >> at & ((1 << count) - 1));
         let level = bits(8, 3) as u8;
         let (shape, level, most) = match bits(11, 2) {
@@ -118,7 +118,7 @@ impl Record {
 
     #[inline]
     pub fn kind(&self) -> Kind {
-        Kind::of(self.place).expect("a record that was read was checked")
+        Kind::from_place(self.place).expect("a record that was read was checked")
     }
 
     /// Whether it sees but a part of the aperture.
@@ -140,7 +140,7 @@ impl Record {
 
     /// Whether it makes sense.
     pub fn is_sound(&self) -> bool {
-        Kind::of(self.place).is_some() && self.inverse_depth.get().is_finite()
+        Kind::from_place(self.place).is_some() && self.inverse_depth.get().is_finite()
     }
 
     pub fn to_bytes(self) -> [u8; Self::BYTES] {
@@ -248,7 +248,7 @@ mod tests {
 
     #[test]
     fn places_that_make_no_sense_are_told() {
-        let sound = (0..=u16::MAX).filter(|&place| Kind::of(place).is_some());
+        let sound = (0..=u16::MAX).filter(|&place| Kind::from_place(place).is_some());
         assert_eq!(sound.count(), 256 * (5 * 3 + 4) * 3 * 2);
     }
 }

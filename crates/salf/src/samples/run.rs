@@ -14,7 +14,7 @@ const LOOSE_RUN: usize = 1024;
 
 /// Where a sample is: in the picture, in depth and on the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Spot {
+pub struct SampleLocation {
     /// See [`Sample::center`].
     pub center: Vec2,
     /// See [`Sample::inverse_depth`].
@@ -33,8 +33,8 @@ pub struct Run<'a> {
     pub indices: Range<u32>,
 }
 
-impl Spot {
-    pub(super) fn of(sample: &Sample) -> Self {
+impl SampleLocation {
+    pub(super) fn from_sample(sample: &Sample) -> Self {
         let address = sample.address();
         Self { center: sample.center, inverse_depth: sample.inverse_depth, address }
     }
@@ -49,10 +49,11 @@ pub struct Addresses<'a> {
 impl Addresses<'_> {
     /// The address of a sample.
     #[inline]
-    pub fn of(&mut self, index: u32) -> Address {
+    pub fn get(&mut self, index: u32) -> Address {
         let samples = self.samples;
         let Some(record) = samples.records.get(index as usize) else {
-            return Spot::of(&samples.loose[index as usize - samples.records.len()]).address;
+            return SampleLocation::from_sample(&samples.loose[index as usize - samples.records.len()])
+                .address;
         };
         let run = match &self.run {
             Some(run) if run.indices.contains(&index) => run,
@@ -70,15 +71,15 @@ impl<'a> Run<'a> {
     }
 
     /// Where its samples are, in order; what they see is not decoded.
-    pub fn spots(&self) -> impl Iterator<Item = Spot> + use<'a> {
+    pub fn locations(&self) -> impl Iterator<Item = SampleLocation> + use<'a> {
         let mut decoder = self.chunk.map(|chunk| Decoder::new(self.samples, chunk));
         let packed = self.records().iter().filter_map(move |record| {
             let decoder = decoder.as_mut()?;
-            let spot = decoder.spot(record);
+            let spot = decoder.location(record);
             decoder.pass(record);
             Some(spot)
         });
-        packed.chain(self.loose().iter().map(Spot::of))
+        packed.chain(self.loose().iter().map(SampleLocation::from_sample))
     }
 
     /// The sample of this number. What others its visibility was coded with are decoded, too.
@@ -91,13 +92,13 @@ impl<'a> Run<'a> {
     }
 
     /// Where the sample of this number is.
-    fn spot(&self, index: u32) -> Option<Spot> {
+    fn location(&self, index: u32) -> Option<SampleLocation> {
         let place = (index - self.indices.start) as usize;
-        let Some(chunk) = self.chunk else { return self.loose().get(place).map(Spot::of) };
+        let Some(chunk) = self.chunk else { return self.loose().get(place).map(SampleLocation::from_sample) };
         let mut decoder = Decoder::new(self.samples, chunk);
         let (before, from_here) = self.records().split_at(place);
         before.iter().for_each(|record| decoder.pass(record));
-        Some(decoder.spot(from_here.first()?))
+        Some(decoder.location(from_here.first()?))
     }
 
     /// Its samples, in order, decoded one by one.
@@ -178,8 +179,8 @@ impl Samples {
     }
 
     /// Where a sample is.
-    pub fn spot(&self, index: u32) -> Spot {
-        self.run(self.run_of(index)).spot(index).expect("the run that holds it")
+    pub fn location(&self, index: u32) -> SampleLocation {
+        self.run(self.run_of(index)).location(index).expect("the run that holds it")
     }
 
     /// The surface addresses of samples.
@@ -245,8 +246,8 @@ impl<'a> Decoder<'a> {
         }
     }
 
-    fn spot(&self, record: &Record) -> Spot {
-        Spot {
+    fn location(&self, record: &Record) -> SampleLocation {
+        SampleLocation {
             center: self.footprint(record.kind())[0],
             inverse_depth: record.inverse_depth.get(),
             address: Address {

@@ -7,7 +7,7 @@ use half::f16;
 use scene::SurfacePoint;
 
 /// Cells of all sizes and parts of them, patches of surface and the background, in one block.
-fn found(count: u32) -> Vec<Found> {
+fn found(count: u32) -> Vec<BakedSample> {
     (0..count)
         .map(|k| {
             let [a, b, c] = jitter(k, 1, 2).map(|x| x as f32);
@@ -47,27 +47,28 @@ fn found(count: u32) -> Vec<Found> {
             } else if is_background {
                 (sample.surface, sample.tilt, sample.inverse_depth) = (None, Vec2::ZERO, 0.0);
             }
-            Found { sample, part_of: (!is_patch).then_some((cell, sub_cells)), by_chance: Vec3::ZERO }
+            BakedSample { sample, part_of: (!is_patch).then_some((cell, sub_cells)), noisy: Vec3::ZERO }
         })
         .collect()
 }
 
-fn packed(found: &[Found]) -> Samples {
+fn packed(found: &[BakedSample]) -> Samples {
     let mut packer = Packer::new(IVec2::new(32, -16));
     found.iter().for_each(|found| packer.push(found.clone()));
     packer.finish()
 }
 
-fn assert_alike(found: &Sample, wanted: &Sample) {
-    let scale = wanted.weight.abs().max(wanted.tilt.abs().max_element());
-    let weights = Vec3::new(found.weight - wanted.weight, 0.0, 0.0) + (found.tilt - wanted.tilt).extend(0.0);
-    assert!(weights.abs().max_element() <= 1e-3 * scale, "{found:?} for {wanted:?}");
-    assert!((found.inverse_depth - wanted.inverse_depth).abs() <= 8e-6 * wanted.inverse_depth);
-    assert!((found.radiance - wanted.radiance).abs().max_element() < 2e-3);
-    assert!((found.center - wanted.center).abs().max_element() <= 2.5e-4);
-    assert!((found.half_size - wanted.half_size).abs().max_element() <= 1.3e-4);
-    assert_eq!(found.visibility, wanted.visibility);
-    match (found.surface, wanted.surface) {
+fn assert_alike(found: &Sample, expected: &Sample) {
+    let scale = expected.weight.abs().max(expected.tilt.abs().max_element());
+    let weights =
+        Vec3::new(found.weight - expected.weight, 0.0, 0.0) + (found.tilt - expected.tilt).extend(0.0);
+    assert!(weights.abs().max_element() <= 1e-3 * scale, "{found:?} for {expected:?}");
+    assert!((found.inverse_depth - expected.inverse_depth).abs() <= 8e-6 * expected.inverse_depth);
+    assert!((found.radiance - expected.radiance).abs().max_element() < 2e-3);
+    assert!((found.center - expected.center).abs().max_element() <= 2.5e-4);
+    assert!((found.half_size - expected.half_size).abs().max_element() <= 1.3e-4);
+    assert_eq!(found.visibility, expected.visibility);
+    match (found.surface, expected.surface) {
         (Some(a), Some(b)) => {
             assert_eq!(a.triangle, b.triangle);
             assert!((a.barycentric - b.barycentric).abs().max_element() < 1e-5);
@@ -91,17 +92,17 @@ fn packed_samples_are_what_they_were() {
         }
         if index % 97 == 0 {
             assert_eq!(samples.get(index as u32), sample);
-            assert_eq!(samples.spot(index as u32), Spot::of(&sample));
+            assert_eq!(samples.location(index as u32), SampleLocation::from_sample(&sample));
         }
-        assert_eq!(addresses.of(index as u32), Spot::of(&sample).address);
+        assert_eq!(addresses.get(index as u32), SampleLocation::from_sample(&sample).address);
     }
-    let spots: Vec<_> = samples.runs().flat_map(|run| run.spots()).collect();
-    assert!(spots.into_iter().eq(samples.iter().map(|sample| Spot::of(&sample))));
+    let spots: Vec<_> = samples.runs().flat_map(|run| run.locations()).collect();
+    assert!(spots.into_iter().eq(samples.iter().map(|sample| SampleLocation::from_sample(&sample))));
 }
 
 #[test]
 fn what_cannot_be_packed_stays_as_it_is() {
-    let mut odd: Vec<Found> = found(6);
+    let mut odd: Vec<BakedSample> = found(6);
     odd[0].sample.radiance.y = 1e30;
     odd[1].sample.inverse_depth = -1.0;
     odd[2].sample.tilt.x = 1e9;

@@ -124,10 +124,10 @@ impl Builder<'_> {
             for &member in members {
                 // A cell that was sampled more coarsely waits for its level.
                 let fits = self.may_join(level, &self.arena[member.1].node);
-                let belongs = |group: &Vec<OpenEnded>| {
-                    fits && group.len() < MOST_MEMBERS && self.belongs(level, member.1, group[0].1)
+                let fits_group = |group: &Vec<OpenEnded>| {
+                    fits && group.len() < MAX_MEMBERS && self.is_alike(level, member.1, group[0].1)
                 };
-                let place = groups[..count].iter().position(belongs).unwrap_or(count);
+                let place = groups[..count].iter().position(fits_group).unwrap_or(count);
                 if place == groups.len() {
                     groups.push(Vec::new());
                 }
@@ -145,7 +145,7 @@ impl Builder<'_> {
         joined
     }
 
-    fn belongs(&self, level: u8, index: usize, first: usize) -> bool {
+    fn is_alike(&self, level: u8, index: usize, first: usize) -> bool {
         let (a, b) = (&self.arena[index], &self.arena[first]);
         let apart = (a.node.inverse_depth - b.node.inverse_depth).abs() * self.parallax_px;
         let is_smooth = self.may_join(level, &b.node) && apart <= SMOOTH * (1 << level) as f32;
@@ -169,7 +169,7 @@ impl Builder<'_> {
         let [x, y] = moments;
         node.dipole = (x * x + y * y).max_element().sqrt();
         let is_partial = self.arena[children[0].1].cells.is_some();
-        let cells = is_partial.then(|| most(|| members().filter_map(|member| member.cells.as_ref())));
+        let cells = is_partial.then(|| majority(|| members().filter_map(|member| member.cells.as_ref())));
         if let Some(cells) = &cells {
             // What most see is not what all see together; and weights of edge-on nodes are cut off where they would be
             // negative, so that sums of them are not quite linear.
@@ -231,7 +231,7 @@ fn weigh_alike(a: &Node, b: &Node) -> bool {
 fn leaf(sample: &Sample, index: u32, level: u8) -> Growing {
     let cells = match &sample.visibility {
         Visibility::Open => None,
-        Visibility::Cells { words } => Some(Cells::of(words)),
+        Visibility::Cells { words } => Some(Cells::from_words(words)),
     };
     let node = Node {
         center: sample.center,
@@ -290,13 +290,13 @@ fn moments<'a, I: Iterator<Item = &'a Growing>>(node: &Node, members: impl Fn() 
 }
 
 /// What most of those see whose cells `seen` are; where they are even, every other cell.
-fn most<'a, I: Iterator<Item = &'a Cells>>(seen: impl Fn() -> I) -> Cells {
+fn majority<'a, I: Iterator<Item = &'a Cells>>(members: impl Fn() -> I) -> Cells {
     const CHECKERS: u64 = 0x5555_AAAA_5555_AAAA;
-    let number = seen().count();
+    let number = members().count();
     Cells(std::array::from_fn(|word| {
         // Counts of 64 cells at once: bit k of the count of each in `count[k]`.
         let mut count = [0u64; COUNTER_BITS];
-        for Cells(words) in seen() {
+        for Cells(words) in members() {
             let mut carry = words[word];
             for bit in &mut count {
                 (*bit, carry) = (*bit ^ carry, *bit & carry);
@@ -311,7 +311,7 @@ fn most<'a, I: Iterator<Item = &'a Cells>>(seen: impl Fn() -> I) -> Cells {
 const COUNTER_BITS: usize = 5;
 
 /// Nodes that are joined at most.
-const MOST_MEMBERS: usize = (1 << COUNTER_BITS) - 1;
+const MAX_MEMBERS: usize = (1 << COUNTER_BITS) - 1;
 
 /// Which counts are above a number, and which equal to it.
 fn compare(count: &[u64; COUNTER_BITS], number: usize) -> (u64, u64) {
@@ -328,7 +328,7 @@ fn compare(count: &[u64; COUNTER_BITS], number: usize) -> (u64, u64) {
 }
 
 impl Cells {
-    fn of(words: &[u64]) -> Self {
+    fn from_words(words: &[u64]) -> Self {
         match *words {
             [word] => Self(finer(word)),
             [a, b, c, d] => Self([a, b, c, d]),
@@ -339,12 +339,12 @@ impl Cells {
     /// The sum over the cells of the weight that a node has toward them; unless it is edge-on, toward the centre.
     fn sent(&self, node: &Node) -> f32 {
         if !is_edge_on(node) {
-            let seen: u32 = self.0.iter().map(|word| word.count_ones()).sum();
-            return node.weight * seen as f32;
+            let visible: u32 = self.0.iter().map(|word| word.count_ones()).sum();
+            return node.weight * visible as f32;
         }
         let cell = |k: usize| Vec2::new((k % 16) as f32 + 0.5, (k / 16) as f32 + 0.5) / 8.0 - 1.0;
-        let is_seen = |k: &usize| self.0[k / 64] >> (k % 64) & 1 == 1;
-        (0..256).filter(is_seen).map(|k| (node.weight + node.tilt.dot(cell(k))).max(0.0)).sum()
+        let is_visible = |k: &usize| self.0[k / 64] >> (k % 64) & 1 == 1;
+        (0..256).filter(is_visible).map(|k| (node.weight + node.tilt.dot(cell(k))).max(0.0)).sum()
     }
 
     /// Whether there are cells that both see.
@@ -369,8 +369,8 @@ mod tests {
     #[test]
     fn most_is_a_majority() {
         let seen = [0b1110, 0b1100, 0b1010].map(|word| Cells([word, 0, u64::MAX, 0]));
-        assert_eq!(most(|| seen.iter()).0, [0b1110, 0, u64::MAX, 0]);
-        assert_eq!(most(|| seen[..2].iter()).0[0], 0b1100 | 0b0010 & 0x5555_AAAA_5555_AAAA);
+        assert_eq!(majority(|| seen.iter()).0, [0b1110, 0, u64::MAX, 0]);
+        assert_eq!(majority(|| seen[..2].iter()).0[0], 0b1100 | 0b0010 & 0x5555_AAAA_5555_AAAA);
     }
 
     fn plane(depth_of: impl Fn(u32, u32) -> f32) -> Salf {

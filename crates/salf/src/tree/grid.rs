@@ -59,7 +59,7 @@ impl Grid {
             match run.block() {
                 Some(corner) => contents[self.block_around(corner)].runs.push(number),
                 None => {
-                    for (index, spot) in run.indices.clone().zip(run.spots()) {
+                    for (index, spot) in run.indices.clone().zip(run.locations()) {
                         contents[self.block_around(self.pixel(spot.center))].singles.push(index);
                     }
                 }

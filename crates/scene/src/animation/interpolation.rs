@@ -15,7 +15,7 @@ pub(super) enum Interpolation {
 
 impl Interpolation {
     /// By glTF's name.
-    pub fn named(name: Option<&str>) -> Option<Self> {
+    pub fn from_name(name: Option<&str>) -> Option<Self> {
         Some(match name {
             None | Some("LINEAR") => Self::Linear,
             Some("STEP") => Self::Step,
@@ -25,7 +25,7 @@ impl Interpolation {
     }
 
     /// How many values a key has: a spline's has an incoming tangent, a value and an outgoing tangent.
-    pub fn values_a_key(self) -> usize {
+    pub fn values_per_key(self) -> usize {
         if self == Self::Cubic { 3 } else { 1 }
     }
 }
@@ -64,10 +64,10 @@ pub(super) fn hermite(from: [&[f64]; 2], to: [&[f64]; 2], span: f64, u: f64) -> 
     let (u2, u3) = (u * u, u * u * u);
     let weights =
         [2.0 * u3 - 3.0 * u2 + 1.0, (u3 - 2.0 * u2 + u) * span, 3.0 * u2 - 2.0 * u3, (u3 - u2) * span];
-    let one = |k: usize| {
+    let interpolate = |k: usize| {
         weights[0] * from[0][k] + weights[1] * from[1][k] + weights[2] * to[0][k] + weights[3] * to[1][k]
     };
-    (0..from[0].len()).map(one).collect()
+    (0..from[0].len()).map(interpolate).collect()
 }
 
 #[cfg(test)]

@@ -10,11 +10,11 @@ use serde_json::{Map, Number, Value};
 pub(super) struct Target {
     /// JSON pointer.
     pub pointer: String,
-    kind: Kind,
+    kind: ValueKind,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
+enum ValueKind {
     /// A list of so many numbers, or of any number of them.
     List(Option<usize>),
     /// Four numbers that are a rotation.
@@ -22,20 +22,20 @@ enum Kind {
     /// A number.
     Number,
     /// Whether a number is other than 0.
-    Truth,
+    Bool,
     /// Of a material: as many numbers as are given, one being a number by itself.
-    OfMaterial,
+    MaterialProperty,
 }
 
 /// Names in a pointer that are followed; no property lies deeper.
-const MOST_STEPS: usize = 8;
+const MAX_STEPS: usize = 8;
 
 impl Target {
     /// What `channel` animates; nothing where no picture depends on it.
     ///
     /// # Errors
     /// Its target is malformed or not there.
-    pub fn read(document: &Document<'_>, channel: &Object<'_>) -> Result<Option<Self>, Fault> {
+    pub fn from_channel(document: &Document<'_>, channel: &Object<'_>) -> Result<Option<Self>, Fault> {
         let Some(target) = channel.object("target")? else { return Ok(None) };
         let path = target.text("path")?.unwrap_or_default();
         let pointer = if path == "pointer" {
@@ -47,7 +47,7 @@ impl Target {
             let Some(node) = target.index("node")? else { return Ok(None) };
             format!("/nodes/{node}/{path}")
         };
-        let Some(kind) = kind(&pointer) else {
+        let Some(kind) = value_kind(&pointer) else {
             document.warn(format!("{}: {pointer:?} is not animated", target.place));
             return Ok(None);
         };
@@ -63,21 +63,21 @@ impl Target {
 
     /// Whether its four numbers are a rotation.
     pub fn is_rotation(&self) -> bool {
-        self.kind == Kind::Rotation
+        self.kind == ValueKind::Rotation
     }
 
     /// Whether it is a property of a material.
-    pub fn is_of_material(&self) -> bool {
-        self.kind == Kind::OfMaterial
+    pub fn is_material_property(&self) -> bool {
+        self.kind == ValueKind::MaterialProperty
     }
 
     /// How many numbers it takes; nothing for any.
-    pub fn numbers(&self) -> Option<usize> {
+    pub fn number_count(&self) -> Option<usize> {
         match self.kind {
-            Kind::List(count) => count,
-            Kind::Rotation => Some(4),
-            Kind::Number | Kind::Truth => Some(1),
-            Kind::OfMaterial => None,
+            ValueKind::List(count) => count,
+            ValueKind::Rotation => Some(4),
+            ValueKind::Number | ValueKind::Bool => Some(1),
+            ValueKind::MaterialProperty => None,
         }
     }
 
@@ -86,38 +86,42 @@ impl Target {
         let numbers: Vec<Value> =
             numbers.into_iter().filter_map(Number::from_f64).map(Value::Number).collect();
         let is_list = match self.kind {
-            Kind::List(_) | Kind::Rotation => true,
-            Kind::Number | Kind::Truth => false,
-            Kind::OfMaterial => numbers.len() > 1,
+            ValueKind::List(_) | ValueKind::Rotation => true,
+            ValueKind::Number | ValueKind::Bool => false,
+            ValueKind::MaterialProperty => numbers.len() > 1,
         };
         let value = match (is_list, numbers.first()) {
             (true, _) => Value::Array(numbers),
-            (false, Some(number)) if self.kind == Kind::Truth => Value::Bool(number.as_f64() != Some(0.0)),
+            (false, Some(number)) if self.kind == ValueKind::Bool => {
+                Value::Bool(number.as_f64() != Some(0.0))
+            }
             (false, Some(number)) => number.clone(),
             (false, None) => return false,
         };
-        put(root, &self.pointer, value)
+        set_at_pointer(root, &self.pointer, value)
     }
 }
 
 /// What stands at a pointer, if it is animated.
-fn kind(pointer: &str) -> Option<Kind> {
-    let steps: Vec<&str> = pointer.split('/').skip(1).take(MOST_STEPS + 1).collect();
-    if steps.len() > MOST_STEPS {
+fn value_kind(pointer: &str) -> Option<ValueKind> {
+    let steps: Vec<&str> = pointer.split('/').skip(1).take(MAX_STEPS + 1).collect();
+    if steps.len() > MAX_STEPS {
         return None;
     }
     let is_index = |step: &str| step.parse::<u32>().is_ok();
     let (collection, rest) = steps.split_first()?;
     if *collection == "extensions" {
         return match rest {
-            ["KHR_lights_punctual", "lights", index, "color"] if is_index(index) => Some(Kind::List(Some(3))),
+            ["KHR_lights_punctual", "lights", index, "color"] if is_index(index) => {
+                Some(ValueKind::List(Some(3)))
+            }
             ["KHR_lights_punctual", "lights", index, "intensity" | "range"] if is_index(index) => {
-                Some(Kind::Number)
+                Some(ValueKind::Number)
             }
             ["KHR_lights_punctual", "lights", index, "spot", "innerConeAngle" | "outerConeAngle"]
                 if is_index(index) =>
             {
-                Some(Kind::Number)
+                Some(ValueKind::Number)
             }
             _ => None,
         };
@@ -127,19 +131,19 @@ fn kind(pointer: &str) -> Option<Kind> {
         return None;
     }
     match (*collection, property) {
-        ("nodes", ["translation" | "scale"]) => Some(Kind::List(Some(3))),
-        ("nodes", ["rotation"]) => Some(Kind::Rotation),
-        ("nodes" | "meshes", ["weights"]) => Some(Kind::List(None)),
-        ("nodes" | "meshes", ["weights", weight]) if is_index(weight) => Some(Kind::Number),
-        ("nodes", ["extensions", "KHR_node_visibility", "visible"]) => Some(Kind::Truth),
-        ("cameras", ["perspective", "yfov" | "aspectRatio"]) => Some(Kind::Number),
-        ("materials", [_, ..]) => Some(Kind::OfMaterial),
+        ("nodes", ["translation" | "scale"]) => Some(ValueKind::List(Some(3))),
+        ("nodes", ["rotation"]) => Some(ValueKind::Rotation),
+        ("nodes" | "meshes", ["weights"]) => Some(ValueKind::List(None)),
+        ("nodes" | "meshes", ["weights", weight]) if is_index(weight) => Some(ValueKind::Number),
+        ("nodes", ["extensions", "KHR_node_visibility", "visible"]) => Some(ValueKind::Bool),
+        ("cameras", ["perspective", "yfov" | "aspectRatio"]) => Some(ValueKind::Number),
+        ("materials", [_, ..]) => Some(ValueKind::MaterialProperty),
         _ => None,
     }
 }
 
 /// Puts a value at a pointer. Objects on the way there are made where they are missing, entries of lists are not.
-fn put(root: &mut Value, pointer: &str, value: Value) -> bool {
+fn set_at_pointer(root: &mut Value, pointer: &str, value: Value) -> bool {
     let mut here = root;
     for step in pointer.split('/').skip(1) {
         let name = step.replace("~1", "/").replace("~0", "~");
@@ -167,7 +171,7 @@ mod tests {
     #[test]
     fn values_come_to_their_place_and_no_other() {
         let mut root = json!({"nodes": [{"weights": [0.0, 0.5]}, {}]});
-        let target = |pointer: &str| Target { pointer: pointer.into(), kind: kind(pointer).unwrap() };
+        let target = |pointer: &str| Target { pointer: pointer.into(), kind: value_kind(pointer).unwrap() };
         assert!(target("/nodes/0/weights/1").write(&mut root, vec![0.25]));
         assert!(target("/nodes/1/extensions/KHR_node_visibility/visible").write(&mut root, vec![0.0]));
         assert!(target("/nodes/1/translation").write(&mut root, vec![1.0, 2.0, 3.0]));
@@ -187,8 +191,8 @@ mod tests {
             "/nodes",
             "/accessors/0/count",
         ] {
-            assert_eq!(kind(pointer), None, "{pointer}");
+            assert_eq!(value_kind(pointer), None, "{pointer}");
         }
-        assert_eq!(kind(&format!("/materials/0{}", "/a".repeat(9))), None);
+        assert_eq!(value_kind(&format!("/materials/0{}", "/a".repeat(9))), None);
     }
 }

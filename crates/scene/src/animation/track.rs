@@ -28,9 +28,9 @@ impl<'a> Track<'a> {
             return Err(times.malformed("times must be floats"));
         }
         let name = sampler.text("interpolation")?;
-        let interpolation = Interpolation::named(name)
+        let interpolation = Interpolation::from_name(name)
             .ok_or_else(|| sampler.malformed("interpolation", "is none of STEP, LINEAR, CUBICSPLINE"))?;
-        let parts = times.count.saturating_mul(interpolation.values_a_key());
+        let parts = times.count.saturating_mul(interpolation.values_per_key());
         let elements = values.count.checked_div(parts).unwrap_or(0);
         if elements == 0 || values.count != elements * parts || values.shape.is_matrix() {
             let what = format!("has {} values for {} times", values.count, times.count);
@@ -45,22 +45,27 @@ impl<'a> Track<'a> {
     }
 
     /// When the last key is, s.
-    pub fn end(&self) -> f64 {
+    pub fn end_seconds(&self) -> f64 {
         self.time(self.times.count - 1)
     }
 
     /// The numbers at a time. Before the first key those of the first, after the last those of the last.
-    pub fn at(&self, document: &Document<'_>, seconds: f64, is_rotation: bool) -> Result<Vec<f64>, Fault> {
+    pub fn sample(
+        &self,
+        document: &Document<'_>,
+        seconds: f64,
+        is_rotation: bool,
+    ) -> Result<Vec<f64>, Fault> {
         let numbers = self.elements as u64 * self.values.shape.components() as u64;
-        document.budget.work(16 + 8 * numbers, &self.place)?;
-        document.budget.memory(64 * numbers, &self.place)?;
-        let found = self.found(seconds, is_rotation);
-        document.budget.release(64 * numbers);
-        Ok(found)
+        document.budget.take_work(16 + 8 * numbers, &self.place)?;
+        document.budget.take_memory(64 * numbers, &self.place)?;
+        let values = self.interpolate(seconds, is_rotation);
+        document.budget.release_memory(64 * numbers);
+        Ok(values)
     }
 
-    fn found(&self, seconds: f64, is_rotation: bool) -> Vec<f64> {
-        let after = self.keys_until(seconds);
+    fn interpolate(&self, seconds: f64, is_rotation: bool) -> Vec<f64> {
+        let after = self.key_count_until(seconds);
         let Some(before) = after.checked_sub(1) else { return self.value(0) };
         if after == self.times.count {
             return self.value(before);
@@ -79,15 +84,15 @@ impl<'a> Track<'a> {
                 (a, b) => linear(&a, &b, u),
             },
             Interpolation::Cubic => {
-                let from = [self.value(before), self.part(before, 2)];
-                let to = [self.value(after), self.part(after, 0)];
+                let from = [self.value(before), self.spline_part(before, 2)];
+                let to = [self.value(after), self.spline_part(after, 0)];
                 hermite([&from[0], &from[1]], [&to[0], &to[1]], span, u)
             }
         }
     }
 
     /// How many keys are not after a time.
-    fn keys_until(&self, seconds: f64) -> usize {
+    fn key_count_until(&self, seconds: f64) -> usize {
         let (mut low, mut high) = (0, self.times.count);
         while low < high {
             let middle = low + (high - low) / 2;
@@ -98,15 +103,15 @@ impl<'a> Track<'a> {
 
     /// The value of a key.
     fn value(&self, key: usize) -> Vec<f64> {
-        self.part(key, usize::from(self.interpolation == Interpolation::Cubic))
+        self.spline_part(key, usize::from(self.interpolation == Interpolation::Cubic))
     }
 
     /// Incoming tangent, value or outgoing tangent of a spline's key; else its value is all there is.
-    fn part(&self, key: usize, part: usize) -> Vec<f64> {
-        let first = (key * self.interpolation.values_a_key() + part) * self.elements;
+    fn spline_part(&self, key: usize, part: usize) -> Vec<f64> {
+        let first = (key * self.interpolation.values_per_key() + part) * self.elements;
         let components = self.values.shape.components();
         let element =
-            |index: usize| (0..components).map(move |component| self.values.number(index, component));
+            |index: usize| (0..components).map(move |component| self.values.value(index, component));
         (first..first + self.elements).flat_map(element).collect()
     }
 }

@@ -1,10 +1,10 @@
 //! Compressed primitives: KHR_draco_mesh_compression.
 
-use super::plain::{Plain, number};
-use crate::accessor::{Component, Shape, component_of};
+use super::plain::{PlainDocument, index_or_zero};
+use crate::accessor::{Component, Shape, component_from_code};
 use crate::document::Document;
 use crate::error::Fault;
-use crate::json_object::integer;
+use crate::json_object::as_whole_number;
 use draco_core::{DataType, DecodeLimits, DecoderBuffer, Mesh, MeshDecoder, PointAttribute, PointIndex};
 use serde_json::{Map, Value, json};
 
@@ -14,26 +14,30 @@ pub(super) const EXTENSION: &str = "KHR_draco_mesh_compression";
 const TRIANGLES: u32 = 4;
 
 /// Gives each compressed primitive accessors of its own, unless it has a plain form and none is required.
-pub(super) fn decode(document: &Document<'_>, plain: &mut Plain, is_required: bool) -> Result<(), Fault> {
+pub(super) fn decode(
+    document: &Document<'_>,
+    plain: &mut PlainDocument,
+    is_required: bool,
+) -> Result<(), Fault> {
     for mesh in 0..document.len("meshes") {
-        let primitives = document.value().pointer(&format!("/meshes/{mesh}/primitives"));
+        let primitives = document.root_value().pointer(&format!("/meshes/{mesh}/primitives"));
         let count = primitives.and_then(Value::as_array).map_or(0, Vec::len);
         for index in 0..count {
             let place = format!("/meshes/{mesh}/primitives/{index}");
-            let Some(primitive) = document.value().pointer(&place).and_then(Value::as_object) else {
+            let Some(primitive) = document.root_value().pointer(&place).and_then(Value::as_object) else {
                 continue;
             };
             let Some(compressed) = primitive.get("extensions").and_then(|all| all.get(EXTENSION)) else {
                 continue;
             };
-            if is_required || !has_plain_form(document, primitive) {
-                let own = place;
-                let place = format!("{own}/extensions/{EXTENSION}");
+            if is_required || !has_uncompressed_form(document, primitive) {
+                let primitive_place = place;
+                let place = format!("{primitive_place}/extensions/{EXTENSION}");
                 let Some(compressed) = compressed.as_object() else {
                     return Err(Fault::Malformed { place, what: "is not an object".into() });
                 };
-                let compressed = Compressed { document, primitive, compressed, place };
-                compressed.decode(plain, &own)?;
+                let compressed = DracoPrimitive { document, primitive, compressed, place };
+                compressed.decode(plain, &primitive_place)?;
             }
         }
     }
@@ -41,27 +45,27 @@ pub(super) fn decode(document: &Document<'_>, plain: &mut Plain, is_required: bo
 }
 
 /// Whether the positions of a primitive lie in a view.
-fn has_plain_form(document: &Document<'_>, primitive: &Map<String, Value>) -> bool {
-    let position = primitive.get("attributes").and_then(|all| integer(all.get("POSITION")?));
+fn has_uncompressed_form(document: &Document<'_>, primitive: &Map<String, Value>) -> bool {
+    let position = primitive.get("attributes").and_then(|all| as_whole_number(all.get("POSITION")?));
     let accessor = position.and_then(|index| document.item("accessors", index as usize, "").ok());
     accessor.is_some_and(|accessor| accessor.get("bufferView").is_some())
 }
 
-struct Compressed<'a> {
+struct DracoPrimitive<'a> {
     document: &'a Document<'a>,
     primitive: &'a Map<String, Value>,
     compressed: &'a Map<String, Value>,
     place: String,
 }
 
-impl Compressed<'_> {
+impl DracoPrimitive<'_> {
     fn malformed(&self, key: &str, what: impl Into<String>) -> Fault {
         Fault::Malformed { place: format!("{}/{key}", self.place), what: what.into() }
     }
 
-    fn decode(&self, plain: &mut Plain, primitive: &str) -> Result<(), Fault> {
+    fn decode(&self, plain: &mut PlainDocument, primitive: &str) -> Result<(), Fault> {
         let document = self.document;
-        let view = number(self.compressed, "bufferView", &self.place)?;
+        let view = index_or_zero(self.compressed, "bufferView", &self.place)?;
         let (encoded, _) = document.buffer_view(view, &format!("{}/bufferView", self.place))?;
         let options = &document.budget.options;
         let left = document.budget.memory_left();
@@ -69,7 +73,7 @@ impl Compressed<'_> {
             .with_max_points(options.max_triangles.saturating_mul(3))
             .with_max_faces(options.max_triangles)
             .with_max_decoded_bytes(left / 4);
-        document.budget.work(encoded.len() as u64, &self.place)?;
+        document.budget.take_work(encoded.len() as u64, &self.place)?;
         let mut mesh = Mesh::new();
         MeshDecoder::new().decode(&mut DecoderBuffer::new(encoded).with_limits(limits), &mut mesh).map_err(
             |error| {
@@ -81,22 +85,23 @@ impl Compressed<'_> {
         if corners.clone().any(|corner| corner as usize >= points) {
             return Err(self.malformed("bufferView", "refers to points that it does not have"));
         }
-        document.budget.work(points as u64 + mesh.num_faces() as u64, &self.place)?;
+        document.budget.take_work(points as u64 + mesh.num_faces() as u64, &self.place)?;
         let bytes: Vec<u8> = corners.flat_map(u32::to_le_bytes).collect();
         let indices = json!({ "componentType": 5125, "type": "SCALAR", "count": bytes.len() / 4 });
-        let indices = add(plain, document, &self.place, indices, &bytes)?;
+        let indices = add_accessor(plain, document, &self.place, indices, &bytes)?;
         let mut attributes = Vec::new();
-        let wanted = self.compressed.get("attributes").and_then(Value::as_object);
-        for (semantic, id) in wanted.into_iter().flatten() {
+        let attribute_ids = self.compressed.get("attributes").and_then(Value::as_object);
+        for (semantic, id) in attribute_ids.into_iter().flatten() {
             let place = format!("attributes/{semantic}");
-            let id = integer(id).and_then(|id| u32::try_from(id).ok());
+            let id = as_whole_number(id).and_then(|id| u32::try_from(id).ok());
             let attribute = id.and_then(|id| mesh.attribute_by_unique_id(id));
             let attribute =
                 attribute.ok_or_else(|| self.malformed(&place, "is not among the decoded attributes"))?;
             let (accessor, bytes) = self.accessor(semantic, attribute, points)?;
-            attributes.push((semantic.clone(), add(plain, document, &self.place, accessor, &bytes)?));
+            attributes
+                .push((semantic.clone(), add_accessor(plain, document, &self.place, accessor, &bytes)?));
         }
-        plain.forget(primitive, EXTENSION);
+        plain.remove_extension(primitive, EXTENSION);
         if let Some(Value::Object(primitive)) = plain.root.pointer_mut(primitive) {
             primitive.insert("indices".into(), json!(indices));
             primitive.insert("mode".into(), json!(TRIANGLES));
@@ -115,13 +120,13 @@ impl Compressed<'_> {
         points: usize,
     ) -> Result<(Value, Vec<u8>), Fault> {
         let place = format!("attributes/{semantic}");
-        let index = self.primitive.get("attributes").and_then(|all| integer(all.get(semantic)?));
+        let index = self.primitive.get("attributes").and_then(|all| as_whole_number(all.get(semantic)?));
         let Some(index) = index else {
             return Err(self.malformed(&place, "the primitive has no such attribute"));
         };
         let accessor = self.document.item("accessors", index as usize, &self.place)?;
-        let component = accessor.get("componentType").and_then(integer).and_then(component_of);
-        let shape = accessor.get("type").and_then(Value::as_str).and_then(Shape::of);
+        let component = accessor.get("componentType").and_then(as_whole_number).and_then(component_from_code);
+        let shape = accessor.get("type").and_then(Value::as_str).and_then(Shape::from_name);
         let (Some(component), Some(shape)) = (component, shape.filter(|shape| !shape.is_matrix())) else {
             return Err(self.malformed(&place, "its accessor has no type"));
         };
@@ -130,16 +135,16 @@ impl Compressed<'_> {
             let what = format!("has {} components, its accessor {components}", attribute.num_components());
             return Err(self.malformed(&place, what));
         }
-        self.document.budget.work((points * components) as u64, &self.place)?;
-        let values =
-            Values::of(attribute).ok_or_else(|| self.malformed(&place, "has a type that glTF lacks"))?;
+        self.document.budget.take_work((points * components) as u64, &self.place)?;
+        let values = AttributeValues::new(attribute)
+            .ok_or_else(|| self.malformed(&place, "has a type that glTF lacks"))?;
         let mut bytes = Vec::with_capacity(points * shape.size(component));
         let (mut low, mut high) = (vec![f64::INFINITY; components], vec![f64::NEG_INFINITY; components]);
         for point in 0..points {
             for k in 0..components {
                 let value = values.get(point, k);
                 (low[k], high[k]) = (low[k].min(value), high[k].max(value));
-                store(component, value, &mut bytes);
+                append_component(component, value, &mut bytes);
             }
         }
         let mut plain = json!({
@@ -158,30 +163,30 @@ impl Compressed<'_> {
 }
 
 /// Adds an accessor of these bytes, in a view of their own.
-fn add(
-    plain: &mut Plain,
+fn add_accessor(
+    plain: &mut PlainDocument,
     document: &Document<'_>,
     place: &str,
     mut accessor: Value,
     bytes: &[u8],
 ) -> Result<usize, Fault> {
-    document.budget.memory(bytes.len() as u64, place)?;
+    document.budget.take_memory(bytes.len() as u64, place)?;
     let (start, buffer) = (plain.append(bytes), plain.buffer);
     let view = json!({ "buffer": buffer, "byteOffset": start, "byteLength": bytes.len() });
     accessor["bufferView"] = json!(plain.add("bufferViews", view));
-    document.budget.release(bytes.len() as u64);
+    document.budget.release_memory(bytes.len() as u64);
     Ok(plain.add("accessors", accessor))
 }
 
 /// The values of a decoded attribute.
-struct Values<'a> {
+struct AttributeValues<'a> {
     attribute: &'a PointAttribute,
     component: Component,
     stride: usize,
 }
 
-impl<'a> Values<'a> {
-    fn of(attribute: &'a PointAttribute) -> Option<Self> {
+impl<'a> AttributeValues<'a> {
+    fn new(attribute: &'a PointAttribute) -> Option<Self> {
         let component = match attribute.data_type() {
             DataType::Int8 => Component::I8,
             DataType::Uint8 | DataType::Bool => Component::U8,
@@ -200,12 +205,12 @@ impl<'a> Values<'a> {
         let value = self.attribute.mapped_index(PointIndex(point as u32)).0 as usize;
         let at = value.checked_mul(self.stride).and_then(|at| at.checked_add(component * size));
         let bytes = at.and_then(|at| self.attribute.buffer().data().get(at..at.checked_add(size)?));
-        bytes.map_or(0.0, |bytes| crate::accessor::read(self.component, bytes))
+        bytes.map_or(0.0, |bytes| crate::accessor::read_component(self.component, bytes))
     }
 }
 
 /// Appends a number as it is stored.
-fn store(component: Component, value: f64, bytes: &mut Vec<u8>) {
+fn append_component(component: Component, value: f64, bytes: &mut Vec<u8>) {
     match component {
         Component::I8 => bytes.extend((value as i8).to_le_bytes()),
         Component::U8 => bytes.push(value as u8),

@@ -1,6 +1,6 @@
 //! Compressed buffer views: EXT_meshopt_compression, and KHR_meshopt_compression, which adds a filter for colours.
 
-use super::plain::{Plain, number};
+use super::plain::{PlainDocument, index_or_zero};
 use crate::document::Document;
 use crate::error::Fault;
 use meshopt::ffi;
@@ -9,7 +9,11 @@ use serde_json::{Map, Value, json};
 pub(super) const EXTENSIONS: [&str; 2] = ["KHR_meshopt_compression", "EXT_meshopt_compression"];
 
 /// Puts the bytes of each compressed view in its place, unless it has a plain form and none is required.
-pub(super) fn decode(document: &Document<'_>, plain: &mut Plain, is_required: bool) -> Result<(), Fault> {
+pub(super) fn decode(
+    document: &Document<'_>,
+    plain: &mut PlainDocument,
+    is_required: bool,
+) -> Result<(), Fault> {
     for index in 0..document.len("bufferViews") {
         let view = document.item("bufferViews", index, "")?;
         let compressed = EXTENSIONS.iter().find_map(|name| Some((*name, view.get("extensions")?.get(name)?)));
@@ -21,9 +25,9 @@ pub(super) fn decode(document: &Document<'_>, plain: &mut Plain, is_required: bo
         let Some(compressed) = compressed.as_object() else {
             return Err(Fault::Malformed { place, what: "is not an object".into() });
         };
-        let bytes = decoded(document, compressed, &place)?;
+        let bytes = decode_view(document, compressed, &place)?;
         let start = plain.append(&bytes);
-        document.budget.release(bytes.len() as u64);
+        document.budget.release_memory(bytes.len() as u64);
         let place = format!("/bufferViews/{index}");
         let buffer = plain.buffer;
         if let Some(Value::Object(view)) = plain.root.pointer_mut(&place) {
@@ -31,7 +35,7 @@ pub(super) fn decode(document: &Document<'_>, plain: &mut Plain, is_required: bo
             view.insert("byteOffset".into(), json!(start));
             view.insert("byteLength".into(), json!(bytes.len()));
         }
-        EXTENSIONS.iter().for_each(|name| plain.forget(&place, name));
+        EXTENSIONS.iter().for_each(|name| plain.remove_extension(&place, name));
     }
     Ok(())
 }
@@ -51,18 +55,18 @@ fn is_fallback(document: &Document<'_>, buffer: Option<usize>) -> bool {
 }
 
 /// The bytes that a compressed view holds.
-fn decoded(document: &Document<'_>, view: &Map<String, Value>, place: &str) -> Result<Vec<u8>, Fault> {
+fn decode_view(document: &Document<'_>, view: &Map<String, Value>, place: &str) -> Result<Vec<u8>, Fault> {
     let malformed = |key: &str, what: String| Fault::Malformed { place: format!("{place}/{key}"), what };
     let text = |key: &str, default: &'static str| view.get(key).map_or(Some(default), Value::as_str);
-    let size = |key: &str| number(view, key, place);
+    let size = |key: &str| index_or_zero(view, key, place);
     let (count, stride) = (size("count")?, size("byteStride")?);
     let mode = text("mode", "").unwrap_or_default();
-    let is_known_stride = match mode {
+    let is_valid_stride = match mode {
         "ATTRIBUTES" => stride.is_multiple_of(4) && (4..=256).contains(&stride),
         "TRIANGLES" | "INDICES" => [2, 4].contains(&stride),
         _ => return Err(malformed("mode", format!("is {mode:?}, not ATTRIBUTES, TRIANGLES or INDICES"))),
     };
-    if !is_known_stride {
+    if !is_valid_stride {
         return Err(malformed("byteStride", format!("{stride} is none of {mode}")));
     }
     if mode == "TRIANGLES" && !count.is_multiple_of(3) {
@@ -87,17 +91,18 @@ fn decoded(document: &Document<'_>, view: &Map<String, Value>, place: &str) -> R
         return Err(malformed("byteLength", what));
     };
     // What cannot be is not made room for: 256 equal bytes of a column take two bits at least, a triangle and an index a byte.
-    let most = match mode {
+    let max_size = match mode {
         "ATTRIBUTES" => length.saturating_mul(1024),
         "TRIANGLES" => length.saturating_mul(3 * stride),
         _ => length.saturating_mul(stride),
     };
-    let Some(wanted) = count.checked_mul(stride).filter(|&wanted| wanted <= most) else {
+    let Some(decoded_size) = count.checked_mul(stride).filter(|&decoded_size| decoded_size <= max_size)
+    else {
         return Err(malformed("count", format!("{count} are more than {length} bytes can hold")));
     };
-    document.budget.memory(wanted as u64, place)?;
-    document.budget.work(wanted as u64 / 4, place)?;
-    let mut bytes = vec![0; wanted];
+    document.budget.take_memory(decoded_size as u64, place)?;
+    document.budget.take_work(decoded_size as u64 / 4, place)?;
+    let mut bytes = vec![0; decoded_size];
     let (to, from) = (bytes.as_mut_ptr(), encoded.as_ptr());
     // SAFETY: `bytes` holds `count` elements of `stride` bytes, and `encoded` so many bytes; strides and counts are such as these
     // functions ask for (checked above), and they stay within both for any input.

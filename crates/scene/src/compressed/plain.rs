@@ -1,11 +1,11 @@
 //! The plain document while it is being made.
 
 use crate::error::Fault;
-use crate::json_object::integer;
+use crate::json_object::as_whole_number;
 use serde_json::{Map, Value, json};
 
 /// The document that is being made.
-pub(super) struct Plain {
+pub(super) struct PlainDocument {
     pub root: Value,
     /// Of the buffer that is added.
     pub bytes: Vec<u8>,
@@ -13,7 +13,7 @@ pub(super) struct Plain {
     pub buffer: usize,
 }
 
-impl Plain {
+impl PlainDocument {
     /// Appends bytes; where they begin.
     pub fn append(&mut self, bytes: &[u8]) -> usize {
         self.bytes.resize(self.bytes.len().next_multiple_of(8), 0);
@@ -31,7 +31,7 @@ impl Plain {
     }
 
     /// Takes an extension from what is at `place`.
-    pub fn forget(&mut self, place: &str, extension: &str) {
+    pub fn remove_extension(&mut self, place: &str, extension: &str) {
         let Some(Value::Object(entry)) = self.root.pointer_mut(place) else { return };
         if let Some(Value::Object(extensions)) = entry.get_mut("extensions") {
             extensions.remove(extension);
@@ -43,11 +43,13 @@ impl Plain {
 }
 
 /// A non-negative integer of an object, 0 where it is absent.
-pub(super) fn number(object: &Map<String, Value>, key: &str, place: &str) -> Result<usize, Fault> {
+pub(super) fn index_or_zero(object: &Map<String, Value>, key: &str, place: &str) -> Result<usize, Fault> {
     match object.get(key) {
         None => Ok(0),
-        Some(value) => integer(value).and_then(|number| usize::try_from(number).ok()).ok_or_else(|| {
-            Fault::Malformed { place: format!("{place}/{key}"), what: "is no index or size".into() }
-        }),
+        Some(value) => {
+            as_whole_number(value).and_then(|number| usize::try_from(number).ok()).ok_or_else(|| {
+                Fault::Malformed { place: format!("{place}/{key}"), what: "is no index or size".into() }
+            })
+        }
     }
 }

@@ -1,22 +1,22 @@
 //! Buffers, their views, and accessors: what fits, what is aligned, and whether the declared bounds are true.
 
-use crate::accessor::{Accessor, Component, Shape, component_of};
+use crate::accessor::{Accessor, Component, Shape, component_from_code};
 use crate::document::Document;
 use crate::error::Fault;
 use crate::json_object::Object;
 
-pub(super) fn check(document: &Document<'_>) {
-    buffers(document);
+pub(super) fn lint(document: &Document<'_>) {
+    lint_buffers(document);
     for index in 0..document.len("bufferViews") {
         if let Ok(view) = document.item("bufferViews", index, "") {
-            buffer_view(document, &view);
+            lint_buffer_view(document, &view);
         }
     }
     for index in 0..document.len("accessors") {
         if let Ok(accessor) = document.item("accessors", index, "") {
-            layout(document, &accessor);
+            lint_layout(document, &accessor);
             match Accessor::open(document, index, "") {
-                Ok(open) if open.has_data() => data(document, &accessor, &open),
+                Ok(open) if open.has_data() => lint_values(document, &accessor, &open),
                 Ok(_) => {}
                 // The document says that the data come from elsewhere; or the properties' flaws are told already.
                 Err(Fault::NoData { .. } | Fault::TooBig { .. }) => {}
@@ -28,10 +28,10 @@ pub(super) fn check(document: &Document<'_>) {
 
 /// A whole number, or the default if it is missing or malformed.
 fn integer(object: &Object<'_>, key: &str, default: u64) -> u64 {
-    object.integer(key).ok().flatten().unwrap_or(default)
+    object.whole_number(key).ok().flatten().unwrap_or(default)
 }
 
-fn buffers(document: &Document<'_>) {
+fn lint_buffers(document: &Document<'_>) {
     for index in 0..document.len("buffers") {
         match document.buffer(index, "") {
             Ok(_) | Err(Fault::NoData { .. }) => {}
@@ -54,7 +54,7 @@ fn buffers(document: &Document<'_>) {
     }
 }
 
-fn buffer_view(document: &Document<'_>, view: &Object<'_>) {
+fn lint_buffer_view(document: &Document<'_>, view: &Object<'_>) {
     const ELEMENT_ARRAY: u64 = 34963;
     let (offset, length) = (integer(view, "byteOffset", 0), integer(view, "byteLength", 0));
     if let Ok(Some(buffer)) = view.index("buffer")
@@ -63,7 +63,7 @@ fn buffer_view(document: &Document<'_>, view: &Object<'_>) {
     {
         document.warn(format!("{}: bytes {offset} + {length} do not fit {}", view.place, buffer.place));
     }
-    if let Ok(Some(stride)) = view.integer("byteStride") {
+    if let Ok(Some(stride)) = view.whole_number("byteStride") {
         if stride > length {
             document
                 .warn(format!("{}/byteStride: {stride} is more than the byteLength {length}", view.place));
@@ -75,10 +75,10 @@ fn buffer_view(document: &Document<'_>, view: &Object<'_>) {
 }
 
 /// What the numbers of the document say about where the elements lie.
-fn layout(document: &Document<'_>, accessor: &Object<'_>) {
+fn lint_layout(document: &Document<'_>, accessor: &Object<'_>) {
     let warn = |what: String| document.warn(format!("{}: {what}", accessor.place));
-    let component = accessor.integer("componentType").ok().flatten().and_then(component_of);
-    let shape = accessor.text("type").ok().flatten().and_then(Shape::of);
+    let component = accessor.whole_number("componentType").ok().flatten().and_then(component_from_code);
+    let shape = accessor.text("type").ok().flatten().and_then(Shape::from_name);
     let (Some(component), Some(shape)) = (component, shape) else { return };
     let count = integer(accessor, "count", 0);
     if matches!(component, Component::F32 | Component::U32) && accessor.flag("normalized").unwrap_or(false) {
@@ -91,7 +91,7 @@ fn layout(document: &Document<'_>, accessor: &Object<'_>) {
             warn(format!("{key} has {} numbers instead of {}", bounds.len(), shape.components()));
         }
     }
-    placed(document, accessor, component, count, shape.size(component), shape.is_matrix());
+    lint_placement(document, accessor, component, count, shape.size(component), shape.is_matrix());
     let Ok(Some(sparse)) = accessor.object("sparse") else { return };
     let replaced = integer(&sparse, "count", 0);
     if replaced > count {
@@ -99,9 +99,9 @@ fn layout(document: &Document<'_>, accessor: &Object<'_>) {
     }
     for (key, component, size) in [("indices", None, 0), ("values", Some(component), shape.size(component))] {
         let Ok(Some(part)) = sparse.object(key) else { continue };
-        let of_its_own = part.integer("componentType").ok().flatten().and_then(component_of);
-        let Some(component) = component.or(of_its_own) else { continue };
-        placed(document, &part, component, replaced, size.max(component.size()), false);
+        let index_component = part.whole_number("componentType").ok().flatten().and_then(component_from_code);
+        let Some(component) = component.or(index_component) else { continue };
+        lint_placement(document, &part, component, replaced, size.max(component.size()), false);
         let view = part
             .index("bufferView")
             .ok()
@@ -117,7 +117,7 @@ fn layout(document: &Document<'_>, accessor: &Object<'_>) {
 }
 
 /// Alignment and room of elements in their view.
-fn placed(
+fn lint_placement(
     document: &Document<'_>,
     owner: &Object<'_>,
     component: Component,
@@ -136,7 +136,7 @@ fn placed(
         warn(format!("the byteOffset {total} of its matrices is not a multiple of 4"));
     }
     let size = size as u64;
-    let stride = view.integer("byteStride").ok().flatten();
+    let stride = view.whole_number("byteStride").ok().flatten();
     if let Some(stride) = stride.filter(|&stride| stride < size || stride % unit != 0) {
         warn(format!("the byteStride {stride} of its view does not suit elements of {size} bytes"));
     }
@@ -150,16 +150,16 @@ fn placed(
 }
 
 /// What the elements say: the declared bounds must be theirs, and floats must be finite.
-fn data(document: &Document<'_>, object: &Object<'_>, accessor: &Accessor<'_>) {
+fn lint_values(document: &Document<'_>, object: &Object<'_>, accessor: &Accessor<'_>) {
     let components = accessor.shape.components();
-    if !document.budget.check(accessor.count * components) {
+    if !document.budget.try_take_checks(accessor.count * components) {
         return;
     }
     let (mut low, mut high, mut finite) =
         (vec![f64::INFINITY; components], vec![f64::NEG_INFINITY; components], true);
     for i in 0..accessor.count {
         for k in 0..components {
-            let value = accessor.stored(i, k);
+            let value = accessor.raw_value(i, k);
             finite &= value.is_finite();
             low[k] = low[k].min(value);
             high[k] = high[k].max(value);

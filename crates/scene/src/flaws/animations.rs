@@ -4,7 +4,7 @@ use crate::accessor::{Accessor, Component};
 use crate::document::Document;
 use crate::json_object::Object;
 
-pub(super) fn check(document: &Document<'_>) {
+pub(super) fn lint(document: &Document<'_>) {
     for index in 0..document.len("animations") {
         let Ok(animation) = document.item("animations", index, "") else { continue };
         let samplers = animation.objects("samplers").unwrap_or_default();
@@ -12,7 +12,7 @@ pub(super) fn check(document: &Document<'_>) {
         for channel in animation.objects("channels").unwrap_or_default() {
             let Ok(Some(index)) = channel.index("sampler") else { continue };
             match samplers.get(index) {
-                Some(sampler) => check_channel(document, &channel, sampler),
+                Some(sampler) => lint_channel(document, &channel, sampler),
                 None => document
                     .warn(format!("{}/sampler: refers to a sampler that does not exist", channel.place)),
             }
@@ -28,14 +28,14 @@ pub(super) fn check(document: &Document<'_>) {
                 animation.place, twice[0].1, twice[0].0
             ));
         }
-        samplers.iter().for_each(|sampler| check_input(document, sampler));
+        samplers.iter().for_each(|sampler| lint_input(document, sampler));
     }
 }
 
 /// The times: floats, not negative, increasing.
-fn check_input(document: &Document<'_>, sampler: &Object<'_>) {
+fn lint_input(document: &Document<'_>, sampler: &Object<'_>) {
     let place = format!("{}/input", sampler.place);
-    let Some(input) = open(document, sampler, "input") else { return };
+    let Some(input) = open_accessor(document, sampler, "input") else { return };
     let warn = |what: &str| document.warn(format!("{place}: {what}"));
     if input.shape.components() != 1 || input.component != Component::F32 {
         return warn("times must be SCALAR floats");
@@ -47,7 +47,7 @@ fn check_input(document: &Document<'_>, sampler: &Object<'_>) {
     if object.get("min").is_none() || object.get("max").is_none() {
         warn("its accessor must have min and max");
     }
-    if !document.budget.check(input.count) {
+    if !document.budget.try_take_checks(input.count) {
         return;
     }
     let time = |i: usize| input.doubles::<1>(i)[0];
@@ -60,9 +60,10 @@ fn check_input(document: &Document<'_>, sampler: &Object<'_>) {
 }
 
 /// The values: a format and number that suit the path.
-fn check_channel(document: &Document<'_>, channel: &Object<'_>, sampler: &Object<'_>) {
+fn lint_channel(document: &Document<'_>, channel: &Object<'_>, sampler: &Object<'_>) {
     let Ok(Some(target)) = channel.object("target") else { return };
-    let (Some(input), Some(output)) = (open(document, sampler, "input"), open(document, sampler, "output"))
+    let (Some(input), Some(output)) =
+        (open_accessor(document, sampler, "input"), open_accessor(document, sampler, "output"))
     else {
         return;
     };
@@ -101,6 +102,6 @@ fn check_channel(document: &Document<'_>, channel: &Object<'_>, sampler: &Object
     }
 }
 
-fn open<'a>(document: &'a Document<'_>, sampler: &Object<'_>, key: &str) -> Option<Accessor<'a>> {
+fn open_accessor<'a>(document: &'a Document<'_>, sampler: &Object<'_>, key: &str) -> Option<Accessor<'a>> {
     Accessor::open(document, sampler.index(key).ok()??, &sampler.place).ok()
 }

@@ -1,6 +1,6 @@
 //! Images and the textures that use them: formats, declared and real.
 
-use crate::data_uri::data_uri;
+use crate::data_uri::strip_data_scheme;
 use crate::document::Document;
 use crate::extension;
 use crate::image_file::mime_type;
@@ -11,12 +11,12 @@ use std::io::Cursor;
 
 const WEBP: &str = "EXT_texture_webp";
 
-pub(super) fn check(document: &Document<'_>) {
+pub(super) fn lint(document: &Document<'_>) {
     let webp_is_declared = extension::used(document).any(|name| name == WEBP);
     let mut formats = Vec::new();
     for index in 0..document.len("images") {
         let image = document.item("images", index, "").ok();
-        formats.push(image.and_then(|image| format(document, index, &image, webp_is_declared)));
+        formats.push(image.and_then(|image| lint_format(document, index, &image, webp_is_declared)));
     }
     for index in 0..document.len("textures") {
         let Ok(texture) = document.item("textures", index, "") else { continue };
@@ -36,7 +36,7 @@ pub(super) fn check(document: &Document<'_>) {
 }
 
 /// The format of an image, by its first bytes; warns if they are not what the document says.
-fn format(
+fn lint_format(
     document: &Document<'_>,
     index: usize,
     image: &Object<'_>,
@@ -52,7 +52,7 @@ fn format(
     if image.get("uri").is_none() && image.get("bufferView").is_none() {
         return None;
     }
-    if !document.budget.check(64) {
+    if !document.budget.try_take_checks(64) {
         return None;
     }
     let bytes = match document.image_bytes(index, "") {
@@ -62,7 +62,7 @@ fn format(
             return None;
         }
     };
-    let in_time = document.budget.check(64 + bytes.len() / 16);
+    let in_time = document.budget.try_take_checks(64 + bytes.len() / 16);
     let format = mime_type(&bytes).filter(|_| in_time);
     match format {
         None if in_time => document.warn(format!("{}: its format is not recognised", image.place)),
@@ -76,20 +76,20 @@ fn format(
                 document.warn(format!("{}: is WebP, which needs the extension {WEBP}", image.place));
             }
             let reader = ImageReader::new(Cursor::new(&bytes[..])).with_guessed_format();
-            let is_known = format != "image/ktx2";
-            if let Some(Err(error)) = reader.ok().filter(|_| is_known).map(ImageReader::into_dimensions) {
+            let has_decoder = format != "image/ktx2";
+            if let Some(Err(error)) = reader.ok().filter(|_| has_decoder).map(ImageReader::into_dimensions) {
                 document.warn(format!("{}: cannot be decoded: {error}", image.place));
             }
         }
     }
     if let Cow::Owned(bytes) = bytes {
-        document.budget.release(bytes.len() as u64);
+        document.budget.release_memory(bytes.len() as u64);
     }
     format
 }
 
 /// The media type that a data URI states, if it states an image's.
 fn declared_by_data<'a>(image: &Object<'a>) -> Option<&'a str> {
-    let header = data_uri(image.text("uri").ok()??)?.split([';', ',']).next()?;
+    let header = strip_data_scheme(image.text("uri").ok()??)?.split([';', ',']).next()?;
     header.starts_with("image/").then_some(header)
 }

@@ -1,7 +1,7 @@
 //! Meshes: names, formats and numbers of attributes, indices, morph targets, and what materials need of them.
 
 use super::vertex_data;
-use crate::accessor::{Accessor, Component, component_of};
+use crate::accessor::{Accessor, Component, component_from_code};
 use crate::attribute_name::AttributeName;
 use crate::document::Document;
 use crate::extension;
@@ -9,39 +9,39 @@ use crate::json_object::Object;
 use crate::variants;
 use std::collections::{HashMap, HashSet};
 
-pub(super) fn check(document: &Document<'_>) {
+pub(super) fn lint(document: &Document<'_>) {
     let quantized = extension::used(document).any(|name| name == "KHR_mesh_quantization");
-    let mut check =
-        MeshCheck { document, quantized, views: HashMap::new(), vertex_accessors: HashMap::new() };
+    let mut mesh_lint =
+        MeshLint { document, quantized, views: HashMap::new(), vertex_accessors: HashMap::new() };
     for index in 0..document.len("meshes") {
         if let Ok(mesh) = document.item("meshes", index, "") {
-            check.mesh(&mesh);
+            mesh_lint.lint_mesh(&mesh);
         }
     }
-    check.shared_views();
+    mesh_lint.lint_shared_views();
 }
 
 #[derive(Clone, Copy, PartialEq)]
-enum Use {
+enum BufferRole {
     Vertices,
     Indices,
 }
 
-struct MeshCheck<'a> {
+struct MeshLint<'a> {
     document: &'a Document<'a>,
     quantized: bool,
     /// What the first accessor used a buffer view for.
-    views: HashMap<usize, Use>,
+    views: HashMap<usize, BufferRole>,
     /// The vertex accessors of each buffer view that has no stride.
     vertex_accessors: HashMap<usize, Vec<usize>>,
 }
 
-impl<'a> MeshCheck<'a> {
+impl<'a> MeshLint<'a> {
     fn warn(&self, place: &str, what: impl std::fmt::Display) {
         self.document.warn(format!("{place}: {what}"));
     }
 
-    fn mesh(&mut self, mesh: &Object<'a>) {
+    fn lint_mesh(&mut self, mesh: &Object<'a>) {
         let primitives = mesh.objects("primitives").unwrap_or_default();
         let targets = |primitive: &Object<'_>| primitive.list("targets").map_or(0, <[_]>::len);
         let Some(expected) = primitives.first().map(targets) else { return };
@@ -53,7 +53,7 @@ impl<'a> MeshCheck<'a> {
                     format!("has {count} morph targets, the mesh's first primitive {expected}"),
                 );
             }
-            self.primitive(primitive);
+            self.lint_primitive(primitive);
         }
         if let Ok(Some(weights)) = mesh.number_list("weights")
             && weights.len() != expected
@@ -62,39 +62,39 @@ impl<'a> MeshCheck<'a> {
         }
     }
 
-    fn primitive(&mut self, primitive: &Object<'a>) {
+    fn lint_primitive(&mut self, primitive: &Object<'a>) {
         let Ok(Some(attributes)) = primitive.object("attributes") else { return };
-        self.names(&attributes);
+        self.lint_names(&attributes);
         let mut count = None;
         for (name, _) in attributes.entries() {
-            let Some((place, index, accessor)) = self.object(&attributes, name) else { continue };
-            self.vertex_view(&place, index, &accessor);
-            self.format(&place, name, &accessor, false);
-            let own = accessor.integer("count").ok().flatten();
-            if count.is_some() && own.is_some() && own != count {
+            let Some((place, index, accessor)) = self.accessor_object(&attributes, name) else { continue };
+            self.lint_vertex_view(&place, index, &accessor);
+            self.lint_format(&place, name, &accessor, false);
+            let element_count = accessor.whole_number("count").ok().flatten();
+            if count.is_some() && element_count.is_some() && element_count != count {
                 self.warn(&place, "its number of elements differs from that of the other attributes");
             }
-            count = count.or(own);
+            count = count.or(element_count);
             if name == "POSITION" && (accessor.get("min").is_none() || accessor.get("max").is_none()) {
                 self.warn(&place, "its accessor must have min and max");
             }
             if let Some(accessor) =
                 Accessor::open(self.document, index, &place).ok().filter(Accessor::has_data)
             {
-                vertex_data::check(self.document, &place, name, &accessor);
+                vertex_data::lint_values(self.document, &place, name, &accessor);
             }
         }
-        vertex_data::check_weights(self.document, &attributes);
-        self.indices(primitive, count);
+        vertex_data::lint_weights(self.document, &attributes);
+        self.lint_indices(primitive, count);
         for target in primitive.objects("targets").unwrap_or_default() {
-            self.target(&target, &attributes, count);
+            self.lint_target(&target, &attributes, count);
         }
-        self.material(primitive, &attributes);
-        self.mappings(primitive);
+        self.lint_material(primitive, &attributes);
+        self.lint_mappings(primitive);
     }
 
     /// A variant may have one material.
-    fn mappings(&self, primitive: &Object<'a>) {
+    fn lint_mappings(&self, primitive: &Object<'a>) {
         let Ok(Some(variants)) = primitive.extension(variants::EXTENSION) else { return };
         let mut mapped = HashSet::new();
         for mapping in variants.objects("mappings").unwrap_or_default() {
@@ -108,16 +108,16 @@ impl<'a> MeshCheck<'a> {
     }
 
     /// The accessor that an attribute refers to.
-    fn object(&self, owner: &Object<'a>, name: &str) -> Option<(String, usize, Object<'a>)> {
+    fn accessor_object(&self, owner: &Object<'a>, name: &str) -> Option<(String, usize, Object<'a>)> {
         let index = owner.index(name).ok()??;
         let accessor = self.document.item("accessors", index, "").ok()?;
         Some((format!("{}/{name}", owner.place), index, accessor))
     }
 
-    fn names(&self, attributes: &Object<'_>) {
+    fn lint_names(&self, attributes: &Object<'_>) {
         let mut sets: HashMap<&str, Vec<u32>> = HashMap::new();
         for (name, _) in attributes.entries() {
-            match AttributeName::of(name) {
+            match AttributeName::parse(name) {
                 Some(AttributeName { base, set: Some(set) }) => sets.entry(base).or_default().push(set),
                 Some(_) => {}
                 None => self.warn(&format!("{}/{name}", attributes.place), "is no name of an attribute"),
@@ -136,10 +136,10 @@ impl<'a> MeshCheck<'a> {
     }
 
     /// Whether an accessor's type suits its attribute.
-    fn format(&self, place: &str, name: &str, accessor: &Object<'_>, target: bool) {
+    fn lint_format(&self, place: &str, name: &str, accessor: &Object<'_>, target: bool) {
         use Component::{F32, I8, I16, U8, U16, U32};
-        let Some(AttributeName { base, .. }) = AttributeName::of(name) else { return };
-        let component = accessor.integer("componentType").ok().flatten().and_then(component_of);
+        let Some(AttributeName { base, .. }) = AttributeName::parse(name) else { return };
+        let component = accessor.whole_number("componentType").ok().flatten().and_then(component_from_code);
         let (Some(component), Ok(Some(shape))) = (component, accessor.text("type")) else { return };
         let normalized = accessor.flag("normalized").unwrap_or(false);
         if base.starts_with('_') {
@@ -168,18 +168,18 @@ impl<'a> MeshCheck<'a> {
             _ => true,
         };
         if !fits {
-            let code = accessor.integer("componentType").ok().flatten().unwrap_or(0);
+            let code = accessor.whole_number("componentType").ok().flatten().unwrap_or(0);
             let kind = if normalized { "normalised " } else { "" };
             self.warn(place, format!("{shape} of {kind}{code} is no format for {base}"));
         }
     }
 
     /// Alignment and exclusive use of the buffer view of a vertex accessor.
-    fn vertex_view(&mut self, place: &str, index: usize, accessor: &Object<'_>) {
-        let component = accessor.integer("componentType").ok().flatten().and_then(component_of);
-        let shape = accessor.text("type").ok().flatten().and_then(crate::accessor::Shape::of);
-        let Some((view_index, view)) = self.view(place, accessor, Use::Vertices) else { return };
-        let stride = view.integer("byteStride").ok().flatten();
+    fn lint_vertex_view(&mut self, place: &str, index: usize, accessor: &Object<'_>) {
+        let component = accessor.whole_number("componentType").ok().flatten().and_then(component_from_code);
+        let shape = accessor.text("type").ok().flatten().and_then(crate::accessor::Shape::from_name);
+        let Some((view_index, view)) = self.lint_view(place, accessor, BufferRole::Vertices) else { return };
+        let stride = view.whole_number("byteStride").ok().flatten();
         if stride.is_none() {
             let users = self.vertex_accessors.entry(view_index).or_default();
             if !users.contains(&index) {
@@ -188,19 +188,24 @@ impl<'a> MeshCheck<'a> {
         }
         let (Some(component), Some(shape)) = (component, shape) else { return };
         let step = stride.unwrap_or(shape.size(component) as u64);
-        let offset = accessor.integer("byteOffset").ok().flatten().unwrap_or(0);
+        let offset = accessor.whole_number("byteOffset").ok().flatten().unwrap_or(0);
         if step % 4 != 0 || !offset.is_multiple_of(4) {
             self.warn(place, "vertices must start at multiples of 4 bytes");
         }
     }
 
     /// The buffer view of an accessor; warns if it serves another purpose too.
-    fn view(&mut self, place: &str, accessor: &Object<'_>, purpose: Use) -> Option<(usize, Object<'a>)> {
+    fn lint_view(
+        &mut self,
+        place: &str,
+        accessor: &Object<'_>,
+        purpose: BufferRole,
+    ) -> Option<(usize, Object<'a>)> {
         let index = accessor.index("bufferView").ok()??;
         let view = self.document.item("bufferViews", index, "").ok()?;
-        let declared = match view.integer("target").ok().flatten() {
-            Some(34962) => Some(Use::Vertices),
-            Some(34963) => Some(Use::Indices),
+        let declared = match view.whole_number("target").ok().flatten() {
+            Some(34962) => Some(BufferRole::Vertices),
+            Some(34963) => Some(BufferRole::Indices),
             _ => None,
         };
         let first = *self.views.entry(index).or_insert(declared.unwrap_or(purpose));
@@ -211,7 +216,7 @@ impl<'a> MeshCheck<'a> {
     }
 
     /// Several vertex accessors in one view need a stride.
-    fn shared_views(&self) {
+    fn lint_shared_views(&self) {
         let mut shared: Vec<usize> = self
             .vertex_accessors
             .iter()
@@ -227,14 +232,14 @@ impl<'a> MeshCheck<'a> {
         }
     }
 
-    fn indices(&mut self, primitive: &Object<'a>, count: Option<u64>) {
-        let Some((place, index, accessor)) = self.object(primitive, "indices") else { return };
-        if let Some((_, view)) = self.view(&place, &accessor, Use::Indices)
+    fn lint_indices(&mut self, primitive: &Object<'a>, count: Option<u64>) {
+        let Some((place, index, accessor)) = self.accessor_object(primitive, "indices") else { return };
+        if let Some((_, view)) = self.lint_view(&place, &accessor, BufferRole::Indices)
             && view.get("byteStride").is_some()
         {
             self.warn(&place, "a view of indices cannot have a byteStride");
         }
-        let code = accessor.integer("componentType").ok().flatten();
+        let code = accessor.whole_number("componentType").ok().flatten();
         let scalar = accessor.text("type").ok().flatten() == Some("SCALAR");
         if !scalar
             || !matches!(code, Some(5121 | 5123 | 5125))
@@ -244,31 +249,31 @@ impl<'a> MeshCheck<'a> {
         }
         let Ok(accessor) = Accessor::open(self.document, index, &place) else { return };
         if accessor.shape.components() == 1 && accessor.has_data() {
-            vertex_data::check_indices(self.document, &place, &accessor, count.unwrap_or(u64::MAX));
+            vertex_data::lint_indices(self.document, &place, &accessor, count.unwrap_or(u64::MAX));
         }
     }
 
-    fn target(&mut self, target: &Object<'a>, attributes: &Object<'a>, count: Option<u64>) {
+    fn lint_target(&mut self, target: &Object<'a>, attributes: &Object<'a>, count: Option<u64>) {
         for (name, _) in target.entries() {
             let place = format!("{}/{name}", target.place);
-            if AttributeName::of(name).is_none() {
+            if AttributeName::parse(name).is_none() {
                 self.warn(&place, "is no name of an attribute");
             }
             if attributes.get(name).is_none() {
                 self.warn(&place, "changes an attribute that the primitive does not have");
             }
-            let Some((place, index, accessor)) = self.object(target, name) else { continue };
-            self.vertex_view(&place, index, &accessor);
-            self.format(&place, name, &accessor, true);
-            let own = accessor.integer("count").ok().flatten();
-            if count.is_some() && own.is_some() && own != count {
+            let Some((place, index, accessor)) = self.accessor_object(target, name) else { continue };
+            self.lint_vertex_view(&place, index, &accessor);
+            self.lint_format(&place, name, &accessor, true);
+            let element_count = accessor.whole_number("count").ok().flatten();
+            if count.is_some() && element_count.is_some() && element_count != count {
                 self.warn(&place, "its number of elements differs from that of the attributes");
             }
         }
     }
 
     /// The texture coordinates that the material's textures need.
-    fn material(&self, primitive: &Object<'_>, attributes: &Object<'_>) {
+    fn lint_material(&self, primitive: &Object<'_>, attributes: &Object<'_>) {
         let Ok(Some(material)) = primitive.index("material") else { return };
         let Ok(material) = self.document.item("materials", material, "") else { return };
         let mut owners = vec![material.clone()];
@@ -281,9 +286,10 @@ impl<'a> MeshCheck<'a> {
             for (name, _) in owner.entries().filter(|(name, _)| name.ends_with("Texture")) {
                 let Ok(Some(info)) = owner.object(name) else { continue };
                 let transform = info.extension("KHR_texture_transform").ok().flatten();
-                let own = transform.and_then(|transform| transform.integer("texCoord").ok().flatten());
-                let plain = info.integer("texCoord").ok().flatten().unwrap_or(0);
-                for set in [Some(plain), own].into_iter().flatten() {
+                let transform_set =
+                    transform.and_then(|transform| transform.whole_number("texCoord").ok().flatten());
+                let texture_set = info.whole_number("texCoord").ok().flatten().unwrap_or(0);
+                for set in [Some(texture_set), transform_set].into_iter().flatten() {
                     if attributes.get(&format!("TEXCOORD_{set}")).is_none() {
                         self.warn(
                             &primitive.place,

@@ -16,19 +16,19 @@ use crate::extension;
 use std::collections::BTreeSet;
 
 /// Warns of everything that is out of order.
-pub(crate) fn check(document: &Document<'_>) {
-    properties::check(document);
-    versions_and_extensions(document);
-    accessors::check(document);
-    images::check(document);
-    meshes::check(document);
-    nodes::check(document);
-    animations::check(document);
+pub(crate) fn lint(document: &Document<'_>) {
+    properties::lint(document);
+    lint_versions_and_extensions(document);
+    accessors::lint(document);
+    images::lint(document);
+    meshes::lint(document);
+    nodes::lint(document);
+    animations::lint(document);
 }
 
 /// The asset's versions, and whether extensions are declared as they must be.
-fn versions_and_extensions(document: &Document<'_>) {
-    let asset = document.root().object("asset").ok().flatten();
+fn lint_versions_and_extensions(document: &Document<'_>) {
+    let asset = document.root_object().object("asset").ok().flatten();
     let version = |key: &str| {
         let text = asset.as_ref()?.text(key).ok()??;
         let parsed = text.split_once('.').and_then(|(major, minor)| Some((digits(major)?, digits(minor)?)));

@@ -6,17 +6,17 @@ use crate::json_object::Object;
 use glam::DMat4;
 use std::collections::HashMap;
 
-pub(super) fn check(document: &Document<'_>) {
+pub(super) fn lint(document: &Document<'_>) {
     let nodes: Vec<Option<Object<'_>>> =
         (0..document.len("nodes")).map(|index| document.item("nodes", index, "").ok()).collect();
     let children: Vec<Vec<usize>> = (nodes.iter())
         .map(|node| node.as_ref().and_then(|node| node.indices("children").ok()).unwrap_or_default())
         .collect();
-    let parents = parents(document, &children);
-    loops(document, &parents);
+    let parents = lint_parents(document, &children);
+    lint_cycles(document, &parents);
     for node in nodes.iter().flatten() {
-        transform(document, node);
-        mesh_and_skin(document, node);
+        lint_transform(document, node);
+        lint_mesh_and_skin(document, node);
     }
     for index in 0..document.len("scenes") {
         let Ok(scene) = document.item("scenes", index, "") else { continue };
@@ -26,13 +26,13 @@ pub(super) fn check(document: &Document<'_>) {
             }
         }
     }
-    (0..document.len("skins")).for_each(|index| skin(document, index, &parents));
-    (0..document.len("cameras")).for_each(|index| camera(document, index));
-    lights(document);
+    (0..document.len("skins")).for_each(|index| lint_skin(document, index, &parents));
+    (0..document.len("cameras")).for_each(|index| lint_camera(document, index));
+    lint_lights(document);
 }
 
 /// The first parent of every node.
-fn parents(document: &Document<'_>, children: &[Vec<usize>]) -> Vec<Option<usize>> {
+fn lint_parents(document: &Document<'_>, children: &[Vec<usize>]) -> Vec<Option<usize>> {
     let mut parents = vec![None; children.len()];
     for (node, list) in children.iter().enumerate() {
         for &child in list {
@@ -51,22 +51,22 @@ fn parents(document: &Document<'_>, children: &[Vec<usize>]) -> Vec<Option<usize
 }
 
 /// Nodes whose ancestors lead back to them.
-fn loops(document: &Document<'_>, parents: &[Option<usize>]) {
+fn lint_cycles(document: &Document<'_>, parents: &[Option<usize>]) {
     // 0: not seen; else the number of the walk that saw it.
-    let mut seen = vec![0; parents.len()];
+    let mut visited_in = vec![0; parents.len()];
     for start in 0..parents.len() {
         let (mut node, walk) = (Some(start), start + 1);
-        while let Some(here) = node.filter(|&here| seen[here] == 0) {
-            seen[here] = walk;
+        while let Some(here) = node.filter(|&here| visited_in[here] == 0) {
+            visited_in[here] = walk;
             node = parents[here];
         }
-        if let Some(here) = node.filter(|&here| seen[here] == walk) {
+        if let Some(here) = node.filter(|&here| visited_in[here] == walk) {
             document.warn(format!("/nodes/{here}: is a part of a loop of nodes"));
         }
     }
 }
 
-fn transform(document: &Document<'_>, node: &Object<'_>) {
+fn lint_transform(document: &Document<'_>, node: &Object<'_>) {
     let trs = ["translation", "rotation", "scale"].iter().any(|key| node.get(key).is_some());
     if let Ok(Some(matrix)) = node.numbers::<16>("matrix") {
         if trs {
@@ -97,7 +97,7 @@ fn is_trs(m: DMat4) -> bool {
         && (0..3).all(|i| axes[i].dot(axes[(i + 1) % 3]).abs() < TOLERANCE)
 }
 
-fn mesh_and_skin(document: &Document<'_>, node: &Object<'_>) {
+fn lint_mesh_and_skin(document: &Document<'_>, node: &Object<'_>) {
     let Ok(Some(mesh)) = node.index("mesh") else { return };
     let Ok(mesh) = document.item("meshes", mesh, "") else { return };
     let primitives = mesh.objects("primitives").unwrap_or_default();
@@ -120,7 +120,7 @@ fn mesh_and_skin(document: &Document<'_>, node: &Object<'_>) {
     }
 }
 
-fn skin(document: &Document<'_>, index: usize, parents: &[Option<usize>]) {
+fn lint_skin(document: &Document<'_>, index: usize, parents: &[Option<usize>]) {
     let Ok(skin) = document.item("skins", index, "") else { return };
     let joints = skin.indices("joints").unwrap_or_default();
     let Some(common) = common_ancestors(document, &joints, parents) else { return };
@@ -158,7 +158,7 @@ fn common_ancestors(
         let (mut node, mut steps) = (Some(joint), 0);
         // A loop would go on for ever.
         while let Some(here) = node.filter(|_| steps <= parents.len()) {
-            if !document.budget.check(16) {
+            if !document.budget.try_take_checks(16) {
                 return None;
             }
             *below.entry(here).or_default() += 1;
@@ -169,7 +169,7 @@ fn common_ancestors(
     Some(below.into_iter().filter(|&(_, count)| count >= joints.len()).map(|(node, _)| node).collect())
 }
 
-fn camera(document: &Document<'_>, index: usize) {
+fn lint_camera(document: &Document<'_>, index: usize) {
     let Ok(camera) = document.item("cameras", index, "") else { return };
     if let Ok(Some(kind)) = camera.text("type")
         && ["orthographic", "perspective"].contains(&kind)
@@ -188,8 +188,8 @@ fn camera(document: &Document<'_>, index: usize) {
     }
 }
 
-fn lights(document: &Document<'_>) {
-    let Ok(Some(lights)) = document.root().extension("KHR_lights_punctual") else { return };
+fn lint_lights(document: &Document<'_>) {
+    let Ok(Some(lights)) = document.root_object().extension("KHR_lights_punctual") else { return };
     for light in lights.objects("lights").unwrap_or_default() {
         let kind = light.text("type").ok().flatten();
         let spot = light.object("spot").ok().flatten();

@@ -13,8 +13,8 @@ fn length_tolerance(component: Component) -> f64 {
 }
 
 /// Unit vectors must be of length 1, signs ±1, colours in [0, 1].
-pub(super) fn check(document: &Document<'_>, place: &str, name: &str, accessor: &Accessor<'_>) {
-    if !document.budget.check(4 * accessor.count) {
+pub(super) fn lint_values(document: &Document<'_>, place: &str, name: &str, accessor: &Accessor<'_>) {
+    if !document.budget.try_take_checks(4 * accessor.count) {
         return;
     }
     let components = accessor.shape.components();
@@ -48,8 +48,8 @@ pub(super) fn check(document: &Document<'_>, place: &str, name: &str, accessor: 
 }
 
 /// Indices must exist, and the highest number of their type must not occur: it restarts a primitive.
-pub(super) fn check_indices(document: &Document<'_>, place: &str, indices: &Accessor<'_>, count: u64) {
-    if !document.budget.check(indices.count) {
+pub(super) fn lint_indices(document: &Document<'_>, place: &str, indices: &Accessor<'_>, count: u64) {
+    if !document.budget.try_take_checks(indices.count) {
         return;
     }
     let restart = match indices.component {
@@ -57,7 +57,7 @@ pub(super) fn check_indices(document: &Document<'_>, place: &str, indices: &Acce
         Component::U16 => u64::from(u16::MAX),
         _ => u64::from(u32::MAX),
     };
-    let index = |i: usize| indices.stored(i, 0) as u64;
+    let index = |i: usize| indices.raw_value(i, 0) as u64;
     if let Some(i) = (0..indices.count).find(|&i| index(i) == restart) {
         document.warn(format!("{place}: index {i} is {restart}, which restarts a primitive"));
     } else if let Some(i) = (0..indices.count).find(|&i| index(i) >= count) {
@@ -66,7 +66,7 @@ pub(super) fn check_indices(document: &Document<'_>, place: &str, indices: &Acce
 }
 
 /// Weights must not be negative and sum to 1; a joint has one weight.
-pub(super) fn check_weights(document: &Document<'_>, attributes: &Object<'_>) {
+pub(super) fn lint_weights(document: &Document<'_>, attributes: &Object<'_>) {
     let open = |name: String| {
         let place = format!("{}/{name}", attributes.place);
         let accessor = Accessor::open(document, attributes.index(&name).ok()??, &place).ok()?;
@@ -75,7 +75,7 @@ pub(super) fn check_weights(document: &Document<'_>, attributes: &Object<'_>) {
     let sets = |base: &str| (0..4).map_while(|set| open(format!("{base}_{set}"))).collect::<Vec<_>>();
     let (joints, weights) = (sets("JOINTS"), sets("WEIGHTS"));
     let Some(count) = weights.iter().chain(&joints).map(|accessor| accessor.count).min() else { return };
-    if !document.budget.check(count.saturating_mul(32 * weights.len())) {
+    if !document.budget.try_take_checks(count.saturating_mul(32 * weights.len())) {
         return;
     }
     // As the Khronos validator: 1/255 a weight of quantised ones is too strict for floats.
@@ -84,18 +84,18 @@ pub(super) fn check_weights(document: &Document<'_>, attributes: &Object<'_>) {
         _ => 0.0,
     };
     for i in 0..count {
-        let own: Vec<f64> = weights.iter().flat_map(|set| set.doubles::<4>(i)).collect();
-        let sum: f64 = own.iter().sum();
+        let vertex_weights: Vec<f64> = weights.iter().flat_map(|set| set.doubles::<4>(i)).collect();
+        let sum: f64 = vertex_weights.iter().sum();
         let tolerance = weights.iter().map(|set| tolerance(set.component)).fold(1e-9, f64::max);
-        if own.iter().any(|&weight| weight < 0.0) {
+        if vertex_weights.iter().any(|&weight| weight < 0.0) {
             return document.warn(format!("{}: weights of vertex {i} are negative", attributes.place));
         }
-        if !own.is_empty() && sum != 0.0 && (sum - 1.0).abs() > tolerance {
+        if !vertex_weights.is_empty() && sum != 0.0 && (sum - 1.0).abs() > tolerance {
             return document.warn(format!("{}: weights of vertex {i} sum to {sum}, not 1", attributes.place));
         }
         let mut used: Vec<u32> = (joints.iter().zip(&weights))
             .flat_map(|(joints, weights)| {
-                (0..4).map(move |k| (joints.stored(i, k) as u32, weights.stored(i, k)))
+                (0..4).map(move |k| (joints.raw_value(i, k) as u32, weights.raw_value(i, k)))
             })
             .filter(|&(_, weight)| weight > 0.0)
             .map(|(joint, _)| joint)

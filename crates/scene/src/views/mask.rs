@@ -1,7 +1,7 @@
 //! What of a photograph counts.
 
 use super::View;
-use super::photograph::{PictureError, decoded};
+use super::photograph::{PictureError, decode_file};
 use crate::LoadOptions;
 
 /// A mask over the pixels of a photograph.
@@ -12,7 +12,7 @@ pub struct Mask {
     /// Rows.
     pub height: u32,
     /// Whether each pixel counts, row 0 on top.
-    pub counts: Vec<bool>,
+    pub is_valid: Vec<bool>,
 }
 
 impl View {
@@ -21,17 +21,20 @@ impl View {
     ///
     /// # Errors
     /// The file cannot be read or decoded, or is beyond the limits of `options`.
-    pub fn mask(&self, options: &LoadOptions) -> Result<Option<Mask>, PictureError> {
+    pub fn read_mask(&self, options: &LoadOptions) -> Result<Option<Mask>, PictureError> {
         let Some(file) = &self.mask else { return Ok(None) };
-        let stored = decoded(file, self.orientation, options)?.0.into_luma8();
+        let stored = decode_file(file, self.orientation, options)?.0.into_luma8();
         let [width, height] = self.lens.size_px();
         // The middle of pixel i of n lies in pixel ⌊(i + ½)·m/n⌋ of m.
-        let place =
+        let stored_index =
             |i: u32, n: u32, m: u32| ((2 * u64::from(i) + 1) * u64::from(m) / (2 * u64::from(n))) as u32;
         let rows = 0..height;
-        let counts = rows.flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| {
-            stored.get_pixel(place(x, width, stored.width()), place(y, height, stored.height())).0[0] > 127
+        let is_valid = rows.flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| {
+            stored
+                .get_pixel(stored_index(x, width, stored.width()), stored_index(y, height, stored.height()))
+                .0[0]
+                > 127
         });
-        Ok(Some(Mask { width, height, counts: counts.collect() }))
+        Ok(Some(Mask { width, height, is_valid: is_valid.collect() }))
     }
 }

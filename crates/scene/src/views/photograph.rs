@@ -1,7 +1,7 @@
 //! The pixels of a view, read when they are needed: linear light, turned as its lens means them.
 
 use super::View;
-use super::picture_colors::{PictureColors, UnknownProfile};
+use super::picture_colors::{LinearConversion, UnsupportedProfile};
 use crate::LoadOptions;
 use glam::{DVec2, UVec2, Vec3};
 use image::metadata::Orientation;
@@ -43,15 +43,15 @@ pub enum PictureError {
     /// It is not of the size that its lens is for.
     #[error(
         "{}: is {} × {} px, its camera is for {} × {} px (give the pictures that the cameras were found with)",
-        file.display(), found[0], found[1], wanted[0], wanted[1]
+        file.display(), actual[0], actual[1], expected[0], expected[1]
     )]
-    OtherSize {
+    SizeMismatch {
         /// The picture.
         file: PathBuf,
         /// Its size, turned.
-        found: [u32; 2],
+        actual: [u32; 2],
         /// The lens's.
-        wanted: [u32; 2],
+        expected: [u32; 2],
     },
     /// It is larger than the limits allow.
     #[error("{}: {width} × {height} px are beyond the limit of {limit} px (make the pictures smaller)", file.display())]
@@ -81,8 +81,8 @@ impl Photograph {
     /// # Errors
     /// The file cannot be read or decoded, or is beyond the limits of `options`.
     pub fn read(file: &Path, orientation: u8, options: &LoadOptions) -> Result<Self, PictureError> {
-        let (picture, profile) = decoded(file, orientation, options)?;
-        Self::of(picture, profile.as_deref(), file)
+        let (picture, profile) = decode_file(file, orientation, options)?;
+        Self::from_image(picture, profile.as_deref(), file)
     }
 
     /// The same of the bytes of a picture that lies within a `file`.
@@ -95,23 +95,27 @@ impl Photograph {
         orientation: u8,
         options: &LoadOptions,
     ) -> Result<Self, PictureError> {
-        let (picture, profile) = decoded_from(Cursor::new(bytes), file, orientation, options)?;
-        Self::of(picture, profile.as_deref(), file)
+        let (picture, profile) = decode(Cursor::new(bytes), file, orientation, options)?;
+        Self::from_image(picture, profile.as_deref(), file)
     }
 
     /// The light of pixels that were decoded from a `file`, by its ICC profile or in sRGB; floats are linear.
     ///
     /// # Errors
     /// The profile is none that can be followed.
-    pub fn of(picture: DynamicImage, profile: Option<&[u8]>, file: &Path) -> Result<Self, PictureError> {
-        let colors = PictureColors::of(profile, &picture)
-            .map_err(|UnknownProfile(why)| PictureError::Profile { file: file.into(), why })?;
+    pub fn from_image(
+        picture: DynamicImage,
+        profile: Option<&[u8]>,
+        file: &Path,
+    ) -> Result<Self, PictureError> {
+        let colors = LinearConversion::from_profile(profile, &picture)
+            .map_err(|UnsupportedProfile(why)| PictureError::Profile { file: file.into(), why })?;
         let (width, height) = (picture.width(), picture.height());
-        Ok(Self { width, height, pixels: colors.linear(picture) })
+        Ok(Self { width, height, pixels: colors.to_linear(picture) })
     }
 
     /// From which value on the sensor was at its limit; infinite where the picture has values above white, for then it had none there.
-    pub fn limit(&self) -> f32 {
+    pub fn clipping_level(&self) -> f32 {
         /// JPEG and demosaicking leave pixels that were at the sensor's limit a little below white.
         const AT_LIMIT: f32 = 0.985;
         let mut finite = self.pixels.iter().flatten().filter(|value| value.is_finite());
@@ -119,16 +123,16 @@ impl Photograph {
     }
 
     /// The same with each pixel the mean of `by` × `by` of its own (fewer at the right and lower border).
-    pub fn reduced(&self, by: u32) -> Self {
-        if by <= 1 {
+    pub fn downsampled(&self, factor: u32) -> Self {
+        if factor <= 1 {
             return self.clone();
         }
-        let [width, height] = [self.width, self.height].map(|side| side.div_ceil(by));
+        let [width, height] = [self.width, self.height].map(|side| side.div_ceil(factor));
         let mut pixels = Vec::with_capacity(width as usize * height as usize);
         for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
             let (mut sum, mut count) = ([0.0; 3], 0.0);
-            for row in y * by..((y + 1) * by).min(self.height) {
-                for column in x * by..((x + 1) * by).min(self.width) {
+            for row in y * factor..((y + 1) * factor).min(self.height) {
+                for column in x * factor..((x + 1) * factor).min(self.width) {
                     let pixel = self.pixels[(row * self.width + column) as usize];
                     (0..3).for_each(|channel| sum[channel] += pixel[channel]);
                     count += 1.0;
@@ -141,7 +145,7 @@ impl Photograph {
 
     /// The light at a pixel position ((0.5, 0.5) the middle of the upper left pixel), interpolated linearly; beyond the border what lies
     /// on it.
-    pub fn at(&self, pixel: DVec2) -> Vec3 {
+    pub fn sample(&self, pixel: DVec2) -> Vec3 {
         let last = UVec2::new(self.width - 1, self.height - 1);
         let place = (pixel - 0.5).clamp(DVec2::ZERO, last.as_dvec2());
         let corner = place.floor().as_uvec2();
@@ -161,29 +165,29 @@ impl View {
     ///
     /// # Errors
     /// The file cannot be read or decoded, is beyond the limits of `options`, or is not of the lens's size.
-    pub fn photograph(&self, options: &LoadOptions) -> Result<Photograph, PictureError> {
-        let (picture, profile) = decoded(&self.picture, self.orientation, options)?;
+    pub fn read_photograph(&self, options: &LoadOptions) -> Result<Photograph, PictureError> {
+        let (picture, profile) = decode_file(&self.picture, self.orientation, options)?;
         let (width, height) = (picture.width(), picture.height());
         if [width, height] != self.lens.size_px() {
-            let (found, wanted) = ([width, height], self.lens.size_px());
-            return Err(PictureError::OtherSize { file: self.picture.clone(), found, wanted });
+            let (actual, expected) = ([width, height], self.lens.size_px());
+            return Err(PictureError::SizeMismatch { file: self.picture.clone(), actual, expected });
         }
-        Photograph::of(picture, profile.as_deref(), &self.picture)
+        Photograph::from_image(picture, profile.as_deref(), &self.picture)
     }
 }
 
 /// A picture file, turned by an EXIF orientation, and its ICC profile.
-pub(super) fn decoded(
+pub(super) fn decode_file(
     file: &Path,
     orientation: u8,
     options: &LoadOptions,
 ) -> Result<(DynamicImage, Option<Vec<u8>>), PictureError> {
     let unreadable = |source| PictureError::Unreadable { file: file.into(), source };
-    decoded_from(BufReader::new(std::fs::File::open(file).map_err(unreadable)?), file, orientation, options)
+    decode(BufReader::new(std::fs::File::open(file).map_err(unreadable)?), file, orientation, options)
 }
 
 /// The same of the bytes of a picture, which are in `file`.
-fn decoded_from(
+fn decode(
     input: impl BufRead + Seek,
     file: &Path,
     orientation: u8,
@@ -221,11 +225,11 @@ mod tests {
     fn light_between_pixels_and_beyond_the_border() {
         let pixels = [0.0, 1.0, 2.0, 7.0].map(|v| [v; 3]).to_vec();
         let photograph = Photograph { width: 2, height: 2, pixels };
-        let at = |x: f64, y: f64| photograph.at(DVec2::new(x, y)).x;
+        let at = |x: f64, y: f64| photograph.sample(DVec2::new(x, y)).x;
         assert_eq!([at(0.5, 0.5), at(1.5, 1.5), at(1.0, 1.0), at(1.25, 0.5)], [0.0, 7.0, 2.5, 0.75]);
         assert_eq!([at(-9.0, 0.2), at(1.9, 9.0)], [0.0, 7.0]);
         let pixels = (0..6).map(|v| [v as f32; 3]).collect();
-        let small = Photograph { width: 3, height: 2, pixels }.reduced(2);
+        let small = Photograph { width: 3, height: 2, pixels }.downsampled(2);
         assert_eq!((small.width, small.height, small.pixels), (2, 1, vec![[2.0; 3], [3.5; 3]]));
     }
 }

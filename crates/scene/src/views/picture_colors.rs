@@ -8,7 +8,7 @@ use image::{ColorType, DynamicImage};
 use moxcms::{ColorProfile, DataColorSpace, ToneReprCurve};
 
 /// How the colours of a picture are stored.
-pub(super) struct PictureColors {
+pub(super) struct LinearConversion {
     /// From a stored number to linear light, by channel: 256 or 65536 entries.
     curves: [Vec<f32>; 3],
     /// From the profile's primaries to those of sRGB, rows; none where they are the same.
@@ -16,24 +16,25 @@ pub(super) struct PictureColors {
 }
 
 /// What is wrong with a profile, after "its ICC profile".
-pub(super) struct UnknownProfile(pub String);
+pub(super) struct UnsupportedProfile(pub String);
 
-impl PictureColors {
+impl LinearConversion {
     /// The colours of a decoded picture with this ICC profile.
-    pub fn of(profile: Option<&[u8]>, picture: &DynamicImage) -> Result<Self, UnknownProfile> {
+    pub fn from_profile(profile: Option<&[u8]>, picture: &DynamicImage) -> Result<Self, UnsupportedProfile> {
         let entries = if is_deep(picture.color()) { 1 << 16 } else { 1 << 8 };
         let Some(bytes) = profile else {
-            let curve = table(entries, |value| linear_from_srgb(f64::from(value)));
+            let curve = sample_curve(entries, |value| linear_from_srgb(f64::from(value)));
             return Ok(Self { curves: [curve.clone(), curve.clone(), curve], to_srgb: None });
         };
         let profile = ColorProfile::new_from_slice(bytes)
-            .map_err(|error| UnknownProfile(format!("is broken: {error}")))?;
+            .map_err(|error| UnsupportedProfile(format!("is broken: {error}")))?;
         let has_tables = profile.lut_a_to_b_perceptual.is_some() || profile.lut_a_to_b_colorimetric.is_some();
         let curve = |curve: &Option<ToneReprCurve>| {
-            let curve = curve.as_ref().ok_or_else(|| UnknownProfile("lacks a curve".into()))?;
+            let curve = curve.as_ref().ok_or_else(|| UnsupportedProfile("lacks a curve".into()))?;
             let curve = curve.make_linear_evaluator();
-            let curve = curve.map_err(|error| UnknownProfile(format!("has an impossible curve: {error}")))?;
-            Ok(table(entries, |value| curve.evaluate_value(value)))
+            let curve =
+                curve.map_err(|error| UnsupportedProfile(format!("has an impossible curve: {error}")))?;
+            Ok(sample_curve(entries, |value| curve.evaluate_value(value)))
         };
         match profile.color_space {
             DataColorSpace::Gray => {
@@ -46,13 +47,13 @@ impl PictureColors {
                 let matrix = profile.transform_matrix(&ColorProfile::new_srgb()).v;
                 Ok(Self { curves, to_srgb: Some(matrix.map(|row| row.map(|entry| entry as f32))) })
             }
-            _ if has_tables => Err(UnknownProfile("is made of tables".into())),
-            _ => Err(UnknownProfile("is of neither RGB nor grey".into())),
+            _ if has_tables => Err(UnsupportedProfile("is made of tables".into())),
+            _ => Err(UnsupportedProfile("is of neither RGB nor grey".into())),
         }
     }
 
     /// The pixels of that picture, linear, with the primaries of sRGB.
-    pub fn linear(&self, picture: DynamicImage) -> Vec<[f32; 3]> {
+    pub fn to_linear(&self, picture: DynamicImage) -> Vec<[f32; 3]> {
         let [red, green, blue] = &self.curves;
         let finite = |value: f32| if value.is_finite() { value } else { 0.0 };
         let through = |[r, g, b]: [usize; 3]| self.to_srgb([red[r], green[g], blue[b]].map(finite));
@@ -81,6 +82,6 @@ fn is_deep(color: ColorType) -> bool {
 }
 
 /// A curve at as many places.
-fn table(entries: usize, curve: impl Fn(f32) -> f32) -> Vec<f32> {
+fn sample_curve(entries: usize, curve: impl Fn(f32) -> f32) -> Vec<f32> {
     (0..entries).map(|entry| curve(entry as f32 / (entries - 1) as f32)).collect()
 }

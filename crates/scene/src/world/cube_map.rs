@@ -30,28 +30,28 @@ const AXES: [[DVec3; 3]; 6] = [
 ];
 
 /// A laid out picture is as wide as four faces, but no narrower than this, so that edges between small faces stay sharp.
-const LEAST_WIDTH: u32 = 256;
+const MIN_WIDTH: u32 = 256;
 /// And no wider than this: 4096 × 2048 texels are 100 MB.
-const MOST_WIDTH: u32 = 4096;
+const MAX_WIDTH: u32 = 4096;
 /// Places a side of each of its texels that are looked up at the least.
-const PLACES: u32 = 2;
+const MIN_SAMPLES_PER_SIDE: u32 = 2;
 
 impl CubeMap {
     /// Columns of the equirectangular picture of a cube of this side.
-    fn width(side: u32) -> u32 {
-        side.saturating_mul(4).clamp(LEAST_WIDTH, MOST_WIDTH)
+    fn equirectangular_width(side: u32) -> u32 {
+        side.saturating_mul(4).clamp(MIN_WIDTH, MAX_WIDTH)
     }
 
     /// Places that are looked up along a side of a texel of that picture, so that every texel of the cube counts.
-    fn places(side: u32) -> u32 {
-        PLACES * side.saturating_mul(4).div_ceil(Self::width(side)).max(1)
+    fn samples_per_side(side: u32) -> u32 {
+        MIN_SAMPLES_PER_SIDE * side.saturating_mul(4).div_ceil(Self::equirectangular_width(side)).max(1)
     }
 
     /// Texels of the equirectangular picture of a cube of this side, and how many lookups it takes.
-    pub fn cost(side: u32) -> [u64; 2] {
-        let width = u64::from(Self::width(side));
+    pub fn conversion_cost(side: u32) -> [u64; 2] {
+        let width = u64::from(Self::equirectangular_width(side));
         let texels = width * width / 2;
-        [texels, texels * u64::from(Self::places(side)).pow(2)]
+        [texels, texels * u64::from(Self::samples_per_side(side)).pow(2)]
     }
 
     /// Radiance from a direction of any length but 0.
@@ -80,9 +80,9 @@ impl CubeMap {
 
     /// Laid out equirectangularly, turned by `rotation` (unit): what lay in direction d lies in `rotation` · d.
     pub fn to_equirectangular(&self, name: String, rotation: DQuat) -> EnvironmentMap {
-        let width = Self::width(self.side);
+        let width = Self::equirectangular_width(self.side);
         let mut map = EnvironmentMap { name, width, height: width / 2, texels: Vec::new() };
-        let places = Self::places(self.side);
+        let places = Self::samples_per_side(self.side);
         let unturned = rotation.conjugate();
         let mean = |x: u32, y: u32| {
             let mut sum = Vec3::ZERO;
@@ -153,8 +153,8 @@ mod tests {
 
     #[test]
     fn large_cubes_are_averaged_and_small_ones_keep_their_edges() {
-        assert_eq!([1, 64, 1024, 8192].map(CubeMap::width), [256, 256, 4096, 4096]);
-        assert_eq!([1, 64, 1024, 8192].map(CubeMap::places), [2, 2, 2, 16]);
+        assert_eq!([1, 64, 1024, 8192].map(CubeMap::equirectangular_width), [256, 256, 4096, 4096]);
+        assert_eq!([1, 64, 1024, 8192].map(CubeMap::samples_per_side), [2, 2, 2, 16]);
         let colors: [[f32; 3]; 6] = std::array::from_fn(|k| [k as f32, 0.0, 0.0]);
         let cube = CubeMap { side: 1, faces: colors.map(|color| vec![color]) };
         let map = cube.to_equirectangular("six".into(), DQuat::IDENTITY);

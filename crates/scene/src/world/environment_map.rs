@@ -37,7 +37,7 @@ impl EnvironmentMap {
     }
 
     /// Where a direction (unit) lies: texels from the upper left corner.
-    pub fn position_of(&self, direction: DVec3) -> DVec2 {
+    pub fn texel_position(&self, direction: DVec3) -> DVec2 {
         let u = direction.z.atan2(direction.x) / TAU + 0.5;
         let v = 0.5 - direction.y.clamp(-1.0, 1.0).asin() / PI;
         DVec2::new(u * f64::from(self.width), v * f64::from(self.height))
@@ -46,18 +46,18 @@ impl EnvironmentMap {
     /// The direction at a position.
     pub fn direction_at(&self, position: DVec2) -> DVec3 {
         let longitude = (position.x / f64::from(self.width) - 0.5) * TAU;
-        let (y, flat) = self.latitude(position.y).sin_cos();
+        let (y, flat) = self.row_latitude(position.y).sin_cos();
         DVec3::new(flat * longitude.cos(), y, flat * longitude.sin())
     }
 
     /// The latitude at a row's position, rad: π/2 at the top.
-    pub fn latitude(&self, row: f64) -> f64 {
+    pub fn row_latitude(&self, row: f64) -> f64 {
         FRAC_PI_2 - row / f64::from(self.height) * PI
     }
 
     /// Radiance from a direction (unit).
     pub fn radiance(&self, direction: DVec3) -> Vec3 {
-        let at = self.position_of(direction) - 0.5;
+        let at = self.texel_position(direction) - 0.5;
         let low = at.floor();
         let share = (at - low).as_vec2();
         let (x, y) = (low.x as i64, low.y as i64);
@@ -77,7 +77,7 @@ mod tests {
 
     #[test]
     fn directions_lie_as_in_blender_and_three_js() {
-        let at = |direction: DVec3| map().position_of(direction) / DVec2::new(8.0, 4.0);
+        let at = |direction: DVec3| map().texel_position(direction) / DVec2::new(8.0, 4.0);
         assert!(at(DVec3::X).abs_diff_eq(DVec2::new(0.5, 0.5), 1e-12));
         assert!(at(DVec3::NEG_Z).abs_diff_eq(DVec2::new(0.25, 0.5), 1e-12));
         assert!(at(DVec3::Z).abs_diff_eq(DVec2::new(0.75, 0.5), 1e-12));
@@ -90,7 +90,7 @@ mod tests {
             let position = DVec2::new(f64::from(k) * 0.7548 % 1.0 * 8.0, f64::from(k) * 0.5698 % 1.0 * 4.0);
             let direction = map().direction_at(position);
             assert!((direction.length() - 1.0).abs() < 1e-12);
-            assert!(map().position_of(direction).abs_diff_eq(position, 1e-9), "{position}");
+            assert!(map().texel_position(direction).abs_diff_eq(position, 1e-9), "{position}");
         }
     }
 

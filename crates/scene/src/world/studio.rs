@@ -16,7 +16,7 @@ struct SoftBox {
 
 /// Key light from the upper left front, fill from the right, a rim from behind, and a ceiling. A white wall that faces the
 /// camera has a radiance near 1.
-const BOXES: [SoftBox; 4] = [
+const SOFT_BOXES: [SoftBox; 4] = [
     SoftBox { toward: DVec3::new(-0.75, 0.75, 0.9), half: [0.5, 0.65], radiance: 3.9 },
     SoftBox { toward: DVec3::new(1.0, 0.25, 0.6), half: [0.35, 0.7], radiance: 1.4 },
     SoftBox { toward: DVec3::new(0.45, 0.6, -1.0), half: [0.6, 0.25], radiance: 2.4 },
@@ -29,24 +29,24 @@ const HEIGHT: u32 = 256;
 impl EnvironmentMap {
     /// A soft neutral studio. Its front is +Z, as that of glTF's models.
     pub fn studio() -> Arc<Self> {
-        static STUDIO: LazyLock<Arc<EnvironmentMap>> = LazyLock::new(|| Arc::new(make()));
+        static STUDIO: LazyLock<Arc<EnvironmentMap>> = LazyLock::new(|| Arc::new(render_studio()));
         STUDIO.clone()
     }
 }
 
-fn make() -> EnvironmentMap {
+fn render_studio() -> EnvironmentMap {
     let mut map = EnvironmentMap { name: "studio".into(), width: WIDTH, height: HEIGHT, texels: Vec::new() };
     let cells =
         (0..HEIGHT).flat_map(|y| (0..WIDTH).map(move |x| glam::DVec2::new(f64::from(x), f64::from(y)) + 0.5));
-    map.texels = cells.map(|position| radiance(map.direction_at(position)).to_array()).collect();
+    map.texels = cells.map(|position| studio_radiance(map.direction_at(position)).to_array()).collect();
     map
 }
 
-fn radiance(direction: DVec3) -> Vec3 {
+fn studio_radiance(direction: DVec3) -> Vec3 {
     // Walls that are lighter above than below.
     let height = (direction.y as f32 + 1.0) / 2.0;
     let room = 0.16 + 0.3 * height * height;
-    let boxes: f32 = BOXES.iter().map(|soft_box| soft_box.radiance(direction)).sum();
+    let boxes: f32 = SOFT_BOXES.iter().map(|soft_box| soft_box.radiance(direction)).sum();
     // Daylight is a little bluer from above.
     let tint = Vec3::new(0.985, 1.0, 1.02);
     Vec3::splat(boxes) + tint * room

@@ -1,6 +1,6 @@
 //! A project's paint on another surface.
 
-use super::partners::partners;
+use super::partners::find_correspondences;
 use crate::error::SessionError;
 use atlas::{Atlas, TexelMap};
 use focus::{FocusLayer, FocusMap, LayerStack};
@@ -12,36 +12,36 @@ use std::path::Path;
 
 /// How paint came onto another surface.
 #[derive(Clone, Debug, PartialEq)]
-pub struct CarriedPaint {
+pub struct TransferredPaint {
     /// Nodes of which something found no partner, most of them first.
-    pub gaps: Vec<CarriedNode>,
+    pub unmatched_nodes: Vec<UnmatchedNode>,
     /// The share of the whole surface that found one.
-    pub share: f64,
+    pub matched_share: f64,
 }
 
 /// What of a node found no partner.
 #[derive(Clone, Debug, PartialEq)]
-pub struct CarriedNode {
+pub struct UnmatchedNode {
     /// Its name.
     pub name: String,
     /// The share of its surface without a partner, in (0, 1].
-    pub share: f64,
+    pub unmatched_share: f64,
 }
 
-impl CarriedPaint {
+impl TransferredPaint {
     /// A sentence about the file at `scene`.
-    pub fn told(&self, scene: &Path) -> String {
-        const LISTED: usize = 8;
+    pub fn summary(&self, scene: &Path) -> String {
+        const MAX_LISTED: usize = 8;
         let percent =
             |share: f64| if share >= 0.995 { "all".into() } else { format!("{:.1} %", 100.0 * share) };
-        let named: Vec<_> = (self.gaps.iter().take(LISTED))
-            .map(|gap| format!("{} of \"{}\"", percent(gap.share), gap.name))
+        let listed: Vec<_> = (self.unmatched_nodes.iter().take(MAX_LISTED))
+            .map(|node| format!("{} of \"{}\"", percent(node.unmatched_share), node.name))
             .collect();
-        let more = self.gaps.len().saturating_sub(LISTED);
+        let more = self.unmatched_nodes.len().saturating_sub(MAX_LISTED);
         let more = if more > 0 { format!(" and parts of {more} more nodes") } else { String::new() };
-        let what = match named.is_empty() {
+        let what = match listed.is_empty() {
             true => "all of it found its partner".into(),
-            false => format!("no partner has {}{more}, which keeps the ordinary lens", named.join(", ")),
+            false => format!("no partner has {}{more}, which keeps the ordinary lens", listed.join(", ")),
         };
         format!("{}: is another surface now, and the paint was carried over to it: {what}", scene.display())
     }
@@ -49,25 +49,27 @@ impl CarriedPaint {
 
 /// The project with its paint on the surface of `new`, whose atlas is `atlas`; it lay on that of `old`, in the project's own atlas. The
 /// scene of the project is the new one then.
-pub(crate) fn carried(
+pub(crate) fn transfer_paint(
     project: &ProjectFile,
     old: &Scene,
     new: &Scene,
     atlas: &Atlas,
-) -> Result<(ProjectFile, CarriedPaint), SessionError> {
-    let bad = |what: String| SessionError::bad(&project.scene, what);
+) -> Result<(ProjectFile, TransferredPaint), SessionError> {
+    let bad_scene = |what: String| SessionError::bad_file(&project.scene, what);
     let stored =
-        project.atlas.as_ref().ok_or_else(|| bad("its project has no atlas (paint it anew)".into()))?;
-    let old_atlas = Atlas::from_bytes(stored, old).map_err(|error| bad(error.to_string()))?;
-    let texels = atlas.texel_map(new);
-    let places = partners(old, &old_atlas, new, &texels);
-    let onto = Onto { atlas, texels: &texels, places: &places };
+        project.atlas.as_ref().ok_or_else(|| bad_scene("its project has no atlas (paint it anew)".into()))?;
+    let old_atlas = Atlas::from_bytes(stored, old).map_err(|error| bad_scene(error.to_string()))?;
+    let new_texels = atlas.texel_map(new);
+    let source_positions = find_correspondences(old, &old_atlas, new, &new_texels);
+    let transfer = PaintTransfer { atlas, texels: &new_texels, source_positions: &source_positions };
 
-    let focus_map = project.focus_map.as_ref().map(|map| onto.map(map));
+    let focus_map = project.focus_map.as_ref().map(|map| transfer.transfer_map(map));
     let layers = project.layers.as_ref().and_then(|layers| {
-        let moved =
-            layers.layers().iter().map(|layer| FocusLayer { map: onto.map(&layer.map), ..layer.clone() });
-        LayerStack::new(moved.collect(), layers.active_index())
+        let transferred = layers
+            .layers()
+            .iter()
+            .map(|layer| FocusLayer { map: transfer.transfer_map(&layer.map), ..layer.clone() });
+        LayerStack::new(transferred.collect(), layers.active_index())
     });
     let project = ProjectFile {
         scene: new.path.clone(),
@@ -76,41 +78,41 @@ pub(crate) fn carried(
         surface: Some(surface_to_bytes(new)),
         focus_map,
         layers,
-        selection: onto.gaps(),
+        selection: transfer.unmatched_texels(),
         ..project.clone()
     };
-    Ok((project, onto.told(new)))
+    Ok((project, transfer.report(new)))
 }
 
 /// The way onto the new texels.
-struct Onto<'a> {
+struct PaintTransfer<'a> {
     atlas: &'a Atlas,
     texels: &'a TexelMap,
-    places: &'a [Option<DVec2>],
+    source_positions: &'a [Option<DVec2>],
 }
 
-impl Onto<'_> {
-    fn map(&self, old: &FocusMap) -> FocusMap {
+impl PaintTransfer<'_> {
+    fn transfer_map(&self, old: &FocusMap) -> FocusMap {
         let (width, height) = (self.atlas.width, self.atlas.height);
         let count = width as usize * height as usize;
         let standard = FocusOffset::STANDARD;
         let mut values = vec![[standard.t as f32, standard.anchor as f32]; count];
         let mut gloss = vec![standard.gloss as f32; count];
         let mut mask = vec![0.0; count];
-        for (texel, place) in self.texels.texels.iter().zip(self.places) {
-            let Some(place) = place else { continue };
-            let at = texel.y as usize * width as usize + texel.x as usize;
-            let focus = old.sample(*place);
-            values[at] = [focus.t as f32, focus.anchor as f32];
-            gloss[at] = focus.gloss as f32;
-            mask[at] = old.sample_mask(*place);
+        for (texel, source_position) in self.texels.texels.iter().zip(self.source_positions) {
+            let Some(source_position) = source_position else { continue };
+            let index = texel.y as usize * width as usize + texel.x as usize;
+            let focus = old.sample(*source_position);
+            values[index] = [focus.t as f32, focus.anchor as f32];
+            gloss[index] = focus.gloss as f32;
+            mask[index] = old.sample_mask(*source_position);
         }
         self.atlas.dilate(self.texels, &mut values);
         self.atlas.dilate(self.texels, &mut gloss);
         self.atlas.dilate(self.texels, &mut mask);
         let mut map = FocusMap::new(width, height, standard);
-        if let Some(whole) = FocusMap::from_rows(width, height, &values, old.background) {
-            map = whole;
+        if let Some(transferred) = FocusMap::from_rows(width, height, &values, old.background) {
+            map = transferred;
         }
         let is_whole = (!old.has_gloss() || map.set_gloss_rows(&gloss))
             && (!old.has_mask() || map.set_mask_rows(Some(&mask)));
@@ -120,26 +122,39 @@ impl Onto<'_> {
     }
 
     /// Texels without a partner as a selection; none where all have one.
-    fn gaps(&self) -> Option<TexelSet> {
-        let lonely = self.texels.texels.iter().zip(self.places).filter(|(_, place)| place.is_none());
-        let mut lonely = lonely.map(|(texel, _)| [texel.x, texel.y]).peekable();
-        lonely.peek()?;
-        Some(TexelSet::new([self.atlas.width, self.atlas.height], lonely))
+    fn unmatched_texels(&self) -> Option<TexelSet> {
+        let unmatched = self
+            .texels
+            .texels
+            .iter()
+            .zip(self.source_positions)
+            .filter(|(_, source_position)| source_position.is_none());
+        let mut unmatched = unmatched.map(|(texel, _)| [texel.x, texel.y]).peekable();
+        unmatched.peek()?;
+        Some(TexelSet::new([self.atlas.width, self.atlas.height], unmatched))
     }
 
-    fn told(&self, scene: &Scene) -> CarriedPaint {
+    fn report(&self, scene: &Scene) -> TransferredPaint {
         let mut areas = vec![[0.0; 2]; scene.nodes.len()];
-        for (texel, place) in self.texels.texels.iter().zip(self.places) {
-            let [all, without] = &mut areas[scene.part_of(texel.centroid.triangle).node as usize];
-            *all += texel.area;
-            *without += if place.is_none() { texel.area } else { 0.0 };
+        for (texel, source_position) in self.texels.texels.iter().zip(self.source_positions) {
+            let [node_area, unmatched_area] =
+                &mut areas[scene.part_of(texel.centroid.triangle).node as usize];
+            *node_area += texel.area;
+            *unmatched_area += if source_position.is_none() { texel.area } else { 0.0 };
         }
-        let of_node = scene.nodes.iter().zip(&areas).filter(|(_, [_, without])| *without > 0.0);
-        let mut gaps: Vec<CarriedNode> = of_node
-            .map(|(node, [all, without])| CarriedNode { name: node.name.clone(), share: without / all })
+        let incomplete =
+            scene.nodes.iter().zip(&areas).filter(|(_, [_, unmatched_area])| *unmatched_area > 0.0);
+        let mut unmatched_nodes: Vec<UnmatchedNode> = incomplete
+            .map(|(node, [node_area, unmatched_area])| UnmatchedNode {
+                name: node.name.clone(),
+                unmatched_share: unmatched_area / node_area,
+            })
             .collect();
-        gaps.sort_by(|a, b| b.share.total_cmp(&a.share));
-        let [all, without] = areas.iter().fold([0.0; 2], |[a, b], [c, d]| [a + c, b + d]);
-        CarriedPaint { gaps, share: if all > 0.0 { 1.0 - without / all } else { 1.0 } }
+        unmatched_nodes.sort_by(|a, b| b.unmatched_share.total_cmp(&a.unmatched_share));
+        let [total_area, unmatched_area] = areas.iter().fold([0.0; 2], |[a, b], [c, d]| [a + c, b + d]);
+        TransferredPaint {
+            unmatched_nodes,
+            matched_share: if total_area > 0.0 { 1.0 - unmatched_area / total_area } else { 1.0 },
+        }
     }
 }

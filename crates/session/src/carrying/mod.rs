@@ -12,5 +12,5 @@ mod carried_paint;
 mod old_surface;
 mod partners;
 
-pub(crate) use carried_paint::carried;
-pub use carried_paint::{CarriedNode, CarriedPaint};
+pub(crate) use carried_paint::transfer_paint;
+pub use carried_paint::{TransferredPaint, UnmatchedNode};

@@ -5,7 +5,7 @@ use crate::document::{CameraEdit, SurfaceHit};
 use crate::editing::{FillRegion, StrokePoint};
 use crate::jobs::JobId;
 use crate::output::ReferenceKind;
-use focus::{Brush, Combine, Ease, Gradient, LayerEdit, LensMotion};
+use focus::{Brush, CombineMode, Ease, Gradient, LayerEdit, LensMotion};
 use glam::DVec2;
 use lens::{Exposure, FocusOffset};
 use project::{CaptureChoices, RecordedStep, SelectionShape};
@@ -45,12 +45,12 @@ pub enum Command {
     /// Does again what was taken back.
     Redo,
     /// Goes to where this many steps of the history are done, by undo or redo.
-    GoTo(usize),
+    GoToHistoryStep(usize),
     /// Does a recorded step, as a step of undo. The brush stays what it is.
-    Do(RecordedStep),
+    ApplyRecordedStep(RecordedStep),
 
     /// Changes the camera. Edits of one field in a row are one step of undo until [`Command::FinishEdit`].
-    Camera(CameraEdit),
+    EditCamera(CameraEdit),
     /// Ends a run of edits (a slider was let go): the next one is a step of undo of its own.
     FinishEdit,
     /// Shows the document at a time, s: lens and layers as their keys say. No step of undo.
@@ -58,7 +58,7 @@ pub enum Command {
     /// Gives the lens other keys, as a step of undo of this name.
     SetLensMotion(&'static str, LensMotion),
     /// Has the lens go from one point of the surface to another.
-    Rack {
+    RackFocus {
         /// The points.
         points: [SurfaceHit; 2],
         /// When it leaves the first and when it is at the second, s.
@@ -82,7 +82,7 @@ pub enum Command {
     SetDisplay(Display),
     /// Shows the live picture through one aperture point, in [−1, 1]² (see [`lens::Aperture::sub_aperture`]), or through
     /// all of the aperture again. No part of the document; the picture's rays are still those of the whole lens.
-    LookThrough(Option<DVec2>),
+    SetSubAperture(Option<DVec2>),
     /// The longest side that the preview is drawn at, px; the picture's own size if that is smaller.
     SetPreviewSize(u32),
     /// How coarse the live picture may be while one works.
@@ -103,13 +103,13 @@ pub enum Command {
     /// Takes the stroke or gradient back, leaving no trace.
     AbortStroke,
     /// Changes the layers of focus.
-    Layer(LayerEdit),
+    EditLayers(LayerEdit),
     /// Paints on another layer from now on, counted from the bottom.
     ActivateLayer(usize),
     /// Chooses what may be painted; all else is frozen.
-    Select(SelectionShape, Combine),
+    Select(SelectionShape, CombineMode),
     /// Chooses a whole region to be painted.
-    SelectRegion(FillRegion, Combine),
+    SelectRegion(FillRegion, CombineMode),
     /// Lets the active layer count only where it may be painted.
     MaskFromSelection,
     /// Gives a whole region a focus. What lies at the images of the brush's symmetry is filled too.

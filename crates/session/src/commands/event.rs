@@ -1,6 +1,6 @@
 //! What a session tells back.
 
-use crate::document::NearQuestion;
+use crate::document::DepthPolarityRequest;
 use crate::jobs::JobStatus;
 use crate::output::ReferenceKind;
 use std::ops::Range;
@@ -12,7 +12,7 @@ pub enum Event {
     /// A document was opened; everything drawn of the old one is stale.
     Opened,
     /// A capture does not open until somebody says which end of its depth map is near: [`crate::Command::OpenCapture`].
-    AsksNear(Box<NearQuestion>),
+    DepthPolarityRequired(Box<DepthPolarityRequest>),
     /// Other faces or materials are seen than before, or in another light; what is drawn of the scene's surface is stale.
     SurfaceChanged,
     /// The camera changed (also by undo).
@@ -26,17 +26,17 @@ pub enum Event {
     /// The brush changed (by picking).
     BrushChanged,
     /// The scene that was opened is so bright that the screen must show it this many stops darker, or shows nothing but white.
-    Glaring(f32),
+    GlareDetected(f32),
     /// A new preview is ready: [`crate::Session::preview`].
     PreviewReady(u64),
     /// A picture to compare with is ready: [`crate::Session::reference`].
     ReferenceReady(ReferenceKind),
     /// More is known of the rectangle that is verified: [`crate::Session::verification`].
-    Verified,
+    VerificationUpdated,
     /// Background work went on.
     Progress(JobStatus),
     /// A file was written.
-    Written(PathBuf),
+    FileWritten(PathBuf),
     /// Work failed: one sentence, what it was doing first.
     Failed(String),
     /// Something the user should know: one sentence.

@@ -40,12 +40,12 @@ impl KeyMap {
 
     /// The key of a command, if it has one.
     pub fn shortcut(self, id: CommandId) -> Option<Shortcut> {
-        let own = self.own_keys().iter().find(|(command, _)| *command == id);
-        own.map_or(id.info().shortcut, |(_, shortcut)| *shortcut)
+        let entry = self.overrides().iter().find(|(command, _)| *command == id);
+        entry.map_or(id.info().shortcut, |(_, shortcut)| *shortcut)
     }
 
     /// Where it differs from the command table.
-    fn own_keys(self) -> &'static [(CommandId, Option<Shortcut>)] {
+    fn overrides(self) -> &'static [(CommandId, Option<Shortcut>)] {
         match self {
             Self::Blender => BLENDER,
             Self::Substance => SUBSTANCE,
@@ -118,7 +118,7 @@ mod tests {
     #[test]
     fn a_map_s_own_keys_are_own() {
         for map in KeyMap::ALL {
-            for (id, shortcut) in map.own_keys() {
+            for (id, shortcut) in map.overrides() {
                 assert_ne!(*shortcut, id.info().shortcut, "{map:?}: {id:?} is the table's own");
             }
         }

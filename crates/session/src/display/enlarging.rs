@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use std::ops::Range;
 
 /// So many small pixels away a change of one is seen: two pixels of the cubic, twice, and one that means are of.
-const REACH: u32 = 5;
+const CHANGE_REACH_PX: u32 = 5;
 
 /// A picture at another size, at least its own.
 pub fn enlarged(picture: &Picture, size: [u32; 2]) -> Picture {
@@ -24,8 +24,8 @@ pub(crate) fn enlarged_rectangle(picture: &Picture, size: [u32; 2], rectangle: &
     let own = [picture.width, picture.height];
     std::array::from_fn(|axis| {
         let Range { start, end } = rectangle[axis];
-        let end = (end + REACH).min(own[axis]);
-        pixels_in(start.saturating_sub(REACH)..end, size[axis], own[axis])
+        let end = (end + CHANGE_REACH_PX).min(own[axis]);
+        pixels_in(start.saturating_sub(CHANGE_REACH_PX)..end, size[axis], own[axis])
     })
 }
 
@@ -40,17 +40,17 @@ pub(crate) fn enlarged_part(picture: &Picture, size: [u32; 2], rectangle: Rectan
     }
     // The pixels that the rectangle is interpolated of, what lies in them, and what that is interpolated of.
     let taps = |rectangle: &Rectangle| -> [Vec<Taps>; 2] {
-        std::array::from_fn(|axis| Taps::all(rectangle[axis].clone(), size[axis], own[axis]))
+        std::array::from_fn(|axis| Taps::for_range(rectangle[axis].clone(), size[axis], own[axis]))
     };
-    let wanted = taps(&rectangle);
-    let near = wanted.each_ref().map(|taps| asked(taps));
+    let output_taps = taps(&rectangle);
+    let near = output_taps.each_ref().map(|taps| source_range(taps));
     let within: Rectangle = std::array::from_fn(|axis| pixels_in(near[axis].clone(), size[axis], own[axis]));
     let taps_within = taps(&within);
-    let small = Field::of(picture, taps_within.each_ref().map(|taps| asked(taps)));
+    let small = PixelGrid::from_picture(picture, taps_within.each_ref().map(|taps| source_range(taps)));
 
-    let cubic = Field::interpolated(&small, &taps_within, [within[0].start, within[1].start]);
-    let mut lacking = small.part(near);
-    lacking.each(|x, y, value| {
+    let cubic = PixelGrid::interpolated(&small, &taps_within, [within[0].start, within[1].start]);
+    let mut residual = small.part(near);
+    residual.update_each(|x, y, value| {
         let [columns, rows] = [pixels_in(x..x + 1, size[0], own[0]), pixels_in(y..y + 1, size[1], own[1])];
         let count = (columns.len() * rows.len()) as f32;
         let pixels = rows.flat_map(|row| columns.clone().map(move |column| (column, row)));
@@ -58,9 +58,10 @@ pub(crate) fn enlarged_part(picture: &Picture, size: [u32; 2], rectangle: Rectan
         value - sum / count
     });
     let corner = [rectangle[0].start, rectangle[1].start];
-    let mut shown = Field::interpolated(&lacking, &wanted, corner);
-    shown.each(|x, y, added| {
-        let [column, row] = [&wanted[0][(x - corner[0]) as usize], &wanted[1][(y - corner[1]) as usize]];
+    let mut shown = PixelGrid::interpolated(&residual, &output_taps, corner);
+    shown.update_each(|x, y, added| {
+        let [column, row] =
+            [&output_taps[0][(x - corner[0]) as usize], &output_taps[1][(y - corner[1]) as usize]];
         let (mut low, mut high) = (Vec4::INFINITY, Vec4::NEG_INFINITY);
         for y in row.around(own[1]) {
             for x in column.around(own[0]) {
@@ -89,7 +90,7 @@ fn pixels_in(small: Range<u32>, size: u32, own: u32) -> Range<u32> {
 }
 
 /// The small pixels that some large ones are interpolated of.
-fn asked(taps: &[Taps]) -> Range<u32> {
+fn source_range(taps: &[Taps]) -> Range<u32> {
     let first = taps.first().map_or(0, |taps| taps.at[0]);
     first..taps.last().map_or(0, |taps| taps.at[3] + 1)
 }
@@ -103,11 +104,11 @@ struct Taps {
 }
 
 impl Taps {
-    fn all(range: Range<u32>, size: u32, own: u32) -> Vec<Self> {
-        range.map(|pixel| Self::of(pixel, size, own)).collect()
+    fn for_range(range: Range<u32>, size: u32, own: u32) -> Vec<Self> {
+        range.map(|pixel| Self::at_pixel(pixel, size, own)).collect()
     }
 
-    fn of(pixel: u32, size: u32, own: u32) -> Self {
+    fn at_pixel(pixel: u32, size: u32, own: u32) -> Self {
         let place = (f64::from(pixel) + 0.5) * f64::from(own) / f64::from(size);
         let before = (place - 0.5).floor();
         let s = (place - 0.5 - before) as f32;
@@ -129,21 +130,21 @@ impl Taps {
         self.within.saturating_sub(1)..(self.within + 2).min(own)
     }
 
-    fn mean(&self, of: impl Fn(u32) -> Vec4) -> Vec4 {
-        (0..4).map(|k| of(self.at[k]) * self.weights[k]).sum()
+    fn weighted_mean(&self, value_at: impl Fn(u32) -> Vec4) -> Vec4 {
+        (0..4).map(|k| value_at(self.at[k]) * self.weights[k]).sum()
     }
 }
 
 /// A part of a picture: radiance, and coverage in w.
-struct Field {
+struct PixelGrid {
     /// Column and row of its first value.
     corner: [u32; 2],
     width: usize,
     values: Vec<Vec4>,
 }
 
-impl Field {
-    fn of(picture: &Picture, [columns, rows]: Rectangle) -> Self {
+impl PixelGrid {
+    fn from_picture(picture: &Picture, [columns, rows]: Rectangle) -> Self {
         let value = |index: usize| {
             let [r, g, b] = picture.radiance[index];
             Vec4::new(r, g, b, picture.coverage[index])
@@ -169,7 +170,7 @@ impl Field {
     }
 
     /// Changes every value, given where it is.
-    fn each(&mut self, change: impl Fn(u32, u32, Vec4) -> Vec4 + Sync) {
+    fn update_each(&mut self, change: impl Fn(u32, u32, Vec4) -> Vec4 + Sync) {
         let corner = self.corner;
         self.values.par_chunks_mut(self.width).enumerate().for_each(|(row, values)| {
             let row = corner[1] + row as u32;
@@ -181,15 +182,17 @@ impl Field {
     }
 
     /// The cubic between values of a field, with its first value at `corner`: along rows, then along columns.
-    fn interpolated(of: &Self, [columns, rows]: &[Vec<Taps>; 2], corner: [u32; 2]) -> Self {
-        let asked = asked(rows);
-        let along = |row: u32| columns.iter().map(move |taps| taps.mean(|column| of.at(column, row)));
-        let along: Vec<Vec<Vec4>> = asked.clone().into_par_iter().map(|row| along(row).collect()).collect();
+    fn interpolated(source: &Self, [columns, rows]: &[Vec<Taps>; 2], corner: [u32; 2]) -> Self {
+        let source_rows = source_range(rows);
+        let along =
+            |row: u32| columns.iter().map(move |taps| taps.weighted_mean(|column| source.at(column, row)));
+        let along: Vec<Vec<Vec4>> =
+            source_rows.clone().into_par_iter().map(|row| along(row).collect()).collect();
         let width = columns.len();
         let mut values = vec![Vec4::ZERO; width * rows.len()];
         values.par_chunks_mut(width).zip(rows).for_each(|(values, taps)| {
             for (x, value) in values.iter_mut().enumerate() {
-                *value = taps.mean(|row| along[(row - asked.start) as usize][x]);
+                *value = taps.weighted_mean(|row| along[(row - source_rows.start) as usize][x]);
             }
         });
         Self { corner, width, values }
@@ -201,11 +204,11 @@ mod tests {
     use super::*;
 
     /// A picture of so many columns and rows by the place of each pixel's middle, in [0, 1]².
-    fn picture([width, height]: [u32; 2], of: impl Fn(f32, f32) -> f32) -> Picture {
+    fn picture([width, height]: [u32; 2], value_at: impl Fn(f32, f32) -> f32) -> Picture {
         let mut picture = Picture::black(width, height);
         for (k, (radiance, coverage)) in picture.radiance.iter_mut().zip(&mut picture.coverage).enumerate() {
             let (x, y) = (k as u32 % width, k as u32 / width);
-            let value = of((x as f32 + 0.5) / width as f32, (y as f32 + 0.5) / height as f32);
+            let value = value_at((x as f32 + 0.5) / width as f32, (y as f32 + 0.5) / height as f32);
             (*radiance, *coverage) = ([value, 0.5 * value, 0.2], 1.0);
         }
         picture
@@ -269,7 +272,7 @@ mod tests {
             for pixel in 0..own {
                 let within = pixels_in(pixel..pixel + 1, size, own);
                 assert!(!within.is_empty());
-                assert!(within.clone().all(|large| Taps::of(large, size, own).within == pixel));
+                assert!(within.clone().all(|large| Taps::at_pixel(large, size, own).within == pixel));
                 all.extend(within);
             }
             assert!(all.into_iter().eq(0..size));

@@ -3,16 +3,16 @@
 use salf::Salf;
 
 /// Light that is at most so bright needs no darker display.
-const BEARABLE: f32 = 4.0;
+const COMFORTABLE_RADIANCE: f32 = 4.0;
 
 /// What the bright parts of a scene are shown as, 1 being the screen's white.
-const SHOWN: f32 = 0.8;
+const TARGET_BRIGHTNESS: f32 = 0.8;
 
 /// By how many stops a scene must be shown darker for its bright parts not to be burnt out; none if they are not. Lights in files
 /// are often in the units of a photographer's world, where a room has hundreds.
-pub(crate) fn stops_for(salf: &Salf) -> Option<f32> {
-    const EACH: usize = 7;
-    let samples = salf.samples.runs().step_by(EACH).flat_map(|run| run.iter());
+pub(crate) fn darkening_stops(salf: &Salf) -> Option<f32> {
+    const RUN_STRIDE: usize = 7;
+    let samples = salf.samples.runs().step_by(RUN_STRIDE).flat_map(|run| run.iter());
     let surfaces = samples.filter(|sample| sample.surface.is_some() && sample.weight > 0.0);
     let mut lights: Vec<(f32, f32)> =
         surfaces.map(|sample| (sample.radiance.max_element(), sample.weight)).collect();
@@ -24,7 +24,7 @@ pub(crate) fn stops_for(salf: &Salf) -> Option<f32> {
         below += weight;
         below >= 0.8 * all
     })?;
-    (bright.0 > BEARABLE).then(|| ((SHOWN / bright.0).log2() * 2.0).round() / 2.0)
+    (bright.0 > COMFORTABLE_RADIANCE).then(|| ((TARGET_BRIGHTNESS / bright.0).log2() * 2.0).round() / 2.0)
 }
 
 #[cfg(test)]
@@ -37,7 +37,7 @@ mod tests {
 
     #[test]
     fn what_would_be_burnt_out_is_shown_darker() {
-        let of = |lights: &[f32]| {
+        let stops = |lights: &[f32]| {
             let sample = |&light: &f32| Sample {
                 center: Vec2::ZERO,
                 half_size: Vec2::splat(0.5),
@@ -50,17 +50,17 @@ mod tests {
                 visibility: Visibility::Open,
             };
             let samples = lights.iter().map(sample).collect();
-            stops_for(&Salf {
+            darkening_stops(&Salf {
                 camera: Camera::default(),
                 margin_px: 0,
                 carried: salf::Carried::Standard,
                 samples,
             })
         };
-        assert_eq!(of(&[]), None);
-        assert_eq!(of(&[0.5, 0.7, 0.2, 0.9, 0.4]), None);
+        assert_eq!(stops(&[]), None);
+        assert_eq!(stops(&[0.5, 0.7, 0.2, 0.9, 0.4]), None);
         // A few lamps burn out anyway.
-        assert_eq!(of(&[0.5, 0.7, 0.2, 0.9, 900.0]), None);
-        assert_eq!(of(&[100.0, 90.0, 102.4, 80.0, 3.0]), Some(-7.0));
+        assert_eq!(stops(&[0.5, 0.7, 0.2, 0.9, 900.0]), None);
+        assert_eq!(stops(&[100.0, 90.0, 102.4, 80.0, 3.0]), Some(-7.0));
     }
 }

@@ -9,38 +9,38 @@ use trace::truth::Region;
 #[derive(Clone, Debug)]
 pub enum LivePicture {
     /// As it was.
-    Here(Arc<Picture>),
+    InMemory(Arc<Picture>),
     /// As it is by now.
-    There(PictureOnCard),
+    OnCard(PictureOnCard),
 }
 
 impl LivePicture {
     /// Columns and rows, px.
     pub fn size(&self) -> [u32; 2] {
         match self {
-            Self::Here(picture) => [picture.width, picture.height],
-            Self::There(picture) => picture.size(),
+            Self::InMemory(picture) => [picture.width, picture.height],
+            Self::OnCard(picture) => picture.size(),
         }
     }
 
     /// Its pixels, brought back from the card if they are there, which takes some milliseconds. `None` where that was lost: the
     /// next picture is made by the processor.
-    pub fn bring(&self) -> Option<Arc<Picture>> {
+    pub fn fetch(&self) -> Option<Arc<Picture>> {
         match self {
-            Self::Here(picture) => Some(picture.clone()),
-            Self::There(picture) => picture.read(0..picture.size()[1]).map(Arc::new),
+            Self::InMemory(picture) => Some(picture.clone()),
+            Self::OnCard(picture) => picture.read(0..picture.size()[1]).map(Arc::new),
         }
     }
 
     /// The pixels of a region, which must lie in the picture. `None` where the card was lost.
-    pub fn bring_region(&self, region: Region) -> Option<Picture> {
+    pub fn fetch_region(&self, region: Region) -> Option<Picture> {
         let rows = region.y..region.y + region.height;
-        let of_rows;
+        let row_picture;
         let (picture, first) = match self {
-            Self::Here(picture) => (&**picture, rows.start),
-            Self::There(picture) => {
-                of_rows = picture.read(rows.clone())?;
-                (&of_rows, 0)
+            Self::InMemory(picture) => (&**picture, rows.start),
+            Self::OnCard(picture) => {
+                row_picture = picture.read(rows.clone())?;
+                (&row_picture, 0)
             }
         };
         let mut cut = Picture::black(region.width, region.height);
@@ -57,9 +57,9 @@ impl LivePicture {
 
 /// A picture that was made, to be shown.
 #[derive(Clone)]
-pub(crate) enum Source<'a> {
+pub(crate) enum PictureSource<'a> {
     /// In the processor's memory.
-    Here(&'a Picture),
+    InMemory(&'a Picture),
     /// On a card.
-    There(PictureOnCard),
+    OnCard(PictureOnCard),
 }

@@ -21,8 +21,8 @@ pub use tone::{Display, ScreenPixel, Tone, to_screen};
 pub use tone_curve::ToneCurve;
 
 pub(crate) use enlarging::{enlarged_part, enlarged_rectangle};
-pub(crate) use glare::stops_for;
-pub(crate) use live_picture::Source;
+pub(crate) use glare::darkening_stops;
+pub(crate) use live_picture::PictureSource;
 pub(crate) use picture_ring::{PictureRing, Rectangle, whole};
 pub(crate) use screen::{Content, Patch};
 pub(crate) use tone::rectangle_to_screen;

@@ -11,7 +11,7 @@ use std::panic::AssertUnwindSafe;
 use std::sync::{LazyLock, OnceLock};
 
 /// Places of the grid along each colour.
-const PLACES: usize = 49;
+const GRID_POINTS: usize = 49;
 
 /// The brightest light that is told apart.
 const BRIGHTEST: f32 = 128.0;
@@ -33,7 +33,7 @@ const LINEAR_REC709: [&str; 9] = [
 ];
 
 /// Those of `$OCIO`.
-static OF_ENVIRONMENT: LazyLock<OcioViews> = LazyLock::new(|| match std::env::var("OCIO") {
+static ENVIRONMENT_VIEWS: LazyLock<OcioViews> = LazyLock::new(|| match std::env::var("OCIO") {
     Ok(path) if !path.is_empty() => OcioViews::open(&path),
     _ => OcioViews::default(),
 });
@@ -57,8 +57,8 @@ struct View {
 
 impl OcioViews {
     /// Those of the configuration that `$OCIO` names; none if it names none.
-    pub fn of_environment() -> &'static Self {
-        &OF_ENVIRONMENT
+    pub fn from_environment() -> &'static Self {
+        &ENVIRONMENT_VIEWS
     }
 
     /// Those of a configuration: a file, an archive or a built-in one (`ocio://…`).
@@ -75,14 +75,14 @@ impl OcioViews {
             Ok(displays.flat_map(views_of).collect::<Vec<_>>())
         });
         match opened {
-            Ok(found) => {
+            Ok(names) => {
                 let view = |(display, view): (String, String)| View {
                     name: format!("{display}: {view}"),
                     display,
                     view,
                     table: OnceLock::new(),
                 };
-                Self { path: path.into(), views: found.into_iter().map(view).collect(), problem: None }
+                Self { path: path.into(), views: names.into_iter().map(view).collect(), problem: None }
             }
             Err(problem) => Self { problem: Some(format!("$OCIO: {path}: {problem}")), ..Self::default() },
         }
@@ -111,7 +111,7 @@ impl OcioViews {
     }
 
     fn table(&self, view: &View) -> Option<Table> {
-        let made = guarded(|| Ok(Table::of(&self.processor(view)?)));
+        let made = guarded(|| Ok(Table::from_processor(&self.processor(view)?)));
         made.map_err(|problem| tracing::warn!("{}: {}: {problem}", self.path, view.name)).ok()
     }
 
@@ -124,8 +124,8 @@ impl OcioViews {
 }
 
 fn linear_space(config: &Config) -> Option<String> {
-    let known = LINEAR_REC709.into_iter().find(|name| config.get_color_space(name).is_some());
-    known.map(str::to_owned)
+    let linear = LINEAR_REC709.into_iter().find(|name| config.get_color_space(name).is_some());
+    linear.map(str::to_owned)
 }
 
 /// The reader is not ours: should it panic on a damaged configuration, that is an error like any other.
@@ -137,30 +137,36 @@ fn guarded<T>(work: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
 struct Table(Vec<[f32; 3]>);
 
 impl Table {
-    fn of(processor: &CpuProcessor) -> Self {
+    fn from_processor(processor: &CpuProcessor) -> Self {
         let light = |place: usize| {
-            let share = place as f32 / (PLACES - 1) as f32;
+            let share = place as f32 / (GRID_POINTS - 1) as f32;
             DARKEST * ((1.0 + BRIGHTEST / DARKEST).powf(share) - 1.0)
         };
-        let mut colors: Vec<[f32; 3]> = (0..PLACES.pow(3))
-            .map(|k| [light(k % PLACES), light(k / PLACES % PLACES), light(k / (PLACES * PLACES))])
+        let mut colors: Vec<[f32; 3]> = (0..GRID_POINTS.pow(3))
+            .map(|k| {
+                [
+                    light(k % GRID_POINTS),
+                    light(k / GRID_POINTS % GRID_POINTS),
+                    light(k / (GRID_POINTS * GRID_POINTS)),
+                ]
+            })
             .collect();
-        colors.par_iter_mut().with_min_len(PLACES).for_each(|color| processor.apply_rgb(color));
+        colors.par_iter_mut().with_min_len(GRID_POINTS).for_each(|color| processor.apply_rgb(color));
         let within = |color: [f32; 3]| color.map(|c| if c.is_nan() { 0.0 } else { c.clamp(0.0, 1.0) });
         Self(colors.into_iter().map(within).collect())
     }
 
     /// What it has at a colour; what is no number is black.
     fn at(&self, rgb: [f32; 3]) -> [f32; 3] {
-        let scale = (PLACES - 1) as f32 / (1.0 + BRIGHTEST / DARKEST).log2();
+        let scale = (GRID_POINTS - 1) as f32 / (1.0 + BRIGHTEST / DARKEST).log2();
         let light = rgb.map(|c| if c > 0.0 { c.min(BRIGHTEST) } else { 0.0 });
         let places = light.map(|c| (1.0 + c / DARKEST).log2() * scale);
-        let first = places.map(|place| (place as usize).min(PLACES - 2));
+        let first = places.map(|place| (place as usize).min(GRID_POINTS - 2));
         let beyond = [0, 1, 2].map(|c| places[c] - first[c] as f32);
         // From the lower corner to the upper one, along the colours in the order of how far they are beyond.
         let mut order = [0, 1, 2];
         order.sort_by(|&a, &b| beyond[b].total_cmp(&beyond[a]));
-        const STRIDES: [usize; 3] = [1, PLACES, PLACES * PLACES];
+        const STRIDES: [usize; 3] = [1, GRID_POINTS, GRID_POINTS * GRID_POINTS];
         let mut corner: usize = (0..3).map(|c| first[c] * STRIDES[c]).sum();
         let mut rest = 1.0;
         let mut shown = [0.0; 3];
@@ -285,8 +291,8 @@ mod tests {
         let [most, worst] = [errors[errors.len() * 98 / 100], errors[errors.len() - 1]];
         // Steps of a screen; the worst are colours as saturated as 1 to 2¹⁰, where the view itself has edges.
         assert!(mean < 0.2 && most < 2.0 && worst < 20.0, "mean {mean}, 98 % below {most}, worst {worst}");
-        let odd = views.shown(index, [f32::NAN, -1.0, f32::INFINITY]).expect("a view");
-        assert!(odd.iter().all(|c| (0.0..=1.0).contains(c)), "{odd:?}");
+        let invalid = views.shown(index, [f32::NAN, -1.0, f32::INFINITY]).expect("a view");
+        assert!(invalid.iter().all(|c| (0.0..=1.0).contains(c)), "{invalid:?}");
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Snapshots of a picture that changes in few rows at a time: what was shown before is brought up to date where it
 //! changed, instead of copied anew.
 
-use focus::union;
+use focus::rectangle_union;
 use lens::Picture;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -21,7 +21,7 @@ const SNAPSHOTS: usize = 3;
 pub(crate) struct PictureRing {
     snapshots: Vec<Snapshot>,
     /// The picture that is followed, where another one lies over it.
-    beneath: Option<Arc<Picture>>,
+    base: Option<Arc<Picture>>,
 }
 
 struct Snapshot {
@@ -39,26 +39,26 @@ impl PictureRing {
         };
         let changed = difference(&followed, picture, window);
         drop(followed);
-        if let (Some(beneath), Some(changed)) = (&mut self.beneath, &changed) {
-            copy(Arc::make_mut(beneath), picture, changed);
+        if let (Some(base), Some(changed)) = (&mut self.base, &changed) {
+            copy(Arc::make_mut(base), picture, changed);
         }
         (self.show(picture, changed.as_ref()), changed)
     }
 
     /// Lays a better picture over the one that is followed; where it differs from what was shown.
-    pub fn overlay(&mut self, better: &Picture) -> (Arc<Picture>, Option<Rectangle>) {
-        let Some(followed) = self.followed().filter(|followed| same_size(followed, better)) else {
-            return (self.begin(better), Some(whole(better)));
+    pub fn overlay(&mut self, picture: &Picture) -> (Arc<Picture>, Option<Rectangle>) {
+        let Some(followed) = self.followed().filter(|followed| same_size(followed, picture)) else {
+            return (self.begin(picture), Some(whole(picture)));
         };
-        self.beneath = Some(followed);
+        self.base = Some(followed);
         let shown = self.snapshots.last().map(|snapshot| &snapshot.picture);
-        let changed = shown.and_then(|shown| difference(shown, better, &whole(better)));
-        (self.show(better, changed.as_ref()), changed)
+        let changed = shown.and_then(|shown| difference(shown, picture, &whole(picture)));
+        (self.show(picture, changed.as_ref()), changed)
     }
 
     /// The picture that is followed.
     pub fn followed(&self) -> Option<Arc<Picture>> {
-        self.beneath.as_ref().or(self.snapshots.last().map(|snapshot| &snapshot.picture)).cloned()
+        self.base.as_ref().or(self.snapshots.last().map(|snapshot| &snapshot.picture)).cloned()
     }
 
     /// A snapshot of what was shown last, with a rectangle of `picture`, which is of the same size.
@@ -69,7 +69,8 @@ impl PictureRing {
         // One that nobody looks at any more is written; else a new one is made.
         let free = older.iter_mut().position(|snapshot| Arc::get_mut(&mut snapshot.picture).is_some());
         for snapshot in &mut self.snapshots {
-            let stale = snapshot.stale.as_ref().map_or(changed.clone(), |stale| union(stale, changed));
+            let stale =
+                snapshot.stale.as_ref().map_or(changed.clone(), |stale| rectangle_union(stale, changed));
             snapshot.stale = Some(stale);
         }
         let mut next = match free.map(|index| self.snapshots.remove(index)) {
@@ -92,7 +93,7 @@ impl PictureRing {
     /// A snapshot of a picture that has nothing to do with those of before.
     pub fn begin(&mut self, picture: &Picture) -> Arc<Picture> {
         let snapshot = Arc::new(picture.clone());
-        self.beneath = None;
+        self.base = None;
         self.snapshots = vec![Snapshot { picture: snapshot.clone(), stale: None }];
         snapshot
     }
@@ -122,14 +123,14 @@ fn difference(a: &Picture, b: &Picture, [columns, rows]: &Rectangle) -> Option<R
         a.radiance[k].map(f32::to_bits) != b.radiance[k].map(f32::to_bits)
             || a.coverage[k].to_bits() != b.coverage[k].to_bits()
     };
-    let of_row = |row: u32| {
+    let row_difference = |row: u32| {
         let first = row as usize * width;
         let start = columns.clone().find(|x| differs(first + *x as usize))?;
         let end = columns.clone().rev().find(|x| differs(first + *x as usize))? + 1;
         Some([start..end, row..row + 1])
     };
-    let differing = rows.clone().into_par_iter().with_min_len(8).filter_map(of_row);
-    differing.reduce_with(|a, b| union(&a, &b))
+    let differing = rows.clone().into_par_iter().with_min_len(8).filter_map(row_difference);
+    differing.reduce_with(|a, b| rectangle_union(&a, &b))
 }
 
 /// Makes a rectangle of `to` that of `from`.
@@ -199,12 +200,12 @@ mod tests {
         let mut followed = Picture::black(60, 30);
         followed.coverage.fill(1.0);
         ring.begin(&followed);
-        let mut better = followed.clone();
-        better.coverage.iter_mut().step_by(7).for_each(|coverage| *coverage = 1.25);
-        let (shown, changed) = ring.overlay(&better);
-        assert_eq!((&*shown, changed.map(|[columns, _]| columns)), (&better, Some(0..60)));
+        let mut exact = followed.clone();
+        exact.coverage.iter_mut().step_by(7).for_each(|coverage| *coverage = 1.25);
+        let (shown, changed) = ring.overlay(&exact);
+        assert_eq!((&*shown, changed.map(|[columns, _]| columns)), (&exact, Some(0..60)));
         assert_eq!(*ring.followed().unwrap(), followed);
-        let mut expected = better.clone();
+        let mut expected = exact.clone();
         for k in 0..20 {
             // A stroke changes what is followed: that shows, and the rest stays.
             let [x, y] = [(k * 13) % 60, (k * 7) % 30];
@@ -215,7 +216,7 @@ mod tests {
             assert_eq!(changed, Some([at(x), at(y)]));
             assert_eq!(*shown, expected);
         }
-        let mut again = better.clone();
+        let mut again = exact.clone();
         again.coverage[5] = 9.0;
         let (shown, changed) = ring.overlay(&again);
         assert_eq!(*shown, again);

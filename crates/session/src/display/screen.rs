@@ -2,13 +2,13 @@
 
 use super::picture_ring::Rectangle;
 use super::tone::{ScreenPixel, Tone};
-use focus::union;
+use focus::rectangle_union;
 use splat::PictureOnCard;
 use std::collections::VecDeque;
 use std::ops::Range;
 
 /// Changes that are remembered: a window that looks at every frame needs one or two.
-const REMEMBERED: usize = 16;
+const MAX_REMEMBERED_CHANGES: usize = 16;
 
 /// The live picture, exposed, tone mapped and encoded: ready to be shown. One on a graphics card is still to be.
 #[derive(Debug, Default)]
@@ -79,7 +79,7 @@ impl Screen {
             return Some(self.size.map(|side| 0..side));
         }
         let newer = self.changes.iter().filter(|(after, _)| *after > serial);
-        newer.map(|(_, rectangle)| rectangle.clone()).reduce(|a, b| union(&a, &b))
+        newer.map(|(_, rectangle)| rectangle.clone()).reduce(|a, b| rectangle_union(&a, &b))
     }
 
     /// Nothing is shown any more.
@@ -88,7 +88,7 @@ impl Screen {
     }
 
     /// Takes up what was made anew.
-    pub(crate) fn take(&mut self, patch: Patch) {
+    pub(crate) fn apply_patch(&mut self, patch: Patch) {
         let width = patch.rectangle[0].len();
         if std::mem::replace(&mut self.size, patch.size) != patch.size {
             self.pixels = Vec::new();
@@ -109,7 +109,7 @@ impl Screen {
         }
         self.serial += 1;
         self.changes.push_back((self.serial, patch.rectangle));
-        if self.changes.len() > REMEMBERED {
+        if self.changes.len() > MAX_REMEMBERED_CHANGES {
             self.changes.pop_front();
         }
     }
@@ -127,20 +127,20 @@ mod tests {
             let pixels = vec![[value; 4]; rectangle[0].len() * rectangle[1].len()];
             Patch { size: [10, 8], rectangle, content: Content::Pixels(pixels) }
         };
-        screen.take(patch([0..10, 0..8], 1));
+        screen.apply_patch(patch([0..10, 0..8], 1));
         assert_eq!(screen.changed_since(0), Some([0..10, 0..8]));
-        let seen = screen.serial();
-        screen.take(patch([2..4, 3..5], 2));
-        screen.take(patch([6..7, 1..2], 3));
-        assert_eq!(screen.changed_since(seen), Some([2..7, 1..5]));
-        assert_eq!(screen.changed_since(seen + 1), Some([6..7, 1..2]));
+        let before = screen.serial();
+        screen.apply_patch(patch([2..4, 3..5], 2));
+        screen.apply_patch(patch([6..7, 1..2], 3));
+        assert_eq!(screen.changed_since(before), Some([2..7, 1..5]));
+        assert_eq!(screen.changed_since(before + 1), Some([6..7, 1..2]));
         assert_eq!(screen.changed_since(screen.serial()), None);
         let values = [(0, 0), (2, 3), (3, 4), (4, 4), (6, 1)].map(|(x, y)| screen.pixels()[y * 10 + x][0]);
         assert_eq!(values, [1, 2, 2, 1, 3]);
-        for _ in 0..REMEMBERED {
-            screen.take(patch([0..1, 0..1], 4));
+        for _ in 0..MAX_REMEMBERED_CHANGES {
+            screen.apply_patch(patch([0..1, 0..1], 4));
         }
-        assert_eq!(screen.changed_since(seen), Some([0..10, 0..8]), "what was forgotten may be anywhere");
+        assert_eq!(screen.changed_since(before), Some([0..10, 0..8]), "what was forgotten may be anywhere");
         assert_eq!(screen.changed_since(99), Some([0..10, 0..8]), "a serial of another screen");
     }
 }

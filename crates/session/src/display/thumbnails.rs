@@ -2,7 +2,7 @@
 
 use super::tone::{ScreenPixel, Tone, to_screen};
 use crate::error::SessionError;
-use crate::jobs::{Urgency, Waker, among_others, guarded};
+use crate::jobs::{Urgency, Waker, catch_panics, run_in_own_pool};
 use lens::{Exposure, Picture};
 use scene::{LoadOptions, Scene, View};
 use std::collections::HashMap;
@@ -31,44 +31,44 @@ pub type ThumbnailResult = Result<Arc<Thumbnail>, Arc<str>>;
 
 struct Shared {
     scene: Arc<Scene>,
-    asked: Mutex<Asked>,
+    state: Mutex<ReadState>,
 }
 
 #[derive(Default)]
-struct Asked {
+struct ReadState {
     /// The latest last: it is read first.
-    wanted: Vec<usize>,
-    there: HashMap<usize, ThumbnailResult>,
+    pending: Vec<usize>,
+    finished: HashMap<usize, ThumbnailResult>,
     is_reading: bool,
 }
 
 impl Thumbnails {
     /// None is read yet. `waker` is called when one is there.
-    pub fn of(scene: Arc<Scene>, waker: Waker) -> Self {
-        Self { shared: Arc::new(Shared { scene, asked: Mutex::default() }), waker }
+    pub fn new(scene: Arc<Scene>, waker: Waker) -> Self {
+        Self { shared: Arc::new(Shared { scene, state: Mutex::default() }), waker }
     }
 
     /// Whether they are of this scene.
-    pub fn is_of(&self, scene: &Arc<Scene>) -> bool {
+    pub fn is_for_scene(&self, scene: &Arc<Scene>) -> bool {
         Arc::ptr_eq(&self.shared.scene, scene)
     }
 
     /// The photograph of this number, if it was read; else it is read next.
     pub fn get(&self, number: usize) -> Option<ThumbnailResult> {
-        let mut asked = self.shared.asked();
-        if let Some(there) = asked.there.get(&number) {
-            return Some(there.clone());
+        let mut state = self.shared.lock_state();
+        if let Some(finished) = state.finished.get(&number) {
+            return Some(finished.clone());
         }
-        asked.wanted.retain(|&wanted| wanted != number);
-        asked.wanted.push(number);
-        if !std::mem::replace(&mut asked.is_reading, true) {
+        state.pending.retain(|&pending| pending != number);
+        state.pending.push(number);
+        if !std::mem::replace(&mut state.is_reading, true) {
             let (shared, waker) = (Arc::downgrade(&self.shared), self.waker.clone());
             if std::thread::Builder::new()
                 .name("photographs".into())
                 .spawn(move || read(&shared, &waker))
                 .is_err()
             {
-                asked.is_reading = false;
+                state.is_reading = false;
             }
         }
         None
@@ -76,8 +76,8 @@ impl Thumbnails {
 }
 
 impl Shared {
-    fn asked(&self) -> MutexGuard<'_, Asked> {
-        self.asked.lock().unwrap_or_else(PoisonError::into_inner)
+    fn lock_state(&self) -> MutexGuard<'_, ReadState> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -85,25 +85,30 @@ impl Shared {
 fn read(shared: &Weak<Shared>, waker: &Waker) {
     while let Some(shared) = shared.upgrade() {
         let next = {
-            let mut asked = shared.asked();
-            let next = asked.wanted.pop();
-            asked.is_reading = next.is_some();
+            let mut state = shared.lock_state();
+            let next = state.pending.pop();
+            state.is_reading = next.is_some();
             next
         };
         let Some(number) = next else { return };
-        let mut views = shared.scene.photographs();
+        let mut views = shared.scene.all_views();
         let Some(view) = views.nth(number) else { continue };
-        let result = guarded("reading a photograph", || among_others(Urgency::Later, || thumbnail(view)));
-        shared.asked().there.insert(number, result.map(Arc::new).map_err(|error| error.to_string().into()));
+        let result = catch_panics("reading a photograph", || {
+            run_in_own_pool(Urgency::Background, || load_thumbnail(view))
+        });
+        shared
+            .lock_state()
+            .finished
+            .insert(number, result.map(Arc::new).map_err(|error| error.to_string().into()));
         waker();
     }
 }
 
-fn thumbnail(view: &View) -> Result<Thumbnail, SessionError> {
-    let photograph = view.photograph(&LoadOptions::default());
+fn load_thumbnail(view: &View) -> Result<Thumbnail, SessionError> {
+    let photograph = view.read_photograph(&LoadOptions::default());
     let photograph = photograph.map_err(|error| SessionError::BadInput(error.to_string()))?;
-    let by = photograph.width.max(photograph.height).div_ceil(SIDE_PX);
-    let small = photograph.reduced(by);
+    let factor = photograph.width.max(photograph.height).div_ceil(SIDE_PX);
+    let small = photograph.downsampled(factor);
     let coverage = vec![1.0; small.pixels.len()];
     let picture = Picture { width: small.width, height: small.height, radiance: small.pixels, coverage };
     let pixels = to_screen(&picture, Tone { exposure: Exposure::Conserve, ..Tone::default() });

@@ -28,7 +28,7 @@ impl ToneCurve {
             Self::Clip => "None",
             Self::Neutral => "PBR Neutral",
             Self::Agx => "AgX",
-            Self::Ocio(view) => OcioViews::of_environment().name(view).unwrap_or("None"),
+            Self::Ocio(view) => OcioViews::from_environment().name(view).unwrap_or("None"),
         }
     }
 
@@ -45,7 +45,7 @@ impl ToneCurve {
             Self::Neutral => neutral(rgb.map(|c| c.max(0.0))),
             Self::Agx => agx(rgb.map(|c| c.max(0.0))),
             // As a screen of sRGB's encoding shows what the display of the view is sent.
-            Self::Ocio(view) => OcioViews::of_environment()
+            Self::Ocio(view) => OcioViews::from_environment()
                 .shown(view, rgb)
                 .map_or(rgb, |sent| sent.map(|c| linear_from_srgb(c.into()))),
         }
@@ -90,11 +90,11 @@ fn agx(rgb: [f32; 3]) -> [f32; 3] {
         [-0.052_896_85, 1.151_903_1, -0.098_961_18],
         [-0.052_971_635, -0.098_043_45, 1.151_073_7],
     ];
-    const LEAST_EV: f32 = -12.473_93;
-    const MOST_EV: f32 = 4.026_069;
+    const MIN_EV: f32 = -12.473_93;
+    const MAX_EV: f32 = 4.026_069;
     let times = |m: [[f32; 3]; 3], v: [f32; 3]| m.map(|row| row[0] * v[0] + row[1] * v[1] + row[2] * v[2]);
     let encoded = times(INSET, rgb).map(|c| {
-        let x = ((c.log2().clamp(LEAST_EV, MOST_EV)) - LEAST_EV) / (MOST_EV - LEAST_EV);
+        let x = ((c.log2().clamp(MIN_EV, MAX_EV)) - MIN_EV) / (MAX_EV - MIN_EV);
         let (x2, x4) = (x * x, x * x * x * x);
         15.5 * x4 * x2 - 40.14 * x4 * x + 31.96 * x4 - 6.868 * x2 * x + 0.4298 * x2 + 0.1191 * x - 0.00232
     });
@@ -127,7 +127,7 @@ mod tests {
 
     /// Values of the Khronos specification and of the AgX polynomial, worked out by hand.
     #[test]
-    fn known_values() {
+    fn reference_values() {
         // 0.5 lies beneath the shoulder: only the reflection of 0.04 is taken off.
         assert!((grey(ToneCurve::Neutral, 0.5) - 0.46).abs() < 1e-6);
         // 1: peak 0.96, d 0.24, 1 − 0.0576/0.44.

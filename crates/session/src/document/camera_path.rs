@@ -14,7 +14,7 @@ use glam::{DMat3, DMat4, DQuat, DVec3};
 use lens::Camera;
 
 /// sin² of the angle between axes below which they are parallel: from there on the arc is less than 10⁻⁴ of its chord off the line.
-const PARALLEL: f64 = 1e-7;
+const PARALLEL_SINE_SQUARED: f64 = 1e-7;
 
 /// The camera at a share (0: `from`, 1: `to`, exactly) of the way. Pose, angle of view (its tangent, geometrically) and focus distance (its
 /// inverse) change steadily; size and lens are those of `from`.
@@ -48,21 +48,21 @@ fn position_between(from: &Camera, to: &Camera, share: f64) -> DVec3 {
     let [a, b] = [from, to].map(|camera| camera.camera_to_world.w_axis.truncate());
     let [f, g] = [from, to].map(|camera| -camera.camera_to_world.z_axis.truncate().normalize());
     let straight = a.lerp(b, share);
-    let Some(pivot) = pivot([a, b], [f, g]) else { return straight };
+    let Some(pivot) = nearest_point_to_axes([a, b], [f, g]) else { return straight };
     let (r, s) = (a - pivot, b - pivot);
     if r == DVec3::ZERO || s == DVec3::ZERO {
         return straight;
     }
-    let turn = DQuat::from_rotation_arc(r.normalize(), s.normalize());
+    let rotation = DQuat::from_rotation_arc(r.normalize(), s.normalize());
     let distance = r.length() + (s.length() - r.length()) * share;
-    pivot + DQuat::IDENTITY.slerp(turn, share) * r.normalize() * distance
+    pivot + DQuat::IDENTITY.slerp(rotation, share) * r.normalize() * distance
 }
 
 /// The point nearest to two axes, if it lies before both cameras.
-fn pivot([a, b]: [DVec3; 2], [f, g]: [DVec3; 2]) -> Option<DVec3> {
+fn nearest_point_to_axes([a, b]: [DVec3; 2], [f, g]: [DVec3; 2]) -> Option<DVec3> {
     let cosine = f.dot(g);
     let sine_squared = f.cross(g).length_squared();
-    if sine_squared < PARALLEL {
+    if sine_squared < PARALLEL_SINE_SQUARED {
         return None;
     }
     let (u, v) = ((b - a).dot(f), (b - a).dot(g));
@@ -101,8 +101,8 @@ mod tests {
         for share in [0.1, 0.5, 0.9] {
             let camera = camera_between(&a, &b, share);
             assert!((position(&camera).distance(at) - 3.0).abs() < 1e-9, "{share}");
-            let seen = camera.camera_to_world.inverse().transform_point3(at);
-            assert!(seen.truncate().length() < 1e-9 && seen.z < 0.0, "{seen}");
+            let camera_space = camera.camera_to_world.inverse().transform_point3(at);
+            assert!(camera_space.truncate().length() < 1e-9 && camera_space.z < 0.0, "{camera_space}");
             let straight = position(&a).lerp(position(&b), share);
             assert!(straight.distance(at) < 2.9, "a straight line would come nearer");
         }

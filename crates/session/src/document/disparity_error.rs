@@ -1,6 +1,6 @@
 //! How far disparities that the views of a light field tell are from those that came with them.
 
-use super::found_disparity::found_disparity;
+use super::found_disparity::estimate_disparity;
 use crate::error::SessionError;
 use capture::LightField;
 use progress::Progress;
@@ -23,31 +23,34 @@ pub(super) fn disparity_error(
     load: &LoadOptions,
     progress: &dyn Progress,
 ) -> Result<Option<DisparityError>, SessionError> {
-    let Some(given) = field.disparity.as_ref().filter(|given| given.view == field.reference) else {
+    let Some(provided) = field.disparity.as_ref().filter(|disparity| disparity.view == field.reference)
+    else {
         return Ok(None);
     };
-    let found = found_disparity(field, load, progress)?;
-    let [columns, rows] = [given.map.width, given.map.height].map(|side| side as usize);
+    let estimated = estimate_disparity(field, load, progress)?;
+    let [columns, rows] = [provided.map.width, provided.map.height].map(|side| side as usize);
     let [width, height] = field.size.map(|side| side as usize);
     // The view's pixel at the middle of a pixel of the map.
-    let at = |place: usize, of: usize, to: usize| (2 * place + 1) * to / (2 * of);
-    let of_pixel = |pixel: usize| {
-        let (x, y) = (at(pixel % columns, columns, width), at(pixel / columns, rows, height));
-        f64::from(found[y * width + x])
+    let rescale_index =
+        |index: usize, from_len: usize, to_len: usize| (2 * index + 1) * to_len / (2 * from_len);
+    let estimate_at = |pixel: usize| {
+        let (x, y) =
+            (rescale_index(pixel % columns, columns, width), rescale_index(pixel / columns, rows, height));
+        f64::from(estimated[y * width + x])
     };
-    let truth = given.map.inverse_depth();
-    let told = truth.iter().enumerate().filter(|(_, truth)| truth.is_finite());
-    Ok(error_of(told.map(|(pixel, truth)| of_pixel(pixel) - f64::from(*truth))))
+    let truth = provided.map.inverse_depth();
+    let valid_pixels = truth.iter().enumerate().filter(|(_, truth)| truth.is_finite());
+    Ok(summarize_errors(valid_pixels.map(|(pixel, truth)| estimate_at(pixel) - f64::from(*truth))))
 }
 
 /// None of no pixels.
-fn error_of(off: impl Iterator<Item = f64>) -> Option<DisparityError> {
+fn summarize_errors(errors: impl Iterator<Item = f64>) -> Option<DisparityError> {
     let (mut count, mut bad, mut squares) = (0.0f64, [0.0; 2], 0.0);
-    for off in off {
+    for error in errors {
         count += 1.0;
-        bad[0] += f64::from(u8::from(off.abs() > 0.07));
-        bad[1] += f64::from(u8::from(off.abs() > 0.03));
-        squares += off * off;
+        bad[0] += f64::from(u8::from(error.abs() > 0.07));
+        bad[1] += f64::from(u8::from(error.abs() > 0.03));
+        squares += error * error;
     }
     let [bad_007, bad_003] = bad.map(|bad| bad / count);
     (count > 0.0).then_some(DisparityError { bad_007, bad_003, mean_square: squares / count })
@@ -59,9 +62,9 @@ mod tests {
 
     #[test]
     fn pixels_count_alike() {
-        let error = error_of([0.0, -0.05, 0.1, 0.02].into_iter()).expect("there are pixels");
+        let error = summarize_errors([0.0, -0.05, 0.1, 0.02].into_iter()).expect("there are pixels");
         assert_eq!((error.bad_007, error.bad_003), (0.25, 0.5));
         assert!((error.mean_square - 0.0129 / 4.0).abs() < 1e-12);
-        assert_eq!(error_of(std::iter::empty()), None);
+        assert_eq!(summarize_errors(std::iter::empty()), None);
     }
 }

@@ -1,12 +1,12 @@
 //! Paint on a scene that is another by now: written again by another program, before the document was opened or while it is open.
 
 use super::input::Input;
-use super::kept_atlas::unwrapped;
+use super::kept_atlas::load_or_unwrap_atlas;
 use super::open_document::Document;
-use super::scene_camera::camera_of;
+use super::scene_camera::shot_camera_from;
 use super::stage::{atlas_error, load_variant};
 use super::variant_choice::VariantChoice;
-use crate::carrying::carried;
+use crate::carrying::transfer_paint;
 use crate::error::SessionError;
 use crate::jobs::Steps;
 use atlas::UnwrapOptions;
@@ -21,11 +21,15 @@ impl Input {
     ///
     /// # Errors
     /// The project is damaged, the scene cannot be unwrapped, or the work was cancelled.
-    pub fn follow_surface(&mut self, unwrap: &UnwrapOptions, steps: &dyn Steps) -> Result<(), SessionError> {
+    pub fn transfer_paint_if_changed(
+        &mut self,
+        unwrap: &UnwrapOptions,
+        steps: &dyn Steps,
+    ) -> Result<(), SessionError> {
         let Some(project) = self.project.as_ref().filter(|project| project.capture.is_none()) else {
             return Ok(());
         };
-        let Some(surface) = project.surface.as_ref().filter(|_| self.carried.is_none()) else {
+        let Some(surface) = project.surface.as_ref().filter(|_| self.paint_transfer.is_none()) else {
             return Ok(());
         };
         if *surface == surface_to_bytes(&self.scene) {
@@ -33,16 +37,16 @@ impl Input {
         }
         let old = surface_from_bytes(surface);
         let old = old.ok_or_else(|| {
-            SessionError::bad(&self.path, "surface.bin is damaged (restore the file from a copy)")
+            SessionError::bad_file(&self.path, "surface.bin is damaged (restore the file from a copy)")
         })?;
-        self.carry(&project.clone(), &old, unwrap, steps)
+        self.transfer_paint_from(&project.clone(), &old, unwrap, steps)
     }
 
     /// Takes over what is painted in a project, which may be on another surface; its world and brush come along.
     ///
     /// # Errors
     /// The project cannot be read, or its surface is not known any more.
-    pub fn take_paint_of(
+    pub fn import_paint_from(
         &mut self,
         file: &Path,
         unwrap: &UnwrapOptions,
@@ -57,7 +61,7 @@ impl Input {
             _ => {
                 let what =
                     "what it was painted on is not known any more (save it once with its scene as it was)";
-                return Err(SessionError::bad(file, what));
+                return Err(SessionError::bad_file(file, what));
             }
         };
         let world = project.world.as_ref().map(|world| world.load(&self.scene)).transpose()?;
@@ -65,23 +69,23 @@ impl Input {
         self.set_back_faces(project.back_faces);
         let active = project.active_camera;
         project.cameras[active].camera = self.camera.clone();
-        self.carry(&project, &old, unwrap, steps)
+        self.transfer_paint_from(&project, &old, unwrap, steps)
     }
 
     /// Gives the scene the paint of a project that was painted on `old`.
-    fn carry(
+    fn transfer_paint_from(
         &mut self,
         project: &ProjectFile,
         old: &Scene,
         unwrap: &UnwrapOptions,
         steps: &dyn Steps,
     ) -> Result<(), SessionError> {
-        let atlas = unwrapped(&self.scene, unwrap, &*steps.begin("unwrapping"));
+        let atlas = load_or_unwrap_atlas(&self.scene, unwrap, &*steps.begin("unwrapping"));
         let atlas = atlas.map_err(|error| atlas_error(&self.path, error))?;
         steps.begin("carrying paint over").check()?;
-        let (project, carried) = carried(project, old, &self.scene, &atlas)?;
-        self.warnings.insert(0, carried.told(&self.scene.path));
-        (self.project, self.carried) = (Some(project), Some(carried));
+        let (project, transferred) = transfer_paint(project, old, &self.scene, &atlas)?;
+        self.warnings.insert(0, transferred.summary(&self.scene.path));
+        (self.project, self.paint_transfer) = (Some(project), Some(transferred));
         Ok(())
     }
 }
@@ -92,31 +96,32 @@ impl Document {
     ///
     /// # Errors
     /// The scene cannot be read or unwrapped, or the work was cancelled.
-    pub(crate) fn follow(
+    pub(crate) fn reload(
         project: ProjectFile,
-        before: &[SceneCamera],
+        previous_cameras: &[SceneCamera],
         path: Option<PathBuf>,
         unwrap: &UnwrapOptions,
         steps: &dyn Steps,
     ) -> Result<Self, SessionError> {
-        let told = path.clone().unwrap_or_else(|| project.scene.clone());
-        let mut input = Input::open_project(&told, project, &VariantChoice::AsSaved, steps)?;
+        let display_path = path.clone().unwrap_or_else(|| project.scene.clone());
+        let mut input = Input::open_project(&display_path, project, &VariantChoice::AsSaved, steps)?;
         let shot = &input.camera;
-        let was = before.iter().find(|camera| is_from(shot, camera));
-        let is = was.and_then(|was| input.scene.cameras.iter().find(|camera| camera.name == was.name));
-        if let Some(camera) = is {
-            input.camera = camera_of(camera, shot);
+        let previous = previous_cameras.iter().find(|camera| matches_scene_camera(shot, camera));
+        let current = previous
+            .and_then(|previous| input.scene.cameras.iter().find(|camera| camera.name == previous.name));
+        if let Some(camera) = current {
+            input.camera = shot_camera_from(camera, shot);
         }
-        let mut document = Self::of(input, unwrap, steps)?;
+        let mut document = Self::from_input(input, unwrap, steps)?;
         (document.path, document.revision) = (path, 1);
         Ok(document)
     }
 }
 
 /// Whether a shot camera is as the scene's camera has it.
-fn is_from(shot: &Camera, camera: &SceneCamera) -> bool {
-    let own = camera_of(camera, shot);
+fn matches_scene_camera(shot: &Camera, camera: &SceneCamera) -> bool {
+    let from_scene = shot_camera_from(camera, shot);
     // The focus distance of a camera without one is a proposal.
-    Camera { focus_distance: shot.focus_distance, ..own.clone() } == *shot
+    Camera { focus_distance: shot.focus_distance, ..from_scene.clone() } == *shot
         && camera.lens.focus_distance.is_none_or(|distance| distance == shot.focus_distance)
 }

@@ -1,15 +1,17 @@
 //! What can be opened: a scene, a project or a light field, as the renderers need it.
 
-use super::capture_scene::{CaptureScene, PHOTOGRAPH, disparity_error_of, load_capture, photograph_camera};
+use super::capture_scene::{
+    CaptureScene, PHOTOGRAPH_PREFIX, capture_disparity_error, load_capture, parse_photograph_camera,
+};
 use super::disparity_error::DisparityError;
-use super::kept_atlas::unwrapped;
-use super::scene_camera::{camera_of, camera_of_any_unit};
+use super::kept_atlas::load_or_unwrap_atlas;
+use super::scene_camera::{shot_camera_from, shot_camera_in_any_unit};
 use super::stage::{Stage, atlas_error, load_variant};
 use super::variant_choice::VariantChoice;
-use crate::carrying::CarriedPaint;
+use crate::carrying::TransferredPaint;
 use crate::error::SessionError;
 use crate::jobs::Steps;
-use crate::light_field::{is_photographed, keep_photographs_at};
+use crate::light_field::{is_photographed, set_photograph_atlas};
 use atlas::{Atlas, UnwrapOptions};
 use focus::{Focus, FocusMap, FocusRecipe, RecipeEntry};
 use lens::{Camera, Exposure, FocusOffset};
@@ -58,7 +60,7 @@ pub struct Input {
     /// Whether something is missing that the file speaks of: photographs of a capture.
     pub is_incomplete: bool,
     /// How the project's paint came onto this surface, where it was painted on another.
-    pub carried: Option<CarriedPaint>,
+    pub paint_transfer: Option<TransferredPaint>,
 }
 
 /// A camera, as asked for.
@@ -85,7 +87,7 @@ pub enum InputKind {
 
 impl InputKind {
     /// What `path` seems to be; an error for a file that is none of them.
-    pub fn of(path: &Path) -> Result<Self, SessionError> {
+    pub fn from_path(path: &Path) -> Result<Self, SessionError> {
         let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
         if path.is_dir() {
             return Ok(Self::Capture);
@@ -94,13 +96,13 @@ impl InputKind {
             "glb" | "gltf" => Ok(Self::Scene),
             ProjectFile::EXTENSION | "recovery" => Ok(Self::Project),
             "salf" => Ok(Self::LightField),
-            _ if !path.exists() => Err(SessionError::bad(path, "no such file (check the path)")),
+            _ if !path.exists() => Err(SessionError::bad_file(path, "no such file (check the path)")),
             _ if capture::may_be_picture(path) => Ok(Self::Capture),
             _ => {
-                let known = format!(".glb, .gltf, .{} or .salf", ProjectFile::EXTENSION);
-                Err(SessionError::bad(
+                let extensions = format!(".glb, .gltf, .{} or .salf", ProjectFile::EXTENSION);
+                Err(SessionError::bad_file(
                     path,
-                    format!("neither scene, project nor light field (give a {known} file)"),
+                    format!("neither scene, project nor light field (give a {extensions} file)"),
                 ))
             }
         }
@@ -110,12 +112,16 @@ impl InputKind {
 impl Input {
     /// Opens `path`.
     pub fn open(path: &Path, steps: &dyn Steps) -> Result<Self, SessionError> {
-        Self::open_in(path, &VariantChoice::AsSaved, steps)
+        Self::open_variant(path, &VariantChoice::AsSaved, steps)
     }
 
     /// Opens `path` in a variant of its scene.
-    pub fn open_in(path: &Path, variant: &VariantChoice, steps: &dyn Steps) -> Result<Self, SessionError> {
-        match InputKind::of(path)? {
+    pub fn open_variant(
+        path: &Path,
+        variant: &VariantChoice,
+        steps: &dyn Steps,
+    ) -> Result<Self, SessionError> {
+        match InputKind::from_path(path)? {
             InputKind::Scene => Self::open_scene(path, variant, steps),
             InputKind::Project => Self::open_project(path, ProjectFile::load(path)?, variant, steps),
             InputKind::LightField => Self::open_light_field(path, variant, steps),
@@ -129,10 +135,10 @@ impl Input {
         choices: CaptureChoices,
         steps: &dyn Steps,
     ) -> Result<Self, SessionError> {
-        let read = load_capture(path, &choices, steps)?;
-        let CaptureScene { scene, camera, remarks: mut warnings, is_incomplete } = read;
-        warnings.extend(named(path, &scene.warnings));
-        let camera = camera.unwrap_or_else(|| camera_of_any_unit(&scene.cameras[0]));
+        let loaded = load_capture(path, &choices, steps)?;
+        let CaptureScene { scene, camera, remarks: mut warnings, is_incomplete } = loaded;
+        warnings.extend(prefix_with_path(path, &scene.warnings));
+        let camera = camera.unwrap_or_else(|| shot_camera_in_any_unit(&scene.cameras[0]));
         let input = Self::new(path, scene, camera, warnings);
         Ok(Self { capture: Some(choices), is_incomplete, ..input })
     }
@@ -142,9 +148,9 @@ impl Input {
     /// # Errors
     /// The views cannot be read, or `progress` says to stop.
     pub fn disparity_error(&self, progress: &dyn Progress) -> Result<Option<DisparityError>, SessionError> {
-        let of_project = self.project.as_ref().and_then(|project| project.capture.as_ref());
-        match (self.capture.as_ref().or(of_project), &self.scene.picture) {
-            (Some(choices), Some(_)) => disparity_error_of(&self.scene.path, choices, progress),
+        let project_choices = self.project.as_ref().and_then(|project| project.capture.as_ref());
+        match (self.capture.as_ref().or(project_choices), &self.scene.picture) {
+            (Some(choices), Some(_)) => capture_disparity_error(&self.scene.path, choices, progress),
             _ => Ok(None),
         }
     }
@@ -160,14 +166,14 @@ impl Input {
             capture: None,
             warnings,
             is_incomplete: false,
-            carried: None,
+            paint_transfer: None,
         }
     }
 
     fn open_scene(path: &Path, variant: &VariantChoice, steps: &dyn Steps) -> Result<Self, SessionError> {
         let scene = load_variant(path, variant.name(None), &*steps.begin("reading"))?;
-        let camera = camera_of(&scene.cameras[0], &Camera::default());
-        let warnings = named(path, &scene.warnings);
+        let camera = shot_camera_from(&scene.cameras[0], &Camera::default());
+        let warnings = prefix_with_path(path, &scene.warnings);
         Ok(Self::new(path, scene, camera, warnings))
     }
 
@@ -188,32 +194,32 @@ impl Input {
             )),
             SceneState::Missing => {
                 let what = format!("its scene {} is missing (put it back)", project.scene.display());
-                return Err(SessionError::bad(path, what));
+                return Err(SessionError::bad_file(path, what));
             }
         }
         if let Some(choices) = &project.capture {
-            let read = load_capture(&project.scene, choices, steps)?;
-            warnings.extend(read.remarks);
-            let is_incomplete = read.is_incomplete;
-            return Ok(Self { is_incomplete, ..Self::of_project(path, project, read.scene, warnings) });
+            let loaded = load_capture(&project.scene, choices, steps)?;
+            warnings.extend(loaded.remarks);
+            let is_incomplete = loaded.is_incomplete;
+            return Ok(Self { is_incomplete, ..Self::from_project(path, project, loaded.scene, warnings) });
         }
-        let load = |variant| load_variant(&project.scene, variant, &*steps.begin("reading"));
-        let scene = match load(variant.name(project.variant.as_deref())) {
+        let load_scene_variant = |variant| load_variant(&project.scene, variant, &*steps.begin("reading"));
+        let scene = match load_scene_variant(variant.name(project.variant.as_deref())) {
             Err(SceneError::Bad { file, fault: fault @ Fault::NoVariant { .. } })
                 if *variant == VariantChoice::AsSaved =>
             {
                 let instead = "it has its own materials instead, choose a variant before saving";
                 warnings.push(format!("{}: {fault}; {instead}", file.display()));
-                load(None)?
+                load_scene_variant(None)?
             }
             loaded => loaded?,
         };
-        Ok(Self::of_project(path, project, scene, warnings))
+        Ok(Self::from_project(path, project, scene, warnings))
     }
 
     /// A project whose scene was read.
-    fn of_project(path: &Path, project: ProjectFile, scene: Arc<Scene>, mut warnings: Vec<String>) -> Self {
-        warnings.extend(named(&project.scene, &scene.warnings));
+    fn from_project(path: &Path, project: ProjectFile, scene: Arc<Scene>, mut warnings: Vec<String>) -> Self {
+        warnings.extend(prefix_with_path(&project.scene, &scene.warnings));
         let camera = project.cameras[project.active_camera].camera.clone();
         let (back_faces, world) = (project.back_faces, project.world.clone());
         let mut input = Self { project: Some(project), ..Self::new(path, scene, camera, warnings) };
@@ -264,17 +270,20 @@ impl Input {
     ) -> Result<Self, SessionError> {
         let file = File::open(path).map_err(|error| SessionError::io(path, &error))?;
         let SalfFile { source, triangles, salf } =
-            SalfFile::read(BufReader::new(file)).map_err(|error| SessionError::bad(path, error))?;
-        let beside = path.parent().unwrap_or(Path::new("")).join(&source);
-        if InputKind::of(&beside).ok() == Some(InputKind::LightField) || !beside.exists() {
-            let what = format!("the scene it was baked from, {}, is missing (put it back)", beside.display());
-            return Err(SessionError::bad(path, what));
-        }
-        let baked_from = Self::open_in(&beside, variant, steps)?;
-        if baked_from.scene.triangles.len() != triangles as usize {
+            SalfFile::read(BufReader::new(file)).map_err(|error| SessionError::bad_file(path, error))?;
+        let source_path = path.parent().unwrap_or(Path::new("")).join(&source);
+        if InputKind::from_path(&source_path).ok() == Some(InputKind::LightField) || !source_path.exists() {
             let what =
-                format!("the scene it was baked from, {}, has changed since (bake again)", beside.display());
-            return Err(SessionError::bad(path, what));
+                format!("the scene it was baked from, {}, is missing (put it back)", source_path.display());
+            return Err(SessionError::bad_file(path, what));
+        }
+        let baked_from = Self::open_variant(&source_path, variant, steps)?;
+        if baked_from.scene.triangles.len() != triangles as usize {
+            let what = format!(
+                "the scene it was baked from, {}, has changed since (bake again)",
+                source_path.display()
+            );
+            return Err(SessionError::bad_file(path, what));
         }
         Ok(Self { path: path.into(), camera: salf.camera.clone(), salf: Some(salf), ..baked_from })
     }
@@ -286,24 +295,30 @@ impl Input {
             Some(CameraChoice::File(file)) => {
                 // A framing that was made up for a scene without a camera is nothing that a camera file counts on.
                 let is_invented =
-                    self.project.is_none() && self.salf.is_none() && self.scene.camera_is_invented;
+                    self.project.is_none() && self.salf.is_none() && self.scene.has_default_camera;
                 let defaults = if is_invented { &Camera::default() } else { &self.camera };
                 Ok(read_camera(file, defaults)?)
             }
             Some(CameraChoice::Named(name)) => {
                 let saved = self.project.iter().flat_map(|project| &project.cameras);
                 let mut saved = saved.filter(|named| named.name == *name).map(|named| named.camera.clone());
-                if let Some(name) = name.strip_prefix(PHOTOGRAPH) {
-                    let camera = photograph_camera(&self.scene, name, &self.camera);
-                    return camera.map_err(|what| SessionError::bad(&self.path, what));
+                if let Some(name) = name.strip_prefix(PHOTOGRAPH_PREFIX) {
+                    let camera = parse_photograph_camera(&self.scene, name, &self.camera);
+                    return camera.map_err(|what| SessionError::bad_file(&self.path, what));
                 }
                 let in_scene = || self.scene.cameras.iter().find(|camera| camera.name == *name);
-                saved.next().or_else(|| in_scene().map(|c| camera_of(c, &self.camera))).ok_or_else(|| {
-                    let names: Vec<_> =
-                        self.scene.cameras.iter().map(|c| format!("\"{}\"", c.name)).collect();
-                    let there_are = format!("there are {}; a camera file ends in .json", names.join(", "));
-                    SessionError::bad(&self.path, format!("no camera is called \"{name}\" ({there_are})"))
-                })
+                saved.next().or_else(|| in_scene().map(|c| shot_camera_from(c, &self.camera))).ok_or_else(
+                    || {
+                        let names: Vec<_> =
+                            self.scene.cameras.iter().map(|c| format!("\"{}\"", c.name)).collect();
+                        let available =
+                            format!("there are {}; a camera file ends in .json", names.join(", "));
+                        SessionError::bad_file(
+                            &self.path,
+                            format!("no camera is called \"{name}\" ({available})"),
+                        )
+                    },
+                )
             }
         }
     }
@@ -322,10 +337,10 @@ impl Input {
         steps: &dyn Steps,
     ) -> Result<Focus, SessionError> {
         let evaluated = |recipe: FocusRecipe, file: &Path| {
-            recipe.evaluate(&self.scene).map_err(|error| SessionError::bad(file, error))
+            recipe.evaluate(&self.scene).map_err(|error| SessionError::bad_file(file, error))
         };
         match file {
-            None => self.painted(unwrap, steps),
+            None => self.project_focus(unwrap, steps),
             Some(file) => match read_focus(file)? {
                 FocusFile::Recipe(recipe) => evaluated(recipe, file),
                 FocusFile::Map(map) if map.atlas_hash.is_none() => {
@@ -336,13 +351,13 @@ impl Input {
                 FocusFile::Map(map) => {
                     let atlas = self.atlas(unwrap, steps)?;
                     let map = map.into_atlas_map(file, &atlas)?;
-                    Ok(Focus::painted(self.scene.clone(), atlas, Arc::new(map)))
+                    Ok(Focus::from_atlas_map(self.scene.clone(), atlas, Arc::new(map)))
                 }
             },
         }
     }
 
-    fn painted(&self, unwrap: &UnwrapOptions, steps: &dyn Steps) -> Result<Focus, SessionError> {
+    fn project_focus(&self, unwrap: &UnwrapOptions, steps: &dyn Steps) -> Result<Focus, SessionError> {
         let scene = self.scene.clone();
         let Some(project) = &self.project else { return Ok(Focus::constant(scene, FocusOffset::STANDARD)) };
         match &project.focus_map {
@@ -353,17 +368,17 @@ impl Input {
             }
             Some(map) => {
                 let atlas = self.atlas(unwrap, steps)?;
-                self.check_fit(map, &atlas)?;
-                Ok(Focus::painted(scene, atlas, Arc::new(map.clone())))
+                self.check_map_size(map, &atlas)?;
+                Ok(Focus::from_atlas_map(scene, atlas, Arc::new(map.clone())))
             }
         }
     }
 
-    fn check_fit(&self, map: &FocusMap, atlas: &Atlas) -> Result<(), SessionError> {
+    fn check_map_size(&self, map: &FocusMap, atlas: &Atlas) -> Result<(), SessionError> {
         if map.size() == [atlas.width, atlas.height] {
             return Ok(());
         }
-        Err(SessionError::bad(
+        Err(SessionError::bad_file(
             &self.path,
             "its focus map does not fit its atlas (restore the file from a copy)",
         ))
@@ -376,39 +391,39 @@ impl Input {
         let stored = stored.filter(|_| self.scene.picture.is_none());
         let atlas = match stored {
             Some(bytes) => Atlas::from_bytes(bytes, &self.scene),
-            None => unwrapped(&self.scene, unwrap, &*steps.begin("unwrapping")),
+            None => load_or_unwrap_atlas(&self.scene, unwrap, &*steps.begin("unwrapping")),
         };
         Ok(Arc::new(atlas.map_err(|error| atlas_error(&self.path, error))?))
     }
 
     /// Has the light of photographs kept at the texels of the project's atlas, if it has one.
-    pub(crate) fn tell_atlas(&self, tracer: &Arc<Tracer>) -> Result<(), SessionError> {
+    pub(crate) fn set_photograph_atlas(&self, tracer: &Arc<Tracer>) -> Result<(), SessionError> {
         let stored = self.project.as_ref().and_then(|project| project.atlas.as_ref());
         if let Some(bytes) = stored.filter(|_| is_photographed(tracer)) {
             let atlas =
                 Atlas::from_bytes(bytes, &self.scene).map_err(|error| atlas_error(&self.path, error))?;
-            keep_photographs_at(tracer, &Arc::new(atlas));
+            set_photograph_atlas(tracer, &Arc::new(atlas));
         }
         Ok(())
     }
 
     /// Everything that painting needs, and the focus map.
-    pub(crate) fn stage(
+    pub(crate) fn prepare_stage(
         &self,
         unwrap: &UnwrapOptions,
         steps: &dyn Steps,
     ) -> Result<(Stage, FocusMap), SessionError> {
         let tracer = Arc::new(Tracer::new(self.scene.clone()));
         let project = self.project.as_ref();
-        let takes_a_while = self.scene.triangles.len() >= MANY_TRIANGLES;
+        let is_large = self.scene.triangles.len() >= LARGE_SCENE_TRIANGLES;
         let is_unwrapped = project.is_some_and(|project| project.atlas.is_some());
-        if takes_a_while && !is_unwrapped {
-            steps.seen(&tracer, &self.camera);
+        if is_large && !is_unwrapped {
+            steps.scene_ready(&tracer, &self.camera);
         }
         let atlas = self.atlas(unwrap, steps)?;
-        if takes_a_while && is_unwrapped {
-            keep_photographs_at(&tracer, &atlas);
-            steps.seen(&tracer, &self.camera);
+        if is_large && is_unwrapped {
+            set_photograph_atlas(&tracer, &atlas);
+            steps.scene_ready(&tracer, &self.camera);
         }
         let map = match project.and_then(|project| project.focus_map.clone()) {
             Some(map) => map,
@@ -418,8 +433,8 @@ impl Input {
                 map
             }
         };
-        self.check_fit(&map, &atlas)?;
-        let mut stage = Stage::of(tracer, atlas, &*steps.begin("preparing"))?;
+        self.check_map_size(&map, &atlas)?;
+        let mut stage = Stage::new(tracer, atlas, &*steps.begin("preparing"))?;
         let choices = project.and_then(|project| project.capture.as_ref()).or(self.capture.as_ref());
         stage.depth_strokes = choices.map(|choices| choices.depth_strokes.clone()).unwrap_or_default().into();
         Ok((stage, map))
@@ -427,9 +442,9 @@ impl Input {
 }
 
 /// So many are unwrapped in a second or two.
-const MANY_TRIANGLES: usize = 50_000;
+const LARGE_SCENE_TRIANGLES: usize = 50_000;
 
 /// Warnings that say whose they are.
-pub(crate) fn named(path: &Path, warnings: &[String]) -> Vec<String> {
+pub(crate) fn prefix_with_path(path: &Path, warnings: &[String]) -> Vec<String> {
     warnings.iter().map(|warning| format!("{}: {warning}", path.display())).collect()
 }

@@ -2,7 +2,7 @@
 
 use super::picture_scene::picture_atlas;
 use super::scene_hashes::surface_hash;
-use crate::kept_files::KeptFiles;
+use crate::kept_files::DiskCache;
 use atlas::{Atlas, AtlasError, UnwrapOptions};
 use progress::Progress;
 use scene::Scene;
@@ -10,13 +10,13 @@ use sha2::Digest;
 use std::time::{Duration, Instant};
 
 /// 28 bytes a triangle each.
-const FILES: KeptFiles = KeptFiles { name: "atlas", budget_bytes: 512 << 20 };
+const CACHE: DiskCache = DiskCache { name: "atlas", budget_bytes: 512 << 20 };
 
 /// What is unwrapped in less time is unwrapped again.
-const SHORTEST: Duration = Duration::from_secs(1);
+const MIN_CACHED_DURATION: Duration = Duration::from_secs(1);
 
 /// The atlas of a scene: that of its picture, the kept one, or the scene unwrapped.
-pub(crate) fn unwrapped(
+pub(crate) fn load_or_unwrap_atlas(
     scene: &Scene,
     options: &UnwrapOptions,
     progress: &dyn Progress,
@@ -24,20 +24,20 @@ pub(crate) fn unwrapped(
     if let Some(atlas) = picture_atlas(scene) {
         return Ok(atlas);
     }
-    let file = FILES.file(|hash| {
+    let file = CACHE.entry_path(|hash| {
         let UnwrapOptions { density, gutter, uv, child, deadline: _ } = options;
         hash.update(surface_hash(scene));
         hash.update(format!("{density:?} {gutter} {uv:?} {}", child.is_some()));
     });
-    let kept = file.as_ref().and_then(|file| FILES.read(file));
-    if let Some(atlas) = kept.and_then(|bytes| Atlas::from_bytes(&bytes, scene).ok()) {
+    let cached = file.as_ref().and_then(|file| CACHE.read(file));
+    if let Some(atlas) = cached.and_then(|bytes| Atlas::from_bytes(&bytes, scene).ok()) {
         return Ok(atlas);
     }
-    let begun = Instant::now();
+    let start = Instant::now();
     let atlas = Atlas::unwrap(scene, options, progress)?;
     // What did not go as asked may go another time, and is not stored.
-    if let Some(file) = file.filter(|_| begun.elapsed() >= SHORTEST && atlas.notes.is_empty()) {
-        FILES.write(&file, &atlas.to_bytes());
+    if let Some(file) = file.filter(|_| start.elapsed() >= MIN_CACHED_DURATION && atlas.notes.is_empty()) {
+        CACHE.write(&file, &atlas.to_bytes());
     }
     Ok(atlas)
 }

@@ -10,7 +10,7 @@ const SIDE_PX: usize = 240;
 
 /// A depth map that does not say which end is near, to be shown with either.
 #[derive(Clone, Debug, PartialEq)]
-pub struct NearQuestion {
+pub struct DepthPolarityRequest {
     /// The capture that was to be opened.
     pub capture: PathBuf,
     /// The map.
@@ -21,16 +21,17 @@ pub struct NearQuestion {
     pub nearness: Vec<f32>,
 }
 
-impl NearQuestion {
+impl DepthPolarityRequest {
     /// Reads the map again, for `capture`.
-    pub(crate) fn of(capture: PathBuf, map: PathBuf) -> Result<Self, SessionError> {
-        let read = read_depth_map(&map, None, Some(NearEnd::White), &LoadOptions::default())?;
-        let [width, height] = [read.width, read.height].map(|side| side as usize);
-        let by = width.max(height).div_ceil(SIDE_PX).max(1);
-        let size = [width.div_ceil(by), height.div_ceil(by)];
-        let at = |place: usize| read.values[place / size[0] * by * width + place % size[0] * by];
-        let known = |value: f32| if value.is_nan() { 0.0 } else { value.clamp(0.0, 1.0) };
-        let nearness = (0..size[0] * size[1]).map(|place| known(at(place))).collect();
+    pub(crate) fn from_map(capture: PathBuf, map: PathBuf) -> Result<Self, SessionError> {
+        let depth_map = read_depth_map(&map, None, Some(NearEnd::White), &LoadOptions::default())?;
+        let [width, height] = [depth_map.width, depth_map.height].map(|side| side as usize);
+        let stride = width.max(height).div_ceil(SIDE_PX).max(1);
+        let size = [width.div_ceil(stride), height.div_ceil(stride)];
+        let value_at =
+            |index: usize| depth_map.values[index / size[0] * stride * width + index % size[0] * stride];
+        let nearness_or_zero = |value: f32| if value.is_nan() { 0.0 } else { value.clamp(0.0, 1.0) };
+        let nearness = (0..size[0] * size[1]).map(|index| nearness_or_zero(value_at(index))).collect();
         Ok(Self { capture, map, size, nearness })
     }
 }

@@ -1,20 +1,20 @@
 //! What is open: the scene, its focus and its camera.
 
-use super::adjusted_view::AdjustedView;
-use super::capture_scene::camera_of_photograph;
-use super::input::{CameraChoice, Input, InputKind, named};
+use super::adjusted_view::AdjustmentView;
+use super::capture_scene::camera_from_photograph;
+use super::input::{CameraChoice, Input, InputKind, prefix_with_path};
 use super::picking::SurfaceHit;
-use super::scene_camera::camera_of;
+use super::scene_camera::shot_camera_from;
 use super::stage::Stage;
-use super::undo::{HistoryStep, Undo};
+use super::undo::{HistoryStep, UndoHistory};
 use super::variant_choice::VariantChoice;
-use crate::carrying::CarriedPaint;
+use crate::carrying::TransferredPaint;
 use crate::error::{SessionError, file_name};
 use crate::jobs::Steps;
 use atlas::UnwrapOptions;
 use focus::{
-    Brush, Changed, FocusMap, FocusRecipe, LayerStack, LensMotion, RecipeEntry, Selection, SelectionResult,
-    Thumbnail,
+    Brush, ChangedTexels, EditThumbnail, FocusMap, FocusRecipe, LayerStack, LensMotion, RecipeEntry,
+    Selection, SelectionResult,
 };
 use lens::{Camera, Exposure, FocusOffset};
 use project::{CaptureChoices, FocusFile, NamedCamera, ProjectFile, TexelSet, WorldFile};
@@ -25,7 +25,7 @@ use std::sync::Arc;
 
 /// What a new document begins with.
 #[derive(Clone, Debug, Default)]
-pub struct Beginning<'a> {
+pub struct NewDocumentOptions<'a> {
     /// The camera; without one the scene's first.
     pub camera: Option<&'a CameraChoice>,
     /// A recipe or a focus map; without one the ordinary lens.
@@ -67,23 +67,23 @@ pub struct Document {
     pub warnings: Vec<String>,
     /// How the paint came onto this surface, where it was painted on another. The step can be taken back; the project that it comes
     /// from stays as it is.
-    pub carried: Option<CarriedPaint>,
+    pub paint_transfer: Option<TransferredPaint>,
     /// The view that the adjustment layers were evaluated for.
-    pub(crate) adjusted_for: AdjustedView,
+    pub(crate) adjustment_view: AdjustmentView,
     /// What is saved beside the fields above.
     template: ProjectFile,
     /// Steps of undo and redo.
-    pub(crate) undo: Undo,
+    pub(crate) undo: UndoHistory,
     /// The map after the latest step.
-    pictured: FocusMap,
+    thumbnail_base: FocusMap,
     /// Counts changes of what is saved.
     pub(crate) revision: u64,
     /// The revision that the project file holds.
-    pub(crate) saved: u64,
+    pub(crate) saved_revision: u64,
 }
 
 /// What the saved camera of a new document is called.
-const SHOT: &str = "shot";
+const SHOT_CAMERA_NAME: &str = "shot";
 
 impl Document {
     /// Memory that steps of undo may keep alive unless told otherwise.
@@ -92,11 +92,11 @@ impl Document {
     /// Opens a scene or a project. Work that was not saved when the program last ended is restored: the document
     /// is then unsaved, and its warnings say so.
     pub fn open(path: &Path, unwrap: &UnwrapOptions, steps: &dyn Steps) -> Result<Self, SessionError> {
-        let kind = InputKind::of(path)?;
+        let kind = InputKind::from_path(path)?;
         if kind == InputKind::LightField {
             let what =
                 "a light field has no surface to paint on (open the scene or project it was baked from)";
-            return Err(SessionError::bad(path, what));
+            return Err(SessionError::bad_file(path, what));
         }
         let is_project = kind == InputKind::Project;
         let recovery = recovery_path(path, is_project);
@@ -106,8 +106,8 @@ impl Document {
             Some(project) => Input::open_project(path, project, &VariantChoice::AsSaved, steps)?,
             None => Input::open(path, steps)?,
         };
-        let mut document = Self::of(input, unwrap, steps)?;
-        document.path = (is_project && document.carried.is_none()).then(|| path.into());
+        let mut document = Self::from_input(input, unwrap, steps)?;
+        document.path = (is_project && document.paint_transfer.is_none()).then(|| path.into());
         if is_recovered {
             document.note_recovery(path);
         }
@@ -125,7 +125,7 @@ impl Document {
         let recovered = project::find_recovery(&recovery_path(&template.scene, false), None);
         let is_recovered = recovered.is_some();
         let input = Input::open_project(path, recovered.unwrap_or(template), &VariantChoice::AsSaved, steps)?;
-        let mut document = Self::of(input, unwrap, steps)?;
+        let mut document = Self::from_input(input, unwrap, steps)?;
         if is_recovered {
             document.note_recovery(path);
         }
@@ -135,46 +135,46 @@ impl Document {
     /// Opens a project as it was saved, whatever was left unsaved.
     pub fn open_saved(path: &Path, unwrap: &UnwrapOptions, steps: &dyn Steps) -> Result<Self, SessionError> {
         let input = Input::open_project(path, ProjectFile::load(path)?, &VariantChoice::AsSaved, steps)?;
-        let document = Self::of(input, unwrap, steps)?;
-        Ok(Self { path: document.carried.is_none().then(|| path.into()), ..document })
+        let document = Self::from_input(input, unwrap, steps)?;
+        Ok(Self { path: document.paint_transfer.is_none().then(|| path.into()), ..document })
     }
 
     /// Begins a document of a scene.
-    pub fn begin(
+    pub fn create(
         scene: &Path,
-        beginning: &Beginning<'_>,
+        options: &NewDocumentOptions<'_>,
         unwrap: &UnwrapOptions,
         steps: &dyn Steps,
     ) -> Result<Self, SessionError> {
-        if InputKind::of(scene)? != InputKind::Scene {
-            return Err(SessionError::bad(scene, "is no scene (give a .glb or .gltf)"));
+        if InputKind::from_path(scene)? != InputKind::Scene {
+            return Err(SessionError::bad_file(scene, "is no scene (give a .glb or .gltf)"));
         }
-        let mut input = Input::open_in(scene, &beginning.variant, steps)?;
-        if let Some(project) = beginning.paint_from {
-            input.take_paint_of(project, unwrap, steps)?;
+        let mut input = Input::open_variant(scene, &options.variant, steps)?;
+        if let Some(project) = options.paint_from {
+            input.import_paint_from(project, unwrap, steps)?;
         }
-        Self::begin_with(input, beginning, unwrap, steps)
+        Self::create_from_input(input, options, unwrap, steps)
     }
 
     /// Begins a document of a scene or capture that was read.
-    pub fn begin_with(
+    pub fn create_from_input(
         input: Input,
-        beginning: &Beginning<'_>,
+        options: &NewDocumentOptions<'_>,
         unwrap: &UnwrapOptions,
         steps: &dyn Steps,
     ) -> Result<Self, SessionError> {
-        let camera = input.camera(beginning.camera)?;
-        let mut document = Self::of(input, unwrap, steps)?;
+        let camera = input.camera(options.camera)?;
+        let mut document = Self::from_input(input, unwrap, steps)?;
         document.camera = camera;
-        if let Some(focus) = beginning.focus {
-            document.map = document.imported_focus(focus)?;
-            document.layers = LayerStack::of(document.map.clone());
+        if let Some(focus) = options.focus {
+            document.map = document.load_focus_file(focus)?;
+            document.layers = LayerStack::from_map(document.map.clone());
         }
         Ok(document)
     }
 
     /// The focus map that a recipe or a focus map gives this document.
-    pub(crate) fn imported_focus(&self, path: &Path) -> Result<FocusMap, SessionError> {
+    pub(crate) fn load_focus_file(&self, path: &Path) -> Result<FocusMap, SessionError> {
         let stage = &self.stage;
         let recipe = match project::read_focus(path)? {
             FocusFile::Map(map) if map.atlas_hash.is_some() => {
@@ -187,16 +187,16 @@ impl Document {
             },
             FocusFile::Recipe(recipe) => recipe,
         };
-        let focus = recipe.evaluate(&stage.scene).map_err(|error| SessionError::bad(path, error))?;
+        let focus = recipe.evaluate(&stage.scene).map_err(|error| SessionError::bad_file(path, error))?;
         Ok(focus.bake(&stage.texels))
     }
 
     /// Takes up what is odd about another variant of the scene; returns what is told for the first time.
-    pub(crate) fn note_warnings_of(&mut self, scene: &Scene) -> Vec<String> {
-        let mut warned = named(&scene.path, &scene.warnings);
-        warned.retain(|warning| !self.warnings.contains(warning));
-        self.warnings.extend_from_slice(&warned);
-        warned
+    pub(crate) fn add_warnings_of(&mut self, scene: &Scene) -> Vec<String> {
+        let mut new_warnings = prefix_with_path(&scene.path, &scene.warnings);
+        new_warnings.retain(|warning| !self.warnings.contains(warning));
+        self.warnings.extend_from_slice(&new_warnings);
+        new_warnings
     }
 
     fn note_recovery(&mut self, path: &Path) {
@@ -205,13 +205,13 @@ impl Document {
         self.warnings.push(format!("{}: {what}", path.display()));
     }
 
-    pub(super) fn of(
+    pub(super) fn from_input(
         mut input: Input,
         unwrap: &UnwrapOptions,
         steps: &dyn Steps,
     ) -> Result<Self, SessionError> {
-        input.follow_surface(unwrap, steps)?;
-        let (stage, map) = input.stage(unwrap, steps)?;
+        input.transfer_paint_if_changed(unwrap, steps)?;
+        let (stage, map) = input.prepare_stage(unwrap, steps)?;
         let stored = input.project.as_ref().and_then(|project| project.layers.clone());
         let (layers, map) = match stored {
             Some(mut layers) => {
@@ -219,12 +219,12 @@ impl Document {
                 let map = layers.composite();
                 (layers, map)
             }
-            None => (LayerStack::of(map.clone()), map),
+            None => (LayerStack::from_map(map.clone()), map),
         };
         let template = match &input.project {
             Some(project) => project.clone(),
             None => {
-                let shot = NamedCamera { name: SHOT.into(), camera: input.camera.clone() };
+                let shot_camera = NamedCamera { name: SHOT_CAMERA_NAME.into(), camera: input.camera.clone() };
                 let (low, high) = input.scene.bounds();
                 let radius = brush_radius(&input.camera, (high - low).length());
                 let mut brush = Brush { radius, ..Brush::default() };
@@ -233,24 +233,24 @@ impl Document {
                     brush.normal_limit_degrees = 180.0;
                 }
                 let capture = input.capture.clone();
-                ProjectFile { brush, capture, ..ProjectFile::new(&input.scene.path, vec![shot])? }
+                ProjectFile { brush, capture, ..ProjectFile::new(&input.scene.path, vec![shot_camera])? }
             }
         };
-        let selection = template.selection.as_ref().and_then(|saved| selected_of(&stage, saved));
-        let mut undo = Undo::new(Self::UNDO_BUDGET_BYTES);
-        if input.carried.is_some() {
+        let selection = template.selection.as_ref().and_then(|saved| selection_from_texels(&stage, saved));
+        let mut undo = UndoHistory::new(Self::UNDO_BUDGET_BYTES);
+        if input.paint_transfer.is_some() {
             let [width, height] = map.size();
             let mut blank = FocusMap::new(width, height, FocusOffset::STANDARD);
             blank.background = map.background;
-            undo.push_layers("Carry paint over", LayerStack::of(blank), layers.clone(), None);
+            undo.push_layers("Carry paint over", LayerStack::from_map(blank), layers.clone(), None);
         }
         Ok(Self {
             depth_strokes: stage.depth_strokes.clone(),
             stage: Arc::new(stage),
             layers,
-            pictured: map.clone(),
+            thumbnail_base: map.clone(),
             map,
-            adjusted_for: AdjustedView::of(&input.camera),
+            adjustment_view: AdjustmentView::from_camera(&input.camera),
             camera: input.camera.clone(),
             lens_motion: template.lens_motion.clone(),
             seconds: 0.0,
@@ -262,9 +262,9 @@ impl Document {
             template,
             undo,
             selection,
-            revision: u64::from(input.carried.is_some()),
-            carried: input.carried,
-            saved: 0,
+            revision: u64::from(input.paint_transfer.is_some()),
+            paint_transfer: input.paint_transfer,
+            saved_revision: 0,
         })
     }
 
@@ -277,44 +277,46 @@ impl Document {
         project.exposure = self.exposure;
         project.back_faces = scene.back_faces;
         project.variant = scene.variant.clone();
-        project.world = scene.world.as_ref().map(|world| WorldFile::of(world, scene));
+        project.world = scene.world.as_ref().map(|world| WorldFile::from_world(world, scene));
         project.brush = self.brush.clone();
         project.view = self.view.clone();
-        project.capture = self.capture();
+        project.capture = self.capture_choices();
         // That of a picture follows from it, and its depth may be repaired further than the stage's.
         project.atlas = scene.picture.is_none().then(|| self.stage.atlas.to_bytes());
         project.surface = scene.picture.is_none().then(|| self.stage.surface_bytes().to_vec());
         project.background_focus = self.map.background;
         project.focus_map = Some(self.map.clone());
-        project.selection = self.selection.as_ref().map(|selection| saved(&self.stage, selection));
-        project.layers = (!self.layers.is_single()).then(|| self.layers.clone());
+        project.selection =
+            self.selection.as_ref().map(|selection| selection_to_texels(&self.stage, selection));
+        project.layers = (!self.layers.is_single_painted_layer()).then(|| self.layers.clone());
         project
     }
 
     /// Of a capture, what of it was chosen.
-    pub(crate) fn capture(&self) -> Option<CaptureChoices> {
+    pub(crate) fn capture_choices(&self) -> Option<CaptureChoices> {
         let choices = self.template.capture.clone();
         choices.map(|choices| CaptureChoices { depth_strokes: (*self.depth_strokes).clone(), ..choices })
     }
 
     /// Takes up another surface in the same atlas, on which paint and selections stay where they are.
-    pub(crate) fn take_surface(&mut self, stage: Stage) {
+    pub(crate) fn replace_surface(&mut self, stage: Stage) {
         let before = std::mem::replace(&mut self.stage, Arc::new(stage));
         let after = self.stage.clone();
-        let moved = |selection: &Selection| selected_of(&after, &saved(&before, selection));
-        self.selection = self.selection.as_ref().and_then(moved);
-        self.undo.map_selections(moved);
+        let remap_selection =
+            |selection: &Selection| selection_from_texels(&after, &selection_to_texels(&before, selection));
+        self.selection = self.selection.as_ref().and_then(remap_selection);
+        self.undo.map_selections(remap_selection);
         for index in 0..self.layers.layers().len() {
             if let Some(layer) = self.layers.layer_mut(index) {
                 after.canvas.dilate(&mut layer.map);
             }
         }
-        self.adjust();
+        self.evaluate_adjustments();
     }
 
     /// Brings the map up to date after `changed` texels of any layer have changed, or after any change (`None`).
     /// Returns what changed in the map, and whether the background's focus did.
-    pub(crate) fn recomposite(&mut self, changed: Option<&Changed>) -> (Changed, bool) {
+    pub(crate) fn recomposite(&mut self, changed: Option<&ChangedTexels>) -> (ChangedTexels, bool) {
         let background = self.map.background;
         let changed = match changed {
             Some(changed) => self.layers.recomposite(&mut self.map, changed),
@@ -341,7 +343,7 @@ impl Document {
 
     /// Whether the project file (or, before the first save, the scene as opened) differs from what is open.
     pub fn is_unsaved(&self) -> bool {
-        self.revision != self.saved
+        self.revision != self.saved_revision
     }
 
     /// What to call it: the project's file name, else the scene's.
@@ -365,20 +367,20 @@ impl Document {
     }
 
     /// Adds a picture of what it changed to the step that was just taken, if it was of paint.
-    pub(crate) fn picture_step(&mut self) {
-        self.undo.picture(Thumbnail::between(&self.pictured, &self.map));
-        self.pictured = self.map.clone();
+    pub(crate) fn add_step_thumbnail(&mut self) {
+        self.undo.set_thumbnail(EditThumbnail::from_difference(&self.thumbnail_base, &self.map));
+        self.thumbnail_base = self.map.clone();
     }
 
     /// Brings adjustment layers up to date with the shot camera.
-    pub(crate) fn adjust(&mut self) {
-        self.adjusted_for = AdjustedView::of(&self.camera);
+    pub(crate) fn evaluate_adjustments(&mut self) {
+        self.adjustment_view = AdjustmentView::from_camera(&self.camera);
         self.layers.evaluate(&self.stage.canvas, &self.camera);
     }
 
     /// A step was taken back, or done again.
-    pub(crate) fn stepped(&mut self) {
-        self.pictured = self.map.clone();
+    pub(crate) fn reset_thumbnail_base(&mut self) {
+        self.thumbnail_base = self.map.clone();
     }
 
     /// All that can be undone, oldest first.
@@ -395,8 +397,8 @@ impl Document {
     pub fn scene_cameras(&self) -> impl Iterator<Item = (&str, Camera)> {
         let scene = &self.stage.scene;
         let cameras = scene.cameras.iter();
-        let cameras = cameras.map(|camera| (camera.name.as_str(), camera_of(camera, &self.camera)));
-        let names = scene.photographs().map(|view| view.name.as_str());
+        let cameras = cameras.map(|camera| (camera.name.as_str(), shot_camera_from(camera, &self.camera)));
+        let names = scene.all_views().map(|view| view.name.as_str());
         cameras.chain(names.zip(self.photograph_cameras()))
     }
 
@@ -404,30 +406,30 @@ impl Document {
     /// aperture.
     pub fn photograph_cameras(&self) -> impl Iterator<Item = Camera> {
         let scene = &self.stage.scene;
-        scene.photographs().map(|view| Camera {
+        scene.all_views().map(|view| Camera {
             aperture_radius: self.camera.aperture_radius,
-            ..camera_of_photograph(self.stage.bounds, view, &self.camera)
+            ..camera_from_photograph(self.stage.bounds, view, &self.camera)
         })
     }
 
     /// The photograph that the camera looks through, if it is that of one.
     pub fn photograph(&self) -> Option<&View> {
         let scene = &self.stage.scene;
-        let mut views = scene.photographs();
+        let mut views = scene.all_views();
         views.find(|view| view.camera_to_world == self.camera.camera_to_world)
     }
 }
 
 /// A selection by the places of its texels.
-fn saved(stage: &Stage, selection: &Selection) -> TexelSet {
+fn selection_to_texels(stage: &Stage, selection: &Selection) -> TexelSet {
     let texels = stage.canvas.texels().iter().enumerate();
-    let chosen = texels.filter(|(index, _)| selection.contains(*index));
-    TexelSet::new([stage.atlas.width, stage.atlas.height], chosen.map(|(_, texel)| [texel.x, texel.y]))
+    let selected = texels.filter(|(index, _)| selection.contains(*index));
+    TexelSet::new([stage.atlas.width, stage.atlas.height], selected.map(|(_, texel)| [texel.x, texel.y]))
 }
 
 /// The selection that a project kept; none where it chose nothing, or everything.
-fn selected_of(stage: &Stage, saved: &TexelSet) -> Option<Selection> {
-    match Selection::of(&stage.canvas, |texel| saved.contains([texel.x, texel.y])) {
+fn selection_from_texels(stage: &Stage, saved: &TexelSet) -> Option<Selection> {
+    match Selection::from_predicate(&stage.canvas, |texel| saved.contains([texel.x, texel.y])) {
         SelectionResult::Some(selection) => Some(selection),
         SelectionResult::Nothing | SelectionResult::Everything => None,
     }
@@ -440,7 +442,7 @@ fn recovery_path(file: &Path, is_project: bool) -> PathBuf {
 /// An eighth of half the picture's height where the lens focuses, but at most a twentieth of the scene; the brush's
 /// default for a scene that is a point.
 fn brush_radius(camera: &Camera, diagonal: f64) -> f64 {
-    let seen = camera.focus_distance * (camera.yfov / 2.0).tan() / 8.0;
-    let radius = seen.min(diagonal / 20.0);
+    let half_height_share = camera.focus_distance * (camera.yfov / 2.0).tan() / 8.0;
+    let radius = half_height_share.min(diagonal / 20.0);
     if radius > 0.0 && radius.is_finite() { radius } else { Brush::default().radius }
 }

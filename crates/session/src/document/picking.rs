@@ -33,13 +33,13 @@ pub fn pick(tracer: &Tracer, ray: &Ray) -> Option<SurfaceHit> {
 }
 
 /// How far ahead of a camera is what it sees in the direction of a place in the world; none where no surface is.
-pub(crate) fn depth_toward(tracer: &Tracer, camera: &Camera, place: DVec3) -> Option<f64> {
-    let seen = camera.camera_from_world(place);
-    if seen.z <= 0.0 {
+pub(crate) fn depth_in_direction(tracer: &Tracer, camera: &Camera, position: DVec3) -> Option<f64> {
+    let camera_space = camera.camera_from_world(position);
+    if camera_space.z <= 0.0 {
         return None;
     }
-    let pixel = camera.pixel_from_q(camera.optics().chief(seen));
-    let hit = tracer.first_hit(&Ray::of_pinhole(camera, DVec2::ZERO, pixel))?;
+    let pixel = camera.pixel_from_q(camera.optics().chief(camera_space));
+    let hit = tracer.first_hit(&Ray::pinhole(camera, DVec2::ZERO, pixel))?;
     Some(camera.camera_from_world(hit.point.position(tracer.scene())).z)
 }
 
@@ -47,7 +47,7 @@ pub(crate) fn depth_toward(tracer: &Tracer, camera: &Camera, place: DVec3) -> Op
 /// resolution. Its direction has depth 1, so that t along it is axial depth.
 pub fn chief_ray(camera: &Camera, position: DVec2) -> Ray {
     let size = DVec2::new(camera.width as f64, camera.height as f64);
-    Ray::of_pinhole(camera, DVec2::ZERO, position * size)
+    Ray::pinhole(camera, DVec2::ZERO, position * size)
 }
 
 /// The ray of a position in a view: (0, 0) the upper left corner, (1, 1) the lower right. Its direction has depth 1.
@@ -63,7 +63,7 @@ mod tests {
     #[test]
     fn the_picture_seen_as_a_view_has_the_same_rays() {
         let camera = Camera { width: 321, height: 200, yfov: 0.9, ..Camera::default() };
-        let view = ViewFrame::of(&camera);
+        let view = ViewFrame::from_camera(&camera);
         for position in [DVec2::ZERO, DVec2::new(0.3, 0.9), DVec2::ONE] {
             let (a, b) = (chief_ray(&camera, position), view_ray(&view, position));
             assert!(a.origin == b.origin && a.direction.distance(b.direction) < 1e-12);

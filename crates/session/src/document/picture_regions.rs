@@ -12,11 +12,11 @@ const SPECK_PX: f32 = 64.0;
 
 /// The region of each triangle, counted from 0 in order of the first triangle of each; and how many there are. `corners`: of triangles, in
 /// pixels of the texture.
-pub(super) fn regions(scene: &Scene, corners: &[[glam::Vec2; 3]]) -> (Vec<u32>, usize) {
-    let mut sets = Sets::new(scene.positions.len());
-    let mut at: HashMap<[u64; 3], usize> = HashMap::with_capacity(scene.positions.len());
+pub(super) fn triangle_regions(scene: &Scene, corners: &[[glam::Vec2; 3]]) -> (Vec<u32>, usize) {
+    let mut sets = DisjointSets::new(scene.positions.len());
+    let mut vertex_at_position: HashMap<[u64; 3], usize> = HashMap::with_capacity(scene.positions.len());
     for (vertex, position) in scene.positions.iter().enumerate() {
-        let first = *at.entry(key(*position)).or_insert(vertex);
+        let first = *vertex_at_position.entry(position_key(*position)).or_insert(vertex);
         sets.join(first, vertex);
     }
     for triangle in &scene.triangles {
@@ -24,11 +24,11 @@ pub(super) fn regions(scene: &Scene, corners: &[[glam::Vec2; 3]]) -> (Vec<u32>, 
         sets.join(a, b);
         sets.join(b, c);
     }
-    let mut of_triangle: Vec<usize> =
+    let mut roots: Vec<usize> =
         scene.triangles.iter().map(|triangle| sets.root(triangle.vertices[0] as usize)).collect();
-    absorb_specks(&mut of_triangle, corners);
+    absorb_specks(&mut roots, corners);
     let mut numbers: HashMap<usize, u32> = HashMap::new();
-    let numbered = of_triangle.into_iter().map(|root| {
+    let numbered = roots.into_iter().map(|root| {
         let next = numbers.len() as u32;
         *numbers.entry(root).or_insert(next)
     });
@@ -37,59 +37,59 @@ pub(super) fn regions(scene: &Scene, corners: &[[glam::Vec2; 3]]) -> (Vec<u32>, 
 }
 
 /// Positions that are the same, bit for bit, but for the sign of zero.
-fn key(position: DVec3) -> [u64; 3] {
+fn position_key(position: DVec3) -> [u64; 3] {
     position.to_array().map(|x| (x + 0.0).to_bits())
 }
 
 /// Gives specks the region that most of what is around them in the picture has.
-fn absorb_specks(of_triangle: &mut [usize], corners: &[[glam::Vec2; 3]]) {
+fn absorb_specks(regions: &mut [usize], corners: &[[glam::Vec2; 3]]) {
     let mut area: HashMap<usize, f32> = HashMap::new();
-    for (region, [a, b, c]) in of_triangle.iter().zip(corners) {
+    for (region, [a, b, c]) in regions.iter().zip(corners) {
         *area.entry(*region).or_default() += 0.5 * (*b - *a).perp_dot(*c - *a).abs();
     }
     let is_speck = |region: &usize| area[region] < SPECK_PX;
     // Cells of the picture that large regions have a corner in: where specks look around themselves.
     let cell = |corner: &glam::Vec2| [corner.x.round() as i32, corner.y.round() as i32];
-    let mut beside: HashMap<[i32; 2], usize> = HashMap::new();
-    for (region, corners) in of_triangle.iter().zip(corners).filter(|(region, _)| !is_speck(region)) {
-        beside.extend(corners.iter().map(|corner| (cell(corner), *region)));
+    let mut region_at_cell: HashMap<[i32; 2], usize> = HashMap::new();
+    for (region, corners) in regions.iter().zip(corners).filter(|(region, _)| !is_speck(region)) {
+        region_at_cell.extend(corners.iter().map(|corner| (cell(corner), *region)));
     }
     let mut votes: HashMap<usize, HashMap<usize, u32>> = HashMap::new();
-    for (region, corners) in of_triangle.iter().zip(corners).filter(|(region, _)| is_speck(region)) {
+    for (region, corners) in regions.iter().zip(corners).filter(|(region, _)| is_speck(region)) {
         for [x, y] in corners.iter().map(cell) {
             let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| [x + dx, y + dy]));
-            for other in around.filter_map(|place| beside.get(&place)) {
+            for other in around.filter_map(|place| region_at_cell.get(&place)) {
                 *votes.entry(*region).or_default().entry(*other).or_default() += 1;
             }
         }
     }
-    let most = |votes: &HashMap<usize, u32>| {
+    let most_votes = |votes: &HashMap<usize, u32>| {
         votes
             .iter()
             .max_by_key(|(region, count)| (**count, std::cmp::Reverse(**region)))
             .map(|(region, _)| *region)
     };
-    let taken: HashMap<usize, usize> =
-        votes.iter().filter_map(|(speck, votes)| Some((*speck, most(votes)?))).collect();
-    for region in of_triangle {
-        *region = taken.get(region).copied().unwrap_or(*region);
+    let reassigned: HashMap<usize, usize> =
+        votes.iter().filter_map(|(speck, votes)| Some((*speck, most_votes(votes)?))).collect();
+    for region in regions {
+        *region = reassigned.get(region).copied().unwrap_or(*region);
     }
 }
 
 /// Disjoint sets of numbers (union by the least, paths halved).
-struct Sets(Vec<usize>);
+struct DisjointSets(Vec<usize>);
 
-impl Sets {
+impl DisjointSets {
     fn new(count: usize) -> Self {
         Self((0..count).collect())
     }
 
-    fn root(&mut self, mut of: usize) -> usize {
-        while self.0[of] != of {
-            self.0[of] = self.0[self.0[of]];
-            of = self.0[of];
+    fn root(&mut self, mut element: usize) -> usize {
+        while self.0[element] != element {
+            self.0[element] = self.0[self.0[element]];
+            element = self.0[element];
         }
-        of
+        element
     }
 
     fn join(&mut self, a: usize, b: usize) {

@@ -12,7 +12,7 @@
 //! | f | focal length | px |
 //! | x, y, z | position to the right, upward, ahead of the camera | scene units |
 
-use super::picture_regions::regions;
+use super::picture_regions::triangle_regions;
 use atlas::Atlas;
 use glam::{DMat4, DVec3, Mat3, Vec2};
 use lens::Camera;
@@ -49,19 +49,19 @@ impl PictureSpace {
 }
 
 /// Distances where nothing is known of them: what is nearest is one unit away, what is farthest five.
-pub(super) const NEAREST: f64 = 1.0;
-const FARTHEST: f64 = 5.0;
+pub(super) const NEAREST_DISTANCE: f64 = 1.0;
+const FARTHEST_DISTANCE: f64 = 5.0;
 
 /// The space of disparities in a range, low to high, of which neither scale nor offset is known.
-pub(super) fn uncalibrated([low, high]: [f64; 2], focal_px: f64) -> PictureSpace {
+pub(super) fn uncalibrated_space([low, high]: [f64; 2], focal_px: f64) -> PictureSpace {
     // A picture of one depth is a plane at the nearest distance.
     let range = if high > low { high - low } else { 1.0 };
-    let scale = range / (1.0 / NEAREST - 1.0 / FARTHEST);
-    PictureSpace { focal_px, scale, offset: scale / NEAREST - high }
+    let scale = range / (1.0 / NEAREST_DISTANCE - 1.0 / FARTHEST_DISTANCE);
+    PictureSpace { focal_px, scale, offset: scale / NEAREST_DISTANCE - high }
 }
 
 /// What a surface is called, and what it is from.
-pub(super) struct Named<'a> {
+pub(super) struct SurfaceSource<'a> {
     pub name: &'a str,
     pub path: &'a Path,
     /// See [`PictureTexture::origin`].
@@ -69,46 +69,47 @@ pub(super) struct Named<'a> {
 }
 
 /// The picture that a surface was made from, which it may be coarser than.
-pub(super) struct Shown<'a> {
+pub(super) struct SourcePicture<'a> {
     /// Linear RGB, row by row.
     pub pixels: &'a [[f32; 3]],
     /// Columns and rows.
     pub size: [usize; 2],
     /// Pixels that a cell of the surface is wide and high; the last ones may reach beyond the picture.
-    pub by: usize,
+    pub cell_px: usize,
 }
 
-impl Shown<'_> {
+impl SourcePicture<'_> {
     /// Columns and rows, in cells.
-    fn cells(&self) -> Vec2 {
-        Vec2::new(self.size[0] as f32, self.size[1] as f32) / self.by as f32
+    fn size_in_cells(&self) -> Vec2 {
+        Vec2::new(self.size[0] as f32, self.size[1] as f32) / self.cell_px as f32
     }
 }
 
 /// The scene of a surface, `space` in its cells. `focus` is the disparity that the camera focuses on.
 pub(super) fn picture_scene(
     relief: &Relief,
-    shown: &Shown<'_>,
+    source_picture: &SourcePicture<'_>,
     space: &PictureSpace,
-    named: &Named<'_>,
-    focus: f64,
+    source: &SurfaceSource<'_>,
+    focus_disparity: f64,
 ) -> Scene {
     let [width, height] = relief.size;
-    let behind = height + PictureTexture::GUTTER as usize;
-    let rows = height + (TEXTURE_LAYERS - 1) * behind;
+    let layer_stride_rows = height + PictureTexture::GUTTER as usize;
+    let rows = height + (TEXTURE_LAYERS - 1) * layer_stride_rows;
     let margin = relief.margin as f32;
-    let middle = shown.cells() / 2.0;
+    let center = source_picture.size_in_cells() / 2.0;
     let position = |place: Vec2, disparity: f32| {
         let z = 1.0 / space.inverse_depth(f64::from(disparity));
-        let aside = ((place - middle).as_dvec2() * z) / space.focal_px;
-        DVec3::new(aside.x, -aside.y, -z)
+        let lateral = ((place - center).as_dvec2() * z) / space.focal_px;
+        DVec3::new(lateral.x, -lateral.y, -z)
     };
     let uv = |place: Vec2, layer: u8| {
-        let (column, row) = (place.x + margin, place.y + margin + f32::from(layer) * behind as f32);
+        let (column, row) =
+            (place.x + margin, place.y + margin + f32::from(layer) * layer_stride_rows as f32);
         Vec2::new(column / width as f32, row / rows as f32)
     };
     let positions = relief.vertices.iter().map(|vertex| position(vertex.place, vertex.disparity)).collect();
-    let (image, brightest) = image(relief, shown, behind, rows);
+    let (image, brightest) = texture_image(relief, source_picture, layer_stride_rows, rows);
     let texture = TextureRef {
         image: 0,
         is_color: true,
@@ -119,24 +120,27 @@ pub(super) fn picture_scene(
         nearest: true,
     };
     let material = Material {
-        name: named.name.into(),
+        name: source.name.into(),
         base_color: glam::Vec3::splat(brightest).extend(1.0),
         base_color_texture: Some(texture),
         alpha: AlphaMode::Opaque,
-        ..Material::of_unlit()
+        ..Material::unlit_white()
     };
     let translucent = Material { alpha: AlphaMode::Blend, ..material.clone() };
     let (mut triangles, mut parts) = (Vec::new(), Vec::new());
     // What is there in part has a material of its own: nothing else is asked for its opacity.
-    for (number, corners) in [&relief.triangles, &relief.translucent].into_iter().enumerate() {
-        let (number, first) = (number as u32, triangles.len() as u32);
-        if number > 0 && corners.is_empty() {
+    for (material_index, triangle_vertices) in
+        [&relief.triangles, &relief.translucent].into_iter().enumerate()
+    {
+        let (material_index, first) = (material_index as u32, triangles.len() as u32);
+        if material_index > 0 && triangle_vertices.is_empty() {
             continue;
         }
-        triangles.extend(corners.iter().map(|&vertices| Triangle { vertices, part: number }));
+        triangles
+            .extend(triangle_vertices.iter().map(|&vertices| Triangle { vertices, part: material_index }));
         parts.push(Part {
             node: 0,
-            material: number,
+            material: material_index,
             triangles: first..triangles.len() as u32,
             has_uv: [true, false],
             mirrored: false,
@@ -147,30 +151,30 @@ pub(super) fn picture_scene(
         name: "picture".into(),
         index: None,
         camera_to_world: DMat4::IDENTITY,
-        yfov: 2.0 * (f64::from(middle.y) / space.focal_px).atan(),
-        aspect: Some(f64::from(middle.x / middle.y)),
-        focus_distance: 1.0 / space.inverse_depth(focus),
+        yfov: 2.0 * (f64::from(center.y) / space.focal_px).atan(),
+        aspect: Some(f64::from(center.x / center.y)),
+        focus_distance: 1.0 / space.inverse_depth(focus_disparity),
         lens: CameraLens::default(),
     };
     Scene {
-        path: named.path.into(),
+        path: source.path.into(),
         positions,
         normals: vec![glam::Vec3::ZERO; relief.vertices.len()],
         uv: [relief.vertices.iter().map(|vertex| uv(vertex.place, vertex.layer)).collect(), Vec::new()],
         triangles,
         parts,
-        nodes: vec![Node { name: named.name.into(), index: 0, world: DMat4::IDENTITY }],
+        nodes: vec![Node { name: source.name.into(), index: 0, world: DMat4::IDENTITY }],
         materials,
         images: vec![image],
         cameras: vec![camera],
         picture: Some(PictureTexture {
             size: [width as u32, rows as u32],
-            behind: behind as u32,
+            behind_first_row: layer_stride_rows as u32,
             margin: relief.margin as u32,
-            pixels: shown.by as u32,
-            origin: named.origin.clone(),
-            is_seen: in_rows(&relief.is_seen, relief.size, behind, rows, true),
-            gloss: relief.gloss.as_ref().map(|gloss| Arc::new(picture_gloss(gloss, space))),
+            pixels_per_texel: source_picture.cell_px as u32,
+            origin: source.origin.clone(),
+            is_photographed: stack_layers(&relief.is_observed, relief.size, layer_stride_rows, rows, true),
+            gloss: relief.gloss.as_ref().map(|gloss| Arc::new(gloss_in_scene_units(gloss, space))),
         }),
         ..Scene::default()
     }
@@ -199,66 +203,75 @@ pub(super) fn picture_atlas(scene: &Scene) -> Option<Atlas> {
         .iter()
         .map(|triangle| triangle.vertices.map(|v| scene.uv[0][v as usize] * size))
         .collect();
-    let (chart_of, count) = regions(scene, &corners);
+    let (chart_of, count) = triangle_regions(scene, &corners);
     // Texels a unit of length, where one is at the distance that the camera focuses on.
     let camera = scene.cameras.first()?;
     let height = 2.0 * camera.focus_distance * (0.5 * camera.yfov).tan();
-    let density = f64::from(picture.shown()[1]) / height;
+    let density = f64::from(picture.picture_size()[1]) / height;
     Some(Atlas::new(picture.size, corners, chart_of, &vec![0; count], density))
 }
 
 /// The gloss of a surface in the scene's units.
-fn picture_gloss(gloss: &Gloss, space: &PictureSpace) -> PictureGloss {
-    const { assert!(GLOSS_TERMS == PictureGloss::TERMS && Gloss::NONE == PictureGloss::NONE) };
+fn gloss_in_scene_units(gloss: &Gloss, space: &PictureSpace) -> PictureGloss {
+    const { assert!(GLOSS_TERMS == PictureGloss::TERMS && Gloss::NONE == PictureGloss::NO_POLYNOMIAL) };
     PictureGloss {
-        block: gloss.block as u32,
-        blocks: gloss.blocks.map(|side| side as u32),
-        reach: gloss.reach.map(|steps| f64::from(steps) * space.baseline()),
-        numbers: gloss.numbers.clone(),
+        block_size: gloss.block as u32,
+        block_counts: gloss.blocks.map(|side| side as u32),
+        aperture_half_extent: gloss.reach.map(|steps| f64::from(steps) * space.baseline()),
+        polynomial_of_block: gloss.numbers.clone(),
         polynomials: gloss.polynomials.clone(),
     }
 }
 
 /// What layers say a texel, row by row of the whole texture; rows between them say `between`.
-fn in_rows<T: Copy>(
+fn stack_layers<T: Copy>(
     layers: &[T],
     [width, height]: [usize; 2],
-    behind: usize,
+    layer_stride_rows: usize,
     rows: usize,
-    between: T,
+    gap_value: T,
 ) -> Vec<T> {
-    let mut all = vec![between; width * rows];
+    let mut stacked = vec![gap_value; width * rows];
     for (layer, values) in layers.chunks_exact(width * height).enumerate() {
-        let first = layer * behind * width;
-        all[first..first + values.len()].copy_from_slice(values);
+        let first = layer * layer_stride_rows * width;
+        stacked[first..first + values.len()].copy_from_slice(values);
     }
-    all
+    stacked
 }
 
 /// The texture in sRGB's encoding, divided by what its brightest value is above white: the picture as fine as it is, what is around and
 /// behind it as the surface has it.
-fn image(relief: &Relief, shown: &Shown<'_>, behind: usize, rows: usize) -> (Image, f32) {
-    let (width, margin, by) = (relief.size[0], relief.margin, shown.by);
-    let own = relief.texture.iter().chain(shown.pixels).flatten();
-    let brightest = own.copied().fold(1.0, f32::max);
-    let texture = in_rows(&relief.texture, relief.size, behind, rows, [0.0; 3]);
+fn texture_image(
+    relief: &Relief,
+    source_picture: &SourcePicture<'_>,
+    layer_stride_rows: usize,
+    rows: usize,
+) -> (Image, f32) {
+    let (width, margin, cell_px) = (relief.size[0], relief.margin, source_picture.cell_px);
+    let channel_values = relief.texture.iter().chain(source_picture.pixels).flatten();
+    let brightest = channel_values.copied().fold(1.0, f32::max);
+    let texture = stack_layers(&relief.texture, relief.size, layer_stride_rows, rows, [0.0; 3]);
     let encoded = |linear: f32| {
         let encoded = srgb_from_linear((linear / brightest).clamp(0.0, 1.0));
         (encoded * 65535.0).round() as u16
     };
-    let mut texels = vec![u16::MAX; 4 * width * by * rows * by];
-    texels.par_chunks_mut(4 * width * by).enumerate().for_each(|(y, row)| {
+    let mut texels = vec![u16::MAX; 4 * width * cell_px * rows * cell_px];
+    texels.par_chunks_mut(4 * width * cell_px).enumerate().for_each(|(y, row)| {
         for (x, texel) in row.as_chunks_mut::<4>().0.iter_mut().enumerate() {
-            let in_picture = x.checked_sub(margin * by).zip(y.checked_sub(margin * by));
-            let in_picture = in_picture.filter(|&(x, y)| x < shown.size[0] && y < shown.size[1]);
-            let cell = y / by * width + x / by;
+            let picture_pixel = x.checked_sub(margin * cell_px).zip(y.checked_sub(margin * cell_px));
+            let picture_pixel =
+                picture_pixel.filter(|&(x, y)| x < source_picture.size[0] && y < source_picture.size[1]);
+            let cell = y / cell_px * width + x / cell_px;
             let opacity = relief.opacity.get(cell).copied().unwrap_or(1.0);
-            let is_picture = relief.is_told_apart.get(cell).is_some_and(|is_told_apart| !is_told_apart);
-            let color = match in_picture {
-                Some((x, y)) if is_picture => shown.pixels[y * shown.size[0] + x],
+            let is_picture = relief.is_matted.get(cell).is_some_and(|is_separated| !is_separated);
+            let color = match picture_pixel {
+                Some((x, y)) if is_picture => source_picture.pixels[y * source_picture.size[0] + x],
                 // Cells may be coarser than the picture: over what is behind them they are the picture again.
-                Some((x, y)) if by > 1 && opacity < 1.0 => {
-                    let (all, back) = (shown.pixels[y * shown.size[0] + x], texture[cell + behind * width]);
+                Some((x, y)) if cell_px > 1 && opacity < 1.0 => {
+                    let (all, back) = (
+                        source_picture.pixels[y * source_picture.size[0] + x],
+                        texture[cell + layer_stride_rows * width],
+                    );
                     std::array::from_fn(|c| (all[c] - (1.0 - opacity) * back[c]).max(0.0) / opacity)
                 }
                 _ => texture[cell],
@@ -269,8 +282,8 @@ fn image(relief: &Relief, shown: &Shown<'_>, behind: usize, rows: usize) -> (Ima
     });
     let image = Image {
         name: "picture".into(),
-        width: (width * by) as u32,
-        height: (rows * by) as u32,
+        width: (width * cell_px) as u32,
+        height: (rows * cell_px) as u32,
         texels: ImageLevel::Bits16(texels),
     };
     (image, brightest)
@@ -290,19 +303,20 @@ mod tests {
         let picture: Vec<[f32; 3]> =
             (0..size[0] * size[1]).map(|cell| [(cell % 7) as f32 * 0.3; 3]).collect();
         let options = ReliefOptions { reach: 2.0, margin_px: 3, ..ReliefOptions::default() };
-        let relief = Relief::of::<Infallible>(size, &disparity, &picture, &[], &options, &Unwatched).unwrap();
-        let space = uncalibrated([0.0, 0.46], 30.0);
-        assert!((1.0 / space.inverse_depth(0.46) - NEAREST).abs() < 1e-12);
-        assert!((1.0 / space.inverse_depth(0.0) - FARTHEST).abs() < 1e-12);
-        let named = Named { name: "a", path: Path::new("a.png"), origin: String::new() };
-        let shown = Shown { pixels: &picture, size, by: 1 };
+        let relief =
+            Relief::build::<Infallible>(size, &disparity, &picture, &[], &options, &Unwatched).unwrap();
+        let space = uncalibrated_space([0.0, 0.46], 30.0);
+        assert!((1.0 / space.inverse_depth(0.46) - NEAREST_DISTANCE).abs() < 1e-12);
+        assert!((1.0 / space.inverse_depth(0.0) - FARTHEST_DISTANCE).abs() < 1e-12);
+        let named = SurfaceSource { name: "a", path: Path::new("a.png"), origin: String::new() };
+        let shown = SourcePicture { pixels: &picture, size, cell_px: 1 };
         let scene = picture_scene(&relief, &shown, &space, &named, 0.2);
         let camera = picture_camera(&scene, [24, 16], &space, 2.0);
         let optics = camera.optics();
         for (vertex, position) in relief.vertices.iter().zip(&scene.positions) {
-            let seen = optics.chief(camera.camera_from_world(*position));
+            let projected = optics.chief(camera.camera_from_world(*position));
             let half = 8.0;
-            let place = Vec2::new(12.0 + (seen.x * half) as f32, 8.0 - (seen.y * half) as f32);
+            let place = Vec2::new(12.0 + (projected.x * half) as f32, 8.0 - (projected.y * half) as f32);
             assert!(place.distance(vertex.place) < 1e-4, "{place} {}", vertex.place);
         }
         // A step aside moves what has disparity d by d pixels.
@@ -327,14 +341,16 @@ mod tests {
         let disparity: Vec<f32> = (0..size[0] * size[1]).map(|k| disparity(k % 40, k / 40)).collect();
         let picture: Vec<[f32; 3]> = disparity.iter().map(|d| [0.2 + 0.1 * d, 0.3, 0.4]).collect();
         let options = ReliefOptions { reach: 2.0, margin_px: 2, ..ReliefOptions::default() };
-        let relief = Relief::of::<Infallible>(size, &disparity, &picture, &[], &options, &Unwatched).unwrap();
-        let space = uncalibrated([0.0, 5.0], 40.0);
-        let named = Named { name: "a", path: Path::new("a.png"), origin: String::new() };
-        let shown = Shown { pixels: &picture, size, by: 1 };
+        let relief =
+            Relief::build::<Infallible>(size, &disparity, &picture, &[], &options, &Unwatched).unwrap();
+        let space = uncalibrated_space([0.0, 5.0], 40.0);
+        let named = SurfaceSource { name: "a", path: Path::new("a.png"), origin: String::new() };
+        let shown = SourcePicture { pixels: &picture, size, cell_px: 1 };
         let scene = picture_scene(&relief, &shown, &space, &named, 0.0);
         let atlas = picture_atlas(&scene).unwrap();
         let at = |x: f32, y: f32, layer: f32| {
-            let place = Vec2::new(x + 2.0, y + 2.0 + layer * scene.picture.as_ref().unwrap().behind as f32);
+            let place =
+                Vec2::new(x + 2.0, y + 2.0 + layer * scene.picture.as_ref().unwrap().behind_first_row as f32);
             let is_in = |[a, b, c]: &[Vec2; 3]| {
                 let sides = [(*a, *b), (*b, *c), (*c, *a)].map(|(p, q)| (q - p).perp_dot(place - p));
                 sides.iter().all(|side| *side >= 0.0) || sides.iter().all(|side| *side <= 0.0)

@@ -23,14 +23,14 @@ pub(super) fn picture_view(
         skew_px: 0.0,
         principal_px: principal.to_array(),
     };
-    let place = DVec3::new(position.x, -position.y, 0.0) * space.baseline();
+    let camera_position = DVec3::new(position.x, -position.y, 0.0) * space.baseline();
     Some(View {
         name: name.into(),
         picture: file.clone(),
         orientation: *orientation,
         exif_orientation: 1,
         lens: CalibratedLens::new(intrinsics, Projection::Perspective, Distortion::default()).ok()?,
-        camera_to_world: DMat4::from_translation(place),
+        camera_to_world: DMat4::from_translation(camera_position),
         mask: None,
         exposure_hint: None,
     })

@@ -8,11 +8,11 @@ use scene::SceneCamera;
 ///
 /// Where the camera says its aspect, the width follows it. The lens keeps its numbers: they are lengths of a
 /// real camera, whatever the scene.
-pub fn camera_of(camera: &SceneCamera, lens: &Camera) -> Camera {
+pub fn shot_camera_from(camera: &SceneCamera, lens: &Camera) -> Camera {
     let width = camera.aspect.map_or(lens.width, |aspect| {
         (lens.height as f64 * aspect).round().clamp(1.0, Camera::LARGEST_SIDE_PX as f64) as u32
     });
-    camera.lens.of(Camera {
+    camera.lens.apply_to(Camera {
         width,
         yfov: camera.yfov,
         focus_distance: camera.focus_distance,
@@ -24,12 +24,12 @@ pub fn camera_of(camera: &SceneCamera, lens: &Camera) -> Camera {
 
 /// A camera of a scene whose unit may be any, as that of a reconstruction is: its lens and sensor as large as the default camera's are before
 /// something 0.75 away, so that what lies before and behind is blurred.
-pub(super) fn camera_of_any_unit(camera: &SceneCamera) -> Camera {
-    const LIKE_AT: f64 = 0.75;
+pub(super) fn shot_camera_in_any_unit(camera: &SceneCamera) -> Camera {
+    const REFERENCE_DISTANCE: f64 = 0.75;
     let lens = Camera::default();
-    let scale = camera.focus_distance / LIKE_AT;
+    let scale = camera.focus_distance / REFERENCE_DISTANCE;
     let (aperture_radius, sensor_height) = (scale * lens.aperture_radius, scale * lens.sensor_height);
-    camera_of(camera, &Camera { aperture_radius, sensor_height, ..lens })
+    shot_camera_from(camera, &Camera { aperture_radius, sensor_height, ..lens })
 }
 
 #[cfg(test)]
@@ -40,7 +40,7 @@ mod tests {
 
     #[test]
     fn a_scene_in_another_unit_is_blurred_alike() {
-        let of = |unit: f64| {
+        let shot_in_unit = |unit: f64| {
             let camera = SceneCamera {
                 name: "framing".into(),
                 index: None,
@@ -50,9 +50,9 @@ mod tests {
                 focus_distance: 0.75 * unit,
                 lens: CameraLens::default(),
             };
-            camera_of_any_unit(&camera)
+            shot_camera_in_any_unit(&camera)
         };
-        let (metres, others) = (of(1.0), of(130.0));
+        let (metres, others) = (shot_in_unit(1.0), shot_in_unit(130.0));
         assert_eq!(metres.aperture_radius, Camera::default().aperture_radius);
         assert!((others.f_number() / metres.f_number() - 1.0).abs() < 1e-12);
         assert!((others.aperture_radius / metres.aperture_radius / 130.0 - 1.0).abs() < 1e-12);

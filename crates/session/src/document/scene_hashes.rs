@@ -6,9 +6,9 @@ use sha2::{Digest, Sha256};
 use std::path::Path;
 
 /// Lists that do not run into each other.
-struct Lists(Sha256);
+struct LengthPrefixedHash(Sha256);
 
-impl Lists {
+impl LengthPrefixedHash {
     fn add(&mut self, bytes: &[u8]) {
         self.0.update((bytes.len() as u64).to_le_bytes());
         self.0.update(bytes);
@@ -26,11 +26,12 @@ impl Lists {
 
     fn add_views(&mut self, views: &[View]) {
         // A picture is taken for the same where file, size and time of change are.
-        let of_file =
-            |path: &Path| std::fs::metadata(path).map(|data| (data.len(), data.modified().ok())).ok();
+        let file_stamp = |path: &Path| {
+            std::fs::metadata(path).map(|metadata| (metadata.len(), metadata.modified().ok())).ok()
+        };
         for view in views {
-            let mask = view.mask.as_deref().and_then(of_file);
-            self.add(format!("{view:?} {:?} {mask:?}", of_file(&view.picture)).as_bytes());
+            let mask = view.mask.as_deref().and_then(file_stamp);
+            self.add(format!("{view:?} {:?} {mask:?}", file_stamp(&view.picture)).as_bytes());
         }
     }
 
@@ -38,10 +39,10 @@ impl Lists {
     fn add_view_contents(&mut self, views: &[View]) {
         for view in views {
             let View { name, orientation, exif_orientation, lens, camera_to_world, exposure_hint, .. } = view;
-            let said = format!(
+            let description = format!(
                 "{name:?} {orientation} {exif_orientation} {lens:?} {camera_to_world:?} {exposure_hint:?}"
             );
-            self.add(said.as_bytes());
+            self.add(description.as_bytes());
             for file in [Some(&view.picture), view.mask.as_ref()].into_iter().flatten() {
                 // One that cannot be read stops the picture, too.
                 self.add(&std::fs::read(file).unwrap_or_default());
@@ -49,80 +50,83 @@ impl Lists {
         }
     }
 
-    fn sum(self) -> [u8; 32] {
+    fn finish(self) -> [u8; 32] {
         self.0.finalize().into()
     }
 }
 
 /// A checksum of the triangles of a scene, where they lie and belong.
 pub(crate) fn surface_hash(scene: &Scene) -> [u8; 32] {
-    let mut lists = Lists(Sha256::new());
-    lists.add_surface(scene);
-    lists.sum()
+    let mut hash = LengthPrefixedHash(Sha256::new());
+    hash.add_surface(scene);
+    hash.finish()
 }
 
 /// A checksum of the triangles of a scene and of the photographs that light it.
 pub(crate) fn photographs_hash(scene: &Scene) -> [u8; 32] {
-    let mut lists = Lists(Sha256::new());
-    lists.add_surface(scene);
-    lists.add_views(&scene.views);
-    lists.sum()
+    let mut hash = LengthPrefixedHash(Sha256::new());
+    hash.add_surface(scene);
+    hash.add_views(&scene.views);
+    hash.finish()
 }
 
 /// A checksum of everything in a scene that gives, blocks or reflects light: two scenes of the same one are lit, block and reflect light
 /// alike.
 pub(crate) fn light_hash(scene: &Scene) -> [u8; 32] {
-    let mut lists = Lists(Sha256::new());
-    lists.add_lit(scene);
-    lists.add_views(&scene.views);
-    lists.add(format!("{:?} {:?}", scene.own_world, scene.world).as_bytes());
-    lists.sum()
+    let mut hash = LengthPrefixedHash(Sha256::new());
+    hash.add_lit(scene);
+    hash.add_views(&scene.views);
+    hash.add(format!("{:?} {:?}", scene.embedded_world, scene.world).as_bytes());
+    hash.finish()
 }
 
 /// The same by contents alone: wherever the files lie, whenever they were written, on whatever machine.
 pub(crate) fn content_hash(scene: &Scene) -> [u8; 32] {
-    let mut lists = Lists(Sha256::new());
-    lists.add_lit(scene);
-    lists.add_view_contents(&scene.views);
-    for world in [&scene.own_world, &scene.world] {
+    let mut hash = LengthPrefixedHash(Sha256::new());
+    hash.add_lit(scene);
+    hash.add_view_contents(&scene.views);
+    for world in [&scene.embedded_world, &scene.world] {
         // The texels of a map are told already, and what it is called makes no light.
-        let nameless = world.clone().map(|world| match world.environment {
+        let without_texels = world.clone().map(|world| match world.environment {
             Environment::Map(_) => World { environment: Environment::Uniform(Vec3::ZERO), ..world },
             Environment::Uniform(_) => world,
         });
-        lists.add(format!("{nameless:?}").as_bytes());
+        hash.add(format!("{without_texels:?}").as_bytes());
     }
-    lists.sum()
+    hash.finish()
 }
 
-impl Lists {
+impl LengthPrefixedHash {
     /// All but photographs, and what is told of worlds in words.
     fn add_lit(&mut self, scene: &Scene) {
-        let lists = self;
-        lists.add_surface(scene);
-        lists.add(bytemuck::cast_slice(&scene.colors));
-        lists.add(bytemuck::cast_slice(&scene.tangents));
+        let hash = self;
+        hash.add_surface(scene);
+        hash.add(bytemuck::cast_slice(&scene.colors));
+        hash.add(bytemuck::cast_slice(&scene.tangents));
         for image in &scene.images {
-            lists.add(format!("{} {}", image.width, image.height).as_bytes());
+            hash.add(format!("{} {}", image.width, image.height).as_bytes());
             match &image.texels {
-                ImageLevel::Bits8(texels) => lists.add(texels),
-                ImageLevel::Bits16(texels) => lists.add(bytemuck::cast_slice(texels)),
-                ImageLevel::Float(texels) => lists.add(bytemuck::cast_slice(texels)),
+                ImageLevel::Bits8(texels) => hash.add(texels),
+                ImageLevel::Bits16(texels) => hash.add(bytemuck::cast_slice(texels)),
+                ImageLevel::Float(texels) => hash.add(bytemuck::cast_slice(texels)),
             }
         }
-        for world in scene.own_world.iter().chain(&scene.world) {
+        for world in scene.embedded_world.iter().chain(&scene.world) {
             let Environment::Map(map) = &world.environment else { continue };
-            lists.add(format!("{} {}", map.width, map.height).as_bytes());
-            lists.add(bytemuck::cast_slice(&map.texels));
+            hash.add(format!("{} {}", map.width, map.height).as_bytes());
+            hash.add(bytemuck::cast_slice(&map.texels));
         }
         if let Some(gloss) = scene.picture.as_ref().and_then(|picture| picture.gloss.as_ref()) {
-            lists.add(format!("{} {:?} {:?}", gloss.block, gloss.blocks, gloss.reach).as_bytes());
-            lists.add(bytemuck::cast_slice(&gloss.numbers));
-            lists.add(bytemuck::cast_slice(gloss.polynomials.as_flattened()));
+            hash.add(
+                format!("{} {:?} {:?}", gloss.block_size, gloss.block_counts, gloss.aperture_half_extent)
+                    .as_bytes(),
+            );
+            hash.add(bytemuck::cast_slice(&gloss.polynomial_of_block));
+            hash.add(bytemuck::cast_slice(gloss.polynomials.as_flattened()));
         }
-        lists.add(format!("{:?}", scene.photo_lookup).as_bytes());
+        hash.add(format!("{:?}", scene.photo_lookup).as_bytes());
         // Written out, numbers are as exact as they are.
-        lists.add(
+        hash.add(
             format!(
                 "{:?} {:?} {:?} {:?}",
                 scene.materials, scene.lights, scene.back_faces, scene.single_scattering
@@ -150,7 +154,7 @@ mod tests {
         let uv = Scene { uv: [vec![glam::Vec2::ONE], Vec::new()], ..Scene::default() };
         let other = Scene { uv: [Vec::new(), vec![glam::Vec2::ONE]], ..Scene::default() };
         assert_ne!(light_hash(&uv), light_hash(&other));
-        let brings = |light: f32| {
+        let hash_with_light = |light: f32| {
             let map = scene::EnvironmentMap {
                 name: "light".into(),
                 width: 2,
@@ -159,18 +163,25 @@ mod tests {
             };
             let environment = Environment::Map(std::sync::Arc::new(map));
             let own = scene::World { environment, ..scene::World::studio() };
-            light_hash(&Scene { own_world: Some(own), ..Scene::default() })
+            light_hash(&Scene { embedded_world: Some(own), ..Scene::default() })
         };
-        assert!(brings(1.0) != dark && brings(1.0) != brings(2.0));
+        assert!(hash_with_light(1.0) != dark && hash_with_light(1.0) != hash_with_light(2.0));
         // Materials that are seen in another variant.
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("varied.glb");
         std::fs::write(&file, crate::tiny_glb::varied(&crate::tiny_glb::QUADS)).unwrap();
-        let of = |variant: Option<&str>| {
+        let hash_of_variant = |variant: Option<&str>| {
             light_hash(&super::super::stage::load_variant(&file, variant, &progress::Unwatched).unwrap())
         };
-        assert!(of(None) != of(Some("Blue")) && of(Some("Blue")) != of(Some("Green")));
-        assert_eq!(of(None), of(Some("As painted")), "what looks alike has the same light");
+        assert!(
+            hash_of_variant(None) != hash_of_variant(Some("Blue"))
+                && hash_of_variant(Some("Blue")) != hash_of_variant(Some("Green"))
+        );
+        assert_eq!(
+            hash_of_variant(None),
+            hash_of_variant(Some("As painted")),
+            "what looks alike has the same light"
+        );
         let further = |u: f32| Scene { further_uv: vec![vec![glam::Vec2::splat(u)]], ..Scene::default() };
         assert_ne!(light_hash(&further(0.0)), light_hash(&further(1.0)));
     }

@@ -6,7 +6,7 @@ use super::picture_scene::picture_atlas;
 use super::scene_hashes::light_hash;
 use crate::error::SessionError;
 use crate::jobs::Steps;
-use crate::light_field::keep_photographs_at;
+use crate::light_field::set_photograph_atlas;
 use atlas::{Atlas, AtlasError, TexelMap};
 use focus::Canvas;
 use glam::{DVec2, DVec3};
@@ -52,7 +52,7 @@ pub(crate) fn atlas_error(path: &Path, error: AtlasError) -> SessionError {
     match error {
         AtlasError::Cancelled => SessionError::Cancelled,
         AtlasError::Write { path, source } => SessionError::io(&path, &source),
-        other => SessionError::bad(path, other),
+        other => SessionError::bad_file(path, other),
     }
 }
 
@@ -73,16 +73,16 @@ pub(crate) fn load_variant(
 
 /// Whether what is painted on one scene fits the other: the same triangles in the same order, of the same nodes.
 fn is_same_surface(a: &Scene, b: &Scene) -> bool {
-    let of_part = |part: &scene::Part| (part.node, part.triangles.clone());
+    let part_key = |part: &scene::Part| (part.node, part.triangles.clone());
     a.positions == b.positions
         && a.triangles == b.triangles
-        && a.parts.iter().map(of_part).eq(b.parts.iter().map(of_part))
+        && a.parts.iter().map(part_key).eq(b.parts.iter().map(part_key))
 }
 
 /// The canvas of a scene in its atlas.
-pub(crate) fn canvas_of(scene: &Scene, atlas: &Atlas, texels: &TexelMap) -> Canvas {
-    let place = |address: u32| [address % atlas.width, address / atlas.width];
-    let gutters: Vec<_> = texels.dilations.iter().map(|d| [place(d.texel), place(d.source)]).collect();
+pub(crate) fn build_canvas(scene: &Scene, atlas: &Atlas, texels: &TexelMap) -> Canvas {
+    let texel_at = |index: u32| [index % atlas.width, index / atlas.width];
+    let gutters: Vec<_> = texels.dilations.iter().map(|d| [texel_at(d.texel), texel_at(d.source)]).collect();
     Canvas::new(scene, atlas, &texels.texels, &gutters)
 }
 
@@ -92,7 +92,7 @@ impl Stage {
     pub fn surface_at(&self, position: DVec2) -> Option<SurfaceHit> {
         let texel = position * DVec2::new(self.atlas.width.into(), self.atlas.height.into());
         let inside = texel.cmpge(DVec2::ZERO).all();
-        let texel = self.texels.at(texel.x as u32, texel.y as u32).filter(|_| inside)?;
+        let texel = self.texels.texel_at(texel.x as u32, texel.y as u32).filter(|_| inside)?;
         let position = texel.centroid.position(&self.scene);
         let normal = self.scene.area_normal(texel.centroid.triangle).normalize_or_zero();
         Some(SurfaceHit { point: texel.centroid, position, normal, distance: 0.0 })
@@ -125,18 +125,21 @@ impl Stage {
     /// The same in another variant of its file, which is read again; none: in its own materials. Atlas and paint still fit.
     pub fn with_variant(&self, variant: Option<&str>, progress: &dyn Progress) -> Result<Self, SessionError> {
         let before = &self.scene;
-        let read = load_variant(&before.path, variant, progress)?;
-        if !is_same_surface(before, &read) {
-            return Err(SessionError::bad(&before.path, "has changed since it was opened (open it again)"));
+        let reloaded = load_variant(&before.path, variant, progress)?;
+        if !is_same_surface(before, &reloaded) {
+            return Err(SessionError::bad_file(
+                &before.path,
+                "has changed since it was opened (open it again)",
+            ));
         }
         let scene = Scene {
             back_faces: before.back_faces,
             world: before.world.clone(),
-            own_world: before.own_world.clone(),
+            embedded_world: before.embedded_world.clone(),
             single_scattering: before.single_scattering,
-            ..Arc::unwrap_or_clone(read)
+            ..Arc::unwrap_or_clone(reloaded)
         };
-        let canvas = Arc::new(self.canvas.with_owners_of(&scene));
+        let canvas = Arc::new(self.canvas.with_part_owners(&scene));
         Ok(Self { canvas, ..self.with_scene(scene, progress)? })
     }
 
@@ -147,22 +150,22 @@ impl Stage {
         steps: &dyn Steps,
     ) -> Result<Self, SessionError> {
         let before = &self.scene;
-        let read = load_capture(&before.path, choices, steps)?.scene;
+        let reloaded = load_capture(&before.path, choices, steps)?.scene;
         let scene = Arc::new(Scene {
             world: before.world.clone(),
-            own_world: before.own_world.clone(),
+            embedded_world: before.embedded_world.clone(),
             back_faces: before.back_faces,
-            ..Arc::unwrap_or_clone(read)
+            ..Arc::unwrap_or_clone(reloaded)
         });
         let atlas = picture_atlas(&scene)
             .filter(|atlas| [atlas.width, atlas.height] == [self.atlas.width, self.atlas.height]);
         let atlas = atlas.ok_or_else(|| {
-            SessionError::bad(&before.path, "has changed since it was opened (open it again)")
+            SessionError::bad_file(&before.path, "has changed since it was opened (open it again)")
         })?;
         let progress = steps.begin("preparing");
         progress.check()?;
         let tracer = Arc::new(Tracer::new(scene));
-        let stage = Self::of(tracer, Arc::new(atlas), &*progress)?;
+        let stage = Self::new(tracer, Arc::new(atlas), &*progress)?;
         Ok(Self { depth_strokes: Arc::new(choices.depth_strokes.clone()), ..stage })
     }
 
@@ -173,7 +176,7 @@ impl Stage {
         let tracer = Arc::new(Tracer::new(scene.clone()));
         progress.check()?;
         let (atlas, texels, canvas) = (self.atlas.clone(), self.texels.clone(), self.canvas.clone());
-        keep_photographs_at(&tracer, &atlas);
+        set_photograph_atlas(&tracer, &atlas);
         let (bounds, depth_strokes) = (self.bounds, self.depth_strokes.clone());
         let light_hash = OnceLock::new();
         let surface_bytes = self.surface_bytes.clone();
@@ -181,14 +184,18 @@ impl Stage {
     }
 
     /// Prepares the scene of `tracer`, whose atlas is known, and whose depth is as it was found.
-    pub fn of(tracer: Arc<Tracer>, atlas: Arc<Atlas>, progress: &dyn Progress) -> Result<Self, SessionError> {
+    pub fn new(
+        tracer: Arc<Tracer>,
+        atlas: Arc<Atlas>,
+        progress: &dyn Progress,
+    ) -> Result<Self, SessionError> {
         progress.check()?;
         let scene = tracer.scene().clone();
-        keep_photographs_at(&tracer, &atlas);
+        set_photograph_atlas(&tracer, &atlas);
         let texels = Arc::new(atlas.texel_map(&scene));
         progress.report(0.5);
         progress.check()?;
-        let canvas = Arc::new(canvas_of(&scene, &atlas, &texels));
+        let canvas = Arc::new(build_canvas(&scene, &atlas, &texels));
         progress.report(1.0);
         let (bounds, depth_strokes, light_hash) = (scene.bounds(), Arc::default(), OnceLock::new());
         let surface_bytes = OnceLock::new();

@@ -1,6 +1,6 @@
 //! Undo and redo of paint, selection, lens, repaired depth and the scene's variant in the order in which they happened.
 
-use focus::{Edit, LayerStack, LensMotion, Selection, Thumbnail};
+use focus::{Edit, EditThumbnail, LayerStack, LensMotion, Selection};
 use lens::Camera;
 use project::RecordedStep;
 use relief::DepthStroke;
@@ -28,15 +28,15 @@ enum Change {
 
 impl Change {
     fn bytes(&self) -> usize {
-        let selected = |selection: &Option<Selection>| selection.as_ref().map_or(0, Selection::bytes);
+        let selection_bytes = |selection: &Option<Selection>| selection.as_ref().map_or(0, Selection::bytes);
         match self {
             Self::Paint { edit, .. } => edit.bytes(),
-            Self::Layers { before, after } => before.bytes_beside(after) + after.bytes_beside(before),
+            Self::Layers { before, after } => before.unshared_bytes(after) + after.unshared_bytes(before),
             Self::Camera { .. } => 2 * size_of::<Camera>(),
             Self::LensMotion { before, after } => {
                 [before, after].into_iter().map(|motion| motion.bytes()).sum()
             }
-            Self::Selection { before, after } => selected(before) + selected(after),
+            Self::Selection { before, after } => selection_bytes(before) + selection_bytes(after),
             // Each list has a stroke more than the one before it.
             Self::Depth { after, .. } => after.iter().map(depth_stroke_bytes).sum(),
             Self::Variant { before, after } => [before, after].into_iter().flatten().map(String::len).sum(),
@@ -45,7 +45,7 @@ impl Change {
 }
 
 fn depth_stroke_bytes(stroke: &DepthStroke) -> usize {
-    size_of::<DepthStroke>() + size_of_val(&*stroke.way)
+    size_of::<DepthStroke>() + size_of_val(&*stroke.path)
 }
 
 /// One step.
@@ -56,7 +56,7 @@ struct Step {
     /// What was done, as data, where it can be done again.
     record: Option<Box<RecordedStep>>,
     /// What it changed, where that is paint.
-    thumbnail: Option<Thumbnail>,
+    thumbnail: Option<EditThumbnail>,
     /// Memory that it keeps alive.
     bytes: usize,
 }
@@ -71,9 +71,9 @@ impl Step {
 
 /// What a step of undo or redo changed.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Undone {
+pub(crate) enum StepEffect {
     /// These texels of a layer, and perhaps its background.
-    Paint { texels: Vec<[u32; 2]>, background: bool },
+    Paint { texels: Vec<[u32; 2]>, changes_background: bool },
     /// The layers, in whatever way.
     Layers,
     /// The camera.
@@ -94,19 +94,19 @@ pub struct HistoryStep<'a> {
     /// What was done.
     pub name: &'a str,
     /// What it changed of the focus map, if anything.
-    pub thumbnail: Option<&'a Thumbnail>,
+    pub thumbnail: Option<&'a EditThumbnail>,
     /// Whether it is done, or was taken back and can be done again.
     pub is_done: bool,
 }
 
 impl<'a> HistoryStep<'a> {
-    fn of(step: &'a Step, is_done: bool) -> Self {
+    fn from_step(step: &'a Step, is_done: bool) -> Self {
         Self { name: &step.name, thumbnail: step.thumbnail.as_ref(), is_done }
     }
 }
 
 /// What the steps change.
-pub(crate) struct Undoable<'a> {
+pub(crate) struct UndoState<'a> {
     pub layers: &'a mut LayerStack,
     pub camera: &'a mut Camera,
     pub lens_motion: &'a mut LensMotion,
@@ -116,20 +116,20 @@ pub(crate) struct Undoable<'a> {
 
 /// The steps that can be taken back, and those that can be done again.
 #[derive(Clone, Debug)]
-pub(crate) struct Undo {
+pub(crate) struct UndoHistory {
     done: VecDeque<Step>,
     undone: Vec<Step>,
     /// Whether the next edit of the same name joins the latest step.
-    run: bool,
+    is_run_open: bool,
     /// Memory that the steps may keep alive; the oldest are forgotten beyond it.
     budget_bytes: usize,
     bytes: usize,
 }
 
-impl Undo {
+impl UndoHistory {
     /// No steps yet.
     pub fn new(budget_bytes: usize) -> Self {
-        Self { done: VecDeque::new(), undone: Vec::new(), run: false, budget_bytes, bytes: 0 }
+        Self { done: VecDeque::new(), undone: Vec::new(), is_run_open: false, budget_bytes, bytes: 0 }
     }
 
     /// Sets the memory that the steps may keep alive.
@@ -141,7 +141,7 @@ impl Undo {
     /// Takes up a change of the map of a layer.
     pub fn push_paint(&mut self, layer: usize, edit: Edit, record: Option<RecordedStep>) {
         self.push(Step::new(edit.name().into(), Change::Paint { layer, edit }, record));
-        self.run = false;
+        self.is_run_open = false;
     }
 
     /// Takes up a change of what may be painted.
@@ -153,34 +153,34 @@ impl Undo {
         record: Option<RecordedStep>,
     ) {
         self.push(Step::new(name.into(), Change::Selection { before, after }, record));
-        self.run = false;
+        self.is_run_open = false;
     }
 
     /// Takes up a change of the keys of the lens.
     pub fn push_lens_motion(&mut self, name: &str, before: LensMotion, after: LensMotion) {
         let change = Change::LensMotion { before: before.into(), after: after.into() };
         self.push(Step::new(name.into(), change, None));
-        self.run = false;
+        self.is_run_open = false;
     }
 
     /// Takes up a change of the scene's variant.
     pub fn push_variant(&mut self, before: Option<String>, after: Option<String>) {
         self.push(Step::new("Variant".into(), Change::Variant { before, after }, None));
-        self.run = false;
+        self.is_run_open = false;
     }
 
     /// Takes up a change of the strokes that repair depth.
     pub fn push_depth(&mut self, name: &str, before: Arc<Vec<DepthStroke>>, after: Arc<Vec<DepthStroke>>) {
         self.push(Step::new(name.into(), Change::Depth { before, after }, None));
-        self.run = false;
+        self.is_run_open = false;
     }
 
     /// Exchanges all selections, because the texels that may be selected are others now.
-    pub fn map_selections(&mut self, other: impl Fn(&Selection) -> Option<Selection>) {
+    pub fn map_selections(&mut self, remap: impl Fn(&Selection) -> Option<Selection>) {
         for step in self.done.iter_mut().chain(&mut self.undone) {
             if let Change::Selection { before, after } = &mut step.change {
-                *before = before.as_ref().and_then(&other);
-                *after = after.as_ref().and_then(&other);
+                *before = before.as_ref().and_then(&remap);
+                *after = after.as_ref().and_then(&remap);
             }
         }
     }
@@ -199,42 +199,42 @@ impl Undo {
         after: LayerStack,
         record: Option<RecordedStep>,
     ) {
-        let edit = |record: Option<&RecordedStep>| match record {
-            Some(RecordedStep::Layers(edit)) => edit.dragged(),
+        let drag_target = |record: Option<&RecordedStep>| match record {
+            Some(RecordedStep::Layers(edit)) => edit.drag_target(),
             _ => None,
         };
-        let dragged = edit(record.as_ref());
-        let goes_on = |last: &Step| dragged.is_some() && edit(last.record.as_deref()) == dragged;
-        let before = match self.last_of_run(goes_on) {
+        let dragged = drag_target(record.as_ref());
+        let continues_run = |last: &Step| dragged.is_some() && drag_target(last.record.as_deref()) == dragged;
+        let before = match self.pop_if_continued(continues_run) {
             Some(Step { change: Change::Layers { before, .. }, .. }) => before,
             _ => before.without_adjusted_values().into(),
         };
         let after = after.without_adjusted_values().into();
         self.push(Step::new(name.into(), Change::Layers { before, after }, record));
-        self.run = dragged.is_some();
+        self.is_run_open = dragged.is_some();
     }
 
     /// Takes up a change of the camera; edits of one name in a row are one step.
     pub fn push_camera(&mut self, name: &str, before: Camera, after: Camera) {
-        let before = match self.last_of_run(|last| last.name == name) {
+        let before = match self.pop_if_continued(|last| last.name == name) {
             Some(Step { change: Change::Camera { before, .. }, .. }) => before,
             _ => before.into(),
         };
         self.push(Step::new(name.into(), Change::Camera { before, after: after.into() }, None));
-        self.run = true;
+        self.is_run_open = true;
     }
 
     /// Takes the latest step away, if the run of edits that it belongs to goes on.
-    fn last_of_run(&mut self, goes_on: impl Fn(&Step) -> bool) -> Option<Step> {
-        let run = self.run;
-        let last = self.done.pop_back_if(|last| run && goes_on(last))?;
+    fn pop_if_continued(&mut self, continues_run: impl Fn(&Step) -> bool) -> Option<Step> {
+        let is_run_open = self.is_run_open;
+        let last = self.done.pop_back_if(|last| is_run_open && continues_run(last))?;
         self.bytes -= last.bytes;
         Some(last)
     }
 
     /// Ends a run of edits.
     pub fn finish_run(&mut self) {
-        self.run = false;
+        self.is_run_open = false;
     }
 
     fn push(&mut self, step: Step) {
@@ -251,9 +251,9 @@ impl Undo {
     }
 
     /// Adds a picture to the latest step.
-    pub fn picture(&mut self, thumbnail: Thumbnail) {
+    pub fn set_thumbnail(&mut self, thumbnail: EditThumbnail) {
         if let Some(step) = self.done.back_mut() {
-            let before = step.thumbnail.as_ref().map_or(0, Thumbnail::bytes);
+            let before = step.thumbnail.as_ref().map_or(0, EditThumbnail::bytes);
             step.bytes = step.bytes - before + thumbnail.bytes();
             self.bytes = self.bytes - before + thumbnail.bytes();
             step.thumbnail = Some(thumbnail);
@@ -262,75 +262,75 @@ impl Undo {
     }
 
     /// Takes the latest step back.
-    pub fn undo(&mut self, state: Undoable<'_>) -> Option<Undone> {
+    pub fn undo(&mut self, state: UndoState<'_>) -> Option<StepEffect> {
         let step = self.done.pop_back()?;
-        self.run = false;
-        let undone = match &step.change {
+        self.is_run_open = false;
+        let effect = match &step.change {
             Change::Paint { layer, edit } => {
                 state.layers.activate(*layer);
                 let texels = edit.revert(&mut state.layers.active_mut().map).texels;
-                Undone::Paint { texels, background: edit.changes_background() }
+                StepEffect::Paint { texels, changes_background: edit.changes_background() }
             }
             Change::Layers { before, .. } => {
                 *state.layers = (**before).clone();
-                Undone::Layers
+                StepEffect::Layers
             }
             Change::Camera { before, .. } => {
                 *state.camera = (**before).clone();
-                Undone::Camera
+                StepEffect::Camera
             }
             Change::LensMotion { before, .. } => {
                 *state.lens_motion = (**before).clone();
-                Undone::LensMotion
+                StepEffect::LensMotion
             }
             Change::Selection { before, .. } => {
                 *state.selection = before.clone();
-                Undone::Selection
+                StepEffect::Selection
             }
-            Change::Variant { before, .. } => Undone::Variant(before.clone()),
+            Change::Variant { before, .. } => StepEffect::Variant(before.clone()),
             Change::Depth { before, .. } => {
                 *state.depth_strokes = before.clone();
-                Undone::Depth
+                StepEffect::Depth
             }
         };
         self.undone.push(step);
-        Some(undone)
+        Some(effect)
     }
 
     /// Makes the step again that was taken back last.
-    pub fn redo(&mut self, state: Undoable<'_>) -> Option<Undone> {
+    pub fn redo(&mut self, state: UndoState<'_>) -> Option<StepEffect> {
         let step = self.undone.pop()?;
-        self.run = false;
-        let done = match &step.change {
+        self.is_run_open = false;
+        let effect = match &step.change {
             Change::Paint { layer, edit } => {
                 state.layers.activate(*layer);
                 let texels = edit.apply(&mut state.layers.active_mut().map).texels;
-                Undone::Paint { texels, background: edit.changes_background() }
+                StepEffect::Paint { texels, changes_background: edit.changes_background() }
             }
             Change::Layers { after, .. } => {
                 *state.layers = (**after).clone();
-                Undone::Layers
+                StepEffect::Layers
             }
             Change::Camera { after, .. } => {
                 *state.camera = (**after).clone();
-                Undone::Camera
+                StepEffect::Camera
             }
             Change::LensMotion { after, .. } => {
                 *state.lens_motion = (**after).clone();
-                Undone::LensMotion
+                StepEffect::LensMotion
             }
             Change::Selection { after, .. } => {
                 *state.selection = after.clone();
-                Undone::Selection
+                StepEffect::Selection
             }
-            Change::Variant { after, .. } => Undone::Variant(after.clone()),
+            Change::Variant { after, .. } => StepEffect::Variant(after.clone()),
             Change::Depth { after, .. } => {
                 *state.depth_strokes = after.clone();
-                Undone::Depth
+                StepEffect::Depth
             }
         };
         self.done.push_back(step);
-        Some(done)
+        Some(effect)
     }
 
     pub fn undo_name(&self) -> Option<&str> {
@@ -348,8 +348,8 @@ impl Undo {
 
     /// All steps, oldest first: what they are called, what they changed, and whether they are done.
     pub fn steps(&self) -> impl Iterator<Item = HistoryStep<'_>> {
-        let done = self.done.iter().map(|step| HistoryStep::of(step, true));
-        done.chain(self.undone.iter().rev().map(|step| HistoryStep::of(step, false)))
+        let done = self.done.iter().map(|step| HistoryStep::from_step(step, true));
+        done.chain(self.undone.iter().rev().map(|step| HistoryStep::from_step(step, false)))
     }
 
     /// Memory that the steps keep alive, and how much they may.
@@ -366,7 +366,7 @@ mod tests {
 
     /// What a document has to be undone.
     struct State {
-        undo: Undo,
+        undo: UndoHistory,
         layers: LayerStack,
         camera: Camera,
         lens_motion: LensMotion,
@@ -376,45 +376,45 @@ mod tests {
 
     impl State {
         fn new() -> Self {
-            let layers = LayerStack::of(FocusMap::new(4, 4, FocusOffset::STANDARD));
+            let layers = LayerStack::from_map(FocusMap::new(4, 4, FocusOffset::STANDARD));
             let (lens_motion, selection, depth_strokes) = (LensMotion::default(), None, Arc::default());
             Self {
-                undo: Undo::new(1 << 20),
+                undo: UndoHistory::new(1 << 20),
                 layers,
-                camera: focused(3.0),
+                camera: camera_focused_at(3.0),
                 lens_motion,
                 selection,
                 depth_strokes,
             }
         }
 
-        fn undo(&mut self) -> Option<Undone> {
+        fn undo(&mut self) -> Option<StepEffect> {
             let Self { undo, layers, camera, lens_motion, selection, depth_strokes } = self;
-            undo.undo(Undoable { layers, camera, lens_motion, selection, depth_strokes })
+            undo.undo(UndoState { layers, camera, lens_motion, selection, depth_strokes })
         }
 
-        fn redo(&mut self) -> Option<Undone> {
+        fn redo(&mut self) -> Option<StepEffect> {
             let Self { undo, layers, camera, lens_motion, selection, depth_strokes } = self;
-            undo.redo(Undoable { layers, camera, lens_motion, selection, depth_strokes })
+            undo.redo(UndoState { layers, camera, lens_motion, selection, depth_strokes })
         }
 
-        fn focuses(&mut self, at: f64) {
-            let before = std::mem::replace(&mut self.camera, focused(at));
+        fn set_focus(&mut self, at: f64) {
+            let before = std::mem::replace(&mut self.camera, camera_focused_at(at));
             self.undo.push_camera("Focus distance", before, self.camera.clone());
         }
     }
 
-    fn focused(at: f64) -> Camera {
+    fn camera_focused_at(at: f64) -> Camera {
         Camera { focus_distance: at, ..Camera::default() }
     }
 
     #[test]
     fn a_dragged_slider_is_one_step() {
         let mut state = State::new();
-        (4..9).for_each(|at| state.focuses(at as f64));
+        (4..9).for_each(|at| state.set_focus(at as f64));
         state.undo.finish_run();
-        state.focuses(9.0);
-        assert_eq!(state.undo(), Some(Undone::Camera));
+        state.set_focus(9.0);
+        assert_eq!(state.undo(), Some(StepEffect::Camera));
         assert_eq!(state.camera.focus_distance, 8.0);
         state.undo();
         assert_eq!(state.camera.focus_distance, 3.0);
@@ -426,22 +426,22 @@ mod tests {
     #[test]
     fn the_oldest_steps_are_forgotten_first() {
         let mut state = State::new();
-        state.focuses(4.0);
+        state.set_focus(4.0);
         let [one, _] = state.undo.bytes();
-        state.undo = Undo::new(5 * one + one / 2);
+        state.undo = UndoHistory::new(5 * one + one / 2);
         for at in 5..15 {
-            state.focuses(at as f64);
+            state.set_focus(at as f64);
             state.undo.finish_run();
         }
         assert_eq!(state.undo.bytes(), [5 * one, 5 * one + one / 2]);
         state.undo();
         assert_eq!(state.undo.bytes()[0], 5 * one, "what can be done again counts too");
-        state.focuses(20.0);
+        state.set_focus(20.0);
         assert_eq!(state.undo.bytes()[0], 5 * one);
         while state.undo().is_some() {}
         assert_eq!(state.camera.focus_distance, 9.0, "the first five are forgotten");
-        state.undo = Undo::new(0);
-        state.focuses(1.0);
+        state.undo = UndoHistory::new(0);
+        state.set_focus(1.0);
         assert_eq!(state.undo.names().count(), 1, "the latest is kept");
     }
 
@@ -451,31 +451,31 @@ mod tests {
         let before = state.layers.clone();
         state.layers.active_mut().map.set(1, 2, [0.5, 1.0]);
         let map = &state.layers.active().map;
-        let edit = Edit::between("Brush stroke", &before.active().map, map).unwrap();
+        let edit = Edit::from_difference("Brush stroke", &before.active().map, map).unwrap();
         state.undo.push_paint(0, edit, None);
         let painted = state.layers.clone();
-        assert!(state.layers.insert(FocusLayer::painted("Layer 1", FocusMap::clear(4, 4))));
+        assert!(state.layers.insert(FocusLayer::from_map("Layer 1", FocusMap::transparent(4, 4))));
         state.undo.push_layers("Add layer", painted.clone(), state.layers.clone(), None);
         let two = state.layers.clone();
-        state.focuses(5.0);
+        state.set_focus(5.0);
         assert_eq!(state.undo.undo_name(), Some("Focus distance"));
         state.undo();
         assert_eq!((state.camera.focus_distance, &state.layers), (3.0, &two));
-        assert_eq!(state.undo(), Some(Undone::Layers));
+        assert_eq!(state.undo(), Some(StepEffect::Layers));
         assert_eq!(state.layers, painted);
-        assert_eq!(state.undo(), Some(Undone::Paint { texels: vec![[1, 2]], background: false }));
+        assert_eq!(state.undo(), Some(StepEffect::Paint { texels: vec![[1, 2]], changes_background: false }));
         assert_eq!(state.layers, before);
         state.redo();
         state.redo();
         assert_eq!(state.layers, two);
-        state.focuses(6.0);
+        state.set_focus(6.0);
         assert_eq!(state.undo.redo_name(), None, "a new step forgets what was undone");
     }
 
     #[test]
     fn a_dragged_opacity_is_one_step_and_another_layer_s_is_another() {
         let mut state = State::new();
-        assert!(state.layers.insert(FocusLayer::painted("Layer 1", FocusMap::clear(4, 4))));
+        assert!(state.layers.insert(FocusLayer::from_map("Layer 1", FocusMap::transparent(4, 4))));
         let first = state.layers.clone();
         for (layer, opacity) in [(0, 0.9), (0, 0.8), (0, 0.7), (1, 0.6), (1, 0.5)] {
             let before = state.layers.clone();

@@ -9,21 +9,21 @@ impl Document {
     pub fn depth_stroke(&self, repair: DepthRepair, hits: &[SurfaceHit]) -> Option<DepthStroke> {
         let stage = &self.stage;
         let picture = stage.scene.picture.as_ref()?;
-        let px = f64::from(picture.pixels);
-        let place = |hit: &SurfaceHit| {
+        let cell_px = f64::from(picture.pixels_per_texel);
+        let picture_position = |hit: &SurfaceHit| {
             let texel = stage.atlas.position_of(hit.point);
-            let behind = f64::from(picture.behind);
-            let row = if texel.y < behind { texel.y } else { texel.y - behind };
-            [texel.x, row].map(|at| ((at - f64::from(picture.margin)) * px) as f32)
+            let layer_stride = f64::from(picture.behind_first_row);
+            let row = if texel.y < layer_stride { texel.y } else { texel.y - layer_stride };
+            [texel.x, row].map(|coordinate| ((coordinate - f64::from(picture.margin)) * cell_px) as f32)
         };
         let camera = stage.scene.cameras.first()?;
-        let from_camera = camera.camera_to_world.inverse().transform_point3(hits.first()?.position);
-        let seen_rows = f64::from(picture.shown()[1]) * px;
-        let seen_height = -2.0 * from_camera.z * (0.5 * camera.yfov).tan();
+        let camera_space = camera.camera_to_world.inverse().transform_point3(hits.first()?.position);
+        let visible_rows = f64::from(picture.picture_size()[1]) * cell_px;
+        let visible_height = -2.0 * camera_space.z * (0.5 * camera.yfov).tan();
         let stroke = DepthStroke {
             repair,
-            way: hits.iter().map(place).collect(),
-            radius_px: (self.brush.radius / seen_height * seen_rows) as f32,
+            path: hits.iter().map(picture_position).collect(),
+            radius_px: (self.brush.radius / visible_height * visible_rows) as f32,
             hardness: self.brush.hardness as f32,
             strength: self.brush.strength as f32,
         };

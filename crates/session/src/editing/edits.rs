@@ -1,14 +1,14 @@
 //! What painting does to a document beside strokes: fills, gradients, selections, layers. Each is a step of undo and, as
 //! data, of the recording; nothing is left of one that changed nothing.
 
-use super::paintable::paintable;
-use super::selecting::selected;
+use super::paintable::paintable_channels;
+use super::selecting::select_texels;
 use super::stroke_point::FillRegion;
-use crate::document::{AdjustedView, Document};
+use crate::document::{AdjustmentView, Document};
 use crate::error::SessionError;
 use focus::{
-    Changed, Channels, Combine, Edit, FillTarget, FocusError, FocusMap, Gradient, LayerEdit, LayerStack,
-    SelectionResult, draw_gradient, fill_selected,
+    ChangedTexels, Channels, CombineMode, Edit, FillTarget, FocusError, FocusMap, Gradient, LayerEdit,
+    LayerStack, SelectionResult, draw_gradient, fill_selected,
 };
 use lens::FocusOffset;
 use project::{RecordedFill, RecordedGradient, RecordedSelection, RecordedStep, SelectionShape};
@@ -21,7 +21,7 @@ impl From<FocusError> for SessionError {
 
 impl Document {
     /// What a region covers. What lies at the images of the brush's symmetry belongs to it too.
-    pub fn targets_of(&self, region: FillRegion) -> Vec<FillTarget> {
+    pub fn fill_targets(&self, region: FillRegion) -> Vec<FillTarget> {
         let hit = match region {
             FillRegion::Node(hit)
             | FillRegion::Part(hit)
@@ -39,13 +39,13 @@ impl Document {
             FillRegion::Part(_) | FillRegion::All => FillTarget::Part(part),
         };
         let (triangle, images) = (hit.point.triangle as usize, self.symmetry_at(Some(&hit)).images());
-        let own = target(stage.scene.triangles[triangle].part, stage.atlas.chart_of[triangle]);
-        let others = images[1..].iter().filter_map(|image| {
+        let hit_target = target(stage.scene.triangles[triangle].part, stage.atlas.chart_of[triangle]);
+        let mirrored_targets = images[1..].iter().filter_map(|image| {
             let index = stage.canvas.nearest(image.point(hit.position), |_| true)?;
             let texel = &stage.canvas.texels()[index];
             Some(target(texel.part, texel.chart))
         });
-        let mut targets: Vec<_> = std::iter::once(own).chain(others).collect();
+        let mut targets: Vec<_> = std::iter::once(hit_target).chain(mirrored_targets).collect();
         targets.sort_unstable();
         targets.dedup();
         targets
@@ -56,7 +56,7 @@ impl Document {
         &mut self,
         targets: Vec<FillTarget>,
         focus: FocusOffset,
-    ) -> Result<Changed, SessionError> {
+    ) -> Result<ChangedTexels, SessionError> {
         let name = match targets.first() {
             Some(FillTarget::Node(_)) => "Fill object",
             Some(FillTarget::Part(_)) => "Fill part",
@@ -66,7 +66,7 @@ impl Document {
             Some(FillTarget::Background) => "Background focus",
             Some(FillTarget::Everything) | None => "Fill everything",
         };
-        let channels = paintable(self.layers.active(), Channels::All)?;
+        let channels = paintable_channels(self.layers.active(), Channels::All)?;
         let (canvas, selection) = (self.stage.canvas.clone(), self.selection.clone());
         let layer = self.layers.active_mut();
         let before = layer.map.clone();
@@ -84,7 +84,7 @@ impl Document {
         before: &FocusMap,
         gradient: &Gradient,
     ) -> Result<(), SessionError> {
-        let channels = paintable(self.layers.active(), self.brush.channels)?;
+        let channels = paintable_channels(self.layers.active(), self.brush.channels)?;
         let (canvas, selection) = (self.stage.canvas.clone(), self.selection.clone());
         let map = &mut self.layers.active_mut().map;
         *map = before.clone();
@@ -102,20 +102,24 @@ impl Document {
     /// Notes a change of the active layer's map, if there is one.
     fn push_paint(&mut self, name: &str, before: &FocusMap, record: RecordedStep) -> bool {
         let index = self.layers.active_index();
-        let Some(edit) = Edit::between(name, before, &self.layers.active().map) else { return false };
+        let Some(edit) = Edit::from_difference(name, before, &self.layers.active().map) else { return false };
         self.undo.push_paint(index, edit, Some(record));
         self.revision += 1;
         true
     }
 
     /// Chooses what may be painted. Whether that is something else than before.
-    pub(crate) fn select(&mut self, shape: SelectionShape, combine: Combine) -> Result<bool, SessionError> {
+    pub(crate) fn select(
+        &mut self,
+        shape: SelectionShape,
+        combine: CombineMode,
+    ) -> Result<bool, SessionError> {
         if !shape.is_valid() {
             return Err(SessionError::BadInput("selection: the shape cannot be used".into()));
         }
         let before = self.selection.as_ref();
-        let found = selected(&self.stage, &shape, before);
-        let after = match found.joined_to(before, combine, self.stage.canvas.texels().len()) {
+        let matches = select_texels(&self.stage, &shape, before);
+        let after = match matches.combine_with(before, combine, self.stage.canvas.texels().len()) {
             SelectionResult::Nothing => {
                 let what = "selection: nothing would be left to paint on (choose something else)";
                 return Err(SessionError::BadInput(what.into()));
@@ -148,7 +152,7 @@ impl Document {
             return Err(SessionError::BadInput(what.into()));
         };
         self.change_layers("Mask from selection", Some(RecordedStep::Mask), |layers, document| {
-            layers.active_mut().map.mask_selected(&document.stage.canvas, &selection);
+            layers.active_mut().map.set_mask_from_selection(&document.stage.canvas, &selection);
             Ok(())
         })
     }
@@ -156,7 +160,7 @@ impl Document {
     /// Takes all paint and all layers away. Whether there was any.
     pub(crate) fn reset_map(&mut self) -> Result<bool, SessionError> {
         let [width, height] = self.map.size();
-        let blank = LayerStack::of(FocusMap::new(width, height, FocusOffset::STANDARD));
+        let blank = LayerStack::from_map(FocusMap::new(width, height, FocusOffset::STANDARD));
         self.change_layers("Reset all paint", Some(RecordedStep::Reset), |layers, _| {
             *layers = blank;
             Ok(())
@@ -177,7 +181,7 @@ impl Document {
             return Ok(false);
         }
         self.layers = after.clone();
-        self.adjusted_for = AdjustedView::of(&self.camera);
+        self.adjustment_view = AdjustmentView::from_camera(&self.camera);
         self.undo.push_layers(name, before, after, record);
         self.revision += 1;
         Ok(true)

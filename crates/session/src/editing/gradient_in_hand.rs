@@ -5,12 +5,12 @@ use crate::error::SessionError;
 use focus::{FocusMap, Gradient};
 
 /// A gradient being drawn: drawn anew from what was there, until it pleases.
-pub(crate) struct GradientInHand {
+pub(crate) struct ActiveGradient {
     before: FocusMap,
     gradient: Gradient,
 }
 
-impl GradientInHand {
+impl ActiveGradient {
     /// Draws the first one.
     pub fn begin(document: &mut Document, gradient: Gradient) -> Result<Self, SessionError> {
         let before = document.layers.active().map.clone();

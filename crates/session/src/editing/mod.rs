@@ -15,10 +15,10 @@ mod stroke_point;
 mod underway;
 
 pub use replay::replay;
-pub use selecting::rectangle;
+pub use selecting::rectangle_outline;
 pub use stroke_point::{FillRegion, StrokePoint, StrokeTarget};
 
-pub(crate) use gradient_in_hand::GradientInHand;
+pub(crate) use gradient_in_hand::ActiveGradient;
 pub(crate) use painter::Painter;
-pub(crate) use replay::redo;
-pub(crate) use underway::Underway;
+pub(crate) use replay::apply_recorded_step;
+pub(crate) use underway::ActiveEdit;

@@ -1,10 +1,10 @@
 //! A stroke being painted on a document, live or from a recording.
 
-use super::paintable::paintable;
+use super::paintable::paintable_channels;
 use super::stroke_point::{StrokePoint, StrokeTarget};
 use crate::document::{Document, SurfaceHit, pick, view_ray};
 use crate::error::SessionError;
-use focus::{Brush, Changed, PenSample, Stroke, ViewFrame};
+use focus::{Brush, ChangedTexels, PenSample, Stroke, ViewFrame};
 use glam::DVec2;
 use project::{RecordedStep, RecordedStroke, StrokeView};
 
@@ -20,48 +20,52 @@ impl Painter {
     /// Begins a stroke with the document's brush on its active layer. Nothing is painted yet.
     pub fn begin(document: &Document, point: &StrokePoint) -> Result<Self, SessionError> {
         let layer = document.layers.active();
-        let channels = paintable(layer, document.brush.channels)?;
-        let hit = hit_of(document, point);
+        let channels = paintable_channels(layer, document.brush.channels)?;
+        let hit = surface_under(document, point);
         let brush = Brush { channels, ..document.brush_at(hit.as_ref()) };
         let stroke = Stroke::begin(&layer.map, document.stage.canvas.clone(), brush.clone())?;
-        let stroke = stroke.within(document.selection.clone());
-        let view = match point.at {
+        let stroke = stroke.with_selection(document.selection.clone());
+        let view = match point.target {
             StrokeTarget::View(view, _) => Some(StrokeView::Scene(view)),
             StrokeTarget::Atlas(_) => Some(StrokeView::Atlas { atlas: document.stage.atlas.hash.clone() }),
             StrokeTarget::Ray(_) | StrokeTarget::Surface(_) => None,
         };
         let is_recordable = view.is_some();
-        let shot = &document.camera;
-        let unseen = ViewFrame::of(shot);
+        let shot_camera = &document.camera;
+        let placeholder_view = ViewFrame::from_camera(shot_camera);
         let record = RecordedStroke {
             layer: layer.name.clone(),
             brush,
-            view: view.unwrap_or(unseen.into()),
+            view: view.unwrap_or(placeholder_view.into()),
             points: Vec::new(),
         };
         Ok(Self { stroke, record, is_recordable })
     }
 
     /// Draws on to the next point. What changed in the layer.
-    pub fn extend(&mut self, document: &mut Document, point: &StrokePoint) -> Changed {
-        let hit = hit_of(document, point);
-        match (point.at, &self.record.view) {
-            (StrokeTarget::View(view, at), StrokeView::Scene(own)) if view == *own => self.note(at, point),
-            (StrokeTarget::Atlas(at), StrokeView::Atlas { .. }) => self.note(at, point),
+    pub fn extend(&mut self, document: &mut Document, point: &StrokePoint) -> ChangedTexels {
+        let hit = surface_under(document, point);
+        match (point.target, &self.record.view) {
+            (StrokeTarget::View(view, position), StrokeView::Scene(recorded_view))
+                if view == *recorded_view =>
+            {
+                self.record_point(position, point)
+            }
+            (StrokeTarget::Atlas(position), StrokeView::Atlas { .. }) => self.record_point(position, point),
             _ => self.is_recordable = false,
         }
         let Some(hit) = hit else {
             self.stroke.lift();
-            return Changed::default();
+            return ChangedTexels::default();
         };
-        let front = document.stage.scene.area_normal(hit.point.triangle).try_normalize();
-        let hit = focus::SurfaceHit { position: hit.position, normal: front.map(|n| n.as_vec3()) };
+        let triangle_normal = document.stage.scene.area_normal(hit.point.triangle).try_normalize();
+        let hit = focus::SurfaceHit { position: hit.position, normal: triangle_normal.map(|n| n.as_vec3()) };
         let pen = PenSample { pressure: point.pressure as f64 };
         self.stroke.extend(&mut document.layers.active_mut().map, hit, pen)
     }
 
-    fn note(&mut self, at: DVec2, point: &StrokePoint) {
-        self.record.points.push([at.x, at.y, point.pressure as f64]);
+    fn record_point(&mut self, position: DVec2, point: &StrokePoint) {
+        self.record.points.push([position.x, position.y, point.pressure as f64]);
     }
 
     /// Ends the stroke: one step of undo, or nothing if it changed nothing. Whether it changed anything.
@@ -74,15 +78,15 @@ impl Painter {
     }
 
     /// Takes the stroke back. What changed in the layer.
-    pub fn abort(self, document: &mut Document) -> Changed {
+    pub fn abort(self, document: &mut Document) -> ChangedTexels {
         self.stroke.abort(&mut document.layers.active_mut().map)
     }
 }
 
 /// The surface under a point of a stroke.
-fn hit_of(document: &Document, point: &StrokePoint) -> Option<SurfaceHit> {
+fn surface_under(document: &Document, point: &StrokePoint) -> Option<SurfaceHit> {
     let tracer = &document.stage.tracer;
-    match point.at {
+    match point.target {
         StrokeTarget::Surface(hit) => Some(hit),
         StrokeTarget::Ray(ray) => pick(tracer, &ray),
         StrokeTarget::View(view, position) => pick(tracer, &view_ray(&view, position)),

@@ -1,6 +1,6 @@
 //! Recorded steps, done again.
 
-use super::gradient_in_hand::GradientInHand;
+use super::gradient_in_hand::ActiveGradient;
 use super::painter::Painter;
 use super::stroke_point::StrokePoint;
 use crate::document::Document;
@@ -11,31 +11,34 @@ use project::{RecordedStep, RecordedStroke, StrokeView};
 /// what it was. Returns how many changed anything.
 pub fn replay(document: &mut Document, steps: &[RecordedStep]) -> Result<usize, SessionError> {
     let brush = document.brush.clone();
-    let mut done = 0;
+    let mut changed_count = 0;
     for (index, step) in steps.iter().enumerate() {
-        let changed = redo(document, step)
+        let changed = apply_recorded_step(document, step)
             .map_err(|error| SessionError::BadInput(format!("step {}: {error}", index + 1)))?;
-        done += usize::from(changed);
+        changed_count += usize::from(changed);
     }
     document.brush = brush;
-    Ok(done)
+    Ok(changed_count)
 }
 
 /// Does one recorded step. Whether it changed anything.
-pub(crate) fn redo(document: &mut Document, step: &RecordedStep) -> Result<bool, SessionError> {
-    let before = document.undo.names().count();
+pub(crate) fn apply_recorded_step(
+    document: &mut Document,
+    step: &RecordedStep,
+) -> Result<bool, SessionError> {
+    let undo_count = document.undo.names().count();
     match step {
         RecordedStep::Stroke(stroke) => {
-            activate(document, &stroke.layer)?;
-            return draw(document, stroke);
+            activate_layer(document, &stroke.layer)?;
+            return replay_stroke(document, stroke);
         }
         RecordedStep::Fill(fill) => {
-            activate(document, &fill.layer)?;
+            activate_layer(document, &fill.layer)?;
             document.fill(fill.targets.clone(), fill.focus)?;
         }
-        RecordedStep::Gradient(drawn) => {
-            activate(document, &drawn.layer)?;
-            GradientInHand::begin(document, drawn.gradient)?.commit(document);
+        RecordedStep::Gradient(recorded) => {
+            activate_layer(document, &recorded.layer)?;
+            ActiveGradient::begin(document, recorded.gradient)?.commit(document);
         }
         RecordedStep::Select(selection) => {
             return document.select(selection.shape.clone(), selection.combine);
@@ -51,16 +54,16 @@ pub(crate) fn redo(document: &mut Document, step: &RecordedStep) -> Result<bool,
         }
     }
     document.recomposite(None);
-    Ok(document.undo.names().count() != before)
+    Ok(document.undo.names().count() != undo_count)
 }
 
 /// Paints on the layer of this name from now on.
-fn activate(document: &mut Document, name: &str) -> Result<(), SessionError> {
+fn activate_layer(document: &mut Document, name: &str) -> Result<(), SessionError> {
     let layers = document.layers.layers();
     let Some(layer) = layers.iter().position(|layer| layer.name == name) else {
         let names: Vec<_> = layers.iter().map(|layer| format!("\"{}\"", layer.name)).collect();
-        let there_are = names.join(", ");
-        let what = format!("no layer is called \"{name}\" (there are {there_are})");
+        let available = names.join(", ");
+        let what = format!("no layer is called \"{name}\" (there are {available})");
         return Err(SessionError::BadInput(what));
     };
     document.layers.activate(layer);
@@ -68,7 +71,7 @@ fn activate(document: &mut Document, name: &str) -> Result<(), SessionError> {
 }
 
 /// Paints a recorded stroke on the active layer. Whether it changed anything.
-fn draw(document: &mut Document, stroke: &RecordedStroke) -> Result<bool, SessionError> {
+fn replay_stroke(document: &mut Document, stroke: &RecordedStroke) -> Result<bool, SessionError> {
     if let StrokeView::Atlas { atlas } = &stroke.view
         && *atlas != document.stage.atlas.hash
     {
@@ -76,7 +79,7 @@ fn draw(document: &mut Document, stroke: &RecordedStroke) -> Result<bool, Sessio
         return Err(SessionError::BadInput(what.into()));
     }
     document.brush = stroke.brush.clone();
-    let mut points = stroke.points.iter().map(|point| StrokePoint::recorded(&stroke.view, point));
+    let mut points = stroke.points.iter().map(|point| StrokePoint::from_recorded(&stroke.view, point));
     let Some(first) = points.next() else { return Ok(false) };
     let mut painter = Painter::begin(document, &first)?;
     for point in std::iter::once(first).chain(points) {

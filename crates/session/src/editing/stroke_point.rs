@@ -10,7 +10,7 @@ use trace::Ray;
 #[derive(Clone, Copy, Debug)]
 pub struct StrokePoint {
     /// Where.
-    pub at: StrokeTarget,
+    pub target: StrokeTarget,
     /// Pen pressure in [0, 1]; 1 for a mouse.
     pub pressure: f32,
 }
@@ -31,23 +31,23 @@ pub enum StrokeTarget {
 
 impl StrokePoint {
     /// A point of a recorded stroke.
-    pub fn recorded(view: &StrokeView, &[x, y, pressure]: &[f64; 3]) -> Self {
-        let at = DVec2::new(x, y);
-        let at = match view {
-            StrokeView::Scene(view) => StrokeTarget::View(*view, at),
-            StrokeView::Atlas { .. } => StrokeTarget::Atlas(at),
+    pub fn from_recorded(view: &StrokeView, &[x, y, pressure]: &[f64; 3]) -> Self {
+        let position = DVec2::new(x, y);
+        let target = match view {
+            StrokeView::Scene(view) => StrokeTarget::View(*view, position),
+            StrokeView::Atlas { .. } => StrokeTarget::Atlas(position),
         };
-        Self { at, pressure: pressure as f32 }
+        Self { target, pressure: pressure as f32 }
     }
 
     /// A mouse position, as a ray of a view.
-    pub fn ray(ray: Ray) -> Self {
-        Self { at: StrokeTarget::Ray(ray), pressure: 1.0 }
+    pub fn from_ray(ray: Ray) -> Self {
+        Self { target: StrokeTarget::Ray(ray), pressure: 1.0 }
     }
 
     /// A picked surface point.
-    pub fn surface(hit: SurfaceHit) -> Self {
-        Self { at: StrokeTarget::Surface(hit), pressure: 1.0 }
+    pub fn from_surface(hit: SurfaceHit) -> Self {
+        Self { target: StrokeTarget::Surface(hit), pressure: 1.0 }
     }
 }
 

@@ -1,12 +1,12 @@
 //! What is being painted and is no step of undo yet.
 
-use super::gradient_in_hand::GradientInHand;
+use super::gradient_in_hand::ActiveGradient;
 use super::painter::Painter;
 
 /// What is being painted and is no step of undo yet.
-pub(crate) enum Underway {
+pub(crate) enum ActiveEdit {
     /// A stroke.
     Stroke(Box<Painter>),
     /// A gradient.
-    Gradient(Box<GradientInHand>),
+    Gradient(Box<ActiveGradient>),
 }

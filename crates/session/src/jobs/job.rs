@@ -1,7 +1,7 @@
 //! Background work: a named thread with progress, cancel and a result; its panics become errors.
 
 use super::job_progress::JobProgress;
-use super::threads::{STACK_BYTES, Urgency, among_others, guarded};
+use super::threads::{STACK_BYTES, Urgency, catch_panics, run_in_own_pool};
 use crate::error::SessionError;
 use progress::Progress;
 use std::sync::Arc;
@@ -46,11 +46,13 @@ impl Job {
         deliver: impl FnOnce(JobId, Result<T, SessionError>) + Send + 'static,
     ) -> Result<Self, SessionError> {
         let progress = Arc::new(JobProgress::default());
-        let (shared, doing) = (progress.clone(), label.clone());
+        let (shared, task) = (progress.clone(), label.clone());
         std::thread::Builder::new()
             .name(label.clone())
             .stack_size(STACK_BYTES)
-            .spawn(move || deliver(id, guarded(&doing, || among_others(Urgency::Later, || work(&shared)))))
+            .spawn(move || {
+                deliver(id, catch_panics(&task, || run_in_own_pool(Urgency::Background, || work(&shared))))
+            })
             .map_err(|e| {
                 SessionError::TryAgain(format!("{label}: no thread could be started: {e} (try again)"))
             })?;
@@ -58,7 +60,7 @@ impl Job {
     }
 
     pub fn status(&self) -> JobStatus {
-        let (step, seconds_left) = self.progress.standing();
+        let (step, seconds_left) = self.progress.step_status();
         JobStatus {
             id: self.id,
             label: self.label.clone(),

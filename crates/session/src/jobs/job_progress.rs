@@ -15,14 +15,14 @@ pub struct JobProgress {
 /// A part of a job.
 struct Step {
     label: String,
-    begun: Instant,
+    start: Instant,
     /// Shares of the whole, before and after it.
     shares: [f32; 2],
 }
 
 impl Default for Step {
     fn default() -> Self {
-        Self { label: String::new(), begun: Instant::now(), shares: [0.0, 1.0] }
+        Self { label: String::new(), start: Instant::now(), shares: [0.0, 1.0] }
     }
 }
 
@@ -33,7 +33,7 @@ impl Default for JobProgress {
 }
 
 /// Before a step has gone on for this long, and is done to this share, nobody can tell how long it takes.
-const KNOWN_AFTER: (Duration, f32) = (Duration::from_secs(1), 0.02);
+const ESTIMATE_AFTER: (Duration, f32) = (Duration::from_secs(1), 0.02);
 
 impl JobProgress {
     /// The share done, in [0, 1].
@@ -56,13 +56,13 @@ impl JobProgress {
     pub(crate) fn begin_step(&self, label: &str, from: f32, to: f32) {
         let mut step = self.step();
         self.fraction.store(from.to_bits(), Ordering::Relaxed);
-        *step = Step { label: label.into(), begun: Instant::now(), shares: [from, to] };
+        *step = Step { label: label.into(), start: Instant::now(), shares: [from, to] };
     }
 
     /// What the part that goes on is called, and how many seconds it will take.
-    pub(crate) fn standing(&self) -> (String, Option<u32>) {
+    pub(crate) fn step_status(&self) -> (String, Option<u32>) {
         let step = self.step();
-        (step.label.clone(), step.seconds_left(self.fraction(), step.begun.elapsed()))
+        (step.label.clone(), step.seconds_left(self.fraction(), step.start.elapsed()))
     }
 
     /// A poisoned lock only means that a panic passed by: what it guards is replaced as a whole.
@@ -75,9 +75,9 @@ impl Step {
     /// Seconds that it will take when it has come to this share of the whole in this time.
     fn seconds_left(&self, fraction: f32, elapsed: Duration) -> Option<u32> {
         let [from, to] = self.shares;
-        let done = (fraction - from) / (to - from);
-        let is_known = elapsed >= KNOWN_AFTER.0 && done >= KNOWN_AFTER.1;
-        is_known.then(|| (elapsed.as_secs_f32() * (1.0 - done).max(0.0) / done).ceil() as u32)
+        let step_share = (fraction - from) / (to - from);
+        let has_estimate = elapsed >= ESTIMATE_AFTER.0 && step_share >= ESTIMATE_AFTER.1;
+        has_estimate.then(|| (elapsed.as_secs_f32() * (1.0 - step_share).max(0.0) / step_share).ceil() as u32)
     }
 }
 
@@ -89,7 +89,7 @@ impl Progress for JobProgress {
         self.cancelled.load(Ordering::Relaxed)
     }
     fn begin_part(&self, part: &Part) {
-        *self.step() = Step { label: part.name.into(), begun: Instant::now(), shares: [part.from, part.to] };
+        *self.step() = Step { label: part.name.into(), start: Instant::now(), shares: [part.from, part.to] };
         self.report(part.from);
     }
 }
@@ -110,12 +110,12 @@ mod tests {
         let progress = JobProgress::default();
         progress.report(0.7);
         progress.begin_step("baking", 0.5, 0.9);
-        assert_eq!((progress.standing().0.as_str(), progress.fraction()), ("baking", 0.5));
+        assert_eq!((progress.step_status().0.as_str(), progress.fraction()), ("baking", 0.5));
         progress.report(0.4);
         assert_eq!(progress.fraction(), 0.5, "it never runs back");
         let baking = Stage::new(&progress, 0.5, 1.0);
         Stage::named(&baking, "rays", 0.25, 0.75).report(0.5);
-        let (label, _) = progress.standing();
+        let (label, _) = progress.step_status();
         assert_eq!(
             (label.as_str(), progress.fraction(), progress.step().shares),
             ("rays", 0.75, [0.625, 0.875])

@@ -11,8 +11,8 @@ mod threads;
 pub use job::{JobId, JobStatus, Waker};
 pub use job_progress::JobProgress;
 pub use steps::Steps;
-pub use threads::guarded;
+pub use threads::catch_panics;
 
 pub(crate) use job::Job;
 pub(crate) use steps::JobSteps;
-pub(crate) use threads::{Urgency, among_others, own_threads};
+pub(crate) use threads::{Urgency, build_thread_pool, run_in_own_pool};

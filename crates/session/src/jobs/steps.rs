@@ -12,13 +12,13 @@ pub trait Steps: Sync {
     fn begin(&self, label: &str) -> Box<dyn Progress + '_>;
 
     /// A step found something worth a sentence.
-    fn tell(&self, _sentence: &str) {}
+    fn notice(&self, _sentence: &str) {}
 
     /// The scene can be seen through `camera`, though it takes a while until it can be painted on.
-    fn seen(&self, _tracer: &Arc<Tracer>, _camera: &Camera) {}
+    fn scene_ready(&self, _tracer: &Arc<Tracer>, _camera: &Camera) {}
 
     /// The picture of what is being opened is there, though it takes a while until it has a surface.
-    fn shown(&self, _picture: &Picture) {}
+    fn picture_ready(&self, _picture: &Picture) {}
 }
 
 /// Nobody watches.

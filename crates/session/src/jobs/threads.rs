@@ -10,22 +10,22 @@ pub(super) const STACK_BYTES: usize = 16 << 20;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Urgency {
     /// Somebody looks on.
-    Now,
+    Interactive,
     /// When there is time: it stands back behind the pictures that one paints on.
-    Later,
+    Background,
 }
 
 /// By how much the threads of work that has time stand back.
 #[cfg(target_os = "linux")]
-const STANDS_BACK: i32 = 5;
+const NICE_INCREMENT: i32 = 5;
 
 impl Urgency {
     /// Says so to the system, for the thread that calls.
     #[cfg(target_os = "linux")]
     fn declare(self) {
-        if self == Self::Later {
+        if self == Self::Background {
             // Where that is not allowed, it does not stand back.
-            let _ = rustix::process::nice(STANDS_BACK);
+            let _ = rustix::process::nice(NICE_INCREMENT);
         }
     }
 
@@ -36,7 +36,7 @@ impl Urgency {
 
 /// Rayon threads for work that takes its time: in the common ones, what the window needs at once would wait for its long
 /// pieces. The system shares the processors out.
-pub(crate) fn own_threads(urgency: Urgency) -> Result<rayon::ThreadPool, SessionError> {
+pub(crate) fn build_thread_pool(urgency: Urgency) -> Result<rayon::ThreadPool, SessionError> {
     let pool = rayon::ThreadPoolBuilder::new()
         .stack_size(STACK_BYTES)
         .start_handler(move |_| urgency.declare())
@@ -45,15 +45,18 @@ pub(crate) fn own_threads(urgency: Urgency) -> Result<rayon::ThreadPool, Session
 }
 
 /// Runs `work` with threads of its own.
-pub(crate) fn among_others<T: Send>(
+pub(crate) fn run_in_own_pool<T: Send>(
     urgency: Urgency,
     work: impl FnOnce() -> Result<T, SessionError> + Send,
 ) -> Result<T, SessionError> {
-    own_threads(urgency)?.install(work)
+    build_thread_pool(urgency)?.install(work)
 }
 
 /// Runs `work`; a panic in it becomes an error.
-pub fn guarded<T>(doing: &str, work: impl FnOnce() -> Result<T, SessionError>) -> Result<T, SessionError> {
+pub fn catch_panics<T>(
+    task: &str,
+    work: impl FnOnce() -> Result<T, SessionError>,
+) -> Result<T, SessionError> {
     std::panic::catch_unwind(AssertUnwindSafe(work))
-        .unwrap_or_else(|payload| Err(SessionError::panicked(doing, payload.as_ref())))
+        .unwrap_or_else(|payload| Err(SessionError::from_panic(task, payload.as_ref())))
 }

@@ -1,6 +1,6 @@
 //! What of the aperture a surface point sees, and what it sends there: the light field at one point, cell by cell.
 
-use super::light::light_at_once;
+use super::light::available_light;
 use super::running_sum::BakedField;
 use crate::document::{Document, SurfaceHit};
 use glam::{DVec2, DVec3};
@@ -26,12 +26,12 @@ pub struct ApertureImage {
     /// Its signed circle of confusion, px: negative lands turned by half a turn.
     pub circle_px: f64,
     /// What the preview's light field keeps of it; none while there is no light field, or where it has no sample.
-    pub kept: Option<KeptVisibility>,
+    pub baked: Option<BakedVisibility>,
 }
 
 /// What the sample of the light field nearest to a point keeps of the aperture.
 #[derive(Clone, Debug, PartialEq)]
-pub struct KeptVisibility {
+pub struct BakedVisibility {
     /// Rows and columns of cells over the square [−R, R]² of the lens that it was made for; 1 where it sees all.
     pub side: usize,
     /// Which of them it sees, in the order of [`ApertureImage::cells`].
@@ -44,10 +44,10 @@ pub struct KeptVisibility {
     pub aperture_radius: f64,
 }
 
-impl KeptVisibility {
+impl BakedVisibility {
     /// The share of its cells that it sees, in [0, 1].
     pub fn visible_share(&self) -> f64 {
-        self.cells.iter().filter(|is_seen| **is_seen).count() as f64 / self.cells.len().max(1) as f64
+        self.cells.iter().filter(|is_visible| **is_visible).count() as f64 / self.cells.len().max(1) as f64
     }
 }
 
@@ -57,13 +57,13 @@ pub struct ApertureCell {
     /// How much of it the aperture's shape lets through, in [0, 1].
     pub transmission: f32,
     /// Whether the point sees its middle.
-    pub is_seen: bool,
+    pub is_visible: bool,
     /// Linear RGB radiance from the point to its middle; black where it is not seen.
     pub radiance: [f32; 3],
 }
 
 /// How far the nearest sample is sought, texels.
-const SQUARES: [u32; 6] = [0, 2, 8, 24, 64, 160];
+const SEARCH_RADII_TEXELS: [u32; 6] = [0, 2, 8, 24, 64, 160];
 
 impl ApertureImage {
     /// Rows and columns of cells.
@@ -75,30 +75,34 @@ impl ApertureImage {
             cells.map(|cell| f64::from(cell.transmission)).sum::<f64>()
         };
         let open = sum(&mut self.cells.iter());
-        if open > 0.0 { sum(&mut self.cells.iter().filter(|cell| cell.is_seen)) / open } else { 0.0 }
+        if open > 0.0 { sum(&mut self.cells.iter().filter(|cell| cell.is_visible)) / open } else { 0.0 }
     }
 }
 
 impl ApertureImage {
     /// The aperture as a surface point of a document sees it, and what `field` keeps of that. A thousand rays: quick enough
     /// to wait for. `None` where the aperture is a pinhole, or the point stands behind it.
-    pub(crate) fn at(document: &Document, field: Option<&BakedField>, hit: &SurfaceHit) -> Option<Self> {
+    pub(crate) fn trace_at(
+        document: &Document,
+        field: Option<&BakedField>,
+        hit: &SurfaceHit,
+    ) -> Option<Self> {
         let (camera, tracer) = (&document.camera, &document.stage.tracer);
         let (radius, depth) = (camera.aperture_radius, camera.camera_from_world(hit.position).z);
         if radius <= 0.0 || depth <= 0.0 {
             return None;
         }
-        let light = light_at_once(tracer, camera);
+        let light = available_light(tracer, camera);
         let side = ApertureImage::SIDE;
         let cell = |index: usize| {
             let [row, column] = [index / side, index % side].map(|k| (k as f64 + 0.5) / side as f64);
             let u = DVec2::new(2.0 * column - 1.0, 1.0 - 2.0 * row);
             let eye = camera.world_from_camera((u * radius).extend(0.0));
-            let is_seen = !tracer.hidden(hit.point, eye);
+            let is_visible = !tracer.is_hidden_from(hit.point, eye);
             ApertureCell {
                 transmission: camera.aperture.transmission(u) as f32,
-                is_seen,
-                radiance: if is_seen { light.toward(hit.point, eye).to_array() } else { [0.0; 3] },
+                is_visible,
+                radiance: if is_visible { light.total_outgoing(hit.point, eye).to_array() } else { [0.0; 3] },
             }
         };
         let cells = (0..side * side).into_par_iter().map(cell).collect();
@@ -106,28 +110,31 @@ impl ApertureImage {
         let optics = camera.optics();
         let kappa = optics.kappa(1.0 / depth, focus);
         let circle_px = 2.0 * optics.splat_radius_px(kappa);
-        let kept = field.and_then(|field| KeptVisibility::at(document, field, hit));
-        Some(Self { position: hit.position, side, cells, depth, focus, kappa, circle_px, kept })
+        let baked = field.and_then(|field| BakedVisibility::nearest_to(document, field, hit));
+        Some(Self { position: hit.position, side, cells, depth, focus, kappa, circle_px, baked })
     }
 }
 
-impl KeptVisibility {
+impl BakedVisibility {
     /// What a light field keeps of the aperture beside a surface point: its nearest sample, sought in ever wider squares
     /// of the atlas.
-    fn at(document: &Document, field: &BakedField, hit: &SurfaceHit) -> Option<Self> {
+    fn nearest_to(document: &Document, field: &BakedField, hit: &SurfaceHit) -> Option<Self> {
         let stage = &document.stage;
-        let place = stage.atlas.position_of(hit.point);
-        let samples = SQUARES.into_iter().find_map(|reach| {
-            let along = |at: f64, count: u32| {
+        let texel_position = stage.atlas.position_of(hit.point);
+        let samples = SEARCH_RADII_TEXELS.into_iter().find_map(|search_radius| {
+            let range_along = |at: f64, count: u32| {
                 let at = (at.max(0.0) as u32).min(count.saturating_sub(1));
-                at.saturating_sub(reach)..(at + reach + 1).min(count)
+                at.saturating_sub(search_radius)..(at + search_radius + 1).min(count)
             };
-            let (columns, rows) = (along(place.x, stage.atlas.width), along(place.y, stage.atlas.height));
+            let (columns, rows) = (
+                range_along(texel_position.x, stage.atlas.width),
+                range_along(texel_position.y, stage.atlas.height),
+            );
             let texels: Vec<_> = rows.flat_map(|y| columns.clone().map(move |x| [x, y])).collect();
-            Some(field.index.samples_reading(&texels)).filter(|found| !found.is_empty())
+            Some(field.index.samples_reading(&texels)).filter(|nearby| !nearby.is_empty())
         })?;
         let mut addresses = field.salf.samples.addresses();
-        let mut position = |index: u32| Some(addresses.of(index).surface?.position(&stage.scene));
+        let mut position = |index: u32| Some(addresses.get(index).surface?.position(&stage.scene));
         let near =
             samples.into_iter().filter_map(|index| Some((position(index)?.distance(hit.position), index)));
         let (distance, index) = near.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))?;

@@ -1,7 +1,7 @@
 //! Light fields, baked as coarse as a picture allows.
 
 use super::kept_light::LightQuality;
-use super::light::light;
+use super::light::solve_light;
 use crate::error::SessionError;
 use crate::jobs::Steps;
 use focus::Focus;
@@ -48,11 +48,12 @@ pub(crate) fn bake_with(
     quality: LightQuality,
     steps: &dyn Steps,
 ) -> Result<Salf, SessionError> {
-    let light = light(tracer, camera, quality, &*steps.begin("light"))?;
-    let (salf, outliers) = salf::bake_and_tell(tracer, &*light, camera, options, &*steps.begin("baking"))?;
+    let light = solve_light(tracer, camera, quality, &*steps.begin("light"))?;
+    let (salf, outliers) =
+        salf::bake_with_outliers(tracer, &*light, camera, options, &*steps.begin("baking"))?;
     if outliers.samples > 0 {
         let (samples, percent) = (outliers.samples, 100.0 * outliers.share());
-        steps.tell(&format!(
+        steps.notice(&format!(
             "{samples} samples found far more light than those around them: {percent:.2} % of all light was spread among these"
         ));
     }

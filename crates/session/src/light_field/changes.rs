@@ -1,7 +1,7 @@
 //! What of the focus map a sum has not seen yet.
 
 /// Changes of more texels than these are not counted singly.
-const MOST_TEXELS: usize = 1 << 22;
+const MAX_TEXELS: usize = 1 << 22;
 
 /// Texels of the focus map that a sum has not seen yet.
 #[derive(Clone, Debug)]
@@ -27,7 +27,7 @@ impl Changes {
     /// Takes up newer changes.
     pub fn join(&mut self, newer: &Changes) {
         match (&mut *self, newer) {
-            (Self::Texels(texels), Self::Texels(more)) if texels.len() + more.len() <= MOST_TEXELS => {
+            (Self::Texels(texels), Self::Texels(more)) if texels.len() + more.len() <= MAX_TEXELS => {
                 texels.extend(more);
             }
             _ => *self = Self::Everything,

@@ -1,6 +1,6 @@
 //! Which light field is being made for the live picture: whoever needs the same one waits for it instead of baking it again.
 
-use super::serves::serves;
+use super::serves::is_compatible;
 use crate::document::Stage;
 use lens::Camera;
 use salf::Salf;
@@ -10,23 +10,23 @@ use std::time::Duration;
 /// The light field that is being made, or was made last.
 #[derive(Default)]
 pub(crate) struct FieldWatch {
-    making: Mutex<Option<Making>>,
+    latest: Mutex<Option<LatestBake>>,
     changed: Condvar,
 }
 
 /// None of it is kept alive.
-struct Making {
+struct LatestBake {
     stage: Weak<Stage>,
     /// Once it is baked.
-    made: Option<Weak<Salf>>,
+    baked: Option<Weak<Salf>>,
 }
 
 /// How a light field stands that would serve.
-pub(crate) enum Standing {
+pub(crate) enum BakeState {
     /// It is there.
-    Made(Arc<Salf>),
+    Baked(Arc<Salf>),
     /// One is being made, whether or not it will serve.
-    Underway,
+    InProgress,
     /// None is, that the watch knows of.
     Absent,
 }
@@ -34,38 +34,40 @@ pub(crate) enum Standing {
 impl FieldWatch {
     /// One is being made from now on.
     pub fn begin(&self, stage: &Arc<Stage>) {
-        *self.lock() = Some(Making { stage: Arc::downgrade(stage), made: None });
+        *self.lock() = Some(LatestBake { stage: Arc::downgrade(stage), baked: None });
     }
 
     /// It is baked.
-    pub fn made(&self, salf: &Arc<Salf>) {
-        if let Some(making) = &mut *self.lock() {
-            making.made = Some(Arc::downgrade(salf));
+    pub fn set_baked(&self, salf: &Arc<Salf>) {
+        if let Some(latest) = &mut *self.lock() {
+            latest.baked = Some(Arc::downgrade(salf));
         }
         self.changed.notify_all();
     }
 
     /// No more is done on it, whether or not it was made.
     pub fn end(&self) {
-        self.lock().take_if(|making| making.made.is_none());
+        self.lock().take_if(|latest| latest.baked.is_none());
         self.changed.notify_all();
     }
 
     /// How one stands that serves `camera` in `stage`. What is under way is waited for, as long as `patience`.
-    pub fn look(&self, stage: &Arc<Stage>, camera: &Camera, patience: Duration) -> Standing {
-        let is_underway = |making: &mut Option<Making>| making.as_ref().is_some_and(|m| m.made.is_none());
-        let waited = self.changed.wait_timeout_while(self.lock(), patience, is_underway);
-        let (making, _) = waited.unwrap_or_else(PoisonError::into_inner);
-        let Some(making) = &*making else { return Standing::Absent };
-        let Some(made) = &making.made else { return Standing::Underway };
-        let is_here = making.stage.upgrade().is_some_and(|of| Arc::ptr_eq(&of, stage));
-        let made = made.upgrade().filter(|salf| is_here && serves(&salf.camera, camera));
-        made.map_or(Standing::Absent, Standing::Made)
+    pub fn wait_for(&self, stage: &Arc<Stage>, camera: &Camera, timeout: Duration) -> BakeState {
+        let is_underway =
+            |latest: &mut Option<LatestBake>| latest.as_ref().is_some_and(|m| m.baked.is_none());
+        let waited = self.changed.wait_timeout_while(self.lock(), timeout, is_underway);
+        let (latest, _) = waited.unwrap_or_else(PoisonError::into_inner);
+        let Some(latest) = &*latest else { return BakeState::Absent };
+        let Some(baked) = &latest.baked else { return BakeState::InProgress };
+        let is_same_stage =
+            latest.stage.upgrade().is_some_and(|baked_stage| Arc::ptr_eq(&baked_stage, stage));
+        let baked = baked.upgrade().filter(|salf| is_same_stage && is_compatible(&salf.camera, camera));
+        baked.map_or(BakeState::Absent, BakeState::Baked)
     }
 
     /// A poisoned lock only means that a panic passed by: what it guards is replaced as a whole.
-    fn lock(&self) -> MutexGuard<'_, Option<Making>> {
-        self.making.lock().unwrap_or_else(PoisonError::into_inner)
+    fn lock(&self) -> MutexGuard<'_, Option<LatestBake>> {
+        self.latest.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -74,7 +76,7 @@ mod tests {
     use super::super::kept_light::LightQuality;
     use super::*;
     use crate::document::Document;
-    use crate::light_field::light;
+    use crate::light_field::solve_light;
     use progress::Unwatched;
     use std::time::Instant;
 
@@ -83,39 +85,39 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("quads.glb");
         crate::tiny_glb::write(&file);
-        let open = || Document::begin(&file, &Default::default(), &Default::default(), &Unwatched).unwrap();
+        let open = || Document::create(&file, &Default::default(), &Default::default(), &Unwatched).unwrap();
         let (document, other) = (open(), open());
         let camera = Camera { width: 24, height: 16, ..document.camera.clone() };
         let watch = FieldWatch::default();
-        let now = |stage| watch.look(stage, &camera, Duration::ZERO);
-        assert!(matches!(now(&document.stage), Standing::Absent));
+        let now = |stage| watch.wait_for(stage, &camera, Duration::ZERO);
+        assert!(matches!(now(&document.stage), BakeState::Absent));
         watch.begin(&document.stage);
-        assert!(matches!(now(&document.stage), Standing::Underway));
+        assert!(matches!(now(&document.stage), BakeState::InProgress));
         let tracer = &document.stage.tracer;
         let options = salf::BakeOptions::default();
-        let light = light(tracer, &camera, LightQuality::Fine, &Unwatched).unwrap();
+        let light = solve_light(tracer, &camera, LightQuality::Fine, &Unwatched).unwrap();
         let salf = Arc::new(salf::bake(tracer, &*light, &camera, &options, &Unwatched).unwrap());
         let long = Duration::from_secs(60);
         let start = Instant::now();
         std::thread::scope(|scope| {
             scope.spawn(|| {
                 std::thread::sleep(Duration::from_millis(20));
-                watch.made(&salf);
+                watch.set_baked(&salf);
             });
-            let found = watch.look(&document.stage, &camera, long);
-            assert!(matches!(found, Standing::Made(made) if Arc::ptr_eq(&made, &salf)));
+            let state = watch.wait_for(&document.stage, &camera, long);
+            assert!(matches!(state, BakeState::Baked(baked) if Arc::ptr_eq(&baked, &salf)));
         });
         assert!(start.elapsed() < long);
         watch.end();
-        assert!(matches!(now(&document.stage), Standing::Made(_)), "it stays known");
-        assert!(matches!(now(&other.stage), Standing::Absent), "of another scene");
+        assert!(matches!(now(&document.stage), BakeState::Baked(_)), "it stays known");
+        assert!(matches!(now(&other.stage), BakeState::Absent), "of another scene");
         let wider = Camera { width: 30, ..camera.clone() };
-        assert!(matches!(watch.look(&document.stage, &wider, Duration::ZERO), Standing::Absent));
+        assert!(matches!(watch.wait_for(&document.stage, &wider, Duration::ZERO), BakeState::Absent));
         drop(salf);
-        assert!(matches!(now(&document.stage), Standing::Absent), "it is gone");
+        assert!(matches!(now(&document.stage), BakeState::Absent), "it is gone");
         // One that fails is not waited for.
         watch.begin(&document.stage);
         watch.end();
-        assert!(matches!(now(&document.stage), Standing::Absent));
+        assert!(matches!(now(&document.stage), BakeState::Absent));
     }
 }

@@ -12,7 +12,7 @@ use std::sync::Arc;
 use trace::{Radiance, Tracer};
 
 /// Light that leaves a scene.
-pub(crate) type Light = Arc<dyn Radiance + Send + Sync>;
+pub(crate) type SceneLight = Arc<dyn Radiance + Send + Sync>;
 
 /// Paths and lights of a point of the light field, where irradiance is known: a sample has several points.
 const PATHS: u32 = 2;
@@ -24,41 +24,41 @@ const ROUGH_LIGHT_SAMPLES: u32 = 4;
 /// The light that leaves the scene in `tracer`, for a camera: that of its photographs, if it has any. The first time for a scene (and its
 /// world) it is found out, which `progress` watches; it is kept for every camera. Rough light of photographs is that of the bare
 /// surface as long as theirs is not there.
-pub(crate) fn light(
+pub(crate) fn solve_light(
     tracer: &Arc<Tracer>,
     camera: &Camera,
     quality: LightQuality,
     progress: &dyn Progress,
-) -> Result<Light, SessionError> {
+) -> Result<SceneLight, SessionError> {
     if is_photographed(tracer) {
-        match (photographed::known(tracer), quality) {
+        match (photographed::available_lookup(tracer), quality) {
             (Some(light), _) => return Ok(light),
-            (None, LightQuality::Rough) if !photographed::is_kept(tracer) => {}
-            (None, _) => return photographed::looked_up(tracer, progress),
+            (None, LightQuality::Rough) if !photographed::is_on_disk(tracer) => {}
+            (None, _) => return photographed::wait_for_lookup(tracer, progress),
         }
     }
     let light_samples = if quality == LightQuality::Rough { ROUGH_LIGHT_SAMPLES } else { LIGHT_SAMPLES };
     let paths = if let LightQuality::Refined { passes } = quality { passes } else { PATHS };
     let transport = transport(tracer, camera, paths, light_samples);
-    if !needs_light(tracer) {
+    if !has_lit_surfaces(tracer) {
         return Ok(Arc::new(transport));
     }
     let irradiance = kept_light::wait(tracer, &world(tracer, camera), quality, progress)?;
     Ok(Arc::new(match quality {
-        LightQuality::Refined { .. } => transport.checking(irradiance),
+        LightQuality::Refined { .. } => transport.with_control_variate(irradiance),
         LightQuality::Rough | LightQuality::Fine => transport.with_irradiance(irradiance),
     }))
 }
 
 /// The same as far as it is known at once: without irradiance, where that is not solved for yet, it is exact and noisy.
-pub(crate) fn light_at_once(tracer: &Arc<Tracer>, camera: &Camera) -> Light {
+pub(crate) fn available_light(tracer: &Arc<Tracer>, camera: &Camera) -> SceneLight {
     if is_photographed(tracer)
-        && let Some(light) = photographed::known(tracer)
+        && let Some(light) = photographed::available_lookup(tracer)
     {
         return light;
     }
     let transport = transport(tracer, camera, PATHS, LIGHT_SAMPLES);
-    Arc::new(match kept_light::known(tracer, &world(tracer, camera)) {
+    Arc::new(match kept_light::available(tracer, &world(tracer, camera)) {
         Some(irradiance) => transport.with_irradiance(irradiance),
         None => transport,
     })
@@ -66,10 +66,10 @@ pub(crate) fn light_at_once(tracer: &Arc<Tracer>, camera: &Camera) -> Light {
 
 /// Light for a first look: of photographs, if theirs was kept from another time; else that of the bare surface, nothing known and
 /// nothing begun: exact and noisy.
-pub(crate) fn first_light(tracer: &Arc<Tracer>, camera: &Camera, progress: &dyn Progress) -> Light {
+pub(crate) fn quick_light(tracer: &Arc<Tracer>, camera: &Camera, progress: &dyn Progress) -> SceneLight {
     if is_photographed(tracer)
-        && photographed::is_kept(tracer)
-        && let Ok(light) = photographed::looked_up(tracer, progress)
+        && photographed::is_on_disk(tracer)
+        && let Ok(light) = photographed::wait_for_lookup(tracer, progress)
     {
         return light;
     }
@@ -78,13 +78,13 @@ pub(crate) fn first_light(tracer: &Arc<Tracer>, camera: &Camera, progress: &dyn 
 
 /// Light for the ground truth: whole paths, nothing known; of photographs what they show. It shades many points a pixel: a path each is
 /// enough.
-pub(crate) fn light_for_many_points(
+pub(crate) fn ground_truth_light(
     tracer: &Arc<Tracer>,
     camera: &Camera,
     progress: &dyn Progress,
-) -> Result<Light, SessionError> {
+) -> Result<SceneLight, SessionError> {
     if is_photographed(tracer) {
-        return photographed::looked_up(tracer, progress);
+        return photographed::wait_for_lookup(tracer, progress);
     }
     Ok(Arc::new(transport(tracer, camera, 1, LIGHT_SAMPLES)))
 }
@@ -95,21 +95,21 @@ pub(crate) fn is_photographed(tracer: &Tracer) -> bool {
 }
 
 /// Whether the light of a scene can be refined: there is some, and no photographs tell it.
-pub fn may_be_refined(tracer: &Tracer) -> bool {
-    !is_photographed(tracer) && needs_light(tracer)
+pub fn can_refine_light(tracer: &Tracer) -> bool {
+    !is_photographed(tracer) && has_lit_surfaces(tracer)
 }
 
 /// Whether any surface scatters light at all.
-fn needs_light(tracer: &Tracer) -> bool {
+fn has_lit_surfaces(tracer: &Tracer) -> bool {
     let scene = tracer.scene();
     scene.parts.iter().any(|part| !scene.materials[part.material as usize].unlit)
 }
 
 fn world(tracer: &Tracer, camera: &Camera) -> World {
     let background = camera.background.map(|background| DVec3::from_array(background).as_vec3());
-    World::of_scene(tracer.scene(), background)
+    World::from_scene(tracer.scene(), background)
 }
 
 fn transport(tracer: &Arc<Tracer>, camera: &Camera, paths: u32, light_samples: u32) -> Transport {
-    kept_light::unknown(tracer, world(tracer, camera), paths, light_samples)
+    kept_light::transport_without_cache(tracer, world(tracer, camera), paths, light_samples)
 }

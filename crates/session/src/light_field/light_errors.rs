@@ -6,19 +6,19 @@ pub struct LightErrors {
     /// The one whose light was refined, by the noise of paths.
     pub refined: f64,
     /// The one that stands.
-    pub standing: f64,
+    pub displayed: f64,
 }
 
 /// Noise of four times as many paths over that of as many, as mean squares: a quarter, but for single paths that carry much, of which many
 /// are needed to see any; so it is taken for more.
-const NOISE_OF_NEXT: f64 = 0.5;
+const NEXT_NOISE_RATIO: f64 = 0.5;
 
 impl LightErrors {
     /// By the mean squares of how far a picture of refined light is from one of a quarter of its passes, and from one that stands: errors
     /// that have nothing to do with each other add as squares.
-    pub fn told(from_last: f64, from_standing: f64) -> Self {
-        let refined = from_last * NOISE_OF_NEXT / (1.0 + NOISE_OF_NEXT);
-        Self { refined, standing: (from_standing - refined).max(0.0) }
+    pub fn from_mean_squares(from_last: f64, from_displayed: f64) -> Self {
+        let refined = from_last * NEXT_NOISE_RATIO / (1.0 + NEXT_NOISE_RATIO);
+        Self { refined, displayed: (from_displayed - refined).max(0.0) }
     }
 }
 
@@ -29,10 +29,10 @@ mod tests {
     #[test]
     fn noise_is_told_from_what_is_off() {
         // Light of 4 passes has a noise of 4, of 16 one of 2; what stands is 8 off, or hardly.
-        let errors = LightErrors::told(6.0, 10.0);
-        assert!((errors.refined - 2.0).abs() < 1e-12 && (errors.standing - 8.0).abs() < 1e-12, "{errors:?}");
-        let errors = LightErrors::told(6.0, 2.4);
-        assert!(errors.refined > errors.standing, "{errors:?}");
-        assert_eq!(LightErrors::told(6.0, 0.5).standing, 0.0);
+        let errors = LightErrors::from_mean_squares(6.0, 10.0);
+        assert!((errors.refined - 2.0).abs() < 1e-12 && (errors.displayed - 8.0).abs() < 1e-12, "{errors:?}");
+        let errors = LightErrors::from_mean_squares(6.0, 2.4);
+        assert!(errors.refined > errors.displayed, "{errors:?}");
+        assert_eq!(LightErrors::from_mean_squares(6.0, 0.5).displayed, 0.0);
     }
 }

@@ -4,17 +4,17 @@
 //! and indirect, f32 little endian.
 
 use crate::document::light_hash;
-use crate::kept_files::KeptFiles;
+use crate::kept_files::DiskCache;
 use glam::Vec3;
 use scene::{Environment, Scene, World};
 use sha2::{Digest, Sha256};
 use slf::{Irradiance, IrradianceOptions};
 
 /// A megabyte a scene and world.
-pub(super) const FILES: KeptFiles = KeptFiles { name: "light", budget_bytes: 256 << 20 };
+pub(super) const DISK_CACHE: DiskCache = DiskCache { name: "light", budget_bytes: 256 << 20 };
 
 /// What the irradiance of a scene in a world is made from.
-pub(super) fn add_origin(hash: &mut Sha256, scene: &Scene, world: &World, options: IrradianceOptions) {
+pub(super) fn hash_inputs(hash: &mut Sha256, scene: &Scene, world: &World, options: IrradianceOptions) {
     hash.update(light_hash(scene));
     hash.update(format!("{world:?} {options:?}"));
     if let Environment::Map(map) = &world.environment {
@@ -23,7 +23,7 @@ pub(super) fn add_origin(hash: &mut Sha256, scene: &Scene, world: &World, option
 }
 
 /// The irradiance of a scene from the bytes of a file; none if they are of another number of patches.
-pub(super) fn of_bytes(
+pub(super) fn from_bytes(
     bytes: &[u8],
     scene: &Scene,
     world: &World,
@@ -35,7 +35,7 @@ pub(super) fn of_bytes(
         .map(|rgb| Vec3::new(number(rgb), number(&rgb[4..]), number(&rgb[8..])))
         .collect();
     let (direct, indirect) = all.split_at(all.len() / 2);
-    Irradiance::of_values(scene, world, options, [direct.to_vec(), indirect.to_vec()])
+    Irradiance::from_values(scene, world, options, [direct.to_vec(), indirect.to_vec()])
 }
 
 /// The bytes of a file.
@@ -55,7 +55,7 @@ mod tests {
     const OPTIONS: IrradianceOptions = IrradianceOptions { patches: 50, rays: 8 };
 
     fn solved(world: &World) -> (Arc<Scene>, Irradiance) {
-        let material = scene::Material::of_lambert();
+        let material = scene::Material::lambertian_white();
         let scene = Arc::new(Scene {
             positions: vec![glam::DVec3::ZERO, glam::DVec3::X, glam::DVec3::Y],
             triangles: vec![scene::Triangle { vertices: [0, 1, 2], part: 0 }],
@@ -80,13 +80,13 @@ mod tests {
         let world = World::uniform(Vec3::ONE);
         let (scene, irradiance) = solved(&world);
         let bytes = to_bytes(&irradiance);
-        let again = of_bytes(&bytes, &scene, &world, OPTIONS).unwrap();
+        let again = from_bytes(&bytes, &scene, &world, OPTIONS).unwrap();
         assert_eq!(again.values(), irradiance.values());
         // Of other options it has another number of patches.
-        assert!(of_bytes(&bytes, &scene, &world, IrradianceOptions { patches: 5, rays: 8 }).is_none());
+        assert!(from_bytes(&bytes, &scene, &world, IrradianceOptions { patches: 5, rays: 8 }).is_none());
         let origin = |world: &World| {
             let mut hash = Sha256::new();
-            add_origin(&mut hash, &scene, world, OPTIONS);
+            hash_inputs(&mut hash, &scene, world, OPTIONS);
             hash.finalize()
         };
         assert_ne!(origin(&World { strength: 2.0, ..world.clone() }), origin(&world));

@@ -21,10 +21,10 @@ mod scene_work;
 mod serves;
 mod store;
 
-pub use aperture_image::{ApertureCell, ApertureImage, KeptVisibility};
+pub use aperture_image::{ApertureCell, ApertureImage, BakedVisibility};
 pub use baking::{bake, bake_unpacked};
 pub use kept_light::LightQuality;
-pub use light::may_be_refined;
+pub use light::can_refine_light;
 pub use light_errors::LightErrors;
 pub use modelled::{DENSE_SAMPLE_BYTES, Modelled, ModelledRow, TexelStatistics};
 pub use salf_file::write_salf;
@@ -32,12 +32,12 @@ pub use store::LightFieldStore;
 
 pub(crate) use baking::bake_with;
 pub(crate) use changes::Changes;
-pub(crate) use field_watch::{FieldWatch, Standing};
-pub(crate) use light::{first_light, is_photographed, light, light_for_many_points};
+pub(crate) use field_watch::{BakeState, FieldWatch};
+pub(crate) use light::{ground_truth_light, is_photographed, quick_light, solve_light};
 pub(crate) use photographed::{
-    if_known as photograph_light_if_known, keep_at as keep_photographs_at, wait as photograph_light,
+    if_solved as solved_photograph_light, set_atlas as set_photograph_atlas, wait as photograph_light,
 };
-pub(crate) use reach::Reach;
-pub(crate) use running_sum::{BakedField, Brought, FieldOptions, LightField, Plan};
-pub(crate) use serves::serves;
+pub(crate) use reach::MarginReach;
+pub(crate) use running_sum::{BakedField, FieldOptions, LightField, Plan, SumUpdate};
+pub(crate) use serves::is_compatible;
 pub(crate) use store::LIGHT_PASSES;

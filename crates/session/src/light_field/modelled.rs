@@ -16,10 +16,10 @@ use trace::Tracer;
 pub const DENSE_SAMPLE_BYTES: usize = 8 * 8 * 3 * 2;
 
 /// Texels that are asked at most: their share of any kind is then known to 0.4 % of all texels (one standard error).
-const ASKED_TEXELS: usize = 1 << 14;
+const MAX_SAMPLED_TEXELS: usize = 1 << 14;
 
 /// Aperture points a side that an asked texel looks at.
-const LOOKS_A_SIDE: usize = 3;
+const APERTURE_POINTS_A_SIDE: usize = 3;
 
 /// How many texels of an atlas there are of each kind, for one camera.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -33,35 +33,42 @@ pub struct TexelStatistics {
     /// Visible texels that something hides from part of it.
     pub partial: usize,
     /// How many were asked; the counts are estimates unless all were.
-    pub asked: usize,
+    #[serde(rename = "asked")]
+    pub sampled: usize,
 }
 
 /// What a texel sees of the aperture.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Seen {
-    Nothing,
-    Part,
-    All,
+enum ApertureVisibility {
+    Hidden,
+    Partial,
+    Open,
 }
 
 impl TexelStatistics {
     /// Asks the covered `texels` of an atlas what they see of `camera`'s aperture. A texel counts as in the picture if the
     /// aperture's centre sees it at most `margin_px` outside the frame.
-    pub fn ask(tracer: &Tracer, camera: &Camera, margin_px: f64, texels: &[AtlasTexel]) -> Self {
-        let step = texels.len().div_ceil(ASKED_TEXELS).max(1);
-        let asked: Vec<&AtlasTexel> = texels.iter().skip(step / 2).step_by(step).collect();
-        let seen: Vec<Seen> = asked.par_iter().map(|texel| seen(tracer, camera, margin_px, texel)).collect();
-        let count = |kind: Seen| {
-            let found = seen.iter().filter(|&&seen| seen == kind).count();
-            let of_all = found as f64 * texels.len() as f64 / asked.len().max(1) as f64;
+    pub fn estimate(tracer: &Tracer, camera: &Camera, margin_px: f64, texels: &[AtlasTexel]) -> Self {
+        let step = texels.len().div_ceil(MAX_SAMPLED_TEXELS).max(1);
+        let sampled: Vec<&AtlasTexel> = texels.iter().skip(step / 2).step_by(step).collect();
+        let visibilities: Vec<ApertureVisibility> =
+            sampled.par_iter().map(|texel| aperture_visibility(tracer, camera, margin_px, texel)).collect();
+        let count = |kind: ApertureVisibility| {
+            let count_of_kind = visibilities.iter().filter(|&&visibility| visibility == kind).count();
+            let of_all = count_of_kind as f64 * texels.len() as f64 / sampled.len().max(1) as f64;
             of_all.round() as usize
         };
-        let (open, partial) = (count(Seen::All), count(Seen::Part));
-        Self { exist: texels.len(), visible: open + partial, open, partial, asked: asked.len() }
+        let (open, partial) = (count(ApertureVisibility::Open), count(ApertureVisibility::Partial));
+        Self { exist: texels.len(), visible: open + partial, open, partial, sampled: sampled.len() }
     }
 }
 
-fn seen(tracer: &Tracer, camera: &Camera, margin_px: f64, texel: &AtlasTexel) -> Seen {
+fn aperture_visibility(
+    tracer: &Tracer,
+    camera: &Camera,
+    margin_px: f64,
+    texel: &AtlasTexel,
+) -> ApertureVisibility {
     let optics = camera.optics();
     let point = camera.camera_from_world(texel.centroid.position(tracer.scene()));
     let reach = 1.0 + margin_px / optics.half_height_px;
@@ -69,18 +76,20 @@ fn seen(tracer: &Tracer, camera: &Camera, margin_px: f64, texel: &AtlasTexel) ->
     let position = optics.chief(point) - middle;
     let is_inside = position.x.abs() <= half.x + reach - 1.0 && position.y.abs() <= reach;
     if !(point.z > 0.0 && is_inside) {
-        return Seen::Nothing;
+        return ApertureVisibility::Hidden;
     }
-    let sees = |look: usize| {
-        let at = |k: usize| (2 * k + 1) as f64 / LOOKS_A_SIDE as f64 - 1.0;
-        let u = DVec2::new(at(look % LOOKS_A_SIDE), at(look / LOOKS_A_SIDE)) * camera.aperture_radius;
-        !tracer.hidden(texel.centroid, camera.world_from_camera(u.extend(0.0)))
+    let is_visible = |point_index: usize| {
+        let at = |k: usize| (2 * k + 1) as f64 / APERTURE_POINTS_A_SIDE as f64 - 1.0;
+        let u =
+            DVec2::new(at(point_index % APERTURE_POINTS_A_SIDE), at(point_index / APERTURE_POINTS_A_SIDE))
+                * camera.aperture_radius;
+        !tracer.is_hidden_from(texel.centroid, camera.world_from_camera(u.extend(0.0)))
     };
-    let looks = LOOKS_A_SIDE * LOOKS_A_SIDE;
-    match (0..looks).filter(|&look| sees(look)).count() {
-        0 => Seen::Nothing,
-        all if all == looks => Seen::All,
-        _ => Seen::Part,
+    let point_count = APERTURE_POINTS_A_SIDE * APERTURE_POINTS_A_SIDE;
+    match (0..point_count).filter(|&point_index| is_visible(point_index)).count() {
+        0 => ApertureVisibility::Hidden,
+        all if all == point_count => ApertureVisibility::Open,
+        _ => ApertureVisibility::Partial,
     }
 }
 
@@ -110,15 +119,16 @@ pub struct ModelledRow {
 
 impl Modelled {
     /// Counts what `salf` holds of the scene in `tracer`; with the texels of its atlas, if it has been unwrapped.
-    pub fn of(salf: &Salf, tracer: &Tracer, atlas: Option<&Atlas>) -> Self {
+    pub fn measure(salf: &Salf, tracer: &Tracer, atlas: Option<&Atlas>) -> Self {
         let texels = atlas.map(|atlas| atlas.texels(tracer.scene()));
         Self::with_texels(salf, tracer, texels.as_deref())
     }
 
     /// The same with the covered texels of the atlas, if they are known already.
     pub fn with_texels(salf: &Salf, tracer: &Tracer, texels: Option<&[AtlasTexel]>) -> Self {
-        let ask = |texels| TexelStatistics::ask(tracer, &salf.camera, salf.margin_px as f64, texels);
-        Self { samples: salf.statistics(), texels: texels.map(ask) }
+        let estimate =
+            |texels| TexelStatistics::estimate(tracer, &salf.camera, salf.margin_px as f64, texels);
+        Self { samples: salf.statistics(), texels: texels.map(estimate) }
     }
 
     /// All samples.
@@ -203,7 +213,7 @@ mod tests {
 
     #[test]
     fn the_table_adds_up() {
-        let texels = TexelStatistics { exist: 100, visible: 40, open: 25, partial: 15, asked: 100 };
+        let texels = TexelStatistics { exist: 100, visible: 40, open: 25, partial: 15, sampled: 100 };
         let modelled = Modelled { samples: statistics(), texels: Some(texels) };
         let rows = modelled.rows();
         let row = |kind: &str| rows.iter().find(|row| row.kind == kind).copied().unwrap();
@@ -234,7 +244,7 @@ mod tests {
             has_uv: [false; 2],
             mirrored: false,
         };
-        let material = scene::Material { name: "white".into(), ..scene::Material::of_unlit() };
+        let material = scene::Material { name: "white".into(), ..scene::Material::unlit_white() };
         Arc::new(Scene {
             normals: vec![glam::Vec3::ZERO; positions.len()],
             positions,
@@ -256,13 +266,14 @@ mod tests {
             AtlasTexel { x: 0, y: 0, area: 1.0, centroid: point }
         };
         let camera = Camera { aperture_radius: 0.5, ..Camera::default() };
-        let found = |x: f64, camera: &Camera| TexelStatistics::ask(&tracer, camera, 0.0, &[texel(x)]);
-        assert_eq!(found(-0.12, &camera).visible, 0, "behind the card's middle");
-        assert_eq!(found(-0.004, &camera).partial, 1, "behind the card's edge");
-        assert_eq!(found(0.3, &camera).open, 1, "beside the card");
+        let estimated =
+            |x: f64, camera: &Camera| TexelStatistics::estimate(&tracer, camera, 0.0, &[texel(x)]);
+        assert_eq!(estimated(-0.12, &camera).visible, 0, "behind the card's middle");
+        assert_eq!(estimated(-0.004, &camera).partial, 1, "behind the card's edge");
+        assert_eq!(estimated(0.3, &camera).open, 1, "beside the card");
         let behind =
             Camera { camera_to_world: glam::DMat4::from_translation(glam::DVec3::Z * -8.0), ..camera };
-        assert_eq!(found(0.3, &behind).visible, 0, "behind the camera");
+        assert_eq!(estimated(0.3, &behind).visible, 0, "behind the camera");
     }
 
     #[test]
@@ -275,11 +286,11 @@ mod tests {
             AtlasTexel { x: 0, y: 0, area: 1.0, centroid: point }
         };
         let texels: Vec<_> = (0..50_000).map(texel).collect();
-        let found = TexelStatistics::ask(&tracer, &Camera::default(), 0.0, &texels);
-        assert!(found.asked <= ASKED_TEXELS && found.exist == 50_000, "{found:?}");
+        let estimated = TexelStatistics::estimate(&tracer, &Camera::default(), 0.0, &texels);
+        assert!(estimated.sampled <= MAX_SAMPLED_TEXELS && estimated.exist == 50_000, "{estimated:?}");
         // x from −0.45 to 0.45, of which −0.25 to 0 (as seen on the wall: 4/3.9 of it) is hidden.
         let hidden = 0.25 * 4.0 / 3.9 / 0.9;
-        let share = 1.0 - found.visible as f64 / found.exist as f64;
+        let share = 1.0 - estimated.visible as f64 / estimated.exist as f64;
         assert!((share - hidden).abs() < 0.02, "{share} against {hidden}");
     }
 }

@@ -7,29 +7,29 @@ use focus::Focus;
 use glam::DVec2;
 use lens::Camera;
 use rayon::prelude::*;
-use salf::{LARGEST_MARGIN_HEIGHTS, Salf, SampleFocus, Spot};
+use salf::{LARGEST_MARGIN_HEIGHTS, Salf, SampleFocus, SampleLocation};
 
 /// Which samples of a light field reach the frame with a circle of confusion that is wider than the baked margin.
 ///
 /// A surface beyond the margin that has as wide a circle is of the same paint, as a rule, as one within it: as for the
 /// margin itself (`BakeOptions::for_focus`), what is found within tells of what lies further out.
-pub(crate) struct Reach {
+pub(crate) struct MarginReach {
     /// A bit a sample.
     too_far: Vec<u64>,
     /// Who moved since, a bit a sample.
     moved: Vec<u64>,
 }
 
-impl Reach {
+impl MarginReach {
     /// Looks at all samples.
-    pub fn of_all(salf: &Salf, camera: &Camera, focus: &Focus) -> Self {
-        let look = Look::new(salf, camera, focus);
-        let far_of_run = |run: usize| {
+    pub fn survey(salf: &Salf, camera: &Camera, focus: &Focus) -> Self {
+        let test = MarginTest::new(salf, camera, focus);
+        let far_in_run = |run: usize| {
             let run = salf.samples.run(run);
-            let spots = run.indices.clone().zip(run.spots());
-            spots.filter(|(_, spot)| look.at(spot)).map(|(index, _)| index).collect::<Vec<_>>()
+            let spots = run.indices.clone().zip(run.locations());
+            spots.filter(|(_, spot)| test.exceeds_margin(spot)).map(|(index, _)| index).collect::<Vec<_>>()
         };
-        let far: Vec<Vec<u32>> = (0..salf.samples.run_count()).into_par_iter().map(far_of_run).collect();
+        let far: Vec<Vec<u32>> = (0..salf.samples.run_count()).into_par_iter().map(far_in_run).collect();
         let mut too_far = vec![0; salf.samples.len().div_ceil(WORD as usize)];
         set(&mut too_far, far.iter().flatten());
         Self { moved: vec![0; too_far.len()], too_far }
@@ -41,11 +41,12 @@ impl Reach {
     }
 
     /// Looks again at those that moved.
-    pub fn look_again(&mut self, salf: &Salf, camera: &Camera, focus: &Focus) {
-        let look = Look::new(salf, camera, focus);
+    pub fn retest_moved(&mut self, salf: &Salf, camera: &Camera, focus: &Focus) {
+        let test = MarginTest::new(salf, camera, focus);
         let words = self.too_far.par_iter_mut().zip(&mut self.moved).enumerate();
         words.filter(|(_, (_, moved))| **moved != 0).for_each(|(word, (too_far, moved))| {
-            let far = samples_of(word, *moved).filter(|&index| look.at(&salf.samples.spot(index)));
+            let far =
+                samples_of(word, *moved).filter(|&index| test.exceeds_margin(&salf.samples.location(index)));
             *too_far = far.fold(*too_far & !*moved, |far, index| far | 1 << (index % WORD));
             *moved = 0;
         });
@@ -58,12 +59,14 @@ impl Reach {
 
     /// The margin that those would need which reach too far, px; 0 if none does.
     pub fn needed_px(&self, salf: &Salf, camera: &Camera, focus: &Focus) -> f64 {
-        let look = Look::new(salf, camera, focus);
+        let test = MarginTest::new(salf, camera, focus);
         let widest = |(word, bits): (usize, &u64)| {
-            samples_of(word, *bits).map(|index| look.radius_px(&salf.samples.spot(index))).fold(0.0, f64::max)
+            samples_of(word, *bits)
+                .map(|index| test.radius_px(&salf.samples.location(index)))
+                .fold(0.0, f64::max)
         };
         let words = self.too_far.par_iter().enumerate();
-        words.map(widest).reduce(|| 0.0, f64::max).min(look.largest_px)
+        words.map(widest).reduce(|| 0.0, f64::max).min(test.largest_px)
     }
 }
 
@@ -83,7 +86,7 @@ fn samples_of(word: usize, bits: u64) -> impl Iterator<Item = u32> {
 }
 
 /// How a sample is looked at.
-struct Look<'a> {
+struct MarginTest<'a> {
     focus: SampleFocus<'a>,
     optics: lens::Optics,
     frame: DVec2,
@@ -92,11 +95,11 @@ struct Look<'a> {
     largest_px: f64,
 }
 
-impl<'a> Look<'a> {
+impl<'a> MarginTest<'a> {
     fn new(salf: &Salf, camera: &Camera, focus: &'a Focus) -> Self {
         let frame = DVec2::new(f64::from(camera.width), f64::from(camera.height));
         Self {
-            focus: SampleFocus::of(focus),
+            focus: SampleFocus::new(focus),
             optics: camera.optics(),
             frame,
             margin_px: f64::from(salf.margin_px),
@@ -105,14 +108,14 @@ impl<'a> Look<'a> {
     }
 
     /// The radius of its circle of confusion, px.
-    fn radius_px(&self, spot: &Spot) -> f64 {
-        let offset = self.focus.at(spot.address);
+    fn radius_px(&self, spot: &SampleLocation) -> f64 {
+        let offset = self.focus.offset(spot.address);
         let kappa = self.optics.kappa(f64::from(spot.inverse_depth), offset.or_standard());
         self.optics.splat_radius_px(kappa).abs()
     }
 
     /// Whether it reaches the frame from further outside than the margin.
-    fn at(&self, spot: &Spot) -> bool {
+    fn exceeds_margin(&self, spot: &SampleLocation) -> bool {
         let radius = self.radius_px(spot);
         let center = spot.center.as_dvec2();
         let outside = (-center).max(center - self.frame).max_element();

@@ -2,12 +2,12 @@
 
 use super::changes::Changes;
 use super::kept_light::LightQuality;
-use super::light::light;
+use super::light::solve_light;
 use super::modelled::Modelled;
-use super::reach::Reach;
+use super::reach::MarginReach;
 use super::sample_index::SampleIndex;
-use super::serves::serves;
-use crate::display::{Rectangle, Source};
+use super::serves::is_compatible;
+use crate::display::{PictureSource, Rectangle};
 use crate::document::Stage;
 use crate::error::SessionError;
 use focus::Focus;
@@ -40,11 +40,11 @@ pub(crate) enum Plan {
 
 /// What it took to bring a sum up to date.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum Brought {
+pub(crate) enum SumUpdate {
     /// It was.
-    Nothing,
+    Unchanged,
     /// Some samples were moved: the picture changed in this rectangle.
-    Update(Rectangle),
+    Region(Rectangle),
     /// The whole sum was made.
     Whole,
 }
@@ -77,11 +77,11 @@ pub(crate) struct LightField {
     /// Whether carried light may be where paint has moved it.
     has_moved_carried: bool,
     /// The lens of the sum; none while there is no valid sum.
-    summed: Option<Camera>,
+    summed_camera: Option<Camera>,
     /// What the sum has not seen.
-    unseen: Changes,
+    pending_changes: Changes,
     /// Who reaches from further outside the frame than was baked; none until it was asked for, and after a whole sum.
-    reach: Option<Reach>,
+    reach: Option<MarginReach>,
     /// Seconds that the last whole sum took.
     whole_seconds: f64,
     /// Passes that its light was refined by; 0 of light as it is kept for every camera.
@@ -106,17 +106,22 @@ impl LightField {
         stage: &Stage,
         camera: &Camera,
         focus: &Focus,
-        how: FieldOptions,
+        field_options: FieldOptions,
         progress: &dyn Progress,
     ) -> Result<Self, SessionError> {
-        let needed = BakeOptions::for_focus(&stage.tracer, camera, focus).margin_px.max(how.least_margin_px);
+        let needed =
+            BakeOptions::for_focus(&stage.tracer, camera, focus).margin_px.max(field_options.least_margin_px);
         let margin_px = needed + MARGIN_HEADROOM * camera.height as f64;
-        let options = BakeOptions { margin_px, carried: Carried::of(focus), ..BakeOptions::default() };
-        let radiance = light(&stage.tracer, camera, how.light, &Share::new(progress, 0.0, LIGHT_SHARE))?;
+        let options = BakeOptions { margin_px, carried: Carried::for_focus(focus), ..BakeOptions::default() };
+        let radiance =
+            solve_light(&stage.tracer, camera, field_options.light, &Share::new(progress, 0.0, LIGHT_SHARE))?;
         let baking = Share::new(progress, LIGHT_SHARE, 1.0);
         let salf = salf::bake(&stage.tracer, &*radiance, camera, &options, &baking)?;
-        let passes = if let LightQuality::Refined { passes } = how.light { passes } else { 0 };
-        Ok(Self { light_passes: passes, ..Self::of(stage, Arc::new(salf), how.tolerance, how.gpu) })
+        let passes = if let LightQuality::Refined { passes } = field_options.light { passes } else { 0 };
+        Ok(Self {
+            light_passes: passes,
+            ..Self::from_salf(stage, Arc::new(salf), field_options.tolerance, field_options.gpu)
+        })
     }
 
     /// The same, whose light was refined before by so many passes.
@@ -130,7 +135,7 @@ impl LightField {
     }
 
     /// A light field that was baked before.
-    pub fn of(stage: &Stage, salf: Arc<Salf>, tolerance: Tolerance, gpu: Option<Gpu>) -> Self {
+    pub fn from_salf(stage: &Stage, salf: Arc<Salf>, tolerance: Tolerance, gpu: Option<Gpu>) -> Self {
         let index = Arc::new(SampleIndex::new(salf.clone(), stage.atlas.clone()));
         let modelled = Modelled::with_texels(&salf, &stage.tracer, Some(&stage.texels.texels));
         let mut splatter = Splatter::new(salf);
@@ -149,8 +154,8 @@ impl LightField {
             index,
             modelled,
             has_moved_carried: false,
-            summed: None,
-            unseen: Changes::default(),
+            summed_camera: None,
+            pending_changes: Changes::default(),
             reach: None,
             whole_seconds: f64::INFINITY,
             light_passes: 0,
@@ -183,13 +188,13 @@ impl LightField {
     pub fn set_tolerance(&mut self, tolerance: Tolerance) {
         if tolerance != self.splatter.tolerance() {
             self.splatter.set_tolerance(tolerance);
-            self.summed = None;
+            self.summed_camera = None;
         }
     }
 
     /// Whether it can show what `camera` sees.
-    pub fn serves(&self, camera: &Camera) -> bool {
-        serves(&self.splatter.salf().camera, camera)
+    pub fn can_show(&self, camera: &Camera) -> bool {
+        is_compatible(&self.splatter.salf().camera, camera)
     }
 
     /// Whether another bake would serve better: paint or lens has come to spread light from further outside the
@@ -197,13 +202,13 @@ impl LightField {
     /// carried light, which was told only as finely as the ordinary lens shows it. The least margin, px, of that bake.
     ///
     /// Quick after an update; after a whole sum every sample is looked at, unless [`Self::survey`] has done it.
-    pub fn is_outgrown(&mut self, camera: &Camera, focus: &Focus) -> Option<f64> {
+    pub fn rebake_margin_px(&mut self, camera: &Camera, focus: &Focus) -> Option<f64> {
         self.survey(camera, focus);
         let salf = self.splatter.salf();
         let exceeded = self.reach.as_ref().filter(|reach| reach.is_exceeded());
         let is_stopped_down = camera.aperture_radius < SMALLER_APERTURE * salf.camera.aperture_radius;
         let needed_px = exceeded.map(|reach| reach.needed_px(salf, camera, focus));
-        let is_coarse = salf.carried < Carried::of(focus);
+        let is_coarse = salf.carried < Carried::for_focus(focus);
         needed_px.or((is_stopped_down || is_coarse).then_some(0.0))
     }
 
@@ -211,24 +216,24 @@ impl LightField {
     pub fn survey(&mut self, camera: &Camera, focus: &Focus) {
         let salf = self.splatter.salf();
         match &mut self.reach {
-            Some(reach) => reach.look_again(salf, camera, focus),
-            None => self.reach = Some(Reach::of_all(salf, camera, focus)),
+            Some(reach) => reach.retest_moved(salf, camera, focus),
+            None => self.reach = Some(MarginReach::survey(salf, camera, focus)),
         }
     }
 
     /// Notes changes of the focus map.
     pub fn note(&mut self, changes: &Changes) {
-        self.unseen.join(changes);
+        self.pending_changes.join(changes);
     }
 
     /// What it takes to bring the sum to a lens, a focus and all changes.
     pub fn plan(&self, camera: &Camera, focus: &Focus) -> Plan {
-        let texels = match &self.unseen {
-            Changes::Texels(texels) if self.summed.as_ref() == Some(camera) => texels,
+        let texels = match &self.pending_changes {
+            Changes::Texels(texels) if self.summed_camera.as_ref() == Some(camera) => texels,
             _ => return Plan::Whole,
         };
         let mut samples = self.index.samples_reading(texels);
-        if self.has_moved_carried || focus.concerns_carried() {
+        if self.has_moved_carried || focus.affects_carried_light() {
             samples.extend(self.index.carried_reading(texels));
         }
         let few = samples.len() as f64 <= LARGEST_UPDATE * self.splatter.salf().samples.len() as f64;
@@ -237,7 +242,7 @@ impl LightField {
 
     /// Whether the sum shows this lens and all changes.
     pub fn is_up_to_date(&self, camera: &Camera) -> bool {
-        self.summed.as_ref() == Some(camera) && self.unseen.is_none()
+        self.summed_camera.as_ref() == Some(camera) && self.pending_changes.is_none()
     }
 
     /// Seconds that the last whole sum took; infinite before the first.
@@ -246,63 +251,63 @@ impl LightField {
     }
 
     /// Brings the sum to a lens and a focus. After an error the next call makes the whole sum.
-    pub fn bring_up(
+    pub fn update_sum(
         &mut self,
         camera: &Camera,
         focus: &Focus,
         progress: &dyn Progress,
-    ) -> Result<Brought, SessionError> {
+    ) -> Result<SumUpdate, SessionError> {
         let plan = self.plan(camera, focus);
-        self.carry_out(plan, camera, focus, progress)
+        self.execute_plan(plan, camera, focus, progress)
     }
 
     /// The same, as it was just planned for this lens and focus.
-    pub fn carry_out(
+    pub fn execute_plan(
         &mut self,
         plan: Plan,
         camera: &Camera,
         focus: &Focus,
         progress: &dyn Progress,
-    ) -> Result<Brought, SessionError> {
+    ) -> Result<SumUpdate, SessionError> {
         // Until all is through, the sum is of no lens.
-        let was_summed = self.summed.take().is_some();
-        let brought = match plan {
-            Plan::Move(samples) if samples.is_empty() => Brought::Nothing,
+        let was_summed = self.summed_camera.take().is_some();
+        let update = match plan {
+            Plan::Move(samples) if samples.is_empty() => SumUpdate::Unchanged,
             Plan::Move(samples) => {
                 let [rows, columns] = self.splatter.update(focus, &samples)?;
                 if let Some(reach) = &mut self.reach {
                     reach.note_moved(&samples);
                 }
-                Brought::Update([columns, rows])
+                SumUpdate::Region([columns, rows])
             }
             Plan::Whole => {
                 self.reach = None;
                 self.has_moved_carried = false;
                 let start = Instant::now();
-                if was_summed && self.unseen.is_none() {
+                if was_summed && self.pending_changes.is_none() {
                     self.splatter.refocus(camera, progress)?;
                 } else {
                     self.splatter.render(camera, focus, progress)?;
                 }
                 self.whole_seconds = start.elapsed().as_secs_f64();
-                Brought::Whole
+                SumUpdate::Whole
             }
         };
-        self.unseen = Changes::default();
-        self.has_moved_carried |= focus.concerns_carried();
-        self.summed = Some(camera.clone());
-        Ok(brought)
+        self.pending_changes = Changes::default();
+        self.has_moved_carried |= focus.affects_carried_light();
+        self.summed_camera = Some(camera.clone());
+        Ok(update)
     }
 
     /// The picture of the sum, where it was made.
-    pub fn source(&self) -> Source<'_> {
-        let on_card = self.splatter.picture_on_card().map(Source::There);
-        on_card.unwrap_or_else(|| Source::Here(self.splatter.picture()))
+    pub fn source(&self) -> PictureSource<'_> {
+        let on_card = self.splatter.picture_on_card().map(PictureSource::OnCard);
+        on_card.unwrap_or_else(|| PictureSource::InMemory(self.splatter.picture()))
     }
 
     /// The picture of the sum, brought back if it is on a card.
-    pub fn brought(&mut self) -> Result<&Picture, SplatError> {
-        self.splatter.fetch()?;
+    pub fn fetch_picture(&mut self) -> Result<&Picture, SplatError> {
+        self.splatter.fetch_picture()?;
         Ok(self.splatter.picture())
     }
 
@@ -331,21 +336,21 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let scene = folder.path().join("quads.glb");
         tiny_glb::write(&scene);
-        Document::begin(&scene, &Default::default(), &Default::default(), &Unwatched).unwrap()
+        Document::create(&scene, &Default::default(), &Default::default(), &Unwatched).unwrap()
     }
 
     /// The texels of the wall whose middle lies where `wanted` says, and the focus with `value` on them.
     fn painted(
         document: &Document,
         value: FocusOffset,
-        wanted: impl Fn(DVec3) -> bool,
+        selects: impl Fn(DVec3) -> bool,
     ) -> (Focus, Vec<[u32; 2]>) {
         let stage = &document.stage;
         let mut map = document.map.clone();
         let [width, height] = map.size();
         let inside = |[x, y]: &[u32; 2]| {
-            let texel = stage.texels.at(*x, *y);
-            texel.is_some_and(|texel| wanted(texel.centroid.position(&stage.scene)))
+            let texel = stage.texels.texel_at(*x, *y);
+            texel.is_some_and(|texel| selects(texel.centroid.position(&stage.scene)))
         };
         let all = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
         let texels: Vec<_> = all.filter(inside).collect();
@@ -353,7 +358,7 @@ mod tests {
             map.set(x, y, [value.t as f32, value.anchor as f32]);
             map.set_gloss(x, y, value.gloss as f32);
         }
-        (Focus::painted(stage.scene.clone(), stage.atlas.clone(), Arc::new(map)), texels)
+        (Focus::from_atlas_map(stage.scene.clone(), stage.atlas.clone(), Arc::new(map)), texels)
     }
 
     #[test]
@@ -370,9 +375,9 @@ mod tests {
             light: LightQuality::Fine,
         };
         let mut field = LightField::bake(stage, &camera, &blank, how, &Unwatched).unwrap();
-        field.bring_up(&camera, &blank, &Unwatched).unwrap();
+        field.update_sum(&camera, &blank, &Unwatched).unwrap();
         field.survey(&camera, &blank);
-        assert_eq!(field.is_outgrown(&camera, &blank), None);
+        assert_eq!(field.rebake_margin_px(&camera, &blank), None);
 
         let in_view = |at: DVec3| at.z < -3.5 && at.x.abs() < 0.3 && at.y.abs() < 0.3;
         let per_t = camera.optics().splat_radius_px(1.0 / camera.optics().image_distance);
@@ -384,18 +389,18 @@ mod tests {
             let (focus, texels) = painted(&document, value, in_view);
             assert!(texels.len() > 10);
             field.note(&Changes::Texels(texels));
-            field.bring_up(&camera, &focus, &Unwatched).unwrap();
+            field.update_sum(&camera, &focus, &Unwatched).unwrap();
             let needed = BakeOptions::for_focus(&stage.tracer, &camera, &focus).margin_px;
-            let found = field.is_outgrown(&camera, &focus);
-            assert_eq!(found.is_some(), needed > margin, "{share} of the margin");
-            if let Some(found) = found {
-                assert!((found - share * margin).abs() < 1e-3 * margin, "{found} px of {margin}");
+            let rebake_px = field.rebake_margin_px(&camera, &focus);
+            assert_eq!(rebake_px.is_some(), needed > margin, "{share} of the margin");
+            if let Some(rebake_px) = rebake_px {
+                assert!((rebake_px - share * margin).abs() < 1e-3 * margin, "{rebake_px} px of {margin}");
                 grew += 1;
             }
             field.reach = None;
             assert_eq!(
-                field.is_outgrown(&camera, &focus),
-                found,
+                field.rebake_margin_px(&camera, &focus),
+                rebake_px,
                 "whether all are asked or those that moved"
             );
         }
@@ -406,12 +411,12 @@ mod tests {
         let (focus, texels) = painted(&document, FocusOffset::new(1.0 + 0.05 * margin / per_t, 1.0), beside);
         assert!(!texels.is_empty());
         field.note(&Changes::Everything);
-        field.bring_up(&camera, &focus, &Unwatched).unwrap();
-        assert_eq!(field.is_outgrown(&camera, &focus), None);
+        field.update_sum(&camera, &focus, &Unwatched).unwrap();
+        assert_eq!(field.rebake_margin_px(&camera, &focus), None);
         // A much smaller aperture is another reason.
         let stopped = Camera { aperture_radius: camera.aperture_radius * 0.5, ..camera.clone() };
-        field.bring_up(&stopped, &focus, &Unwatched).unwrap();
-        assert_eq!(field.is_outgrown(&stopped, &focus), Some(0.0));
+        field.update_sum(&stopped, &focus, &Unwatched).unwrap();
+        assert_eq!(field.rebake_margin_px(&stopped, &focus), Some(0.0));
     }
 
     #[test]
@@ -426,28 +431,28 @@ mod tests {
         let samples = own.baked().salf.samples.changed(|sample| sample.is_carried = true);
         let salf = Arc::new(Salf { samples, ..Salf::clone(&own.baked().salf) });
         let summed = |focus: &Focus| {
-            let mut field = LightField::of(stage, salf.clone(), tolerance, None);
-            field.bring_up(&camera, focus, &Unwatched).unwrap();
+            let mut field = LightField::from_salf(stage, salf.clone(), tolerance, None);
+            field.update_sum(&camera, focus, &Unwatched).unwrap();
             field
         };
         let mut field = summed(&blank);
-        let was = field.brought().unwrap().clone();
+        let was = field.fetch_picture().unwrap().clone();
         let mut dab = |gloss: f64| {
             let value = FocusOffset::new(1.2, 1.0).with_gloss(gloss);
             let (focus, texels) = painted(&document, value, |at| at.z < -3.5 && at.x.abs() < 0.3);
             field.note(&Changes::Texels(texels));
-            let brought = field.bring_up(&camera, &focus, &Unwatched).unwrap();
-            let picture = field.brought().unwrap().clone();
-            assert!(picture == *summed(&focus).brought().unwrap(), "gloss {gloss}: as a whole sum");
-            (brought, picture != was, field.is_outgrown(&camera, &focus).is_some())
+            let update = field.update_sum(&camera, &focus, &Unwatched).unwrap();
+            let picture = field.fetch_picture().unwrap().clone();
+            assert!(picture == *summed(&focus).fetch_picture().unwrap(), "gloss {gloss}: as a whole sum");
+            (update, picture != was, field.rebake_margin_px(&camera, &focus).is_some())
         };
-        assert_eq!(dab(0.0), (Brought::Nothing, false, false), "it keeps the lens's focus");
-        let (brought, is_moved, is_outgrown) = dab(0.5);
-        assert!(matches!(brought, Brought::Update(_)) && is_moved);
+        assert_eq!(dab(0.0), (SumUpdate::Unchanged, false, false), "it keeps the lens's focus");
+        let (update, is_moved, is_outgrown) = dab(0.5);
+        assert!(matches!(update, SumUpdate::Region(_)) && is_moved);
         assert!(is_outgrown, "it was told only as finely as the lens shows it");
         // Undone, the map knows nothing of gloss any more.
-        let (brought, is_moved, is_outgrown) = dab(0.0);
-        assert!(matches!(brought, Brought::Update(_)) && !is_moved && !is_outgrown);
+        let (update, is_moved, is_outgrown) = dab(0.0);
+        assert!(matches!(update, SumUpdate::Region(_)) && !is_moved && !is_outgrown);
     }
 
     #[test]
@@ -465,16 +470,16 @@ mod tests {
         let mut exact = field.exact();
         assert!(exact.is_twin_of(&field) && exact.summing_bytes() > 0);
         assert!(!exact.is_up_to_date(&camera));
-        exact.bring_up(&camera, &blank, &Unwatched).unwrap();
+        exact.update_sum(&camera, &blank, &Unwatched).unwrap();
         assert!(exact.is_up_to_date(&camera));
-        let was = exact.brought().unwrap().clone();
+        let was = exact.fetch_picture().unwrap().clone();
         let dab = |at: DVec3| at.z < -3.5 && at.x.abs() < 0.3;
         let (focus, texels) = painted(&document, FocusOffset::new(1.2, 1.0), dab);
         exact.note(&Changes::Texels(texels));
-        assert!(matches!(exact.bring_up(&camera, &focus, &Unwatched), Ok(Brought::Update(_))));
+        assert!(matches!(exact.update_sum(&camera, &focus, &Unwatched), Ok(SumUpdate::Region(_))));
         let mut anew = field.exact();
-        anew.bring_up(&camera, &focus, &Unwatched).unwrap();
-        let exact = exact.brought().unwrap();
-        assert!(exact == anew.brought().unwrap() && *exact != was);
+        anew.update_sum(&camera, &focus, &Unwatched).unwrap();
+        let exact = exact.fetch_picture().unwrap();
+        assert!(exact == anew.fetch_picture().unwrap() && *exact != was);
     }
 }

@@ -21,7 +21,7 @@ pub(crate) struct SampleIndex {
 impl SampleIndex {
     /// Of `salf` in `atlas`.
     pub fn new(salf: Arc<Salf>, atlas: Arc<Atlas>) -> Self {
-        let own = Tiles::of(&salf, &atlas, |address| !address.is_carried);
+        let own = Tiles::from_samples(&salf, &atlas, |address| !address.is_carried);
         Self { salf, atlas, own, carried: OnceLock::new() }
     }
 
@@ -32,8 +32,9 @@ impl SampleIndex {
 
     /// The same of carried light.
     pub fn carried_reading(&self, texels: &[[u32; 2]]) -> Vec<u32> {
-        let carried =
-            self.carried.get_or_init(|| Tiles::of(&self.salf, &self.atlas, |address| address.is_carried));
+        let carried = self
+            .carried
+            .get_or_init(|| Tiles::from_samples(&self.salf, &self.atlas, |address| address.is_carried));
         carried.samples_reading(texels)
     }
 }
@@ -50,23 +51,23 @@ struct Tiles {
 
 impl Tiles {
     /// Sorts the samples of `salf` that `wanted` chooses into the tiles of `atlas`.
-    fn of(salf: &Salf, atlas: &Atlas, wanted: impl Fn(&Address) -> bool) -> Self {
+    fn from_samples(salf: &Salf, atlas: &Atlas, selects: impl Fn(&Address) -> bool) -> Self {
         let mut addresses = salf.samples.addresses();
         let count = salf.samples.len() as u32;
         let positions = (0..count).map(|index| {
-            let address = addresses.of(index);
-            Some(atlas.position_of(address.surface.filter(|_| wanted(&address))?))
+            let address = addresses.get(index);
+            Some(atlas.position_of(address.surface.filter(|_| selects(&address))?))
         });
-        Self::of_positions([atlas.width, atlas.height], positions)
+        Self::from_positions([atlas.width, atlas.height], positions)
     }
 
     /// Sorts samples by their positions in texel coordinates; those without one are never found.
-    fn of_positions(size: [u32; 2], positions: impl Iterator<Item = Option<DVec2>>) -> Self {
+    fn from_positions(size: [u32; 2], positions: impl Iterator<Item = Option<DVec2>>) -> Self {
         let [across, down] = size.map(|side| side.div_ceil(TILE).max(1));
         let placed = positions.enumerate().filter_map(|(index, position)| {
             let texel =
                 |k: usize| (position.map(|p| p[k].max(0.0) as u32)).map(|t| t.min(size[k].max(1) - 1));
-            let (tile, bit) = place(texel(0)?, texel(1)?, across);
+            let (tile, bit) = tile_and_bit(texel(0)?, texel(1)?, across);
             Some((tile, index as u32, bit))
         });
         let placed: Vec<_> = placed.collect();
@@ -92,7 +93,7 @@ impl Tiles {
         let mut own: HashMap<u32, u64> = HashMap::new();
         let mut last = (u32::MAX, 0);
         for &[x, y] in texels {
-            let (tile, bit) = place(x, y, self.tiles_across);
+            let (tile, bit) = tile_and_bit(x, y, self.tiles_across);
             if tile != last.0 {
                 *own.entry(last.0).or_default() |= last.1;
                 last = (tile, 0);
@@ -105,8 +106,8 @@ impl Tiles {
         let mut samples = Vec::new();
         for (tile, bits) in read {
             let entries = self.starts[tile as usize] as usize..self.starts[tile as usize + 1] as usize;
-            let found = self.entries[entries].iter().filter(|(_, bit)| bits >> bit & 1 == 1);
-            samples.extend(found.map(|(sample, _)| sample));
+            let matches = self.entries[entries].iter().filter(|(_, bit)| bits >> bit & 1 == 1);
+            samples.extend(matches.map(|(sample, _)| sample));
         }
         samples
     }
@@ -146,7 +147,7 @@ const FIRST_COLUMN: u64 = 0x0101_0101_0101_0101;
 const LAST_COLUMN: u64 = FIRST_COLUMN << (TILE - 1);
 
 /// The tile of a texel, and its bit in it.
-fn place(x: u32, y: u32, tiles_across: u32) -> (u32, u8) {
+fn tile_and_bit(x: u32, y: u32, tiles_across: u32) -> (u32, u8) {
     (y / TILE * tiles_across + x / TILE, (y % TILE * TILE + x % TILE) as u8)
 }
 
@@ -157,7 +158,7 @@ mod tests {
     #[test]
     fn a_texel_moves_exactly_the_samples_that_read_it() {
         let position = |k: u32| DVec2::new((k % 40) as f64 * 0.5 + 0.1, (k / 40) as f64 * 0.5 + 0.3);
-        let index = Tiles::of_positions([20, 20], (0..1600).map(|k| Some(position(k))));
+        let index = Tiles::from_positions([20, 20], (0..1600).map(|k| Some(position(k))));
         let texel = [8, 7];
         let expected: Vec<u32> = (0..1600)
             .filter(|&k| {
@@ -165,16 +166,16 @@ mod tests {
                 from_centre.abs().max_element() < 1.0
             })
             .collect();
-        let found = index.samples_reading(&[texel, texel]);
-        assert!(expected.iter().all(|sample| found.contains(sample)), "none is missed");
-        assert!(found.len() <= 36, "and few are found in vain: {}", found.len());
+        let samples = index.samples_reading(&[texel, texel]);
+        assert!(expected.iter().all(|sample| samples.contains(sample)), "none is missed");
+        assert!(samples.len() <= 36, "and few are found in vain: {}", samples.len());
         assert!(index.samples_reading(&[]).is_empty());
     }
 
     #[test]
     fn positions_on_the_border_and_the_background_do_no_harm() {
         let positions = [Some(DVec2::new(20.0, 20.0)), None, Some(DVec2::new(-0.0, 0.0))];
-        let index = Tiles::of_positions([20, 20], positions.into_iter());
+        let index = Tiles::from_positions([20, 20], positions.into_iter());
         assert_eq!(index.samples_reading(&[[19, 19]]), [0]);
         assert_eq!(index.samples_reading(&[[0, 0]]), [2]);
     }

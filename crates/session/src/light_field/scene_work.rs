@@ -45,23 +45,23 @@ impl SceneWork {
     pub fn wait<T>(
         &self,
         progress: &dyn Progress,
-        found: impl Fn() -> Option<T>,
+        poll: impl Fn() -> Option<T>,
     ) -> Result<Option<T>, Cancelled> {
-        let mut told = None;
+        let mut reported_part = None;
         loop {
             // Looked at first: what was found before the end is there by then.
             let has_ended = self.has_ended.load(Ordering::Acquire);
-            if let Some(found) = found() {
-                return Ok(Some(found));
+            if let Some(result) = poll() {
+                return Ok(Some(result));
             }
             if has_ended {
                 return Ok(None);
             }
             progress.check()?;
             let part = *self.part();
-            if let Some(part) = part.filter(|_| part != told) {
+            if let Some(part) = part.filter(|_| part != reported_part) {
                 progress.begin_part(&part);
-                told = Some(part);
+                reported_part = Some(part);
             }
             progress.report(f32::from_bits(self.done.load(Ordering::Relaxed)));
             std::thread::sleep(Duration::from_millis(5));

@@ -3,7 +3,7 @@
 use lens::Camera;
 
 /// Whether a light field that was baked for `baked` can show what `camera` sees.
-pub(crate) fn serves(baked: &Camera, camera: &Camera) -> bool {
+pub(crate) fn is_compatible(baked: &Camera, camera: &Camera) -> bool {
     let like = Camera {
         focus_distance: baked.focus_distance,
         aperture: baked.aperture.clone(),

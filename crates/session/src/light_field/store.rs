@@ -6,7 +6,7 @@
 
 use super::salf_file::write_salf;
 use crate::document::Stage;
-use crate::kept_files::{build, tidy};
+use crate::kept_files::{build_id, evict_oldest};
 use lens::{Aperture, Camera};
 use salf::{Carried, Salf, SalfFile};
 use sha2::{Digest, Sha256};
@@ -47,8 +47,8 @@ impl LightFieldStore {
     /// The file of a light field whose light was refined by so many passes; none where builds of the program cannot be told apart.
     fn file(&self, stage: &Stage, camera: &Camera, light_passes: u32) -> Option<PathBuf> {
         let mut hash = Sha256::new();
-        hash.update(build()?);
-        hash.update(format!("{:?}", common(camera)));
+        hash.update(build_id()?);
+        hash.update(format!("{:?}", compatibility_key(camera)));
         hash.update(stage.light_hash());
         hash.update(light_passes.to_le_bytes());
         let name: String = hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
@@ -71,12 +71,12 @@ impl LightFieldStore {
         carried: Carried,
     ) -> Option<(Salf, u32)> {
         let passes = LIGHT_PASSES.into_iter().rev().chain([0]);
-        passes
-            .into_iter()
-            .find_map(|passes| Some((self.find_of(stage, camera, passes, least_margin_px, carried)?, passes)))
+        passes.into_iter().find_map(|passes| {
+            Some((self.find_with_passes(stage, camera, passes, least_margin_px, carried)?, passes))
+        })
     }
 
-    fn find_of(
+    fn find_with_passes(
         &self,
         stage: &Stage,
         camera: &Camera,
@@ -88,17 +88,17 @@ impl LightFieldStore {
         let file = File::open(&path).ok()?;
         // It was looked for: it goes last. Where that cannot be noted, it goes by when it was written.
         let _ = file.set_modified(SystemTime::now());
-        let found = SalfFile::read(BufReader::with_capacity(1 << 20, file)).ok()?;
-        let salf = Arc::into_inner(found.salf)?;
-        let fits = common(&salf.camera) == common(camera)
-            && found.triangles as usize == stage.scene.triangles.len()
+        let salf_file = SalfFile::read(BufReader::with_capacity(1 << 20, file)).ok()?;
+        let salf = Arc::into_inner(salf_file.salf)?;
+        let fits = compatibility_key(&salf.camera) == compatibility_key(camera)
+            && salf_file.triangles as usize == stage.scene.triangles.len()
             && f64::from(salf.margin_px) >= least_margin_px
             && salf.carried >= carried;
         fits.then_some(salf)
     }
 
     /// Keeps a light field that took `bake` to make, on a thread of its own. That it cannot be kept only costs time later.
-    pub(crate) fn keep(&self, stage: &Arc<Stage>, salf: &Arc<Salf>, light_passes: u32, bake: Duration) {
+    pub(crate) fn save(&self, stage: &Arc<Stage>, salf: &Arc<Salf>, light_passes: u32, bake: Duration) {
         if bake < self.shortest_bake {
             return;
         }
@@ -109,14 +109,14 @@ impl LightFieldStore {
 
     fn write(&self, stage: &Stage, salf: &Arc<Salf>, light_passes: u32) {
         let Some(path) = self.file(stage, &salf.camera, light_passes) else { return };
-        let made = std::fs::create_dir_all(&self.folder).is_ok();
-        if made && write_salf(&path, &stage.scene.path, &stage.scene, salf).is_ok() {
-            tidy(&self.folder, "salf", self.budget_bytes, &path);
+        let has_folder = std::fs::create_dir_all(&self.folder).is_ok();
+        if has_folder && write_salf(&path, &stage.scene.path, &stage.scene, salf).is_ok() {
+            evict_oldest(&self.folder, "salf", self.budget_bytes, &path);
         }
     }
 }
 
 /// What all cameras have in common that a light field serves, but for smaller apertures.
-fn common(camera: &Camera) -> Camera {
+fn compatibility_key(camera: &Camera) -> Camera {
     Camera { focus_distance: f64::INFINITY, aperture: Aperture::default(), ..camera.clone() }
 }

@@ -35,12 +35,12 @@ pub enum Aov {
 }
 
 /// What layers are made of.
-pub(crate) struct Known<'a> {
+pub(crate) struct LayerInputs<'a> {
     pub picture: &'a Picture,
     pub hits: Option<&'a FirstHits>,
     pub estimate: Option<&'a Estimate>,
     /// What [`Aov::Seen`] is.
-    pub seen: Option<&'a [f32]>,
+    pub photographed: Option<&'a [f32]>,
     pub mattes: Option<&'a Mattes>,
     /// What a pinhole sees, and its alpha, where that is wanted.
     pub pinhole: Option<&'a (Picture, Option<Layer>)>,
@@ -66,12 +66,12 @@ impl Aov {
 
     /// The entry of one among all.
     pub fn entry(&self) -> Option<(&'static str, Aov)> {
-        Self::ALL.into_iter().find(|(_, known)| known == self)
+        Self::ALL.into_iter().find(|(_, aov)| aov == self)
     }
 
     /// The one of this name.
     pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.iter().find(|(known, _)| *known == name).map(|(_, aov)| *aov)
+        Self::ALL.iter().find(|(entry_name, _)| *entry_name == name).map(|(_, aov)| *aov)
     }
 
     /// Whether it is made of first hits.
@@ -85,40 +85,44 @@ impl Aov {
     }
 
     /// Its layers; none if what they are made of is missing.
-    pub(crate) fn layers(self, known: &Known) -> Vec<Layer> {
+    pub(crate) fn layers(self, inputs: &LayerInputs) -> Vec<Layer> {
         let layer = |name: &str, values| Layer { name: name.into(), values };
-        match (self, known.hits, known.estimate) {
-            (Self::Coverage, ..) => vec![Layer::coverage(known.picture)],
+        match (self, inputs.hits, inputs.estimate) {
+            (Self::Coverage, ..) => vec![Layer::coverage(inputs.picture)],
             (Self::CircleOfConfusion, Some(hits), _) => {
-                let frame_height = known.camera.height.saturating_sub(2 * known.overscan);
-                let diameters = hits.circle_of_confusion_px(known.camera).into_iter();
-                vec![layer("coc", diameters.map(|d| known.coc.told(d, frame_height)).collect())]
+                let frame_height = inputs.camera.height.saturating_sub(2 * inputs.overscan);
+                let diameters = hits.circle_of_confusion_px(inputs.camera).into_iter();
+                vec![layer("coc", diameters.map(|d| inputs.coc.encode(d, frame_height)).collect())]
             }
             (Self::Alpha, ..) => {
-                let alpha = known.mattes.map(|mattes| layer(Layer::ALPHA, mattes.alpha.clone()));
+                let alpha = inputs.mattes.map(|mattes| layer(Layer::ALPHA, mattes.alpha.clone()));
                 alpha.into_iter().collect()
             }
-            (Self::Crypto, ..) => known
+            (Self::Crypto, ..) => inputs
                 .mattes
                 .into_iter()
                 .flat_map(|mattes| &mattes.crypto)
                 .flat_map(Cryptomatte::layers)
                 .collect(),
-            (Self::Pinhole, ..) => known.pinhole.map_or_else(Vec::new, |(picture, alpha)| {
-                let colors = Layer::of_colors(Layer::PINHOLE, &picture.exposed(Exposure::Normalise));
+            (Self::Pinhole, ..) => inputs.pinhole.map_or_else(Vec::new, |(picture, alpha)| {
+                let colors = Layer::from_colors(Layer::PINHOLE, &picture.exposed(Exposure::Normalise));
                 let alpha =
                     alpha.iter().map(|alpha| layer(&format!("{}.A", Layer::PINHOLE), alpha.values.clone()));
                 colors.into_iter().chain(alpha).collect()
             }),
-            (Self::Seen, ..) => known.seen.map(|seen| layer("seen", seen.to_vec())).into_iter().collect(),
+            (Self::Seen, ..) => inputs
+                .photographed
+                .map(|photographed| layer("seen", photographed.to_vec()))
+                .into_iter()
+                .collect(),
             (Self::Depth, Some(hits), _) => vec![layer("depth.Z", hits.depth.clone())],
             (Self::Focus, Some(hits), _) => {
-                let of = |name: &str, number: fn(&FocusOffset) -> f64| {
+                let layer_of = |name: &str, number: fn(&FocusOffset) -> f64| {
                     layer(name, hits.focus.iter().map(|focus| number(focus) as f32).collect())
                 };
                 let has_gloss = hits.focus.iter().any(|focus| focus.gloss != 0.0);
-                let gloss = has_gloss.then(|| of("gloss", |focus| focus.gloss));
-                [of("t", |focus| focus.t), of("anchor", |focus| focus.anchor)]
+                let gloss = has_gloss.then(|| layer_of("gloss", |focus| focus.gloss));
+                [layer_of("t", |focus| focus.t), layer_of("anchor", |focus| focus.anchor)]
                     .into_iter()
                     .chain(gloss)
                     .collect()

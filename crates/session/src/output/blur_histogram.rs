@@ -29,7 +29,7 @@ impl BlurHistogram {
 
 impl BlurHistogram {
     /// The circles of confusion of `columns` × `rows` places of a document's picture, by chief rays.
-    pub(crate) fn of(document: &Document, [columns, rows]: [usize; 2]) -> Self {
+    pub(crate) fn measure(document: &Document, [columns, rows]: [usize; 2]) -> Self {
         let optics = document.camera.optics();
         let mut histogram = Self { circles_px: Vec::new(), background: 0 };
         for k in 0..columns * rows {

@@ -1,8 +1,8 @@
 //! How well photographs of a capture tell one that was left out: light, and what it is to be better than.
 
-use super::photograph_picture::{SEEN, photograph_picture};
+use super::photograph_picture::{MIN_PHOTOGRAPHED_SHARE, photograph_picture};
 use super::render::pixel_ray;
-use crate::document::{Input, camera_of_photograph};
+use crate::document::{Input, camera_from_photograph};
 use crate::error::SessionError;
 use crate::jobs::Steps;
 use atlas::UnwrapOptions;
@@ -18,9 +18,9 @@ use trace::{Radiance, Tracer};
 
 /// What tells a photograph that was left out.
 #[derive(Clone, Debug)]
-pub struct ToldBy {
+pub struct LeftOutPrediction {
     /// `light`, `constant texture` or `texture of one photograph`.
-    pub what: &'static str,
+    pub method: &'static str,
     /// PSNR where the others see the surface, dB; linear, clipped to [0, 1].
     pub psnr: f64,
     /// Mean FLIP there.
@@ -35,11 +35,11 @@ pub struct LeftOutPicture {
     /// Its name.
     pub name: String,
     /// The share of the frame where the others see the surface.
-    pub seen: f64,
+    pub visible_share: f64,
     /// The photograph as it is compared with: undistorted, linear, a gain a channel fitted to the light.
     pub photograph: LinearPicture,
     /// What tells it, the light first.
-    pub told: Vec<ToldBy>,
+    pub predictions: Vec<LeftOutPrediction>,
 }
 
 /// What was measured by leaving photographs out.
@@ -66,7 +66,7 @@ impl Input {
         let all = &self.scene.views;
         if all.len() <= count {
             let what = format!("has {} photographs ({} at least to leave {count} out)", all.len(), count + 1);
-            return Err(SessionError::bad(&self.path, what));
+            return Err(SessionError::bad_file(&self.path, what));
         }
         let is_out = |number: usize| (0..count).any(|k| (2 * k + 1) * all.len() / (2 * count) == number);
         let (out, rest): (Vec<_>, Vec<_>) =
@@ -91,8 +91,8 @@ impl Input {
         let light = solved(PhotographModel::Light)?;
         let seconds = start.elapsed().as_secs_f64();
         let one_view = solved(PhotographModel::OneView)?;
-        let told = |view| self.left_out_picture(view, &tracer, &light, &one_view);
-        Ok(LeftOut { pictures: out.iter().map(told).collect::<Result<_, _>>()?, seconds })
+        let predict = |view| self.left_out_picture(view, &tracer, &light, &one_view);
+        Ok(LeftOut { pictures: out.iter().map(predict).collect::<Result<_, _>>()?, seconds })
     }
 
     fn left_out_picture(
@@ -102,46 +102,48 @@ impl Input {
         light: &PhotographLight,
         one_view: &PhotographLight,
     ) -> Result<LeftOutPicture, SessionError> {
-        let camera = camera_of_photograph(tracer.scene().bounds(), view, &self.camera);
+        let camera = camera_from_photograph(tracer.scene().bounds(), view, &self.camera);
         let (photograph, mut layers) = photograph_picture(view, &camera, tracer, Some(light))?;
-        let photograph = LinearPicture::of(&photograph, Exposure::Conserve);
-        let is_seen: Vec<bool> = layers.remove(0).values.into_iter().map(|seen| seen >= SEEN).collect();
-        let seen = is_seen.iter().filter(|&&seen| seen).count() as f64 / is_seen.len().max(1) as f64;
+        let photograph = LinearPicture::from_picture(&photograph, Exposure::Conserve);
+        let is_visible: Vec<bool> =
+            layers.remove(0).values.into_iter().map(|share| share >= MIN_PHOTOGRAPHED_SHARE).collect();
+        let visible_share = is_visible.iter().filter(|&&is_visible| is_visible).count() as f64
+            / is_visible.len().max(1) as f64;
         let from = view.position();
-        let told = |what, radiance: &(dyn Fn(SurfacePoint) -> Vec3 + Sync)| {
-            let picture = shown(tracer, &camera, &photograph, &is_seen, radiance);
+        let predict = |method, radiance: &(dyn Fn(SurfacePoint) -> Vec3 + Sync)| {
+            let picture = predicted(tracer, &camera, &photograph, &is_visible, radiance);
             let compared = compare(&picture, &photograph)?;
             // Elsewhere there is no difference.
-            let within = |mean: f64| if seen > 0.0 { mean / seen } else { 0.0 };
-            Ok(ToldBy {
-                what,
+            let within = |mean: f64| if visible_share > 0.0 { mean / visible_share } else { 0.0 };
+            Ok(LeftOutPrediction {
+                method,
                 psnr: psnr(within(compared.rmse.powi(2))),
                 flip: within(compared.flip),
                 picture,
             })
         };
-        let told = [
-            told("light", &|point| light.toward(point, from)),
-            told("constant texture", &|point| light.constant(point)),
-            told("texture of one photograph", &|point| one_view.constant(point)),
+        let predictions = [
+            predict("light", &|point| light.total_outgoing(point, from)),
+            predict("constant texture", &|point| light.constant(point)),
+            predict("texture of one photograph", &|point| one_view.constant(point)),
         ];
-        let told = told.into_iter().collect::<Result<_, SessionError>>()?;
-        Ok(LeftOutPicture { name: view.name.clone(), seen, photograph, told })
+        let predictions = predictions.into_iter().collect::<Result<_, SessionError>>()?;
+        Ok(LeftOutPicture { name: view.name.clone(), visible_share, photograph, predictions })
     }
 }
 
 /// What the surface sends through a pinhole where it is seen, elsewhere the photograph.
-fn shown(
+fn predicted(
     tracer: &Tracer,
     camera: &Camera,
     photograph: &LinearPicture,
-    is_seen: &[bool],
+    is_visible: &[bool],
     radiance: &(dyn Fn(SurfacePoint) -> Vec3 + Sync),
 ) -> LinearPicture {
-    let of_pixel = |(number, (&photograph, &is_seen)): (usize, (&[f32; 3], &bool))| {
-        let hit = is_seen.then(|| tracer.first_hit(&pixel_ray(camera, number as u32))).flatten();
+    let of_pixel = |(number, (&photograph, &is_visible)): (usize, (&[f32; 3], &bool))| {
+        let hit = is_visible.then(|| tracer.first_hit(&pixel_ray(camera, number as u32))).flatten();
         hit.map_or(photograph, |hit| radiance(hit.point).to_array())
     };
-    let rgb = photograph.rgb.par_iter().zip(is_seen).enumerate().map(of_pixel).collect();
+    let rgb = photograph.rgb.par_iter().zip(is_visible).enumerate().map(of_pixel).collect();
     LinearPicture { rgb, ..photograph.clone() }
 }

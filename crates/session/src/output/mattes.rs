@@ -11,7 +11,7 @@ mod tally;
 mod things;
 
 pub(crate) use packing::{Footprints, Packing};
-pub(crate) use source::{BlackBackground, MatteSource, OfLightField, OfTruth, Shown};
+pub(crate) use source::{BlackBackground, LightFieldMattes, MatteSource, SampleParts, TruthMattes};
 pub(crate) use tally::{Entry, Ranking, Tally, left_out_warning, ranks_of};
 pub(crate) use things::Things;
 
@@ -26,7 +26,7 @@ use splat::SETS;
 
 /// What is wanted of mattes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct WantedMattes {
+pub(crate) struct MatteRequest {
     /// Cryptomatte of objects and materials, beside alpha.
     pub crypto: bool,
 }
@@ -44,17 +44,17 @@ pub(crate) struct Mattes {
 
 impl Mattes {
     /// Those of a picture of a scene.
-    pub fn of(
+    pub fn render(
         scene: &Scene,
         mut source: impl MatteSource,
-        wanted: WantedMattes,
+        request: MatteRequest,
         steps: &dyn Steps,
     ) -> Result<Self, SessionError> {
-        let is_surface = |part: Option<u32>| Sets::of_first(part.is_some());
+        let is_surface = |part: Option<u32>| Sets::first_only(part.is_some());
         let picture = source.draw(&is_surface, &*steps.begin("alpha"))?;
         let alpha = shares(&picture, 0).map(|share| share.clamp(0.0, 1.0)).collect::<Vec<f32>>();
         let mut mattes = Self { alpha, ..Self::default() };
-        if !wanted.crypto {
+        if !request.crypto {
             return Ok(mattes);
         }
         let size = [picture.width, picture.height];
@@ -72,7 +72,7 @@ impl Mattes {
                 let is_in = |(kind, color): &(usize, usize)| {
                     part.is_some_and(|part| packings[*kind].color_of(kinds[*kind].of_part(part)) == *color)
                 };
-                Sets::of(together.iter().map(is_in))
+                Sets::from_flags(together.iter().map(is_in))
             };
             let stage = Stage::new(&*progress, pass as f32 / passes, (pass + 1) as f32 / passes);
             let picture = source.draw(&in_sets, &stage)?;
@@ -82,7 +82,7 @@ impl Mattes {
         }
         for (things, tally) in kinds.into_iter().zip(tallies) {
             let (ranks, left_out) = tally.ranks(&mattes.alpha);
-            mattes.warnings.extend(left_out_warning(things.said, left_out));
+            mattes.warnings.extend(left_out_warning(things.plural_name, left_out));
             mattes.crypto.push(Cryptomatte { kind: things.kind.into(), names: things.names, ranks });
         }
         Ok(mattes)

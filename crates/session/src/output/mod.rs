@@ -20,21 +20,23 @@ mod verification;
 pub use aov::Aov;
 pub use blur_histogram::BlurHistogram;
 pub use coc_convention::CocConvention;
-pub use left_out::{LeftOut, LeftOutPicture, ToldBy};
+pub use left_out::{LeftOut, LeftOutPicture, LeftOutPrediction};
 pub use reference::{Reference, ReferenceKind};
-pub use render::{MOST_CELLS_A_SIDE, RenderCost, RenderOptions, Rendered, render, render_input};
+pub use render::{MAX_CELLS_A_SIDE, RenderCost, RenderOptions, Rendered, render, render_input};
 pub use renderer::Renderer;
-pub(crate) use stereo::pair;
+pub(crate) use stereo::render_pair;
 pub use stereo::{Stereo, StereoForm, render_stereo};
-pub use thumbnail::thumbnail;
+pub use thumbnail::read_thumbnail;
 pub(crate) use unwrapped::write_scene;
 pub use unwrapped::write_unwrapped;
 pub use verification::{Verification, VerifiedError};
 
-pub(crate) use aov::Known;
+pub(crate) use aov::LayerInputs;
 pub(crate) use mattes::{
-    Entry, Footprints, Packing, Ranking, Shown, Tally, Things, WantedMattes, left_out_warning, ranks_of,
-    shares,
+    Entry, Footprints, MatteRequest, Packing, Ranking, SampleParts, Tally, Things, left_out_warning,
+    ranks_of, shares,
 };
 pub(crate) use photograph_picture::photograph_picture;
-pub(crate) use render::{light_of_photographs, seen_in, splatter, sum_baked, sum_light_field, tracer_of};
+pub(crate) use render::{
+    light_of_photographs, new_splatter, photographed_shares_of_pixels, sum_baked, sum_light_field, tracer_of,
+};

@@ -1,7 +1,7 @@
 //! A photograph as pictures are compared with it: without its lens's distortion, in linear light, exposed as all of them together.
 
-use super::render::{light_of_photographs, pixel_ray, seen};
-use crate::document::{Input, camera_of_photograph, photograph};
+use super::render::{light_of_photographs, photographed_shares, pixel_ray};
+use crate::document::{Input, camera_from_photograph, find_photograph};
 use crate::error::SessionError;
 use crate::jobs::Steps;
 use glam::{DVec2, DVec3, Vec3};
@@ -14,7 +14,7 @@ use std::sync::Arc;
 use trace::{Radiance, Tracer};
 
 /// From here on a point counts as photographed.
-pub(super) const SEEN: f32 = 0.5;
+pub(super) const MIN_PHOTOGRAPHED_SHARE: f32 = 0.5;
 
 impl Input {
     /// The photograph of a capture as its camera (`camera_of_photograph`) would show it, and the layer `seen`: 1 where others have
@@ -29,11 +29,11 @@ impl Input {
         steps: &dyn Steps,
     ) -> Result<(Picture, Vec<Layer>), SessionError> {
         let scene = &self.scene;
-        let view = photograph(scene, name).map_err(|what| SessionError::bad(&self.path, what))?;
+        let view = find_photograph(scene, name).map_err(|what| SessionError::bad_file(&self.path, what))?;
         let tracer = Arc::new(Tracer::new(scene.clone()));
-        self.tell_atlas(&tracer)?;
+        self.set_photograph_atlas(&tracer)?;
         let light = light_of_photographs(&tracer, steps)?;
-        let camera = camera_of_photograph(scene.bounds(), view, &self.camera);
+        let camera = camera_from_photograph(scene.bounds(), view, &self.camera);
         photograph_picture(view, &camera, &tracer, light.as_deref())
     }
 }
@@ -47,24 +47,26 @@ pub(crate) fn photograph_picture(
     light: Option<&PhotographLight>,
 ) -> Result<(Picture, Vec<Layer>), SessionError> {
     let shown =
-        view.photograph(&LoadOptions::default()).map_err(|e| SessionError::BadInput(e.to_string()))?;
+        view.read_photograph(&LoadOptions::default()).map_err(|e| SessionError::BadInput(e.to_string()))?;
     let reduction = (shown.width / camera.width.max(1)).max(1);
-    let shown = shown.reduced(reduction);
+    let shown = shown.downsampled(reduction);
     let scene = tracer.scene();
-    let seen = seen(tracer, camera, light);
-    let place = Place { camera, view, shown: &shown, reduction: f64::from(reduction) };
+    let photographed = photographed_shares(tracer, camera, light);
+    let projection = PhotographProjection { camera, view, shown: &shown, reduction: f64::from(reduction) };
     let own = scene.views.iter().position(|other| other.name == view.name);
     let exposure = match (light, own) {
         (None, _) => Exposure::default(),
         (Some(light), Some(index)) => light.exposures()[index],
-        (Some(light), None) => place.fitted(tracer, light, &seen),
+        (Some(light), None) => projection.fit_exposure(tracer, light, &photographed),
     };
-    let pixels: Vec<_> = (0..camera.width * camera.height).into_par_iter().map(|n| place.at(n)).collect();
-    let radiance = |found: &Option<(DVec2, Vec3)>| {
-        found.map_or([0.0; 3], |(at, value)| (value * exposure.to_radiance(view, at)).to_array())
+    let pixels: Vec<_> =
+        (0..camera.width * camera.height).into_par_iter().map(|n| projection.at(n)).collect();
+    let radiance = |pixel: &Option<(DVec2, Vec3)>| {
+        pixel.map_or([0.0; 3], |(at, value)| (value * exposure.to_radiance(view, at)).to_array())
     };
-    let seen = pixels.iter().zip(seen).map(|(found, seen)| if found.is_some() { seen } else { 0.0 });
-    let layer = Layer { name: "seen".into(), values: seen.collect() };
+    let photographed =
+        pixels.iter().zip(photographed).map(|(pixel, share)| if pixel.is_some() { share } else { 0.0 });
+    let layer = Layer { name: "seen".into(), values: photographed.collect() };
     let picture = Picture {
         width: camera.width,
         height: camera.height,
@@ -75,7 +77,7 @@ pub(crate) fn photograph_picture(
 }
 
 /// A photograph, and the camera that it is shown by.
-struct Place<'a> {
+struct PhotographProjection<'a> {
     camera: &'a Camera,
     view: &'a View,
     /// Each pixel of it the mean of `reduction`² of the photograph's own.
@@ -83,40 +85,41 @@ struct Place<'a> {
     reduction: f64,
 }
 
-impl Place<'_> {
+impl PhotographProjection<'_> {
     /// What the photograph has for a pixel of the camera, and where.
     fn at(&self, number: u32) -> Option<(DVec2, Vec3)> {
         let ray = pixel_ray(self.camera, number);
         let at = self.view.project(ray.origin + ray.direction)?;
-        self.view.lens.is_in_picture(at).then(|| (at, self.shown.at(at / self.reduction)))
+        self.view.lens.is_in_picture(at).then(|| (at, self.shown.sample(at / self.reduction)))
     }
 
     /// Gains with which it shows least squares' best of the light where that is photographed and its sensor was not at its limit;
     /// vignetting as of another photograph of its lens. A channel that was at its limit everywhere has the gain of the others.
-    fn fitted(&self, tracer: &Tracer, light: &PhotographLight, seen: &[f32]) -> Exposure {
+    fn fit_exposure(&self, tracer: &Tracer, light: &PhotographLight, photographed: &[f32]) -> Exposure {
         let views = &tracer.scene().views;
         let of_lens = views.iter().position(|other| other.lens == self.view.lens);
         let vignetting_stops = of_lens.map_or([0.0; 2], |index| light.exposures()[index].vignetting_stops);
         let flat = Exposure { vignetting_stops, ..Exposure::default() };
-        let limit = self.shown.limit();
+        let limit = self.shown.clipping_level();
         let products = |number: u32| {
-            let there = seen[number as usize] >= SEEN;
-            let (at, shown) = self.at(number).filter(|_| there)?;
+            let is_photographed = photographed[number as usize] >= MIN_PHOTOGRAPHED_SHARE;
+            let (at, shown) = self.at(number).filter(|_| is_photographed)?;
             let ray = pixel_ray(self.camera, number);
             let hit = tracer.first_hit(&ray)?;
-            let is_told = DVec3::select(shown.cmplt(Vec3::splat(limit)), DVec3::ONE, DVec3::ZERO);
-            let shown = (shown * flat.to_radiance(self.view, at)).as_dvec3() * is_told;
-            let light = light.toward(hit.point, ray.origin).as_dvec3();
+            let is_unclipped = DVec3::select(shown.cmplt(Vec3::splat(limit)), DVec3::ONE, DVec3::ZERO);
+            let shown = (shown * flat.to_radiance(self.view, at)).as_dvec3() * is_unclipped;
+            let light = light.total_outgoing(hit.point, ray.origin).as_dvec3();
             Some([shown * light, shown * shown])
         };
         // In order, so that the sum is the same for any number of threads.
-        let found: Vec<_> =
+        let product_pairs: Vec<_> =
             (0..self.camera.width * self.camera.height).into_par_iter().filter_map(products).collect();
-        let [both, square] = found.into_iter().fold([DVec3::ZERO; 2], |[a, b], [c, d]| [a + c, b + d]);
+        let [both, square] =
+            product_pairs.into_iter().fold([DVec3::ZERO; 2], |[a, b], [c, d]| [a + c, b + d]);
         let gain = |both: f64, square: f64| (both > 0.0 && square > 0.0).then(|| (square / both).log2());
         let gains: [Option<f64>; 3] = std::array::from_fn(|channel| gain(both[channel], square[channel]));
-        let told = gains.iter().flatten();
-        let mean = told.clone().sum::<f64>() / told.count().max(1) as f64;
+        let fitted_gains = gains.iter().flatten();
+        let mean = fitted_gains.clone().sum::<f64>() / fitted_gains.count().max(1) as f64;
         Exposure { gain_stops: gains.map(|gain| gain.unwrap_or(mean)), vignetting_stops }
     }
 }

@@ -1,14 +1,15 @@
 //! A picture without a window: what the command line and the export of the window do.
 
-use super::aov::{Aov, Known};
+use super::aov::{Aov, LayerInputs};
 use super::coc_convention::CocConvention;
-use super::mattes::{BlackBackground, Mattes, OfLightField, OfTruth, Shown, WantedMattes};
+use super::mattes::{BlackBackground, LightFieldMattes, MatteRequest, Mattes, SampleParts, TruthMattes};
 use super::renderer::Renderer;
 use crate::document::Input;
 use crate::error::SessionError;
 use crate::jobs::Steps;
 use crate::light_field::{
-    LightQuality, bake_with, is_photographed, light, light_for_many_points, photograph_light, serves,
+    LightQuality, bake_with, ground_truth_light, is_compatible, is_photographed, photograph_light,
+    solve_light,
 };
 use baselines::{BaselineError, FirstHits, LayeredOptions, ScatterOptions, ViewsOptions};
 use focus::Focus;
@@ -90,7 +91,7 @@ impl Default for RenderOptions {
 }
 
 /// The most of [`RenderOptions::cells_a_side`].
-pub const MOST_CELLS_A_SIDE: u32 = 4;
+pub const MAX_CELLS_A_SIDE: u32 = 4;
 
 impl RenderOptions {
     /// A light field and splat as coarse as `px` pixels. At 0 they are as fine as they are meant to get, with nine cells a
@@ -104,19 +105,19 @@ impl RenderOptions {
         }
     }
 
-    fn asks_for(&self, aov: Aov) -> bool {
+    fn has_aov(&self, aov: Aov) -> bool {
         self.aovs.contains(&aov)
     }
 
     /// Whether the picture is multiplied by alpha: the background is black.
     pub(crate) fn is_premultiplied(&self) -> bool {
-        self.asks_for(Aov::Alpha)
+        self.has_aov(Aov::Alpha)
     }
 
     /// Of whom a pixel is, as far as the AOVs tell it.
-    pub(crate) fn wanted_mattes(&self) -> Option<WantedMattes> {
-        let crypto = self.asks_for(Aov::Crypto);
-        (crypto || self.asks_for(Aov::Alpha)).then_some(WantedMattes { crypto })
+    pub(crate) fn matte_request(&self) -> Option<MatteRequest> {
+        let crypto = self.has_aov(Aov::Crypto);
+        (crypto || self.has_aov(Aov::Alpha)).then_some(MatteRequest { crypto })
     }
 
     /// Bakes the light field for `camera`: its own camera is as much finer as [`Self::cells_a_side`] says.
@@ -146,13 +147,13 @@ impl RenderOptions {
     /// The camera whose light field is baked for `camera`.
     pub(crate) fn finer(&self, camera: &Camera) -> Result<Camera, SessionError> {
         let finer = camera.finer(self.cells_a_side);
-        let tell = |error| {
+        let describe = |error| {
             let n = self.cells_a_side;
             SessionError::BadInput(format!(
                 "with {n} × {n} cells a pixel the {error} (take fewer, or a smaller picture)"
             ))
         };
-        finer.validate().map_err(tell)?;
+        finer.validate().map_err(describe)?;
         Ok(finer)
     }
 }
@@ -197,7 +198,7 @@ pub struct RenderCost {
 
 impl RenderCost {
     /// What is told of a light field; no time was spent yet.
-    fn of(salf: &Salf) -> Self {
+    fn from_salf(salf: &Salf) -> Self {
         let SalfStatistics { open, partial, background, bytes, .. } = salf.statistics();
         Self {
             open_samples: open,
@@ -229,28 +230,28 @@ pub fn render(
             return Ok(Rendered { cost: RenderCost { bake_seconds, ..drawn.cost }, ..drawn });
         }
         Renderer::Truth => {
-            let light = light_for_many_points(tracer, camera, &*steps.begin("light"))?;
+            let light = ground_truth_light(tracer, camera, &*steps.begin("light"))?;
             let premultiplied = BlackBackground(&*light);
-            let radiance: &dyn Radiance = if options.asks_for(Aov::Alpha) { &premultiplied } else { &*light };
+            let radiance: &dyn Radiance = if options.has_aov(Aov::Alpha) { &premultiplied } else { &*light };
             let progress = steps.begin("tracing");
-            let found = trace::truth::render(tracer, radiance, focus, camera, &options.truth, &*progress)?;
-            if let Some(wanted) = options.wanted_mattes() {
+            let traced = trace::truth::render(tracer, radiance, focus, camera, &options.truth, &*progress)?;
+            if let Some(request) = options.matte_request() {
                 let truth = TruthOptions { surveys_light: false, ..options.truth };
-                let source = OfTruth { tracer, radiance: &*light, focus, camera, options: truth };
-                mattes = Some(Mattes::of(tracer.scene(), source, wanted, steps)?);
+                let source = TruthMattes { tracer, radiance: &*light, focus, camera, options: truth };
+                mattes = Some(Mattes::render(tracer.scene(), source, request, steps)?);
             }
-            estimate.insert(found).picture.clone()
+            estimate.insert(traced).picture.clone()
         }
         Renderer::Blur => {
             let hits = first_hits(tracer, camera, focus, options.light, steps)?;
-            baselines::gather(&hits, camera, &*steps.begin("blurring"))?
+            baselines::gather_blur(&hits, camera, &*steps.begin("blurring"))?
         }
         Renderer::Layers => {
             let hits = first_hits(tracer, camera, focus, options.light, steps)?;
-            baselines::layered(&hits, camera, &options.layered, &*steps.begin("blurring"))?
+            baselines::layered_blur(&hits, camera, &options.layered, &*steps.begin("blurring"))?
         }
         Renderer::Views => {
-            let radiance = light(tracer, camera, options.light, &*steps.begin("light"))?;
+            let radiance = solve_light(tracer, camera, options.light, &*steps.begin("light"))?;
             let progress = steps.begin("views");
             baselines::shift_and_add(tracer, &*radiance, focus, camera, &options.views, &*progress)?
         }
@@ -288,9 +289,9 @@ pub fn render_input(
     let mut rendered = match input.salf.as_ref().filter(|_| options.renderer.draws_light_field()) {
         None => render(&tracer, camera, focus, options, steps)?,
         Some(salf) => {
-            if let Some(difference) = unlike(&salf.camera, camera) {
+            if let Some(difference) = incompatibility(&salf.camera, camera) {
                 let what = format!("it was baked {difference} (bake it again for this camera)");
-                return Err(SessionError::bad(&input.path, what));
+                return Err(SessionError::bad_file(&input.path, what));
             }
             let mut rendered = sum_light_field(salf.clone(), &tracer, camera, focus, options, steps)?;
             let needed = BakeOptions::for_focus(&tracer, camera, focus).margin_px;
@@ -310,15 +311,15 @@ pub fn render_input(
 
 /// What answers the rays of a camera that can be used.
 pub(crate) fn tracer_of(input: &Input, camera: &Camera) -> Result<Arc<Tracer>, SessionError> {
-    camera.validate().map_err(|error| SessionError::bad(&input.path, error))?;
+    camera.validate().map_err(|error| SessionError::bad_file(&input.path, error))?;
     let tracer = Arc::new(Tracer::new(input.scene.clone()));
-    input.tell_atlas(&tracer)?;
+    input.set_photograph_atlas(&tracer)?;
     Ok(tracer)
 }
 
 /// What keeps a light field of `baked` from serving `camera`.
-fn unlike(baked: &Camera, camera: &Camera) -> Option<String> {
-    if serves(baked, camera) {
+fn incompatibility(baked: &Camera, camera: &Camera) -> Option<String> {
+    if is_compatible(baked, camera) {
         return None;
     }
     Some(if (baked.width, baked.height) != (camera.width, camera.height) {
@@ -356,20 +357,20 @@ fn draw_light_field(
     let mut mattes = None;
     let (picture, cost) = if options.renderer == Renderer::Scatter {
         let scattering = steps.begin("scattering");
-        let picture = baselines::scatter(&salf, camera, focus, &options.scatter, &*scattering)?;
-        (picture, RenderCost::of(&salf))
+        let picture = baselines::scatter_rays(&salf, camera, focus, &options.scatter, &*scattering)?;
+        (picture, RenderCost::from_salf(&salf))
     } else {
         let scene = tracer.scene();
-        let wanted = options.wanted_mattes().map(|wanted| (wanted, Shown::of(&salf, scene)));
-        let mut splatter = splatter(salf, options);
-        if let Some((_, shown)) = wanted.as_ref().filter(|_| options.asks_for(Aov::Alpha)) {
-            splatter.blacken(|sample| shown.part(sample).is_none());
+        let matte_request = options.matte_request().map(|request| (request, SampleParts::new(&salf, scene)));
+        let mut splatter = new_splatter(salf, options);
+        if let Some((_, sample_parts)) = matte_request.as_ref().filter(|_| options.has_aov(Aov::Alpha)) {
+            splatter.blacken(|sample| sample_parts.part(sample).is_none());
         }
-        let cost = splatted(&mut splatter, camera, focus, steps)?;
+        let cost = run_splatter(&mut splatter, camera, focus, steps)?;
         let picture = splatter.picture().clone();
-        if let Some((wanted, shown)) = wanted {
-            let source = OfLightField { mattes: splatter.into_mattes(), shown, cells_a_side };
-            mattes = Some(Mattes::of(scene, source, wanted, steps)?);
+        if let Some((request, sample_parts)) = matte_request {
+            let source = LightFieldMattes { mattes: splatter.into_mattes(), sample_parts, cells_a_side };
+            mattes = Some(Mattes::render(scene, source, request, steps)?);
         }
         (picture, cost)
     };
@@ -378,7 +379,7 @@ fn draw_light_field(
 }
 
 /// What sums a light field.
-pub(crate) fn splatter(salf: Arc<Salf>, options: &RenderOptions) -> Splatter {
+pub(crate) fn new_splatter(salf: Arc<Salf>, options: &RenderOptions) -> Splatter {
     let mut splatter = Splatter::new(salf);
     splatter.set_tolerance(options.splat_tolerance);
     splatter.use_gpu(options.gpu.clone());
@@ -386,7 +387,7 @@ pub(crate) fn splatter(salf: Arc<Salf>, options: &RenderOptions) -> Splatter {
 }
 
 /// Has a splatter draw; what it cost.
-fn splatted(
+fn run_splatter(
     splatter: &mut Splatter,
     camera: &Camera,
     focus: &Focus,
@@ -395,7 +396,7 @@ fn splatted(
     let start = Instant::now();
     splatter.render(camera, focus, &*steps.begin("splatting"))?;
     let (is_on_gpu, picture_seconds) = (splatter.gpu().is_some(), start.elapsed().as_secs_f64());
-    Ok(RenderCost { is_on_gpu, picture_seconds, ..RenderCost::of(splatter.salf()) })
+    Ok(RenderCost { is_on_gpu, picture_seconds, ..RenderCost::from_salf(splatter.salf()) })
 }
 
 /// Sums what [`RenderOptions::bake`] baked, for a camera that it serves, as often as one likes.
@@ -408,12 +409,12 @@ pub(crate) fn sum_baked(
     steps: &dyn Steps,
 ) -> Result<Rendered, SessionError> {
     let (shot, cells) = (Shot { tracer, camera, focus }, options.cells_a_side);
-    if options.wanted_mattes().is_some() {
+    if options.matte_request().is_some() {
         // Of whom light is, is told by a sum of its own.
         let drawn = draw_light_field(splatter.salf().clone(), shot, cells, options, steps)?;
         return finish(shot, options, drawn, steps);
     }
-    let cost = splatted(splatter, &camera.finer(cells), focus, steps)?;
+    let cost = run_splatter(splatter, &camera.finer(cells), focus, steps)?;
     let picture = splatter.picture().averaged(cells);
     finish(shot, options, Drawn { picture, estimate: None, mattes: None, cost }, steps)
 }
@@ -442,32 +443,32 @@ fn finish(
     Drawn { picture, estimate, mattes, cost }: Drawn,
     steps: &dyn Steps,
 ) -> Result<Rendered, SessionError> {
-    let asks = options.aovs.iter().any(|aov| aov.needs_first_hits());
-    let hits = asks.then(|| first_hits(tracer, camera, focus, options.light, steps)).transpose()?;
+    let needs_hits = options.aovs.iter().any(|aov| aov.needs_first_hits());
+    let hits = needs_hits.then(|| first_hits(tracer, camera, focus, options.light, steps)).transpose()?;
     let is_captured = is_photographed(tracer) || tracer.scene().picture.is_some();
-    let is_seen_asked = options.aovs.contains(&Aov::Seen) && is_captured;
-    let seen = is_seen_asked.then(|| {
+    let needs_photographed = options.aovs.contains(&Aov::Seen) && is_captured;
+    let photographed = needs_photographed.then(|| {
         let light = light_of_photographs(tracer, steps)?;
-        Ok::<_, SessionError>(seen(tracer, camera, light.as_deref()))
+        Ok::<_, SessionError>(photographed_shares(tracer, camera, light.as_deref()))
     });
-    let seen = seen.transpose()?;
-    let asks_for_pinhole = options.asks_for(Aov::Pinhole) && options.renderer.tells_paths();
-    let pinhole = asks_for_pinhole.then(|| pinhole(tracer, camera, options, steps)).transpose()?;
-    let known = Known {
+    let photographed = photographed.transpose()?;
+    let needs_pinhole = options.has_aov(Aov::Pinhole) && options.renderer.resolves_paths();
+    let pinhole = needs_pinhole.then(|| render_pinhole(tracer, camera, options, steps)).transpose()?;
+    let inputs = LayerInputs {
         picture: &picture,
         hits: hits.as_ref(),
         estimate: estimate.as_ref(),
-        seen: seen.as_deref(),
+        photographed: photographed.as_deref(),
         mattes: mattes.as_ref(),
         pinhole: pinhole.as_ref(),
         camera,
         coc: options.coc,
         overscan: options.overscan,
     };
-    let layers = options.aovs.iter().flat_map(|aov| aov.layers(&known)).collect();
+    let layers = options.aovs.iter().flat_map(|aov| aov.layers(&inputs)).collect();
     let crypto = mattes.iter().flat_map(|mattes| &mattes.crypto);
     let mut attributes: BTreeMap<_, _> = crypto.flat_map(Cryptomatte::attributes).collect();
-    if options.asks_for(Aov::CircleOfConfusion) {
+    if options.has_aov(Aov::CircleOfConfusion) {
         attributes.insert("focusBrush.cocConvention".into(), options.coc.name().into());
     }
     let warnings = mattes.map_or_else(Vec::new, |mattes| mattes.warnings);
@@ -475,7 +476,7 @@ fn finish(
 }
 
 /// What a pinhole sees, unpainted, by the same renderer; with its alpha where that is asked for.
-fn pinhole(
+fn render_pinhole(
     tracer: &Arc<Tracer>,
     camera: &Camera,
     options: &RenderOptions,
@@ -492,7 +493,7 @@ fn pinhole(
 /// The chief ray of a pixel's middle; pixels are numbered row by row.
 pub(super) fn pixel_ray(camera: &Camera, number: u32) -> Ray {
     let pixel = DVec2::new(f64::from(number % camera.width), f64::from(number / camera.width));
-    Ray::of_pinhole(camera, DVec2::ZERO, pixel + 0.5)
+    Ray::pinhole(camera, DVec2::ZERO, pixel + 0.5)
 }
 
 /// The light of a capture's photographs; none of a surface that was made from a picture, whose texture has it.
@@ -504,14 +505,14 @@ pub(crate) fn light_of_photographs(
         return Ok(None);
     }
     let light = photograph_light(tracer, &*steps.begin("light"))?;
-    if let Some(sentence) = told_moved(&light.moved_px()) {
-        steps.tell(&sentence);
+    if let Some(sentence) = alignment_message(&light.max_displacements_px()) {
+        steps.notice(&sentence);
     }
     Ok(Some(light))
 }
 
 /// How many photographs were aligned, if any, and by how much.
-fn told_moved(moved_px: &[f64]) -> Option<String> {
+fn alignment_message(moved_px: &[f64]) -> Option<String> {
     let count = moved_px.iter().filter(|&&px| px > 0.0).count();
     let most = moved_px.iter().copied().fold(0.0, f64::max);
     let all = moved_px.len();
@@ -522,24 +523,28 @@ fn told_moved(moved_px: &[f64]) -> Option<String> {
 
 /// How far the surface along each pixel's chief ray was photographed, in the photographs of `light`, or else in the picture that it was
 /// made from.
-pub(super) fn seen(tracer: &Tracer, camera: &Camera, light: Option<&PhotographLight>) -> Vec<f32> {
-    seen_in(tracer, camera, light, (0..camera.width * camera.height).collect())
+pub(super) fn photographed_shares(
+    tracer: &Tracer,
+    camera: &Camera,
+    light: Option<&PhotographLight>,
+) -> Vec<f32> {
+    photographed_shares_of_pixels(tracer, camera, light, (0..camera.width * camera.height).collect())
 }
 
 /// The same in some pixels.
-pub(crate) fn seen_in(
+pub(crate) fn photographed_shares_of_pixels(
     tracer: &Tracer,
     camera: &Camera,
     light: Option<&PhotographLight>,
     pixels: Vec<u32>,
 ) -> Vec<f32> {
-    let told = |point: SurfacePoint| match light {
-        Some(light) => light.seen(point),
-        None => tracer.scene().photographed(point).unwrap_or(0.0),
+    let share_at = |point: SurfacePoint| match light {
+        Some(light) => light.observed_share(point),
+        None => tracer.scene().photographed_share(point).unwrap_or(0.0),
     };
     let of_pixel = |number: u32| {
         let hit = tracer.first_hit(&pixel_ray(camera, number));
-        hit.map_or(0.0, |hit| told(hit.point))
+        hit.map_or(0.0, |hit| share_at(hit.point))
     };
     pixels.into_par_iter().map(of_pixel).collect()
 }
@@ -551,6 +556,6 @@ fn first_hits(
     quality: LightQuality,
     steps: &dyn Steps,
 ) -> Result<FirstHits, SessionError> {
-    let light = light(tracer, camera, quality, &*steps.begin("light"))?;
+    let light = solve_light(tracer, camera, quality, &*steps.begin("light"))?;
     Ok(FirstHits::trace(tracer, &*light, focus, camera, &*steps.begin("first hits"))?)
 }

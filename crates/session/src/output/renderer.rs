@@ -31,16 +31,16 @@ impl Renderer {
 
     /// The one of this name.
     pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.iter().find(|(known, _)| *known == name).map(|(_, renderer)| *renderer)
+        Self::ALL.iter().find(|(entry_name, _)| *entry_name == name).map(|(_, renderer)| *renderer)
     }
 
     /// Its name on the command line.
     pub fn name(self) -> &'static str {
-        Self::ALL.iter().find(|(_, known)| *known == self).map_or("", |(name, _)| name)
+        Self::ALL.iter().find(|(_, renderer)| *renderer == self).map_or("", |(name, _)| name)
     }
 
     /// Whether it tells where light paths end: what alpha, Cryptomatte and the pinhole's picture are made of.
-    pub fn tells_paths(self) -> bool {
+    pub fn resolves_paths(self) -> bool {
         matches!(self, Self::Splat | Self::Truth)
     }
 

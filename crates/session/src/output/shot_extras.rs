@@ -9,15 +9,15 @@ use scene::{EXTRAS_KEY, EXTRAS_VERSION, Scene, SceneCamera};
 use serde_json::{Map, Value, json};
 
 /// What a camera of its own is called.
-const NAME: &str = "Focus Brush shot";
+const CAMERA_NAME: &str = "Focus Brush shot";
 
 /// What of a camera file glTF has itself.
-const OF_GLTF: [&str; 3] = ["yfov", "camera_to_world", "background"];
+const GLTF_KEYS: [&str; 3] = ["yfov", "camera_to_world", "background"];
 
 /// Tells the lens of `shot` in the document of `scene`.
-pub fn tell_lens(root: &mut Map<String, Value>, scene: &Scene, shot: &Camera) {
+pub fn write_lens_extras(root: &mut Map<String, Value>, scene: &Scene, shot: &Camera) {
     let own = scene.cameras.iter().find(|camera| is_at(camera, shot)).and_then(|camera| camera.index);
-    let index = own.map_or_else(|| added(root, shot), |index| index as usize);
+    let index = own.map_or_else(|| add_camera(root, shot), |index| index as usize);
     let camera =
         root.get_mut("cameras").and_then(|cameras| cameras.get_mut(index)).and_then(Value::as_object_mut);
     let Some(camera) = camera else { return };
@@ -38,7 +38,7 @@ fn is_at(camera: &SceneCamera, shot: &Camera) -> bool {
 fn lens_json(shot: &Camera) -> Value {
     let mut lens = camera_to_json(shot);
     if let Some(lens) = lens.as_object_mut() {
-        OF_GLTF.iter().for_each(|name| drop(lens.remove(*name)));
+        GLTF_KEYS.iter().for_each(|name| drop(lens.remove(*name)));
         // A picture's path means nothing beside another file.
         if matches!(shot.aperture.shape, ApertureShape::Mask(_)) {
             lens.remove("aperture");
@@ -49,9 +49,9 @@ fn lens_json(shot: &Camera) -> Value {
 }
 
 /// Adds a camera in a node of its own; gives its index.
-fn added(root: &mut Map<String, Value>, shot: &Camera) -> usize {
+fn add_camera(root: &mut Map<String, Value>, shot: &Camera) -> usize {
     let camera = json!({
-        "name": NAME,
+        "name": CAMERA_NAME,
         "type": "perspective",
         "perspective": {"yfov": shot.yfov, "aspectRatio": shot.aspect(), "znear": 0.01},
     });
@@ -61,7 +61,7 @@ fn added(root: &mut Map<String, Value>, shot: &Camera) -> usize {
         Some(list.len() - 1)
     };
     let index = push("cameras", camera).unwrap_or(usize::MAX);
-    let node = json!({"name": NAME, "camera": index, "matrix": shot.camera_to_world.to_cols_array()});
+    let node = json!({"name": CAMERA_NAME, "camera": index, "matrix": shot.camera_to_world.to_cols_array()});
     let node = push("nodes", node);
     let scene = root.get("scene").and_then(Value::as_u64).unwrap_or(0) as usize;
     let scene =

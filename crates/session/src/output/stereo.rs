@@ -39,7 +39,7 @@ pub struct Stereo {
 
 impl Stereo {
     /// The farthest that eyes may be apart: a small part of the aperture is needed around each.
-    pub const WIDEST: f64 = 1.0 - SUB_APERTURE_RADIUS;
+    pub const MAX_EYE_DISTANCE: f64 = 1.0 - SUB_APERTURE_RADIUS;
 }
 
 /// Renders a pair. AOVs are of one camera and have no place in it.
@@ -54,18 +54,18 @@ pub fn render_stereo(
     stereo: &Stereo,
     steps: &dyn Steps,
 ) -> Result<Rendered, SessionError> {
-    let bad = |what: &str| Err(SessionError::bad(&input.path, what));
+    let bad = |what: &str| Err(SessionError::bad_file(&input.path, what));
     if camera.aperture_radius <= 0.0 {
         return bad("is seen through a pinhole: two eyes have no place in it (give --aperture-radius)");
     }
-    if !(stereo.eyes > 0.0 && stereo.eyes <= Stereo::WIDEST) {
+    if !(stereo.eyes > 0.0 && stereo.eyes <= Stereo::MAX_EYE_DISTANCE) {
         return bad(
             "two eyes have no place that far apart (give --eyes between 0 and 0.9375 of the aperture's diameter)",
         );
     }
     let tracer = tracer_of(input, camera)?;
     let focus_distance = match stereo.fixate {
-        Some(place) => fixated(&tracer, input, camera, place)?,
+        Some(place) => fixation_distance(&tracer, input, camera, place)?,
         None => camera.focus_distance,
     };
     let camera = Camera { focus_distance, ..camera.clone() };
@@ -76,10 +76,11 @@ pub fn render_stereo(
             let start = Instant::now();
             let salf = Arc::new(options.bake(&tracer, &camera, focus, steps)?);
             let bake_seconds = start.elapsed().as_secs_f64();
-            let drawn = pair(&camera, stereo, |eye| draw_baked(&salf, &tracer, eye, focus, &options, steps))?;
+            let drawn =
+                render_pair(&camera, stereo, |eye| draw_baked(&salf, &tracer, eye, focus, &options, steps))?;
             Rendered { cost: RenderCost { bake_seconds, ..drawn.cost }, ..drawn }
         }
-        false => pair(&camera, stereo, |eye| render_input(input, eye, focus, &options, steps))?,
+        false => render_pair(&camera, stereo, |eye| render_input(input, eye, focus, &options, steps))?,
     };
     rendered.layers.clear();
     Ok(rendered)
@@ -87,7 +88,7 @@ pub fn render_stereo(
 
 /// The pair that a camera's aperture shows, its focus distance the fixated one: each eye's picture as `drawn`, what is told of it that of the
 /// right eye's.
-pub(crate) fn pair(
+pub(crate) fn render_pair(
     camera: &Camera,
     stereo: &Stereo,
     mut drawn: impl FnMut(&Camera) -> Result<Rendered, SessionError>,
@@ -97,19 +98,24 @@ pub(crate) fn pair(
         ..camera.clone()
     };
     let (left, right) = (drawn(&eye(-1.0))?, drawn(&eye(1.0))?);
-    let picture = joined(&left.picture, &right.picture, stereo);
+    let picture = combine(&left.picture, &right.picture, stereo);
     Ok(Rendered { picture, ..right })
 }
 
 /// How far ahead is what the picture shows at a place; at infinity where no surface is.
-fn fixated(tracer: &Tracer, input: &Input, camera: &Camera, place: DVec2) -> Result<f64, SessionError> {
+fn fixation_distance(
+    tracer: &Tracer,
+    input: &Input,
+    camera: &Camera,
+    place: DVec2,
+) -> Result<f64, SessionError> {
     let size = DVec2::new(f64::from(camera.width), f64::from(camera.height));
     if !(place.cmpge(DVec2::ZERO).all() && place.cmplt(size).all()) {
         let what = format!(
             "its picture of {} × {} px has no place {},{} to fixate",
             camera.width, camera.height, place.x, place.y
         );
-        return Err(SessionError::bad(&input.path, what));
+        return Err(SessionError::bad_file(&input.path, what));
     }
     let number = place.y as u32 * camera.width + place.x as u32;
     let ray = pixel_ray(camera, number);
@@ -118,7 +124,7 @@ fn fixated(tracer: &Tracer, input: &Input, camera: &Camera, place: DVec2) -> Res
     Ok(depth.unwrap_or(f64::INFINITY))
 }
 
-fn joined(left: &Picture, right: &Picture, stereo: &Stereo) -> Picture {
+fn combine(left: &Picture, right: &Picture, stereo: &Stereo) -> Picture {
     let (width, height) = (left.width as usize, left.height as usize);
     match stereo.form {
         StereoForm::SideBySide => {

@@ -18,9 +18,9 @@ use std::path::Path;
 ///
 /// # Errors
 /// The file is neither of them, cannot be read, or is a project that was saved without a picture; `progress` says to stop.
-pub fn thumbnail(path: &Path, progress: &dyn Progress) -> Result<Thumbnail, SessionError> {
-    let none = |what: &str| Err(SessionError::bad(path, what));
-    match InputKind::of(path)? {
+pub fn read_thumbnail(path: &Path, progress: &dyn Progress) -> Result<Thumbnail, SessionError> {
+    let none = |what: &str| Err(SessionError::bad_file(path, what));
+    match InputKind::from_path(path)? {
         InputKind::Project => match Thumbnail::read(path)? {
             Some(thumbnail) => Ok(thumbnail),
             None => none("was saved without a picture (open it in the window and save it)"),
@@ -28,13 +28,13 @@ pub fn thumbnail(path: &Path, progress: &dyn Progress) -> Result<Thumbnail, Sess
         InputKind::LightField => {
             let file = File::open(path).map_err(|error| SessionError::io(path, &error))?;
             let read =
-                SalfFile::read(BufReader::new(file)).map_err(|error| SessionError::bad(path, error))?;
+                SalfFile::read(BufReader::new(file)).map_err(|error| SessionError::bad_file(path, error))?;
             let camera = read.salf.camera.clone();
             let mut splatter = Splatter::new(read.salf);
             splatter.render(&camera, &OrdinaryLens, progress)?;
             let picture = splatter.picture();
             let tone = Tone { exposure: Exposure::Normalise, ..Tone::default() };
-            Ok(Thumbnail::of(picture.width, picture.height, tone.displayed(picture)))
+            Ok(Thumbnail::from_linear(picture.width, picture.height, tone.displayed(picture)))
         }
         InputKind::Scene | InputKind::Capture => {
             none("holds no picture of itself (give a project or a light field)")
@@ -54,7 +54,7 @@ impl SurfaceField<FocusOffset> for OrdinaryLens {
         FocusOffset::STANDARD
     }
 
-    fn concerns_carried(&self) -> bool {
+    fn affects_carried_light(&self) -> bool {
         false
     }
 }

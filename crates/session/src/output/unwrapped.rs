@@ -2,11 +2,11 @@
 //! with what they send toward all directions alike as their texture.
 
 use super::render::light_of_photographs;
-use super::shot_extras::tell_lens;
+use super::shot_extras::write_lens_extras;
 use crate::document::{Input, atlas_error};
 use crate::error::SessionError;
 use crate::jobs::Steps;
-use crate::light_field::keep_photographs_at;
+use crate::light_field::set_photograph_atlas;
 use atlas::{Atlas, UnwrapOptions};
 use lens::Camera;
 use project::texture_png;
@@ -31,7 +31,7 @@ pub fn write_unwrapped(
     check_extension(path)?;
     let amend = |root: &mut Map<String, Value>| {
         if let Some(shot) = shot {
-            tell_lens(root, scene, shot);
+            write_lens_extras(root, scene, shot);
         }
     };
     atlas::write_amended_glb(scene, atlas, path, &amend, &*steps.begin("writing"))
@@ -68,7 +68,7 @@ pub(crate) fn write_scene(
         None => picture_png(scene),
     };
     let texture = texture.map_err(SessionError::Internal)?;
-    let amend = |root: &mut Map<String, Value>| tell_lens(root, scene, shot);
+    let amend = |root: &mut Map<String, Value>| write_lens_extras(root, scene, shot);
     atlas::write_surface_glb(scene, atlas, &texture, path, &amend, &*steps.begin("writing"))
         .map_err(|error| atlas_error(path, error))
 }
@@ -90,7 +90,7 @@ impl Input {
         }
         check_extension(path)?;
         let tracer = Arc::new(Tracer::new(self.scene.clone()));
-        keep_photographs_at(&tracer, &atlas);
+        set_photograph_atlas(&tracer, &atlas);
         write_scene(path, &tracer, &atlas, &self.camera, steps)
     }
 }
@@ -99,7 +99,7 @@ fn check_extension(path: &Path) -> Result<(), SessionError> {
     if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("glb")) {
         return Ok(());
     }
-    Err(SessionError::bad(path, "unwrapped scenes are written as .glb (name one)"))
+    Err(SessionError::bad_file(path, "unwrapped scenes are written as .glb (name one)"))
 }
 
 /// Whether a scene is a capture's: no glTF file tells of it.

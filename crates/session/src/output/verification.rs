@@ -16,7 +16,7 @@ pub struct Verification {
     /// What is known so far; none before the first pass.
     pub estimate: Option<Arc<Estimate>>,
     /// Rays a pixel that are wanted.
-    pub wanted_samples: u32,
+    pub target_samples: u32,
     /// The document's revision that is traced.
     pub(crate) revision: u64,
     /// Counts verifications.
@@ -47,16 +47,16 @@ impl Verification {
         let is_same = preview.kind != PreviewKind::Pinhole
             && preview.quality > Quality::Coarse
             && preview.picture.size() == [self.camera.width, self.camera.height];
-        let shown = if is_same { preview.picture.bring_region(self.region) } else { None }?;
+        let shown = if is_same { preview.picture.fetch_region(self.region) } else { None }?;
         let compared = || {
-            let truth = LinearPicture::of(&estimate.picture, exposure);
-            let splat = LinearPicture::of(&shown, exposure);
+            let truth = LinearPicture::from_picture(&estimate.picture, exposure);
+            let splat = LinearPicture::from_picture(&shown, exposure);
             let compared = compare(&splat, &truth)?;
             Ok(VerifiedError {
                 psnr: compared.psnr,
                 signed_mean_error: compared.signed_mean_error,
                 noise_psnr: -20.0 * estimate.expected_rmse(exposure).log10(),
-                map: project::error_colours(&splat, &truth)?,
+                map: project::false_color_error_map(&splat, &truth)?,
             })
         };
         Some(compared())

@@ -23,8 +23,8 @@ impl PreviewActivity {
         matches!(self, Self::RoughBaking | Self::Baking)
     }
 
-    pub(super) fn load(from: &AtomicU8) -> Self {
-        match from.load(Ordering::Relaxed) {
+    pub(super) fn load(activity: &AtomicU8) -> Self {
+        match activity.load(Ordering::Relaxed) {
             x if x == Self::Tracing as u8 => Self::Tracing,
             x if x == Self::RoughBaking as u8 => Self::RoughBaking,
             x if x == Self::Baking as u8 => Self::Baking,

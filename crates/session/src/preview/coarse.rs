@@ -3,35 +3,35 @@
 use lens::Camera;
 
 /// Sides of the coarse picture are this share of the preview's: a twenty-fifth of the work.
-const COARSE: f64 = 1.0 / 5.0;
+const COARSE_SCALE: f64 = 1.0 / 5.0;
 
 /// Where the coarse picture has more than twice as many pixels, one of so many comes before it: about a second's work.
 const ROUGH_PIXELS: f64 = 20_000.0;
 
 /// Sides of the picture between the coarse one and the fine one, as a share of the preview's: a ninth of the work.
-const BETWEEN: f64 = 1.0 / 3.0;
+const INTERIM_SCALE: f64 = 1.0 / 3.0;
 
 /// Where the preview has fewer pixels, the fine one is soon there.
-const FEWEST_PIXELS_TO_WAIT_FOR: f64 = 200_000.0;
+const MIN_INTERIM_PIXELS: f64 = 200_000.0;
 
 /// Below this longest side, px, a picture is quick enough to need no coarse one.
-const SMALLEST_COARSE: u32 = 48;
+const MIN_COARSE_SIDE_PX: u32 = 48;
 
 /// The cameras of coarse pictures, the roughest first; none where the picture is small anyway.
-pub(super) fn coarse_of(camera: &Camera) -> Vec<Camera> {
-    let coarse = scaled(camera, COARSE);
-    if coarse.width.max(coarse.height) < SMALLEST_COARSE {
+pub(super) fn coarse_cameras(camera: &Camera) -> Vec<Camera> {
+    let coarse = scaled(camera, COARSE_SCALE);
+    if coarse.width.max(coarse.height) < MIN_COARSE_SIDE_PX {
         return Vec::new();
     }
-    let pixels = pixels_of(&coarse);
+    let pixels = pixel_count(&coarse);
     let rough =
-        (pixels > 2.0 * ROUGH_PIXELS).then(|| scaled(camera, COARSE * (ROUGH_PIXELS / pixels).sqrt()));
+        (pixels > 2.0 * ROUGH_PIXELS).then(|| scaled(camera, COARSE_SCALE * (ROUGH_PIXELS / pixels).sqrt()));
     rough.into_iter().chain([coarse]).collect()
 }
 
 /// The camera of the picture that comes after the coarse ones, while the fine one is baked; none where that is soon there.
-pub(super) fn between_of(camera: &Camera) -> Option<Camera> {
-    (pixels_of(camera) >= FEWEST_PIXELS_TO_WAIT_FOR).then(|| scaled(camera, BETWEEN))
+pub(super) fn interim_camera(camera: &Camera) -> Option<Camera> {
+    (pixel_count(camera) >= MIN_INTERIM_PIXELS).then(|| scaled(camera, INTERIM_SCALE))
 }
 
 fn scaled(camera: &Camera, share: f64) -> Camera {
@@ -40,7 +40,7 @@ fn scaled(camera: &Camera, share: f64) -> Camera {
     Camera { width, height, ..camera.clone() }
 }
 
-fn pixels_of(camera: &Camera) -> f64 {
+fn pixel_count(camera: &Camera) -> f64 {
     f64::from(camera.width) * f64::from(camera.height)
 }
 
@@ -52,18 +52,19 @@ mod tests {
     fn coarse_pictures_are_few_and_grow() {
         let sizes = |width, height| {
             let camera = Camera { width, height, ..Camera::default() };
-            let sizes: Vec<_> = coarse_of(&camera).iter().map(|small| [small.width, small.height]).collect();
+            let sizes: Vec<_> =
+                coarse_cameras(&camera).iter().map(|small| [small.width, small.height]).collect();
             sizes
         };
         assert!(sizes(120, 90).is_empty());
         assert_eq!(sizes(640, 360), [[128, 72]]);
         assert_eq!(sizes(1920, 1080), [[189, 106], [384, 216]]);
         assert_eq!(sizes(16384, 1), [[3277, 1]]);
-        let between = |width, height| {
-            between_of(&Camera { width, height, ..Camera::default() })
+        let interim = |width, height| {
+            interim_camera(&Camera { width, height, ..Camera::default() })
                 .map(|camera| [camera.width, camera.height])
         };
-        assert_eq!(between(960, 540), Some([320, 180]));
-        assert_eq!(between(480, 270), None);
+        assert_eq!(interim(960, 540), Some([320, 180]));
+        assert_eq!(interim(480, 270), None);
     }
 }

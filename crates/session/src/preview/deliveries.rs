@@ -8,18 +8,18 @@ use lens::Camera;
 pub(crate) const BAKE_SHARE: f32 = 0.7;
 
 /// The share of it that the light field between the coarse one and the fine one is, where there is one.
-pub(crate) const BETWEEN_SHARE: f32 = 0.1;
+pub(crate) const INTERIM_SHARE: f32 = 0.1;
 
 /// What the maker of light fields hands over.
-pub(crate) struct Delivery {
+pub(crate) struct FieldDelivery {
     /// The light field, summed; or why there is none.
-    pub made: Result<LightField, SessionError>,
+    pub result: Result<LightField, SessionError>,
     /// The epoch in which it was asked for.
     pub epoch: u64,
 }
 
 /// A light field of fewer pixels that the maker hands over while it bakes the one of full size.
-pub(crate) struct Between {
+pub(crate) struct InterimField {
     /// Of what it was asked for, not summed.
     pub field: LightField,
     /// The epoch in which it was asked for.
@@ -27,22 +27,22 @@ pub(crate) struct Between {
 }
 
 /// What becomes of the exact picture.
-pub(crate) struct Refined {
+pub(crate) struct ExactDelivery {
     /// The sum; none after a panic.
     pub field: Option<LightField>,
-    pub outcome: Result<Exact, SessionError>,
+    pub outcome: Result<ExactPicture, SessionError>,
 }
 
 /// What becomes of light that was to be refined.
-pub(crate) struct RefinedLight {
+pub(crate) struct RefinedLightDelivery {
     /// What was made; or why there is nothing.
-    pub made: Result<Finer, SessionError>,
+    pub result: Result<FinerField, SessionError>,
     /// The epoch in which it was asked for.
     pub epoch: u64,
 }
 
 /// A light field of refined light, summed.
-pub(crate) struct Finer {
+pub(crate) struct FinerField {
     pub field: LightField,
     /// How far it and the light at once are from the truth, if that is known.
     pub errors: Option<LightErrors>,
@@ -51,7 +51,7 @@ pub(crate) struct Finer {
 }
 
 /// An exact picture, beside the field that holds it.
-pub(crate) struct Exact {
+pub(crate) struct ExactPicture {
     pub map_serial: u64,
     pub camera: Camera,
     /// Seconds that it took.

@@ -5,12 +5,12 @@
 //! noise of the later one; how far it is from the picture that stands, what that one is off. From when on it is the nearer one to the
 //! truth, it stands. Paint and lenses do not stop it: they are of no concern to light.
 
-use super::deliveries::{Finer, RefinedLight};
+use super::deliveries::{FinerField, RefinedLightDelivery};
 use super::mailbox::Shared;
-use super::refinement::square_between;
+use super::refinement::mean_square_difference;
 use crate::document::Stage;
 use crate::error::SessionError;
-use crate::jobs::{Urgency, among_others, guarded};
+use crate::jobs::{Urgency, catch_panics, run_in_own_pool};
 use crate::light_field::{Changes, FieldOptions, LIGHT_PASSES, LightErrors, LightField, LightQuality};
 use focus::Focus;
 use lens::{Camera, Exposure, Picture};
@@ -30,19 +30,19 @@ pub(crate) struct LightRefinement {
     last: Option<LightField>,
     thread: Option<JoinHandle<()>>,
     /// What was made, until there is time to take it up.
-    made: Option<RefinedLight>,
+    finished: Option<RefinedLightDelivery>,
     /// What changed since it began.
-    since: Changes,
+    pending_changes: Changes,
 }
 
 /// What is refined.
-pub(crate) struct Task {
+pub(crate) struct LightTask {
     pub stage: Arc<Stage>,
     pub camera: Camera,
     pub focus: Focus,
     pub tolerance: Tolerance,
     /// The picture that stands, of this lens and focus.
-    pub standing: Arc<Picture>,
+    pub displayed: Arc<Picture>,
     /// How pictures are compared.
     pub exposure: Exposure,
     /// The margin that the light field is to have at least, px.
@@ -56,67 +56,70 @@ pub(crate) struct Task {
 impl LightRefinement {
     /// Whether light is being refined, or was and is not taken up.
     pub fn is_at_work(&self) -> bool {
-        self.thread.is_some() || self.made.is_some()
+        self.thread.is_some() || self.finished.is_some()
     }
 
     /// By how many passes the light of what `camera` sees is to be refined next that stands by so many, if `most` allows it.
-    pub fn next_passes(&self, camera: &Camera, standing: u32, most: u32) -> Option<u32> {
-        let last = self.last.as_ref().filter(|last| last.serves(camera));
-        let made = last.map_or(0, LightField::light_passes).max(standing);
-        LIGHT_PASSES.into_iter().find(|&passes| passes > made).filter(|&passes| passes <= most)
+    pub fn next_passes(&self, camera: &Camera, displayed_passes: u32, max_passes: u32) -> Option<u32> {
+        let last = self.last.as_ref().filter(|last| last.can_show(camera));
+        let done_passes = last.map_or(0, LightField::light_passes).max(displayed_passes);
+        LIGHT_PASSES.into_iter().find(|&passes| passes > done_passes).filter(|&passes| passes <= max_passes)
     }
 
     /// Notes changes of the focus map.
     pub fn note(&mut self, changes: &Changes) {
-        self.since.join(changes);
+        self.pending_changes.join(changes);
         if let Some(last) = &mut self.last {
             last.note(changes);
         }
     }
 
     /// Begins, unless something was wished meanwhile.
-    pub fn start(&mut self, shared: &Arc<Shared>, task: Task) {
+    pub fn start(&mut self, shared: &Arc<Shared>, task: LightTask) {
         if self.is_at_work() || !shared.begin_light(task.passes) {
             return;
         }
-        self.since = Changes::default();
-        let last = self.last.take().filter(|last| last.serves(&task.camera));
-        let (theirs, epoch) = (shared.clone(), task.epoch);
+        self.pending_changes = Changes::default();
+        let last = self.last.take().filter(|last| last.can_show(&task.camera));
+        let (thread_shared, epoch) = (shared.clone(), task.epoch);
         let work = move || {
-            let made =
-                guarded("refining the light", || among_others(Urgency::Later, || make(task, last, &theirs)));
-            theirs.refined_light(RefinedLight { made, epoch });
+            let result = catch_panics("refining the light", || {
+                run_in_own_pool(Urgency::Background, || make(task, last, &thread_shared))
+            });
+            thread_shared.deliver_refined_light(RefinedLightDelivery { result, epoch });
         };
         match std::thread::Builder::new().name("refined light".into()).stack_size(16 << 20).spawn(work) {
             Ok(thread) => self.thread = Some(thread),
             Err(error) => {
-                let made = Err(SessionError::TryAgain(format!("no thread: {error} (try again)")));
-                shared.refined_light(RefinedLight { made, epoch });
+                let result = Err(SessionError::TryAgain(format!("no thread: {error} (try again)")));
+                shared.deliver_refined_light(RefinedLightDelivery { result, epoch });
             }
         }
     }
 
     /// Takes back what was made.
-    pub fn take_back(&mut self, made: RefinedLight) {
+    pub fn take_back(&mut self, delivery: RefinedLightDelivery) {
         self.join();
-        self.made = Some(made);
+        self.finished = Some(delivery);
     }
 
     /// What was made, with all that changed meanwhile noted, if it is better than what stands, which was refined by so many passes; else it
     /// is kept, to be compared with. `None` if there is nothing to take up.
-    pub fn take_up(&mut self, epoch: u64, standing: u32) -> Result<Option<Finer>, SessionError> {
-        let Some(RefinedLight { made, epoch: of_epoch }) = self.made.take() else { return Ok(None) };
-        let mut finer = match made {
+    pub fn take_up(&mut self, epoch: u64, displayed_passes: u32) -> Result<Option<FinerField>, SessionError> {
+        let Some(RefinedLightDelivery { result, epoch: of_epoch }) = self.finished.take() else {
+            return Ok(None);
+        };
+        let mut finer = match result {
             Ok(finer) if of_epoch == epoch => finer,
             Ok(_) | Err(SessionError::Cancelled) => return Ok(None),
             Err(error) => return Err(error),
         };
-        finer.field.note(&std::mem::take(&mut self.since));
-        let is_better = match finer.errors {
-            Some(errors) => errors.refined < errors.standing,
+        finer.field.note(&std::mem::take(&mut self.pending_changes));
+        let is_improvement = match finer.errors {
+            Some(errors) => errors.refined < errors.displayed,
             None => false,
         };
-        if is_better || standing > 0 {
+        if is_improvement || displayed_passes > 0 {
             return Ok(Some(finer));
         }
         self.last = Some(finer.field);
@@ -137,27 +140,30 @@ impl LightRefinement {
     }
 }
 
-fn make(task: Task, last: Option<LightField>, shared: &Shared) -> Result<Finer, SessionError> {
-    let Task { stage, camera, focus, tolerance, standing, exposure, margin_px, passes, .. } = task;
+fn make(task: LightTask, last: Option<LightField>, shared: &Shared) -> Result<FinerField, SessionError> {
+    let LightTask { stage, camera, focus, tolerance, displayed, exposure, margin_px, passes, .. } = task;
     let light = LightQuality::Refined { passes };
-    let how = FieldOptions { least_margin_px: margin_px, tolerance, gpu: shared.gpu(), light };
+    let options = FieldOptions { least_margin_px: margin_px, tolerance, gpu: shared.gpu(), light };
     let start = Instant::now();
     let mut field =
-        LightField::bake(&stage, &camera, &focus, how, &Share::new(&shared.light, 0.0, BAKE_SHARE))?;
+        LightField::bake(&stage, &camera, &focus, options, &Share::new(&shared.light, 0.0, BAKE_SHARE))?;
     let seconds = start.elapsed().as_secs_f64();
     let summing = Share::new(&shared.light, BAKE_SHARE, 1.0);
-    field.bring_up(&camera, &focus, &summing)?;
+    field.update_sum(&camera, &focus, &summing)?;
     field.survey(&camera, &focus);
     let mut errors = None;
     if let Some(mut last) = last {
         last.set_tolerance(tolerance);
-        last.bring_up(&camera, &focus, &summing)?;
-        let refined = field.brought()?;
-        let apart = square_between(last.brought()?, refined, exposure);
-        errors = Some(LightErrors::told(apart, square_between(&standing, refined, exposure)));
+        last.update_sum(&camera, &focus, &summing)?;
+        let refined = field.fetch_picture()?;
+        let mean_square_change = mean_square_difference(last.fetch_picture()?, refined, exposure);
+        errors = Some(LightErrors::from_mean_squares(
+            mean_square_change,
+            mean_square_difference(&displayed, refined, exposure),
+        ));
     }
     field.prepare()(&shared.light);
-    Ok(Finer { field, errors, seconds })
+    Ok(FinerField { field, errors, seconds })
 }
 
 #[cfg(test)]
@@ -168,7 +174,7 @@ mod tests {
     fn passes_are_four_times_as_many_until_there_are_enough() {
         let refinement = LightRefinement::default();
         let camera = Camera::default();
-        let next = |standing| refinement.next_passes(&camera, standing, 256);
+        let next = |displayed_passes| refinement.next_passes(&camera, displayed_passes, 256);
         assert_eq!([next(0), next(4), next(64), next(256)], [Some(4), Some(16), Some(256), None]);
         assert_eq!(refinement.next_passes(&camera, 0, 0), None, "it is never refined");
     }

@@ -1,10 +1,10 @@
 //! What the session and the preview's threads share: one mailbox for wishes, one for news.
 
 use super::activity::PreviewActivity;
-use super::deliveries::{Between, Delivery, Refined, RefinedLight};
-use super::news::{News, Published};
+use super::deliveries::{ExactDelivery, FieldDelivery, InterimField, RefinedLightDelivery};
+use super::news::{PreviewEvents, Published};
 use super::picture::{PictureTimes, Preview, Quality};
-use super::wishes::{Stops, Wishes};
+use super::wishes::{PreviewRequest, StopScope};
 use crate::display::Patch;
 use crate::jobs::{JobProgress, Waker};
 use crate::light_field::{BakedField, FieldWatch};
@@ -16,7 +16,7 @@ use std::time::{Duration, Instant};
 
 /// What the threads and the session share.
 pub(crate) struct Shared {
-    wishes: Mutex<Wishes>,
+    request: Mutex<PreviewRequest>,
     wake: Condvar,
     /// Of what the thread itself does: short.
     pub quick: JobProgress,
@@ -50,7 +50,7 @@ impl Shared {
     pub fn new(waker: Waker, gpu: Option<Gpu>) -> Self {
         Self {
             gpu,
-            wishes: Mutex::default(),
+            request: Mutex::default(),
             wake: Condvar::new(),
             quick: JobProgress::default(),
             progress: JobProgress::default(),
@@ -68,39 +68,41 @@ impl Shared {
     }
 
     /// Waits for the next wishes; none when the session goes. When there are none for as long as `patience`, that is told.
-    pub fn next(&self, patience: Option<Duration>) -> Option<Wishes> {
-        let mut wishes = lock(&self.wishes);
+    pub fn next_request(&self, timeout: Option<Duration>) -> Option<PreviewRequest> {
+        let mut request = lock(&self.request);
         self.activity.store(PreviewActivity::Idle as u8, Ordering::Relaxed);
         (self.waker)();
-        let until = patience.map(|patience| Instant::now() + patience);
-        while !wishes.is_posted {
-            let left = until.map(|until| until.saturating_duration_since(Instant::now()));
-            wishes = match left {
-                None => self.wake.wait(wishes).unwrap_or_else(PoisonError::into_inner),
-                Some(Duration::ZERO) => return Some(Wishes { is_idle: true, ..Wishes::default() }),
-                Some(left) => self.wake.wait_timeout(wishes, left).unwrap_or_else(PoisonError::into_inner).0,
+        let deadline = timeout.map(|timeout| Instant::now() + timeout);
+        while !request.is_posted {
+            let left = deadline.map(|deadline| deadline.saturating_duration_since(Instant::now()));
+            request = match left {
+                None => self.wake.wait(request).unwrap_or_else(PoisonError::into_inner),
+                Some(Duration::ZERO) => {
+                    return Some(PreviewRequest { is_idle: true, ..PreviewRequest::default() });
+                }
+                Some(left) => self.wake.wait_timeout(request, left).unwrap_or_else(PoisonError::into_inner).0,
             };
         }
         // What was cancelled is over, and this is new.
         self.quick.reset();
         self.activity.store(PreviewActivity::Splatting as u8, Ordering::Relaxed);
-        if wishes.delivery.is_some() {
+        if request.delivery.is_some() {
             self.helper.store(PreviewActivity::Idle as u8, Ordering::Relaxed);
         }
-        let wishes = std::mem::take(&mut *wishes);
-        (!wishes.quit).then_some(wishes)
+        let request = std::mem::take(&mut *request);
+        (!request.quit).then_some(request)
     }
 
     /// Joins what `change` wishes to what is wished already, and stops what that makes useless.
-    pub fn post(&self, stops: Stops, change: impl FnOnce(&mut Wishes)) {
-        let mut wishes = lock(&self.wishes);
-        change(&mut wishes);
-        wishes.is_posted = true;
-        if stops != Stops::Nothing {
+    pub fn post(&self, scope: StopScope, change: impl FnOnce(&mut PreviewRequest)) {
+        let mut request = lock(&self.request);
+        change(&mut request);
+        request.is_posted = true;
+        if scope != StopScope::Nothing {
             self.refining.cancel();
         }
-        if stops == Stops::Everything {
-            wishes.stops = true;
+        if scope == StopScope::Everything {
+            request.is_stopping = true;
             self.quick.cancel();
             self.progress.cancel();
             self.light.cancel();
@@ -118,8 +120,8 @@ impl Shared {
 
     /// Notes that the helper begins; false if what it would do is already known to be useless.
     pub fn begin_helper(&self) -> bool {
-        let wishes = lock(&self.wishes);
-        if wishes.stops {
+        let request = lock(&self.request);
+        if request.is_stopping {
             return false;
         }
         self.progress.reset();
@@ -144,8 +146,8 @@ impl Shared {
     }
 
     fn begin_if_quiet(&self, begin: impl FnOnce()) -> bool {
-        let wishes = lock(&self.wishes);
-        if wishes.is_posted {
+        let request = lock(&self.request);
+        if request.is_posted {
             return false;
         }
         begin();
@@ -154,9 +156,9 @@ impl Shared {
     }
 
     /// It is refined, or given up.
-    pub fn refined_light(&self, refined: RefinedLight) {
+    pub fn deliver_refined_light(&self, refined: RefinedLightDelivery) {
         self.light_passes.store(0, Ordering::Relaxed);
-        self.post(Stops::Nothing, |wishes| wishes.refined_light = Some(refined));
+        self.post(StopScope::Nothing, |request| request.refined_light = Some(refined));
     }
 
     /// By how many passes light is being refined, and how far that is.
@@ -166,35 +168,35 @@ impl Shared {
     }
 
     /// The exact picture is done, or given up.
-    pub fn refined(&self, refined: Refined) {
+    pub fn deliver_exact(&self, refined: ExactDelivery) {
         self.is_refining.store(false, Ordering::Relaxed);
-        self.post(Stops::Nothing, |wishes| wishes.refined = Some(refined));
+        self.post(StopScope::Nothing, |request| request.refined = Some(refined));
     }
 
     /// Notes that the helper has baked and sums now.
-    pub fn helper_sums(&self) {
+    pub fn begin_helper_sum(&self) {
         self.helper.store(PreviewActivity::Splatting as u8, Ordering::Relaxed);
     }
 
     /// The helper is done.
-    pub fn deliver(&self, delivery: Delivery) {
-        self.post(Stops::Nothing, |wishes| wishes.delivery = Some(delivery));
+    pub fn deliver(&self, delivery: FieldDelivery) {
+        self.post(StopScope::Nothing, |request| request.delivery = Some(delivery));
     }
 
     /// The helper has made something to begin with, and goes on.
-    pub fn deliver_between(&self, between: Between) {
-        self.post(Stops::Nothing, |wishes| wishes.between = Some(between));
+    pub fn deliver_interim(&self, interim: InterimField) {
+        self.post(StopScope::Nothing, |request| request.interim = Some(interim));
     }
 
     /// Shows a picture, and what is new on screen by it; its times, if it was made just now.
     pub fn publish(&self, preview: Preview, patch: Option<Patch>, times: Option<PictureTimes>) {
         let mut published = lock(&self.published);
         if preview.quality > Quality::Coarse {
-            published.news.finished.extend(times);
+            published.events.finished.extend(times);
         }
         if let Some(patch) = patch {
             let is_whole = patch.is_whole();
-            let patches = &mut published.news.patches;
+            let patches = &mut published.events.patches;
             patches.retain(|_| !is_whole);
             patches.push((preview.generation, patch));
         }
@@ -204,10 +206,10 @@ impl Shared {
     }
 
     /// What the user is to know of a card that was lost.
-    pub fn loss(&self) -> Option<String> {
+    pub fn loss_message(&self) -> Option<String> {
         let gpu = self.gpu.as_ref()?;
-        let why = gpu.why_lost()?.lines().next().unwrap_or_default();
-        Some(format!("{} was lost ({why}): the processor sums the picture now", gpu.name()))
+        let reason = gpu.why_lost()?.lines().next().unwrap_or_default();
+        Some(format!("{} was lost ({reason}): the processor sums the picture now", gpu.name()))
     }
 
     /// What pictures are summed on; none, or none any more: the processor.
@@ -217,23 +219,23 @@ impl Shared {
 
     /// Shows the light field that pictures are made of.
     pub fn publish_field(&self, generation: u64, field: BakedField) {
-        lock(&self.published).news.field = Some((generation, field));
+        lock(&self.published).events.field = Some((generation, field));
     }
 
     /// Tells that a scene must be shown darker by so many stops.
     pub fn publish_glare(&self, generation: u64, stops: f32) {
-        lock(&self.published).news.glare = Some((generation, stops));
+        lock(&self.published).events.glare = Some((generation, stops));
     }
 
     /// Tells the user of what is no failure.
     pub fn notice(&self, what: String) {
-        lock(&self.published).news.notices.push(what);
+        lock(&self.published).events.notices.push(what);
         (self.waker)();
     }
 
     /// Tells the user.
-    pub fn fail(&self, what: String) {
-        lock(&self.published).news.failures.push(what);
+    pub fn report_failure(&self, what: String) {
+        lock(&self.published).events.failures.push(what);
         (self.waker)();
     }
 
@@ -244,11 +246,11 @@ impl Shared {
 
     /// Whether there is anything to be done.
     pub fn is_at_work(&self) -> bool {
-        let wishes = lock(&self.wishes);
+        let request = lock(&self.request);
         let idle = [&self.activity, &self.helper]
             .into_iter()
             .all(|activity| PreviewActivity::load(activity) == PreviewActivity::Idle);
-        wishes.is_posted || !idle
+        request.is_posted || !idle
     }
 
     /// A picture is being made that the user asked for: the exact one on screen waits.
@@ -261,7 +263,7 @@ impl Shared {
     /// It is made: there is time again.
     pub fn end_export(&self) {
         self.exports.fetch_sub(1, Ordering::Relaxed);
-        self.post(Stops::Nothing, |_| {});
+        self.post(StopScope::Nothing, |_| {});
     }
 
     /// What is going on, and how far it is.
@@ -278,10 +280,10 @@ impl Shared {
     }
 
     /// The newest picture, if there is one newer than `id`, and what happened meanwhile.
-    pub fn take(&self, id: u64) -> (Option<Preview>, News) {
+    pub fn take(&self, id: u64) -> (Option<Preview>, PreviewEvents) {
         let mut published = lock(&self.published);
         let newer = published.latest.as_ref().filter(|preview| preview.id > id).cloned();
-        (newer, std::mem::take(&mut published.news))
+        (newer, std::mem::take(&mut published.events))
     }
 
     /// Whether everything that was posted has been followed, and nothing newer than `id` waits to be taken.
@@ -290,6 +292,6 @@ impl Shared {
             return false;
         }
         let published = lock(&self.published);
-        published.news.failures.is_empty() && published.latest.as_ref().is_none_or(|p| p.id <= id)
+        published.events.failures.is_empty() && published.latest.as_ref().is_none_or(|p| p.id <= id)
     }
 }

@@ -1,10 +1,10 @@
 //! Making the light field of the preview: a thread of its own bakes and sums it.
 
-use super::deliveries::{BAKE_SHARE, BETWEEN_SHARE, Between, Delivery};
+use super::deliveries::{BAKE_SHARE, FieldDelivery, INTERIM_SHARE, InterimField};
 use super::mailbox::Shared;
 use crate::document::Stage;
 use crate::error::SessionError;
-use crate::jobs::{Urgency, among_others, guarded};
+use crate::jobs::{Urgency, catch_panics, run_in_own_pool};
 use crate::light_field::{Changes, FieldOptions, LightField, LightFieldStore, LightQuality};
 use focus::Focus;
 use lens::Camera;
@@ -16,22 +16,22 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 /// What is begun with.
-pub(crate) enum Begin {
+pub(crate) enum FieldOrigin {
     /// A light field that is there.
-    Sum(Box<LightField>),
+    Resum(Box<LightField>),
     /// None: it is taken from the store or baked, with a margin of at least this many pixels.
-    Find { least_margin_px: f64 },
+    LoadOrBake { least_margin_px: f64 },
     /// None: it is baked, whatever is in the store.
     Bake,
 }
 
 /// What the light field is to show.
-pub(crate) struct Order {
-    pub begin: Begin,
+pub(crate) struct FieldOrder {
+    pub origin: FieldOrigin,
     pub stage: Arc<Stage>,
     pub camera: Camera,
     /// That of a light field of fewer pixels, which is handed over first if there is anything to bake.
-    pub between: Option<Camera>,
+    pub interim: Option<Camera>,
     pub focus: Focus,
     pub tolerance: Tolerance,
     /// Comes back with the light field.
@@ -43,13 +43,13 @@ pub(crate) struct LightFieldMaker {
     store: Option<LightFieldStore>,
     thread: Option<JoinHandle<()>>,
     /// What changed since it began.
-    since: Changes,
+    pending_changes: Changes,
 }
 
 impl LightFieldMaker {
     /// At rest. What is baked is kept in `store`, if there is one.
     pub fn new(store: Option<LightFieldStore>) -> Self {
-        Self { store, thread: None, since: Changes::default() }
+        Self { store, thread: None, pending_changes: Changes::default() }
     }
 
     /// Whether the light field need not be baked.
@@ -58,10 +58,10 @@ impl LightFieldMaker {
     }
 
     /// Keeps a light field of refined light, if there is a store.
-    pub fn keep(&self, stage: &Arc<Stage>, field: &LightField, bake_seconds: f64) {
+    pub fn save(&self, stage: &Arc<Stage>, field: &LightField, bake_seconds: f64) {
         if let Some(store) = &self.store {
             let bake = Duration::from_secs_f64(bake_seconds);
-            store.keep(stage, &field.baked().salf, field.light_passes(), bake);
+            store.save(stage, &field.baked().salf, field.light_passes(), bake);
         }
     }
 
@@ -71,54 +71,54 @@ impl LightFieldMaker {
     }
 
     /// Begins, unless that is already known to be useless. What is made is delivered to `shared`.
-    pub fn start(&mut self, shared: &Arc<Shared>, order: Order) {
+    pub fn start(&mut self, shared: &Arc<Shared>, order: FieldOrder) {
         if !shared.begin_helper() {
             return;
         }
-        self.since = Changes::default();
-        let (theirs, epoch, store) = (shared.clone(), order.epoch, self.store.clone());
-        let is_there = matches!(order.begin, Begin::Sum(_));
-        if !is_there {
+        self.pending_changes = Changes::default();
+        let (thread_shared, epoch, store) = (shared.clone(), order.epoch, self.store.clone());
+        let is_baked = matches!(order.origin, FieldOrigin::Resum(_));
+        if !is_baked {
             // Whoever asks from now on waits for it.
             shared.field.begin(&order.stage);
         }
         // One that is there has only to be summed for another lens that somebody turns.
-        let urgency = if is_there { Urgency::Now } else { Urgency::Later };
+        let urgency = if is_baked { Urgency::Interactive } else { Urgency::Background };
         let work = move || {
-            let make = || make(order, &theirs, store.as_ref());
-            let made = guarded("drawing the preview", || among_others(urgency, make));
-            theirs.field.end();
-            theirs.deliver(Delivery { made, epoch });
+            let make = || make(order, &thread_shared, store.as_ref());
+            let result = catch_panics("drawing the preview", || run_in_own_pool(urgency, make));
+            thread_shared.field.end();
+            thread_shared.deliver(FieldDelivery { result, epoch });
         };
         let thread = std::thread::Builder::new().name("light field".into()).stack_size(16 << 20).spawn(work);
         match thread {
             Ok(thread) => self.thread = Some(thread),
             Err(error) => {
-                let made = Err(SessionError::TryAgain(format!("no thread: {error} (try again)")));
+                let result = Err(SessionError::TryAgain(format!("no thread: {error} (try again)")));
                 shared.field.end();
-                shared.deliver(Delivery { made, epoch });
+                shared.deliver(FieldDelivery { result, epoch });
             }
         }
     }
 
     /// Notes changes of the focus map.
     pub fn note(&mut self, changes: &Changes) {
-        self.since.join(changes);
+        self.pending_changes.join(changes);
     }
 
     /// What was made first, with all that changed meanwhile noted.
-    pub fn take_up_between(&self, between: Between) -> (LightField, u64) {
-        let Between { mut field, epoch } = between;
-        field.note(&self.since);
+    pub fn take_up_interim(&self, interim: InterimField) -> (LightField, u64) {
+        let InterimField { mut field, epoch } = interim;
+        field.note(&self.pending_changes);
         (field, epoch)
     }
 
     /// What was made, with all that changed meanwhile noted.
-    pub fn take_up(&mut self, delivery: Delivery) -> Result<(LightField, u64), SessionError> {
+    pub fn take_up(&mut self, delivery: FieldDelivery) -> Result<(LightField, u64), SessionError> {
         self.join();
-        let since = std::mem::take(&mut self.since);
-        let mut field = delivery.made?;
-        field.note(&since);
+        let pending_changes = std::mem::take(&mut self.pending_changes);
+        let mut field = delivery.result?;
+        field.note(&pending_changes);
         Ok((field, delivery.epoch))
     }
 
@@ -131,53 +131,57 @@ impl LightFieldMaker {
     }
 }
 
-fn make(order: Order, shared: &Shared, store: Option<&LightFieldStore>) -> Result<LightField, SessionError> {
-    let Order { begin, stage, camera, between, focus, tolerance, epoch } = order;
+fn make(
+    order: FieldOrder,
+    shared: &Shared,
+    store: Option<&LightFieldStore>,
+) -> Result<LightField, SessionError> {
+    let FieldOrder { origin, stage, camera, interim, focus, tolerance, epoch } = order;
     let bake = |least_margin_px| {
-        let how = |least_margin_px| FieldOptions {
+        let options_with_margin = |least_margin_px| FieldOptions {
             least_margin_px,
             tolerance,
             gpu: shared.gpu(),
             light: LightQuality::Fine,
         };
         shared.progress.begin_step("", 0.0, BAKE_SHARE);
-        let mut done = 0.0;
-        if let Some(between) = &between {
-            let share = Share::new(&shared.progress, 0.0, BETWEEN_SHARE);
-            let field = LightField::bake(&stage, between, &focus, how(0.0), &share)?;
-            shared.deliver_between(Between { field, epoch });
-            done = BETWEEN_SHARE;
+        let mut done_share = 0.0;
+        if let Some(interim) = &interim {
+            let share = Share::new(&shared.progress, 0.0, INTERIM_SHARE);
+            let field = LightField::bake(&stage, interim, &focus, options_with_margin(0.0), &share)?;
+            shared.deliver_interim(InterimField { field, epoch });
+            done_share = INTERIM_SHARE;
         }
         let start = Instant::now();
-        let share = Share::new(&shared.progress, done, BAKE_SHARE);
-        let field = LightField::bake(&stage, &camera, &focus, how(least_margin_px), &share)?;
+        let share = Share::new(&shared.progress, done_share, BAKE_SHARE);
+        let field = LightField::bake(&stage, &camera, &focus, options_with_margin(least_margin_px), &share)?;
         if let Some(store) = store {
-            store.keep(&stage, &field.baked().salf, 0, start.elapsed());
+            store.save(&stage, &field.baked().salf, 0, start.elapsed());
         }
         Ok::<_, SessionError>(field)
     };
     // One that is there has another lens to show, and no time.
-    let is_begun = matches!(begin, Begin::Sum(_));
-    let mut field = match begin {
-        Begin::Sum(field) => *field,
-        Begin::Bake => bake(0.0)?,
-        Begin::Find { least_margin_px } => {
-            let carried = Carried::of(&focus);
+    let is_resum = matches!(origin, FieldOrigin::Resum(_));
+    let mut field = match origin {
+        FieldOrigin::Resum(field) => *field,
+        FieldOrigin::Bake => bake(0.0)?,
+        FieldOrigin::LoadOrBake { least_margin_px } => {
+            let carried = Carried::for_focus(&focus);
             let stored = store.and_then(|store| store.find(&stage, &camera, least_margin_px, carried));
             match stored {
                 Some((salf, passes)) => {
-                    LightField::of(&stage, Arc::new(salf), tolerance, shared.gpu()).refined(passes)
+                    LightField::from_salf(&stage, Arc::new(salf), tolerance, shared.gpu()).refined(passes)
                 }
                 None => bake(least_margin_px)?,
             }
         }
     };
-    shared.field.made(&field.baked().salf);
-    shared.helper_sums();
+    shared.field.set_baked(&field.baked().salf);
+    shared.begin_helper_sum();
     shared.progress.begin_step("", BAKE_SHARE, 1.0);
-    field.bring_up(&camera, &focus, &Share::new(&shared.progress, BAKE_SHARE, 1.0))?;
+    field.update_sum(&camera, &focus, &Share::new(&shared.progress, BAKE_SHARE, 1.0))?;
     field.survey(&camera, &focus);
-    if !is_begun {
+    if !is_resum {
         field.prepare()(&shared.progress);
     }
     Ok(field)

@@ -8,12 +8,12 @@ use crate::light_field::BakedField;
 #[derive(Default)]
 pub(crate) struct Published {
     pub latest: Option<Preview>,
-    pub news: News,
+    pub events: PreviewEvents,
 }
 
 /// What happened since it was taken last.
 #[derive(Default)]
-pub(crate) struct News {
+pub(crate) struct PreviewEvents {
     /// What is new on screen, oldest first, and of which of the session's documents.
     pub patches: Vec<(u64, Patch)>,
     /// When the pictures were made that were finished, at their full size.

@@ -3,8 +3,8 @@
 use super::mailbox::Shared;
 use super::picture::{DrawingCosts, PictureTimes, Preview, PreviewKind, Quality};
 use crate::display::{
-    Content, LivePicture, Patch, PictureRing, Rectangle, Source, Tone, ToneCurve, enlarged_part,
-    enlarged_rectangle, rectangle_to_screen, stops_for, to_screen, whole,
+    Content, LivePicture, Patch, PictureRing, PictureSource, Rectangle, Tone, ToneCurve, darkening_stops,
+    enlarged_part, enlarged_rectangle, rectangle_to_screen, to_screen, whole,
 };
 use crate::light_field::Modelled;
 use lens::{Camera, Exposure, Picture};
@@ -14,8 +14,8 @@ use std::sync::Arc;
 use std::time::Instant;
 
 /// A picture that was made.
-pub(crate) struct Made<'a> {
-    pub picture: Source<'a>,
+pub(crate) struct NewPicture<'a> {
+    pub picture: PictureSource<'a>,
     pub camera: &'a Camera,
     /// The size that it is shown in, if its pixels are means of many of those.
     pub enlarged_to: Option<[u32; 2]>,
@@ -35,7 +35,7 @@ pub(crate) enum Relation {
     /// It differs from it in this rectangle at most.
     Changed(Rectangle),
     /// It is a better picture of the same, to be laid over it.
-    Better,
+    Overlay,
 }
 
 /// Shows pictures, each with a number.
@@ -52,7 +52,7 @@ pub(crate) struct Presenter {
     /// Which of the session's documents is shown.
     pub generation: u64,
     /// Whether it was looked at how bright it is.
-    is_glare_known: bool,
+    is_glare_checked: bool,
     /// How many changes of the map the next picture has seen.
     pub map_serial: u64,
     /// When work on the next picture began.
@@ -71,7 +71,7 @@ impl Presenter {
             tone: Tone::default(),
             last_id: 0,
             generation: 0,
-            is_glare_known: false,
+            is_glare_checked: false,
             map_serial: 0,
             begun: Instant::now(),
             costs: DrawingCosts::default(),
@@ -81,15 +81,15 @@ impl Presenter {
     /// Another document: what was shown is not of it.
     pub fn open(&mut self, generation: u64) {
         self.generation = generation;
-        self.is_glare_known = false;
+        self.is_glare_checked = false;
         self.shown = None;
         self.costs = DrawingCosts::default();
     }
 
     /// Tells if a document must be shown darker; its first light field says so.
-    pub fn look_for_glare(&mut self, salf: &Salf) {
-        if !std::mem::replace(&mut self.is_glare_known, true)
-            && let Some(stops) = stops_for(salf)
+    pub fn check_glare(&mut self, salf: &Salf) {
+        if !std::mem::replace(&mut self.is_glare_checked, true)
+            && let Some(stops) = darkening_stops(salf)
         {
             self.shared.publish_glare(self.generation, stops);
         }
@@ -111,21 +111,21 @@ impl Presenter {
     }
 
     /// Shows a picture.
-    pub fn show(&mut self, made: Made) {
+    pub fn show(&mut self, new_picture: NewPicture) {
         let summed = Instant::now();
-        let is_new = matches!(made.relation, Relation::New);
-        let (picture, changed) = self.take_up(made.picture, made.relation);
+        let is_new = matches!(new_picture.relation, Relation::New);
+        let (picture, changed) = self.take_up(new_picture.picture, new_picture.relation);
         self.last_id += 1;
         let preview = Preview {
             id: self.last_id,
-            enlarged_to: made.enlarged_to.filter(|_| matches!(picture, LivePicture::Here(_))),
+            enlarged_to: new_picture.enlarged_to.filter(|_| matches!(picture, LivePicture::InMemory(_))),
             picture,
-            kind: made.kind,
-            quality: made.quality,
+            kind: new_picture.kind,
+            quality: new_picture.quality,
             costs: self.costs,
-            camera: made.camera.clone(),
-            seconds: made.seconds,
-            modelled: made.modelled,
+            camera: new_picture.camera.clone(),
+            seconds: new_picture.seconds,
+            modelled: new_picture.modelled,
             map_serial: self.map_serial,
             generation: self.generation,
         };
@@ -155,18 +155,18 @@ impl Presenter {
     }
 
     /// The picture that is shown from now on, and where it differs from the one before.
-    fn take_up(&mut self, picture: Source, relation: Relation) -> (LivePicture, Option<Rectangle>) {
+    fn take_up(&mut self, picture: PictureSource, relation: Relation) -> (LivePicture, Option<Rectangle>) {
         let picture = match picture {
-            Source::Here(picture) => picture,
-            Source::There(picture) => return self.take_up_on_card(&picture, relation),
+            PictureSource::InMemory(picture) => picture,
+            PictureSource::OnCard(picture) => return self.take_up_on_card(&picture, relation),
         };
         self.on_card = None;
         let (picture, changed) = match relation {
             Relation::New => (self.pictures.begin(picture), Some(whole(picture))),
             Relation::Changed(rectangle) => self.pictures.follow(picture, &rectangle),
-            Relation::Better => self.pictures.overlay(picture),
+            Relation::Overlay => self.pictures.overlay(picture),
         };
-        (LivePicture::Here(picture), changed)
+        (LivePicture::InMemory(picture), changed)
     }
 
     /// The same of one on a card: it does not come back.
@@ -177,12 +177,13 @@ impl Presenter {
     ) -> (LivePicture, Option<Rectangle>) {
         // What is kept of the processor's pictures is of before.
         self.pictures = PictureRing::default();
-        let kept = self.on_card.take_if(|shown| shown.is_like(picture));
-        let (shown, changed) = match (kept, relation) {
+        let reusable = self.on_card.take_if(|shown| shown.is_like(picture));
+        let (shown, changed) = match (reusable, relation) {
             (Some(shown), Relation::Changed(rectangle)) => (shown, rectangle),
             // Where there is no room for another, what is summed is shown while it is.
-            (kept, _) => {
-                let shown = kept.or_else(|| PictureOnCard::like(picture)).unwrap_or_else(|| picture.clone());
+            (reusable, _) => {
+                let shown =
+                    reusable.or_else(|| PictureOnCard::new_like(picture)).unwrap_or_else(|| picture.clone());
                 (shown, picture.size().map(|side| 0..side))
             }
         };
@@ -190,24 +191,24 @@ impl Presenter {
             shown.copy(picture, &changed);
         }
         self.on_card = Some(shown.clone());
-        (LivePicture::There(shown), Some(changed))
+        (LivePicture::OnCard(shown), Some(changed))
     }
 
     /// A rectangle of a picture, as the screen shows it.
     fn patch(&self, preview: &Preview, rectangle: Rectangle) -> Patch {
         let picture = &preview.picture;
-        if let (Some(size), LivePicture::Here(picture)) = (preview.enlarged_to, picture) {
+        if let (Some(size), LivePicture::InMemory(picture)) = (preview.enlarged_to, picture) {
             let rectangle = enlarged_rectangle(picture, size, &rectangle);
             let part = enlarged_part(picture, size, rectangle.clone());
             return Patch { size, rectangle, content: Content::Pixels(to_screen(&part, self.tone)) };
         }
         let content = match picture {
-            LivePicture::Here(picture) => {
+            LivePicture::InMemory(picture) => {
                 Content::Pixels(rectangle_to_screen(picture, self.tone, rectangle.clone()))
             }
-            LivePicture::There(on_card) => match self.tone.display.curve {
+            LivePicture::OnCard(on_card) => match self.tone.display.curve {
                 // Those of OpenColorIO are known here.
-                ToneCurve::Ocio(_) => picture.bring().map_or_else(
+                ToneCurve::Ocio(_) => picture.fetch().map_or_else(
                     || Content::OnCard(on_card.clone(), self.tone),
                     |picture| Content::Pixels(rectangle_to_screen(&picture, self.tone, rectangle.clone())),
                 ),

@@ -4,10 +4,10 @@
 //! on a thread of its own as soon as there is time; any change stops it. It is kept, so that after the next strokes only
 //! what they moved is summed again.
 
-use super::deliveries::{Exact, Refined};
+use super::deliveries::{ExactDelivery, ExactPicture};
 use super::mailbox::Shared;
 use crate::error::SessionError;
-use crate::jobs::{Urgency, among_others, guarded};
+use crate::jobs::{Urgency, catch_panics, run_in_own_pool};
 use crate::light_field::{Changes, LightField};
 use focus::Focus;
 use lens::{Camera, Exposure, Picture};
@@ -18,20 +18,20 @@ use std::thread::JoinHandle;
 use std::time::Instant;
 
 /// The second sum is kept while it takes no more bytes than these: a picture of 1920 × 1080 takes two fifths of it.
-const KEPT_BYTES: usize = 1 << 29;
+const MAX_RETAINED_BYTES: usize = 1 << 29;
 
 /// The exact sum, at rest or at work.
 #[derive(Default)]
-pub(crate) struct Refinement {
+pub(crate) struct ExactRefinement {
     /// Between two pictures.
     field: Option<LightField>,
     thread: Option<JoinHandle<()>>,
     /// What changed while the thread has it.
-    since: Changes,
+    pending_changes: Changes,
 }
 
 /// What is drawn exactly.
-pub(crate) struct Task {
+pub(crate) struct ExactTask {
     pub camera: Camera,
     pub focus: Focus,
     /// The picture that was worked with, to be compared.
@@ -42,7 +42,7 @@ pub(crate) struct Task {
     pub map_serial: u64,
 }
 
-impl Refinement {
+impl ExactRefinement {
     /// Whether a picture is being drawn.
     pub fn is_at_work(&self) -> bool {
         self.thread.is_some()
@@ -52,47 +52,50 @@ impl Refinement {
     pub fn note(&mut self, changes: &Changes) {
         match &mut self.field {
             Some(field) => field.note(changes),
-            None => self.since.join(changes),
+            None => self.pending_changes.join(changes),
         }
     }
 
     /// Draws the exact picture of `viewed`'s light field in the background.
-    pub fn start(&mut self, shared: &Arc<Shared>, viewed: &LightField, task: Task) {
+    pub fn start(&mut self, shared: &Arc<Shared>, viewed: &LightField, task: ExactTask) {
         if self.is_at_work() || !shared.begin_refining() {
             return;
         }
-        let kept = self.field.take().filter(|field| field.is_twin_of(viewed));
-        let mut field = kept.unwrap_or_else(|| viewed.exact());
-        self.since = Changes::default();
-        let theirs = shared.clone();
+        let retained = self.field.take().filter(|field| field.is_twin_of(viewed));
+        let mut field = retained.unwrap_or_else(|| viewed.exact());
+        self.pending_changes = Changes::default();
+        let thread_shared = shared.clone();
         let work = move || {
-            let drawn = guarded("drawing the exact picture", || {
-                among_others(Urgency::Later, || {
-                    let outcome = draw(&mut field, task, &theirs);
+            let drawn = catch_panics("drawing the exact picture", || {
+                run_in_own_pool(Urgency::Background, || {
+                    let outcome = draw(&mut field, task, &thread_shared);
                     Ok((field, outcome))
                 })
             });
-            theirs.refined(match drawn {
-                Ok((field, outcome)) => Refined { field: Some(field), outcome },
-                Err(error) => Refined { field: None, outcome: Err(error) },
+            thread_shared.deliver_exact(match drawn {
+                Ok((field, outcome)) => ExactDelivery { field: Some(field), outcome },
+                Err(error) => ExactDelivery { field: None, outcome: Err(error) },
             });
         };
         match std::thread::Builder::new().name("exact picture".into()).stack_size(16 << 20).spawn(work) {
             Ok(thread) => self.thread = Some(thread),
             Err(error) => {
                 let error = SessionError::TryAgain(format!("no thread: {error} (try again)"));
-                shared.refined(Refined { field: None, outcome: Err(error) });
+                shared.deliver_exact(ExactDelivery { field: None, outcome: Err(error) });
             }
         }
     }
 
     /// Takes the sum back from the thread.
-    pub fn take_up(&mut self, refined: Refined) -> Result<(Exact, Option<&LightField>), SessionError> {
+    pub fn take_up(
+        &mut self,
+        refined: ExactDelivery,
+    ) -> Result<(ExactPicture, Option<&LightField>), SessionError> {
         self.join();
         self.field = refined.field;
-        let since = std::mem::take(&mut self.since);
+        let pending_changes = std::mem::take(&mut self.pending_changes);
         if let Some(field) = &mut self.field {
-            field.note(&since);
+            field.note(&pending_changes);
         }
         Ok((refined.outcome?, self.field.as_ref()))
     }
@@ -101,7 +104,7 @@ impl Refinement {
     pub fn tidy(&mut self, viewed: Option<&LightField>) {
         self.field.take_if(|field| {
             let is_another = viewed.is_some_and(|viewed| !field.is_twin_of(viewed));
-            is_another || field.summing_bytes() > KEPT_BYTES
+            is_another || field.summing_bytes() > MAX_RETAINED_BYTES
         });
     }
 
@@ -119,27 +122,27 @@ impl Refinement {
     }
 }
 
-fn draw(field: &mut LightField, task: Task, shared: &Shared) -> Result<Exact, SessionError> {
-    let Task { camera, focus, viewing, exposure, map_serial } = task;
+fn draw(field: &mut LightField, task: ExactTask, shared: &Shared) -> Result<ExactPicture, SessionError> {
+    let ExactTask { camera, focus, viewing, exposure, map_serial } = task;
     field.prepare()(&shared.refining);
     let start = Instant::now();
-    field.bring_up(&camera, &focus, &Share::new(&shared.refining, 0.0, 1.0))?;
+    field.update_sum(&camera, &focus, &Share::new(&shared.refining, 0.0, 1.0))?;
     let seconds = start.elapsed().as_secs_f64();
-    let viewing_psnr = psnr_between(&viewing, field.brought()?, exposure);
-    Ok(Exact { map_serial, camera, seconds, viewing_psnr })
+    let viewing_psnr = psnr_between(&viewing, field.fetch_picture()?, exposure);
+    Ok(ExactPicture { map_serial, camera, seconds, viewing_psnr })
 }
 
 /// How far `picture` is from `exact`, of the same size: PSNR in dB of linear values clipped to [0, 1].
 fn psnr_between(picture: &Picture, exact: &Picture, exposure: Exposure) -> f64 {
-    project::psnr(square_between(picture, exact, exposure))
+    project::psnr(mean_square_difference(picture, exact, exposure))
 }
 
 /// The mean square of how far two pictures of one size are apart, of linear values clipped to [0, 1].
-pub(super) fn square_between(picture: &Picture, exact: &Picture, exposure: Exposure) -> f64 {
+pub(super) fn mean_square_difference(picture: &Picture, exact: &Picture, exposure: Exposure) -> f64 {
     let [a, b] = [picture, exact].map(|picture| picture.exposed(exposure));
     let square = |(a, b): (&[f32; 3], &[f32; 3])| -> f64 {
-        let of = |k: usize| f64::from(a[k].clamp(0.0, 1.0)) - f64::from(b[k].clamp(0.0, 1.0));
-        (0..3).map(|k| of(k) * of(k)).sum()
+        let difference = |k: usize| f64::from(a[k].clamp(0.0, 1.0)) - f64::from(b[k].clamp(0.0, 1.0));
+        (0..3).map(|k| difference(k) * difference(k)).sum()
     };
     let sum: f64 = a.par_iter().zip(&b).map(square).sum();
     sum / (3 * a.len()).max(1) as f64

@@ -2,14 +2,14 @@
 
 use super::activity::PreviewActivity;
 use super::mailbox::Shared;
-use super::news::News;
+use super::news::PreviewEvents;
 use super::picture::Preview;
-use super::wishes::Stops;
+use super::wishes::StopScope;
 use super::worker::Worker;
 use crate::display::Tone;
 use crate::document::Stage;
 use crate::error::SessionError;
-use crate::jobs::{JobProgress, Urgency, Waker, own_threads};
+use crate::jobs::{JobProgress, Urgency, Waker, build_thread_pool};
 use crate::light_field::{Changes, LightFieldStore};
 use focus::FocusMap;
 use lens::Camera;
@@ -34,64 +34,66 @@ impl PreviewThread {
         gpu: Option<Gpu>,
     ) -> Result<Self, SessionError> {
         let shared = Arc::new(Shared::new(waker, gpu));
-        let (theirs, pool) = (shared.clone(), own_threads(Urgency::Now)?);
+        let (thread_shared, pool) = (shared.clone(), build_thread_pool(Urgency::Interactive)?);
         let thread = std::thread::Builder::new()
             .name("preview".into())
             .stack_size(16 << 20)
-            .spawn(move || pool.install(|| Worker::new(theirs, exact_after, light_passes, store).run()))
+            .spawn(move || {
+                pool.install(|| Worker::new(thread_shared, exact_after, light_passes, store).run())
+            })
             .map_err(|e| SessionError::TryAgain(format!("no preview thread: {e} (try again)")))?;
         Ok(Self { shared, thread: Some(thread) })
     }
 
     /// Another scene, with its focus.
     pub fn set_stage(&self, stage: (Arc<Stage>, u64), map: (FocusMap, u64), camera: Camera) {
-        self.shared.post(Stops::Everything, |wishes| {
-            wishes.stage = Some(stage);
-            (wishes.camera, wishes.map) = (Some(camera), Some(map));
-            wishes.changed = Changes::Everything;
-            wishes.hold = false;
+        self.shared.post(StopScope::Everything, |request| {
+            request.stage = Some(stage);
+            (request.camera, request.map) = (Some(camera), Some(map));
+            request.changed = Changes::Everything;
+            request.pause = false;
         });
     }
 
     /// Another camera, at the preview's size. `light_field_stays` where the old light field serves it.
-    pub fn set_camera(&self, camera: Camera, light_field_stays: bool) {
-        let stops = if light_field_stays { Stops::Refining } else { Stops::Everything };
-        self.shared.post(stops, |wishes| {
-            wishes.camera = Some(camera);
-            wishes.settle = true;
-            wishes.hold = false;
+    pub fn set_camera(&self, camera: Camera, keeps_light_field: bool) {
+        let scope = if keeps_light_field { StopScope::Refining } else { StopScope::Everything };
+        self.shared.post(scope, |request| {
+            request.camera = Some(camera);
+            request.edit_done = true;
+            request.pause = false;
         });
     }
 
     /// Another state of the map, with how many changes it holds; `changed` is what is new in it.
     pub fn set_map(&self, map: (FocusMap, u64), changed: &Changes) {
-        self.shared.post(Stops::Refining, |wishes| {
-            wishes.map = Some(map);
-            wishes.changed.join(changed);
+        self.shared.post(StopScope::Refining, |request| {
+            request.map = Some(map);
+            request.changed.join(changed);
         });
     }
 
     /// A stroke or another edit is complete.
-    pub fn settle(&self) {
-        self.shared.post(Stops::Nothing, |wishes| wishes.settle = true);
+    pub fn edit_done(&self) {
+        self.shared.post(StopScope::Nothing, |request| request.edit_done = true);
     }
 
     /// Makes the light field anew.
     pub fn bake(&self) {
-        self.shared.post(Stops::Everything, |wishes| {
-            wishes.bake = true;
-            wishes.hold = false;
+        self.shared.post(StopScope::Everything, |request| {
+            request.bake = true;
+            request.pause = false;
         });
     }
 
     /// Stops what is going on; the last picture stays.
     pub fn cancel(&self) {
-        self.shared.post(Stops::Everything, |wishes| wishes.hold = true);
+        self.shared.post(StopScope::Everything, |request| request.pause = true);
     }
 
     /// Refines no light until another scene or camera is looked at.
-    pub fn stop_light(&self) {
-        self.shared.post(Stops::Nothing, |wishes| wishes.hold_light = true);
+    pub fn pause_light(&self) {
+        self.shared.post(StopScope::Nothing, |request| request.pause_light = true);
         self.shared.light.cancel();
     }
 
@@ -106,13 +108,13 @@ impl PreviewThread {
     }
 
     /// The newest picture, if there is one newer than `id`, and what happened meanwhile.
-    pub fn take(&self, id: u64) -> (Option<Preview>, News) {
+    pub fn take(&self, id: u64) -> (Option<Preview>, PreviewEvents) {
         self.shared.take(id)
     }
 
     /// Puts pictures on screen in another way.
     pub fn set_tone(&self, tone: Tone) {
-        self.shared.post(Stops::Nothing, |wishes| wishes.tone = Some(tone));
+        self.shared.post(StopScope::Nothing, |request| request.tone = Some(tone));
     }
 
     /// What others need of its work.
@@ -122,9 +124,9 @@ impl PreviewThread {
 
     /// Sets how coarse pictures may be while one works.
     pub fn set_tolerance(&self, tolerance: Tolerance) {
-        self.shared.post(Stops::Refining, |wishes| {
-            wishes.tolerance = Some(tolerance);
-            wishes.hold = false;
+        self.shared.post(StopScope::Refining, |request| {
+            request.tolerance = Some(tolerance);
+            request.pause = false;
         });
     }
 
@@ -141,7 +143,7 @@ impl PreviewThread {
 
 impl Drop for PreviewThread {
     fn drop(&mut self) {
-        self.shared.post(Stops::Everything, |wishes| wishes.quit = true);
+        self.shared.post(StopScope::Everything, |request| request.quit = true);
         if let Some(thread) = self.thread.take() {
             // A thread that panicked has nothing left to hand over.
             let _ = thread.join();

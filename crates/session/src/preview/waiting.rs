@@ -3,7 +3,7 @@
 use super::deliveries::BAKE_SHARE;
 use super::mailbox::Shared;
 use crate::document::Stage;
-use crate::light_field::Standing;
+use crate::light_field::BakeState;
 use lens::Camera;
 use progress::{Cancelled, Progress};
 use salf::Salf;
@@ -11,7 +11,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 /// How often it is looked whether the preview is still at work on a light field that others need.
-const LOOK_EVERY: Duration = Duration::from_millis(50);
+const POLL_INTERVAL: Duration = Duration::from_millis(50);
 
 impl Shared {
     /// The light field that the preview makes now, if it serves `camera` in `stage`: it is waited for. None is another bake's time
@@ -23,19 +23,19 @@ impl Shared {
         progress: &dyn Progress,
     ) -> Result<Option<Arc<Salf>>, Cancelled> {
         // What is left of the bake when the wait begins.
-        let mut begun = None;
+        let mut initial_fraction = None;
         loop {
             progress.check()?;
-            match self.field.look(stage, camera, LOOK_EVERY) {
-                Standing::Made(salf) => return Ok(Some(salf)),
-                Standing::Underway => {
+            match self.field.wait_for(stage, camera, POLL_INTERVAL) {
+                BakeState::Baked(salf) => return Ok(Some(salf)),
+                BakeState::InProgress => {
                     let baked = self.progress.fraction() / BAKE_SHARE;
-                    let first = *begun.get_or_insert(baked);
+                    let first = *initial_fraction.get_or_insert(baked);
                     progress.report((baked - first) / (1.0 - first).max(f32::EPSILON));
                 }
                 // What the thread does now may end in making one.
-                Standing::Absent if self.is_at_work() => std::thread::sleep(LOOK_EVERY),
-                Standing::Absent => return Ok(None),
+                BakeState::Absent if self.is_at_work() => std::thread::sleep(POLL_INTERVAL),
+                BakeState::Absent => return Ok(None),
             }
         }
     }

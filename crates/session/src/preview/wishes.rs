@@ -1,6 +1,6 @@
 //! What is wanted of the preview, joined until its thread looks.
 
-use super::deliveries::{Between, Delivery, Refined, RefinedLight};
+use super::deliveries::{ExactDelivery, FieldDelivery, InterimField, RefinedLightDelivery};
 use crate::display::Tone;
 use crate::document::Stage;
 use crate::light_field::Changes;
@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 /// Everything that changed since the thread last looked.
 #[derive(Default)]
-pub(crate) struct Wishes {
+pub(crate) struct PreviewRequest {
     /// Another scene, and which of the session's documents it is.
     pub stage: Option<(Arc<Stage>, u64)>,
     pub camera: Option<Camera>,
@@ -27,28 +27,28 @@ pub(crate) struct Wishes {
     /// The light field is to be made anew.
     pub bake: bool,
     /// An edit is complete: room for what takes longer.
-    pub settle: bool,
+    pub edit_done: bool,
     /// The user wants no more work for now.
-    pub hold: bool,
+    pub pause: bool,
     /// The light field that was made.
-    pub delivery: Option<Delivery>,
+    pub delivery: Option<FieldDelivery>,
     /// One of fewer pixels that was made first.
-    pub between: Option<Between>,
+    pub interim: Option<InterimField>,
     /// What became of the exact picture.
-    pub refined: Option<Refined>,
+    pub refined: Option<ExactDelivery>,
     /// What became of light that was to be refined.
-    pub refined_light: Option<RefinedLight>,
+    pub refined_light: Option<RefinedLightDelivery>,
     /// The user wants no light refined for now.
-    pub hold_light: bool,
+    pub pause_light: bool,
     /// Work under way was told to stop when these were posted.
-    pub stops: bool,
+    pub is_stopping: bool,
     pub is_posted: bool,
     pub quit: bool,
 }
 
 /// What of the work under way a wish makes useless.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Stops {
+pub(crate) enum StopScope {
     Nothing,
     /// The exact picture.
     Refining,

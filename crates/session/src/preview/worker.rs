@@ -1,21 +1,22 @@
 //! What the preview thread does with its wishes.
 
 use super::activity::PreviewActivity;
-use super::coarse::{between_of, coarse_of};
-use super::deliveries::{Between, Delivery, Finer, Refined};
+use super::coarse::{coarse_cameras, interim_camera};
+use super::deliveries::{ExactDelivery, FieldDelivery, FinerField, InterimField};
 use super::light_refinement::{self, LightRefinement};
 use super::mailbox::Shared;
-use super::maker::{Begin, LightFieldMaker, Order};
+use super::maker::{FieldOrder, FieldOrigin, LightFieldMaker};
 use super::picture::{PreviewKind, Quality};
-use super::presenter::{Made, Presenter, Relation};
-use super::refinement::{Refinement, Task};
-use super::wishes::Wishes;
-use crate::display::Source;
+use super::presenter::{NewPicture, Presenter, Relation};
+use super::refinement::{ExactRefinement, ExactTask};
+use super::wishes::PreviewRequest;
+use crate::display::PictureSource;
 use crate::document::Stage;
 use crate::error::SessionError;
-use crate::jobs::guarded;
+use crate::jobs::catch_panics;
 use crate::light_field::{
-    Brought, FieldOptions, LightField, LightFieldStore, LightQuality, Modelled, Plan, light, may_be_refined,
+    FieldOptions, LightField, LightFieldStore, LightQuality, Modelled, Plan, SumUpdate, can_refine_light,
+    solve_light,
 };
 use baselines::FirstHits;
 use focus::{Focus, FocusMap};
@@ -27,9 +28,9 @@ use std::time::{Duration, Instant};
 /// A whole sum that takes less than this many seconds is made at once for every new lens: two frames.
 const QUICK_SECONDS: f64 = 0.033;
 
-impl From<&Brought> for PreviewKind {
-    fn from(brought: &Brought) -> Self {
-        if matches!(brought, Brought::Update(_)) { Self::Update } else { Self::Splat }
+impl From<&SumUpdate> for PreviewKind {
+    fn from(update: &SumUpdate) -> Self {
+        if matches!(update, SumUpdate::Region(_)) { Self::Update } else { Self::Splat }
     }
 }
 
@@ -46,15 +47,15 @@ pub(crate) struct Worker {
     /// Makes or sums the fine light field.
     maker: LightFieldMaker,
     /// What it made, until there is time to take it up.
-    delivery: Option<Delivery>,
+    delivery: Option<FieldDelivery>,
     /// Draws the exact picture of the fine light field.
-    refinement: Refinement,
+    refinement: ExactRefinement,
     /// Refines the light of the fine light field.
     light: LightRefinement,
     /// By how many passes at most.
     light_passes: u32,
     /// The user wants no light refined until another scene or camera is looked at.
-    is_light_held: bool,
+    is_light_paused: bool,
     /// For how long nothing must change until either is done; none: never.
     exact_after: Option<Duration>,
     /// A stroke goes on.
@@ -64,13 +65,13 @@ pub(crate) struct Worker {
     /// Counts scenes and bakes that were asked for anew: what is of an older epoch is of no use.
     epoch: u64,
     /// An edit is complete, and whether the fine light field still fits it has not been looked at.
-    is_settled: bool,
+    is_edit_done: bool,
     /// The light field is to be baked, whatever is in the store.
     bakes_anew: bool,
     /// The user wants no more work until the next change that needs it.
-    is_held: bool,
+    is_paused: bool,
     /// The user knows that the card was lost.
-    is_loss_told: bool,
+    is_loss_reported: bool,
     presenter: Presenter,
 }
 
@@ -94,35 +95,36 @@ impl Worker {
             is_new: false,
             maker: LightFieldMaker::new(store),
             delivery: None,
-            refinement: Refinement::default(),
+            refinement: ExactRefinement::default(),
             light: LightRefinement::default(),
             light_passes,
-            is_light_held: false,
+            is_light_paused: false,
             exact_after,
             is_painting: false,
             tolerance: Tolerance::VIEWING,
             epoch: 0,
-            is_settled: false,
+            is_edit_done: false,
             bakes_anew: false,
-            is_held: false,
-            is_loss_told: false,
+            is_paused: false,
+            is_loss_reported: false,
         }
     }
 
     /// Follows wishes until the session goes.
     pub fn run(mut self) {
-        while let Some(wishes) = self.shared.next(self.exact_after.filter(|_| self.is_idle_of_use())) {
+        while let Some(request) = self.shared.next_request(self.exact_after.filter(|_| self.has_idle_work()))
+        {
             self.presenter.begun = Instant::now();
-            let followed = guarded("drawing the preview", || self.follow(wishes));
-            self.tell_loss();
-            match followed {
+            let outcome = catch_panics("drawing the preview", || self.process(request));
+            self.report_loss();
+            match outcome {
                 Ok(()) | Err(SessionError::Cancelled) => {}
                 Err(error) => {
                     if matches!(error, SessionError::Internal(_)) {
                         (self.coarse, self.fine) = (None, None);
                     }
-                    self.is_held = true;
-                    self.shared.fail(error.to_string());
+                    self.is_paused = true;
+                    self.shared.report_failure(error.to_string());
                 }
             }
         }
@@ -133,38 +135,38 @@ impl Worker {
     }
 
     /// Tells the user once that the card was lost.
-    fn tell_loss(&mut self) {
-        if let Some(loss) = self.shared.loss().filter(|_| !self.is_loss_told) {
-            self.is_loss_told = true;
+    fn report_loss(&mut self) {
+        if let Some(loss) = self.shared.loss_message().filter(|_| !self.is_loss_reported) {
+            self.is_loss_reported = true;
             self.shared.notice(loss);
         }
     }
 
-    fn follow(&mut self, mut wishes: Wishes) -> Result<(), SessionError> {
-        let (is_idle, refined) = (wishes.is_idle, wishes.refined.take());
-        let taken_in = self.take_in(wishes);
+    fn process(&mut self, mut request: PreviewRequest) -> Result<(), SessionError> {
+        let (is_idle, refined) = (request.is_idle, request.refined.take());
+        let intake = self.apply_request(request);
         if let Some(refined) = refined {
             self.show_exact(refined)?;
         }
-        taken_in?;
+        intake?;
         let (Some(stage), Some(camera), Some(map)) = (&self.stage, &self.camera, &self.map) else {
             return Ok(());
         };
         let (stage, camera) = (stage.clone(), camera.clone());
-        let focus = Focus::painted(stage.scene.clone(), stage.atlas.clone(), map.clone());
-        if self.is_held && self.fine.is_none() && self.coarse.is_none() {
+        let focus = Focus::from_atlas_map(stage.scene.clone(), stage.atlas.clone(), map.clone());
+        if self.is_paused && self.fine.is_none() && self.coarse.is_none() {
             return Ok(());
         }
         if is_idle && self.may_refine() {
             self.refine(camera, focus);
             return Ok(());
         }
-        if is_idle && let Some(passes) = self.may_refine_light() {
+        if is_idle && let Some(passes) = self.refinable_passes() {
             self.refine_light(passes, stage, camera, focus);
             return Ok(());
         }
 
-        if self.fine.take_if(|fine| !fine.serves(&camera)).is_some() {
+        if self.fine.take_if(|fine| !fine.can_show(&camera)).is_some() {
             self.refinement.forget();
         }
         let plan =
@@ -176,78 +178,79 @@ impl Worker {
         }
         self.show_pinhole(&stage, &camera, &focus)?;
         // What is kept is there sooner than the coarse picture.
-        let is_kept = self.fine.is_none() && !self.bakes_anew && self.maker.has_stored(&stage, &camera);
-        if !is_kept {
+        let is_stored = self.fine.is_none() && !self.bakes_anew && self.maker.has_stored(&stage, &camera);
+        if !is_stored {
             self.show_coarse(&stage, &camera, &focus)?;
         }
-        if !self.maker.is_at_work() && !self.is_held {
-            let begin = match self.fine.take() {
-                Some(fine) => Begin::Sum(Box::new(fine)),
-                None if std::mem::take(&mut self.bakes_anew) => Begin::Bake,
-                None => Begin::Find { least_margin_px: 0.0 },
+        if !self.maker.is_at_work() && !self.is_paused {
+            let origin = match self.fine.take() {
+                Some(fine) => FieldOrigin::Resum(Box::new(fine)),
+                None if std::mem::take(&mut self.bakes_anew) => FieldOrigin::Bake,
+                None => FieldOrigin::LoadOrBake { least_margin_px: 0.0 },
             };
-            self.make_field(begin, &stage, &camera, focus);
+            self.make_field(origin, &stage, &camera, focus);
         }
         Ok(())
     }
 
     /// Takes up what changed, and what was made.
-    fn take_in(&mut self, wishes: Wishes) -> Result<(), SessionError> {
-        if let Some(tolerance) = wishes.tolerance.filter(|tolerance| *tolerance != self.tolerance) {
+    fn apply_request(&mut self, request: PreviewRequest) -> Result<(), SessionError> {
+        if let Some(tolerance) = request.tolerance.filter(|tolerance| *tolerance != self.tolerance) {
             self.tolerance = tolerance;
             (self.presenter.costs.viewing_psnr, self.presenter.costs.viewing_seconds) = (None, None);
             for field in [&mut self.coarse, &mut self.fine].into_iter().flatten() {
                 field.set_tolerance(tolerance);
             }
         }
-        let is_opened = wishes.stage.is_some();
-        if let Some((stage, generation)) = wishes.stage {
+        let is_opened = request.stage.is_some();
+        if let Some((stage, generation)) = request.stage {
             self.stage = Some(stage);
             self.presenter.open(generation);
         }
-        if is_opened || wishes.bake {
+        if is_opened || request.bake {
             (self.coarse, self.fine) = (None, None);
             self.refinement.forget();
             self.light.forget();
             self.epoch += 1;
-            self.bakes_anew = wishes.bake;
+            self.bakes_anew = request.bake;
         }
-        let wants_work = self.stage.is_some() && (wishes.camera.is_some() || wishes.bake || wishes.settle);
-        self.is_held = wishes.hold || (self.is_held && !wants_work);
-        self.is_light_held = wishes.hold_light || (self.is_light_held && !wants_work);
-        let is_complete = wishes.settle || is_opened;
-        self.is_painting = !is_complete && (self.is_painting || wishes.map.is_some());
+        let resumes_work =
+            self.stage.is_some() && (request.camera.is_some() || request.bake || request.edit_done);
+        self.is_paused = request.pause || (self.is_paused && !resumes_work);
+        self.is_light_paused = request.pause_light || (self.is_light_paused && !resumes_work);
+        let is_complete = request.edit_done || is_opened;
+        self.is_painting = !is_complete && (self.is_painting || request.map.is_some());
         // A stroke that goes on is no time for more.
-        self.is_settled = wishes.settle || (self.is_settled && wishes.map.is_none());
-        self.camera = wishes.camera.or(self.camera.take());
-        if let Some(tone) = wishes.tone {
+        self.is_edit_done = request.edit_done || (self.is_edit_done && request.map.is_none());
+        self.camera = request.camera.or(self.camera.take());
+        if let Some(tone) = request.tone {
             self.presenter.set_tone(tone);
         }
-        if let Some((map, serial)) = wishes.map {
+        if let Some((map, serial)) = request.map {
             self.map = Some(Arc::new(map));
             self.presenter.map_serial = serial;
         }
         for field in [&mut self.coarse, &mut self.fine].into_iter().flatten() {
-            field.note(&wishes.changed);
+            field.note(&request.changed);
         }
-        self.maker.note(&wishes.changed);
-        self.refinement.note(&wishes.changed);
-        self.light.note(&wishes.changed);
-        if let Some(refined_light) = wishes.refined_light {
+        self.maker.note(&request.changed);
+        self.refinement.note(&request.changed);
+        self.light.note(&request.changed);
+        if let Some(refined_light) = request.refined_light {
             self.light.take_back(refined_light);
         }
-        if let Some(between) = wishes.between {
-            self.take_up_between(between);
+        if let Some(interim) = request.interim {
+            self.take_up_interim(interim);
         }
-        self.delivery = wishes.delivery.or(self.delivery.take());
+        self.delivery = request.delivery.or(self.delivery.take());
         let taken_up = self.take_up().and_then(|()| self.take_up_light());
         self.refinement.tidy(self.fine.as_ref());
         taken_up
     }
 
     /// Takes up the light field that was made first, in place of the coarse one.
-    fn take_up_between(&mut self, between: Between) {
-        let (mut field, epoch) = self.maker.take_up_between(between);
+    fn take_up_interim(&mut self, interim: InterimField) {
+        let (mut field, epoch) = self.maker.take_up_interim(interim);
         if epoch == self.epoch && self.fine.is_none() {
             field.set_tolerance(self.tolerance);
             self.coarse = Some(field);
@@ -261,12 +264,12 @@ impl Worker {
         match self.maker.take_up(delivery) {
             Ok((mut field, epoch)) if epoch == self.epoch => {
                 field.set_tolerance(self.tolerance);
-                self.presenter.look_for_glare(&field.baked().salf);
+                self.presenter.check_glare(&field.baked().salf);
                 self.shared.publish_field(self.presenter.generation, field.baked());
                 self.fine = Some(field);
                 self.is_new = true;
                 // One from the store may be of another focus.
-                self.is_settled = true;
+                self.is_edit_done = true;
                 Ok(())
             }
             Ok(_) | Err(SessionError::Cancelled) => Ok(()),
@@ -282,15 +285,15 @@ impl Worker {
         if self.is_painting || self.maker.is_at_work() {
             return Ok(());
         }
-        let standing = fine.light_passes();
-        let Some(finer) = self.light.take_up(self.epoch, standing)? else { return Ok(()) };
-        let Finer { mut field, errors, seconds } = finer;
-        if !field.serves(camera) || field.light_passes() <= standing {
+        let displayed_passes = fine.light_passes();
+        let Some(finer) = self.light.take_up(self.epoch, displayed_passes)? else { return Ok(()) };
+        let FinerField { mut field, errors, seconds } = finer;
+        if !field.can_show(camera) || field.light_passes() <= displayed_passes {
             return Ok(());
         }
-        self.maker.keep(stage, &field, seconds);
-        if standing == 0 {
-            self.presenter.costs.light_psnr = errors.map(|errors| project::psnr(errors.standing));
+        self.maker.save(stage, &field, seconds);
+        if displayed_passes == 0 {
+            self.presenter.costs.light_psnr = errors.map(|errors| project::psnr(errors.displayed));
         }
         field.set_tolerance(self.tolerance);
         self.shared.publish_field(self.presenter.generation, field.baked());
@@ -310,60 +313,60 @@ impl Worker {
         let Some(fine) = &mut self.fine else { return Ok(()) };
         self.shared.begin(PreviewActivity::Splatting)?;
         let start = Instant::now();
-        let brought = fine.carry_out(plan, camera, &focus, &self.shared.quick)?;
+        let update = fine.execute_plan(plan, camera, &focus, &self.shared.quick)?;
         let light_passes = fine.light_passes();
         let is_new = std::mem::take(&mut self.is_new);
-        if brought != Brought::Nothing || is_new {
+        if update != SumUpdate::Unchanged || is_new {
             let is_exact = self.tolerance == Tolerance::NONE;
             let costs = &mut self.presenter.costs;
             costs.light_passes = light_passes;
             if light_passes == 0 {
                 costs.light_psnr = None;
             }
-            if brought == Brought::Whole || is_new {
+            if update == SumUpdate::Whole || is_new {
                 costs.viewing_psnr = None;
-                let known = if is_exact { &mut costs.exact_seconds } else { &mut costs.viewing_seconds };
-                *known = Some(fine.whole_seconds());
+                let seconds = if is_exact { &mut costs.exact_seconds } else { &mut costs.viewing_seconds };
+                *seconds = Some(fine.whole_seconds());
             }
             // The sum of a new one was made elsewhere.
             let elsewhere = if is_new { fine.whole_seconds() } else { 0.0 };
-            self.presenter.show(Made {
+            self.presenter.show(NewPicture {
                 picture: fine.source(),
                 camera,
                 enlarged_to: None,
-                kind: PreviewKind::from(&brought),
+                kind: PreviewKind::from(&update),
                 quality: if is_exact { Quality::Exact } else { Quality::Viewing },
                 seconds: start.elapsed().as_secs_f64() + elsewhere,
                 modelled: fine.modelled(),
-                relation: match brought {
-                    Brought::Update(rectangle) if !is_new => Relation::Changed(rectangle),
+                relation: match update {
+                    SumUpdate::Region(rectangle) if !is_new => Relation::Changed(rectangle),
                     _ => Relation::New,
                 },
             });
         }
-        if !self.is_settled || self.maker.is_at_work() || self.is_held {
+        if !self.is_edit_done || self.maker.is_at_work() || self.is_paused {
             return Ok(());
         }
-        self.is_settled = false;
-        if let Some(least_margin_px) = fine.is_outgrown(camera, &focus) {
+        self.is_edit_done = false;
+        if let Some(least_margin_px) = fine.rebake_margin_px(camera, &focus) {
             self.coarse = None;
-            self.make_field(Begin::Find { least_margin_px }, stage, camera, focus);
+            self.make_field(FieldOrigin::LoadOrBake { least_margin_px }, stage, camera, focus);
         }
         Ok(())
     }
 
     /// The picture without blur, if the view is new; of fewer pixels where one between is due.
     fn show_pinhole(&mut self, stage: &Stage, camera: &Camera, focus: &Focus) -> Result<(), SessionError> {
-        if self.presenter.shown().is_some_and(|shown| same_view(&shown.camera, camera)) {
+        if self.presenter.shown().is_some_and(|shown| is_same_view(&shown.camera, camera)) {
             return Ok(());
         }
         self.shared.begin(PreviewActivity::Tracing)?;
         let start = Instant::now();
-        let camera = &between_of(camera).unwrap_or_else(|| camera.clone());
-        let radiance = light(&stage.tracer, camera, LightQuality::Rough, &self.shared.quick)?;
+        let camera = &interim_camera(camera).unwrap_or_else(|| camera.clone());
+        let radiance = solve_light(&stage.tracer, camera, LightQuality::Rough, &self.shared.quick)?;
         let hits = FirstHits::trace(&stage.tracer, &*radiance, focus, camera, &self.shared.quick)?;
-        self.presenter.show(Made {
-            picture: Source::Here(&hits.picture()),
+        self.presenter.show(NewPicture {
+            picture: PictureSource::InMemory(&hits.picture()),
             camera,
             enlarged_to: None,
             relation: Relation::New,
@@ -379,12 +382,12 @@ impl Worker {
     /// while a stroke waits for more.
     fn show_coarse(&mut self, stage: &Stage, camera: &Camera, focus: &Focus) -> Result<(), SessionError> {
         let size = [camera.width, camera.height];
-        let serves = |small: &Camera| self.coarse.as_ref().is_some_and(|coarse| coarse.serves(small));
-        if let Some(between) = between_of(camera).filter(serves) {
-            return self.show_small(stage, &between, size, focus);
+        let can_show = |small: &Camera| self.coarse.as_ref().is_some_and(|coarse| coarse.can_show(small));
+        if let Some(interim) = interim_camera(camera).filter(can_show) {
+            return self.show_small(stage, &interim, size, focus);
         }
-        let sizes = coarse_of(camera);
-        let first = sizes.iter().rposition(serves).unwrap_or(0);
+        let sizes = coarse_cameras(camera);
+        let first = sizes.iter().rposition(can_show).unwrap_or(0);
         let count = if self.is_painting { 1 } else { sizes.len() };
         sizes[first..].iter().take(count).try_for_each(|small| self.show_small(stage, small, size, focus))
     }
@@ -397,33 +400,34 @@ impl Worker {
         size: [u32; 2],
         focus: &Focus,
     ) -> Result<(), SessionError> {
-        self.coarse.take_if(|coarse| !coarse.serves(small));
+        self.coarse.take_if(|coarse| !coarse.can_show(small));
         let coarse = match &mut self.coarse {
             Some(coarse) => coarse,
             None => {
                 self.shared.begin(PreviewActivity::RoughBaking)?;
                 let (tolerance, gpu) = (self.tolerance, self.shared.gpu());
-                let how = FieldOptions { least_margin_px: 0.0, tolerance, gpu, light: LightQuality::Rough };
-                let coarse = LightField::bake(stage, small, focus, how, &self.shared.quick)?;
-                self.presenter.look_for_glare(&coarse.baked().salf);
+                let options =
+                    FieldOptions { least_margin_px: 0.0, tolerance, gpu, light: LightQuality::Rough };
+                let coarse = LightField::bake(stage, small, focus, options, &self.shared.quick)?;
+                self.presenter.check_glare(&coarse.baked().salf);
                 self.coarse.insert(coarse)
             }
         };
         self.shared.begin(PreviewActivity::Splatting)?;
         let start = Instant::now();
-        let brought = coarse.bring_up(small, focus, &self.shared.quick)?;
+        let update = coarse.update_sum(small, focus, &self.shared.quick)?;
         let is_another = self.presenter.shown().is_none_or(|shown| shown.camera != *small);
-        if brought != Brought::Nothing || is_another {
-            self.presenter.show(Made {
+        if update != SumUpdate::Unchanged || is_another {
+            self.presenter.show(NewPicture {
                 picture: coarse.source(),
                 camera: small,
                 enlarged_to: Some(size),
-                kind: PreviewKind::from(&brought),
+                kind: PreviewKind::from(&update),
                 quality: Quality::Coarse,
                 seconds: start.elapsed().as_secs_f64(),
                 modelled: coarse.modelled(),
-                relation: match brought {
-                    Brought::Update(rectangle) => Relation::Changed(rectangle),
+                relation: match update {
+                    SumUpdate::Region(rectangle) => Relation::Changed(rectangle),
                     _ => Relation::New,
                 },
             });
@@ -432,12 +436,12 @@ impl Worker {
     }
 
     /// Makes the fine light field and sums it, on a thread of its own.
-    fn make_field(&mut self, begin: Begin, stage: &Arc<Stage>, camera: &Camera, focus: Focus) {
+    fn make_field(&mut self, origin: FieldOrigin, stage: &Arc<Stage>, camera: &Camera, focus: Focus) {
         let (stage, camera) = (stage.clone(), camera.clone());
         // Where a fine picture stands already, none of fewer pixels is wanted.
-        let between = if self.fine.is_none() { between_of(&camera) } else { None };
+        let interim = if self.fine.is_none() { interim_camera(&camera) } else { None };
         let (tolerance, epoch) = (self.tolerance, self.epoch);
-        let order = Order { begin, stage, camera, between, focus, tolerance, epoch };
+        let order = FieldOrder { origin, stage, camera, interim, focus, tolerance, epoch };
         self.maker.start(&self.shared, order);
     }
 
@@ -446,24 +450,26 @@ impl Worker {
         let is_viewing = self.presenter.shown().is_some_and(|shown| shown.quality == Quality::Viewing);
         let field = self.fine.as_ref().zip(self.camera.as_ref());
         let is_up_to_date = field.is_some_and(|(fine, camera)| fine.is_up_to_date(camera));
-        let is_quiet = !self.is_held && !self.is_painting && !self.maker.is_at_work();
+        let is_quiet = !self.is_paused && !self.is_painting && !self.maker.is_at_work();
         let is_quiet = is_quiet && !self.shared.is_exporting();
         is_viewing && is_up_to_date && is_quiet && !self.refinement.is_at_work()
     }
 
     /// Whether there is anything to do while nothing is wished.
-    fn is_idle_of_use(&self) -> bool {
-        self.may_refine() || self.may_refine_light().is_some()
+    fn has_idle_work(&self) -> bool {
+        self.may_refine() || self.refinable_passes().is_some()
     }
 
     /// By how many passes the light of the picture may be refined, which is exact but for that.
-    fn may_refine_light(&self) -> Option<u32> {
+    fn refinable_passes(&self) -> Option<u32> {
         let (fine, camera, stage) = (self.fine.as_ref()?, self.camera.as_ref()?, self.stage.as_ref()?);
         let is_exact = self.presenter.shown().is_some_and(|shown| shown.quality == Quality::Exact);
-        let is_quiet = !self.is_held && !self.is_light_held && !self.is_painting && !self.maker.is_at_work();
+        let is_quiet =
+            !self.is_paused && !self.is_light_paused && !self.is_painting && !self.maker.is_at_work();
         let is_quiet = is_quiet && !self.shared.is_exporting() && !self.light.is_at_work();
-        let may = is_exact && is_quiet && fine.is_up_to_date(camera) && may_be_refined(&stage.tracer);
-        self.light.next_passes(camera, fine.light_passes(), self.light_passes).filter(|_| may)
+        let is_allowed =
+            is_exact && is_quiet && fine.is_up_to_date(camera) && can_refine_light(&stage.tracer);
+        self.light.next_passes(camera, fine.light_passes(), self.light_passes).filter(|_| is_allowed)
     }
 
     /// Begins to refine the light, if nothing was wished meanwhile.
@@ -471,13 +477,13 @@ impl Worker {
         let (tolerance, epoch, exposure) = (self.tolerance, self.epoch, self.presenter.exposure());
         let Some(fine) = &mut self.fine else { return };
         let margin_px = f64::from(fine.baked().salf.margin_px);
-        let Ok(standing) = fine.brought().cloned().map(Arc::new) else { return };
-        let task = light_refinement::Task {
+        let Ok(displayed) = fine.fetch_picture().cloned().map(Arc::new) else { return };
+        let task = light_refinement::LightTask {
             stage,
             camera,
             focus,
             tolerance,
-            standing,
+            displayed,
             exposure,
             margin_px,
             passes,
@@ -489,15 +495,15 @@ impl Worker {
     /// Begins to draw the exact picture, if nothing was wished meanwhile.
     fn refine(&mut self, camera: Camera, focus: Focus) {
         let Some(fine) = &mut self.fine else { return };
-        let brought = || fine.brought().ok().cloned().map(Arc::new);
-        let Some(viewing) = self.presenter.followed().or_else(brought) else { return };
+        let fetched = || fine.fetch_picture().ok().cloned().map(Arc::new);
+        let Some(viewing) = self.presenter.followed().or_else(fetched) else { return };
         let (exposure, map_serial) = (self.presenter.exposure(), self.presenter.map_serial);
-        let task = Task { camera, focus, viewing, exposure, map_serial };
+        let task = ExactTask { camera, focus, viewing, exposure, map_serial };
         self.refinement.start(&self.shared, fine, task);
     }
 
     /// Shows the exact picture, unless something changed while it was drawn.
-    fn show_exact(&mut self, refined: Refined) -> Result<(), SessionError> {
+    fn show_exact(&mut self, refined: ExactDelivery) -> Result<(), SessionError> {
         let (exact, field) = match self.refinement.take_up(refined) {
             Ok(drawn) => drawn,
             Err(SessionError::Cancelled) => return Ok(()),
@@ -513,11 +519,11 @@ impl Worker {
         let costs = &mut self.presenter.costs;
         costs.viewing_psnr = Some(exact.viewing_psnr);
         costs.exact_seconds = Some(field.whole_seconds());
-        self.presenter.show(Made {
+        self.presenter.show(NewPicture {
             picture: field.source(),
             camera: &exact.camera,
             enlarged_to: None,
-            relation: Relation::Better,
+            relation: Relation::Overlay,
             kind: PreviewKind::Splat,
             quality: Quality::Exact,
             seconds: exact.seconds,
@@ -529,7 +535,7 @@ impl Worker {
 }
 
 /// Whether the two show the same view, whatever their lens and size.
-fn same_view(a: &Camera, b: &Camera) -> bool {
+fn is_same_view(a: &Camera, b: &Camera) -> bool {
     (a.yfov, a.shift, a.camera_to_world) == (b.yfov, b.shift, b.camera_to_world)
         && (a.aspect() - b.aspect()).abs() < 0.1 * b.aspect()
 }

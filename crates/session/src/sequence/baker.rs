@@ -4,11 +4,11 @@
 //! all keys of the timeline at once, as the scene and the camera stand at a frame: which frames are rendered makes no difference to it, and
 //! a rack focus in a scene that stands still is one light field.
 
-use super::take::{Instant, Take};
+use super::take::{FrameState, Take};
 use crate::error::SessionError;
 use crate::jobs::Steps;
-use crate::light_field::{LightQuality, light};
-use crate::output::{RenderOptions, Rendered, Renderer, render, splatter, sum_baked};
+use crate::light_field::{LightQuality, solve_light};
+use crate::output::{RenderOptions, Rendered, Renderer, new_splatter, render, sum_baked};
 use lens::Camera;
 use salf::{BakeOptions, Carried};
 use scene::SurfaceField;
@@ -26,7 +26,7 @@ pub(super) struct Field {
 
 impl Field {
     /// All of it in words.
-    pub fn name(&self) -> String {
+    pub fn description(&self) -> String {
         format!("{self:?}")
     }
 }
@@ -37,7 +37,7 @@ pub struct Baking {
     /// Light fields that were baked.
     pub baked: u32,
     /// Frames whose light field was there already.
-    pub kept: u32,
+    pub reused: u32,
     /// Scenes whose light was solved for.
     pub scenes: u32,
     /// Seconds that baking took.
@@ -70,17 +70,17 @@ impl<'a> FrameBaker<'a> {
     }
 
     /// What the light field of an instant is baked from.
-    pub fn field(&mut self, at: &Instant) -> Result<Option<Field>, SessionError> {
+    pub fn field(&mut self, at: &FrameState) -> Result<Option<Field>, SessionError> {
         if self.options.renderer != Renderer::Splat {
             return Ok(None);
         }
         let tracer = at.scene.tracer();
-        let is_known = |keyed: &KeyedNeed| keyed.scene == at.scene.hash && keyed.placed == at.placed;
-        let keyed = match self.keyed.take().filter(is_known) {
+        let is_current = |keyed: &KeyedNeed| keyed.scene == at.scene.hash && keyed.placed == at.placed;
+        let keyed = match self.keyed.take().filter(is_current) {
             Some(keyed) => keyed,
             None => {
                 let keys = self.take.at_keys(at);
-                let camera = self.take.widest(at, &keys);
+                let camera = self.take.widest_aperture_camera(at, &keys);
                 let finer = |camera: &Camera| self.options.finer(camera);
                 let cameras = keys.iter().map(|(camera, _)| finer(camera)).collect::<Result<Vec<_>, _>>()?;
                 let shots = cameras
@@ -106,7 +106,7 @@ impl<'a> FrameBaker<'a> {
     /// The picture of an instant, whose light field is `field`.
     pub fn render(
         &mut self,
-        at: &Instant,
+        at: &FrameState,
         field: Option<&Field>,
         steps: &dyn Steps,
     ) -> Result<Rendered, SessionError> {
@@ -117,17 +117,17 @@ impl<'a> FrameBaker<'a> {
         let Some(field) = field else { return render(tracer, &at.camera, &at.focus, self.options, steps) };
         let mut bake_seconds = 0.0;
         if self.last.as_ref().is_some_and(|(last, _)| last == field) {
-            self.baking.kept += 1;
+            self.baking.reused += 1;
         } else {
             // Two light fields at once would need the memory of both.
             self.last = None;
             let start = std::time::Instant::now();
-            let _ = light(tracer, &field.camera, LightQuality::Fine, &*steps.begin("light"))?;
+            let _ = solve_light(tracer, &field.camera, LightQuality::Fine, &*steps.begin("light"))?;
             let light_seconds = start.elapsed().as_secs_f64();
             let need =
                 BakeOptions { margin_px: field.margin_px, carried: field.carried, ..BakeOptions::default() };
             let salf = self.options.bake_as(tracer, &field.camera, need, steps)?;
-            self.last = Some((field.clone(), splatter(Arc::new(salf), self.options)));
+            self.last = Some((field.clone(), new_splatter(Arc::new(salf), self.options)));
             bake_seconds = start.elapsed().as_secs_f64();
             self.baking.baked += 1;
             self.baking.seconds += bake_seconds - light_seconds;

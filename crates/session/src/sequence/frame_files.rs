@@ -10,7 +10,7 @@ pub struct FrameFiles(Name);
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Name {
     /// The same whatever the frame.
-    Of(PathBuf),
+    Fixed(PathBuf),
     /// The number between two pieces of text.
     Numbered { folder: PathBuf, before: String, digits: usize, after: String },
 }
@@ -41,14 +41,14 @@ impl FrameFiles {
     }
 
     /// One name, for one frame.
-    pub fn of_one(file: &Path) -> Self {
-        Self(Name::Of(file.to_owned()))
+    pub fn single(file: &Path) -> Self {
+        Self(Name::Fixed(file.to_owned()))
     }
 
     /// The file of a frame.
-    pub fn of(&self, frame: u32) -> PathBuf {
+    pub fn path_of(&self, frame: u32) -> PathBuf {
         match &self.0 {
-            Name::Of(file) => file.clone(),
+            Name::Fixed(file) => file.clone(),
             Name::Numbered { folder, before, digits, after } => {
                 folder.join(format!("{before}{frame:0digits$}{after}"))
             }
@@ -63,9 +63,9 @@ mod tests {
     #[test]
     fn numbers_take_the_place_of_the_row() {
         let files = FrameFiles::new(Path::new("shots/a.####.exr")).unwrap();
-        assert_eq!(files.of(7), Path::new("shots/a.0007.exr"));
-        assert_eq!(files.of(12345), Path::new("shots/a.12345.exr"));
-        assert_eq!(FrameFiles::new(Path::new("#.png")).unwrap().of(3), Path::new("3.png"));
+        assert_eq!(files.path_of(7), Path::new("shots/a.0007.exr"));
+        assert_eq!(files.path_of(12345), Path::new("shots/a.12345.exr"));
+        assert_eq!(FrameFiles::new(Path::new("#.png")).unwrap().path_of(3), Path::new("3.png"));
         for wrong in ["a.exr", "a.##.#.exr", "##/a.exr", ""] {
             assert!(FrameFiles::new(Path::new(wrong)).is_err(), "{wrong}");
         }

@@ -8,10 +8,10 @@ pub struct FrameList(Vec<u32>);
 
 impl FrameList {
     /// So many are rendered at once at most: at 24 a second more than four hours.
-    pub const MOST: usize = 400_000;
+    pub const MAX_FRAMES: usize = 400_000;
 
     /// One frame.
-    pub fn of(frame: u32) -> Self {
+    pub fn single(frame: u32) -> Self {
         Self(vec![frame])
     }
 
@@ -48,8 +48,8 @@ impl FromStr for FrameList {
                 return Err(format!("{part:?} ends before it begins"));
             }
             let count = ((last - first) / step) as usize + 1;
-            if frames.len() + count > Self::MOST {
-                return Err(format!("more than {} frames (render them in several runs)", Self::MOST));
+            if frames.len() + count > Self::MAX_FRAMES {
+                return Err(format!("more than {} frames (render them in several runs)", Self::MAX_FRAMES));
             }
             frames.extend((first..=last).step_by(step as usize));
         }

@@ -25,7 +25,7 @@ pub use baker::Baking;
 pub use frame_files::FrameFiles;
 pub use frame_list::FrameList;
 pub use outcome::Outcome;
-pub(crate) use plan::still_plan;
+pub(crate) use plan::still_frame_plan;
 pub use run::{FrameReport, SequenceOptions, SequenceReport, WritePicture, render_frames};
 pub use shard::Shard;
 pub use take::{Take, TakeOptions};

@@ -1,7 +1,7 @@
 //! What the bytes of a frame depend on, as a checksum: a frame whose file was made by the same plan is finished.
 
 use super::scene_in_time::SceneInTime;
-use super::take::Instant;
+use super::take::FrameState;
 use crate::output::RenderOptions;
 use focus::{Focus, FocusMap, FocusSource};
 use lens::Camera;
@@ -13,7 +13,7 @@ use trace::Tracer;
 const VERSION: &str = concat!("frame 1, ", env!("CARGO_PKG_VERSION"));
 
 /// The plan of a picture of what is seen at an instant; `written` says in which form.
-pub(super) fn plan(at: &Instant, baked: &str, options: &RenderOptions, written: &str) -> [u8; 32] {
+pub(super) fn frame_plan(at: &FrameState, baked: &str, options: &RenderOptions, written: &str) -> [u8; 32] {
     let mut hash = Sha256::new();
     let mut add = |bytes: &[u8]| {
         hash.update((bytes.len() as u64).to_le_bytes());
@@ -35,7 +35,7 @@ pub(super) fn plan(at: &Instant, baked: &str, options: &RenderOptions, written: 
 }
 
 /// The plan of a picture of a scene that stands still.
-pub(crate) fn still_plan(
+pub(crate) fn still_frame_plan(
     tracer: &Arc<Tracer>,
     camera: &Camera,
     focus: &Focus,
@@ -43,8 +43,8 @@ pub(crate) fn still_plan(
     written: &str,
 ) -> [u8; 32] {
     let scene = Arc::new(SceneInTime::at_rest(tracer.clone()));
-    let at = Instant { scene, camera: camera.clone(), focus: focus.clone(), placed: camera.clone() };
-    plan(&at, "", options, written)
+    let at = FrameState { scene, camera: camera.clone(), focus: focus.clone(), placed: camera.clone() };
+    frame_plan(&at, "", options, written)
 }
 
 fn add_focus(add: &mut dyn FnMut(&[u8]), focus: &Focus) {

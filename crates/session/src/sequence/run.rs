@@ -3,7 +3,7 @@
 use super::baker::{Baking, FrameBaker};
 use super::frame_files::FrameFiles;
 use super::outcome::Outcome;
-use super::plan::plan;
+use super::plan::frame_plan;
 use super::take::Take;
 use crate::error::SessionError;
 use crate::jobs::Steps;
@@ -27,7 +27,7 @@ pub struct SequenceOptions<'a> {
     /// Writes a picture, and in it the plan that it was made by; returns the files.
     pub write: &'a WritePicture<'a>,
     /// Is told of every frame.
-    pub tell: &'a dyn Fn(&FrameReport),
+    pub on_frame: &'a dyn Fn(&FrameReport),
     /// Whether the work is to end: asked before each frame.
     pub progress: &'a dyn Progress,
 }
@@ -66,8 +66,8 @@ impl SequenceReport {
 
     /// Seconds that were saved by not baking again what did not move: as many as baking took on average, for each frame.
     pub fn saved_seconds(&self) -> f64 {
-        let Baking { baked, kept, seconds, .. } = self.baking;
-        if baked == 0 { 0.0 } else { seconds / f64::from(baked) * f64::from(kept) }
+        let Baking { baked, reused, seconds, .. } = self.baking;
+        if baked == 0 { 0.0 } else { seconds / f64::from(baked) * f64::from(reused) }
     }
 }
 
@@ -86,8 +86,8 @@ pub fn render_frames(
     for &frame in frames {
         options.progress.check()?;
         let start = Instant::now();
-        let (seconds, file) = (take.seconds(frame), options.files.of(frame));
-        let made = one(take, &mut baker, seconds, &file, options, &mut report.warnings, steps);
+        let (seconds, file) = (take.seconds(frame), options.files.path_of(frame));
+        let made = render_one_frame(take, &mut baker, seconds, &file, options, &mut report.warnings, steps);
         let outcome = match made {
             Ok(outcome) => outcome,
             Err(
@@ -98,15 +98,15 @@ pub fn render_frames(
             Err(error) => Outcome::Failed(error),
         };
         let took_seconds = start.elapsed().as_secs_f64();
-        let of_frame = FrameReport { frame, seconds, file, outcome, took_seconds };
-        (options.tell)(&of_frame);
-        report.frames.push(of_frame);
+        let frame_report = FrameReport { frame, seconds, file, outcome, took_seconds };
+        (options.on_frame)(&frame_report);
+        report.frames.push(frame_report);
     }
     report.baking = baker.baking;
     Ok(report)
 }
 
-fn one(
+fn render_one_frame(
     take: &Take<'_>,
     baker: &mut FrameBaker<'_>,
     seconds: f64,
@@ -118,22 +118,22 @@ fn one(
     let at = take.at(seconds, options.progress)?;
     at.camera
         .validate()
-        .map_err(|error| SessionError::bad(take.path(), format!("at {seconds} s the {error}")))?;
+        .map_err(|error| SessionError::bad_file(take.path(), format!("at {seconds} s the {error}")))?;
     let field = baker.field(&at)?;
-    let baked = field.as_ref().map(|field| field.name()).unwrap_or_default();
-    let plan = plan(&at, &baked, &options.render, &options.written);
+    let baked = field.as_ref().map(|field| field.description()).unwrap_or_default();
+    let plan = frame_plan(&at, &baked, &options.render, &options.written);
     if is_finished(file, &plan) {
         return Ok(Outcome::Skipped);
     }
     let rendered = baker.render(&at, field.as_ref(), steps)?;
-    let mut odd = at
+    let mut scene_warnings = at
         .scene
         .scene
         .warnings
         .iter()
         .map(|warning| format!("{}: {warning}", take.path().display()))
         .collect();
-    warnings.append(&mut odd);
+    warnings.append(&mut scene_warnings);
     warnings.extend(rendered.warnings.iter().cloned());
     warnings.sort_unstable();
     warnings.dedup();

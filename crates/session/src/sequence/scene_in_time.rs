@@ -3,14 +3,14 @@
 //! Atlas and paint belong to the surface at rest: a triangle keeps its place in the atlas wherever it is, so that a texel stays on its
 //! piece of surface ([`posed_atlas`]).
 
-use crate::document::{canvas_of, content_hash};
+use crate::document::{build_canvas, content_hash};
 use crate::error::SessionError;
 use atlas::Atlas;
 use focus::{Canvas, Focus, FocusMap, FocusSource};
 use glam::{DVec2, DVec3, Vec2};
 use lens::FocusOffset;
 use progress::Progress;
-use scene::{Moment, MovingScene, Posed, RestTriangle, Scene, SurfacePoint};
+use scene::{AnimatedScene, AnimationTime, PosedScene, RestTriangle, Scene, SurfacePoint};
 use std::collections::HashMap;
 use std::sync::{Arc, OnceLock};
 use trace::Tracer;
@@ -47,14 +47,14 @@ impl SceneInTime {
 
     /// The scene at a moment.
     pub fn moved(
-        moving: &MovingScene,
-        moment: &Moment,
+        moving: &AnimatedScene,
+        moment: &AnimationTime,
         progress: &dyn Progress,
     ) -> Result<Self, SessionError> {
-        let posed = moving.at(moment, progress)?;
+        let posed = moving.pose_at(moment, progress)?;
         let is_in_place =
-            posed.has_all_in_place() && posed.scene.triangles.len() == moving.rest().triangles.len();
-        let Posed { scene, at_rest } = posed;
+            posed.matches_rest() && posed.scene.triangles.len() == moving.rest().triangles.len();
+        let PosedScene { scene, rest_triangles: at_rest } = posed;
         Ok(Self::new(Arc::new(scene), (!is_in_place).then_some(at_rest)))
     }
 
@@ -75,7 +75,7 @@ impl SceneInTime {
     pub fn canvas(&self, rest: &Arc<Atlas>) -> &Canvas {
         self.canvas.get_or_init(|| {
             let atlas = self.atlas(rest);
-            canvas_of(&self.scene, atlas, &atlas.texel_map(&self.scene))
+            build_canvas(&self.scene, atlas, &atlas.texel_map(&self.scene))
         })
     }
 
@@ -84,7 +84,8 @@ impl SceneInTime {
         let here = match &self.at_rest {
             None => point,
             Some(at_rest) => {
-                let (triangle, is_turned) = *self.now.get_or_init(|| places(at_rest)).get(&point.triangle)?;
+                let (triangle, is_turned) =
+                    *self.now.get_or_init(|| current_triangles(at_rest)).get(&point.triangle)?;
                 let DVec2 { x, y } = point.barycentric;
                 SurfacePoint {
                     triangle,
@@ -92,7 +93,7 @@ impl SceneInTime {
                 }
             }
         };
-        here.position_if_there(&self.scene)
+        here.checked_position(&self.scene)
     }
 
     /// The focus of the scene at rest where its surface is now; `painted`, if given, is what is painted now. What was hidden at rest has
@@ -108,8 +109,8 @@ impl SceneInTime {
             None => Some(now(&rest.parts[rest.scene.triangles[part.triangles.start as usize].part as usize])),
             Some(at_rest) => {
                 let triangles = part.triangles.start as usize..part.triangles.end as usize;
-                let known = at_rest[triangles].iter().flatten().next()?;
-                Some(now(&rest.parts[rest.scene.triangles[known.triangle as usize].part as usize]))
+                let rest_triangle = at_rest[triangles].iter().flatten().next()?;
+                Some(now(&rest.parts[rest.scene.triangles[rest_triangle.triangle as usize].part as usize]))
             }
         };
         let nowhere = FocusSource::Constant(FocusOffset::STANDARD);
@@ -120,9 +121,9 @@ impl SceneInTime {
 }
 
 /// Of each triangle at rest where it is now, and whether its corners are turned.
-fn places(at_rest: &[Option<RestTriangle>]) -> HashMap<u32, (u32, bool)> {
+fn current_triangles(at_rest: &[Option<RestTriangle>]) -> HashMap<u32, (u32, bool)> {
     let place =
-        |(now, rest): (u32, &Option<RestTriangle>)| rest.map(|rest| (rest.triangle, (now, rest.is_turned)));
+        |(now, rest): (u32, &Option<RestTriangle>)| rest.map(|rest| (rest.triangle, (now, rest.is_flipped)));
     (0..).zip(at_rest).filter_map(place).collect()
 }
 
@@ -131,10 +132,18 @@ fn places(at_rest: &[Option<RestTriangle>]) -> HashMap<u32, (u32, bool)> {
 fn posed_atlas(rest: &Atlas, scene: &Scene, at_rest: &[Option<RestTriangle>]) -> Atlas {
     let mut charts: HashMap<(Option<u32>, u32), u32> = HashMap::new();
     let (mut corners, mut chart_of, mut part_of_chart) = (Vec::new(), Vec::new(), Vec::new());
-    for (triangle, known) in scene.triangles.iter().zip(at_rest) {
-        let [a, b, c] = known.map_or([Vec2::ZERO; 3], |known| rest.corners[known.triangle as usize]);
-        corners.push(if known.is_some_and(|known| known.is_turned) { [a, c, b] } else { [a, b, c] });
-        let chart = (known.map(|known| rest.chart_of[known.triangle as usize]), triangle.part);
+    for (triangle, rest_triangle) in scene.triangles.iter().zip(at_rest) {
+        let [a, b, c] = rest_triangle
+            .map_or([Vec2::ZERO; 3], |rest_triangle| rest.corners[rest_triangle.triangle as usize]);
+        corners.push(if rest_triangle.is_some_and(|rest_triangle| rest_triangle.is_flipped) {
+            [a, c, b]
+        } else {
+            [a, b, c]
+        });
+        let chart = (
+            rest_triangle.map(|rest_triangle| rest.chart_of[rest_triangle.triangle as usize]),
+            triangle.part,
+        );
         chart_of.push(*charts.entry(chart).or_insert_with(|| {
             part_of_chart.push(triangle.part);
             part_of_chart.len() as u32 - 1
@@ -165,18 +174,18 @@ mod tests {
         for y in 0..atlas.height {
             (0..atlas.width).for_each(|x| map.set(x, y, [x as f32 * 0.01, y as f32 / atlas.height as f32]));
         }
-        let painted = Focus::painted(rest.clone(), atlas.clone(), Arc::new(map));
-        let moving = MovingScene::of(rest.clone(), &LoadOptions::default(), &Unwatched).unwrap();
-        let moment = Moment { animation: None, seconds: 0.75 };
+        let painted = Focus::from_atlas_map(rest.clone(), atlas.clone(), Arc::new(map));
+        let moving = AnimatedScene::open(rest.clone(), &LoadOptions::default(), &Unwatched).unwrap();
+        let moment = AnimationTime { animation: None, seconds: 0.75 };
         let now = SceneInTime::moved(&moving, &moment, &Unwatched).unwrap();
         assert_eq!((rest.triangles.len(), now.scene.triangles.len()), (8, 6), "the dot is hidden");
         let focus = now.focus(&painted, None);
         let at_rest = now.at_rest.clone().unwrap();
         let mut moved = 0;
-        for (triangle, known) in (0..).zip(at_rest) {
+        for (triangle, rest_triangle) in (0..).zip(at_rest) {
             for barycentric in [[0.2, 0.3], [0.0, 0.0], [0.9, 0.05]].map(DVec2::from_array) {
                 let here = SurfacePoint { triangle, barycentric };
-                let there = SurfacePoint { triangle: known.unwrap().triangle, barycentric };
+                let there = SurfacePoint { triangle: rest_triangle.unwrap().triangle, barycentric };
                 assert_eq!(focus.at(here), painted.at(there));
                 assert_eq!(now.position(there), Some(here.position(&now.scene)));
                 moved += u32::from(here.position(&now.scene) != there.position(&rest));
@@ -192,7 +201,7 @@ mod tests {
             of_part.map(|texel| texel.position.x).fold(f64::NEG_INFINITY, f64::max)
         };
         let still = SceneInTime::at_rest(Arc::new(Tracer::new(rest)));
-        let way = depth(1, canvas) - depth(1, still.canvas(&atlas));
-        assert!((way - 0.375).abs() < 0.05, "{way}");
+        let displacement = depth(1, canvas) - depth(1, still.canvas(&atlas));
+        assert!((displacement - 0.375).abs() < 0.05, "{displacement}");
     }
 }

@@ -16,7 +16,7 @@ impl Shard {
     pub const WHOLE: Self = Self { index: 0, count: 1 };
 
     /// Whether the piece with this number, from 0, is of this share.
-    pub fn has(self, piece: usize) -> bool {
+    pub fn contains(self, piece: usize) -> bool {
         piece as u64 % u64::from(self.count) == u64::from(self.index)
     }
 
@@ -25,7 +25,7 @@ impl Shard {
     ///
     /// # Errors
     /// There is none, or it makes no sense.
-    pub fn of_environment(variable: &dyn Fn(&str) -> Option<String>) -> Result<Self, String> {
+    pub fn from_environment(variable: &dyn Fn(&str) -> Option<String>) -> Result<Self, String> {
         let number = |name: &str| -> Result<Option<i64>, String> {
             let Some(text) = variable(name).filter(|text| !text.is_empty()) else { return Ok(None) };
             text.trim().parse().map(Some).map_err(|_| format!("{name} is {text:?}, which is no number"))
@@ -76,9 +76,9 @@ impl FromStr for Shard {
 mod tests {
     use super::*;
 
-    fn of(variables: &[(&str, &str)]) -> Result<Shard, String> {
-        Shard::of_environment(&|name| {
-            variables.iter().find(|(known, _)| *known == name).map(|(_, value)| value.to_string())
+    fn shard_of(variables: &[(&str, &str)]) -> Result<Shard, String> {
+        Shard::from_environment(&|name| {
+            variables.iter().find(|(key, _)| *key == name).map(|(_, value)| value.to_string())
         })
     }
 
@@ -86,7 +86,7 @@ mod tests {
     fn every_piece_has_one_share() {
         for count in [1, 2, 7, 64] {
             for piece in 0..100 {
-                let shares = (0..count).filter(|&index| Shard { index, count }.has(piece)).count();
+                let shares = (0..count).filter(|&index| Shard { index, count }.contains(piece)).count();
                 assert_eq!(shares, 1);
             }
         }
@@ -100,15 +100,15 @@ mod tests {
     fn farms_say_which_share() {
         let slurm =
             [("SLURM_ARRAY_TASK_ID", "7"), ("SLURM_ARRAY_TASK_COUNT", "4"), ("SLURM_ARRAY_TASK_MIN", "1")];
-        assert!(of(&slurm).is_err(), "7 of 1 to 4");
+        assert!(shard_of(&slurm).is_err(), "7 of 1 to 4");
         let stepped = [slurm[0], slurm[1], slurm[2], ("SLURM_ARRAY_TASK_STEP", "2")];
-        assert_eq!(of(&stepped), Ok(Shard { index: 3, count: 4 }), "1, 3, 5, 7");
+        assert_eq!(shard_of(&stepped), Ok(Shard { index: 3, count: 4 }), "1, 3, 5, 7");
         let kubernetes = [("JOB_COMPLETION_INDEX", "0"), ("FOCUS_BRUSH_SHARDS", "3")];
-        assert_eq!(of(&kubernetes), Ok(Shard { index: 0, count: 3 }));
+        assert_eq!(shard_of(&kubernetes), Ok(Shard { index: 0, count: 3 }));
         let parallel = [("PARALLEL_SEQ", "3"), ("FOCUS_BRUSH_SHARDS", "3")];
-        assert_eq!(of(&parallel), Ok(Shard { index: 2, count: 3 }));
-        assert!(of(&[]).unwrap_err().contains("give K/N"));
-        assert!(of(&parallel[..1]).unwrap_err().contains("FOCUS_BRUSH_SHARDS"));
-        assert!(of(&[("PARALLEL_SEQ", "x")]).unwrap_err().contains("no number"));
+        assert_eq!(shard_of(&parallel), Ok(Shard { index: 2, count: 3 }));
+        assert!(shard_of(&[]).unwrap_err().contains("give K/N"));
+        assert!(shard_of(&parallel[..1]).unwrap_err().contains("FOCUS_BRUSH_SHARDS"));
+        assert!(shard_of(&[("PARALLEL_SEQ", "x")]).unwrap_err().contains("no number"));
     }
 }

@@ -8,7 +8,7 @@ use crate::output::tracer_of;
 use focus::{Focus, FocusMap, FocusSource, LayerStack, LensMotion};
 use lens::Camera;
 use progress::Progress;
-use scene::{LoadOptions, Moment, MovingScene, SceneCamera};
+use scene::{AnimatedScene, AnimationTime, LoadOptions, SceneCamera};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// How a document is put in time.
@@ -33,7 +33,7 @@ pub struct Take<'a> {
     focus: &'a Focus,
     options: TakeOptions,
     layers: Option<&'a LayerStack>,
-    moving: Option<MovingScene>,
+    moving: Option<AnimatedScene>,
     /// The camera of the scene that the camera goes with.
     follows: Option<usize>,
     still: Arc<SceneInTime>,
@@ -42,7 +42,7 @@ pub struct Take<'a> {
 }
 
 /// A document at a time.
-pub(super) struct Instant {
+pub(super) struct FrameState {
     pub scene: Arc<SceneInTime>,
     /// The camera, its lens included.
     pub camera: Camera,
@@ -65,23 +65,23 @@ impl<'a> Take<'a> {
     ) -> Result<Self, SessionError> {
         if input.salf.is_some() {
             let what = "is the light field of one moment (give the scene or project it was baked from)";
-            return Err(SessionError::bad(&input.path, what));
+            return Err(SessionError::bad_file(&input.path, what));
         }
-        let moving = match InputKind::of(&input.scene.path) {
+        let moving = match InputKind::from_path(&input.scene.path) {
             Ok(InputKind::Scene) => {
                 let (rest, load) = (input.scene.clone(), LoadOptions::default());
-                let moving = MovingScene::of(rest, &load, &*steps.begin("reading"))?;
+                let moving = AnimatedScene::open(rest, &load, &*steps.begin("reading"))?;
                 Some(moving).filter(|moving| options.animation.is_some() || !moving.animations().is_empty())
             }
             _ if options.animation.is_some() => {
-                return Err(SessionError::bad(&input.path, "has no animations (leave out --animation)"));
+                return Err(SessionError::bad_file(&input.path, "has no animations (leave out --animation)"));
             }
             _ => None,
         };
-        let follows = moving.as_ref().and_then(|_| standing_with(&input.scene.cameras, &camera));
+        let follows = moving.as_ref().and_then(|_| camera_at_same_pose(&input.scene.cameras, &camera));
         let layers = input.project.as_ref().and_then(|project| project.layers.as_ref());
         let layers =
-            layers.filter(|layers| options.has_layers && (layers.moves() || layers.follows_camera()));
+            layers.filter(|layers| options.has_layers && (layers.is_animated() || layers.follows_camera()));
         let still = Arc::new(SceneInTime::at_rest(tracer_of(input, &camera)?));
         let last = Mutex::new(still.clone());
         Ok(Self { input, camera, focus, options, layers, moving, follows, still, last })
@@ -108,23 +108,23 @@ impl<'a> Take<'a> {
     }
 
     /// The document at a time.
-    pub(super) fn at(&self, seconds: f64, progress: &dyn Progress) -> Result<Instant, SessionError> {
+    pub(super) fn at(&self, seconds: f64, progress: &dyn Progress) -> Result<FrameState, SessionError> {
         let (scene, cameras) = self.scene(seconds, progress)?;
         let placed = self.placed(&cameras, seconds)?.overscanned(self.options.overscan);
-        Ok(self.seen(scene, placed, seconds))
+        Ok(self.state_at(scene, placed, seconds))
     }
 
     /// The same place with the lens and the focus of every key: what has to be known there for any of them.
-    pub(super) fn at_keys(&self, at: &Instant) -> Vec<(Camera, Focus)> {
-        let seen = |seconds| {
-            let seen = self.seen(at.scene.clone(), at.placed.clone(), seconds);
-            (seen.camera, seen.focus)
+    pub(super) fn at_keys(&self, at: &FrameState) -> Vec<(Camera, Focus)> {
+        let keyed_lens = |seconds| {
+            let state = self.state_at(at.scene.clone(), at.placed.clone(), seconds);
+            (state.camera, state.focus)
         };
-        self.key_times().into_iter().map(seen).collect()
+        self.key_times().into_iter().map(keyed_lens).collect()
     }
 
     /// The camera at a place before its lens moves, with the aperture of the widest of these lenses.
-    pub(super) fn widest(&self, at: &Instant, keyed: &[(Camera, Focus)]) -> Camera {
+    pub(super) fn widest_aperture_camera(&self, at: &FrameState, keyed: &[(Camera, Focus)]) -> Camera {
         if self.options.lens.f_number.is_empty() {
             return at.placed.clone();
         }
@@ -135,11 +135,11 @@ impl<'a> Take<'a> {
         Camera { aperture_radius: focal / (2.0 * numbers.fold(f64::INFINITY, f64::min)), ..at.placed.clone() }
     }
 
-    fn seen(&self, scene: Arc<SceneInTime>, placed: Camera, seconds: f64) -> Instant {
-        let camera = self.options.lens.at(seconds, &placed, &|point| scene.position(point));
+    fn state_at(&self, scene: Arc<SceneInTime>, placed: Camera, seconds: f64) -> FrameState {
+        let camera = self.options.lens.camera_at(seconds, &placed, &|point| scene.position(point));
         let map = self.layers.map(|layers| self.painted(layers, &scene, &placed, seconds));
         let focus = scene.focus(self.focus, map.as_ref());
-        Instant { scene, camera, focus, placed }
+        FrameState { scene, camera, focus, placed }
     }
 
     /// The scene at a time, and its cameras then. One that is lit and stands as one before is the same.
@@ -149,7 +149,7 @@ impl<'a> Take<'a> {
         progress: &dyn Progress,
     ) -> Result<(Arc<SceneInTime>, Vec<SceneCamera>), SessionError> {
         let Some(moving) = &self.moving else { return Ok((self.still.clone(), Vec::new())) };
-        let moment = Moment { animation: self.options.animation.clone(), seconds };
+        let moment = AnimationTime { animation: self.options.animation.clone(), seconds };
         let moved = SceneInTime::moved(moving, &moment, progress)?;
         let cameras = moved.scene.cameras.clone();
         let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
@@ -169,7 +169,7 @@ impl<'a> Take<'a> {
         let (Some(before), Some(after), true) = (rest.get(index), now.get(index), rest.len() == now.len())
         else {
             let what = format!("at {seconds} s one of its cameras has no pose (choose other frames)");
-            return Err(SessionError::bad(&self.input.scene.path, what));
+            return Err(SessionError::bad_file(&self.input.scene.path, what));
         };
         let zooms = self.camera.yfov == before.yfov;
         Ok(Camera {
@@ -188,7 +188,7 @@ impl<'a> Take<'a> {
         seconds: f64,
     ) -> Arc<FocusMap> {
         let atlas = self.rest_atlas().filter(|_| layers.depends_on_depth());
-        Arc::new(layers.at(seconds, atlas.map(|atlas| scene.canvas(atlas)), camera).composite())
+        Arc::new(layers.at_time(seconds, atlas.map(|atlas| scene.canvas(atlas)), camera).composite())
     }
 
     /// The atlas of the paint.
@@ -201,6 +201,6 @@ impl<'a> Take<'a> {
 }
 
 /// The first of the scene's cameras that stands where `camera` does: a pose that was saved and read again is the same to the last bit.
-fn standing_with(cameras: &[SceneCamera], camera: &Camera) -> Option<usize> {
+fn camera_at_same_pose(cameras: &[SceneCamera], camera: &Camera) -> Option<usize> {
     cameras.iter().position(|other| other.camera_to_world == camera.camera_to_world)
 }

@@ -1,6 +1,6 @@
 //! Commands, and what each sets going.
 
-use super::restaged::{Cause, Restaging};
+use super::restaged::{ChangeCause, StageChange};
 use super::state::{LIGHT_JOB, PREVIEW_JOB, Session};
 use crate::commands::{Command, Event};
 use crate::document::CameraEdit;
@@ -16,36 +16,38 @@ impl Session {
             Command::OpenTemplate(path) => self.open_template(path),
             Command::Undo => self.step_back(),
             Command::Redo => self.step_forward(),
-            Command::GoTo(steps) => self.go_to(steps),
-            Command::Do(step) => self.do_step(&step),
-            Command::Camera(edit) => self.edit_camera(edit),
+            Command::GoToHistoryStep(steps) => self.go_to(steps),
+            Command::ApplyRecordedStep(step) => self.apply_recorded_step(&step),
+            Command::EditCamera(edit) => self.edit_camera(edit),
             Command::FinishEdit => {
-                self.opened()?.undo.finish_run();
+                self.document_mut()?.undo.finish_run();
                 Ok(())
             }
             Command::GoToTime(seconds) => self.go_to_time(seconds),
             Command::SetLensMotion(name, motion) => self.set_lens_motion(name, motion),
-            Command::Rack { points, seconds, ease } => self.rack(points, seconds, ease),
+            Command::RackFocus { points, seconds, ease } => self.rack(points, seconds, ease),
             Command::SetView(view) => {
-                self.opened()?.view = view;
+                self.document_mut()?.view = view;
                 Ok(())
             }
             Command::SetExposure(exposure) => {
-                self.opened()?.exposure = exposure;
+                self.document_mut()?.exposure = exposure;
                 self.show_tone();
                 Ok(())
             }
-            Command::SetBackFaces(back_faces) => self.restage(Restaging::BackFaces(back_faces)),
-            Command::SetWorld(world) => self.restage(Restaging::World(world)),
-            Command::LoadEnvironment(file) => self.restage(Restaging::Environment(file)),
-            Command::SetVariant(name) => self.restage(Restaging::Variant { name, cause: Cause::Command }),
+            Command::SetBackFaces(back_faces) => self.rebuild_stage(StageChange::BackFaces(back_faces)),
+            Command::SetWorld(world) => self.rebuild_stage(StageChange::World(world)),
+            Command::LoadEnvironment(file) => self.rebuild_stage(StageChange::Environment(file)),
+            Command::SetVariant(name) => {
+                self.rebuild_stage(StageChange::Variant { name, cause: ChangeCause::Command })
+            }
             Command::SetDisplay(display) => {
                 self.display = display;
                 self.show_tone();
                 Ok(())
             }
-            Command::LookThrough(point) => {
-                self.look_through(point);
+            Command::SetSubAperture(point) => {
+                self.set_sub_aperture(point);
                 Ok(())
             }
             Command::SetPreviewSize(size) => {
@@ -61,7 +63,7 @@ impl Session {
             Command::SetBrush(brush) => match brush.problem() {
                 Some(problem) => Err(SessionError::BadInput(format!("brush: {problem}"))),
                 None => {
-                    self.opened()?.brush = brush;
+                    self.document_mut()?.brush = brush;
                     Ok(())
                 }
             },
@@ -69,7 +71,7 @@ impl Session {
             Command::ExtendStroke(point) => self.extend_stroke(point),
             Command::CommitStroke => self.commit_stroke(),
             Command::AbortStroke => self.abort_stroke(),
-            Command::Layer(edit) => self.edit_layers(edit),
+            Command::EditLayers(edit) => self.edit_layers(edit),
             Command::ActivateLayer(index) => self.activate_layer(index),
             Command::Fill(region, focus) => self.fill(region, focus),
             Command::ResetMap => self.reset_map(),
@@ -80,24 +82,24 @@ impl Session {
             Command::MaskFromSelection => self.mask_selected(),
             Command::SelectRegion(region, combine) => self.select_region(region, combine),
             Command::FocusHere(hit) => {
-                let depth = self.opened()?.camera.camera_from_world(hit.position).z;
+                let depth = self.document_mut()?.camera.camera_from_world(hit.position).z;
                 self.edit_camera(CameraEdit::FocusDistance(depth))?;
-                self.opened()?.undo.finish_run();
+                self.document_mut()?.undo.finish_run();
                 Ok(())
             }
             Command::Fixate(hit) => {
-                self.opened()?;
-                self.fixated = hit.map(|hit| hit.position);
+                self.document_mut()?;
+                self.fixation_point = hit.map(|hit| hit.position);
                 Ok(())
             }
             Command::Pick(hit) => {
                 let Some(focus) = self.focus_at(&hit) else { return Err(SessionError::NothingOpen) };
-                self.opened()?.brush.target = focus;
+                self.document_mut()?.brush.target = focus;
                 self.events.push(Event::BrushChanged);
                 Ok(())
             }
             Command::Bake => {
-                self.opened()?;
+                self.document_mut()?;
                 self.preview_thread.bake();
                 Ok(())
             }
@@ -106,7 +108,7 @@ impl Session {
                 Ok(())
             }
             Command::Cancel(LIGHT_JOB) => {
-                self.preview_thread.stop_light();
+                self.preview_thread.pause_light();
                 Ok(())
             }
             Command::Cancel(id) => {

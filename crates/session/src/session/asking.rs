@@ -27,16 +27,16 @@ impl Session {
     /// The aperture as a surface point sees it. `None` where nothing is open, the aperture is a pinhole, or the point stands
     /// behind it.
     pub fn aperture_image(&self, hit: &SurfaceHit) -> Option<ApertureImage> {
-        ApertureImage::at(self.document()?, self.field.as_ref(), hit)
+        ApertureImage::trace_at(self.document()?, self.light_field.as_ref(), hit)
     }
 
     /// Counts the light fields that the preview was made of: [`Self::aperture_image`] may tell more after another.
-    pub fn light_fields(&self) -> u64 {
-        self.fields
+    pub fn light_field_count(&self) -> u64 {
+        self.light_field_count
     }
 
     /// The circles of confusion of `columns` × `rows` places of the picture, by chief rays. `None` where nothing is open.
-    pub fn blur_histogram(&self, places: [usize; 2]) -> Option<BlurHistogram> {
-        Some(BlurHistogram::of(self.document()?, places))
+    pub fn blur_histogram(&self, grid: [usize; 2]) -> Option<BlurHistogram> {
+        Some(BlurHistogram::measure(self.document()?, grid))
     }
 }

@@ -1,15 +1,15 @@
 //! Pictures to compare with, made in the background.
 
-use super::outcome::Outcome;
+use super::outcome::JobOutcome;
 use super::state::Session;
 use crate::commands::Event;
-use crate::document::{Document, depth_toward};
+use crate::document::{Document, depth_in_direction};
 use crate::error::SessionError;
 use crate::jobs::{JobSteps, Steps};
-use crate::light_field::{LightQuality, light};
+use crate::light_field::{LightQuality, solve_light};
 use crate::output::{
-    Reference, ReferenceKind, RenderOptions, Renderer, Stereo, light_of_photographs, pair,
-    photograph_picture, render,
+    Reference, ReferenceKind, RenderOptions, Renderer, Stereo, light_of_photographs, photograph_picture,
+    render, render_pair,
 };
 use crate::preview::PreviewActivity;
 use baselines::FirstHits;
@@ -20,7 +20,7 @@ use std::time::Instant;
 use trace::truth::TruthOptions;
 
 /// How far the eyes are apart, as a share of the aperture's diameter.
-const EYES: f64 = 0.5;
+const EYE_SEPARATION: f64 = 0.5;
 
 impl Session {
     /// The picture of a kind that was made last of this document.
@@ -31,15 +31,16 @@ impl Session {
     /// Whether the picture of a kind shows the document as it is.
     pub fn is_reference_current(&self, kind: ReferenceKind) -> bool {
         let (Some(document), Some(reference)) = (&self.document, self.reference(kind)) else { return false };
-        let painting = matches!(kind, ReferenceKind::Truth | ReferenceKind::Stereo(_)) && self.is_painting();
-        !painting && reference.shows(&self.camera_of(kind, document), document.revision)
+        let is_being_painted =
+            matches!(kind, ReferenceKind::Truth | ReferenceKind::Stereo(_)) && self.is_painting();
+        !is_being_painted && reference.shows(&self.reference_camera(kind, document), document.revision)
     }
 
     /// The camera of a picture; where two eyes look at something, that is in focus: it has no disparity.
-    fn camera_of(&self, kind: ReferenceKind, document: &Document) -> Camera {
+    fn reference_camera(&self, kind: ReferenceKind, document: &Document) -> Camera {
         let camera = self.scaled_camera(&document.camera);
-        let fixated = self.fixated.filter(|_| matches!(kind, ReferenceKind::Stereo(_)));
-        match fixated.and_then(|place| depth_toward(&document.stage.tracer, &camera, place)) {
+        let fixation_point = self.fixation_point.filter(|_| matches!(kind, ReferenceKind::Stereo(_)));
+        match fixation_point.and_then(|point| depth_in_direction(&document.stage.tracer, &camera, point)) {
             Some(focus_distance) => Camera { focus_distance, ..camera },
             None => camera,
         }
@@ -47,17 +48,18 @@ impl Session {
 
     /// Whether something is fixated in pictures for two eyes, other than what the lens is focused on.
     pub fn is_fixating(&self) -> bool {
-        self.fixated.is_some()
+        self.fixation_point.is_some()
     }
 
     /// Whether the picture of a kind is being made.
     pub fn is_making_reference(&self, kind: ReferenceKind) -> bool {
-        self.reference_jobs.iter().any(|(_, of)| *of == kind)
+        self.reference_jobs.iter().any(|(_, job_kind)| *job_kind == kind)
     }
 
     /// Whether there is time for a picture to compare with: nothing else is going on.
     pub fn is_idle(&self) -> bool {
-        let is_drawing = self.preview_activity() != PreviewActivity::Idle || self.drawing_exactly().is_some();
+        let is_drawing =
+            self.preview_activity() != PreviewActivity::Idle || self.exact_picture_progress().is_some();
         self.jobs.is_empty() && !self.is_painting() && !is_drawing
     }
 
@@ -67,19 +69,19 @@ impl Session {
         kind: ReferenceKind,
         samples_per_pixel: u32,
     ) -> Result<(), SessionError> {
-        let document = self.opened()?;
+        let document = self.document_mut()?;
         let (stage, revision) = (document.stage.clone(), document.revision);
         let focus = match kind {
             ReferenceKind::Truth | ReferenceKind::Stereo(_) => {
                 let map = Arc::new(document.map.clone());
-                Focus::painted(stage.scene.clone(), stage.atlas.clone(), map)
+                Focus::from_atlas_map(stage.scene.clone(), stage.atlas.clone(), map)
             }
             _ => Focus::constant(stage.scene.clone(), FocusOffset::STANDARD),
         };
         let exposure = document.exposure;
         let document = self.document.as_ref().ok_or(SessionError::NothingOpen)?;
-        let (camera, generation) = (self.camera_of(kind, document), self.generation);
-        for (id, _) in self.reference_jobs.iter().filter(|(_, of)| *of == kind) {
+        let (camera, generation) = (self.reference_camera(kind, document), self.generation);
+        for (id, _) in self.reference_jobs.iter().filter(|(_, job_kind)| *job_kind == kind) {
             self.jobs.iter().filter(|job| job.id == *id).for_each(|job| job.progress.cancel());
         }
         let label = match kind {
@@ -90,18 +92,19 @@ impl Session {
             ReferenceKind::Stereo(_) => "drawing for two eyes",
         };
         let photograph = self.document.as_ref().and_then(|document| document.photograph().cloned());
-        let at_hand = self.at_hand(stage.clone());
-        let id = self.start(label.into(), move |progress| {
+        let available_fields = self.available_fields(stage.clone());
+        let id = self.start_job(label.into(), move |progress| {
             let start = Instant::now();
             let steps = JobSteps { progress };
             let picture = match kind {
                 ReferenceKind::Pinhole => {
-                    let radiance = light(&stage.tracer, &camera, LightQuality::Fine, &*steps.begin("light"))?;
+                    let radiance =
+                        solve_light(&stage.tracer, &camera, LightQuality::Fine, &*steps.begin("light"))?;
                     let progress = steps.begin("first hits");
                     FirstHits::trace(&stage.tracer, &*radiance, &focus, &camera, &*progress)?.picture()
                 }
                 ReferenceKind::Standard => {
-                    at_hand.render(&camera, &focus, &RenderOptions::default(), &steps)?.picture
+                    available_fields.render(&camera, &focus, &RenderOptions::default(), &steps)?.picture
                 }
                 ReferenceKind::Truth => {
                     let truth = TruthOptions { samples_per_pixel, ..TruthOptions::default() };
@@ -111,20 +114,23 @@ impl Session {
                 }
                 ReferenceKind::Stereo(form) => {
                     // The camera is focused on what they fixate.
-                    let stereo = Stereo { form, eyes: EYES, fixate: None, exposure };
+                    let stereo = Stereo { form, eyes: EYE_SEPARATION, fixate: None, exposure };
                     let options = RenderOptions::default();
-                    pair(&camera, &stereo, |eye| at_hand.render(eye, &focus, &options, &steps))?.picture
+                    render_pair(&camera, &stereo, |eye| {
+                        available_fields.render(eye, &focus, &options, &steps)
+                    })?
+                    .picture
                 }
                 ReferenceKind::Photograph => {
                     let what = "the camera is that of no photograph (choose one of them as the camera)";
-                    let view = photograph.ok_or_else(|| SessionError::bad(&stage.scene.path, what))?;
+                    let view = photograph.ok_or_else(|| SessionError::bad_file(&stage.scene.path, what))?;
                     let light = light_of_photographs(&stage.tracer, &steps)?;
                     photograph_picture(&view, &camera, &stage.tracer, light.as_deref())?.0
                 }
             };
             let samples_per_pixel = if kind == ReferenceKind::Truth { samples_per_pixel } else { 0 };
             let (picture, seconds) = (Arc::new(picture), start.elapsed().as_secs_f64());
-            Ok(Outcome::Reference(Box::new(Reference {
+            Ok(JobOutcome::Reference(Box::new(Reference {
                 kind,
                 picture,
                 camera,

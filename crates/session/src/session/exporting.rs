@@ -1,12 +1,12 @@
 //! Pictures as files: rendered at full size, from the light field that stands if it serves, or as they are on screen.
 
-use super::outcome::Outcome;
+use super::outcome::JobOutcome;
 use super::state::Session;
 use crate::display::Tone;
 use crate::document::Stage;
 use crate::error::{SessionError, file_name};
 use crate::jobs::{JobSteps, Steps};
-use crate::light_field::{LightFieldStore, Reach, bake, serves};
+use crate::light_field::{LightFieldStore, MarginReach, bake, is_compatible};
 use crate::output::{Aov, RenderOptions, Rendered, sum_light_field};
 use crate::preview::{Exporting, Quality, Shared};
 use focus::Focus;
@@ -19,35 +19,35 @@ use std::time::Instant;
 
 /// Whether a picture at full size needs a light field of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FullSize {
+pub enum FullSizeFieldState {
     /// No: there is one.
     Ready,
     /// No: the live picture's will serve, which is being made.
-    Underway,
+    InProgress,
     /// Yes.
     Missing,
 }
 
 /// The light fields that need not be baked.
 #[derive(Clone)]
-pub(super) struct AtHand {
+pub(super) struct AvailableFields {
     stage: Arc<Stage>,
     /// That of the live picture.
-    live: Option<Arc<Salf>>,
+    preview_field: Option<Arc<Salf>>,
     store: Option<LightFieldStore>,
     /// Who may be making another.
     preview: Arc<Shared>,
 }
 
-impl AtHand {
+impl AvailableFields {
     /// One that shows what `camera` sees of `focus`, the margin included.
-    fn find(&self, camera: &Camera, focus: &Focus) -> Option<Arc<Salf>> {
-        let live = self.live.clone().filter(|salf| serves(&salf.camera, camera));
-        let found = live.or_else(|| {
+    fn find_covering(&self, camera: &Camera, focus: &Focus) -> Option<Arc<Salf>> {
+        let from_preview = self.preview_field.clone().filter(|salf| is_compatible(&salf.camera, camera));
+        let candidate = from_preview.or_else(|| {
             let store = self.store.as_ref()?;
-            store.find(&self.stage, camera, 0.0, Carried::of(focus)).map(|(salf, _)| Arc::new(salf))
+            store.find(&self.stage, camera, 0.0, Carried::for_focus(focus)).map(|(salf, _)| Arc::new(salf))
         });
-        found.filter(|salf| tells_all(salf, camera, focus))
+        candidate.filter(|salf| covers_focus(salf, camera, focus))
     }
 
     /// Renders a picture, exactly unless `options` say otherwise. What is baked for it is kept.
@@ -59,21 +59,21 @@ impl AtHand {
         steps: &dyn Steps,
     ) -> Result<Rendered, SessionError> {
         let tracer = &self.stage.tracer;
-        let found = match self.find(camera, focus) {
+        let available = match self.find_covering(camera, focus) {
             // One bake at a time: what the live picture waits for is the smaller one, and may be the same.
             None => self
                 .preview
                 .wait_for_field(&self.stage, camera, &*steps.begin("baking the live picture"))?
-                .filter(|salf| tells_all(salf, camera, focus)),
-            found => found,
+                .filter(|salf| covers_focus(salf, camera, focus)),
+            available => available,
         };
-        let salf = match found {
+        let salf = match available {
             Some(salf) => salf,
             None => {
                 let start = Instant::now();
                 let salf = Arc::new(bake(tracer, camera, focus, BakeOptions::TOLERANCE_PX, steps)?);
                 if let Some(store) = &self.store {
-                    store.keep(&self.stage, &salf, 0, start.elapsed());
+                    store.save(&self.stage, &salf, 0, start.elapsed());
                 }
                 salf
             }
@@ -83,32 +83,33 @@ impl AtHand {
 }
 
 /// Whether a light field tells carried light finely enough, and its margin holds all that comes into the frame.
-fn tells_all(salf: &Salf, camera: &Camera, focus: &Focus) -> bool {
-    salf.carried >= Carried::of(focus) && !Reach::of_all(salf, camera, focus).is_exceeded()
+fn covers_focus(salf: &Salf, camera: &Camera, focus: &Focus) -> bool {
+    salf.carried >= Carried::for_focus(focus) && !MarginReach::survey(salf, camera, focus).is_exceeded()
 }
 
 impl Session {
     /// The light fields of the document that need not be baked.
-    pub(super) fn at_hand(&self, stage: Arc<Stage>) -> AtHand {
-        let live = self.field.as_ref().map(|field| field.salf.clone());
-        let (store, preview) = (self.options.light_fields.clone(), self.preview_thread.shared());
-        AtHand { stage, live, store, preview }
+    pub(super) fn available_fields(&self, stage: Arc<Stage>) -> AvailableFields {
+        let preview_field = self.light_field.as_ref().map(|field| field.salf.clone());
+        let (store, preview) = (self.options.light_field_store.clone(), self.preview_thread.shared());
+        AvailableFields { stage, preview_field, store, preview }
     }
 
     /// Whether a picture at full size has to wait for a light field, as far as is known without looking at the paint.
-    pub fn full_size(&self) -> FullSize {
-        let Some(document) = &self.document else { return FullSize::Missing };
-        let serves = |baked: &Camera| serves(baked, &document.camera);
-        let live = self.field.as_ref().is_some_and(|field| serves(&field.salf.camera));
-        let store = self.options.light_fields.as_ref();
-        if live || store.is_some_and(|store| store.has(&document.stage, &document.camera)) {
-            FullSize::Ready
-        } else if self.preview_camera.as_ref().is_some_and(serves)
+    pub fn full_size_field_state(&self) -> FullSizeFieldState {
+        let Some(document) = &self.document else { return FullSizeFieldState::Missing };
+        let is_compatible = |baked: &Camera| is_compatible(baked, &document.camera);
+        let preview_serves_export =
+            self.light_field.as_ref().is_some_and(|field| is_compatible(&field.salf.camera));
+        let store = self.options.light_field_store.as_ref();
+        if preview_serves_export || store.is_some_and(|store| store.has(&document.stage, &document.camera)) {
+            FullSizeFieldState::Ready
+        } else if self.preview_camera.as_ref().is_some_and(is_compatible)
             && self.preview_thread.shared().is_at_work()
         {
-            FullSize::Underway
+            FullSizeFieldState::InProgress
         } else {
-            FullSize::Missing
+            FullSizeFieldState::Missing
         }
     }
 
@@ -119,25 +120,26 @@ impl Session {
         };
         let stage = document.stage.clone();
         let map = Arc::new(document.map.clone());
-        let focus = Focus::painted(stage.scene.clone(), stage.atlas.clone(), map);
-        let at_hand = self.at_hand(stage);
+        let focus = Focus::from_atlas_map(stage.scene.clone(), stage.atlas.clone(), map);
+        let available_fields = self.available_fields(stage);
         let options = RenderOptions::default();
-        Ok(at_hand.render(&preview.camera, &focus, &options, &progress::Unwatched)?.picture)
+        Ok(available_fields.render(&preview.camera, &focus, &options, &progress::Unwatched)?.picture)
     }
 
     pub(super) fn export_picture(&mut self, path: PathBuf) -> Result<(), SessionError> {
         let tone = self.tone();
-        let document = self.opened()?;
+        let document = self.document_mut()?;
         let (stage, camera) = (document.stage.clone(), document.camera.clone());
-        let focus = Focus::painted(stage.scene.clone(), stage.atlas.clone(), Arc::new(document.map.clone()));
-        let at_hand = self.at_hand(stage);
-        let exporting = Exporting::new(&at_hand.preview);
-        self.start(format!("rendering {}", file_name(&path)), move |progress| {
-            let _until_written = exporting;
+        let focus =
+            Focus::from_atlas_map(stage.scene.clone(), stage.atlas.clone(), Arc::new(document.map.clone()));
+        let available_fields = self.available_fields(stage);
+        let exporting = Exporting::new(&available_fields.preview);
+        self.start_job(format!("rendering {}", file_name(&path)), move |progress| {
+            let _export_guard = exporting;
             let options = RenderOptions { aovs: vec![Aov::Coverage], ..RenderOptions::default() };
-            let rendered = at_hand.render(&camera, &focus, &options, &JobSteps { progress })?;
-            write_shown(&path, &rendered.picture, &rendered.layers, tone)?;
-            Ok(Outcome::Written(path, Vec::new()))
+            let rendered = available_fields.render(&camera, &focus, &options, &JobSteps { progress })?;
+            write_displayed(&path, &rendered.picture, &rendered.layers, tone)?;
+            Ok(JobOutcome::FileWritten(path, Vec::new()))
         })?;
         Ok(())
     }
@@ -148,14 +150,14 @@ impl Session {
         let preview = self.preview.as_ref().ok_or(SessionError::NothingOpen)?;
         if preview.quality == Quality::Coarse {
             let what = "the picture on screen is still rough (wait until the status line says live or exact; File, Export picture waits by itself)";
-            return Err(SessionError::bad(&path, what));
+            return Err(SessionError::bad_file(&path, what));
         }
         let picture = preview.picture.clone();
-        self.start(format!("writing {}", file_name(&path)), move |_| {
+        self.start_job(format!("writing {}", file_name(&path)), move |_| {
             let what = "the graphics card that held the picture was lost (try again once it is drawn anew)";
-            let picture = picture.bring().ok_or(SessionError::TryAgain(what.into()))?;
-            write_shown(&path, &picture, &[Layer::coverage(&picture)], tone)?;
-            Ok(Outcome::Written(path, Vec::new()))
+            let picture = picture.fetch().ok_or(SessionError::TryAgain(what.into()))?;
+            write_displayed(&path, &picture, &[Layer::coverage(&picture)], tone)?;
+            Ok(JobOutcome::FileWritten(path, Vec::new()))
         })?;
         Ok(())
     }
@@ -168,7 +170,7 @@ impl Session {
 }
 
 /// Writes a picture: EXR with its layers and unchanged light, anything else as the screen shows it.
-fn write_shown(path: &Path, picture: &Picture, layers: &[Layer], tone: Tone) -> Result<(), SessionError> {
+fn write_displayed(path: &Path, picture: &Picture, layers: &[Layer], tone: Tone) -> Result<(), SessionError> {
     let is_exr = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("exr"));
     if is_exr {
         write_picture(
@@ -203,7 +205,7 @@ mod tests {
             (Exposure::Normalise, -1.0, ToneCurve::Neutral),
         ] {
             let tone = Tone { exposure, display: Display { stops, curve } };
-            write_shown(&path, &picture, &[], tone).unwrap();
+            write_displayed(&path, &picture, &[], tone).unwrap();
             let written = project::read_picture(&path).unwrap();
             let mut back = Picture::black(16, 4);
             (back.radiance, back.coverage) = (written.rgb, vec![1.0; 64]);

@@ -1,10 +1,10 @@
 //! Opening, saving, exporting and keeping unsaved work: all in the background.
 
 use super::first_look::OpeningSteps;
-use super::outcome::Outcome;
+use super::outcome::JobOutcome;
 use super::state::Session;
 use crate::commands::Event;
-use crate::document::{Beginning, Document, Input, InputKind, NearQuestion};
+use crate::document::{DepthPolarityRequest, Document, Input, InputKind, NewDocumentOptions};
 use crate::error::{SessionError, file_name};
 use crate::jobs::JobSteps;
 use crate::output::write_scene;
@@ -15,13 +15,13 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// What the job that keeps unsaved work is called; it is not news.
-const KEEPING: &str = "keeping unsaved work";
+const RECOVERY_JOB: &str = "keeping unsaved work";
 
 /// What jobs that save are called, before the file's name.
-const SAVING: &str = "saving";
+const SAVE_JOB_PREFIX: &str = "saving";
 
 /// How long closing waits for a file that is being written.
-const LONGEST_WRITE: Duration = Duration::from_secs(30);
+const MAX_WRITE_WAIT: Duration = Duration::from_secs(30);
 
 impl Session {
     pub(super) fn open(&mut self, path: PathBuf) -> Result<(), SessionError> {
@@ -35,7 +35,7 @@ impl Session {
     ) -> Result<(), SessionError> {
         self.start_opening(path, |path, unwrap, steps| {
             let input = Input::open_capture(path, choices, steps)?;
-            Document::begin_with(input, &Beginning::default(), unwrap, steps)
+            Document::create_from_input(input, &NewDocumentOptions::default(), unwrap, steps)
         })
     }
 
@@ -53,68 +53,74 @@ impl Session {
     ) -> Result<(), SessionError> {
         let unwrap = self.options.unwrap.clone();
         let label = format!("opening {}", file_name(&path));
-        let first_look = self.first_look();
-        self.start(label, move |progress| match open(&path, &unwrap, &first_look.steps(progress)) {
-            Err(SessionError::NearUnknown { map, .. }) if InputKind::of(&path) == Ok(InputKind::Capture) => {
-                Ok(Outcome::AsksNear(Box::new(NearQuestion::of(path, map)?)))
+        let opening_preview = self.opening_preview();
+        self.start_job(label, move |progress| {
+            match open(&path, &unwrap, &opening_preview.steps(progress)) {
+                Err(SessionError::NearUnknown { map, .. })
+                    if InputKind::from_path(&path) == Ok(InputKind::Capture) =>
+                {
+                    Ok(JobOutcome::DepthPolarityRequired(Box::new(DepthPolarityRequest::from_map(
+                        path, map,
+                    )?)))
+                }
+                opened => Ok(JobOutcome::Opened(Box::new(opened?))),
             }
-            opened => Ok(Outcome::Opened(Box::new(opened?))),
         })?;
         Ok(())
     }
 
-    pub(super) fn save(&mut self, to: Option<PathBuf>) -> Result<(), SessionError> {
+    pub(super) fn save(&mut self, target: Option<PathBuf>) -> Result<(), SessionError> {
         self.commit_stroke()?;
         let generation = self.generation;
-        let document = self.opened()?;
-        let Some(path) = to.or_else(|| document.path.clone()) else {
+        let document = self.document_mut()?;
+        let Some(path) = target.or_else(|| document.path.clone()) else {
             let what = "no project file yet (choose one with Save as)";
-            return Err(SessionError::bad(&document.stage.scene.path, what));
+            return Err(SessionError::bad_file(&document.stage.scene.path, what));
         };
         let (mut project, revision) = (document.to_project(), document.revision);
         let (tone, preview) = (self.tone(), self.preview.as_ref());
-        let shown = preview.map(|preview| preview.picture.clone());
-        self.start(format!("{SAVING} {}", file_name(&path)), move |_| {
+        let preview_picture = preview.map(|preview| preview.picture.clone());
+        self.start_job(format!("{SAVE_JOB_PREFIX} {}", file_name(&path)), move |_| {
             // A picture that a lost card had is the last one that was saved.
-            if let Some(picture) = shown.and_then(|shown| shown.bring()) {
+            if let Some(picture) = preview_picture.and_then(|preview_picture| preview_picture.fetch()) {
                 let Picture { width, height, .. } = *picture;
-                project.thumbnail = Some(Thumbnail::of(width, height, tone.displayed(&picture)));
+                project.thumbnail = Some(Thumbnail::from_linear(width, height, tone.displayed(&picture)));
             }
             project.save(&path)?;
-            Ok(Outcome::Saved { path, revision, generation })
+            Ok(JobOutcome::Saved { path, revision, generation })
         })?;
         Ok(())
     }
 
     /// Writes unsaved work to its recovery file when it has waited long enough. Called at every poll.
-    pub(super) fn keep_unsaved_work(&mut self) {
+    pub(super) fn save_recovery_if_due(&mut self) {
         let Some(document) = &self.document else { return };
-        let is_kept = document.revision == self.recovery.kept || !document.is_unsaved();
-        if is_kept || self.jobs.iter().any(|job| job.label == KEEPING) {
-            self.recovery.changed = None;
+        let is_recovery_current = document.revision == self.recovery.saved_revision || !document.is_unsaved();
+        if is_recovery_current || self.jobs.iter().any(|job| job.label == RECOVERY_JOB) {
+            self.recovery.first_change = None;
             return;
         }
-        let Some(changed) = self.recovery.changed else {
-            self.recovery.changed = Some(Instant::now());
-            self.wake_in(self.options.keep_after);
+        let Some(first_change) = self.recovery.first_change else {
+            self.recovery.first_change = Some(Instant::now());
+            self.wake_after(self.options.recovery_delay);
             return;
         };
-        if changed.elapsed() < self.options.keep_after {
+        if first_change.elapsed() < self.options.recovery_delay {
             return;
         }
         let (project, revision, path) = (document.to_project(), document.revision, document.recovery_path());
-        let kept = self.start(KEEPING.into(), move |_| {
+        let started = self.start_job(RECOVERY_JOB.into(), move |_| {
             project.save(&path)?;
-            Ok(Outcome::Kept { path, revision })
+            Ok(JobOutcome::RecoverySaved { path, revision })
         });
-        if let Err(error) = kept {
+        if let Err(error) = started {
             self.events.push(Event::Failed(error.to_string()));
         }
-        self.recovery.changed = None;
+        self.recovery.first_change = None;
     }
 
     /// Has the session polled again after `wait`, also when nobody touches the window.
-    pub(super) fn wake_in(&self, wait: Duration) {
+    pub(super) fn wake_after(&self, wait: Duration) {
         let waker = self.options.waker.clone();
         let sleep = move || {
             std::thread::sleep(wait);
@@ -125,7 +131,7 @@ impl Session {
     }
 
     /// Removes the recovery file: what it holds is saved, or given up.
-    pub(super) fn forget_recovery(&mut self) {
+    pub(super) fn remove_recovery_file(&mut self) {
         if let Some(file) = self.recovery.file.take()
             && let Err(error) = project::remove_recovery(&file)
         {
@@ -134,22 +140,22 @@ impl Session {
     }
 
     pub(super) fn export_focus_map(&mut self, path: PathBuf) -> Result<(), SessionError> {
-        let document = self.opened()?;
+        let document = self.document_mut()?;
         let (map, atlas) = (document.map.clone(), document.stage.atlas.clone());
-        self.start(format!("writing {}", file_name(&path)), move |_| {
-            let lost = write_focus_map(&path, &FocusMapFile::of_atlas(&map, &atlas))?;
-            let lost = lost.iter().map(|what| format!("{}: {what}", path.display())).collect();
-            Ok(Outcome::Written(path, lost))
+        self.start_job(format!("writing {}", file_name(&path)), move |_| {
+            let losses = write_focus_map(&path, &FocusMapFile::from_atlas_map(&map, &atlas))?;
+            let warnings = losses.iter().map(|what| format!("{}: {what}", path.display())).collect();
+            Ok(JobOutcome::FileWritten(path, warnings))
         })?;
         Ok(())
     }
 
     pub(super) fn export_scene(&mut self, path: PathBuf) -> Result<(), SessionError> {
-        let document = self.opened()?;
+        let document = self.document_mut()?;
         let (stage, camera) = (document.stage.clone(), document.camera.clone());
-        self.start(format!("writing {}", file_name(&path)), move |progress| {
+        self.start_job(format!("writing {}", file_name(&path)), move |progress| {
             write_scene(&path, &stage.tracer, &stage.atlas, &camera, &JobSteps { progress })?;
-            Ok(Outcome::Written(path, Vec::new()))
+            Ok(JobOutcome::FileWritten(path, Vec::new()))
         })?;
         Ok(())
     }
@@ -157,21 +163,21 @@ impl Session {
     /// Writes what was painted in the history. Quick enough to wait for.
     pub(super) fn export_strokes(&mut self, path: &Path) -> Result<(), SessionError> {
         self.commit_stroke()?;
-        let steps: Vec<_> = self.opened()?.undo.records().cloned().collect();
+        let steps: Vec<_> = self.document_mut()?.undo.records().cloned().collect();
         if steps.is_empty() {
             let what = "nothing was painted since the document was opened (paint first)";
-            return Err(SessionError::bad(path, what));
+            return Err(SessionError::bad_file(path, what));
         }
         project::write_strokes(path, &steps)?;
-        self.events.push(Event::Written(path.into()));
+        self.events.push(Event::FileWritten(path.into()));
         Ok(())
     }
 
     /// Replaces the painted focus by a map or a recipe. Quick enough to wait for: a file is read, texels are set.
     pub(super) fn import_focus_map(&mut self, path: PathBuf) -> Result<(), SessionError> {
         self.commit_stroke()?;
-        let document = self.opened()?;
-        let map = document.imported_focus(&path)?;
+        let document = self.document_mut()?;
+        let map = document.load_focus_file(&path)?;
         self.import_map(map)
     }
 }
@@ -182,15 +188,16 @@ impl Drop for Session {
     /// Files that are being written are waited for; all other work is stopped.
     fn drop(&mut self) {
         self.jobs.iter().for_each(|job| job.progress.cancel());
-        while self.jobs.iter().any(|job| job.label == KEEPING || job.label.starts_with(SAVING)) {
-            let Ok((id, outcome)) = self.outcomes.recv_timeout(LONGEST_WRITE) else { break };
+        while self.jobs.iter().any(|job| job.label == RECOVERY_JOB || job.label.starts_with(SAVE_JOB_PREFIX))
+        {
+            let Ok((id, outcome)) = self.outcomes.recv_timeout(MAX_WRITE_WAIT) else { break };
             self.jobs.retain(|job| Some(job.id) != id);
-            if let Ok(Outcome::Kept { path, .. }) = outcome {
+            if let Ok(JobOutcome::RecoverySaved { path, .. }) = outcome {
                 self.recovery.file = Some(path);
             }
         }
         if !std::thread::panicking() {
-            self.forget_recovery();
+            self.remove_recovery_file();
         }
     }
 }

@@ -1,83 +1,85 @@
 //! Undo and redo: steps taken back and done again, and shown.
 
-use super::restaged::{Cause, Restaging};
+use super::restaged::{ChangeCause, StageChange};
 use super::state::Session;
 use crate::commands::Event;
-use crate::document::{Document, Undoable, Undone};
+use crate::document::{Document, StepEffect, UndoState};
 use crate::error::SessionError;
-use focus::Changed;
+use focus::ChangedTexels;
 use std::cmp::Ordering;
 
 impl Session {
     pub(super) fn step_back(&mut self) -> Result<(), SessionError> {
-        if self.underway.is_some() {
+        if self.active_edit.is_some() {
             return self.abort_stroke();
         }
-        let document = self.opened()?;
+        let document = self.document_mut()?;
         let Document { undo, layers, camera, lens_motion, selection, depth_strokes, .. } = document;
-        let undone = undo.undo(Undoable { layers, camera, lens_motion, selection, depth_strokes });
-        self.after_step(undone)
+        let effect = undo.undo(UndoState { layers, camera, lens_motion, selection, depth_strokes });
+        self.finish_history_step(effect)
     }
 
     pub(super) fn step_forward(&mut self) -> Result<(), SessionError> {
-        if self.underway.is_some() {
+        if self.active_edit.is_some() {
             return Ok(());
         }
-        let document = self.opened()?;
+        let document = self.document_mut()?;
         let Document { undo, layers, camera, lens_motion, selection, depth_strokes, .. } = document;
-        let done = undo.redo(Undoable { layers, camera, lens_motion, selection, depth_strokes });
-        self.after_step(done)
+        let effect = undo.redo(UndoState { layers, camera, lens_motion, selection, depth_strokes });
+        self.finish_history_step(effect)
     }
 
     /// Takes steps back, or does them again, until this many are done.
     pub(super) fn go_to(&mut self, steps: usize) -> Result<(), SessionError> {
         loop {
-            let done = self.opened()?.undo.names().count();
+            let done = self.document_mut()?.undo.names().count();
             match done.cmp(&steps) {
                 Ordering::Greater => self.step_back()?,
-                Ordering::Less if self.opened()?.redo_name().is_some() => self.step_forward()?,
+                Ordering::Less if self.document_mut()?.redo_name().is_some() => self.step_forward()?,
                 _ => return Ok(()),
             }
         }
     }
 
-    fn after_step(&mut self, step: Option<Undone>) -> Result<(), SessionError> {
-        self.show_step(step)?;
-        self.opened()?.stepped();
+    fn finish_history_step(&mut self, effect: Option<StepEffect>) -> Result<(), SessionError> {
+        self.show_step_effect(effect)?;
+        self.document_mut()?.reset_thumbnail_base();
         Ok(())
     }
 
-    fn show_step(&mut self, step: Option<Undone>) -> Result<(), SessionError> {
-        match step {
+    fn show_step_effect(&mut self, effect: Option<StepEffect>) -> Result<(), SessionError> {
+        match effect {
             None => Ok(()),
-            Some(Undone::Camera) => {
-                self.opened()?.revision += 1;
+            Some(StepEffect::Camera) => {
+                self.document_mut()?.revision += 1;
                 self.events.push(Event::CameraChanged);
                 self.show_camera();
-                self.follow_camera()
+                self.update_adjustment_layers()
             }
-            Some(Undone::LensMotion) => {
-                self.opened()?.revision += 1;
+            Some(StepEffect::LensMotion) => {
+                self.document_mut()?.revision += 1;
                 self.show_time()
             }
-            Some(Undone::Paint { texels, .. }) => {
-                self.opened()?.revision += 1;
+            Some(StepEffect::Paint { texels, .. }) => {
+                self.document_mut()?.revision += 1;
                 self.events.push(Event::LayersChanged);
-                self.show_layers(Some(Changed { texels }))
+                self.show_layers(Some(ChangedTexels { texels }))
             }
-            Some(Undone::Selection) => {
+            Some(StepEffect::Selection) => {
                 self.events.push(Event::SelectionChanged);
                 Ok(())
             }
-            Some(Undone::Variant(name)) => self.restage(Restaging::Variant { name, cause: Cause::History }),
-            Some(Undone::Depth) => {
-                self.opened()?.revision += 1;
-                self.follow_depth()
+            Some(StepEffect::Variant(name)) => {
+                self.rebuild_stage(StageChange::Variant { name, cause: ChangeCause::History })
             }
-            Some(Undone::Layers) => {
-                let document = self.opened()?;
+            Some(StepEffect::Depth) => {
+                self.document_mut()?.revision += 1;
+                self.rebuild_depth()
+            }
+            Some(StepEffect::Layers) => {
+                let document = self.document_mut()?;
                 // Steps hold no values that follow from the camera.
-                document.adjust();
+                document.evaluate_adjustments();
                 document.revision += 1;
                 self.events.push(Event::LayersChanged);
                 self.show_layers(None)

@@ -23,5 +23,5 @@ mod timeline;
 mod verifying;
 mod watched;
 
-pub use exporting::FullSize;
+pub use exporting::FullSizeFieldState;
 pub use state::{Session, SessionOptions};

@@ -1,27 +1,27 @@
 //! What background work hands to the session.
 
-use super::restaged::Restaged;
-use crate::document::{Document, NearQuestion};
+use super::restaged::RebuiltStage;
+use crate::document::{DepthPolarityRequest, Document};
 use crate::output::Reference;
 use lens::Picture;
 use std::path::PathBuf;
 use trace::truth::Estimate;
 
 /// What a finished job hands to the session.
-pub(super) enum Outcome {
+pub(super) enum JobOutcome {
     Opened(Box<Document>),
     /// The document of this generation and revision, whose scene was written again.
-    Followed {
+    SceneReloaded {
         document: Box<Document>,
         generation: u64,
         revision: u64,
     },
     /// A capture that does not open until somebody says which end of its depth map is near.
-    AsksNear(Box<NearQuestion>),
+    DepthPolarityRequired(Box<DepthPolarityRequest>),
     /// What is seen of a scene before it can be painted on.
-    Seen(Picture),
+    OpeningPicture(Picture),
     /// The stage of the document, seen or lit in another way.
-    Restaged(Box<Restaged>),
+    StageRebuilt(Box<RebuiltStage>),
     /// A project file that holds this revision of this document.
     Saved {
         path: PathBuf,
@@ -29,12 +29,12 @@ pub(super) enum Outcome {
         generation: u64,
     },
     /// A recovery file that holds this revision.
-    Kept {
+    RecoverySaved {
         path: PathBuf,
         revision: u64,
     },
-    Written(PathBuf, Vec<String>),
+    FileWritten(PathBuf, Vec<String>),
     Reference(Box<Reference>),
     /// What is known after another pass of the verification of this number.
-    Verified(u64, Box<Estimate>),
+    VerificationPass(u64, Box<Estimate>),
 }

@@ -1,6 +1,6 @@
 //! What background work brings, taken up once a frame.
 
-use super::outcome::Outcome;
+use super::outcome::JobOutcome;
 use super::recovery::Recovery;
 use super::state::Session;
 use crate::commands::Event;
@@ -12,13 +12,13 @@ impl Session {
     /// What happened since the last call. To be called once a frame.
     pub fn poll(&mut self) -> Vec<Event> {
         while let Ok((id, outcome)) = self.outcomes.try_recv() {
-            let is_given_up = self.jobs.iter().any(|job| Some(job.id) == id && job.progress.cancelled());
+            let is_cancelled = self.jobs.iter().any(|job| Some(job.id) == id && job.progress.cancelled());
             self.jobs.retain(|job| Some(job.id) != id);
             self.reference_jobs.retain(|(job, _)| Some(*job) != id);
             match outcome {
                 // It was done before it could be stopped; a newer one has its place.
-                Ok(Outcome::Restaged(_)) if is_given_up => {}
-                Ok(outcome) => self.take(outcome),
+                Ok(JobOutcome::StageRebuilt(_)) if is_cancelled => {}
+                Ok(outcome) => self.take_outcome(outcome),
                 Err(error) => {
                     if self.document.is_none() {
                         // What was seen of a scene that does not open.
@@ -30,32 +30,33 @@ impl Session {
                 }
             }
         }
-        let (newer, news) = self.preview_thread.take(self.seen_preview);
-        for (_, patch) in news.patches.into_iter().filter(|(generation, _)| *generation == self.generation) {
-            self.screen.take(patch);
+        let (new_preview, updates) = self.preview_thread.take(self.last_preview_id);
+        for (_, patch) in updates.patches.into_iter().filter(|(generation, _)| *generation == self.generation)
+        {
+            self.screen.apply_patch(patch);
         }
-        self.finished = news.finished;
-        let glare = news.glare.filter(|(generation, _)| *generation == self.generation);
-        self.events.extend(glare.map(|(_, stops)| Event::Glaring(stops)));
-        if let Some((_, field)) = news.field.filter(|(generation, _)| *generation == self.generation) {
-            self.field = Some(field);
-            self.fields += 1;
+        self.finished_pictures = updates.finished;
+        let glare = updates.glare.filter(|(generation, _)| *generation == self.generation);
+        self.events.extend(glare.map(|(_, stops)| Event::GlareDetected(stops)));
+        if let Some((_, field)) = updates.field.filter(|(generation, _)| *generation == self.generation) {
+            self.light_field = Some(field);
+            self.light_field_count += 1;
         }
-        if let Some(preview) = newer {
-            self.seen_preview = preview.id;
+        if let Some(preview) = new_preview {
+            self.last_preview_id = preview.id;
             if preview.generation == self.generation {
                 self.events.push(Event::PreviewReady(preview.id));
                 self.preview = Some(preview);
             }
         }
-        self.events.extend(news.failures.into_iter().map(Event::Failed));
-        self.events.extend(news.notices.into_iter().map(Event::Notice));
+        self.events.extend(updates.failures.into_iter().map(Event::Failed));
+        self.events.extend(updates.notices.into_iter().map(Event::Notice));
         let jobs = self.jobs();
-        let moved = jobs.iter().filter(|job| !self.reported.contains(job)).cloned();
-        self.events.extend(moved.map(Event::Progress));
-        self.reported = jobs;
-        self.keep_unsaved_work();
-        self.watch_scene();
+        let changed_jobs = jobs.iter().filter(|job| !self.reported_jobs.contains(job)).cloned();
+        self.events.extend(changed_jobs.map(Event::Progress));
+        self.reported_jobs = jobs;
+        self.save_recovery_if_due();
+        self.check_watched_scene();
         if !self.map_changes.is_empty() {
             let rectangles = std::mem::take(&mut self.map_changes).into_values().collect();
             self.events.push(Event::MapChanged(rectangles));
@@ -64,15 +65,15 @@ impl Session {
     }
 
     /// Shows a document that was opened.
-    pub(super) fn take_opened(&mut self, mut document: Document) {
+    pub(super) fn show_opened(&mut self, mut document: Document) {
         document.undo.set_budget(self.options.undo_budget_bytes);
-        self.forget_recovery();
+        self.remove_recovery_file();
         self.generation += 1;
-        (self.underway, self.preview, self.field) = (None, None, None);
+        (self.active_edit, self.preview, self.light_field) = (None, None, None);
         self.references.clear();
         self.map_changes.clear();
         self.end_verification();
-        (self.looked_through, self.fixated) = (None, None);
+        (self.sub_aperture_point, self.fixation_point) = (None, None);
         let camera = self.scaled_camera(&document.camera);
         self.preview_camera = Some(camera.clone());
         let stage = (document.stage.clone(), self.generation);
@@ -85,48 +86,54 @@ impl Session {
         // What was restored is in its file already; a document as saved has none.
         self.recovery = Recovery {
             file: document.is_unsaved().then(|| document.recovery_path()),
-            kept: if document.carried.is_some() { document.saved } else { document.revision },
-            changed: None,
+            saved_revision: if document.paint_transfer.is_some() {
+                document.saved_revision
+            } else {
+                document.revision
+            },
+            first_change: None,
         };
         self.document = Some(document);
         self.show_tone();
         self.begin_watching();
     }
 
-    fn take(&mut self, outcome: Outcome) {
+    fn take_outcome(&mut self, outcome: JobOutcome) {
         match outcome {
-            Outcome::Opened(document) => self.take_opened(*document),
-            Outcome::Followed { document, generation, revision } => {
-                self.take_followed(*document, [generation, revision]);
+            JobOutcome::Opened(document) => self.show_opened(*document),
+            JobOutcome::SceneReloaded { document, generation, revision } => {
+                self.show_reloaded(*document, [generation, revision]);
             }
-            Outcome::AsksNear(question) => self.events.push(Event::AsksNear(question)),
-            Outcome::Seen(picture) => self.take_seen(&picture),
-            Outcome::Restaged(restaged) => {
-                if let Err(error) = self.take_restaged(*restaged) {
+            JobOutcome::DepthPolarityRequired(question) => {
+                self.events.push(Event::DepthPolarityRequired(question))
+            }
+            JobOutcome::OpeningPicture(picture) => self.show_opening_picture(&picture),
+            JobOutcome::StageRebuilt(restaged) => {
+                if let Err(error) = self.show_rebuilt_stage(*restaged) {
                     self.events.push(Event::Failed(error.to_string()));
                 }
             }
-            Outcome::Saved { path, revision, generation } => {
+            JobOutcome::Saved { path, revision, generation } => {
                 if generation == self.generation {
-                    self.forget_recovery();
+                    self.remove_recovery_file();
                     if let Some(document) = &mut self.document {
-                        document.saved = revision;
+                        document.saved_revision = revision;
                         document.path = Some(path.clone());
                     }
-                    self.recovery.kept = revision;
+                    self.recovery.saved_revision = revision;
                 }
-                self.events.push(Event::Written(path));
+                self.events.push(Event::FileWritten(path));
             }
-            Outcome::Kept { path, revision } => {
+            JobOutcome::RecoverySaved { path, revision } => {
                 self.recovery.file = Some(path);
-                self.recovery.kept = revision;
+                self.recovery.saved_revision = revision;
             }
-            Outcome::Written(path, notices) => {
+            JobOutcome::FileWritten(path, notices) => {
                 self.events.extend(notices.into_iter().map(Event::Notice));
-                self.events.push(Event::Written(path));
+                self.events.push(Event::FileWritten(path));
             }
-            Outcome::Reference(reference) => self.take_reference(*reference),
-            Outcome::Verified(number, estimate) => self.take_verified(number, *estimate),
+            JobOutcome::Reference(reference) => self.take_reference(*reference),
+            JobOutcome::VerificationPass(number, estimate) => self.show_verification_pass(number, *estimate),
         }
     }
 }

@@ -9,7 +9,7 @@ pub(super) struct Recovery {
     /// The file that holds it, if there is one.
     pub file: Option<PathBuf>,
     /// The revision that the file, or the saved project, holds.
-    pub kept: u64,
+    pub saved_revision: u64,
     /// When the first change after that was seen.
-    pub changed: Option<Instant>,
+    pub first_change: Option<Instant>,
 }

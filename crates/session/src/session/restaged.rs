@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 /// What is to be different.
 #[derive(Clone, Debug)]
-pub(super) enum Restaging {
+pub(super) enum StageChange {
     /// Whether faces that are not double sided are seen from behind.
     BackFaces(BackFaces),
     /// What lies beyond all surfaces; none: what suits the scene.
@@ -18,14 +18,14 @@ pub(super) enum Restaging {
     /// The same of an environment's file, seen as it is; turn, strength and bounces stay.
     Environment(PathBuf),
     /// The scene's variant; none: its own materials.
-    Variant { name: Option<String>, cause: Cause },
+    Variant { name: Option<String>, cause: ChangeCause },
     /// The depth of a picture: what was chosen of it, and the strokes that repair it.
     Depth(CaptureChoices),
 }
 
 /// Why it is to be different.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Cause {
+pub(super) enum ChangeCause {
     /// It was asked for: a step of undo.
     Command,
     /// A step was taken back, or done again.
@@ -33,17 +33,17 @@ pub(super) enum Cause {
 }
 
 /// A stage that was prepared.
-pub(super) struct Restaged {
-    pub restaging: Restaging,
+pub(super) struct RebuiltStage {
+    pub change: StageChange,
     /// The stage that it was made from, in the document of this generation.
     pub base: Arc<Stage>,
     pub generation: u64,
     pub stage: Stage,
 }
 
-impl Restaging {
+impl StageChange {
     /// What the job is called; those of one name are in each other's place.
-    pub fn label(&self) -> &'static str {
+    pub fn job_label(&self) -> &'static str {
         match self {
             Self::BackFaces(_) => "looking at other faces",
             Self::World(_) | Self::Environment(_) => "changing the world",
@@ -53,7 +53,7 @@ impl Restaging {
     }
 
     /// Whether the stage is not that way already.
-    pub fn is_new_to(&self, stage: &Stage) -> bool {
+    pub fn differs_from(&self, stage: &Stage) -> bool {
         let scene = &stage.scene;
         match self {
             Self::BackFaces(back_faces) => scene.back_faces != *back_faces,
@@ -65,18 +65,18 @@ impl Restaging {
     }
 
     /// The stage made so.
-    pub fn of(&self, stage: &Stage, progress: &JobProgress) -> Result<Stage, SessionError> {
+    pub fn apply_to(&self, stage: &Stage, progress: &JobProgress) -> Result<Stage, SessionError> {
         match self {
             Self::BackFaces(back_faces) => stage.with_back_faces(*back_faces, progress),
             Self::World(world) => stage.with_world(world.clone(), progress),
             Self::Environment(file) => {
                 let before = stage.scene.world.as_ref();
-                let of_file = WorldFile::of_environment(file);
+                let file_world = WorldFile::from_environment_file(file);
                 let world = WorldFile {
-                    rotation: before.map_or(of_file.rotation, |world| world.rotation),
-                    strength: before.map_or(of_file.strength, |world| world.strength),
+                    rotation: before.map_or(file_world.rotation, |world| world.rotation),
+                    strength: before.map_or(file_world.strength, |world| world.strength),
                     bounces: before.and_then(|world| world.bounces),
-                    ..of_file
+                    ..file_world
                 };
                 stage.with_world(Some(world.load(&stage.scene)?), progress)
             }

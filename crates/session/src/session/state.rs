@@ -1,15 +1,15 @@
 //! The state of a session, one document open at a time.
 
-use super::outcome::Outcome;
+use super::outcome::JobOutcome;
 use super::recovery::Recovery;
-use super::watched::Watched;
+use super::watched::WatchedFile;
 use crate::commands::Event;
 use crate::display::{Display, Screen};
 use crate::document::Document;
-use crate::editing::Underway;
+use crate::editing::ActiveEdit;
 use crate::error::SessionError;
 use crate::jobs::{Job, JobId, JobProgress, JobStatus, Waker};
-use crate::light_field::{BakedField, LightFieldStore, photograph_light_if_known};
+use crate::light_field::{BakedField, LightFieldStore, solved_photograph_light};
 use crate::output::{Reference, ReferenceKind, Verification};
 use crate::preview::{PictureTimes, Preview, PreviewActivity, PreviewThread};
 
@@ -34,13 +34,13 @@ pub struct SessionOptions {
     pub undo_budget_bytes: usize,
     /// How long after a change unsaved work is written to its recovery file. With the time that writing takes, it
     /// is what a crash may cost.
-    pub keep_after: Duration,
+    pub recovery_delay: Duration,
     /// For how long nothing must change until the exact picture is drawn; none: the one within the tolerance is enough.
-    pub exact_after: Option<Duration>,
+    pub exact_delay: Option<Duration>,
     /// By how many passes its light is refined then, at most; 0: not at all.
     pub light_passes: u32,
     /// Where light fields are kept from one run to the next; none: they are baked every time.
-    pub light_fields: Option<LightFieldStore>,
+    pub light_field_store: Option<LightFieldStore>,
     /// The graphics card that the preview is summed on, and shown from; none: the processor sums.
     pub gpu: Option<Gpu>,
     /// Called from any thread when there is something to poll.
@@ -53,10 +53,10 @@ impl Default for SessionOptions {
             unwrap: UnwrapOptions::default(),
             preview_size: 960,
             undo_budget_bytes: Document::UNDO_BUDGET_BYTES,
-            keep_after: Duration::from_secs(15),
-            exact_after: None,
+            recovery_delay: Duration::from_secs(15),
+            exact_delay: None,
             light_passes: 0,
-            light_fields: None,
+            light_field_store: None,
             gpu: None,
             waker: Arc::new(|| {}),
         }
@@ -75,7 +75,7 @@ pub struct Session {
     pub(super) document: Option<Document>,
     /// Counts opened documents.
     pub(super) generation: u64,
-    pub(super) underway: Option<Underway>,
+    pub(super) active_edit: Option<ActiveEdit>,
     pub(super) preview_thread: PreviewThread,
     pub(super) preview: Option<Preview>,
     /// The preview as it is shown.
@@ -83,24 +83,24 @@ pub struct Session {
     pub(super) display: Display,
     pub(super) tolerance: Tolerance,
     /// The light field that the preview is made of.
-    pub(super) field: Option<BakedField>,
+    pub(super) light_field: Option<BakedField>,
     /// Counts them.
-    pub(super) fields: u64,
+    pub(super) light_field_count: u64,
     /// The pictures that were finished between the last two polls.
-    pub(super) finished: Vec<PictureTimes>,
+    pub(super) finished_pictures: Vec<PictureTimes>,
     /// The aperture point that the preview shows the scene through; none: all of the aperture.
-    pub(super) looked_through: Option<DVec2>,
+    pub(super) sub_aperture_point: Option<DVec2>,
     /// The place in the world that two eyes look at; none: what the lens is focused on.
-    pub(super) fixated: Option<DVec3>,
+    pub(super) fixation_point: Option<DVec3>,
     /// The camera that the preview was asked to show last.
     pub(super) preview_camera: Option<Camera>,
     /// The newest preview that was seen, of whatever document.
-    pub(super) seen_preview: u64,
+    pub(super) last_preview_id: u64,
     /// Counts changes of the map that were shown to the preview.
     pub(super) map_serial: u64,
     pub(super) recovery: Recovery,
     /// The scene's file, where another program may write it again.
-    pub(super) watched: Option<Watched>,
+    pub(super) watched_file: Option<WatchedFile>,
     /// The pictures to compare with, one of a kind.
     pub(super) references: Vec<Reference>,
     /// Which of the jobs make such pictures.
@@ -112,12 +112,12 @@ pub struct Session {
     pub(super) jobs: Vec<Job>,
     pub(super) last_job: u64,
     /// What jobs hand over: with their id when they are done, without it on the way.
-    pub(super) outcomes: mpsc::Receiver<(Option<JobId>, Result<Outcome, SessionError>)>,
-    pub(super) sender: mpsc::Sender<(Option<JobId>, Result<Outcome, SessionError>)>,
+    pub(super) outcomes: mpsc::Receiver<(Option<JobId>, Result<JobOutcome, SessionError>)>,
+    pub(super) outcome_sender: mpsc::Sender<(Option<JobId>, Result<JobOutcome, SessionError>)>,
     pub(super) events: Vec<Event>,
     /// Rectangles of the map that changed since the last poll, by squares of the atlas.
     pub(super) map_changes: BTreeMap<[u32; 2], [Range<u32>; 2]>,
-    pub(super) reported: Vec<JobStatus>,
+    pub(super) reported_jobs: Vec<JobStatus>,
 }
 
 impl Session {
@@ -127,29 +127,29 @@ impl Session {
         Ok(Self {
             preview_thread: PreviewThread::start(
                 options.waker.clone(),
-                options.exact_after,
+                options.exact_delay,
                 options.light_passes,
-                options.light_fields.clone(),
+                options.light_field_store.clone(),
                 options.gpu.clone(),
             )?,
             options,
             document: None,
             generation: 0,
-            underway: None,
+            active_edit: None,
             preview: None,
             screen: Screen::default(),
             display: Display::default(),
             tolerance: Tolerance::VIEWING,
-            field: None,
-            fields: 0,
-            finished: Vec::new(),
-            looked_through: None,
-            fixated: None,
+            light_field: None,
+            light_field_count: 0,
+            finished_pictures: Vec::new(),
+            sub_aperture_point: None,
+            fixation_point: None,
             preview_camera: None,
-            seen_preview: 0,
+            last_preview_id: 0,
             map_serial: 0,
             recovery: Recovery::default(),
-            watched: None,
+            watched_file: None,
             references: Vec::new(),
             reference_jobs: Vec::new(),
             verification: None,
@@ -158,10 +158,10 @@ impl Session {
             jobs: Vec::new(),
             last_job: PREVIEW_JOB.0,
             outcomes,
-            sender,
+            outcome_sender: sender,
             events: Vec::new(),
             map_changes: BTreeMap::new(),
-            reported: Vec::new(),
+            reported_jobs: Vec::new(),
         })
     }
 
@@ -186,13 +186,13 @@ impl Session {
     }
 
     /// The aperture point that the live picture shows the scene through, in [−1, 1]²; none: all of the aperture.
-    pub fn looked_through(&self) -> Option<DVec2> {
-        self.looked_through
+    pub fn sub_aperture_point(&self) -> Option<DVec2> {
+        self.sub_aperture_point
     }
 
     /// The light of the photographs of what is open, once it is there.
     pub fn photograph_light(&self) -> Option<Arc<PhotographLight>> {
-        photograph_light_if_known(&self.document.as_ref()?.stage.tracer)
+        solved_photograph_light(&self.document.as_ref()?.stage.tracer)
     }
 
     /// The live picture as the screen shows it.
@@ -202,7 +202,7 @@ impl Session {
 
     /// When the pictures of full size were made that were finished between the last two calls of [`Self::poll`].
     pub fn finished_pictures(&self) -> &[PictureTimes] {
-        &self.finished
+        &self.finished_pictures
     }
 
     /// How many changes of the map there were: a preview that has seen as many shows it as it is.
@@ -216,18 +216,18 @@ impl Session {
     }
 
     /// How far the exact picture is, in [0, 1], while it is drawn.
-    pub fn drawing_exactly(&self) -> Option<f32> {
+    pub fn exact_picture_progress(&self) -> Option<f32> {
         self.preview_thread.refining()
     }
 
     /// Whether a stroke or a gradient is going on.
     pub fn is_painting(&self) -> bool {
-        self.underway.is_some()
+        self.active_edit.is_some()
     }
 
     /// Whether all background work is done and the preview shows the document as it is, within the tolerance.
     pub fn is_settled(&self) -> bool {
-        self.jobs.is_empty() && self.preview_thread.is_settled(self.seen_preview)
+        self.jobs.is_empty() && self.preview_thread.is_settled(self.last_preview_id)
     }
 
     /// All background work that is going on.
@@ -239,12 +239,12 @@ impl Session {
             _ => None,
         };
         let baking = label.map(|label| {
-            let (step, seconds_left) = progress.standing();
+            let (step, seconds_left) = progress.step_status();
             let (label, fraction) = (label.into(), progress.fraction());
             JobStatus { id: PREVIEW_JOB, label, step, fraction, seconds_left, can_cancel: true }
         });
         let light = self.preview_thread.refining_light().map(|(passes, progress)| {
-            let (_, seconds_left) = progress.standing();
+            let (_, seconds_left) = progress.step_status();
             let (label, step) = ("refining the light".into(), format!("{passes} passes"));
             JobStatus {
                 id: LIGHT_JOB,
@@ -259,18 +259,18 @@ impl Session {
     }
 
     /// The document, to be changed.
-    pub(super) fn opened(&mut self) -> Result<&mut Document, SessionError> {
+    pub(super) fn document_mut(&mut self) -> Result<&mut Document, SessionError> {
         self.document.as_mut().ok_or(SessionError::NothingOpen)
     }
 
     /// Starts background work; its id.
-    pub(super) fn start(
+    pub(super) fn start_job(
         &mut self,
         label: String,
-        work: impl FnOnce(&JobProgress) -> Result<Outcome, SessionError> + Send + 'static,
+        work: impl FnOnce(&JobProgress) -> Result<JobOutcome, SessionError> + Send + 'static,
     ) -> Result<JobId, SessionError> {
         self.last_job += 1;
-        let (sender, waker) = (self.sender.clone(), self.options.waker.clone());
+        let (sender, waker) = (self.outcome_sender.clone(), self.options.waker.clone());
         let job = Job::start(JobId(self.last_job), label, work, move |id, outcome| {
             // A session that is gone wants nothing.
             let _ = sender.send((Some(id), outcome));

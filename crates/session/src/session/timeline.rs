@@ -16,16 +16,16 @@ impl Session {
         if !seconds.is_finite() {
             return Err(SessionError::BadInput(format!("{seconds} s is no time")));
         }
-        self.opened()?.seconds = seconds;
+        self.document_mut()?.seconds = seconds;
         self.show_time()
     }
 
     /// Gives lens and layers what their keys say now.
     pub(super) fn show_time(&mut self) -> Result<(), SessionError> {
-        let document = self.opened()?;
+        let document = self.document_mut()?;
         let (seconds, scene) = (document.seconds, document.stage.scene.clone());
-        let position = |point: SurfacePoint| point.position_if_there(&scene);
-        let camera = document.lens_motion.at(seconds, &document.camera, &position);
+        let position = |point: SurfacePoint| point.checked_position(&scene);
+        let camera = document.lens_motion.camera_at(seconds, &document.camera, &position);
         let is_moved = camera != document.camera && camera.validate().is_ok();
         if is_moved {
             document.camera = camera;
@@ -33,7 +33,8 @@ impl Session {
         let mut is_faded = false;
         for index in 0..document.layers.layers().len() {
             let Some(layer) = document.layers.layer_mut(index) else { continue };
-            let Some(opacity) = layer.motion.opacity.around(seconds).map(|around| around.number()) else {
+            let Some(opacity) = layer.motion.opacity.span_at(seconds).map(|around| around.interpolate())
+            else {
                 continue;
             };
             is_faded |= layer.opacity != opacity;
@@ -42,7 +43,7 @@ impl Session {
         if is_moved {
             self.events.push(Event::CameraChanged);
             self.show_camera();
-            self.follow_camera()?;
+            self.update_adjustment_layers()?;
         }
         if is_faded {
             self.events.push(Event::LayersChanged);
@@ -56,7 +57,7 @@ impl Session {
             let what = "keys of the lens: times must ascend, distances and f-numbers be above 0";
             return Err(SessionError::BadInput(what.into()));
         }
-        let document = self.opened()?;
+        let document = self.document_mut()?;
         if document.lens_motion == motion {
             return Ok(());
         }
@@ -77,9 +78,9 @@ impl Session {
                 "a rack focus takes some time (give it more than 0 s)".into(),
             ));
         }
-        let mut motion = self.opened()?.lens_motion.clone();
+        let mut motion = self.document_mut()?.lens_motion.clone();
         for (hit, seconds) in points.into_iter().zip(seconds) {
-            if !motion.focus.put(Key { seconds, value: FocusTarget::Point(hit.point), ease }) {
+            if !motion.focus.insert(Key { seconds, value: FocusTarget::Point(hit.point), ease }) {
                 return Err(SessionError::BadInput("the lens has too many keys (take some away)".into()));
             }
         }

@@ -1,10 +1,10 @@
 //! Checking a rectangle of the picture against the ground truth, pass by pass.
 
-use super::outcome::Outcome;
+use super::outcome::JobOutcome;
 use super::state::Session;
 use crate::commands::Event;
 use crate::error::SessionError;
-use crate::light_field::light_for_many_points;
+use crate::light_field::ground_truth_light;
 use crate::output::Verification;
 use focus::Focus;
 use glam::DVec2;
@@ -13,7 +13,7 @@ use std::sync::Arc;
 use trace::truth::{Estimate, Region, Truth, TruthOptions};
 
 /// Rays a pixel of a verification.
-const SAMPLES: u32 = 1024;
+const SAMPLES_PER_PIXEL: u32 = 1024;
 
 impl Session {
     /// The rectangle that is being verified, or was.
@@ -32,12 +32,12 @@ impl Session {
     /// Starts tracing the rectangle between two positions of the picture; an older one is given up.
     pub(super) fn verify(&mut self, corners: [DVec2; 2]) -> Result<(), SessionError> {
         self.end_verification();
-        let document = self.opened()?;
+        let document = self.document_mut()?;
         let (stage, revision) = (document.stage.clone(), document.revision);
         let map = Arc::new(document.map.clone());
-        let focus = Focus::painted(stage.scene.clone(), stage.atlas.clone(), map);
-        let shot = document.camera.clone();
-        let camera = self.scaled_camera(&shot);
+        let focus = Focus::from_atlas_map(stage.scene.clone(), stage.atlas.clone(), map);
+        let shot_camera = document.camera.clone();
+        let camera = self.scaled_camera(&shot_camera);
         let size = DVec2::new(camera.width as f64, camera.height as f64);
         let [a, b] = corners.map(|corner| corner.clamp(DVec2::ZERO, DVec2::ONE) * size);
         let (low, high) = (a.min(b).floor(), a.max(b).ceil());
@@ -47,28 +47,37 @@ impl Session {
             return Ok(());
         }
         self.verifications += 1;
-        let number = self.verifications;
-        let wanted_samples = SAMPLES;
-        let kept =
-            Verification { region, camera: camera.clone(), estimate: None, wanted_samples, revision, number };
-        self.verification = Some(kept);
-        let (sender, waker) = (self.sender.clone(), self.options.waker.clone());
-        let id = self.start("verifying".into(), move |progress| {
-            let light = light_for_many_points(&stage.tracer, &camera, progress)?;
-            let options =
-                TruthOptions { samples_per_pixel: SAMPLES, region: Some(region), ..TruthOptions::default() };
+        let verification_number = self.verifications;
+        let target_samples = SAMPLES_PER_PIXEL;
+        let verification = Verification {
+            region,
+            camera: camera.clone(),
+            estimate: None,
+            target_samples,
+            revision,
+            number: verification_number,
+        };
+        self.verification = Some(verification);
+        let (sender, waker) = (self.outcome_sender.clone(), self.options.waker.clone());
+        let id = self.start_job("verifying".into(), move |progress| {
+            let light = ground_truth_light(&stage.tracer, &camera, progress)?;
+            let options = TruthOptions {
+                samples_per_pixel: SAMPLES_PER_PIXEL,
+                region: Some(region),
+                ..TruthOptions::default()
+            };
             let mut truth = Truth::new(&stage.tracer, &*light, &focus, &camera, &options);
-            let share = |samples: u32| samples as f32 / SAMPLES as f32;
+            let share = |samples: u32| samples as f32 / SAMPLES_PER_PIXEL as f32;
             while !truth.is_done() {
                 let done = truth.samples_per_pixel();
                 let after = share(done + options.samples_of_pass());
                 truth.pass(&Share::new(progress, share(done), after.min(1.0)))?;
                 // A session that is gone wants nothing.
-                let known = Outcome::Verified(number, Box::new(truth.estimate()));
-                let _ = sender.send((None, Ok(known)));
+                let update = JobOutcome::VerificationPass(verification_number, Box::new(truth.estimate()));
+                let _ = sender.send((None, Ok(update)));
                 waker();
             }
-            Ok(Outcome::Verified(number, Box::new(truth.estimate())))
+            Ok(JobOutcome::VerificationPass(verification_number, Box::new(truth.estimate())))
         })?;
         self.verification_job = Some(id);
         Ok(())
@@ -83,10 +92,10 @@ impl Session {
     }
 
     /// Takes up what is known after another pass.
-    pub(super) fn take_verified(&mut self, number: u64, estimate: Estimate) {
+    pub(super) fn show_verification_pass(&mut self, number: u64, estimate: Estimate) {
         if let Some(verification) = self.verification.as_mut().filter(|v| v.number == number) {
             verification.estimate = Some(Arc::new(estimate));
-            self.events.push(Event::Verified);
+            self.events.push(Event::VerificationUpdated);
         }
     }
 }

@@ -10,45 +10,45 @@ const MANIFEST: &str = "focus-brush.json";
 type Stamp = (SystemTime, u64);
 
 /// The file that is watched.
-pub(super) struct Watched {
-    scene: PathBuf,
+pub(super) struct WatchedFile {
+    path: PathBuf,
     /// As it was read.
-    read: Option<Stamp>,
+    read_stamp: Option<Stamp>,
     /// As it was seen last, where that is another.
-    changed: Option<Stamp>,
-    pub looked: Instant,
+    pending_stamp: Option<Stamp>,
+    pub last_check: Instant,
 }
 
-impl Watched {
+impl WatchedFile {
     /// The file at `scene`, if a bridge wrote it.
-    pub fn of(scene: &Path) -> Option<Self> {
+    pub fn for_bridged_scene(scene: &Path) -> Option<Self> {
         let is_bridged = scene.parent()?.join(MANIFEST).is_file();
         is_bridged.then(|| Self {
-            scene: scene.into(),
-            read: stamp(scene),
-            changed: None,
-            looked: Instant::now(),
+            path: scene.into(),
+            read_stamp: file_stamp(scene),
+            pending_stamp: None,
+            last_check: Instant::now(),
         })
     }
 
     /// Whether it has changed, and stayed so from one look to the next.
-    pub fn is_another(&mut self) -> bool {
-        let now = stamp(&self.scene);
-        self.looked = Instant::now();
-        if now.is_none() || now == self.read {
-            self.changed = None;
+    pub fn has_changed(&mut self) -> bool {
+        let now = file_stamp(&self.path);
+        self.last_check = Instant::now();
+        if now.is_none() || now == self.read_stamp {
+            self.pending_stamp = None;
             return false;
         }
-        if self.changed != now {
-            self.changed = now;
+        if self.pending_stamp != now {
+            self.pending_stamp = now;
             return false;
         }
-        (self.read, self.changed) = (now, None);
+        (self.read_stamp, self.pending_stamp) = (now, None);
         true
     }
 }
 
-fn stamp(file: &Path) -> Option<Stamp> {
-    let found = std::fs::metadata(file).ok()?;
-    Some((found.modified().ok()?, found.len()))
+fn file_stamp(file: &Path) -> Option<Stamp> {
+    let metadata = std::fs::metadata(file).ok()?;
+    Some((metadata.modified().ok()?, metadata.len()))
 }

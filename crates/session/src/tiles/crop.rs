@@ -1,9 +1,9 @@
 //! A crop of a picture, drawn: the light field around it is baked square by square, and each goes into the sums.
 
-use super::lit::Lit;
+use super::lit::LitPicture;
 use crate::error::SessionError;
 use crate::jobs::Steps;
-use crate::output::{Footprints, Packing, Ranking, Shown, Tally, Things, WantedMattes, shares};
+use crate::output::{Footprints, MatteRequest, Packing, Ranking, SampleParts, Tally, Things, shares};
 use glam::{IVec2, Vec2};
 use lens::Picture;
 use progress::{Progress, Stage};
@@ -13,10 +13,10 @@ use splat::{Crop, CropError, CropOptions, CropPicture, CropSums, Integers, Kind,
 use std::array::from_fn;
 
 /// Squares of 64 × 64 px whose light field is in memory at once.
-const TOGETHER: usize = 64;
+const SQUARES_AT_ONCE: usize = 64;
 
 /// Mattes, of three sets each, that are summed at once.
-const MOST_MATTES: usize = 8;
+const MAX_MATTES_AT_ONCE: usize = 8;
 
 /// Bytes that sums of a pixel take: free and sharing, of all levels.
 const BYTES_OF_SUMS: u64 = 48;
@@ -25,7 +25,7 @@ const BYTES_OF_SUMS: u64 = 48;
 const BYTES_OF_NUMBERS: u64 = 56;
 
 /// Bytes that all of it may take.
-const MOST_BYTES: u64 = 400 << 20;
+const MAX_BYTES: u64 = 400 << 20;
 
 /// Why a crop was not drawn.
 pub(super) enum CropFailure {
@@ -70,43 +70,43 @@ enum Set {
 
 /// Draws crops of a picture.
 pub(super) struct CropDrawer<'a> {
-    lit: &'a Lit,
+    lit: &'a LitPicture,
     baker: PartsBaker<'a>,
     scene: &'a Scene,
     things: Vec<Things>,
 }
 
 impl<'a> CropDrawer<'a> {
-    pub fn new(lit: &'a Lit) -> Self {
+    pub fn new(lit: &'a LitPicture) -> Self {
         let baker = lit.baker();
         let scene: &Scene = lit.tracer.scene();
-        let has_things = lit.mattes.is_some_and(|wanted| wanted.crypto);
+        let has_things = lit.mattes.is_some_and(|request| request.crypto);
         let things =
             if has_things { vec![Things::objects(scene), Things::materials(scene)] } else { Vec::new() };
         Self { lit, baker, scene, things }
     }
 
     /// How many pixels of the finer picture are drawn at once at most.
-    pub fn most_px(&self) -> u64 {
+    pub fn max_px(&self) -> u64 {
         let mattes = match self.lit.mattes {
             None => 0,
-            Some(WantedMattes { crypto: false }) => 1,
-            Some(WantedMattes { crypto: true }) => MOST_MATTES as u64,
+            Some(MatteRequest { crypto: false }) => 1,
+            Some(MatteRequest { crypto: true }) => MAX_MATTES_AT_ONCE as u64,
         };
         let pictures = if self.baker.may_be_painted() { 2 } else { 1 };
-        MOST_BYTES / (BYTES_OF_SUMS * (pictures + mattes) + BYTES_OF_NUMBERS)
+        MAX_BYTES / (BYTES_OF_SUMS * (pictures + mattes) + BYTES_OF_NUMBERS)
     }
 
     /// Draws a crop of the picture, px.
     pub fn draw(&self, crop: Crop, integers: Integers, steps: &dyn Steps) -> Result<DrawnCrop, CropFailure> {
-        let Lit { finer, options, .. } = self.lit;
+        let LitPicture { finer, options, .. } = self.lit;
         let (cells, tolerance) = (options.cells_a_side, options.splat_tolerance);
         let fine =
             Crop { corner: crop.corner.map(|px| px * cells), size: crop.size.map(|side| side * cells) };
         let packings = self.packings(crop);
-        let sets = sets(self.lit.mattes, &packings);
+        let sets = matte_sets(self.lit.mattes, &packings);
         let mattes: Vec<&[Set]> = sets.chunks(SETS).collect();
-        let mut groups = mattes.chunks(MOST_MATTES);
+        let mut groups = mattes.chunks(MAX_MATTES_AT_ONCE);
         let group = groups.next().unwrap_or_default();
         let mut sums = CropSums::new(CropOptions {
             camera: finer,
@@ -119,13 +119,13 @@ impl<'a> CropDrawer<'a> {
         let first = IVec2::from_array(fine.corner.map(|px| px as i32));
         let window = [first, first + IVec2::from_array(fine.size.map(|side| side as i32))];
         let near = CropSums::near_px(tolerance) + CropSums::blur_px(tolerance);
-        let around = self.baker.around(window, near, &*steps.begin("surroundings"))?;
+        let around = self.baker.survey_surroundings(window, near, &*steps.begin("surroundings"))?;
         self.add_all(&mut sums, &around, group, &packings, &*steps.begin("tile"))?;
         let picture = sums.picture()?;
 
         let mut alpha = None;
         let mut tallies: Vec<_> = self.things.iter().map(|_| Tally::new(crop.size)).collect();
-        let mut count = |sums: &CropSums, group: &[&[Set]]| -> Result<(), CropFailure> {
+        let mut count_mattes = |sums: &CropSums, group: &[&[Set]]| -> Result<(), CropFailure> {
             for (index, sets) in group.iter().enumerate() {
                 let picture = sums.matte(index)?.averaged(cells);
                 for (set, what) in sets.iter().enumerate() {
@@ -140,11 +140,11 @@ impl<'a> CropDrawer<'a> {
             }
             Ok(())
         };
-        count(&sums, group)?;
+        count_mattes(&sums, group)?;
         for group in groups {
             sums.begin_mattes(group.len());
             self.add_all(&mut sums, &around, group, &packings, &*steps.begin("mattes"))?;
-            count(&sums, group)?;
+            count_mattes(&sums, group)?;
         }
         let shown = alpha.as_deref().unwrap_or_default();
         let mattes = tallies.into_iter().map(|tally| tally.ranking(shown)).collect();
@@ -160,13 +160,13 @@ impl<'a> CropDrawer<'a> {
         packings: &[Packing],
         progress: &dyn Progress,
     ) -> Result<(), CropFailure> {
-        let Lit { focus, options, .. } = self.lit;
-        let batches = around.squares.len().div_ceil(TOGETHER) as f32;
-        for (index, squares) in around.squares.chunks(TOGETHER).enumerate() {
+        let LitPicture { focus, options, .. } = self.lit;
+        let batches = around.squares.len().div_ceil(SQUARES_AT_ONCE) as f32;
+        for (index, squares) in around.squares.chunks(SQUARES_AT_ONCE).enumerate() {
             let stage = Stage::new(progress, index as f32 / batches, (index + 1) as f32 / batches);
             let (salf, _) = self.baker.bake(around, squares, &Stage::new(&stage, 0.0, 0.7))?;
-            let shown = Shown::of(&salf, self.scene);
-            let is_black = |sample: u32| shown.part(sample).is_none();
+            let sample_parts = SampleParts::new(&salf, self.scene);
+            let is_black = |sample: u32| sample_parts.part(sample).is_none();
             let is_black = options.is_premultiplied().then_some(&is_black as &(dyn Fn(u32) -> bool + Sync));
             let is_in = |set: Option<&Set>, part: u32| match set {
                 None => false,
@@ -175,13 +175,14 @@ impl<'a> CropDrawer<'a> {
                     packings[*kind].color_of(self.things[*kind].of_part(part)) == *color
                 }
             };
-            let of_sample = |sets: &[Set], sample: u32| match shown.part(sample) {
+            let of_sample = |sets: &[Set], sample: u32| match sample_parts.part(sample) {
                 None => [false; SETS],
                 Some(part) => from_fn(|set| is_in(sets.get(set), part)),
             };
-            let tellers: Vec<_> = mattes.iter().map(|sets| |sample: u32| of_sample(sets, sample)).collect();
-            let tellers: Vec<_> = tellers.iter().map(|teller| teller as _).collect();
-            sums.add(&salf, focus, is_black, &tellers, &Stage::new(&stage, 0.7, 1.0))?;
+            let set_lookups: Vec<_> =
+                mattes.iter().map(|sets| |sample: u32| of_sample(sets, sample)).collect();
+            let set_lookup_refs: Vec<_> = set_lookups.iter().map(|lookup| lookup as _).collect();
+            sums.add(&salf, focus, is_black, &set_lookup_refs, &Stage::new(&stage, 0.7, 1.0))?;
         }
         Ok(())
     }
@@ -190,7 +191,7 @@ impl<'a> CropDrawer<'a> {
     fn packings(&self, crop: Crop) -> Vec<Packing> {
         let cells = self.lit.options.cells_a_side as f32;
         let of_things = |things: &Things| {
-            let mut footprints = Footprints::none(things.names.len(), crop.size);
+            let mut footprints = Footprints::empty(things.names.len(), crop.size);
             for (part, [low, high]) in self.baker.footprints() {
                 let corner = Vec2::from_array(crop.corner.map(|px| px as f32));
                 let size = Vec2::from_array(crop.size.map(|side| side as f32));
@@ -201,15 +202,15 @@ impl<'a> CropDrawer<'a> {
                     footprints.add(things.of_part(part), window);
                 }
             }
-            footprints.packed()
+            footprints.pack()
         };
         self.things.iter().map(of_things).collect()
     }
 }
 
 /// The sets that mattes are made of.
-fn sets(wanted: Option<WantedMattes>, packings: &[Packing]) -> Vec<Set> {
-    let surface = wanted.map(|_| Set::Surface);
+fn matte_sets(request: Option<MatteRequest>, packings: &[Packing]) -> Vec<Set> {
+    let surface = request.map(|_| Set::Surface);
     let colors = packings
         .iter()
         .enumerate()

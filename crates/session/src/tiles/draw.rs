@@ -1,13 +1,15 @@
 //! A tile, drawn to its part.
 
 use super::crop::{CropDrawer, CropFailure, DrawnCrop};
-use super::grid::pieces;
-use super::lit::Lit;
+use super::grid::split_into_pieces;
+use super::lit::LitPicture;
 use super::part::{Matte, NamedThings, NumbersAt, Piece, Sums};
 use crate::error::SessionError;
 use crate::jobs::Steps;
 use crate::light_field::is_photographed;
-use crate::output::{Aov, Known, Ranking, RenderOptions, Things, light_of_photographs, seen_in};
+use crate::output::{
+    Aov, LayerInputs, Ranking, RenderOptions, Things, light_of_photographs, photographed_shares_of_pixels,
+};
 use baselines::FirstHits;
 use focus::Focus;
 use glam::{DVec3, Vec3};
@@ -17,7 +19,7 @@ use scene::SurfacePoint;
 use splat::{Crop, Integers};
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use trace::{Leaving, Radiance, Tracer};
+use trace::{OutgoingRadiance, Radiance, Tracer};
 
 /// A picture that is drawn in tiles.
 #[derive(Clone, Copy)]
@@ -30,9 +32,9 @@ pub(super) struct Shot<'a> {
 
 impl Shot<'_> {
     /// The light of the picture, and of what a pinhole sees if that is asked for.
-    fn lit(self, steps: &dyn Steps) -> Result<(Lit, Option<Lit>), SessionError> {
+    fn lit(self, steps: &dyn Steps) -> Result<(LitPicture, Option<LitPicture>), SessionError> {
         let Self { tracer, camera, focus, options } = self;
-        let lit = Lit::new(tracer, camera, focus.clone(), options.clone(), steps)?;
+        let lit = LitPicture::new(tracer, camera, focus.clone(), options.clone(), steps)?;
         if !options.aovs.contains(&Aov::Pinhole) {
             return Ok((lit, None));
         }
@@ -40,7 +42,7 @@ impl Shot<'_> {
         let unpainted = Focus::constant(tracer.scene().clone(), FocusOffset::STANDARD);
         let aovs = options.aovs.iter().copied().filter(|aov| *aov == Aov::Alpha).collect();
         let options = RenderOptions { aovs, ..options.clone() };
-        let pinhole = Lit::new(tracer, &camera, unpainted, options, steps)?;
+        let pinhole = LitPicture::new(tracer, &camera, unpainted, options, steps)?;
         Ok((lit, Some(pinhole)))
     }
 
@@ -56,15 +58,15 @@ impl Shot<'_> {
         let drawer = CropDrawer::new(&lit);
         let pinhole = pinhole.as_ref().map(CropDrawer::new);
         let cells = u64::from(self.options.cells_a_side);
-        let most = pinhole.iter().chain([&drawer]).map(CropDrawer::most_px).min().unwrap_or(u64::MAX);
+        let max_px = pinhole.iter().chain([&drawer]).map(CropDrawer::max_px).min().unwrap_or(u64::MAX);
         let mut drawn = Vec::new();
-        for crop in pieces(tile, most / (cells * cells)) {
+        for crop in split_into_pieces(tile, max_px / (cells * cells)) {
             let DrawnCrop { picture, alpha, mattes } = drawer.draw(crop, integers, steps)?;
-            let sums = [part.floats(picture.numbers)?, part.floats(picture.knots)?];
+            let sums = [part.write_floats(picture.numbers)?, part.write_floats(picture.knots)?];
             let picture = Sums::new(picture.form, picture.facts, sums);
             let mut planes = BTreeMap::new();
             let mut put = |part: &mut PartWriter, layer: Layer| -> Result<(), SessionError> {
-                let numbers: NumbersAt = part.floats(layer.values)?.into();
+                let numbers: NumbersAt = part.write_floats(layer.values)?.into();
                 planes.insert(layer.name, numbers);
                 Ok(())
             };
@@ -72,13 +74,13 @@ impl Shot<'_> {
             if let Some(values) = alpha.filter(|_| self.options.aovs.contains(&Aov::Alpha)) {
                 put(part, Layer { name, values })?;
             }
-            let of_pinhole = match &pinhole {
+            let pinhole_sums = match &pinhole {
                 None => None,
                 Some(drawer) => {
                     // Nothing is painted, and no pixel covered twice: the finest integers hold it.
-                    let drawn = drawer.draw(crop, Integers::default(), steps).map_err(without_kind)?;
+                    let drawn = drawer.draw(crop, Integers::default(), steps).map_err(overflow_failure)?;
                     let picture = drawn.picture;
-                    let sums = [part.floats(picture.numbers)?, part.floats(picture.knots)?];
+                    let sums = [part.write_floats(picture.numbers)?, part.write_floats(picture.knots)?];
                     if let Some(values) = drawn.alpha {
                         put(part, Layer { name: format!("{}.A", Layer::PINHOLE), values })?;
                     }
@@ -90,7 +92,7 @@ impl Shot<'_> {
             }
             let mattes = mattes.iter().map(|ranking| matte(part, ranking)).collect::<Result<_, _>>()?;
             let Crop { corner, size } = crop;
-            drawn.push(Piece { corner, size, picture, pinhole: of_pinhole, planes, mattes });
+            drawn.push(Piece { corner, size, picture, pinhole: pinhole_sums, planes, mattes });
         }
         Ok(drawn)
     }
@@ -98,47 +100,47 @@ impl Shot<'_> {
     /// The layers of a crop that first hits tell.
     fn layers(self, crop: Crop, steps: &dyn Steps) -> Result<Vec<Layer>, SessionError> {
         let Self { tracer, camera, focus, options } = self;
-        let told: Vec<Aov> =
+        let hit_aovs: Vec<Aov> =
             options.aovs.iter().copied().filter(|aov| aov.needs_first_hits() || *aov == Aov::Seen).collect();
         let [columns, rows] = [0, 1].map(|axis| crop.corner[axis]..crop.corner[axis] + crop.size[axis]);
-        let asks = told.iter().any(|aov| aov.needs_first_hits());
-        let hits = asks.then(|| {
+        let needs_hits = hit_aovs.iter().any(|aov| aov.needs_first_hits());
+        let hits = needs_hits.then(|| {
             let window = [columns.clone(), rows.clone()];
             FirstHits::trace_part(tracer, &Dark, focus, camera, window, &*steps.begin("first hits"))
         });
         let hits = hits.transpose()?;
         let is_captured = is_photographed(tracer) || tracer.scene().picture.is_some();
-        let seen = match told.contains(&Aov::Seen) && is_captured {
+        let photographed = match hit_aovs.contains(&Aov::Seen) && is_captured {
             false => None,
             true => {
                 let light = light_of_photographs(tracer, steps)?;
                 let pixels = rows.flat_map(|y| columns.clone().map(move |x| y * camera.width + x));
-                Some(seen_in(tracer, camera, light.as_deref(), pixels.collect()))
+                Some(photographed_shares_of_pixels(tracer, camera, light.as_deref(), pixels.collect()))
             }
         };
-        let known = Known {
+        let inputs = LayerInputs {
             picture: &Picture::black(0, 0),
             hits: hits.as_ref(),
             estimate: None,
-            seen: seen.as_deref(),
+            photographed: photographed.as_deref(),
             mattes: None,
             pinhole: None,
             camera,
             coc: options.coc,
             overscan: options.overscan,
         };
-        Ok(told.iter().flat_map(|aov| aov.layers(&known)).collect())
+        Ok(hit_aovs.iter().flat_map(|aov| aov.layers(&inputs)).collect())
     }
 
     /// The things of which there are mattes, by kind.
     pub fn things(self) -> Vec<NamedThings> {
-        if !self.options.wanted_mattes().is_some_and(|wanted| wanted.crypto) {
+        if !self.options.matte_request().is_some_and(|request| request.crypto) {
             return Vec::new();
         }
         let scene = self.tracer.scene();
-        let named = |Things { kind, said, names, .. }: Things| {
-            let [kind, said] = [kind, said].map(String::from);
-            NamedThings { kind, said, names }
+        let named = |Things { kind, plural_name, names, .. }: Things| {
+            let [kind, plural_name] = [kind, plural_name].map(String::from);
+            NamedThings { kind, plural_name, names }
         };
         vec![named(Things::objects(scene)), named(Things::materials(scene))]
     }
@@ -156,7 +158,7 @@ impl Shot<'_> {
     }
 }
 
-fn without_kind(failure: CropFailure) -> CropFailure {
+fn overflow_failure(failure: CropFailure) -> CropFailure {
     match failure {
         CropFailure::TooFine(_) => CropFailure::Other(splat::SplatError::Overflow.into()),
         other => other,
@@ -164,9 +166,10 @@ fn without_kind(failure: CropFailure) -> CropFailure {
 }
 
 fn matte(part: &mut PartWriter, ranking: &Ranking) -> Result<Matte, SessionError> {
-    let counts: Section = part.words(ranking.rows.iter().map(|row| row.len() as u32))?;
+    let counts: Section = part.write_words(ranking.rows.iter().map(|row| row.len() as u32))?;
     let entries = ranking.rows.iter().flatten();
-    let entries = part.words(entries.flat_map(|entry| [entry.column, entry.thing, entry.share.to_bits()]))?;
+    let entries =
+        part.write_words(entries.flat_map(|entry| [entry.column, entry.thing, entry.share.to_bits()]))?;
     let Ranking { needed, left_out, .. } = *ranking;
     Ok(Matte { counts: counts.into(), entries: entries.into(), needed, left_out })
 }
@@ -175,11 +178,11 @@ fn matte(part: &mut PartWriter, ranking: &Ranking) -> Result<Matte, SessionError
 struct Dark;
 
 impl Radiance for Dark {
-    fn leaving(&self, _point: SurfacePoint, _eye: DVec3) -> Leaving {
-        Leaving::default()
+    fn outgoing(&self, _point: SurfacePoint, _eye: DVec3) -> OutgoingRadiance {
+        OutgoingRadiance::default()
     }
 
-    fn from_infinity(&self, _direction: DVec3) -> Vec3 {
+    fn environment(&self, _direction: DVec3) -> Vec3 {
         Vec3::ZERO
     }
 }

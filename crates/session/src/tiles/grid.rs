@@ -14,7 +14,7 @@ pub struct TileGrid {
 
 impl TileGrid {
     /// The most columns, and rows.
-    const MOST: u32 = 512;
+    const MAX_SIDE: u32 = 512;
 
     /// How many tiles there are.
     pub fn count(self) -> u32 {
@@ -52,29 +52,29 @@ impl FromStr for TileGrid {
     fn from_str(text: &str) -> Result<Self, String> {
         let parts = text.split_once(['x', 'X', '×']);
         let parts = parts.and_then(|(c, r)| Some((c.trim().parse().ok()?, r.trim().parse().ok()?)));
-        let sound = 1..=Self::MOST;
+        let valid = 1..=Self::MAX_SIDE;
         match parts {
-            Some((columns, rows)) if sound.contains(&columns) && sound.contains(&rows) => {
+            Some((columns, rows)) if valid.contains(&columns) && valid.contains(&rows) => {
                 Ok(Self { columns, rows })
             }
-            _ => Err(format!("CxR, columns and rows from 1 to {}, as in 4x4", Self::MOST)),
+            _ => Err(format!("CxR, columns and rows from 1 to {}, as in 4x4", Self::MAX_SIDE)),
         }
     }
 }
 
 /// A tile in pieces of at most so many pixels, or of one block: halves of halves, each begins and ends on a block.
-pub(super) fn pieces(tile: Crop, most: u64) -> Vec<Crop> {
+pub(super) fn split_into_pieces(tile: Crop, max_px: u64) -> Vec<Crop> {
     let [width, height] = tile.size;
     let longer = usize::from(height > width);
     let blocks = tile.size[longer].div_ceil(Crop::ALIGNMENT);
-    if u64::from(width) * u64::from(height) <= most || blocks < 2 {
+    if u64::from(width) * u64::from(height) <= max_px || blocks < 2 {
         return vec![tile];
     }
     let (mut first, mut second) = (tile, tile);
     first.size[longer] = blocks / 2 * Crop::ALIGNMENT;
     second.corner[longer] += first.size[longer];
     second.size[longer] -= first.size[longer];
-    [first, second].into_iter().flat_map(|half| pieces(half, most)).collect()
+    [first, second].into_iter().flat_map(|half| split_into_pieces(half, max_px)).collect()
 }
 
 #[cfg(test)]
@@ -113,7 +113,7 @@ mod tests {
     fn pieces_cover_the_tile_once() {
         let tile = Crop { corner: [2048, 1152], size: [2048, 1147] };
         for most in [u64::MAX, 1 << 20, 5000, 1] {
-            let pieces = pieces(tile, most);
+            let pieces = split_into_pieces(tile, most);
             covers(&pieces, tile);
             let blocks = u64::from(Crop::ALIGNMENT.pow(2));
             let area = |crop: &Crop| u64::from(crop.size[0]) * u64::from(crop.size[1]);

@@ -4,16 +4,16 @@ use super::part::{Part, Piece, Sums};
 use crate::error::SessionError;
 use lens::Picture;
 use progress::Progress;
-use project::{Numbers, PartFile, Section};
-use splat::{CropForm, CropRow, Joining, KNOT_NUMBERS};
+use project::{NumberReader, PartFile, Section};
+use splat::{CropForm, CropJoiner, CropRow, KNOT_NUMBERS};
 use std::ops::Range;
 
 /// Numbers of pieces, read row by row from the picture's top.
-pub(super) struct Rows<'a> {
-    pieces: Vec<OfPiece<'a>>,
+pub(super) struct PieceRows<'a> {
+    pieces: Vec<PieceReader<'a>>,
 }
 
-struct OfPiece<'a> {
+struct PieceReader<'a> {
     file: &'a PartFile,
     section: Section,
     /// Columns and rows of the picture.
@@ -21,26 +21,26 @@ struct OfPiece<'a> {
     rows: Range<u32>,
     /// Numbers a row.
     length: usize,
-    open: Option<Numbers>,
+    open: Option<NumberReader>,
 }
 
-impl<'a> Rows<'a> {
+impl<'a> PieceRows<'a> {
     /// Of sections that `find` tells of pieces, and how many numbers a row of one has; a pixel of theirs is one of `cells` × `cells`.
     pub fn new(
         parts: &'a [(PartFile, Part)],
         cells: u32,
-        find: impl Fn(&'a Piece) -> Option<(Section, usize)>,
+        section_of: impl Fn(&'a Piece) -> Option<(Section, usize)>,
     ) -> Self {
         let mut pieces: Vec<_> = parts
             .iter()
             .flat_map(|(file, part)| part.pieces.iter().map(move |piece| (file, piece)))
             .filter_map(|(file, piece)| {
-                let (section, length) = find(piece)?;
+                let (section, length) = section_of(piece)?;
                 let [columns, rows] = [0, 1].map(|axis| {
                     let first = piece.corner[axis] * cells;
                     first..first + piece.size[axis] * cells
                 });
-                Some(OfPiece { file, section, columns, rows, length, open: None })
+                Some(PieceReader { file, section, columns, rows, length, open: None })
             })
             .collect();
         pieces.sort_by_key(|piece| (piece.columns.start, piece.rows.start));
@@ -49,61 +49,61 @@ impl<'a> Rows<'a> {
 
     /// The next row, which must be `y`: the numbers of each piece that it runs through, by its first column, from left to right.
     pub fn next(&mut self, y: u32) -> Result<Vec<(u32, Vec<f32>)>, SessionError> {
-        let mut found = Vec::new();
+        let mut row = Vec::new();
         for piece in self.pieces.iter_mut().filter(|piece| piece.rows.contains(&y)) {
             let open = match &mut piece.open {
                 Some(open) => open,
                 none => none.insert(piece.file.read(piece.section)?),
             };
-            found.push((piece.columns.start, open.floats(piece.length)?));
+            row.push((piece.columns.start, open.read_floats(piece.length)?));
             if y + 1 == piece.rows.end {
                 piece.open = None;
             }
         }
-        Ok(found)
+        Ok(row)
     }
 }
 
 /// A picture that is made of the sums of all parts.
-pub(super) struct Joined<'a> {
-    joining: Joining,
+pub(super) struct JoinedPicture<'a> {
+    joining: CropJoiner,
     form: CropForm,
     /// The finer picture's width and height.
     size: [u32; 2],
     cells: u32,
-    rows: Rows<'a>,
+    rows: PieceRows<'a>,
 }
 
-impl<'a> Joined<'a> {
+impl<'a> JoinedPicture<'a> {
     /// Reads what its gains are made of. `find` tells which sums of a piece are meant.
     pub fn new(
         parts: &'a [(PartFile, Part)],
-        find: impl Fn(&'a Piece) -> Option<&'a Sums> + Copy,
+        sums_of: impl Fn(&'a Piece) -> Option<&'a Sums> + Copy,
         progress: &dyn Progress,
     ) -> Result<Option<Self>, SessionError> {
         let Some((_, first)) = parts.first() else { return Ok(None) };
-        let sums = || parts.iter().flat_map(|(_, part)| &part.pieces).filter_map(find);
+        let sums = || parts.iter().flat_map(|(_, part)| &part.pieces).filter_map(sums_of);
         let Some(form) = sums().map(Sums::form).next() else { return Ok(None) };
         let is_painted = sums().any(|sums| sums.facts().is_painted);
         let (cells, size) = (first.cells, first.size.map(|side| side * first.cells));
-        let mut joining = Joining::new(size, is_painted);
+        let mut joining = CropJoiner::new(size, is_painted);
         let check = |y: u32| {
             progress.report(y as f32 / size[1] as f32);
             progress.check()
         };
-        let mut knots = Rows::new(parts, cells, |piece| {
-            let length = Joining::knots_of(piece.size[0] * cells) * KNOT_NUMBERS;
-            Some((find(piece)?.knots.section(), length))
+        let mut knots = PieceRows::new(parts, cells, |piece| {
+            let length = CropJoiner::knot_columns(piece.size[0] * cells) * KNOT_NUMBERS;
+            Some((sums_of(piece)?.knots.section(), length))
         });
         for y in 0..size[1] {
             check(y)?;
-            let told = knots.next(y)?;
-            joining.add_knots(y, told.iter().map(|(first, numbers)| (*first, numbers.as_slice())));
+            let row_knots = knots.next(y)?;
+            joining.add_knots(y, row_knots.iter().map(|(first, numbers)| (*first, numbers.as_slice())));
         }
-        joining.settle();
+        joining.find_gains();
         let pixels = || {
-            Rows::new(parts, cells, |piece| {
-                let sums = find(piece)?;
+            PieceRows::new(parts, cells, |piece| {
+                let sums = sums_of(piece)?;
                 Some((sums.numbers.section(), (piece.size[0] * cells) as usize * sums.form().numbers()))
             })
         };
@@ -124,7 +124,7 @@ impl<'a> Joined<'a> {
     fn row(&mut self, y: u32) -> Result<CropRow, SessionError> {
         let mut row = CropRow::black(self.size[0] as usize);
         for (first, numbers) in self.rows.next(y)? {
-            row.put(first as usize, self.form, &numbers);
+            row.set(first as usize, self.form, &numbers);
         }
         Ok(row)
     }

@@ -2,8 +2,8 @@
 
 use crate::error::SessionError;
 use crate::jobs::Steps;
-use crate::light_field::light;
-use crate::output::{RenderOptions, WantedMattes};
+use crate::light_field::solve_light;
+use crate::output::{MatteRequest, RenderOptions};
 use focus::Focus;
 use lens::Camera;
 use salf::{BakeOptions, PartsBaker};
@@ -11,18 +11,18 @@ use std::sync::Arc;
 use trace::{Radiance, Tracer};
 
 /// The light of a picture that is summed: the picture itself, or what a pinhole sees.
-pub(super) struct Lit {
+pub(super) struct LitPicture {
     pub tracer: Arc<Tracer>,
     /// Of the light field: as much finer as the options say.
     pub finer: Camera,
     pub focus: Focus,
     pub options: RenderOptions,
-    pub mattes: Option<WantedMattes>,
+    pub mattes: Option<MatteRequest>,
     light: Arc<dyn Radiance + Send + Sync>,
     bake: BakeOptions,
 }
 
-impl Lit {
+impl LitPicture {
     /// Of what a camera shows of a scene that is focused so.
     pub fn new(
         tracer: &Arc<Tracer>,
@@ -36,8 +36,8 @@ impl Lit {
             tolerance_px: options.tolerance_px * f64::from(options.cells_a_side),
             ..BakeOptions::for_focus(tracer, &finer, &focus)
         };
-        let light = light(tracer, &finer, options.light, &*steps.begin("light"))?;
-        let mattes = options.wanted_mattes();
+        let light = solve_light(tracer, &finer, options.light, &*steps.begin("light"))?;
+        let mattes = options.matte_request();
         Ok(Self { tracer: tracer.clone(), finer, focus, options, mattes, light, bake })
     }
 

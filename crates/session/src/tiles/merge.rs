@@ -1,13 +1,13 @@
 //! Parts to the picture.
 
 use super::grid::TileGrid;
-use super::joined::{Joined, Rows};
-use super::part::{Matte, NamedThings, NumbersAt, Part, part_of};
+use super::joined::{JoinedPicture, PieceRows};
+use super::part::{Matte, NamedThings, NumbersAt, Part, part_path};
 use crate::error::SessionError;
 use crate::jobs::Steps;
 use crate::output::{Aov, Entry, left_out_warning, ranks_of};
 use lens::{Exposure, Picture};
-use project::{Cryptomatte, Layer, Numbers, PartFile, write_picture_in_bands};
+use project::{Cryptomatte, Layer, NumberReader, PartFile, write_picture_in_bands};
 use splat::{Integers, Kind};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
@@ -48,7 +48,7 @@ impl<E: Into<SessionError>> From<E> for MergeFailure {
 pub fn merge_tiles(parts: &[PathBuf], output: &Path, steps: &dyn Steps) -> Result<Merged, SessionError> {
     merge(parts, output, steps).map_err(|failure| match failure {
         MergeFailure::Other(error) => error,
-        MergeFailure::TooFine { part, integers: Integers { standard, painted } } => SessionError::bad(
+        MergeFailure::TooFine { part, integers: Integers { standard, painted } } => SessionError::bad_file(
             &part,
             format!(
                 "its sums are finer than the whole picture can have them (render its tile again with --integers {standard},{painted})"
@@ -72,17 +72,18 @@ pub(super) fn merge(files: &[PathBuf], output: &Path, steps: &dyn Steps) -> Resu
     let Some((_, first)) = parts.first() else {
         return Err(SessionError::BadInput("no parts were given (name all of them)".into()).into());
     };
-    let unknown = || SessionError::bad(output, "nobody knows how it is written (render the tiles again)");
-    let options = first.output.options().ok_or_else(unknown)?;
+    let unknown_format =
+        || SessionError::bad_file(output, "nobody knows how it is written (render the tiles again)");
+    let options = first.output.options().ok_or_else(unknown_format)?;
     let aovs: Vec<Aov> = first.aovs.iter().filter_map(|name| Aov::named(name)).collect();
     let progress = steps.begin("gains");
-    let picture = Joined::new(&parts, |piece| Some(&piece.picture), &*progress)?;
-    let pinhole = Joined::new(&parts, |piece| piece.pinhole.as_ref(), &*progress)?;
+    let picture = JoinedPicture::new(&parts, |piece| Some(&piece.picture), &*progress)?;
+    let pinhole = JoinedPicture::new(&parts, |piece| piece.pinhole.as_ref(), &*progress)?;
     drop(progress);
     let mut bands = Bands {
         size: first.size,
         aovs,
-        picture: picture.ok_or_else(unknown)?,
+        picture: picture.ok_or_else(unknown_format)?,
         pinhole,
         planes: planes(&parts),
         mattes: mattes(&parts),
@@ -97,7 +98,7 @@ pub(super) fn merge(files: &[PathBuf], output: &Path, steps: &dyn Steps) -> Resu
     })?;
     let warnings = bands.mattes.iter().filter_map(|matte| {
         let left_out = matte.pieces.iter().map(|piece| piece.matte.left_out).fold(0.0, f32::max);
-        left_out_warning(&matte.things.said, left_out)
+        left_out_warning(&matte.things.plural_name, left_out)
     });
     Ok(Merged { size: first.size, tiles: parts.len() as u32, warnings: warnings.collect() })
 }
@@ -106,34 +107,35 @@ pub(super) fn merge(files: &[PathBuf], output: &Path, steps: &dyn Steps) -> Resu
 fn check_plan(parts: &[(PartFile, Part)]) -> Result<(), SessionError> {
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
     parts.iter().for_each(|(_, part)| *counts.entry(&part.plan).or_default() += 1);
-    let usual = parts.iter().map(|(_, part)| &part.plan).rev().max_by_key(|plan| counts[plan.as_str()]);
-    match parts.iter().find(|(_, part)| Some(&part.plan) != usual) {
+    let most_common_plan =
+        parts.iter().map(|(_, part)| &part.plan).rev().max_by_key(|plan| counts[plan.as_str()]);
+    match parts.iter().find(|(_, part)| Some(&part.plan) != most_common_plan) {
         None => Ok(()),
         Some((file, _)) => {
             let what = "is of another plan than the others: other input, options, tiles or version (leave it out, or render its tile again)";
-            Err(SessionError::bad(&file.file, what))
+            Err(SessionError::bad_file(&file.file, what))
         }
     }
 }
 
 /// Whether each tile is there once.
 fn check_tiles(parts: &[(PartFile, Part)]) -> Result<(), SessionError> {
-    let mut found: BTreeMap<u32, &Path> = BTreeMap::new();
+    let mut file_of_tile: BTreeMap<u32, &Path> = BTreeMap::new();
     for (file, part) in parts {
-        if let Some(other) = found.insert(part.tile, &file.file) {
+        if let Some(other) = file_of_tile.insert(part.tile, &file.file) {
             let what = format!("is the same tile as {} (give one of them)", other.display());
-            return Err(SessionError::bad(&file.file, what));
+            return Err(SessionError::bad_file(&file.file, what));
         }
     }
     let Some((file, part)) = parts.first() else { return Ok(()) };
     let grid = TileGrid { columns: part.tiles[0], rows: part.tiles[1] };
-    let missing: Vec<u32> = (0..grid.count()).filter(|tile| !found.contains_key(tile)).collect();
+    let missing: Vec<u32> = (0..grid.count()).filter(|tile| !file_of_tile.contains_key(tile)).collect();
     let Some(&tile) = missing.first() else { return Ok(()) };
     // Parts are called after the picture.
     let name = file.file.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    let suffix = part_of(Path::new("x"), grid, part.tile).to_string_lossy()[1..].to_string();
+    let suffix = part_path(Path::new("x"), grid, part.tile).to_string_lossy()[1..].to_string();
     let stem = name.strip_suffix(&suffix).unwrap_or("*").to_string();
-    let wanted = part_of(&file.file.with_file_name(format!("{stem}.x")), grid, tile);
+    let missing_part = part_path(&file.file.with_file_name(format!("{stem}.x")), grid, tile);
     let others = match missing.len() {
         1 => String::new(),
         more => format!(", and {} others", more - 1),
@@ -143,7 +145,7 @@ fn check_tiles(parts: &[(PartFile, Part)]) -> Result<(), SessionError> {
         tile + 1,
         grid.count()
     );
-    Err(SessionError::bad(&wanted, what))
+    Err(SessionError::bad_file(&missing_part, what))
 }
 
 /// Whether all are summed in the integers of the whole picture: the finest that hold all of it.
@@ -154,12 +156,12 @@ fn check_integers(parts: &[(PartFile, Part)]) -> Result<(), MergeFailure> {
     let kinds = if is_painted { &[Kind::Standard, Kind::Painted][..] } else { &[Kind::Standard] };
     let mut integers = facts().fold(Integers::default(), |all, facts| all.coarsest(facts.integers));
     for &kind in kinds {
-        let is_held = |integers: Integers| {
+        let fits = |integers: Integers| {
             facts()
                 .filter(|facts| facts.integers.bits(kind) == integers.bits(kind))
-                .all(|facts| integers.hold(kind, facts.largest[kind as usize], brightest))
+                .all(|facts| integers.can_hold(kind, facts.largest[kind as usize], brightest))
         };
-        if !is_held(integers) {
+        if !fits(integers) {
             let what =
                 "the scene's radiance is too high to be summed exactly (keep the brightest light below 1e6)";
             integers = integers.coarser(kind).ok_or_else(|| SessionError::BadInput(what.into()))?;
@@ -175,11 +177,11 @@ fn check_integers(parts: &[(PartFile, Part)]) -> Result<(), MergeFailure> {
 }
 
 /// The planes of all pieces, by name. Where one has none that others have, it is 0.
-fn planes(parts: &[(PartFile, Part)]) -> BTreeMap<String, Rows<'_>> {
+fn planes(parts: &[(PartFile, Part)]) -> BTreeMap<String, PieceRows<'_>> {
     let names: BTreeSet<&String> =
         parts.iter().flat_map(|(_, part)| &part.pieces).flat_map(|piece| piece.planes.keys()).collect();
     let rows = |name: &String| {
-        Rows::new(parts, 1, |piece| Some((piece.planes.get(name)?.section(), piece.size[0] as usize)))
+        PieceRows::new(parts, 1, |piece| Some((piece.planes.get(name)?.section(), piece.size[0] as usize)))
     };
     names.into_iter().map(|name| (name.clone(), rows(name))).collect()
 }
@@ -188,15 +190,15 @@ fn planes(parts: &[(PartFile, Part)]) -> BTreeMap<String, Rows<'_>> {
 struct MergedMatte<'a> {
     things: &'a NamedThings,
     needed: usize,
-    pieces: Vec<MatteOfPiece<'a>>,
+    pieces: Vec<MattePieceReader<'a>>,
 }
 
-struct MatteOfPiece<'a> {
+struct MattePieceReader<'a> {
     file: &'a PartFile,
     matte: &'a Matte,
     first_column: u32,
     rows: Range<u32>,
-    open: Option<[Numbers; 2]>,
+    open: Option<[NumberReader; 2]>,
 }
 
 fn mattes(parts: &[(PartFile, Part)]) -> Vec<MergedMatte<'_>> {
@@ -204,7 +206,7 @@ fn mattes(parts: &[(PartFile, Part)]) -> Vec<MergedMatte<'_>> {
     let of_kind = |(kind, things)| {
         let pieces = parts.iter().flat_map(|(file, part)| part.pieces.iter().map(move |piece| (file, piece)));
         let pieces: Vec<_> = pieces
-            .map(|(file, piece)| MatteOfPiece {
+            .map(|(file, piece)| MattePieceReader {
                 file,
                 matte: &piece.mattes[kind],
                 first_column: piece.corner[0],
@@ -221,7 +223,7 @@ fn mattes(parts: &[(PartFile, Part)]) -> Vec<MergedMatte<'_>> {
 impl MergedMatte<'_> {
     /// The next row, column by column.
     fn row(&mut self, y: u32) -> Result<Vec<Entry>, SessionError> {
-        let mut found = Vec::new();
+        let mut row = Vec::new();
         for piece in self.pieces.iter_mut().filter(|piece| piece.rows.contains(&y)) {
             let open = match &mut piece.open {
                 Some(open) => open,
@@ -231,11 +233,11 @@ impl MergedMatte<'_> {
                 }
             };
             let [counts, entries] = open;
-            let count = counts.words(1)?.first().copied().unwrap_or(0);
+            let count = counts.read_words(1)?.first().copied().unwrap_or(0);
             let count = u64::from(count).min(piece.matte.entries.count) as usize;
-            let numbers = entries.words(3 * count)?;
+            let numbers = entries.read_words(3 * count)?;
             let (entries, _) = numbers.as_chunks::<3>();
-            found.extend(entries.iter().map(|&[column, thing, share]| Entry {
+            row.extend(entries.iter().map(|&[column, thing, share]| Entry {
                 column: piece.first_column.saturating_add(column),
                 thing,
                 share: f32::from_bits(share),
@@ -244,7 +246,7 @@ impl MergedMatte<'_> {
                 piece.open = None;
             }
         }
-        Ok(found)
+        Ok(row)
     }
 
     /// The layers of some rows.
@@ -259,9 +261,9 @@ impl MergedMatte<'_> {
 struct Bands<'a> {
     size: [u32; 2],
     aovs: Vec<Aov>,
-    picture: Joined<'a>,
-    pinhole: Option<Joined<'a>>,
-    planes: BTreeMap<String, Rows<'a>>,
+    picture: JoinedPicture<'a>,
+    pinhole: Option<JoinedPicture<'a>>,
+    planes: BTreeMap<String, PieceRows<'a>>,
     mattes: Vec<MergedMatte<'a>>,
 }
 
@@ -273,7 +275,7 @@ impl Bands<'_> {
             names.push(Layer::coverage(&Picture::black(0, 0)).name);
         }
         if self.pinhole.is_some() {
-            names.extend(Layer::of_colors(Layer::PINHOLE, &[]).map(|layer| layer.name));
+            names.extend(Layer::from_colors(Layer::PINHOLE, &[]).map(|layer| layer.name));
         }
         for matte in &self.mattes {
             names.extend(matte.layers(&[], 0).into_iter().map(|layer| layer.name));
@@ -291,7 +293,7 @@ impl Bands<'_> {
         }
         if let Some(pinhole) = &mut self.pinhole {
             let pinhole = pinhole.picture(rows.clone())?;
-            layers.extend(Layer::of_colors(Layer::PINHOLE, &pinhole.exposed(Exposure::Normalise)));
+            layers.extend(Layer::from_colors(Layer::PINHOLE, &pinhole.exposed(Exposure::Normalise)));
         }
         for (name, plane) in &mut self.planes {
             let mut values = vec![0.0; width * rows.len()];
@@ -305,11 +307,11 @@ impl Bands<'_> {
         }
         for matte in &mut self.mattes {
             let entries = rows.clone().map(|y| matte.row(y)).collect::<Result<Vec<_>, _>>()?;
-            let sound = |entry: &Entry| {
+            let is_valid = |entry: &Entry| {
                 (entry.column as usize) < width && (entry.thing as usize) < matte.things.names.len()
             };
             let entries: Vec<_> =
-                entries.into_iter().map(|row| row.into_iter().filter(sound).collect()).collect();
+                entries.into_iter().map(|row| row.into_iter().filter(is_valid).collect()).collect();
             layers.extend(matte.layers(&entries, width));
         }
         Ok((picture, layers))

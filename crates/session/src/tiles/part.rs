@@ -6,7 +6,7 @@ use crate::output::Aov;
 use lens::Exposure;
 use project::{ColorSpace, Compression, PartFile, PictureOptions, Section};
 use serde::{Deserialize, Serialize};
-use splat::{Crop, CropFacts, CropForm, Integers, Joining, KNOT_NUMBERS};
+use splat::{Crop, CropFacts, CropForm, CropJoiner, Integers, KNOT_NUMBERS};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -48,7 +48,8 @@ pub(super) struct NamedThings {
     /// As Cryptomatte calls the kind.
     pub kind: String,
     /// As sentences call it.
-    pub said: String,
+    #[serde(rename = "said")]
+    pub plural_name: String,
     pub names: Vec<String>,
 }
 
@@ -135,12 +136,12 @@ impl Sums {
     }
 
     /// Whether its numbers are as many as those of a crop of this size.
-    fn is_of(&self, size: [u32; 2]) -> bool {
+    fn is_valid_for(&self, size: [u32; 2]) -> bool {
         let [width, height] = size.map(u64::from);
-        let knots = (Joining::knots_of(size[0]) * KNOT_NUMBERS) as u64;
+        let knots = (CropJoiner::knot_columns(size[0]) * KNOT_NUMBERS) as u64;
         self.numbers.count == width * height * self.form().numbers() as u64
             && self.knots.count == height * knots
-            && self.facts().integers.are_known()
+            && self.facts().integers.are_valid()
     }
 }
 
@@ -148,11 +149,11 @@ impl Output {
     pub fn new(options: &PictureOptions) -> Self {
         let name = |all: &[(&'static str, Compression)]| {
             all.iter()
-                .find(|(_, known)| *known == options.compression)
+                .find(|(_, compression)| *compression == options.compression)
                 .map_or("", |(name, _)| name)
                 .to_string()
         };
-        let space = ColorSpace::ALL.iter().find(|(_, known)| *known == options.color_space);
+        let space = ColorSpace::ALL.iter().find(|(_, color_space)| *color_space == options.color_space);
         Self {
             conserves: options.exposure == Exposure::Conserve,
             half: options.half,
@@ -169,7 +170,7 @@ impl Output {
         Some(PictureOptions {
             exposure: if self.conserves { Exposure::Conserve } else { Exposure::Normalise },
             half: self.half,
-            compression: Compression::named(&self.compression)?,
+            compression: Compression::from_name(&self.compression)?,
             color_space: space.1,
             overscan: self.overscan,
             attributes: self.attributes.clone(),
@@ -184,16 +185,16 @@ impl Part {
     /// It is not whole, something else, or of another version of the program.
     pub fn open(file: &Path) -> Result<(PartFile, Self), SessionError> {
         let opened = PartFile::open(file)?;
-        let part = serde_json::from_value::<Self>(opened.what.clone()).ok().filter(Self::is_sound);
+        let part = serde_json::from_value::<Self>(opened.description.clone()).ok().filter(Self::is_valid);
         let part = part.ok_or_else(|| {
             let what = "is a part by another version of the program (render its tile again)";
-            SessionError::bad(file, what)
+            SessionError::bad_file(file, what)
         })?;
         Ok((opened, part))
     }
 
     /// Whether its numbers are what they are said to be.
-    fn is_sound(&self) -> bool {
+    fn is_valid(&self) -> bool {
         let grid = TileGrid { columns: self.tiles[0], rows: self.tiles[1] };
         let is_small = self.size.iter().chain(&self.tiles).all(|side| (1..=1 << 15).contains(side));
         let tile = is_small.then(|| grid.tiles(self.size).ok()).flatten();
@@ -208,17 +209,17 @@ impl Part {
             })
         };
         let cells = self.cells;
-        let is_sound = |piece: &Piece| {
+        let is_valid = |piece: &Piece| {
             let finer = piece.size.map(|side| side.saturating_mul(cells));
             is_within(piece)
-                && piece.picture.is_of(finer)
-                && piece.pinhole.iter().all(|sums| sums.is_of(finer))
+                && piece.picture.is_valid_for(finer)
+                && piece.pinhole.iter().all(|sums| sums.is_valid_for(finer))
                 && piece.planes.values().all(|plane| plane.count == area(piece.size))
                 && piece.mattes.len() == self.things.len()
                 && piece.mattes.iter().all(|matte| matte.counts.count == u64::from(piece.size[1]))
         };
-        (1..=crate::output::MOST_CELLS_A_SIDE).contains(&cells)
-            && self.pieces.iter().all(is_sound)
+        (1..=crate::output::MAX_CELLS_A_SIDE).contains(&cells)
+            && self.pieces.iter().all(is_valid)
             && self.pieces.iter().map(|piece| area(piece.size)).sum::<u64>() == area(tile.size)
             && self.aovs.iter().all(|name| Aov::named(name).is_some())
             && self.output.options().is_some()
@@ -231,7 +232,7 @@ impl Part {
 }
 
 /// The part of a tile, from 0, beside a picture.
-pub(super) fn part_of(picture: &Path, grid: TileGrid, tile: u32) -> PathBuf {
+pub(super) fn part_path(picture: &Path, grid: TileGrid, tile: u32) -> PathBuf {
     let count = grid.count();
     let digits = count.to_string().len();
     let number = tile + 1;

@@ -4,12 +4,12 @@ use super::crop::CropFailure;
 use super::draw::Shot;
 use super::grid::TileGrid;
 use super::merge::{MergeFailure, Merged, merge};
-use super::part::{Output, Part, part_of};
+use super::part::{Output, Part, part_path};
 use crate::document::Input;
 use crate::error::SessionError;
 use crate::jobs::Steps;
 use crate::output::{RenderOptions, tracer_of};
-use crate::sequence::{Outcome, Shard, still_plan};
+use crate::sequence::{Outcome, Shard, still_frame_plan};
 use focus::Focus;
 use lens::Camera;
 use progress::Progress;
@@ -33,7 +33,7 @@ pub struct TileOptions<'a> {
     /// How fine the integers of its sums may be.
     pub integers: Integers,
     /// Is told of every tile.
-    pub tell: &'a dyn Fn(&TileReport),
+    pub on_tile: &'a dyn Fn(&TileReport),
     /// Whether the work is to end: asked before each tile.
     pub progress: &'a dyn Progress,
 }
@@ -44,7 +44,7 @@ pub struct TileReport {
     /// Its number, from 1, row by row.
     pub tile: u32,
     /// How many there are.
-    pub of: u32,
+    pub tile_count: u32,
     /// Its part.
     pub file: PathBuf,
     /// What became of it.
@@ -77,11 +77,16 @@ pub fn render_tiles(
     let tracer = tracer_of(input, camera)?;
     let shot = Shot { tracer: &tracer, camera, focus, options: &options.render };
     let size = [camera.width, camera.height];
-    let tiles = options.grid.tiles(size).map_err(|what| SessionError::bad(&options.output, what))?;
+    let tiles = options.grid.tiles(size).map_err(|what| SessionError::bad_file(&options.output, what))?;
     let written = PictureOptions { attributes: shot.attributes(), ..options.written.clone() };
     let TileGrid { columns, rows } = options.grid;
-    let plan =
-        still_plan(&tracer, camera, focus, &options.render, &format!("{written:?} tiles {columns}x{rows}"));
+    let plan = still_frame_plan(
+        &tracer,
+        camera,
+        focus,
+        &options.render,
+        &format!("{written:?} tiles {columns}x{rows}"),
+    );
     let aov_name = |aov: &crate::output::Aov| aov.entry().map(|(name, _)| name.to_string());
     let blank = Part {
         plan: plan.iter().map(|byte| format!("{byte:02x}")).collect(),
@@ -98,23 +103,23 @@ pub fn render_tiles(
     loop {
         let mut report = TilesReport::default();
         for (number, tile) in (0..).zip(&tiles) {
-            if !options.shard.is_none_or(|shard| shard.has(number as usize)) {
+            if !options.shard.is_none_or(|shard| shard.contains(number as usize)) {
                 continue;
             }
             options.progress.check()?;
             let start = Instant::now();
-            let file = part_of(&options.output, options.grid, number);
+            let file = part_path(&options.output, options.grid, number);
             let part = Part { tile: number, ..blank.clone() };
-            let outcome = match one(shot, *tile, part, integers, &file, steps) {
+            let outcome = match draw_tile(shot, *tile, part, integers, &file, steps) {
                 Ok(outcome) => outcome,
                 Err(error @ (SessionError::Cancelled | SessionError::TryAgain(_))) => return Err(error),
                 Err(error) => Outcome::Failed(error),
             };
             let took_seconds = start.elapsed().as_secs_f64();
-            let (tile, of) = (number + 1, options.grid.count());
-            let told = TileReport { tile, of, file, outcome, took_seconds };
-            (options.tell)(&told);
-            report.tiles.push(told);
+            let (tile, tile_count) = (number + 1, options.grid.count());
+            let tile_report = TileReport { tile, tile_count, file, outcome, took_seconds };
+            (options.on_tile)(&tile_report);
+            report.tiles.push(tile_report);
         }
         let is_whole = report.tiles.iter().all(|tile| tile.outcome.error().is_none());
         if options.shard.is_some() || !is_whole {
@@ -130,7 +135,7 @@ pub fn render_tiles(
             }
             Err(MergeFailure::Other(error)) => return Err(error),
             Err(MergeFailure::TooFine { integers: needed, .. }) => {
-                steps.tell("the picture needs coarser integers: its tiles are drawn again");
+                steps.notice("the picture needs coarser integers: its tiles are drawn again");
                 integers = integers.coarsest(needed);
             }
         }
@@ -138,7 +143,7 @@ pub fn render_tiles(
 }
 
 /// Draws a tile, unless it is finished.
-fn one(
+fn draw_tile(
     shot: Shot,
     tile: Crop,
     part: Part,
@@ -150,7 +155,7 @@ fn one(
         return Ok(Outcome::Skipped);
     }
     loop {
-        let mut writer = PartWriter::begin(file)?;
+        let mut writer = PartWriter::create(file)?;
         match shot.draw(tile, integers, &mut writer, steps) {
             Ok(pieces) => {
                 let part = Part { pieces, ..part };
@@ -167,8 +172,8 @@ fn one(
 }
 
 /// Whether the part of a tile is there, whole and by the same plan.
-fn is_finished(file: &Path, wanted: &Part, integers: Integers) -> bool {
+fn is_finished(file: &Path, expected: &Part, integers: Integers) -> bool {
     let Ok((_, part)) = Part::open(file) else { return false };
     let is_coarse = part.facts().all(|facts| facts.integers == facts.integers.coarsest(integers));
-    part.plan == wanted.plan && part.tile == wanted.tile && is_coarse
+    part.plan == expected.plan && part.tile == expected.tile && is_coarse
 }

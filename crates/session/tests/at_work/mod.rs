@@ -44,7 +44,7 @@ pub fn opened_with(path: &Path, options: SessionOptions) -> Session {
 pub fn picture(session: &Session) -> Picture {
     let preview = session.preview().expect("a preview");
     assert_ne!(preview.kind, PreviewKind::Pinhole);
-    (*preview.picture.bring().unwrap()).clone()
+    (*preview.picture.fetch().unwrap()).clone()
 }
 
 /// A point of the picture on the wall, away from card and dot.
@@ -59,15 +59,15 @@ pub fn stroke(session: &mut Session) {
     };
     session.apply(Command::SetBrush(brush)).unwrap();
     let ray = |session: &Session, x: f64| session.picture_ray(DVec2::new(x, ON_WALL.y)).unwrap();
-    let begin = StrokePoint::ray(ray(session, 0.6));
+    let begin = StrokePoint::from_ray(ray(session, 0.6));
     session.apply(Command::BeginStroke(begin)).unwrap();
     for k in 1..=4 {
-        let point = StrokePoint::ray(ray(session, 0.6 + 0.05 * k as f64));
+        let point = StrokePoint::from_ray(ray(session, 0.6 + 0.05 * k as f64));
         session.apply(Command::ExtendStroke(point)).unwrap();
     }
 }
 
 /// The picture as a view that is painted in.
 pub fn shot_view(session: &Session) -> focus::ViewFrame {
-    focus::ViewFrame::of(&session.document().unwrap().camera)
+    focus::ViewFrame::from_camera(&session.document().unwrap().camera)
 }

@@ -10,15 +10,15 @@ pub(super) struct Lattice {
     /// The side of a cell.
     pub spacing: f64,
     /// Where each cell's numbers begin in `numbers`, and how many there are.
-    cells: HashMap<u64, (u32, u32), BuildHasherDefault<Mixed>>,
+    cells: HashMap<u64, (u32, u32), BuildHasherDefault<WordHasher>>,
     numbers: Vec<u32>,
 }
 
 /// A hash of one word that is mixed well enough.
 #[derive(Default)]
-pub(super) struct Mixed(u64);
+pub(super) struct WordHasher(u64);
 
-impl Hasher for Mixed {
+impl Hasher for WordHasher {
     fn finish(&self) -> u64 {
         self.0
     }
@@ -42,14 +42,14 @@ impl Lattice {
     pub fn new(spacing: f64, cells: &[IVec3]) -> Self {
         let mut numbers: Vec<u32> = (0..cells.len() as u32).collect();
         numbers.sort_by_key(|&number| (key(cells[number as usize]), number));
-        let mut found = Self { spacing, cells: HashMap::default(), numbers };
+        let mut lattice = Self { spacing, cells: HashMap::default(), numbers };
         let mut begin = 0;
         let same = |a: &u32, b: &u32| key(cells[*a as usize]) == key(cells[*b as usize]);
-        for run in found.numbers.chunk_by(same) {
-            found.cells.insert(key(cells[run[0] as usize]), (begin, run.len() as u32));
+        for run in lattice.numbers.chunk_by(same) {
+            lattice.cells.insert(key(cells[run[0] as usize]), (begin, run.len() as u32));
             begin += run.len() as u32;
         }
-        found
+        lattice
     }
 
     /// The cell of a position.
@@ -85,7 +85,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_are_found_where_they_lie_and_shares_sum_to_one() {
+    fn numbers_lie_in_their_cells_and_shares_sum_to_one() {
         let cells: Vec<IVec3> = (0..27).map(|k| IVec3::new(k % 3, k / 3 % 3, k / 9) - 1).collect();
         let lattice = Lattice::new(0.5, &cells);
         for (number, &cell) in (0..).zip(&cells) {

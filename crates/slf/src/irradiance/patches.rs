@@ -37,9 +37,9 @@ pub(crate) struct PatchPoint {
 }
 
 /// Points of a patch.
-const POINTS: usize = 16;
+const MAX_POINTS: usize = 16;
 /// Points a patch of full size is looked for with.
-const CANDIDATES: f64 = 24.0;
+const CANDIDATES_PER_CELL: f64 = 24.0;
 
 /// A point on its way into a patch.
 struct Candidate {
@@ -53,19 +53,19 @@ struct Candidate {
 impl Patches {
     /// Parts the surface of a scene into about so many patches, and never more than twice as many. Unlit surfaces have none: no
     /// light matters to them.
-    pub fn of(scene: &Scene, wanted: u32) -> Self {
+    pub fn new(scene: &Scene, target_count: u32) -> Self {
         let lit = || {
             let parts = scene.parts.iter().filter(|part| !scene.materials[part.material as usize].unlit);
             parts.flat_map(|part| part.triangles.clone())
         };
         let sides = |triangle: u32| if scene.material_of(triangle).double_sided { 2.0 } else { 1.0 };
         let area: f64 = lit().map(|t| scene.area_normal(t).length() / 2.0 * sides(t)).sum();
-        let mut spacing = (area / f64::from(wanted)).sqrt();
+        let mut spacing = (area / f64::from(target_count)).sqrt();
         loop {
-            let candidates = candidates(scene, lit(), spacing);
-            let found = Self::group(candidates, spacing);
-            if found.patches.len() <= 2 * wanted as usize || !spacing.is_finite() {
-                return found;
+            let candidates = surface_candidates(scene, lit(), spacing);
+            let grouped = Self::group(candidates, spacing);
+            if grouped.patches.len() <= 2 * target_count as usize || !spacing.is_finite() {
+                return grouped;
             }
             spacing *= 1.5;
         }
@@ -82,16 +82,16 @@ impl Patches {
         for ((cell, part, _), members) in groups {
             let members: Vec<&Candidate> = members.iter().map(|&index| &candidates[index as usize]).collect();
             let area: f64 = members.iter().map(|member| member.area).sum();
-            let mean = |of: &dyn Fn(&Candidate) -> DVec3| {
-                members.iter().map(|member| of(member) * member.area).sum::<DVec3>() / area
+            let mean = |property: &dyn Fn(&Candidate) -> DVec3| {
+                members.iter().map(|member| property(member) * member.area).sum::<DVec3>() / area
             };
             let first_point = points.len() as u32;
             // Evenly through the running sum of areas.
-            let count = members.len().min(POINTS);
-            let (mut reached, mut next) = (0.0, 0);
+            let count = members.len().min(MAX_POINTS);
+            let (mut area_sum, mut next) = (0.0, 0);
             for member in &members {
-                reached += member.area;
-                while next < count && reached >= (next as f64 + 0.5) / count as f64 * area {
+                area_sum += member.area;
+                while next < count && area_sum >= (next as f64 + 0.5) / count as f64 * area {
                     points.push(member.point);
                     next += 1;
                 }
@@ -142,10 +142,10 @@ impl Patches {
     }
 
     /// Whether some patch has anything to say about a place.
-    pub fn knows(&self, place: &Place) -> bool {
-        let mut knows = false;
-        self.visit_around(place, |_, _| knows = true);
-        knows
+    pub fn covers(&self, place: &Place) -> bool {
+        let mut is_covered = false;
+        self.visit_around(place, |_, _| is_covered = true);
+        is_covered
     }
 
     /// Visits the patches in the cells around another that face about as it does.
@@ -165,27 +165,33 @@ impl Patches {
 
 /// Points all over some triangles, about [`CANDIDATES`] a square of the lattice's spacing, at least one each, on either side that can
 /// be lit and seen.
-fn candidates(scene: &Scene, triangles: impl Iterator<Item = u32>, spacing: f64) -> Vec<Candidate> {
-    let mut found = Vec::new();
+fn surface_candidates(scene: &Scene, triangles: impl Iterator<Item = u32>, spacing: f64) -> Vec<Candidate> {
+    let mut candidates = Vec::new();
     for triangle in triangles {
         let area = scene.area_normal(triangle).length() / 2.0;
         if !(area > 0.0 && area.is_finite()) {
             continue;
         }
-        let count = (area / (spacing * spacing) * CANDIDATES).ceil().clamp(1.0, 4e6) as u32;
+        let count = (area / (spacing * spacing) * CANDIDATES_PER_CELL).ceil().clamp(1.0, 4e6) as u32;
         let sides: &[bool] = if scene.material_of(triangle).double_sided { &[true, false] } else { &[true] };
         for k in 0..count {
             let point = SurfacePoint { triangle, barycentric: barycentric(k, count) };
             for &is_front in sides {
-                let place = Place::of(scene, point, is_front);
+                let place = Place::new(scene, point, is_front);
                 let (position, normal) = (place.position, place.normal);
                 let key = (Lattice::cell(spacing, position), place.part, facing(normal));
                 let area = area / f64::from(count);
-                found.push(Candidate { key, point: PatchPoint { point, is_front }, position, normal, area });
+                candidates.push(Candidate {
+                    key,
+                    point: PatchPoint { point, is_front },
+                    position,
+                    normal,
+                    area,
+                });
             }
         }
     }
-    found
+    candidates
 }
 
 /// Which of the six axes a normal is nearest to.

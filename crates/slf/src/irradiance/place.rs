@@ -14,7 +14,7 @@ pub(crate) struct Place {
 
 impl Place {
     /// A point of the scene, on its front or back.
-    pub fn of(scene: &Scene, point: SurfacePoint, is_front: bool) -> Self {
+    pub fn new(scene: &Scene, point: SurfacePoint, is_front: bool) -> Self {
         let normal = scene.shading_normal(point);
         Self {
             position: point.position(scene),

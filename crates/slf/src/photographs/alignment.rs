@@ -18,63 +18,63 @@ mod points;
 pub(crate) use lattice::Displacement;
 
 use super::exposures::Exposure;
-use super::odd::Belonging;
-use super::seeing::KeptPicture;
-use super::telling::Calibrated;
-use points::Points;
+use super::odd::InlierMap;
+use super::seeing::PackedPicture;
+use super::telling::CalibratedObservations;
+use points::ComparisonPoints;
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;
 use scene::View;
 
 /// How often all photographs are moved by what pictures of a quarter, half and all of their pixels each way show. What is a few pixels off is
 /// less than two of the coarsest.
-const PASSES: [usize; 3] = [4, 3, 2];
+const PASSES_PER_LEVEL: [usize; 3] = [4, 3, 2];
 /// Photographs that are nowhere off by so much, px as they are kept, are not off.
-const LEAST_OFF: f64 = 0.1;
+const MIN_DISPLACEMENT_PX: f64 = 0.1;
 
 /// How far each view is off, as far as that lowers the errors of what others tell of it.
-pub(crate) fn displacements(
-    radiance: &Calibrated<'_>,
+pub(crate) fn align_photographs(
+    radiance: &CalibratedObservations<'_>,
     views: &[View],
     exposures: &[Exposure],
-    belonging: &[Belonging],
+    inlier_maps: &[InlierMap],
     progress: &dyn Progress,
 ) -> Result<Vec<Displacement>, Cancelled> {
-    let none: Vec<Displacement> = views.iter().map(Displacement::none).collect();
-    let points = Points::of(radiance, views, exposures, belonging);
-    let pictures = &radiance.sightings.pictures;
-    let mut found = none.clone();
-    let passes: usize = PASSES.iter().sum();
+    let zeros: Vec<Displacement> = views.iter().map(Displacement::none).collect();
+    let points = ComparisonPoints::new(radiance, views, exposures, inlier_maps);
+    let pictures = &radiance.observations.pictures;
+    let mut current = zeros.clone();
+    let passes: usize = PASSES_PER_LEVEL.iter().sum();
     let mut done = 0;
-    let half = reduced(pictures);
-    let quarter = reduced(&half);
-    for (pictures, passes_of_level) in [&quarter[..], &half, pictures].into_iter().zip(PASSES) {
+    let half = halved_pictures(pictures);
+    let quarter = halved_pictures(&half);
+    for (pictures, passes_of_level) in [&quarter[..], &half, pictures].into_iter().zip(PASSES_PER_LEVEL) {
         for _ in 0..passes_of_level {
             progress.check()?;
-            let expected = points.expected(pictures, &found);
-            let moved = |(number, before): (usize, &Displacement)| {
-                let compared = points.compared(number, &pictures[number], before, &expected);
-                let reduction = radiance.sightings.pictures[number].reduction;
-                fitting::fitted(&views[number], before, &compared, reduction)
+            let expected = points.predict(pictures, &current);
+            let refined = |(number, before): (usize, &Displacement)| {
+                let compared = points.compare(number, &pictures[number], before, &expected);
+                let reduction = radiance.observations.pictures[number].reduction;
+                fitting::refine_displacement(&views[number], before, &compared, reduction)
                     .unwrap_or_else(|| before.clone())
             };
-            found = found.par_iter().enumerate().map(moved).collect();
+            current = current.par_iter().enumerate().map(refined).collect();
             done += 1;
             progress.report(0.8 * done as f32 / passes as f32);
         }
     }
     drop([half, quarter]);
-    for ((found, none), picture) in found.iter_mut().zip(none).zip(pictures) {
-        if found.most() < LEAST_OFF * f64::from(picture.reduction) {
-            *found = none;
+    for ((displacement, zero), picture) in current.iter_mut().zip(zeros).zip(pictures) {
+        if displacement.max_px() < MIN_DISPLACEMENT_PX * f64::from(picture.reduction) {
+            *displacement = zero;
         }
     }
-    let found = judging::better(radiance, views, exposures, found, progress)?;
+    let aligned = judging::retain_improvements(radiance, views, exposures, current, progress)?;
     progress.report(1.0);
-    Ok(found)
+    Ok(aligned)
 }
 
 /// Pictures of half as many pixels each way.
-fn reduced(pictures: &[KeptPicture]) -> Vec<KeptPicture> {
-    pictures.par_iter().map(KeptPicture::halved).collect()
+fn halved_pictures(pictures: &[PackedPicture]) -> Vec<PackedPicture> {
+    pictures.par_iter().map(PackedPicture::halved).collect()
 }

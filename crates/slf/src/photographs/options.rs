@@ -46,5 +46,5 @@ pub enum Poses {
     #[default]
     Aligned,
     /// As they are given. What texturing tools are compared by, [`PhotographModel::OneView`], always believes that.
-    Given,
+    AsCalibrated,
 }

@@ -5,7 +5,7 @@ mod budget;
 mod sphere;
 mod texels;
 
-pub(crate) use blocks::Blocks;
-pub(crate) use budget::Budget;
-pub(crate) use sphere::Sphere;
+pub(crate) use blocks::TexelBlocks;
+pub(crate) use budget::MemoryBudget;
+pub(crate) use sphere::DirectionGrid;
 pub(crate) use texels::{TexelGrid, Texels};

@@ -10,6 +10,6 @@ mod kept_picture;
 mod reading;
 mod sightings;
 
-pub(crate) use kept_picture::{KeptPicture, Shown};
-pub(crate) use reading::{ReadView, Reading};
-pub(crate) use sightings::{Look, Sighting, Sightings, from_border};
+pub(crate) use kept_picture::{PackedPicture, PictureSample};
+pub(crate) use reading::{LoadedView, ViewLoader};
+pub(crate) use sightings::{Observation, Observations, ViewVisibility, border_weight};

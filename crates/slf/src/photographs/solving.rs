@@ -1,11 +1,14 @@
 //! Light found from photographs, step by step.
 
 use super::alignment::{self, Displacement};
-use super::exposures::{Exposure, exposures};
-use super::odd::{self, Belonging};
-use super::places::{Budget, Sphere, Texels};
-use super::seeing::{Reading, Sightings};
-use super::telling::{Calibrated, Told, beyond, fill, is_blocked, one_view, told, toward};
+use super::exposures::{Exposure, solve_exposures};
+use super::odd::{self, InlierMap};
+use super::places::{DirectionGrid, MemoryBudget, Texels};
+use super::seeing::{Observations, ViewLoader};
+use super::telling::{
+    CalibratedObservations, RadianceModel, direction_to_eye, fill_unobserved, fit_background,
+    fit_radiance_model, fit_single_view, is_reflection_blocked,
+};
 use super::{PhotographError, PhotographLight, PhotographModel, PhotographOptions, Poses};
 use atlas::Atlas;
 use glam::DVec3;
@@ -38,48 +41,62 @@ impl PhotographLight {
         }
         let scene = tracer.scene();
         let stage = |name, from, to| Stage::named(progress, name, from, to);
-        let sphere = Sphere::of_rows(SPHERE_ROWS);
-        let budget = Budget::of(scene, atlas, views, options.max_memory);
-        let texels = Texels::of(scene, atlas, budget.texel_scale);
+        let sphere = DirectionGrid::with_rows(SPHERE_ROWS);
+        let budget = MemoryBudget::for_texels(scene, atlas, views, options.max_memory);
+        let texels = Texels::new(scene, atlas, budget.texel_scale);
         progress.check()?;
-        let reading = Reading { load: &options.load, reduction: budget.reduction, at_once: budget.at_once };
-        let mut sightings =
-            Sightings::of(scene, &texels, &sphere, views, &reading, &stage("photographs", 0.0, 0.25))?;
-        let exposures = exposures(&texels, &sightings, &sphere, views, &stage("exposures", 0.25, 0.33))?;
+        let loader = ViewLoader { load: &options.load, reduction: budget.reduction, at_once: budget.at_once };
+        let mut observations =
+            Observations::new(scene, &texels, &sphere, views, &loader, &stage("photographs", 0.0, 0.25))?;
+        let exposures =
+            solve_exposures(&texels, &observations, &sphere, views, &stage("exposures", 0.25, 0.33))?;
         let eyes: Vec<DVec3> = views.iter().map(View::position).collect();
-        let most = views.iter().zip(&exposures).map(|(view, exposure)| exposure.most_to_radiance(view));
-        sightings.scale(&texels, views, most.fold(1.0, f32::max), |number, pixel| {
+        let max_factors = views.iter().zip(&exposures).map(|(view, exposure)| exposure.max_to_radiance(view));
+        observations.scale_light(&texels, views, max_factors.fold(1.0, f32::max), |number, pixel| {
             exposures[number].to_radiance(&views[number], pixel)
         });
-        let (displacements, belonging) = match options.model {
+        let (displacements, inlier_maps) = match options.model {
             PhotographModel::Light => {
-                let places = Places { texels: &texels, views, exposures: &exposures, eyes: &eyes };
-                places.told(&mut sightings, options.poses, &Stage::new(progress, 0.33, 0.4))?
+                let alignment = Alignment { texels: &texels, views, exposures: &exposures, eyes: &eyes };
+                alignment.solve(&mut observations, options.poses, &Stage::new(progress, 0.33, 0.4))?
             }
-            PhotographModel::OneView => {
-                (views.iter().map(Displacement::none).collect(), views.iter().map(Belonging::whole).collect())
-            }
+            PhotographModel::OneView => (
+                views.iter().map(Displacement::none).collect(),
+                views.iter().map(InlierMap::all_inliers).collect(),
+            ),
         };
         progress.check()?;
-        if !belonging.iter().all(Belonging::is_whole) {
-            sightings.weigh(&texels, views, |number, pixel| belonging[number].at(pixel));
+        if !inlier_maps.iter().all(InlierMap::is_all_inliers) {
+            observations.reweight(&texels, views, |number, pixel| inlier_maps[number].at(pixel));
         }
         if options.model == PhotographModel::Light {
-            sightings.block(|texel, view| {
-                let outgoing = toward(texels.position(texel), eyes[view]);
+            observations.mark_blocked(|texel, view| {
+                let outgoing = direction_to_eye(texels.position(texel), eyes[view]);
                 !progress.cancelled()
-                    && is_blocked(tracer, texels.point(texel), texels.shading_normal(texel), outgoing)
+                    && is_reflection_blocked(
+                        tracer,
+                        texels.point(texel),
+                        texels.shading_normal(texel),
+                        outgoing,
+                    )
             });
             progress.check()?;
         }
-        let radiance = Calibrated { texels: &texels, sightings: &sightings, eyes: &eyes };
-        let seeing = (0..texels.count()).map(|texel| sightings.range(texel).len() as u16).collect();
-        let Told { mut constant, seen, mirrored, residuals } = match options.model {
-            PhotographModel::Light => told(&radiance, &Stage::new(progress, 0.4, 0.98))?,
-            PhotographModel::OneView => one_view(&radiance),
+        let radiance = CalibratedObservations { texels: &texels, observations: &observations, eyes: &eyes };
+        let observation_counts =
+            (0..texels.count()).map(|texel| observations.range(texel).len() as u16).collect();
+        let RadianceModel { mut constant, observed_share, mirrored, residuals } = match options.model {
+            PhotographModel::Light => fit_radiance_model(&radiance, &Stage::new(progress, 0.4, 0.98))?,
+            PhotographModel::OneView => fit_single_view(&radiance),
         };
-        let beyond = beyond(&sphere, views, &exposures, &sightings.pictures, &sightings.beyond);
-        fill(&texels, &seen, &mut constant);
+        let background = fit_background(
+            &sphere,
+            views,
+            &exposures,
+            &observations.pictures,
+            &observations.background_weights,
+        );
+        fill_unobserved(&texels, &observed_share, &mut constant);
         progress.report(1.0);
         Ok(Self {
             tracer: tracer.clone(),
@@ -87,55 +104,60 @@ impl PhotographLight {
             exposures,
             eyes,
             displacements,
-            belonging,
+            inlier_maps,
             constant,
-            seen,
-            seeing,
+            observed_share,
+            observation_counts,
             residuals,
             mirrored,
             sphere,
-            beyond,
+            background,
         })
     }
 }
 
 /// What it takes to tell what is where in photographs.
-struct Places<'a> {
+struct Alignment<'a> {
     texels: &'a Texels,
     views: &'a [View],
     exposures: &'a [Exposure],
     eyes: &'a [DVec3],
 }
 
-impl Places<'_> {
+impl Alignment<'_> {
     /// How far each photograph is off, and what of it belongs. The sightings are of the photographs as they are afterwards.
-    fn told(
+    fn solve(
         &self,
-        sightings: &mut Sightings,
+        observations: &mut Observations,
         poses: Poses,
         progress: &dyn Progress,
-    ) -> Result<(Vec<Displacement>, Vec<Belonging>), Cancelled> {
+    ) -> Result<(Vec<Displacement>, Vec<InlierMap>), Cancelled> {
         let Self { texels, views, exposures, eyes } = *self;
-        let belonging = |sightings: &Sightings, progress: &dyn Progress| {
-            odd::belonging(&Calibrated { texels, sightings, eyes }, views, progress)
+        let detect = |observations: &Observations, progress: &dyn Progress| {
+            odd::detect_transients(&CalibratedObservations { texels, observations, eyes }, views, progress)
         };
-        let before = belonging(sightings, &Stage::named(progress, "strangers", 0.0, 0.3))?;
-        if poses == Poses::Given {
-            return Ok((views.iter().map(Displacement::none).collect(), before));
+        let initial_inliers = detect(observations, &Stage::named(progress, "strangers", 0.0, 0.3))?;
+        if poses == Poses::AsCalibrated {
+            return Ok((views.iter().map(Displacement::none).collect(), initial_inliers));
         }
-        let aligning = Stage::named(progress, "alignment", 0.3, 1.0);
-        let radiance = Calibrated { texels, sightings, eyes };
-        let displacements =
-            alignment::displacements(&radiance, views, exposures, &before, &Stage::new(&aligning, 0.0, 0.7))?;
+        let alignment_stage = Stage::named(progress, "alignment", 0.3, 1.0);
+        let radiance = CalibratedObservations { texels, observations, eyes };
+        let displacements = alignment::align_photographs(
+            &radiance,
+            views,
+            exposures,
+            &initial_inliers,
+            &Stage::new(&alignment_stage, 0.0, 0.7),
+        )?;
         if displacements.iter().all(Displacement::is_none) {
-            return Ok((displacements, before));
+            return Ok((displacements, initial_inliers));
         }
-        sightings.look_again(texels, views, |number, pixel| {
+        observations.resample(texels, views, |number, pixel| {
             let displacement = &displacements[number];
             let factor = || exposures[number].to_radiance(&views[number], pixel);
             (!displacement.is_none()).then(|| (displacement.moved(pixel), factor()))
         });
-        let after = belonging(sightings, &Stage::new(&aligning, 0.8, 1.0))?;
-        Ok((displacements, after))
+        let aligned_inliers = detect(observations, &Stage::new(&alignment_stage, 0.8, 1.0))?;
+        Ok((displacements, aligned_inliers))
     }
 }

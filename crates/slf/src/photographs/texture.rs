@@ -16,7 +16,7 @@ pub struct LightTexture {
 }
 
 /// Charts go on for so many texels beyond their borders, so that who interpolates finds nothing else there.
-const BEYOND: i64 = 4;
+const MARGIN_TEXELS: i64 = 4;
 
 impl PhotographLight {
     /// What goes toward all directions alike, over `atlas`, which must be that which the light is kept at: as fine as it is kept.
@@ -28,20 +28,20 @@ impl PhotographLight {
         ) * self.grid.scale;
         let pixel = |number: usize| {
             let at = DVec2::new((number % width as usize) as f64, (number / width as usize) as f64) + 0.5;
-            self.at_place(at * grid_of_picture)
+            self.constant_at(at * grid_of_picture)
         };
         let pixels = (0..width as usize * height as usize).into_par_iter().map(pixel).collect();
         LightTexture { size: [width, height], pixels }
     }
 
-    fn at_place(&self, place: DVec2) -> Vec3 {
+    fn constant_at(&self, place: DVec2) -> Vec3 {
         let around = place - 0.5;
         let (floor, share) = (around.floor(), (around - around.floor()).as_vec2());
         let (mut sum, mut weights) = (Vec3::ZERO, 0.0);
         for [dx, dy] in [[0, 0], [1, 0], [0, 1], [1, 1]] {
-            let of = |step: i64, share: f32| if step == 0 { 1.0 - share } else { share };
+            let axis_weight = |step: i64, share: f32| if step == 0 { 1.0 - share } else { share };
             if let Some(texel) = self.grid.at(floor.x as i64 + dx, floor.y as i64 + dy) {
-                let weight = of(dx, share.x) * of(dy, share.y);
+                let weight = axis_weight(dx, share.x) * axis_weight(dy, share.y);
                 sum += self.constant[texel] * weight;
                 weights += weight;
             }
@@ -56,7 +56,8 @@ impl PhotographLight {
 /// The nearest texel, if one is near.
 fn nearest(grid: &TexelGrid, place: DVec2) -> Option<usize> {
     let (x, y) = (place.x.floor() as i64, place.y.floor() as i64);
-    let steps = (-BEYOND..=BEYOND).flat_map(|dy| (-BEYOND..=BEYOND).map(move |dx| (dx, dy)));
-    let found = steps.filter_map(|(dx, dy)| Some((dx * dx + dy * dy, grid.at(x + dx, y + dy)?)));
-    found.min().map(|(_, texel)| texel)
+    let steps = (-MARGIN_TEXELS..=MARGIN_TEXELS)
+        .flat_map(|dy| (-MARGIN_TEXELS..=MARGIN_TEXELS).map(move |dx| (dx, dy)));
+    let candidates = steps.filter_map(|(dx, dy)| Some((dx * dx + dy * dy, grid.at(x + dx, y + dy)?)));
+    candidates.min().map(|(_, texel)| texel)
 }

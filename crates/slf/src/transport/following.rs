@@ -1,142 +1,166 @@
 //! What comes along a path: it is followed from surface to surface, as far as its light is not known.
 
-use super::known::{Known, Reached};
-use super::{Path, Step, Transport, heuristic};
+use super::known::{CachedPlace, IrradianceLookup};
+use super::{Path, Step, Transport, power_heuristic};
 use crate::material_point::{MaterialPoint, emitted};
 use glam::DVec3;
 use material::{Bsdf, Split};
 use trace::Hit;
 
 /// What a path found.
-pub(super) struct Arriving {
+pub(super) struct PathLight {
     /// Light that came straight from where lights are drawn, too.
-    pub drawn: DVec3,
+    pub direct: DVec3,
     /// Other light.
-    pub other: DVec3,
+    pub indirect: DVec3,
     /// How far the first surface is.
     pub distance: f64,
     /// Where what arrives at diffuse lobes is known, and what of that is sent on.
-    pub onward: Option<(Reached, DVec3)>,
+    pub cached_end: Option<(CachedPlace, DVec3)>,
 }
 
 /// After so many scatterings Russian roulette begins.
-const SURE_SCATTERINGS: u32 = 3;
+const MIN_SCATTERINGS: u32 = 3;
 /// The share of paths that check what is known, where it is to be checked. Fewer cost less and tell it with more noise: measured in
 /// rooms of grey and of white walls, an eighth takes up to twice the time for the same error, a half as much as all would.
-const CHECKED: f64 = 1.0 / 2.0;
+const CHECKED_SHARE: f64 = 1.0 / 2.0;
 
 impl Transport {
     /// The radiance that arrives along a step, and all that comes after it as far as it is not known.
-    pub(super) fn arriving(&self, mut step: Step, path: &mut Path, mut known: Known<'_>) -> Arriving {
+    pub(super) fn trace_path(
+        &self,
+        mut step: Step,
+        path: &mut Path,
+        mut lookup: IrradianceLookup<'_>,
+    ) -> PathLight {
         let scene = self.scene();
-        let most = self.world.bounces.unwrap_or(u32::MAX);
-        let mut found =
-            Arriving { drawn: DVec3::ZERO, other: DVec3::ZERO, distance: f64::INFINITY, onward: None };
+        let max_bounces = self.world.bounces.unwrap_or(u32::MAX);
+        let mut result = PathLight {
+            direct: DVec3::ZERO,
+            indirect: DVec3::ZERO,
+            distance: f64::INFINITY,
+            cached_end: None,
+        };
         let mut throughput = DVec3::ONE;
-        let mut widest = step.density;
+        let mut min_density = step.density;
         for scatterings in 1u32.. {
-            let hit = self.tracer.first_met(step.from, step.direction);
+            let hit = self.tracer.first_hit_from(step.origin, step.direction);
             let length = hit.map_or(f64::INFINITY, |hit| hit.t);
             throughput *= self.media.attenuation(&path.inside, length);
             let Some(Hit { point, t }) = hit else {
-                let of_light = self.lights.density_of_environment(&self.world, step.direction);
+                let light_density = self.lights.environment_density(&self.world, step.direction);
                 let light = throughput * self.world.radiance(step.direction).as_dvec3();
-                let often = path.lights.sky;
-                found.add(light, step.density, [of_light, often], scatterings);
-                return found;
+                let draws_per_direction = path.lights.sky;
+                result.add(light, step.density, [light_density, draws_per_direction], scatterings);
+                return result;
             };
             if scatterings == 1 {
-                found.distance = t;
+                result.distance = t;
             }
             let outgoing = -step.direction;
-            let shines = emitted(scene, point, outgoing).as_dvec3();
-            if shines != DVec3::ZERO {
+            let emission = emitted(scene, point, outgoing).as_dvec3();
+            if emission != DVec3::ZERO {
                 let place = point.position(scene);
-                let of_light = self.lights.density_of_emitter(point.triangle, place, step.position);
-                let often = path.lights.lamps;
-                found.add(throughput * shines, step.density, [of_light, often], scatterings);
+                let light_density = self.lights.emitter_density(point.triangle, place, step.position);
+                let draws_per_direction = path.lights.lamps;
+                result.add(
+                    throughput * emission,
+                    step.density,
+                    [light_density, draws_per_direction],
+                    scatterings,
+                );
             }
-            if scatterings > most || scene.material_of(point.triangle).unlit {
-                return found;
+            if scatterings > max_bounces || scene.material_of(point.triangle).unlit {
+                return result;
             }
-            let mut at = MaterialPoint::of(scene, point, self.options.scattering);
-            if let (Known::All(_), Some(density)) = (known, widest) {
-                at.surface = at.surface.no_sharper_than(as_seen_by(density));
+            let mut at = MaterialPoint::new(scene, point, self.options.scattering);
+            if let (IrradianceLookup::Trusted(_), Some(density)) = (lookup, min_density) {
+                at.surface = at.surface.no_sharper_than(regularized_roughness(density));
             }
             throughput *= self.disperse(&at, path);
             let is_front = at.frame.geometric.dot(outgoing) >= 0.0;
             let interface = self.media.interface(at.material, &path.inside, is_front);
             let bsdf = Bsdf::new(&at.surface, at.frame, interface);
             let lobes = bsdf.toward(outgoing);
-            let scattered = match known.reached(scene, point, is_front, t) {
+            let scattered = match lookup.cached_place(scene, point, is_front, t) {
                 None => {
-                    found.other += throughput * self.direct(point, &at, &lobes, path).total();
-                    let Some(scattered) = lobes.sample(path.random.next3()) else { return found };
+                    result.indirect += throughput * self.direct(point, &at, &lobes, path).total();
+                    let Some(scattered) = lobes.sample(path.random.next3()) else { return result };
                     throughput *= scattered.weight.total();
                     scattered
                 }
                 Some(reached) => {
                     // What is own is known; what is carried is followed.
                     let Split { own, carried } = lobes.albedo();
-                    let [of_own, of_carried] = [own, carried].map(DVec3::element_sum);
-                    if of_carried > 0.0 {
-                        found.other += throughput * self.direct_carried(point, &at, &lobes, path);
+                    let [own_albedo, carried_albedo] = [own, carried].map(DVec3::element_sum);
+                    if carried_albedo > 0.0 {
+                        result.indirect += throughput * self.direct_carried(point, &at, &lobes, path);
                     }
-                    let ends = of_own / (of_own + of_carried);
-                    if of_carried == 0.0 || path.random.next() < ends {
-                        if of_carried > 0.0 {
-                            throughput /= ends;
+                    let end_probability = own_albedo / (own_albedo + carried_albedo);
+                    if carried_albedo == 0.0 || path.random.next() < end_probability {
+                        if carried_albedo > 0.0 {
+                            throughput /= end_probability;
                         }
-                        let checks = known.is_to_be_checked() && path.random.next() < CHECKED;
-                        let told = if checks { 1.0 - 1.0 / CHECKED } else { 1.0 };
-                        found.onward = (of_own > 0.0).then_some((reached, throughput * own * told));
-                        if of_own == 0.0 || !known.is_to_be_checked() {
-                            return found;
+                        let is_checked = lookup.is_control_variate() && path.random.next() < CHECKED_SHARE;
+                        let cached_share = if is_checked { 1.0 - 1.0 / CHECKED_SHARE } else { 1.0 };
+                        result.cached_end =
+                            (own_albedo > 0.0).then_some((reached, throughput * own * cached_share));
+                        if own_albedo == 0.0 || !lookup.is_control_variate() {
+                            return result;
                         }
-                        found.other += throughput * self.direct(point, &at, &lobes, path).own;
-                        if !checks {
-                            return found;
+                        result.indirect += throughput * self.direct(point, &at, &lobes, path).own;
+                        if !is_checked {
+                            return result;
                         }
-                        (known, throughput) = (Known::Nothing, throughput / CHECKED);
-                        let Some(scattered) = lobes.sample(path.random.next3()) else { return found };
+                        (lookup, throughput) = (IrradianceLookup::Unavailable, throughput / CHECKED_SHARE);
+                        let Some(scattered) = lobes.sample(path.random.next3()) else { return result };
                         throughput *= scattered.weight.own;
                         scattered
                     } else {
-                        let Some(scattered) = lobes.sample_sharp(path.random.next3()) else { return found };
-                        throughput *= scattered.weight.carried / (1.0 - ends);
+                        let Some(scattered) = lobes.sample_sharp(path.random.next3()) else { return result };
+                        throughput *= scattered.weight.carried / (1.0 - end_probability);
                         scattered
                     }
                 }
             };
-            if scatterings >= SURE_SCATTERINGS || throughput == DVec3::ZERO {
-                let lives = throughput.max_element().min(0.95);
-                if path.random.next() >= lives {
-                    return found;
+            if scatterings >= MIN_SCATTERINGS || throughput == DVec3::ZERO {
+                let survival_probability = throughput.max_element().min(0.95);
+                if path.random.next() >= survival_probability {
+                    return result;
                 }
-                throughput /= lives;
+                throughput /= survival_probability;
             }
             step = self.step(point, &at, &scattered, path);
-            widest = match (widest, step.density) {
+            min_density = match (min_density, step.density) {
                 (Some(so_far), Some(density)) => Some(so_far.min(density)),
                 (so_far, density) => so_far.or(density),
             };
         }
-        found
+        result
     }
 }
 
-impl Arriving {
+impl PathLight {
     /// Light that comes from where it is known.
-    pub fn sent_on(&self) -> DVec3 {
-        self.onward.as_ref().map_or(DVec3::ZERO, |(reached, share)| *share * reached.irradiance.as_dvec3())
+    pub fn cached_light(&self) -> DVec3 {
+        self.cached_end
+            .as_ref()
+            .map_or(DVec3::ZERO, |(reached, share)| *share * reached.irradiance.as_dvec3())
     }
 
     /// Light that was found after so many scatterings by a direction of some density; lights find it with another, and are drawn
     /// so often for the first direction.
-    fn add(&mut self, light: DVec3, density: Option<f64>, [of_light, often]: [f64; 2], scatterings: u32) {
-        let drawn = if scatterings == 1 { of_light * often } else { of_light };
-        let light = light * density.map_or(1.0, |own| heuristic(own, drawn));
-        let sum = if scatterings == 1 && of_light > 0.0 { &mut self.drawn } else { &mut self.other };
+    fn add(
+        &mut self,
+        light: DVec3,
+        density: Option<f64>,
+        [light_density, draws_per_direction]: [f64; 2],
+        scatterings: u32,
+    ) {
+        let expected_draws =
+            if scatterings == 1 { light_density * draws_per_direction } else { light_density };
+        let light = light * density.map_or(1.0, |own| power_heuristic(own, expected_draws));
+        let sum = if scatterings == 1 && light_density > 0.0 { &mut self.direct } else { &mut self.indirect };
         *sum += light;
     }
 }
@@ -144,7 +168,7 @@ impl Arriving {
 /// How rough what is reflected may be taken for, perceptually, where a lobe reflects it that is so wide: of a density, 1/sr, in the
 /// direction it was drawn in. A lamp in a mirror in rough metal is then found by drawing lamps, and not by chance, for a little
 /// blur of what is blurred anyway (path space regularisation, Kaplanyan and Dachsbacher 2013; the widths are those of Cycles).
-fn as_seen_by(density: f64) -> f64 {
+fn regularized_roughness(density: f64) -> f64 {
     let alpha = 0.5 * (1.0 - density).max(0.0).sqrt();
     alpha.sqrt()
 }

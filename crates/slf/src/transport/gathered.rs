@@ -6,53 +6,53 @@ use std::ops::{AddAssign, Mul};
 
 /// Light that a point sends on.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Gathered {
+pub(super) struct ScatteredLight {
     pub light: Split,
     /// What of it single paths found where few do.
-    pub by_chance: Split,
+    pub noisy: Split,
 }
 
-impl Gathered {
+impl ScatteredLight {
     /// What is sent on of light that one direction found: directly, or by further surfaces. A mirror has no other direction to
     /// look in.
-    pub fn by(scattered: &Scattered, direct: DVec3, by_others: DVec3) -> Self {
-        let light = split(scattered.weight, direct + by_others);
-        let is_chance = scattered.density.is_some();
-        let by_chance = if is_chance { split(scattered.weight, by_others) } else { Split::default() };
-        Self { light, by_chance }
+    pub fn from_direction(scattered: &Scattered, direct: DVec3, indirect: DVec3) -> Self {
+        let light = scale_split(scattered.weight, direct + indirect);
+        let is_random = scattered.density.is_some();
+        let noisy = if is_random { scale_split(scattered.weight, indirect) } else { Split::default() };
+        Self { light, noisy }
     }
 
     /// What of it is carried.
     pub fn carried(self) -> Self {
         let carried = |light: Split| Split { own: DVec3::ZERO, ..light };
-        Self { light: carried(self.light), by_chance: carried(self.by_chance) }
+        Self { light: carried(self.light), noisy: carried(self.noisy) }
     }
 
-    pub fn split(self, share: DVec3) -> Self {
-        Self { light: split(self.light, share), by_chance: split(self.by_chance, share) }
+    pub fn scaled(self, share: DVec3) -> Self {
+        Self { light: scale_split(self.light, share), noisy: scale_split(self.noisy, share) }
     }
 }
 
-impl AddAssign for Gathered {
+impl AddAssign for ScatteredLight {
     fn add_assign(&mut self, other: Self) {
         self.light += other.light;
-        self.by_chance += other.by_chance;
+        self.noisy += other.noisy;
     }
 }
 
-impl Mul<f64> for Gathered {
+impl Mul<f64> for ScatteredLight {
     type Output = Self;
     fn mul(self, factor: f64) -> Self {
-        Self { light: self.light * factor, by_chance: self.by_chance * factor }
+        Self { light: self.light * factor, noisy: self.noisy * factor }
     }
 }
 
 /// What is left of a split light.
-pub(super) fn split(light: Split, share: DVec3) -> Split {
+pub(super) fn scale_split(light: Split, share: DVec3) -> Split {
     Split { own: light.own * share, carried: light.carried * share }
 }
 
 /// The larger of either, channel by channel.
-pub(super) fn most(a: Split, b: Split) -> Split {
+pub(super) fn max_split(a: Split, b: Split) -> Split {
     Split { own: a.own.max(b.own), carried: a.carried.max(b.carried) }
 }

@@ -3,261 +3,283 @@
 mod asked;
 pub(super) mod drawn;
 
-use super::{LightsAPath, Path, Transport, heuristic};
+use super::{LightsPerDirection, Path, Transport, power_heuristic};
 use crate::irradiance::patches::facing;
 use crate::irradiance::place::Place;
 use crate::lights::LightSample;
 use crate::material_point::MaterialPoint;
 use crate::path_random::PathRandom;
-use crate::spots::{self, Measure, Measured, Seen};
-use asked::Asked;
-use drawn::{Drawing, Drawn};
+use crate::spots::{self, IncidentSampler, LightVisibility, Measurement};
+use asked::PointBatch;
+use drawn::{LightDraws, SampledLight};
 use glam::{DVec3, Vec3};
-use material::{Bsdf, Frame, Parts, Toward};
+use material::{Bsdf, Frame, OutgoingBsdf, Parts};
 use scene::SurfacePoint;
 use std::collections::BTreeMap;
 use std::f64::consts::FRAC_1_PI;
-use trace::{Received, Spot};
+use trace::{IncidentLight, ShadingPoint};
 
 /// Paths by which rough gloss is told that sends little of the light that comes, as varnish does, over how many lights are drawn for
 /// a point asked alone.
-const PATHS: u32 = 2;
+const GLOSS_PATHS_FACTOR: u32 = 2;
 
 /// The same of gloss that sends so large a share of it as metals do.
-const PATHS_OF_METAL: u32 = 8;
-const AS_METAL: f64 = 0.25;
+const METAL_PATHS_FACTOR: u32 = 8;
+const METAL_ALBEDO: f64 = 0.25;
 
 /// From nearer to the horizon than this, sine, light is told as even: a normal that is turned a little would find it elsewhere.
-const GRAZING: f64 = 0.1;
+const MIN_COSINE: f64 = 0.1;
 
 impl Transport {
     /// What spots receive that are of one surface with others.
-    pub(super) fn receive(&self, spots: &[Spot], eye: DVec3) -> Vec<Option<Received>> {
-        let mut received = vec![None; spots.len()];
-        let Some(irradiance) = self.kept.trusted() else { return received };
+    pub(super) fn measure_batch(&self, points: &[ShadingPoint], eye: DVec3) -> Vec<Option<IncidentLight>> {
+        let mut received = vec![None; points.len()];
+        let Some(irradiance) = self.cache_mode.trusted() else { return received };
         let scene = self.scene();
         let mut surfaces: BTreeMap<(u32, bool, u8), Vec<usize>> = BTreeMap::new();
-        let mut asked = Asked {
+        let mut batch = PointBatch {
             transport: self,
             irradiance,
-            spots,
+            points,
             eye,
-            sky: self.sky(),
+            sky_samples: self.sky_samples(),
             places: Vec::new(),
             is_front: Vec::new(),
             inside: Vec::new(),
         };
-        for (number, spot) in spots.iter().enumerate() {
-            let triangle = spot.point.triangle;
-            let toward = eye - spot.point.position(scene);
+        for (index, shading_point) in points.iter().enumerate() {
+            let triangle = shading_point.point.triangle;
+            let toward = eye - shading_point.point.position(scene);
             let is_front = scene.area_normal(triangle).dot(toward) >= 0.0;
             let material = scene.material_of(triangle);
-            asked.is_front.push(is_front);
-            let place = Place::of(scene, spot.point, is_front);
-            asked.places.push(place);
-            asked.inside.push(self.media.beside(scene.part_of(triangle).material, is_front));
+            batch.is_front.push(is_front);
+            let place = Place::new(scene, shading_point.point, is_front);
+            batch.places.push(place);
+            batch.inside.push(self.media.outgoing_medium(scene.part_of(triangle).material, is_front));
             if !material.unlit {
                 let key = (place.part, is_front, facing(place.normal));
-                surfaces.entry(key).or_default().push(number);
+                surfaces.entry(key).or_default().push(index);
             }
         }
         for surface in surfaces.values() {
-            spots::tell(spots, surface, &asked, |spot, told| received[spot] = Some(told));
+            spots::interpolate_incident(points, surface, &batch, |index, incident| {
+                received[index] = Some(incident)
+            });
         }
         received
     }
 }
 
-impl Measure for Asked<'_> {
-    fn measure(&self, spot: usize) -> Option<Measured> {
+impl IncidentSampler for PointBatch<'_> {
+    fn measure(&self, index: usize) -> Option<Measurement> {
         let Self { transport, irradiance, .. } = self;
-        let (point, place, inside) = (self.spots[spot].point, &self.places[spot], self.inside[spot]);
+        let (point, place, inside) = (self.points[index].point, &self.places[index], self.inside[index]);
         let indirect = irradiance.indirect(place)?;
         // Spread lobes do not send on light from everywhere alike: what they send is told as the irradiance that would do.
         let at = MaterialPoint {
-            frame: Frame::new(self.geometric(spot), transport.scene().shading_normal(point), DVec3::ZERO),
-            ..MaterialPoint::of(transport.scene(), point, transport.options.scattering)
+            frame: Frame::new(
+                self.geometric_normal(index),
+                transport.scene().shading_normal(point),
+                DVec3::ZERO,
+            ),
+            ..MaterialPoint::new(transport.scene(), point, transport.options.scattering)
         };
-        let interface = transport.media.interface(at.material, &inside, self.is_front[spot]);
+        let interface = transport.media.interface(at.material, &inside, self.is_front[index]);
         let bsdf = Bsdf::new(&at.surface, at.frame, interface);
         let lobes = bsdf.toward((self.eye - place.position).normalize_or_zero());
         let spread = lobes.spread_albedo();
         let albedo = [spread, lobes.albedo().own - spread];
         // What comes through is found on the other side, where lights are not drawn here.
         let lets_through = at.surface.transmission > 0.0 || at.surface.diffuse_transmission > 0.0;
-        let has_gloss = transport.scene().material_of(point.triangle).has_even_gloss() && !lets_through;
-        let mut measured = Measured {
-            received: Received {
-                even: indirect,
+        let has_gloss = transport.scene().material_of(point.triangle).has_uniform_gloss() && !lets_through;
+        let mut measured = Measurement {
+            received: IncidentLight {
+                isotropic: indirect,
                 gloss: has_gloss.then_some(Vec3::ZERO),
-                ..Received::default()
+                ..IncidentLight::default()
             },
             normal: place.normal,
             albedo: albedo.map(DVec3::as_vec3),
-            sent: Vec3::ZERO,
-            lights: Seen::default(),
+            outgoing: Vec3::ZERO,
+            visibility: LightVisibility::default(),
         };
         if albedo == [DVec3::ZERO; 2] {
             return Some(measured);
         }
-        let drawing = self.draw(spot);
-        measured.lights = drawing.seen;
-        let facing = Facing { spot, point, at: &at, lobes: &lobes };
-        let [by_spread, by_gloss] = albedo.map(inverse);
-        self.add_drawn(&mut measured.received, &facing, by_spread, &drawing);
-        self.add_looked_for(&mut measured.received, &facing, by_spread, &drawing);
+        let draws = self.sample_lights(index);
+        measured.visibility = draws.visibility;
+        let facing = FacingPoint { index, point, at: &at, lobes: &lobes };
+        let [per_spread, per_gloss] = albedo.map(reciprocal);
+        self.add_sampled_lights(&mut measured.received, &facing, per_spread, &draws);
+        self.add_traced_emitters(&mut measured.received, &facing, per_spread, &draws);
         if has_gloss && albedo[1].max_element() > 0.0 {
-            measured.received.gloss = Some((self.gloss(&facing, &drawing) * by_gloss).as_vec3());
+            measured.received.gloss = Some((self.gloss(&facing, &draws) * per_gloss).as_vec3());
         }
-        measured.sent = self.sent(&measured, &measured.received);
+        measured.outgoing = self.outgoing(&measured, &measured.received);
         Some(measured)
     }
 
-    fn normal(&self, spot: usize) -> DVec3 {
-        self.places[spot].normal
+    fn normal(&self, index: usize) -> DVec3 {
+        self.places[index].normal
     }
 
-    fn sent(&self, measured: &Measured, received: &Received) -> Vec3 {
-        let irradiance = self.irradiance.received(&self.transport.world, received, measured.normal).as_vec3();
+    fn outgoing(&self, measured: &Measurement, received: &IncidentLight) -> Vec3 {
+        let irradiance = self.irradiance.shaded(&self.transport.world, received, measured.normal).as_vec3();
         let [spread, gloss] = measured.albedo;
         irradiance * spread + received.gloss.unwrap_or_default() * gloss
     }
 
-    fn differs(&self, spot: usize, turn: usize, agreed: &Seen) -> Option<bool> {
-        self.sees_otherwise(spot, turn, agreed)
+    fn visibility_differs(&self, index: usize, turn: usize, agreed: &LightVisibility) -> Option<bool> {
+        self.compare_visibility(index, turn, agreed)
     }
 }
 
 /// A spot's surface, as it sends light toward the eye.
-struct Facing<'a, 'b> {
-    spot: usize,
+struct FacingPoint<'a, 'b> {
+    index: usize,
     point: SurfacePoint,
     at: &'a MaterialPoint,
-    lobes: &'a Toward<'b, 'b>,
+    lobes: &'a OutgoingBsdf<'b, 'b>,
 }
 
-impl Asked<'_> {
+impl PointBatch<'_> {
     /// Adds what spread lobes receive of lights that were drawn: of the sky, that nothing shades which is known, what is missing.
-    fn add_drawn(&self, received: &mut Received, facing: &Facing, by_spread: DVec3, drawing: &Drawing) {
+    fn add_sampled_lights(
+        &self,
+        received: &mut IncidentLight,
+        facing: &FacingPoint,
+        per_spread: DVec3,
+        draws: &LightDraws,
+    ) {
         let Self { transport, irradiance, .. } = self;
-        let (place, inside) = (&self.places[facing.spot], &self.inside[facing.spot]);
+        let (place, inside) = (&self.places[facing.index], &self.inside[facing.index]);
         let unshaded = irradiance.unshaded(&transport.world, place.normal);
-        let lights_a_look = f64::from(drawing.of_areas) / f64::from(self.light_samples());
+        let lights_per_path = f64::from(draws.area_draws) / f64::from(self.lights_per_point());
         let cosine = |from: DVec3| place.normal.dot(from);
         // The sky's samples tell what share of it is missing: none is, or all, where none is seen, or all, to the last bit.
-        let of_sky = |drawn: &&Drawn| drawn.sample.is_of_sky();
-        let drawn_of_sky = drawing.lights.iter().filter(of_sky).map(|drawn| {
+        let is_sky = |drawn: &&SampledLight| drawn.sample.is_sky();
+        let sampled_sky = draws.lights.iter().filter(is_sky).map(|drawn| {
             drawn.sample.light.as_dvec3()
-                * cosine(drawn.sample.from)
+                * cosine(drawn.sample.direction)
                 * FRAC_1_PI
-                * drawing.share(&drawn.sample)
+                * draws.share(&drawn.sample)
         });
-        let as_unshaded = unshaded.map_or(DVec3::ONE, |unshaded| unshaded * inverse(drawn_of_sky.sum()));
-        for drawn in &drawing.lights {
-            let Drawn { sample, is_seen } = drawn;
-            let cosine = cosine(sample.from);
-            let is_known = of_sky(&drawn) && unshaded.is_some();
-            if !is_seen && !is_known {
+        let to_unshaded = unshaded.map_or(DVec3::ONE, |unshaded| unshaded * reciprocal(sampled_sky.sum()));
+        for drawn in &draws.lights {
+            let SampledLight { sample, is_visible } = drawn;
+            let cosine = cosine(sample.direction);
+            let is_unshaded_sky = is_sky(&drawn) && unshaded.is_some();
+            if !is_visible && !is_unshaded_sky {
                 continue;
             }
-            let (Parts { spread, .. }, _) = facing.lobes.scatter_parts(sample.from);
-            let sent = if *is_seen { spread * by_spread } else { DVec3::ZERO };
-            let known = if is_known { cosine * FRAC_1_PI } else { 0.0 };
-            let scale = if is_known { as_unshaded } else { DVec3::ONE };
+            let (Parts { spread, .. }, _) = facing.lobes.scatter_parts(sample.direction);
+            let sent = if *is_visible { spread * per_spread } else { DVec3::ZERO };
+            let unshaded_cosine = if is_unshaded_sky { cosine * FRAC_1_PI } else { 0.0 };
+            let scale = if is_unshaded_sky { to_unshaded } else { DVec3::ONE };
             let share = match sample.density {
                 Some(density) if sample.is_near => {
-                    let own = facing.lobes.spread_density(sample.from);
-                    heuristic(density * lights_a_look, own)
+                    let own = facing.lobes.spread_density(sample.direction);
+                    power_heuristic(density * lights_per_path, own)
                 }
                 _ => 1.0,
-            } * drawing.share(sample);
-            let light = transport.light_of(sample, place.position, inside);
-            received.add(light * scale * (sent - known) * share, sample.from, cosine);
+            } * draws.share(sample);
+            let light = transport.attenuated_light(sample, place.position, inside);
+            received.add_from(light * scale * (sent - unshaded_cosine) * share, sample.direction, cosine);
         }
     }
 
     /// Adds what spread lobes receive of lamps that are found by directions they are looked for in.
-    fn add_looked_for(&self, received: &mut Received, facing: &Facing, by_spread: DVec3, drawing: &Drawing) {
-        let place = &self.places[facing.spot];
-        let looks = self.light_samples();
-        let lights_a_path = f64::from(drawing.of_areas) / f64::from(looks);
-        for index in 0..looks {
-            let random = PathRandom::new(drawn::LOOKING, index);
-            let inside = self.inside[facing.spot];
-            let mut path = Path { random, inside, lights: LightsAPath::each(lights_a_path) };
-            let found = self.transport.looked_for(facing.point, place.position, facing.lobes, &mut path);
-            if let Some((direction, sent)) = found {
+    fn add_traced_emitters(
+        &self,
+        received: &mut IncidentLight,
+        facing: &FacingPoint,
+        per_spread: DVec3,
+        draws: &LightDraws,
+    ) {
+        let place = &self.places[facing.index];
+        let paths = self.lights_per_point();
+        let lights_per_path = f64::from(draws.area_draws) / f64::from(paths);
+        for index in 0..paths {
+            let random = PathRandom::new(drawn::DIRECTION_SEED, index);
+            let inside = self.inside[facing.index];
+            let mut path = Path { random, inside, lights: LightsPerDirection::uniform(lights_per_path) };
+            let traced = self.transport.trace_emitter(facing.point, place.position, facing.lobes, &mut path);
+            if let Some((direction, sent)) = traced {
                 let cosine = place.normal.dot(direction);
-                received.add(sent * by_spread / f64::from(looks), direction, cosine);
+                received.add_from(sent * per_spread / f64::from(paths), direction, cosine);
             }
         }
     }
 
     /// What own gloss sends toward the eye.
-    fn gloss(&self, facing: &Facing, drawing: &Drawing) -> DVec3 {
-        let (place, inside) = (&self.places[facing.spot], self.inside[facing.spot]);
-        let sent_of_all = (facing.lobes.albedo().own - facing.lobes.spread_albedo()).max_element();
-        let paths = if sent_of_all < AS_METAL { PATHS } else { PATHS_OF_METAL } * self.light_samples();
+    fn gloss(&self, facing: &FacingPoint, draws: &LightDraws) -> DVec3 {
+        let (place, inside) = (&self.places[facing.index], self.inside[facing.index]);
+        let gloss_albedo = (facing.lobes.albedo().own - facing.lobes.spread_albedo()).max_element();
+        let paths = if gloss_albedo < METAL_ALBEDO { GLOSS_PATHS_FACTOR } else { METAL_PATHS_FACTOR }
+            * self.lights_per_point();
         // All spots draw the same few directions of the sky, which tell what share of it is seen; many more tell what all of it sends.
         let [sky, lamps] =
-            [self.sky.len() as f64, drawing.of_areas.into()].map(|draws| draws / f64::from(paths));
-        let lights = LightsAPath { sky, lamps };
-        let sent_of = |sample: &LightSample, light: DVec3| {
-            let (Parts { sharp, .. }, own) = facing.lobes.scatter_parts(sample.from);
+            [self.sky_samples.len() as f64, draws.area_draws.into()].map(|count| count / f64::from(paths));
+        let lights = LightsPerDirection { sky, lamps };
+        let gloss_toward = |sample: &LightSample, light: DVec3| {
+            let (Parts { sharp, .. }, lobe_density) = facing.lobes.scatter_parts(sample.direction);
             light
                 * sharp.own
-                * sample.density.map_or(1.0, |density| heuristic(density * lights.of(sample), own))
+                * sample
+                    .density
+                    .map_or(1.0, |density| power_heuristic(density * lights.for_sample(sample), lobe_density))
         };
         let mut sent = DVec3::ZERO;
-        let [mut sky, mut seen_sky] = [DVec3::ZERO; 2];
-        for Drawn { sample, is_seen } in &drawing.lights {
-            let is_sky = sample.is_of_sky();
-            if !is_sky && !is_seen {
+        let [mut sky, mut visible_sky] = [DVec3::ZERO; 2];
+        for SampledLight { sample, is_visible } in &draws.lights {
+            let is_sky = sample.is_sky();
+            if !is_sky && !is_visible {
                 continue;
             }
-            let light = self.transport.light_of(sample, place.position, &inside);
-            let sent_of = sent_of(sample, light) * drawing.share(sample);
-            match (is_sky, is_seen) {
-                (true, true) => (sky, seen_sky) = (sky + sent_of, seen_sky + sent_of),
-                (true, false) => sky += sent_of,
-                (false, _) => sent += sent_of,
+            let light = self.transport.attenuated_light(sample, place.position, &inside);
+            let gloss_light = gloss_toward(sample, light) * draws.share(sample);
+            match (is_sky, is_visible) {
+                (true, true) => (sky, visible_sky) = (sky + gloss_light, visible_sky + gloss_light),
+                (true, false) => sky += gloss_light,
+                (false, _) => sent += gloss_light,
             }
         }
-        if seen_sky != DVec3::ZERO {
-            let above = self.sky.iter().filter(|sample| place.normal.dot(sample.from) > 0.0);
-            let open: DVec3 = above.map(|sample| sent_of(sample, sample.light.as_dvec3())).sum();
-            sent += seen_sky * inverse(sky) * open / self.sky.len() as f64;
+        if visible_sky != DVec3::ZERO {
+            let above_horizon =
+                self.sky_samples.iter().filter(|sample| place.normal.dot(sample.direction) > 0.0);
+            let open: DVec3 = above_horizon.map(|sample| gloss_toward(sample, sample.light.as_dvec3())).sum();
+            sent += visible_sky * reciprocal(sky) * open / self.sky_samples.len() as f64;
         }
         for index in 0..paths {
-            let random = PathRandom::new(drawn::LOOKING, index);
+            let random = PathRandom::new(drawn::DIRECTION_SEED, index);
             let mut path = Path { random, inside, lights };
-            let found =
-                self.transport.sharp(facing.point, facing.at, facing.lobes, &mut path, self.irradiance);
-            sent += found.light.own / f64::from(paths);
+            let path_light =
+                self.transport.trace_sharp(facing.point, facing.at, facing.lobes, &mut path, self.irradiance);
+            sent += path_light.light.own / f64::from(paths);
         }
         sent
     }
 }
 
 /// One over each channel; of nothing nothing.
-fn inverse(of: DVec3) -> DVec3 {
-    of.map(|of_channel| if of_channel > 0.0 { of_channel.recip() } else { 0.0 })
+fn reciprocal(color: DVec3) -> DVec3 {
+    color.map(|channel| if channel > 0.0 { channel.recip() } else { 0.0 })
 }
 
-trait Adds {
-    fn add(&mut self, irradiance: DVec3, from: DVec3, cosine: f64);
+trait AddDirectional {
+    fn add_from(&mut self, irradiance: DVec3, from: DVec3, cosine: f64);
 }
 
-impl Adds for Received {
+impl AddDirectional for IncidentLight {
     /// Adds irradiance/π that arrives from a direction, at so much of an angle to the normal.
-    fn add(&mut self, irradiance: DVec3, from: DVec3, cosine: f64) {
-        if cosine < GRAZING {
-            self.even += irradiance.as_vec3();
+    fn add_from(&mut self, irradiance: DVec3, from: DVec3, cosine: f64) {
+        if cosine < MIN_COSINE {
+            self.isotropic += irradiance.as_vec3();
             return;
         }
         let flow = irradiance / cosine;
-        for (axis, by) in self.flow.iter_mut().zip(from.to_array()) {
-            *axis += (flow * by).as_vec3();
+        for (axis, component) in self.vector_irradiance.iter_mut().zip(from.to_array()) {
+            *axis += (flow * component).as_vec3();
         }
     }
 }

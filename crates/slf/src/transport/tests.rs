@@ -13,7 +13,7 @@ mod refining;
 mod rooms;
 
 fn grey() -> Material {
-    Material { base_color: Vec4::new(0.5, 0.25, 1.0, 1.0), ..Material::of_lambert() }
+    Material { base_color: Vec4::new(0.5, 0.25, 1.0, 1.0), ..Material::lambertian_white() }
 }
 
 /// A rectangle of two triangles, counter-clockwise seen from where side × other points.
@@ -60,10 +60,10 @@ fn light(kind: LightKind, position: DVec3, direction: DVec3) -> Light {
     Light { name, kind, intensity: Vec3::new(3.0, 2.0, 1.0), position, direction, range: f64::INFINITY }
 }
 
-fn assert_near(found: Vec3, expected: Vec3) {
+fn assert_near(actual: Vec3, expected: Vec3) {
     assert!(
-        (found - expected).abs().max_element() <= 1e-6 * expected.max_element(),
-        "{found}, not {expected}"
+        (actual - expected).abs().max_element() <= 1e-6 * expected.max_element(),
+        "{actual}, not {expected}"
     );
 }
 
@@ -77,18 +77,25 @@ fn a_point_light_over_a_plane() {
     // albedo/π · I cosθ/r², cosθ = 0.8, r = 2.
     let expected = ALBEDO * INTENSITY * (0.8 / 4.0 / PI) as f32;
     let scene = scene_of(&[floor(grey())], std::slice::from_ref(&point));
-    assert_near(direct(scene.clone()).toward(MIDDLE, ABOVE), expected);
-    assert_eq!(direct(scene).toward(MIDDLE, -ABOVE), Vec3::ZERO, "from below, where no light arrives");
+    assert_near(direct(scene.clone()).total_outgoing(MIDDLE, ABOVE), expected);
+    assert_eq!(
+        direct(scene).total_outgoing(MIDDLE, -ABOVE),
+        Vec3::ZERO,
+        "from below, where no light arrives"
+    );
 
     // Whatever the winding: the side that faces the eye counts.
     let turned = Rectangle(DVec3::new(-1.0, 0.0, -1.0), DVec3::X * 2.0, DVec3::Z * 2.0, grey());
-    assert_near(direct(scene_of(&[turned], std::slice::from_ref(&point))).toward(MIDDLE, ABOVE), expected);
+    assert_near(
+        direct(scene_of(&[turned], std::slice::from_ref(&point))).total_outgoing(MIDDLE, ABOVE),
+        expected,
+    );
 
     let windowed = Light { range: 4.0, ..point.clone() };
     let scene = scene_of(&[floor(grey())], &[windowed]);
-    assert_near(direct(scene).toward(MIDDLE, ABOVE), expected * (1.0 - 0.5f32.powi(4)));
+    assert_near(direct(scene).total_outgoing(MIDDLE, ABOVE), expected * (1.0 - 0.5f32.powi(4)));
     let out_of_range = Light { range: 1.9, ..point };
-    assert_eq!(direct(scene_of(&[floor(grey())], &[out_of_range])).toward(MIDDLE, ABOVE), Vec3::ZERO);
+    assert_eq!(direct(scene_of(&[floor(grey())], &[out_of_range])).total_outgoing(MIDDLE, ABOVE), Vec3::ZERO);
 }
 
 #[test]
@@ -103,8 +110,8 @@ fn a_spot_light_has_a_soft_cone() {
         let direction = DVec3::new(angle.sin(), -angle.cos(), 0.0);
         let spot = light(LightKind::Spot { inner, outer }, DVec3::Y * 3.0, direction);
         let expected = ALBEDO * INTENSITY * (share / 9.0 / PI) as f32;
-        let found = direct(scene_of(&[floor(grey())], &[spot])).toward(MIDDLE, ABOVE);
-        assert!((found - expected).abs().max_element() < 1e-6, "{angle}: {found}, not {expected}");
+        let actual = direct(scene_of(&[floor(grey())], &[spot])).total_outgoing(MIDDLE, ABOVE);
+        assert!((actual - expected).abs().max_element() < 1e-6, "{angle}: {actual}, not {expected}");
     }
 }
 
@@ -112,7 +119,7 @@ fn a_spot_light_has_a_soft_cone() {
 fn directional_light() {
     let sun = light(LightKind::Directional, DVec3::ZERO, DVec3::new(0.6, -0.8, 0.0));
     let scene = scene_of(&[floor(grey())], &[sun]);
-    assert_near(direct(scene).toward(MIDDLE, ABOVE), ALBEDO * INTENSITY * (0.8 * FRAC_1_PI) as f32);
+    assert_near(direct(scene).total_outgoing(MIDDLE, ABOVE), ALBEDO * INTENSITY * (0.8 * FRAC_1_PI) as f32);
 }
 
 #[test]
@@ -126,16 +133,16 @@ fn of_many_lights_one_is_drawn_and_the_mean_is_right() {
             )
         })
         .collect();
-    let each = lights
-        .iter()
-        .map(|light| direct(scene_of(&[floor(grey())], std::slice::from_ref(light))).toward(MIDDLE, ABOVE));
+    let each = lights.iter().map(|light| {
+        direct(scene_of(&[floor(grey())], std::slice::from_ref(light))).total_outgoing(MIDDLE, ABOVE)
+    });
     let expected: Vec3 = each.sum();
-    let found = direct_by(scene_of(&[floor(grey())], &lights), 1 << 12).toward(MIDDLE, ABOVE);
-    assert!((found / expected - 1.0).abs().max_element() < 2e-3, "{found}, not {expected}");
+    let actual = direct_by(scene_of(&[floor(grey())], &lights), 1 << 12).total_outgoing(MIDDLE, ABOVE);
+    assert!((actual / expected - 1.0).abs().max_element() < 2e-3, "{actual}, not {expected}");
 }
 
 #[test]
-fn what_stands_between_casts_a_shadow() {
+fn an_occluder_casts_a_shadow() {
     let lights = [
         light(LightKind::Point, DVec3::Y * 3.0, DVec3::ZERO),
         light(LightKind::Directional, DVec3::ZERO, -DVec3::Y),
@@ -144,7 +151,7 @@ fn what_stands_between_casts_a_shadow() {
         let lid = |x: f64| Rectangle(DVec3::new(x, 1.0, 0.1), DVec3::X * 0.2, DVec3::Z * -0.2, grey());
         let lit = |x: f64| {
             let scene = scene_of(&[floor(grey()), lid(x)], std::slice::from_ref(&light));
-            direct(scene).toward(MIDDLE, ABOVE) != Vec3::ZERO
+            direct(scene).total_outgoing(MIDDLE, ABOVE) != Vec3::ZERO
         };
         assert!(!lit(-0.1) && lit(0.01), "{:?}", light.kind);
     }
@@ -170,11 +177,11 @@ fn unlit_is_the_texture_on_both_sides() {
     let lower_right = SurfacePoint { triangle: 0, barycentric: DVec2::new(0.9, 0.0) };
     let lower_left = SurfacePoint { triangle: 0, barycentric: DVec2::new(0.1, 0.0) };
     for eye in [ABOVE, -ABOVE] {
-        assert_near(direct.toward(lower_left, eye), ALBEDO * Vec3::Z);
+        assert_near(direct.total_outgoing(lower_left, eye), ALBEDO * Vec3::Z);
         let grey = ((188.0f32 / 255.0 + 0.055) / 1.055).powf(2.4);
-        assert_near(direct.toward(lower_right, eye), ALBEDO * grey);
+        assert_near(direct.total_outgoing(lower_right, eye), ALBEDO * grey);
     }
-    assert_eq!(direct.from_infinity(DVec3::Y), Vec3::new(0.1, 0.2, 0.3));
+    assert_eq!(direct.environment(DVec3::Y), Vec3::new(0.1, 0.2, 0.3));
 }
 
 #[test]
@@ -183,8 +190,8 @@ fn emission_leaves_by_the_front() {
     let both = Material { double_sided: true, ..lamp.clone() };
     for (material, below) in [(lamp.clone(), Vec3::ZERO), (both, lamp.emissive)] {
         let direct = direct(scene_of(&[floor(material)], &[]));
-        assert_eq!(direct.toward(MIDDLE, ABOVE), lamp.emissive);
-        assert_eq!(direct.toward(MIDDLE, -ABOVE), below);
+        assert_eq!(direct.total_outgoing(MIDDLE, ABOVE), lamp.emissive);
+        assert_eq!(direct.total_outgoing(MIDDLE, -ABOVE), below);
     }
 }
 
@@ -210,19 +217,20 @@ fn an_emissive_rectangle_lights_by_its_form_factor() {
             triangle: 0,
             barycentric: MIDDLE.barycentric + DVec2::new(1e-6, 2e-6) * f64::from(k),
         });
-        let radiances: Vec<_> = points.map(|point| f64::from(direct.toward(point, ABOVE).z)).collect();
+        let radiances: Vec<_> =
+            points.map(|point| f64::from(direct.total_outgoing(point, ABOVE).z)).collect();
         let mean = radiances.iter().sum::<f64>() / 64.0;
         let deviation = radiances.iter().map(|r| (r - mean).powi(2)).sum::<f64>() / 63.0;
         (mean, deviation.sqrt())
     };
-    let (found, deviation) = mean(down(lamp.clone()), 32);
-    assert!((found / expected - 1.0).abs() < 2e-3, "{found}, expected {expected}");
+    let (actual, deviation) = mean(down(lamp.clone()), 32);
+    assert!((actual / expected - 1.0).abs() < 2e-3, "{actual}, expected {expected}");
     assert!(deviation / expected < 0.05, "each point is off by {deviation} of {expected}");
-    let (found, _) = mean(down(lamp.clone()), 1);
-    assert!((found / expected - 1.0).abs() < 0.1, "one sample a point: {found}, expected {expected}");
+    let (actual, _) = mean(down(lamp.clone()), 1);
+    assert!((actual / expected - 1.0).abs() < 0.1, "one sample a point: {actual}, expected {expected}");
     assert_eq!(mean(up(lamp.clone()), 32).0, 0.0, "a lamp that faces away");
-    let (found, _) = mean(up(Material { double_sided: true, ..lamp }), 32);
-    assert!((found / expected - 1.0).abs() < 2e-3, "two-sided: {found}, expected {expected}");
+    let (actual, _) = mean(up(Material { double_sided: true, ..lamp }), 32);
+    assert!((actual / expected - 1.0).abs() < 2e-3, "two-sided: {actual}, expected {expected}");
 }
 
 #[test]
@@ -235,8 +243,8 @@ fn an_emissive_box_is_not_its_own_shadow() {
     let faces = [(low, x, z), (high, -z, -x), (low, y, x), (high, -x, -y), (low, z, y), (high, -y, -z)];
     let mut rectangles = vec![floor(grey())];
     rectangles.extend(faces.map(|(corner, side, other)| Rectangle(corner, side, other, lamp.clone())));
-    let found = direct_by(scene_of(&rectangles, &[]), 20_000).toward(MIDDLE, ABOVE).z;
+    let actual = direct_by(scene_of(&rectangles, &[]), 20_000).total_outgoing(MIDDLE, ABOVE).z;
     // From the middle only the lower face shows.
     let expected = 4.0 * corner_form_factor(0.2, 0.2, 0.6) as f32;
-    assert!((found / expected - 1.0).abs() < 0.02, "{found}, expected {expected}");
+    assert!((actual / expected - 1.0).abs() < 0.02, "{actual}, expected {expected}");
 }

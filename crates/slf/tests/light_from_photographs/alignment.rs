@@ -34,8 +34,8 @@ fn perturbed(views: &[View]) -> Vec<View> {
 fn error(radiance: &dyn Radiance) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
     for [x, z] in floor_places() {
-        let found = radiance.leaving(floor(x, z), DVec3::new(0.7, 4.0, 3.1)).total() / gauge();
-        sum += f64::from(found.distance_squared(pattern(x, z)));
+        let actual = radiance.outgoing(floor(x, z), DVec3::new(0.7, 4.0, 3.1)).total() / gauge();
+        sum += f64::from(actual.distance_squared(pattern(x, z)));
         count += 1.0;
     }
     (sum / count).sqrt()
@@ -52,21 +52,22 @@ fn photographs_that_are_off_are_aligned() {
     let views = perturbed(&photographs.views);
     let scene = Arc::new(Scene { views: views.clone(), ..Scene::clone(plain.scene()) });
     let tracer = Arc::new(Tracer::new(scene.clone()));
-    let [given, aligned] = [Poses::Given, Poses::Aligned].map(|poses| solve(&tracer, &views, poses));
-    let (before, after) = (error(&given), error(&aligned));
+    let [unaligned, aligned] =
+        [Poses::AsCalibrated, Poses::Aligned].map(|poses| solve(&tracer, &views, poses));
+    let (before, after) = (error(&unaligned), error(&aligned));
     // 0.066 and 0.012; it is 0.005 with exact poses.
     assert!(after < 0.3 * before, "{before} {after}");
-    assert!(given.moved_px().iter().all(|&px| px == 0.0));
-    let moved = aligned.moved_px();
+    assert!(unaligned.max_displacements_px().iter().all(|&px| px == 0.0));
+    let moved = aligned.max_displacements_px();
     assert!(moved.iter().filter(|&&px| (0.5..6.0).contains(&px)).count() > 15, "{moved:?}");
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     let by_one = pool.install(|| solve(&tracer, &views, Poses::Aligned));
     assert!(by_one.to_bytes() == aligned.to_bytes(), "it does not depend on the number of threads");
     // It is kept with the light, and looked up alike in the photographs themselves.
     let again = PhotographLight::from_bytes(&aligned.to_bytes(), &tracer).unwrap();
-    assert_eq!(again.moved_px(), moved);
+    assert_eq!(again.max_displacements_px(), moved);
     let options = PhotographOptions::default();
-    let direct = DirectPhotographs::of(Arc::new(again), &options, &progress::Unwatched).unwrap();
+    let direct = DirectPhotographs::load(Arc::new(again), &options, &progress::Unwatched).unwrap();
     let directly = error(&direct);
     assert!(directly < 0.3 * before, "{before} {directly}");
 }
@@ -77,9 +78,9 @@ fn photographs_that_are_not_off_stay_as_they_are() {
     for (name, sends) in [("exact", patterned as crate::place::Sends), ("exact_gloss", crate::place::glossy)]
     {
         let photographs = Photographs::take(name, &tracer, sends, false);
-        let [given, aligned] =
-            [Poses::Given, Poses::Aligned].map(|poses| solve(&tracer, &photographs.views, poses));
-        assert_eq!(aligned.moved_px(), [0.0; 20], "{name}");
-        assert!(given.to_bytes() == aligned.to_bytes(), "{name}");
+        let [unaligned, aligned] =
+            [Poses::AsCalibrated, Poses::Aligned].map(|poses| solve(&tracer, &photographs.views, poses));
+        assert_eq!(aligned.max_displacements_px(), [0.0; 20], "{name}");
+        assert!(unaligned.to_bytes() == aligned.to_bytes(), "{name}");
     }
 }

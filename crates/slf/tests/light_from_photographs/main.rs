@@ -6,8 +6,8 @@ mod place;
 use atlas::{Atlas, Density, UnwrapOptions};
 use glam::{DVec2, DVec3, Vec3};
 use place::{
-    Photographs, SKY, UNDERSIDE, box_is_in_the_way, floor, floor_color, floor_places, gain_stops, gauge,
-    glossy, lacquered, matte, solve, tracer,
+    Photographs, SKY, UNDERSIDE, box_occludes, floor, floor_color, floor_places, gain_stops, gauge, glossy,
+    lacquered, matte, solve, tracer,
 };
 use progress::{Part, Progress, Unwatched};
 use scene::{Scene, SurfacePoint, View};
@@ -16,7 +16,7 @@ use std::sync::{Arc, Mutex};
 use trace::{Radiance, Tracer};
 
 #[test]
-fn gains_are_found_and_what_stands_before_a_texel_leaves_no_colour_on_it() {
+fn gains_are_recovered_and_occluders_leave_no_colour() {
     let tracer = tracer();
     let photographs = Photographs::take("gains", &tracer, matte, false);
     let light = solve(&tracer, &photographs.views);
@@ -28,8 +28,8 @@ fn gains_are_found_and_what_stands_before_a_texel_leaves_no_colour_on_it() {
     }
     // From many sides the red box stands before the floor; where that is not told, red rises from 0.1 to 0.2 and more.
     for [x, z] in floor_places() {
-        let found = light.constant(floor(x, z)) / gauge();
-        assert!(found.distance(floor_color(x, z)) < 0.04, "{x} {z}: {found}");
+        let actual = light.constant(floor(x, z)) / gauge();
+        assert!(actual.distance(floor_color(x, z)) < 0.04, "{x} {z}: {actual}");
     }
 }
 
@@ -43,7 +43,7 @@ fn a_card_in_a_fifth_of_the_pictures_is_left_out() {
     let (mut sum, mut count) = (0.0, 0.0);
     for [x, z] in floor_places() {
         let [without, with] =
-            [&without, &with].map(|light| light.toward(floor(x, z), DVec3::new(0.5, 4.0, 3.0)));
+            [&without, &with].map(|light| light.total_outgoing(floor(x, z), DVec3::new(0.5, 4.0, 3.0)));
         sum += without.distance_squared(with);
         count += 1.0;
     }
@@ -53,7 +53,7 @@ fn a_card_in_a_fifth_of_the_pictures_is_left_out() {
 }
 
 #[test]
-fn ten_photographs_of_differing_exposures_are_enough() {
+fn ten_photographs_of_differing_exposures_suffice() {
     let tracer = tracer();
     let photographs = Photographs::take("ten", &tracer, matte, false);
     let views: Vec<View> = photographs.views.iter().step_by(2).cloned().collect();
@@ -64,30 +64,30 @@ fn ten_photographs_of_differing_exposures_are_enough() {
         assert!(off.into_iter().all(|off| off < 0.05), "{k}: {off:?}");
     }
     for [x, z] in floor_places() {
-        let found = light.toward(floor(x, z), DVec3::new(0.5, 4.0, 3.0)) / mean.exp2() as f32;
-        assert!(found.distance(floor_color(x, z)) < 0.02, "{x} {z}: {found}");
+        let actual = light.total_outgoing(floor(x, z), DVec3::new(0.5, 4.0, 3.0)) / mean.exp2() as f32;
+        assert!(actual.distance(floor_color(x, z)) < 0.02, "{x} {z}: {actual}");
     }
 }
 
 #[test]
-fn what_no_photograph_shows_is_filled_and_known_as_such() {
+fn unobserved_texels_are_filled_and_marked() {
     let tracer = tracer();
     let photographs = Photographs::take("filled", &tracer, matte, false);
     let light = solve(&tracer, &photographs.views);
     for triangle in UNDERSIDE {
         let point = SurfacePoint { triangle, barycentric: DVec2::splat(1.0 / 3.0) };
-        assert_eq!(light.seen(point), 0.0);
-        let filled = light.toward(point, DVec3::new(0.0, -5.0, 1.0));
+        assert_eq!(light.observed_share(point), 0.0);
+        let filled = light.total_outgoing(point, DVec3::new(0.0, -5.0, 1.0));
         assert!(filled.is_finite() && filled.max_element() > 0.05, "{filled}");
     }
-    assert_eq!(light.seen(floor(1.5, 0.3)), 1.0);
+    assert_eq!(light.observed_share(floor(1.5, 0.3)), 1.0);
     // Past the floor's edge, as camera 0 sees it.
-    let sky = light.from_infinity(DVec3::new(0.25, -0.25, -1.0)) / gauge();
+    let sky = light.environment(DVec3::new(0.25, -0.25, -1.0)) / gauge();
     assert!(sky.distance(SKY) < 0.03, "{sky}");
 }
 
 #[test]
-fn gloss_is_kept_where_photographs_show_it_and_changes_smoothly() {
+fn gloss_is_reproduced_where_photographed_and_changes_smoothly() {
     let tracer = tracer();
     let photographs = Photographs::take("gloss", &tracer, glossy, false);
     let light = solve(&tracer, &photographs.views);
@@ -95,18 +95,19 @@ fn gloss_is_kept_where_photographs_show_it_and_changes_smoothly() {
     let position = point.position(tracer.scene());
     let [to_lamp, away] = [DVec3::new(0.0, 3.5, 3.5), DVec3::new(0.0, 3.5, -3.5)].map(|step| position + step);
     let truth = glossy(tracer.scene(), point, to_lamp);
-    let [found, flat] = [light.toward(point, to_lamp), light.constant(point)].map(|light| light / gauge());
-    assert!(found.distance(truth) < 0.8 * flat.distance(truth), "{found} {flat} for {truth}");
-    let [found, truth] = [light.toward(point, away) / gauge(), glossy(tracer.scene(), point, away)];
-    assert!(found.distance(truth) < 0.1, "{found} for {truth}");
+    let [actual, flat] =
+        [light.total_outgoing(point, to_lamp), light.constant(point)].map(|light| light / gauge());
+    assert!(actual.distance(truth) < 0.8 * flat.distance(truth), "{actual} {flat} for {truth}");
+    let [actual, truth] = [light.total_outgoing(point, away) / gauge(), glossy(tracer.scene(), point, away)];
+    assert!(actual.distance(truth) < 0.1, "{actual} for {truth}");
     // Over an aperture between photographs nothing pops.
-    let along = |k: u32| light.toward(point, to_lamp.lerp(away, f64::from(k) / 400.0));
+    let along = |k: u32| light.total_outgoing(point, to_lamp.lerp(away, f64::from(k) / 400.0));
     let steepest = (0..400).map(|k| along(k).distance(along(k + 1))).fold(0.0, f32::max);
     assert!(steepest < 0.02 && steepest > 0.0, "{steepest}");
 }
 
 #[test]
-fn a_mirror_shows_its_surroundings_where_the_scene_is_not_in_the_way() {
+fn a_mirror_shows_its_surroundings_where_the_scene_does_not_block_it() {
     let tracer = tracer();
     let photographs = Photographs::take("mirror", &tracer, lacquered, false);
     let light = solve(&tracer, &photographs.views);
@@ -118,15 +119,17 @@ fn a_mirror_shows_its_surroundings_where_the_scene_is_not_in_the_way() {
     let mut sums = [[0.0; 3]; 2];
     for (eye, [x, z]) in eyes.into_iter().flat_map(|eye| floor_places().map(move |place| (eye, place))) {
         let (point, position) = (floor(x, z), DVec3::new(x, 0.0, z));
-        let leaving = light.leaving(point, eye);
-        let is_blocked = box_is_in_the_way(position, eye);
+        let leaving = light.outgoing(point, eye);
+        let is_blocked = box_occludes(position, eye);
         assert!(!is_blocked || leaving.carried == Vec3::ZERO, "{x} {z}");
         let truth = lacquered(tracer.scene(), point, eye);
-        let [told, flat] = [leaving.total(), light.constant(point)].map(|light| light / gauge());
+        let [mirrored, flat] = [leaving.total(), light.constant(point)].map(|light| light / gauge());
         let sum = &mut sums[usize::from(is_blocked)];
-        *sum = [sum[0] + told.distance_squared(truth), sum[1] + flat.distance_squared(truth), sum[2] + 1.0];
+        *sum =
+            [sum[0] + mirrored.distance_squared(truth), sum[1] + flat.distance_squared(truth), sum[2] + 1.0];
     }
-    let [open, blocked] = sums.map(|[told, flat, count]| [told, flat].map(|sum| (sum / count).sqrt()));
+    let [open, blocked] =
+        sums.map(|[mirrored, flat, count]| [mirrored, flat].map(|sum| (sum / count).sqrt()));
     assert!(open[0] < 0.5 * open[1], "{open:?}");
     assert!(blocked[0] < 0.04, "{blocked:?}");
 }
@@ -141,7 +144,7 @@ fn light_does_not_depend_on_the_number_of_threads() {
     });
     assert_eq!(one.exposures(), three.exposures());
     for [x, z] in floor_places() {
-        let [one, three] = [&one, &three].map(|light| light.leaving(floor(x, z), DVec3::new(1.0, 3.0, 2.0)));
+        let [one, three] = [&one, &three].map(|light| light.outgoing(floor(x, z), DVec3::new(1.0, 3.0, 2.0)));
         assert_eq!(one, three, "{x} {z}");
     }
 }
@@ -173,7 +176,7 @@ fn light_comes_back_from_its_bytes_and_from_no_others() {
     assert_eq!(again.exposures(), light.exposures());
     let eye = DVec3::new(0.3, 2.0, 1.5);
     for (x, z) in [(0.1, 0.2), (-1.7, 1.1), (1.9, -1.9)] {
-        let [a, b] = [&light, &again].map(|light| light.leaving(floor(x, z), eye));
+        let [a, b] = [&light, &again].map(|light| light.outgoing(floor(x, z), eye));
         assert_eq!((a.own, a.carried), (b.own, b.carried));
     }
     for length in (0..bytes.len()).step_by(bytes.len() / 97) {

@@ -32,7 +32,7 @@ pub fn tracer() -> Arc<Tracer> {
     for [x, z, dx, dz] in sides {
         rectangle([x, low, z], [dx, 0.0, dz], [0.0, high - low, 0.0]);
     }
-    Arc::new(Tracer::new(Arc::new(Scene::of_mesh(mesh, &LoadOptions::default()).unwrap())))
+    Arc::new(Tracer::new(Arc::new(Scene::from_mesh(mesh, &LoadOptions::default()).unwrap())))
 }
 
 /// The triangles of the box's underside.
@@ -63,7 +63,7 @@ pub fn lacquered(scene: &Scene, point: SurfacePoint, eye: DVec3) -> Vec3 {
 /// What the lacquered floor mirrors at a position.
 pub fn mirrored_by_floor(position: DVec3, eye: DVec3) -> f32 {
     let outgoing = (eye - position).normalize();
-    if box_is_in_the_way(position, eye) {
+    if box_occludes(position, eye) {
         return 0.0;
     }
     let fresnel = 0.04 + 0.96 * (1.0 - outgoing.y).powi(5);
@@ -71,7 +71,7 @@ pub fn mirrored_by_floor(position: DVec3, eye: DVec3) -> f32 {
 }
 
 /// Whether the box is what the floor mirrors there.
-pub fn box_is_in_the_way(position: DVec3, eye: DVec3) -> bool {
+pub fn box_occludes(position: DVec3, eye: DVec3) -> bool {
     let outgoing = (eye - position).normalize();
     let mirrored = DVec3::new(-outgoing.x, outgoing.y, -outgoing.z);
     let [a, b] =

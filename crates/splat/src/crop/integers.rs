@@ -56,17 +56,17 @@ impl Integers {
     }
 
     /// Whether they are among those that pictures have.
-    pub fn are_known(self) -> bool {
-        let is_known = |bits: i32| {
+    pub fn are_valid(self) -> bool {
+        let is_valid = |bits: i32| {
             let all = std::iter::successors(Some(Scale::FINEST), |scale| scale.coarser());
             all.into_iter().any(|scale| scale.dim_bits == bits)
         };
-        is_known(self.standard) && is_known(self.painted)
+        is_valid(self.standard) && is_valid(self.painted)
     }
 
     /// Whether sums of a kind hold a picture of which a pixel's largest coverage is `largest` quanta, of ordinary samples and of bright ones,
     /// and no radiance above `brightest`.
-    pub fn hold(self, kind: Kind, largest: [i64; 2], brightest: f64) -> bool {
+    pub fn can_hold(self, kind: Kind, largest: [i64; 2], brightest: f64) -> bool {
         let most = self.scale(kind).quanta(brightest);
         largest.into_iter().zip(most).all(|(largest, most)| largest <= most.largest_coverage)
     }

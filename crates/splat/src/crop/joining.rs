@@ -2,10 +2,10 @@
 
 use super::row::{CropForm, CropRow, KNOT_NUMBERS, knot_sums};
 use crate::balance::{Gains, NO_REST, Scaled, rest};
-use crate::knots::{KnotSums, Knots, SPACING, SharedSums, place};
+use crate::knots::{KnotSums, Knots, SPACING, SharedSums, position};
 
 /// What a whole picture decides of its crops, and makes of them.
-pub struct Joining {
+pub struct CropJoiner {
     knots: Knots,
     sums: Vec<KnotSums>,
     gains: Gains,
@@ -15,14 +15,14 @@ pub struct Joining {
     is_painted: bool,
 }
 
-impl Joining {
+impl CropJoiner {
     /// Of a picture of this width and height, px; anything of it is painted, or nothing.
     pub fn new(size: [u32; 2], is_painted: bool) -> Self {
         let knots = Knots::new(size.map(|side| side as usize));
         let cells = knots.spans() * knots.size[1].div_ceil(SPACING);
         Self {
             sums: vec![KnotSums::default(); knots.columns() * knots.rows()],
-            gains: Gains::none(knots),
+            gains: Gains::neutral(knots),
             cells: vec![SharedSums::default(); cells],
             rest: NO_REST,
             is_painted,
@@ -31,7 +31,7 @@ impl Joining {
     }
 
     /// How many knots a row of a crop of this width, px, brings something to.
-    pub fn knots_of(width: u32) -> usize {
+    pub fn knot_columns(width: u32) -> usize {
         Knots::new([width as usize, 1]).columns()
     }
 
@@ -45,11 +45,11 @@ impl Joining {
             for (at, numbers) in (first..).zip(numbers.chunks_exact(KNOT_NUMBERS)) {
                 // Two crops share the knot where they meet.
                 let here = knot_sums(numbers);
-                let known = row[at].0.as_flattened_mut().iter_mut();
-                known.zip(here.0.as_flattened()).for_each(|(known, here)| *known += here);
+                let sum = row[at].0.as_flattened_mut().iter_mut();
+                sum.zip(here.0.as_flattened()).for_each(|(known, here)| *known += here);
             }
         }
-        let (before, behind) = place(y as usize);
+        let (before, behind) = position(y as usize);
         for (knot, weight) in [(before, 1.0 - behind), (before + 1, behind)] {
             let sums = &mut self.sums[knot * columns..][..columns];
             sums.iter_mut().zip(&row).for_each(|(sum, here)| sum.add(weight, here));
@@ -57,14 +57,14 @@ impl Joining {
     }
 
     /// Finds the gains, once all rows have told their knots.
-    pub fn settle(&mut self) {
-        self.gains = Gains::of(self.knots, &self.sums);
+    pub fn find_gains(&mut self) {
+        self.gains = Gains::from_sums(self.knots, &self.sums);
     }
 
     /// Adds what shares in a row of a painted picture, once the gains are known.
     pub fn add_shared(&mut self, y: u32, row: &mut CropRow) {
         let mut spans = vec![SharedSums::default(); self.knots.spans()];
-        let gains = self.gains.of_row(y as usize, Scaled::Sharing);
+        let gains = self.gains.row_gains(y as usize, Scaled::Sharing);
         let (parts, shares, pixels) = row.parts_and_pixels();
         parts.share(shares, &gains, pixels, &mut spans);
         let cells = &mut self.cells[y as usize / SPACING * self.knots.spans()..];
@@ -81,7 +81,7 @@ impl Joining {
     /// Makes a row's pixels.
     pub fn join(&self, y: u32, form: CropForm, row: &mut CropRow) {
         if self.is_painted {
-            let gains = self.gains.of_row(y as usize, Scaled::Sharing);
+            let gains = self.gains.row_gains(y as usize, Scaled::Sharing);
             let mut spans = vec![SharedSums::default(); self.knots.spans()];
             let (parts, shares, pixels) = row.parts_and_pixels();
             parts.share(shares, &gains, pixels, &mut spans);

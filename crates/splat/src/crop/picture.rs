@@ -38,7 +38,7 @@ pub struct CropFacts {
 }
 
 impl CropFacts {
-    pub(super) fn none(integers: Integers) -> Self {
+    pub(super) fn empty(integers: Integers) -> Self {
         Self { integers, is_painted: false, brightest: 1.0, largest: [[0; 2]; 2] }
     }
 }
@@ -104,11 +104,14 @@ pub(super) fn standard(
                 let shares = &mut shares[row * width..][..width];
                 parts.find_shares(shares);
                 knots.sum_row(parts, shares, &mut knot_sums, true);
-                let told = knot_sums.iter().flat_map(|sums| sums.0.as_flattened());
-                of_rows[row * of_knots..].iter_mut().zip(told).for_each(|(to, number)| *to = *number);
+                let numbers_of_row = knot_sums.iter().flat_map(|sums| sums.0.as_flattened());
+                of_rows[row * of_knots..]
+                    .iter_mut()
+                    .zip(numbers_of_row)
+                    .for_each(|(to, number)| *to = *number);
                 let numbers = &mut numbers[row * width * form.numbers()..][..width * form.numbers()];
                 if form == CropForm::Parts {
-                    tell_parts(parts, numbers);
+                    write_parts(parts, numbers);
                     let factors = numbers.chunks_exact_mut(form.numbers()).zip(shares);
                     factors.for_each(|(pixel, share)| (pixel[8], pixel[9]) = (share.partial, share.even));
                     return;
@@ -138,7 +141,7 @@ pub(super) fn painted(
         .enumerate()
         .map_init(Room::default, |room, (chunk, numbers)| {
             lines(sums, quanta, inner, rows_of(chunk, height), room, |row, parts| {
-                tell_parts(parts, &mut numbers[row * a_row..][..a_row]);
+                write_parts(parts, &mut numbers[row * a_row..][..a_row]);
             })
         })
         .try_reduce(|| [0; 2], |a, b| Ok(larger(a, b)))
@@ -169,7 +172,7 @@ pub(super) fn matte(
     Ok(picture)
 }
 
-fn tell_parts(parts: Parts, numbers: &mut [f32]) {
+fn write_parts(parts: Parts, numbers: &mut [f32]) {
     let lights = parts.free.iter().zip(parts.sharing);
     for (pixel, (free, sharing)) in numbers.chunks_exact_mut(CropForm::Parts.numbers()).zip(lights) {
         pixel[..4].copy_from_slice(free);
@@ -211,7 +214,7 @@ fn lines(
         visit(index, Parts { free, sharing });
     }
     let largest = larger(free.largest(), sharing.largest());
-    lights.into_iter().for_each(|line| room.give_back(line));
-    [free, sharing].into_iter().for_each(|rows| rows.give_back(room));
+    lights.into_iter().for_each(|line| room.recycle(line));
+    [free, sharing].into_iter().for_each(|rows| rows.recycle(room));
     Ok(largest)
 }

@@ -53,7 +53,7 @@ impl CropRow {
     }
 
     /// Puts the numbers of a crop's row in, from a column of the whole on.
-    pub fn put(&mut self, column: usize, form: CropForm, numbers: &[f32]) {
+    pub fn set(&mut self, column: usize, form: CropForm, numbers: &[f32]) {
         let pixels = numbers.chunks_exact(form.numbers());
         for (at, numbers) in (column..).zip(pixels) {
             match (form, numbers) {

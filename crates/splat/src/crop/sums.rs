@@ -116,7 +116,7 @@ impl<'a> CropSums<'a> {
             shares: Vec::new(),
             mattes: Vec::new(),
             has_bright: false,
-            facts: CropFacts::none(options.integers),
+            facts: CropFacts::empty(options.integers),
             lists: Vec::new(),
             changes: Changes::default(),
             pace: Pace::default(),
@@ -161,10 +161,10 @@ impl<'a> CropSums<'a> {
                 let PictureSums { standard, painted } = sums;
                 std::iter::once(standard).chain(painted)
             });
-            of_picture.chain(&mut self.mattes).for_each(Sums::hold_bright);
+            of_picture.chain(&mut self.mattes).for_each(Sums::ensure_bright);
         }
-        self.aperture.look_at(&nodes);
-        let paint = Paint::look_up(&nodes, &salf.samples, focus);
+        self.aperture.set_nodes(&nodes);
+        let paint = Paint::sample(&nodes, &salf.samples, focus);
         let is_painted = !paint.is_standard();
         self.facts.is_painted |= is_painted;
         if let Some(is_black) = is_black {

@@ -97,7 +97,7 @@ fn whole(focus: &Corner, tolerance: Tolerance) -> Splatter {
 fn sets(salf: &Salf) -> impl Fn(u32) -> [bool; 3] + Sync + use<> {
     let mut addresses = Vec::new();
     for run in salf.samples.runs() {
-        addresses.extend(run.spots().map(|spot| spot.address.surface.map_or(0, |point| point.triangle)));
+        addresses.extend(run.locations().map(|spot| spot.address.surface.map_or(0, |point| point.triangle)));
     }
     move |sample| {
         let triangle = addresses[sample as usize];
@@ -134,7 +134,7 @@ fn joined(
         })
         .collect();
     let is_painted = made.iter().any(|(_, made)| made.facts.is_painted);
-    let mut joining = Joining::new(SIZE, is_painted);
+    let mut joining = CropJoiner::new(SIZE, is_painted);
     let across = |y: u32| {
         made.iter().filter(move |(crop, _)| (crop.corner[1]..crop.corner[1] + crop.size[1]).contains(&y))
     };
@@ -142,21 +142,21 @@ fn joined(
         numbers[row as usize * length..][..length].to_vec()
     };
     for y in 0..SIZE[1] {
-        let told: Vec<_> = across(y)
+        let crops: Vec<_> = across(y)
             .map(|(crop, made)| {
-                let length = Joining::knots_of(crop.size[0]) * KNOT_NUMBERS;
+                let length = CropJoiner::knot_columns(crop.size[0]) * KNOT_NUMBERS;
                 (crop.corner[0], row_of(&made.knots, length, y - crop.corner[1]))
             })
             .collect();
-        joining.add_knots(y, told.iter().map(|(first, numbers)| (*first, numbers.as_slice())));
+        joining.add_knots(y, crops.iter().map(|(first, numbers)| (*first, numbers.as_slice())));
     }
-    joining.settle();
+    joining.find_gains();
     let read = |y: u32| {
         let mut row = CropRow::black(SIZE[0] as usize);
         for (crop, made) in across(y) {
             let length = crop.size[0] as usize * made.form.numbers();
             let numbers = row_of(&made.numbers, length, y - crop.corner[1]);
-            row.put(crop.corner[0] as usize, made.form, &numbers);
+            row.set(crop.corner[0] as usize, made.form, &numbers);
         }
         row
     };
@@ -237,9 +237,9 @@ fn what_leans_beyond_its_image_is_not_cut_off_where_crops_meet() {
             for (k, numbers) in made.numbers.chunks(made.form.numbers()).enumerate() {
                 let at = (k as u32 / 32 * camera.width + x + k as u32 % 32) as usize;
                 // Live, what shares the rest is scaled by its share.
-                let found = numbers[3] + numbers[7] * numbers[8];
-                assert_eq!(found, picture.coverage[at], "{trial}: {x}");
-                far += u32::from(found != 0.0);
+                let evened = numbers[3] + numbers[7] * numbers[8];
+                assert_eq!(evened, picture.coverage[at], "{trial}: {x}");
+                far += u32::from(evened != 0.0);
             }
         }
     }
@@ -260,9 +260,9 @@ fn integers_are_as_fine_as_the_whole_picture_has_them() {
     assert_eq!(brightest, 1e5);
     for facts in &facts {
         assert!(facts.largest[0][0] > 0);
-        assert!(coarser.hold(Kind::Standard, facts.largest[0], brightest));
-        assert!(!coarser.hold(Kind::Standard, [i64::MAX / 2; 2], brightest));
+        assert!(coarser.can_hold(Kind::Standard, facts.largest[0], brightest));
+        assert!(!coarser.can_hold(Kind::Standard, [i64::MAX / 2; 2], brightest));
     }
-    assert!(finest.are_known() && coarser.are_known());
-    assert!(!Integers { standard: 21, ..finest }.are_known());
+    assert!(finest.are_valid() && coarser.are_valid());
+    assert!(!Integers { standard: 21, ..finest }.are_valid());
 }

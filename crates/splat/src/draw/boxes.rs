@@ -51,18 +51,18 @@ impl Pen<'_> {
 
     /// One box of the light, mean and variance that a partly occluded node sends, within a pixel of its image.
     #[inline(always)]
-    pub fn draw_seen_box<W: Word>(&self, image: &mut Image, paper: &mut Paper<W>, sign: i32) {
-        let seen = &self.seen[image.node.cells as usize];
-        image.shift([seen.mean[0].into(), seen.mean[1].into()]);
-        image.share = seen.share;
+    pub fn draw_partial_box<W: Word>(&self, image: &mut Image, paper: &mut Paper<W>, sign: i32) {
+        let moments = &self.moments[image.node.cells as usize];
+        image.shift([moments.mean[0].into(), moments.mean[1].into()]);
+        image.share = moments.share;
         let half_size = image.node.half_size;
         let half_size = [u32::from(half_size[0]) >> image.level, u32::from(half_size[1]) >> image.level];
         // Little of what is seen on one side and much on the other has its mean near a side, and spreads no further than the image.
         let radius = image.radius.unsigned_abs();
         let half = [0, 1].map(|k| {
-            let beyond_mean = (ONE - i32::from(seen.mean[k]).abs()) as u32;
+            let beyond_mean = (ONE - i32::from(moments.mean[k]).abs()) as u32;
             let most = mul_shift(radius, beyond_mean, 14) + PIXEL as u32;
-            mul_shift(radius, seen.half[k].into(), 14).min(most)
+            mul_shift(radius, moments.half_width[k].into(), 14).min(most)
         });
         self.draw_box(image, half_size, half, paper, sign);
     }
@@ -84,11 +84,11 @@ impl Pen<'_> {
             let value = image.light.in_pixel(image.share, shift, image.dither, 0);
             return paper.rows.add_pixel(row, column, value, sign);
         }
-        let found = UnsizedBox { image, legs: [[half_size[0], half[0]], [half_size[1], half[1]]] };
-        if found.is_small() {
-            paper.add(&found, sign)
+        let unsized_box = UnsizedBox { image, legs: [[half_size[0], half[0]], [half_size[1], half[1]]] };
+        if unsized_box.is_small() {
+            paper.add(&unsized_box, sign)
         } else {
-            found.sized(too_blurred(image.level)).draw(&mut paper.rows, sign)
+            unsized_box.sized(too_blurred(image.level)).draw(&mut paper.rows, sign)
         }
     }
 }
@@ -121,11 +121,11 @@ mod tests {
         for (light, share, sign) in
             [([1e6f32, 3e5, 7.0, 4.2e6], WHOLE, 1), ([0.3, 0.0, 8.1, 1.0], 12_345_678, -1), ([2.0; 4], 1, 1)]
         {
-            let light = Light::of(light);
+            let light = Light::from_floats(light);
             let [mut wanted, mut found] = [0, 1].map(|_| Accumulator::<i32>::new(8, 8, 1));
             for (column, row) in [(-1, 0), (3, 2), (7, 7), (5, -1)] {
                 let center = [column, row].map(|at| (at << POSITION_BITS) + HALF_PIXEL as i32);
-                let (half, per_half) = ([HALF_PIXEL; 2], [Reciprocal::of(HALF_PIXEL); 2]);
+                let (half, per_half) = ([HALF_PIXEL; 2], [Reciprocal::new(HALF_PIXEL); 2]);
                 let sized = SizedBox { center, half, per_half, share, light, dither: 77 };
                 sized.draw(&mut wanted.canvas().levels[0], sign);
                 let value = light.in_pixel(share, light.shift(HEIGHT_BITS), 77, 0);

@@ -17,7 +17,7 @@ pub struct Light {
 impl Light {
     /// Of finite numbers ≥ 0.
     #[inline(always)]
-    pub fn of(light: [f32; 4]) -> Self {
+    pub fn from_floats(light: [f32; 4]) -> Self {
         let bits = light.map(f32::to_bits);
         let top = bits[0].max(bits[1]).max(bits[2]).max(bits[3]) >> 23;
         let mut mantissa = [0; 4];
@@ -118,7 +118,7 @@ mod tests {
     #[test]
     fn light_keeps_its_value() {
         for light in [[1.0f32, 0.5, 3.0, 1.0], [0.0, 1e-3, 4e6, 1.0], [0.0; 4], [1e14, 1.0, 7.0, 9.0]] {
-            let found = Light::of(light);
+            let found = Light::from_floats(light);
             let top = light.into_iter().fold(0.0, f32::max) as f64;
             for (wanted, mantissa) in light.into_iter().zip(found.mantissa) {
                 let apart = mantissa as f64 * (found.exponent as f64).exp2() - wanted as f64;

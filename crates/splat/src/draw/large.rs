@@ -3,13 +3,13 @@
 use crate::canvas::{PIXEL, POSITION_BITS, Rows, Word};
 use crate::draw::image::Image;
 use crate::draw::pen::Pen;
-use crate::draw::seen_runs::{Row, SeenRuns};
+use crate::draw::seen_runs::{Row, VisibleRuns};
 use crate::fixed::{Divisor, ONE, mul_shift, signed_mul_shift};
 use crate::nodes::Cells;
 use crate::stencil::HEIGHT_BITS;
 
 /// The light of larger images, in pixel rows, is what their area says; that of smaller ones what their rows say.
-const MOST_ROWS: i32 = 1 << 12;
+const MAX_ROWS: i32 = 1 << 12;
 
 /// How much light a large image has in a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,13 +61,13 @@ impl LargeRows {
 impl Pen<'_> {
     /// How much light an image has in a pixel: `share` in all, of what `cells` let through.
     pub fn large(&self, image: &Image, cells: Option<(&Cells, u32)>) -> Large {
-        let (lines, seen) = (LargeRows::new(image), SeenRuns::new(self, image));
+        let (lines, visible) = (LargeRows::new(image), VisibleRuns::new(self, image));
         // Pixels of a transmission of 1: of the rows as they are asked, while these are few.
-        let area = if lines.last - lines.first <= MOST_ROWS {
+        let area = if lines.last - lines.first <= MAX_ROWS {
             let mut area = 0.0;
             for row in lines.first..=lines.last {
                 let v = lines.v(row);
-                for run in self.stencils.shape.at(v) {
+                for run in self.stencils.shape.runs_at(v) {
                     let mut add = |start: i32, end: i32, weight: i32| {
                         area +=
                             end.wrapping_sub(start) as u32 as f64 * weight as f64 * run.transmission as f64;
@@ -75,7 +75,7 @@ impl Pen<'_> {
                     let span = lines.span(run.start, run.end);
                     match cells {
                         None => add(span[0], span[1], ONE),
-                        Some((cells, _)) => seen.of_row::<false>(cells, Row { row, v }, span, add),
+                        Some((cells, _)) => visible.visit_row::<false>(cells, Row { row, v }, span, add),
                     }
                 }
             }
@@ -86,7 +86,7 @@ impl Pen<'_> {
         let area = area.max(1.0);
         let height_bits = HEIGHT_BITS + area.log2() as u32;
         let share = match cells {
-            Some((_, share)) if lines.last - lines.first <= MOST_ROWS => share,
+            Some((_, share)) if lines.last - lines.first <= MAX_ROWS => share,
             _ => image.share,
         };
         Large { height: ((1u64 << height_bits) as f64 / area).round() as u32, height_bits, share }
@@ -104,10 +104,10 @@ impl Pen<'_> {
         let large = self.large(image, cells);
         image.share = large.share;
         let shift = image.light.shift(large.height_bits);
-        let (lines, seen) = (LargeRows::new(image), SeenRuns::new(self, image));
+        let (lines, visible) = (LargeRows::new(image), VisibleRuns::new(self, image));
         for row in lines.first.max(rows.first)..=lines.last.min(rows.end - 1) {
             let v = lines.v(row);
-            for run in self.stencils.shape.at(v) {
+            for run in self.stencils.shape.runs_at(v) {
                 let height = mul_shift(large.height, run.transmission, 16);
                 let span = lines.span(run.start, run.end);
                 let mut add = |start: i32, end: i32, weight: i32| {
@@ -116,7 +116,7 @@ impl Pen<'_> {
                 };
                 match cells {
                     None => add(span[0], span[1], ONE),
-                    Some((cells, _)) => seen.of_row::<false>(cells, Row { row, v }, span, add),
+                    Some((cells, _)) => visible.visit_row::<false>(cells, Row { row, v }, span, add),
                 }
             }
         }

@@ -1,10 +1,10 @@
 //! What is drawn on.
 
 use crate::canvas::{Rows, Word};
-use crate::draw::seen_runs::SeenRun;
+use crate::draw::seen_runs::VisibleRun;
 use crate::draw::sized_box::{UnsizedBox, too_blurred};
 use crate::draw::small::SmallBoxes;
-use crate::widest::with_widest_instructions;
+use crate::widest::with_widest_simd;
 
 /// Some rows of a level, and what waits to be drawn on them.
 pub struct Paper<'a, W> {
@@ -13,19 +13,19 @@ pub struct Paper<'a, W> {
     /// See [`too_blurred`].
     too_blurred: u32,
     /// Room to work in.
-    pub found: Vec<SeenRun>,
+    pub runs: Vec<VisibleRun>,
 }
 
 impl<'a, W: Word> Paper<'a, W> {
     /// Nothing waits.
     pub fn new(rows: Rows<'a, W>, level: u8) -> Self {
-        Self { rows, small: SmallBoxes::default(), too_blurred: too_blurred(level), found: Vec::new() }
+        Self { rows, small: SmallBoxes::default(), too_blurred: too_blurred(level), runs: Vec::new() }
     }
 
     /// A small box, drawn with others.
     #[inline(always)]
-    pub fn add(&mut self, found: &UnsizedBox, sign: i32) {
-        self.small.add(found);
+    pub fn add(&mut self, unsized_box: &UnsizedBox, sign: i32) {
+        self.small.add(unsized_box);
         if self.small.is_full() {
             self.finish(sign);
         }
@@ -38,12 +38,12 @@ impl<'a, W: Word> Paper<'a, W> {
         }
         // Compiled for either sign.
         if sign > 0 {
-            with_widest_instructions(
+            with_widest_simd(
                 #[inline(always)]
                 || self.small.draw(&mut self.rows, self.too_blurred, 1),
             );
         } else {
-            with_widest_instructions(
+            with_widest_simd(
                 #[inline(always)]
                 || self.small.draw(&mut self.rows, self.too_blurred, -1),
             );

@@ -5,7 +5,7 @@ use crate::draw::image::{Image, Light, WHOLE, seed};
 use crate::fixed::{ONE, mul_shift};
 use crate::lens_in_use::{Detail, Placed};
 use crate::nodes::{Cells, Nodes, SplatNode};
-use crate::seen::Seen;
+use crate::seen::ApertureMoments;
 use crate::stencil::Stencils;
 
 /// Aperture images of a smaller standard deviation, px, are boxes.
@@ -24,7 +24,7 @@ fn halved(x: i32, times: u8) -> i32 {
 pub struct Pen<'a> {
     pub nodes: &'a Nodes,
     pub stencils: &'a Stencils,
-    pub seen: &'a [Seen],
+    pub moments: &'a [ApertureMoments],
     /// The lens's aperture radius as a share of the baked one, in 1/16384.
     pub stop: i32,
     /// Its reciprocal, in 1/16384.
@@ -43,7 +43,7 @@ pub struct Pen<'a> {
     /// Smaller changes of an open node's weight over the aperture, as a share of it in 1/16384, only move its image.
     pub even_tilt: i32,
     /// Changes of a partly occluded node's weight that are not larger do not count.
-    pub even_seen_tilt: i32,
+    pub even_partial_tilt: i32,
     /// Parts of the aperture whose images are boxes.
     pub parts: Vec<BoxPart>,
     /// Even images of a smaller radius, 1/4096 px, are one box; others one a part of the aperture.
@@ -83,16 +83,16 @@ pub enum Form {
     /// The same where the weight changes over the aperture.
     Tilted(u32),
     /// The box of what is seen of the aperture.
-    SeenBox,
+    PartialBox,
     /// The image of what is seen of it.
-    Seen,
+    PartialImage,
 }
 
 impl<'a> Pen<'a> {
     pub fn new(
         nodes: &'a Nodes,
         stencils: &'a Stencils,
-        seen: &'a [Seen],
+        moments: &'a [ApertureMoments],
         stop: f64,
         detail: Detail,
     ) -> Self {
@@ -118,7 +118,7 @@ impl<'a> Pen<'a> {
             Detail::Exact => [deviations(0.5), deviations(0.5)],
             Detail::Fine | Detail::Sketch => [deviations(0.3), u32::MAX],
         };
-        let [even_tilt, even_seen_tilt] = match detail {
+        let [even_tilt, even_partial_tilt] = match detail {
             Detail::Exact => [ONE / 40, 0],
             Detail::Fine | Detail::Sketch => [ONE / 20, ONE / 20],
         };
@@ -136,7 +136,7 @@ impl<'a> Pen<'a> {
         Self {
             nodes,
             stencils,
-            seen,
+            moments,
             stop,
             per_stop: (1 << 28) / stop.max(1) as u32,
             half: shape.variance.to_array().map(half),
@@ -152,7 +152,7 @@ impl<'a> Pen<'a> {
             all_rows_radius,
             one_box_radius,
             even_tilt,
-            even_seen_tilt,
+            even_partial_tilt,
         }
     }
 
@@ -164,7 +164,7 @@ impl<'a> Pen<'a> {
             level: placed.level,
             center: [node.center[0] >> placed.level, node.center[1] >> placed.level],
             radius: halved(placed.radius, placed.level),
-            light: Light::of(light).coarser(placed.level - node.level),
+            light: Light::from_floats(light).coarser(placed.level - node.level),
             share: WHOLE,
             dither: seed(node, placed.level, self.nodes.middle),
         }
@@ -172,9 +172,9 @@ impl<'a> Pen<'a> {
 
     /// What a partly occluded node sees, and its share (times 2²⁴) of the light.
     #[inline(always)]
-    pub fn seen_of<'n>(&'n self, node: &SplatNode) -> (&'n Cells, u32) {
+    pub fn visible_part<'n>(&'n self, node: &SplatNode) -> (&'n Cells, u32) {
         match self.nodes.cells(node) {
-            Some(cells) => (cells, self.seen[node.cells as usize].share),
+            Some(cells) => (cells, self.moments[node.cells as usize].share),
             None => (&ALL, WHOLE),
         }
     }
@@ -198,7 +198,7 @@ impl<'a> Pen<'a> {
         let radius = placed.radius.unsigned_abs();
         if !node.is_open() {
             let is_box = radius >> placed.level < self.box_radius;
-            return if is_box { visit(Form::SeenBox) } else { visit(Form::Seen) };
+            return if is_box { visit(Form::PartialBox) } else { visit(Form::PartialImage) };
         }
         let is_even = self.is_even(node);
         let far = match placed.level {

@@ -8,7 +8,7 @@ use crate::nodes::Cells;
 
 /// A part of a pixel row that is let through, of `height` a pixel.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct SeenRun {
+pub struct VisibleRun {
     pub row: i32,
     /// From where, 1/4096 px.
     pub start: i32,
@@ -38,7 +38,7 @@ const GOLDEN: u32 = 0x9E37_79B1;
 
 /// ⌊x·factor / 2^`shift`⌋ for |factor| ≤ 2^`shift`, where x·factor may not fit; `shift` ≤ 15.
 #[inline(always)]
-fn part(x: i32, factor: i32, shift: u32) -> i32 {
+fn scaled_floor(x: i32, factor: i32, shift: u32) -> i32 {
     (x >> shift) * factor + (((x & ((1 << shift) - 1)) * factor) >> shift)
 }
 
@@ -55,8 +55,8 @@ const LARGEST_REACH: u64 = 1 << 30;
 const ROWS: usize = 16;
 
 /// Runs that one of them has at most, each in so many parts at most.
-const MOST_RUNS: usize = 8;
-const MOST_PARTS: usize = 4;
+const MAX_RUNS: usize = 8;
+const MAX_PARTS: usize = 4;
 
 /// Binary digits of the height of a row of cells, where the baked aperture is 2·[`ONE`] high.
 const CELL_BITS: u32 = 11;
@@ -75,7 +75,7 @@ struct CellRun {
 }
 
 /// How an image's rows meet its cells.
-pub struct SeenRuns {
+pub struct VisibleRuns {
     /// The image's centre, 1/4096 px, and where its dither starts.
     center: [i32; 2],
     dither: u32,
@@ -103,7 +103,7 @@ impl Pen<'_> {
     }
 }
 
-impl SeenRuns {
+impl VisibleRuns {
     #[inline(always)]
     pub fn new(pen: &Pen, image: &Image) -> Self {
         let radius = image.radius.unsigned_abs();
@@ -113,7 +113,7 @@ impl SeenRuns {
         let height = ((pixel * (pen.stop >> 2)) >> 12).clamp(1, 2 * ONE);
         let mut edges = [0; 17];
         for (cell, edge) in (-8..).zip(&mut edges) {
-            *edge = image.center[0].wrapping_add(part(reach as i32, cell, 3));
+            *edge = image.center[0].wrapping_add(scaled_floor(reach as i32, cell, 3));
         }
         // The outermost cells hold all that the blur of the footprint throws beyond them.
         (edges[0], edges[16]) = (i32::MIN, i32::MAX);
@@ -129,22 +129,22 @@ impl SeenRuns {
             reach: reach as i32,
             per_reach: Divisor::new(reach),
             is_turned: image.radius < 0,
-            is_even: base == ONE && tilt[0].abs() + tilt[1].abs() <= pen.even_seen_tilt,
+            is_even: base == ONE && tilt[0].abs() + tilt[1].abs() <= pen.even_partial_tilt,
         }
     }
 
     /// How often [`Self::of_row`] calls `emit` at most.
     #[inline(always)]
-    pub fn most_of_row<const TAKES_ALL: bool>(&self) -> usize {
+    pub fn max_runs_of_row<const TAKES_ALL: bool>(&self) -> usize {
         // Rows of cells that a pixel row lies across.
         let rows = if TAKES_ALL { ((self.height >> CELL_BITS) as usize + 2).min(ROWS) } else { 1 };
-        let runs = rows * MOST_RUNS;
-        if self.is_even { runs } else { runs * MOST_PARTS }
+        let runs = rows * MAX_RUNS;
+        if self.is_even { runs } else { runs * MAX_PARTS }
     }
 
     /// Calls `emit` with start, end (1/4096 px) and weight (1/16384) of the parts of a row's span that `cells` let through.
     #[inline(always)]
-    pub fn of_row<const TAKES_ALL: bool>(
+    pub fn visit_row<const TAKES_ALL: bool>(
         &self,
         cells: &Cells,
         Row { row, v }: Row,
@@ -153,7 +153,7 @@ impl SeenRuns {
     ) {
         let middle = ((v * self.stop) >> 14) + ONE;
         if TAKES_ALL {
-            self.of_all(cells, middle, |run| self.place(run, v, span, &mut emit));
+            self.visit_mean_runs(cells, middle, |run| self.emit_run(run, v, span, &mut emit));
             return;
         }
         // Each splat takes one of the rows of cells, each of its pixel rows its own.
@@ -168,14 +168,14 @@ impl SeenRuns {
             // Of a turned image u grows to the left.
             let [first, end] = if self.is_turned { [16 - end, 16 - first] } else { [first, end] };
             let [from, to] = [first, end].map(|cell| self.edges[cell as usize]);
-            self.weigh([from.max(span[0]), to.min(span[1])], ONE, v, &mut emit);
+            self.emit_weighted([from.max(span[0]), to.min(span[1])], ONE, v, &mut emit);
         });
     }
 
     /// Calls `emit` with what is let through of a pixel row by all rows of cells that it lies across, as much as it lies in each.
     /// Rows that let through one run each, not far from each other, are taken as one with the mean of their edges.
     #[inline(always)]
-    fn of_all(&self, cells: &Cells, middle: i32, mut emit: impl FnMut(CellRun)) {
+    fn visit_mean_runs(&self, cells: &Cells, middle: i32, mut emit: impl FnMut(CellRun)) {
         // The outermost rows hold all that the blur of the footprint throws beyond them.
         let lowest = middle - self.height / 2;
         let bottom = lowest.clamp(0, 2 * ONE - 1);
@@ -185,8 +185,8 @@ impl SeenRuns {
         let mut mean = MeanRun::default();
         let mut at = bottom;
         while at < top {
-            let (start, bits) = (at, cells[row_at(at)]);
-            while at < top && cells[row_at(at)] == bits {
+            let (start, bits) = (at, cells[row_of_height(at)]);
+            while at < top && cells[row_of_height(at)] == bits {
                 at = ((at >> CELL_BITS) + 1) << CELL_BITS;
             }
             if bits == 0 {
@@ -213,21 +213,21 @@ impl SeenRuns {
 
     /// Calls `emit` with where a run lies within a row's span, in parts with their weights.
     #[inline(always)]
-    fn place(&self, run: CellRun, v: i32, span: [i32; 2], emit: &mut impl FnMut(i32, i32, i32)) {
+    fn emit_run(&self, run: CellRun, v: i32, span: [i32; 2], emit: &mut impl FnMut(i32, i32, i32)) {
         let [first, last] = run.columns;
         let [first, last] =
             if self.is_turned { [LAST_COLUMN - last, LAST_COLUMN - first] } else { [first, last] };
         let at = |column: i32| {
-            self.center[0].wrapping_add(part(self.reach, column - LAST_COLUMN / 2, COLUMN_BITS + 3))
+            self.center[0].wrapping_add(scaled_floor(self.reach, column - LAST_COLUMN / 2, COLUMN_BITS + 3))
         };
         let from = if first == 0 { span[0] } else { at(first).max(span[0]) };
         let to = if last == LAST_COLUMN { span[1] } else { at(last).min(span[1]) };
-        self.weigh([from, to], run.share, v, emit);
+        self.emit_weighted([from, to], run.share, v, emit);
     }
 
     /// Calls `emit` with a `share` of a run, in parts with their weights.
     #[inline(always)]
-    fn weigh(&self, [from, to]: [i32; 2], share: i32, v: i32, emit: &mut impl FnMut(i32, i32, i32)) {
+    fn emit_weighted(&self, [from, to]: [i32; 2], share: i32, v: i32, emit: &mut impl FnMut(i32, i32, i32)) {
         if from >= to {
             return;
         }
@@ -239,7 +239,7 @@ impl SeenRuns {
         let toward = if self.is_turned { -self.tilt[0] } else { self.tilt[0] };
         let (shift, width) = (halvings(self.tilt[0]), to.wrapping_sub(from));
         for at in 0..1 << shift {
-            let [start, end] = [at, at + 1].map(|k| from.wrapping_add(part(width, k, shift)));
+            let [start, end] = [at, at + 1].map(|k| from.wrapping_add(scaled_floor(width, k, shift)));
             // The baked aperture's u in the middle, and half the part's width.
             let middle = self.per_reach.divide(((start >> 1) + (end >> 1)).wrapping_sub(self.center[0]));
             let half = self.per_reach.divide(end.wrapping_sub(start) >> 1);
@@ -256,7 +256,7 @@ impl SeenRuns {
 
 /// The row of cells at a height of the baked aperture.
 #[inline(always)]
-fn row_at(height: i32) -> usize {
+fn row_of_height(height: i32) -> usize {
     (height >> CELL_BITS) as usize & (ROWS - 1)
 }
 
@@ -329,8 +329,8 @@ mod tests {
     use crate::canvas::PIXEL;
 
     /// Pixel rows of this height in the baked aperture.
-    fn rows_of(height: i32) -> SeenRuns {
-        SeenRuns {
+    fn rows_of(height: i32) -> VisibleRuns {
+        VisibleRuns {
             center: [0; 2],
             dither: 0,
             base: ONE,
@@ -346,10 +346,10 @@ mod tests {
         }
     }
 
-    fn found(rows: &SeenRuns, cells: &Cells, middle: i32) -> Vec<CellRun> {
-        let mut found = Vec::new();
-        rows.of_all(cells, middle, |run| found.push(run));
-        found
+    fn visible_cell_runs(rows: &VisibleRuns, cells: &Cells, middle: i32) -> Vec<CellRun> {
+        let mut runs = Vec::new();
+        rows.visit_mean_runs(cells, middle, |run| runs.push(run));
+        runs
     }
 
     /// What is seen of a pixel row, and its first moment along the row, is what its rows of cells see.
@@ -363,8 +363,8 @@ mod tests {
                 [(700, 5000), (2048, 9000), (5000, 20_000), (9000, 1000), (30_000, 17_000)]
             {
                 let rows = rows_of(height);
-                let found = found(&rows, &cells, middle);
-                assert!(found.len() <= rows.most_of_row::<true>());
+                let found = visible_cell_runs(&rows, &cells, middle);
+                assert!(found.len() <= rows.max_runs_of_row::<true>());
                 let bottom = (middle - height / 2).max(0);
                 let top = (middle - height / 2 + height).min(2 * ONE);
                 let mut wanted = [0.0; 2];
@@ -395,10 +395,10 @@ mod tests {
     fn an_edge_is_one_run() {
         let slanted: Cells = std::array::from_fn(|row| u16::MAX >> (row / 2));
         for (height, middle) in [(1500, 4096), (4096, 10_000), (6000, 20_000)] {
-            assert_eq!(found(&rows_of(height), &slanted, middle).len(), 1, "{height}");
+            assert_eq!(visible_cell_runs(&rows_of(height), &slanted, middle).len(), 1, "{height}");
         }
         // What lies apart stays apart.
         let apart: Cells = std::array::from_fn(|row| if row < 8 { 0x000F } else { 0xF000 });
-        assert_eq!(found(&rows_of(4096), &apart, ONE).len(), 2);
+        assert_eq!(visible_cell_runs(&rows_of(4096), &apart, ONE).len(), 2);
     }
 }

@@ -40,7 +40,7 @@ impl UnsizedBox<'_> {
     pub fn sized(&self, less: u32) -> SizedBox {
         let half = self.legs.map(|[a, b]| hypotenuse(a, b, less).max(SMALLEST_HALF));
         let Image { center, share, light, dither, .. } = *self.image;
-        SizedBox { center, half, per_half: half.map(Reciprocal::of), share, light, dither }
+        SizedBox { center, half, per_half: half.map(Reciprocal::new), share, light, dither }
     }
 }
 

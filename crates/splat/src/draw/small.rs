@@ -28,15 +28,15 @@ struct Sizes {
 
 impl SmallBoxes {
     #[inline(always)]
-    pub fn add(&mut self, found: &UnsizedBox) {
+    pub fn add(&mut self, unsized_box: &UnsizedBox) {
         let at = self.len;
         for axis in 0..2 {
-            (0..2).for_each(|leg| self.legs[axis][leg][at] = found.legs[axis][leg]);
+            (0..2).for_each(|leg| self.legs[axis][leg][at] = unsized_box.legs[axis][leg]);
         }
-        self.center[at] = found.image.center;
-        self.share[at] = found.image.share;
-        self.dither[at] = found.image.dither;
-        self.light[at] = found.image.light;
+        self.center[at] = unsized_box.image.center;
+        self.share[at] = unsized_box.image.share;
+        self.dither[at] = unsized_box.image.dither;
+        self.light[at] = unsized_box.image.light;
         self.len += 1;
     }
 
@@ -114,7 +114,7 @@ mod tests {
                 let found = sizes(&[column(0), column(1)], less);
                 for (at, [a, b]) in chunk.iter().enumerate() {
                     let half = hypotenuse(*a, *b, less).max(SMALLEST_HALF);
-                    let wanted = (half, Reciprocal::of(half));
+                    let wanted = (half, Reciprocal::new(half));
                     assert_eq!((found.half[at], found.per_half[at]), wanted, "{a} {b} {less}");
                 }
             }

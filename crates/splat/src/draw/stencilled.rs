@@ -4,11 +4,11 @@ use crate::canvas::{PIXEL, POSITION_BITS, Word};
 use crate::draw::image::Image;
 use crate::draw::paper::Paper;
 use crate::draw::pen::Pen;
-use crate::draw::seen_runs::{Row, SeenRun, SeenRuns};
+use crate::draw::seen_runs::{Row, VisibleRun, VisibleRuns};
 use crate::fixed::{ONE, mul_shift, ratio};
 use crate::nodes::Cells;
 use crate::stencil::{HEIGHT_BITS, Stencil, StencilSize};
-use crate::widest::with_widest_instructions;
+use crate::widest::with_widest_simd;
 
 /// What is let through of a stencil is scaled by this at most.
 const LARGEST_SCALE: u32 = 4;
@@ -34,7 +34,7 @@ impl Pen<'_> {
         {
             return;
         }
-        let (stencil, base) = self.stencils.at(size, image.center[1]);
+        let (stencil, base) = self.stencils.stencil_at(size, image.center[1]);
         let shift = image.light.shift(stencil.height_bits);
         let Some((cells, share)) = cells else {
             for run in &stencil.runs {
@@ -47,20 +47,20 @@ impl Pen<'_> {
             return;
         };
         // Each in a function of its own: 2 to 3 % off a picture that has many of either.
-        let found = if self.takes_all_rows(image) {
-            with_widest_instructions(
+        let visible = if self.takes_all_rows(image) {
+            with_widest_simd(
                 #[inline(always)]
-                || self.find_seen::<true>(image, cells, share, stencil, base, &mut paper.found),
+                || self.visible_runs::<true>(image, cells, share, stencil, base, &mut paper.runs),
             )
         } else {
-            self.find_seen::<false>(image, cells, share, stencil, base, &mut paper.found)
+            self.visible_runs::<false>(image, cells, share, stencil, base, &mut paper.runs)
         };
-        let Some((scale, found)) = found else {
-            return self.draw_seen_box(image, paper, sign);
+        let Some((scale, runs)) = visible else {
+            return self.draw_partial_box(image, paper, sign);
         };
         image.share = scale;
         let mut rows = paper.rows.borrowed();
-        for run in found {
+        for run in runs {
             if run.row >= rows.first && run.row < rows.end {
                 let value = image.value(run.height, shift, run.row);
                 rows.add_run(run.row, run.start, run.end, value, sign);
@@ -72,36 +72,36 @@ impl Pen<'_> {
     /// it is `share` (times 2²⁴) of the light: rows of pixels and rows of cells meet only roughly. `None` where a partly occluded
     /// node's few cells are missed.
     #[inline(always)]
-    fn find_seen<'r, const TAKES_ALL: bool>(
+    fn visible_runs<'r, const TAKES_ALL: bool>(
         &self,
         image: &Image,
         cells: &Cells,
         share: u32,
         stencil: &Stencil,
         base: i32,
-        room: &'r mut Vec<SeenRun>,
-    ) -> Option<(u32, &'r [SeenRun])> {
+        buffer: &'r mut Vec<VisibleRun>,
+    ) -> Option<(u32, &'r [VisibleRun])> {
         // Heights are as much finer as the stencil is larger.
         let finer = POSITION_BITS + stencil.height_bits - HEIGHT_BITS;
-        let seen = SeenRuns::new(self, image);
-        let most = stencil.runs.len() * seen.most_of_row::<TAKES_ALL>();
-        if room.len() < most {
-            room.resize(most, SeenRun::default());
+        let row_runs = VisibleRuns::new(self, image);
+        let max_runs = stencil.runs.len() * row_runs.max_runs_of_row::<TAKES_ALL>();
+        if buffer.len() < max_runs {
+            buffer.resize(max_runs, VisibleRun::default());
         }
-        let (room, mut count, mut passing) = (&mut room[..most], 0, 0);
+        let (buffer, mut count, mut passing) = (&mut buffer[..max_runs], 0, 0);
         for run in &stencil.runs {
             let row = Row { row: base + run.row, v: run.v };
             let span = [image.center[0] + run.start, image.center[0] + run.end];
-            seen.of_row::<TAKES_ALL>(cells, row, span, |start, end, weight| {
+            row_runs.visit_row::<TAKES_ALL>(cells, row, span, |start, end, weight| {
                 let height =
                     if weight == ONE { run.height } else { mul_shift(run.height, weight as u32, 14) };
                 passing += mul_shift(end.wrapping_sub(start) as u32, height, finer);
-                room[count] = SeenRun { row: row.row, start, end, height };
+                buffer[count] = VisibleRun { row: row.row, start, end, height };
                 count += 1;
             });
         }
         let is_missed = !image.node.is_open() && passing < share / LARGEST_SCALE;
-        (!is_missed).then(|| (ratio(share, passing, LARGEST_SCALE), &room[..count]))
+        (!is_missed).then(|| (ratio(share, passing, LARGEST_SCALE), &buffer[..count]))
     }
 
     /// The size of the stencil that, blurred by its level, has the variance of the footprint and the aperture's image;
@@ -113,6 +113,6 @@ impl Pen<'_> {
         let footprint = ((x * x + y * y) >> (2 * image.level + 1)) * self.per_variance / (3 * ONE as i64);
         let radius = image.radius as i64;
         let square = radius * radius + footprint - self.too_blurred[image.level as usize];
-        StencilSize::of(square, image.radius < 0)
+        StencilSize::from_radius_square(square, image.radius < 0)
     }
 }

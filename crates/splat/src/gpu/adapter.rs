@@ -38,7 +38,7 @@ pub enum GpuAbsent {
     NoAdapter,
     /// None of that name.
     #[error("no GPU's name contains \"{0}\" (focus-brush doctor lists what there is)")]
-    NoneOfThatName(String),
+    NoMatchingName(String),
     /// It does not work.
     #[error("the GPU {name} cannot be used: {why} (use --backend cpu)")]
     Unusable {
@@ -51,8 +51,8 @@ pub enum GpuAbsent {
 
 /// All adapters, the one that would be used first.
 pub fn adapters() -> Vec<AdapterDescription> {
-    let found = ranked(&instance(), None);
-    let described = found.iter().enumerate().map(|(rank, adapter)| {
+    let candidates = ranked(&instance(), None);
+    let described = candidates.iter().enumerate().map(|(rank, adapter)| {
         let info = adapter.get_info();
         AdapterDescription {
             kind: kind(info.device_type).to_owned(),
@@ -67,7 +67,7 @@ pub fn adapters() -> Vec<AdapterDescription> {
 impl Gpu {
     /// Whether the machine may have a card at all. Where it has none, drivers need not be woken, which takes a while and lets
     /// some of them complain on stderr.
-    pub fn may_be_there() -> bool {
+    pub fn may_be_available() -> bool {
         let devices = ["/dev/dri", "/dev/nvidiactl", "/dev/kfd", "/dev/dxg"];
         !cfg!(target_os = "linux") || devices.iter().any(|device| std::path::Path::new(device).exists())
     }
@@ -81,23 +81,23 @@ impl Gpu {
         if choice == BackendChoice::Cpu {
             return Ok(None);
         }
-        let is_asked_for = choice == BackendChoice::Gpu || named.is_some();
-        if !is_asked_for && !Self::may_be_there() {
+        let is_requested = choice == BackendChoice::Gpu || named.is_some();
+        if !is_requested && !Self::may_be_available() {
             return Ok(None);
         }
         let Some(adapter) = ranked(&instance(), named).into_iter().next() else {
-            return match (is_asked_for, named) {
+            return match (is_requested, named) {
                 (false, _) => Ok(None),
-                (true, Some(name)) => Err(GpuAbsent::NoneOfThatName(name.to_owned())),
+                (true, Some(name)) => Err(GpuAbsent::NoMatchingName(name.to_owned())),
                 (true, None) => Err(GpuAbsent::NoAdapter),
             };
         };
-        if !is_asked_for && adapter.get_info().device_type == DeviceType::Cpu {
+        if !is_requested && adapter.get_info().device_type == DeviceType::Cpu {
             return Ok(None);
         }
         match Self::new(&adapter) {
             Ok(gpu) => Ok(Some(gpu)),
-            Err(why) if is_asked_for => Err(GpuAbsent::Unusable { name: adapter.get_info().name, why }),
+            Err(why) if is_requested => Err(GpuAbsent::Unusable { name: adapter.get_info().name, why }),
             Err(_) => Ok(None),
         }
     }
@@ -118,18 +118,18 @@ fn instance() -> Instance {
 
 /// Adapters whose name contains `named`, the fastest kind first.
 fn ranked(instance: &Instance, named: Option<&str>) -> Vec<Adapter> {
-    let mut found = pollster::block_on(instance.enumerate_adapters(Backends::PRIMARY));
-    found.retain(|adapter| {
+    let mut candidates = pollster::block_on(instance.enumerate_adapters(Backends::PRIMARY));
+    candidates.retain(|adapter| {
         named.is_none_or(|named| adapter.get_info().name.to_lowercase().contains(&named.to_lowercase()))
     });
-    found.sort_by_key(|adapter| match adapter.get_info().device_type {
+    candidates.sort_by_key(|adapter| match adapter.get_info().device_type {
         DeviceType::DiscreteGpu => 0,
         DeviceType::IntegratedGpu => 1,
         DeviceType::VirtualGpu => 2,
         DeviceType::Other => 3,
         DeviceType::Cpu => 4,
     });
-    found
+    candidates
 }
 
 fn kind(of: DeviceType) -> &'static str {

@@ -68,14 +68,14 @@ impl Gpu {
             encoder.copy_buffer_to_buffer(buffer, range.start, &staging, first, size);
             first += size;
         }
-        let asked_for = self.queue().submit([encoder.finish()]);
+        let submission = self.queue().submit([encoder.finish()]);
         let (sender, receiver) = mpsc::channel();
         staging.map_async(wgpu::MapMode::Read, 0..size, move |result| {
             // Nobody listens any more where the device was lost meanwhile.
             let _ = sender.send(result.is_ok());
         });
-        self.wait_for(asked_for)?;
-        if !self.answer(&receiver)? {
+        self.wait_for(submission)?;
+        if !self.receive(&receiver)? {
             return Err(Lost);
         }
         let view = staging.get_mapped_range(0..size).map_err(|_| Lost)?;

@@ -10,7 +10,7 @@ use wgpu::{Adapter, Device, Features, Limits, PollError, PollType, Queue, Submis
 const MOMENT: Duration = Duration::from_millis(1);
 
 /// What is done is told within so many moments: ten seconds.
-const MOST_MOMENTS: usize = 10_000;
+const MAX_MOMENTS: usize = 10_000;
 
 /// The card is gone, or refuses to work on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,7 +54,7 @@ impl Gpu {
         };
         let requested = pollster::block_on(adapter.request_device(&descriptor));
         let (device, queue) = requested.map_err(|error| error.to_string())?;
-        Self::of(device, queue, adapter.get_info().name)
+        Self::from_device(device, queue, adapter.get_info().name)
     }
 
     /// What a device must hold that sums, of what its adapter does: portable limits, but large pictures where it holds them.
@@ -67,8 +67,8 @@ impl Gpu {
     }
 
     /// What such a device may be asked for of what its adapter has: a clock, and sums over subgroups. Nothing depends on them.
-    pub fn features(there: Features) -> Features {
-        there & (Features::TIMESTAMP_QUERY | Features::SUBGROUP)
+    pub fn features(available: Features) -> Features {
+        available & (Features::TIMESTAMP_QUERY | Features::SUBGROUP)
     }
 
     /// Takes a device into use that others use, too, as one that shows pictures does: they need not come back to be shown. Its
@@ -76,7 +76,7 @@ impl Gpu {
     ///
     /// # Errors
     /// What the driver said.
-    pub fn of(device: Device, queue: Queue, name: String) -> Result<Self, String> {
+    pub fn from_device(device: Device, queue: Queue, name: String) -> Result<Self, String> {
         let lost = Arc::new(OnceLock::new());
         let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
         let passes = Passes::new(&device);
@@ -147,10 +147,10 @@ impl Gpu {
     }
 
     /// Waits until this is done, and all before it: a moment at a time, for nobody else can show anything meanwhile.
-    pub(super) fn wait_for(&self, asked_for: SubmissionIndex) -> Result<(), Lost> {
+    pub(super) fn wait_for(&self, submission: SubmissionIndex) -> Result<(), Lost> {
         loop {
             self.check()?;
-            let until = PollType::Wait { submission_index: Some(asked_for.clone()), timeout: Some(MOMENT) };
+            let until = PollType::Wait { submission_index: Some(submission.clone()), timeout: Some(MOMENT) };
             match self.device().poll(until) {
                 Ok(_) => return self.check(),
                 Err(PollError::Timeout) => std::thread::yield_now(),
@@ -161,8 +161,8 @@ impl Gpu {
 
     /// What a callback of the device sends about work that is done; another thread may be told that it is, first. A device
     /// that stays silent is lost.
-    pub(super) fn answer<T>(&self, receiver: &Receiver<T>) -> Result<T, Lost> {
-        for _ in 0..MOST_MOMENTS {
+    pub(super) fn receive<T>(&self, receiver: &Receiver<T>) -> Result<T, Lost> {
+        for _ in 0..MAX_MOMENTS {
             match receiver.recv_timeout(MOMENT) {
                 Ok(answer) => return Ok(answer),
                 Err(RecvTimeoutError::Disconnected) => return Err(Lost),

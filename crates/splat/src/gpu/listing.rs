@@ -6,7 +6,7 @@ use crate::gpu::device::Lost;
 use crate::gpu::passes::KINDS;
 use crate::gpu::records;
 use crate::gpu::scene::{Chunk, Scene};
-use crate::gpu::work::Work;
+use crate::gpu::work::Commands;
 use crate::stencil::{COARSER, Place, Stencils};
 use salf::tree::LEVELS;
 use std::ops::Range;
@@ -27,7 +27,7 @@ pub struct Listing {
     lens: Buffer,
     /// How many records of each kind each chunk has, and how many have been written; then a bit for each place of stencils
     /// that is asked for.
-    found: Buffer,
+    counts: Buffer,
     /// What list.wgsl is told of each chunk, when it counts and when it writes.
     chunks: Vec<[Buffer; 2]>,
     /// Stands for what is painted where nothing is.
@@ -56,7 +56,7 @@ impl Listing {
         };
         Ok(Self {
             lens: gpu.buffer("lens", LENS_WORDS + 10 * 4 * LEVELS, storage)?,
-            found: gpu.buffer("found", 2 * COUNTS * scene.chunks.len() + PLACE_WORDS, storage)?,
+            counts: gpu.buffer("found", 2 * COUNTS * scene.chunks.len() + PLACE_WORDS, storage)?,
             chunks: scene.chunks.iter().map(of_chunk).collect::<Result<_, Lost>>()?,
             unpainted: gpu.buffer("unpainted", 0, storage)?,
             records: gpu.buffer("listed", 0, storage)?,
@@ -79,17 +79,17 @@ impl Listing {
     ) -> Result<Counts, Lost> {
         gpu.write(&self.lens, &words_of_lens(drawn));
         let words = 2 * COUNTS * scene.chunks.len() + PLACE_WORDS;
-        gpu.write(&self.found, &vec![0; words]);
+        gpu.write(&self.counts, &vec![0; words]);
         for (k, chunk) in scene.chunks.iter().enumerate() {
-            self.ask(gpu, (k, chunk), pen, is_painted, None);
+            self.dispatch(gpu, (k, chunk), pen, is_painted, None);
         }
-        let found = gpu.read(&self.found, 0..4 * words as u64)?;
-        let (counts, places) = found.split_at(words - PLACE_WORDS);
-        let is_asked_for = |index: &usize| places[index / 32] >> (index % 32) & 1 == 1;
+        let readback = gpu.read(&self.counts, 0..4 * words as u64)?;
+        let (counts, places) = readback.split_at(words - PLACE_WORDS);
+        let is_requested = |index: &usize| places[index / 32] >> (index % 32) & 1 == 1;
         let of_chunk = |counts: &[u32; 2 * COUNTS]| std::array::from_fn(|kind| counts[kind]);
         Ok(Counts {
             of_chunks: counts.as_chunks().0.iter().map(of_chunk).collect(),
-            places: (0..Stencils::PLACES).filter(is_asked_for).map(Place::at).collect(),
+            places: (0..Stencils::PLACES).filter(is_requested).map(Place::from_table_index).collect(),
         })
     }
 
@@ -115,14 +115,14 @@ impl Listing {
             let roomy = (words + words / 4).min((gpu.largest_binding() / 4) as usize);
             self.records = gpu.buffer("listed", roomy.max(words), self.records.usage())?;
         }
-        self.ask(gpu, (chunk, &scene.chunks[chunk]), pen, is_painted, Some(&firsts));
+        self.dispatch(gpu, (chunk, &scene.chunks[chunk]), pen, is_painted, Some(&firsts));
         let [of_ordinary, of_wide] =
             [0, KINDS].map(|first| std::array::from_fn(|kind| firsts[first + kind].clone()));
         Ok([of_ordinary, of_wide])
     }
 
     /// Counts (`firsts` none) or writes the records of a chunk.
-    fn ask(
+    fn dispatch(
         &self,
         gpu: &Gpu,
         (index, chunk): (usize, &Chunk),
@@ -138,14 +138,14 @@ impl Listing {
         words.extend((0..COUNTS).map(|kind| firsts.map_or(0, |firsts| firsts[kind].start)));
         let uniform = &self.chunks[index][usize::from(is_writing)];
         gpu.write(uniform, &words);
-        let bound = self.bound(gpu, chunk, pen, focus, uniform);
+        let bound = self.bind_group(gpu, chunk, pen, focus, uniform);
         let pass = &gpu.passes().list[usize::from(is_writing)];
-        let mut work = Work::new(gpu);
-        work.run(pass, &bound, [chunk.shared.count.div_ceil(64), 1]);
+        let mut work = Commands::new(gpu);
+        work.dispatch(pass, &bound, [chunk.shared.count.div_ceil(64), 1]);
         work.submit();
     }
 
-    fn bound(
+    fn bind_group(
         &self,
         gpu: &Gpu,
         chunk: &Chunk,
@@ -154,7 +154,7 @@ impl Listing {
         uniform: &Buffer,
     ) -> BindGroup {
         let focus = focus.unwrap_or(&self.unpainted);
-        let buffers = [&chunk.shared.nodes, focus, pen, &self.lens, &self.found, &self.records, uniform];
+        let buffers = [&chunk.shared.nodes, focus, pen, &self.lens, &self.counts, &self.records, uniform];
         gpu.bind(&gpu.passes().list_layout, (0..).zip(buffers))
     }
 }

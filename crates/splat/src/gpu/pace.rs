@@ -17,7 +17,7 @@ const LONG: Duration = Duration::from_millis(16);
 
 /// So many batches may wait on the card: others wait their turn there, too, and what nobody wants any more is soon out of
 /// their way.
-const MOST_AHEAD: usize = 4;
+const MAX_IN_FLIGHT: usize = 4;
 
 /// Records of one kind, for one kind of accumulators.
 #[derive(Clone, Copy)]
@@ -33,14 +33,14 @@ pub struct Batch {
 /// Batches as large as a card draws in a moment: a large card idles over small ones, a small one is blocked by large ones.
 pub struct Pace {
     sizes: [[usize; KINDS]; 2],
-    ahead: VecDeque<(Batch, SubmissionIndex, Instant)>,
+    in_flight: VecDeque<(Batch, SubmissionIndex, Instant)>,
     last_done: Instant,
 }
 
 impl Pace {
     /// Of a card that nothing is known of.
     pub fn new() -> Self {
-        Self { sizes: [FIRST; 2], ahead: VecDeque::new(), last_done: Instant::now() }
+        Self { sizes: [FIRST; 2], in_flight: VecDeque::new(), last_done: Instant::now() }
     }
 
     /// How many records to ask for next.
@@ -49,22 +49,22 @@ impl Pace {
     }
 
     /// Notes what was asked for, and waits while too much of it is not done.
-    pub fn add(&mut self, gpu: &Gpu, batch: Batch, asked_for: SubmissionIndex) -> Result<(), Lost> {
-        self.ahead.push_back((batch, asked_for, Instant::now()));
-        if self.ahead.len() <= MOST_AHEAD {
+    pub fn add(&mut self, gpu: &Gpu, batch: Batch, submission: SubmissionIndex) -> Result<(), Lost> {
+        self.in_flight.push_back((batch, submission, Instant::now()));
+        if self.in_flight.len() <= MAX_IN_FLIGHT {
             return Ok(());
         }
-        let Some((batch, first, asked_at)) = self.ahead.pop_front() else { return Ok(()) };
+        let Some((batch, first, submitted_at)) = self.in_flight.pop_front() else { return Ok(()) };
         gpu.wait_for(first)?;
         let done = Instant::now();
-        self.learn(batch, done - asked_at.max(self.last_done));
+        self.learn(batch, done - submitted_at.max(self.last_done));
         self.last_done = done;
         Ok(())
     }
 
     /// What was asked for is of no interest any more: others have waited for it, or nobody will.
-    pub fn forget(&mut self) {
-        self.ahead.clear();
+    pub fn clear(&mut self) {
+        self.in_flight.clear();
     }
 
     fn learn(&mut self, batch: Batch, took: Duration) {

@@ -17,12 +17,12 @@ pub struct PictureOnCard {
 const PIXEL_BYTES: u64 = 16;
 
 impl PictureOnCard {
-    pub(crate) fn of(gpu: &Gpu, pixels: &Buffer, size: [u32; 2]) -> Self {
+    pub(crate) fn from_buffer(gpu: &Gpu, pixels: &Buffer, size: [u32; 2]) -> Self {
         Self { gpu: gpu.clone(), pixels: pixels.clone(), size }
     }
 
     /// A black picture of the size of another, on its card. `None` where that is lost or has no room.
-    pub fn like(other: &Self) -> Option<Self> {
+    pub fn new_like(other: &Self) -> Option<Self> {
         let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC;
         let pixels = other.gpu.buffer("shown", (other.pixels.size() / 4) as usize, usage).ok()?;
         Some(Self { pixels, ..other.clone() })

@@ -5,7 +5,7 @@
 
 use crate::gpu::Gpu;
 use crate::gpu::device::Lost;
-use crate::gpu::work::Work;
+use crate::gpu::work::Commands;
 use wgpu::BufferUsages;
 
 /// Threads of the pass.
@@ -16,15 +16,15 @@ impl Gpu {
     pub(super) fn rounds_alike(&self) -> Result<bool, Lost> {
         let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC;
         let numbers = numbers();
-        let given = self.buffer("numbers", numbers.len(), usage)?;
+        let input = self.buffer("numbers", numbers.len(), usage)?;
         let results = self.buffer("results", numbers.len(), usage)?;
         let zero = self.buffer("zero", 4, BufferUsages::UNIFORM | BufferUsages::COPY_DST)?;
-        self.write(&given, bytemuck::cast_slice(&numbers));
+        self.write(&input, bytemuck::cast_slice(&numbers));
         self.write(&zero, &[0; 4]);
         let passes = self.passes();
-        let bound = self.bind(&passes.probe_layout, [(0, &given), (1, &results), (2, &zero)]);
-        let mut work = Work::new(self);
-        work.run(&passes.probe, &bound, [(THREADS / 64) as u32, 1]);
+        let bound = self.bind(&passes.probe_layout, [(0, &input), (1, &results), (2, &zero)]);
+        let mut work = Commands::new(self);
+        work.dispatch(&passes.probe, &bound, [(THREADS / 64) as u32, 1]);
         work.submit();
         Ok(self.read(&results, 0..4 * numbers.len() as u64)? == expected(&numbers))
     }

@@ -14,7 +14,7 @@ pub const WORDS: usize = 4;
 /// The kinds of pen.wgsl.
 const BOXES: usize = 0;
 const IMAGES: usize = 1;
-const SEEN: usize = 2;
+const PARTIAL: usize = 2;
 pub const LARGE: usize = 3;
 
 /// A record's form, and its flags.
@@ -88,7 +88,7 @@ impl Records {
                     if places.last() != Some(&place) {
                         places.push(place);
                     }
-                    let kind = if cells.is_some() { SEEN } else { IMAGES };
+                    let kind = if cells.is_some() { PARTIAL } else { IMAGES };
                     words[kind].extend(head(place.with_phase(phase)));
                 }
                 None => words[LARGE].extend(with_large(head(0), pen.large(&image, cells))),
@@ -129,8 +129,8 @@ fn number_of(form: Form) -> u32 {
         Form::Parts(_) => 1,
         Form::Image(_) => 2,
         Form::Tilted(_) => 3,
-        Form::SeenBox => 4,
-        Form::Seen => 5,
+        Form::PartialBox => 4,
+        Form::PartialImage => 5,
     }
 }
 
@@ -149,8 +149,8 @@ fn image_of<'n>(
             None
         }
         Form::Tilted(share) => Some((&ALL, share)),
-        Form::Seen => Some(pen.seen_of(node)),
-        Form::Box(_) | Form::Parts(_) | Form::SeenBox => return None,
+        Form::PartialImage => Some(pen.visible_part(node)),
+        Form::Box(_) | Form::Parts(_) | Form::PartialBox => return None,
     };
     Some((image, cells))
 }

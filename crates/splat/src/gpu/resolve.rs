@@ -6,7 +6,7 @@ use crate::gpu::device::Lost;
 use crate::gpu::error::GpuError;
 use crate::gpu::layout::{Layout, Level};
 use crate::gpu::passes::Pass;
-use crate::gpu::work::Work;
+use crate::gpu::work::Commands;
 use crate::knots::{KnotSums, Knots, SharedSums};
 use crate::nodes::{BRIGHT, Nodes};
 use crate::resolve::{MARGIN, Overflow, Quanta};
@@ -75,7 +75,7 @@ impl Resolve {
 
     /// Tells what is asked for.
     pub fn begin(&self, gpu: &Gpu, nodes: &Nodes, rows: Range<u32>, is_sharing: bool, is_evened: bool) {
-        let (dim, wide) = Quanta::of(nodes);
+        let (dim, wide) = Quanta::from_nodes(nodes);
         let largest = dim.largest_coverage.min(i32::MAX as i64) as u32;
         let wide_largest = wide.largest_coverage as u64;
         gpu.write(
@@ -99,10 +99,10 @@ impl Resolve {
     }
 
     /// Integrates the sums of free (0) or sharing (1) samples to lines, coarse levels first.
-    pub fn integrate(&self, gpu: &Gpu, work: &mut Work, kind: usize, sums: &Buffer, rows: &Range<u32>) {
+    pub fn integrate(&self, gpu: &Gpu, work: &mut Commands, kind: usize, sums: &Buffer, rows: &Range<u32>) {
         let passes = gpu.passes();
         for (k, level) in self.levels.iter().enumerate().rev() {
-            let bound = self.bound(gpu, sums, kind, &self.uniforms[k]);
+            let bound = self.integrate_bind_group(gpu, sums, kind, &self.uniforms[k]);
             // The rows asked for, and what they are made of.
             let [first, end] = if k == 0 {
                 [rows.start as i32, rows.end as i32]
@@ -110,7 +110,7 @@ impl Resolve {
                 [(rows.start as i32 >> k) - MARGIN, ((rows.end as i32 - 1) >> k) + MARGIN + 1]
             };
             let count = end.min(level.height as i32 + 1) - first.max(-1);
-            work.run(&passes.integrate, &bound, [count.max(0) as u32, 1]);
+            work.dispatch(&passes.integrate, &bound, [count.max(0) as u32, 1]);
         }
     }
 
@@ -118,19 +118,19 @@ impl Resolve {
     pub fn integrate_wide(
         &self,
         gpu: &Gpu,
-        work: &mut Work,
+        work: &mut Commands,
         kind: usize,
         sums: &Buffer,
         layout: &Layout,
         rows: &Range<u32>,
     ) -> Result<(), Lost> {
         gpu.write(&self.wide_uniform, &words_of_level(0, layout.levels.first().ok_or(Lost)?, None));
-        let bound = self.bound(gpu, sums, kind, &self.wide_uniform);
-        work.run(&gpu.passes().integrate_wide, &bound, [rows.len() as u32, 1]);
+        let bound = self.integrate_bind_group(gpu, sums, kind, &self.wide_uniform);
+        work.dispatch(&gpu.passes().integrate_wide, &bound, [rows.len() as u32, 1]);
         Ok(())
     }
 
-    fn bound(&self, gpu: &Gpu, sums: &Buffer, kind: usize, level: &Buffer) -> BindGroup {
+    fn integrate_bind_group(&self, gpu: &Gpu, sums: &Buffer, kind: usize, level: &Buffer) -> BindGroup {
         let buffers = [sums, &self.lines[kind], level, &self.frame, &self.overflow];
         gpu.bind(&gpu.passes().integrate_layout, (0..).zip(buffers))
     }
@@ -138,8 +138,8 @@ impl Resolve {
     /// Makes shares or the picture of the lines.
     pub fn finish(&self, gpu: &Gpu, rows: &Range<u32>) {
         let across = (self.size[0] as u32).div_ceil(64);
-        let mut work = Work::new(gpu);
-        work.run(&gpu.passes().finish, &self.finish_bound(gpu), [across, rows.len() as u32]);
+        let mut work = Commands::new(gpu);
+        work.dispatch(&gpu.passes().finish, &self.finish_bind_group(gpu), [across, rows.len() as u32]);
         work.submit();
     }
 
@@ -164,8 +164,8 @@ impl Resolve {
         pass: &Pass,
         groups: [usize; 2],
     ) -> Result<Vec<[[f32; 4]; COUNT]>, GpuError> {
-        let mut work = Work::new(gpu);
-        work.run(pass, &self.finish_bound(gpu), groups.map(|groups| groups as u32));
+        let mut work = Commands::new(gpu);
+        work.dispatch(pass, &self.finish_bind_group(gpu), groups.map(|groups| groups as u32));
         work.submit();
         let bytes = groups[0] * groups[1] * size_of::<[[f32; 4]; COUNT]>();
         let words = self.checked(gpu, &self.knots, 0..bytes as u64)?;
@@ -175,12 +175,12 @@ impl Resolve {
 
     /// Brings the gains to the card.
     pub fn set_gains(&self, gpu: &Gpu, gains: &Gains, rest: [f32; 3]) {
-        let all = gains.of_knots().as_flattened().iter().chain([&rest]);
+        let all = gains.knot_gains().as_flattened().iter().chain([&rest]);
         let words = all.flat_map(|[r, g, b]| [*r, *g, *b, 1.0].map(f32::to_bits));
         gpu.write(&self.gains, &words.collect::<Vec<_>>());
     }
 
-    fn finish_bound(&self, gpu: &Gpu) -> BindGroup {
+    fn finish_bind_group(&self, gpu: &Gpu) -> BindGroup {
         let (level, [free, sharing]) = (&self.uniforms[0], &self.lines);
         let buffers = [
             (2, level),
@@ -225,7 +225,7 @@ impl Resolve {
 
 impl Quanta {
     /// Of ordinary and of bright sums.
-    fn of(nodes: &Nodes) -> (Self, Self) {
+    fn from_nodes(nodes: &Nodes) -> (Self, Self) {
         let dim = Self::new(nodes.scale.dim_bits, 32, nodes.brightest.min(BRIGHT as f64));
         (dim, Self::new(nodes.scale.bright_bits, 64, nodes.brightest))
     }

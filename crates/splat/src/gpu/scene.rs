@@ -5,7 +5,7 @@ use crate::gpu::device::Lost;
 use crate::lens_in_use::NodeFocus;
 use crate::nodes::{Nodes, SplatNode};
 use crate::paint::Paint;
-use crate::seen::Seen;
+use crate::seen::ApertureMoments;
 use std::iter::repeat_n;
 use std::ops::Range;
 use std::sync::Arc;
@@ -25,7 +25,7 @@ const FOCUS_WORDS: usize = 4;
 const NO_PARENT: u32 = u32::MAX;
 
 /// Words of what a partly occluded one sees.
-const SEEN_WORDS: usize = 11;
+const PARTIAL_WORDS: usize = 11;
 
 /// A light field's nodes, in chunks of whole blocks.
 pub struct Scene {
@@ -72,7 +72,7 @@ impl Scene {
 
     /// The same nodes, for another lens and paint.
     pub fn twin(&self, gpu: &Gpu) -> Result<Self, Lost> {
-        let chunks = self.chunks.iter().map(|chunk| Chunk::of(gpu, chunk.shared.clone()));
+        let chunks = self.chunks.iter().map(|chunk| Chunk::with_shared(gpu, chunk.shared.clone()));
         Ok(Self { chunks: chunks.collect::<Result<_, Lost>>()?, dim_bits: self.dim_bits })
     }
 
@@ -84,17 +84,20 @@ impl Scene {
     }
 
     /// Uploads what partly occluded nodes see of an aperture.
-    pub fn upload_seen(&self, gpu: &Gpu, nodes: &Nodes, seen: &[Seen]) {
+    pub fn upload_moments(&self, gpu: &Gpu, nodes: &Nodes, moments: &[ApertureMoments]) {
         for chunk in &self.chunks {
             let partial = &chunk.shared.partial;
-            let mut words = Vec::with_capacity(partial.len() * SEEN_WORDS);
+            let mut words = Vec::with_capacity(partial.len() * PARTIAL_WORDS);
             for &index in partial {
                 let node = &nodes.nodes[index as usize];
                 if let Some(cells) = nodes.cells(node) {
-                    let seen = &seen[node.cells as usize];
-                    words.extend(cells.chunks_exact(2).map(|pair| pair_of(pair[0], pair[1])));
-                    words.extend([seen.share, pair_of(seen.mean[0] as u16, seen.mean[1] as u16)]);
-                    words.push(pair_of(seen.half[0], seen.half[1]));
+                    let node_moments = &moments[node.cells as usize];
+                    words.extend(cells.chunks_exact(2).map(|pair| pack_pair(pair[0], pair[1])));
+                    words.extend([
+                        node_moments.share,
+                        pack_pair(node_moments.mean[0] as u16, node_moments.mean[1] as u16),
+                    ]);
+                    words.push(pack_pair(node_moments.half_width[0], node_moments.half_width[1]));
                 }
             }
             gpu.write(&chunk.cells, &words);
@@ -105,14 +108,14 @@ impl Scene {
     pub fn upload_paint(&mut self, gpu: &Gpu, nodes: &Nodes, paint: &Paint) -> Result<(), Lost> {
         for chunk in &mut self.chunks {
             let NodesOfChunk { blocks, count, .. } = &*chunk.shared;
-            if blocks.clone().all(|block| paint.of_block(block).is_none()) {
+            if blocks.clone().all(|block| paint.block(block).is_none()) {
                 chunk.focus = None;
                 continue;
             }
             let mut words = Vec::with_capacity(*count as usize * FOCUS_WORDS);
             for block in blocks.clone() {
                 let standard = || repeat_n(&NodeFocus::STANDARD, nodes.blocks[block].len());
-                match paint.of_block(block) {
+                match paint.block(block) {
                     Some(painted) => words.extend(painted.iter().flat_map(words_of_focus)),
                     None => words.extend(standard().flat_map(words_of_focus)),
                 }
@@ -147,17 +150,17 @@ impl Chunk {
         let buffer = gpu.buffer("nodes", words.len(), usage)?;
         gpu.write(&buffer, &words);
         let (first, count) = (range.start, range.len() as u32);
-        Self::of(gpu, Arc::new(NodesOfChunk { blocks, first, count, nodes: buffer, partial }))
+        Self::with_shared(gpu, Arc::new(NodesOfChunk { blocks, first, count, nodes: buffer, partial }))
     }
 
-    fn of(gpu: &Gpu, shared: Arc<NodesOfChunk>) -> Result<Self, Lost> {
+    fn with_shared(gpu: &Gpu, shared: Arc<NodesOfChunk>) -> Result<Self, Lost> {
         let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST;
-        let cells = gpu.buffer("cells", shared.partial.len() * SEEN_WORDS, usage)?;
+        let cells = gpu.buffer("cells", shared.partial.len() * PARTIAL_WORDS, usage)?;
         Ok(Self { shared, cells, focus: None })
     }
 }
 
-fn pair_of(low: u16, high: u16) -> u32 {
+fn pack_pair(low: u16, high: u16) -> u32 {
     low as u32 | (high as u32) << 16
 }
 
@@ -174,9 +177,9 @@ fn words_of_node(node: &SplatNode, cells: u32, parent: u32) -> [u32; WORDS] {
     [
         node.center[0] as u32,
         node.center[1] as u32,
-        pair_of(node.half_size[0], node.half_size[1]),
-        pair_of(u16::from(node.level) | flags, node.base as u16),
-        pair_of(node.tilt[0] as u16, node.tilt[1] as u16),
+        pack_pair(node.half_size[0], node.half_size[1]),
+        pack_pair(u16::from(node.level) | flags, node.base as u16),
+        pack_pair(node.tilt[0] as u16, node.tilt[1] as u16),
         cells,
         light[0],
         light[1],

@@ -20,7 +20,7 @@ pub struct Shapes {
     pub stencils: Buffer,
     /// What `stencils` holds: for each place where its runs begin and how many, then the runs.
     words: Vec<u32>,
-    is_there: Vec<bool>,
+    is_uploaded: Vec<bool>,
     /// Words that have been written.
     written: usize,
     capacity: usize,
@@ -38,7 +38,7 @@ impl Shapes {
         Ok(Self {
             shape: of_shape,
             stencils: gpu.buffer("stencils", capacity, usage)?,
-            is_there: vec![false; Stencils::PLACES],
+            is_uploaded: vec![false; Stencils::PLACES],
             words: vec![0; TABLE_WORDS],
             written: 0,
             capacity,
@@ -49,7 +49,7 @@ impl Shapes {
     pub fn upload(&mut self, gpu: &Gpu, stencils: &Stencils, places: &[Place]) -> Result<(), Lost> {
         let before = self.words.len();
         for &place in places {
-            if std::mem::replace(&mut self.is_there[place.index], true) {
+            if std::mem::replace(&mut self.is_uploaded[place.index], true) {
                 continue;
             }
             for (phase, stencil) in stencils.at_place(place).iter().enumerate() {
@@ -98,7 +98,7 @@ impl Shapes {
         let rows = pen.stencils.shape.firsts.len() as u32;
         words.extend([rows - 1, rows]);
         words.extend([(now - dim_bits) as u32, (now - bright_bits) as u32, pen.parts.len() as u32]);
-        words.extend([pen.even_seen_tilt as u32, pen.all_rows_radius, u32::from(pen.is_exact)]);
+        words.extend([pen.even_partial_tilt as u32, pen.all_rows_radius, u32::from(pen.is_exact)]);
         for level in &layout.levels {
             words.extend([level.width as u32, level.height as u32, level.pixels, level.totals]);
         }

@@ -27,16 +27,16 @@ impl Stopwatch {
 
     /// Begins.
     pub fn begin(&self, gpu: &Gpu) {
-        self.note(gpu, Some(0), None);
+        self.write_timestamp(gpu, Some(0), None);
     }
 
     /// Ends.
     pub fn end(&self, gpu: &Gpu) {
-        self.note(gpu, None, Some(1));
+        self.write_timestamp(gpu, None, Some(1));
     }
 
     /// Notes when the card has come so far.
-    fn note(&self, gpu: &Gpu, begin: Option<u32>, end: Option<u32>) {
+    fn write_timestamp(&self, gpu: &Gpu, begin: Option<u32>, end: Option<u32>) {
         let writes = ComputePassTimestampWrites {
             query_set: &self.moments,
             beginning_of_pass_write_index: begin,

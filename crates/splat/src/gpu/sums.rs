@@ -15,7 +15,7 @@ use crate::gpu::resolve::Resolve;
 use crate::gpu::scene::Scene as Uploaded;
 use crate::gpu::shapes::Shapes;
 use crate::gpu::stopwatch::Stopwatch;
-use crate::gpu::work::Work;
+use crate::gpu::work::Commands;
 use crate::knots::{Knots, SharedSums};
 use crate::nodes::Nodes;
 use lens::Picture;
@@ -35,7 +35,7 @@ const FEW: usize = if cfg!(test) { 1 << 6 } else { 1 << 14 };
 
 /// Threads of a workgroup of draw.wgsl, and how many workgroups a card is sure to take.
 const THREADS: usize = 64;
-const MOST_GROUPS: usize = 65_535;
+const MAX_GROUPS: usize = 65_535;
 
 /// Accumulators of one kind of samples' integers.
 struct Accumulators {
@@ -68,16 +68,16 @@ pub struct GpuSums {
 impl GpuSums {
     /// Room for a picture of this size of some nodes, which are uploaded.
     pub fn new(gpu: &Gpu, nodes: &Nodes, size: [usize; 2]) -> Result<Self, Lost> {
-        Self::of(gpu, Uploaded::new(gpu, nodes)?, nodes.has_bright, size)
+        Self::with_scene(gpu, Uploaded::new(gpu, nodes)?, nodes.has_bright, size)
     }
 
     /// The same of the same nodes, which are there.
     pub fn twin(&self) -> Result<Self, Lost> {
         let has_bright = self.accumulators.len() > 1;
-        Self::of(&self.gpu, self.scene.twin(&self.gpu)?, has_bright, self.resolve.size)
+        Self::with_scene(&self.gpu, self.scene.twin(&self.gpu)?, has_bright, self.resolve.size)
     }
 
-    fn of(gpu: &Gpu, scene: Uploaded, has_bright: bool, size: [usize; 2]) -> Result<Self, Lost> {
+    fn with_scene(gpu: &Gpu, scene: Uploaded, has_bright: bool, size: [usize; 2]) -> Result<Self, Lost> {
         gpu.check()?;
         let storage = BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC;
         let accumulators = |levels, words_of_pixel| {
@@ -129,14 +129,14 @@ impl GpuSums {
     /// Sets the sums to what a scene sends.
     pub fn set(&mut self, scene: &Scene, progress: &dyn Progress) -> Result<(), GpuError> {
         self.integrated = 0..0;
-        self.pace.forget();
-        let mut work = Work::new(&self.gpu);
+        self.pace.clear();
+        let mut work = Commands::new(&self.gpu);
         self.accumulators
             .iter()
             .flat_map(|accumulators| &accumulators.sums)
             .for_each(|sums| work.clear(sums));
         work.submit();
-        self.take_up(&scene.pen)?;
+        self.set_aperture(&scene.pen)?;
         let is_painted = !scene.paint.is_standard();
         if is_painted && !self.is_paint_there {
             self.scene.upload_paint(&self.gpu, scene.pen.nodes, scene.paint)?;
@@ -164,9 +164,9 @@ impl GpuSums {
         progress: &dyn Progress,
     ) -> Result<(), GpuError> {
         for (width, kinds) in listed.into_iter().enumerate().take(self.accumulators.len()) {
-            let bound = self.bound(chunk, width, self.listing.records())?;
-            let [boxes, images, seen, large] = kinds;
-            for (kind, records) in [boxes, images, seen].into_iter().enumerate() {
+            let bound = self.bind_group(chunk, width, self.listing.records())?;
+            let [boxes, images, partial, large] = kinds;
+            for (kind, records) in [boxes, images, partial].into_iter().enumerate() {
                 let mut first = records.start;
                 while first < records.end {
                     progress.check()?;
@@ -190,8 +190,8 @@ impl GpuSums {
     /// Takes nodes away and adds others.
     pub fn change(&mut self, pen: &Pen, changes: &Changes) -> Result<(), GpuError> {
         self.integrated = 0..0;
-        self.pace.forget();
-        self.take_up(pen)?;
+        self.pace.clear();
+        self.set_aperture(pen)?;
         for chunk in 0..self.scene.chunks.len() {
             let first = self.scene.chunks[chunk].shared.first;
             let end = self.scene.chunks.get(chunk + 1).map_or(u32::MAX, |next| next.shared.first);
@@ -212,11 +212,11 @@ impl GpuSums {
     }
 
     /// Brings the pen to the card, and what belongs to its aperture if that is another.
-    fn take_up(&mut self, pen: &Pen) -> Result<(), Lost> {
+    fn set_aperture(&mut self, pen: &Pen) -> Result<(), Lost> {
         self.gpu.check()?;
         if self.shapes.is_none() {
             self.shapes = Some(Shapes::new(&self.gpu, pen.stencils)?);
-            self.scene.upload_seen(&self.gpu, pen.nodes, pen.seen);
+            self.scene.upload_moments(&self.gpu, pen.nodes, pen.moments);
         }
         for (buffer, accumulators) in self.pens.iter().zip(&self.accumulators) {
             Shapes::upload_pen(&self.gpu, buffer, pen, &accumulators.layout, self.scene.dim_bits);
@@ -251,7 +251,7 @@ impl GpuSums {
         if words.is_empty() {
             return Ok(());
         }
-        let bound = self.bound(chunk, width, &self.records)?;
+        let bound = self.bind_group(chunk, width, &self.records)?;
         while !words.is_empty() {
             progress.check()?;
             let count = self.pace.size(width, kind).min(ROOM.min(words.len()) / words_of(kind));
@@ -268,19 +268,19 @@ impl GpuSums {
         let Batch { width, kind, count } = batch;
         let is_few = kind == LARGE || count <= FEW;
         let lanes = if is_few { LANES as usize } else { 1 };
-        let count = count.min(MOST_GROUPS * THREADS / lanes);
+        let count = count.min(MAX_GROUPS * THREADS / lanes);
         self.gpu.write(&self.batch, &[count as u32, first, 0, 0]);
         let pass = &self.gpu.passes().draw[width][kind][usize::from(is_few)];
-        let mut work = Work::new(&self.gpu);
-        work.run(pass, bound, [(count * lanes).div_ceil(THREADS) as u32, 1]);
-        let asked_for = work.submit();
+        let mut work = Commands::new(&self.gpu);
+        work.dispatch(pass, bound, [(count * lanes).div_ceil(THREADS) as u32, 1]);
+        let submission = work.submit();
         // Frees what was staged for batches that are through.
         self.gpu.device().poll(wgpu::PollType::Poll).map_err(|_| Lost)?;
-        self.pace.add(&self.gpu, Batch { count, ..batch }, asked_for)?;
+        self.pace.add(&self.gpu, Batch { count, ..batch }, submission)?;
         Ok(count as u32)
     }
 
-    fn bound(&self, chunk: usize, width: usize, records: &Buffer) -> Result<BindGroup, Lost> {
+    fn bind_group(&self, chunk: usize, width: usize, records: &Buffer) -> Result<BindGroup, Lost> {
         let (chunk, shapes) = (&self.scene.chunks[chunk], self.shapes.as_ref().ok_or(Lost)?);
         let sums = &self.accumulators[width].sums;
         let buffers = [
@@ -303,7 +303,7 @@ impl GpuSums {
         self.resolve.begin(&self.gpu, nodes, rows.clone(), true, false);
         self.integrate_lines(&rows)?;
         self.resolve.finish(&self.gpu, &rows);
-        Ok(Gains::of(Knots::new(self.resolve.size), &self.resolve.knot_sums(&self.gpu)?))
+        Ok(Gains::from_sums(Knots::new(self.resolve.size), &self.resolve.knot_sums(&self.gpu)?))
     }
 
     /// Integrates pixel rows, for a picture of them, unless they are.
@@ -366,7 +366,7 @@ impl GpuSums {
     fn integrate_lines(&mut self, rows: &Range<u32>) -> Result<(), Lost> {
         self.gpu.check()?;
         self.integrated = rows.clone();
-        let mut work = Work::new(&self.gpu);
+        let mut work = Commands::new(&self.gpu);
         for kind in 0..2 {
             let work = &mut work;
             self.resolve.integrate(&self.gpu, work, kind, &self.accumulators[0].sums[kind], rows);

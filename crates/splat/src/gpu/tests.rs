@@ -349,7 +349,7 @@ fn what_stays_on_the_card_is_fetched() {
         there.seconds_on_card().map(|seconds| seconds > 0.0 && seconds < 600.0),
         clock.then_some(true)
     );
-    there.fetch().unwrap();
+    there.fetch_picture().unwrap();
     assert_eq!(differing(here.picture(), there.picture()), 0);
     for round in 0..3u32 {
         let changed: Vec<u32> = (0..100).map(|k| (round * 977 + k * 13) % (WIDTH * HEIGHT)).collect();
@@ -364,7 +364,7 @@ fn what_stays_on_the_card_is_fetched() {
             // Lost before anybody has seen it.
             gpu.destroy();
         }
-        there.fetch().unwrap();
+        there.fetch_picture().unwrap();
         assert_eq!(differing(here.picture(), there.picture()), 0, "round {round}");
     }
     assert!(there.gpu().is_none(), "the processor has taken over");

@@ -5,19 +5,19 @@ use crate::gpu::passes::Pass;
 use wgpu::{BindGroup, Buffer, CommandEncoder, SubmissionIndex};
 
 /// What is to be done, one thing after the other.
-pub struct Work<'g> {
+pub struct Commands<'g> {
     gpu: &'g Gpu,
     encoder: CommandEncoder,
 }
 
-impl<'g> Work<'g> {
+impl<'g> Commands<'g> {
     pub fn new(gpu: &'g Gpu) -> Self {
         let encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         Self { gpu, encoder }
     }
 
     /// Runs a pass in so many workgroups.
-    pub fn run(&mut self, pass: &Pass, bound: &BindGroup, [x, y]: [u32; 2]) {
+    pub fn dispatch(&mut self, pass: &Pass, bound: &BindGroup, [x, y]: [u32; 2]) {
         let mut compute = self.encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
         compute.set_pipeline(pass.pipeline(self.gpu.device()));
         compute.set_bind_group(0, bound, &[]);

@@ -5,7 +5,7 @@ use crate::drawn::Scene;
 use crate::lens_in_use::LensInUse;
 use crate::nodes::Nodes;
 use crate::paint::Paint;
-use crate::seen::{Seen, seen};
+use crate::seen::{ApertureMoments, aperture_moments};
 use crate::shape::Shape;
 use crate::stencil::Stencils;
 use lens::{Aperture, Camera};
@@ -15,28 +15,28 @@ pub struct ApertureInUse {
     pub aperture: Aperture,
     pub stop: f64,
     pub stencils: Stencils,
-    seen: Vec<Seen>,
+    moments: Vec<ApertureMoments>,
 }
 
 impl ApertureInUse {
     pub fn new(aperture: &Aperture, stop: f64, nodes: Option<&Nodes>) -> Self {
-        let (shape, seen) = (Shape::new(aperture), Vec::new());
-        let mut new = Self { aperture: aperture.clone(), stop, stencils: Stencils::new(shape), seen };
+        let (shape, moments) = (Shape::new(aperture), Vec::new());
+        let mut new = Self { aperture: aperture.clone(), stop, stencils: Stencils::new(shape), moments };
         if let Some(nodes) = nodes {
-            new.look_at(nodes);
+            new.set_nodes(nodes);
         }
         new
     }
 
     /// Goes on to other nodes.
-    pub fn look_at(&mut self, nodes: &Nodes) {
+    pub fn set_nodes(&mut self, nodes: &Nodes) {
         // A pinhole sees what its chief ray sees.
-        self.seen = seen(nodes, &self.stencils.shape, self.stop.max(1e-3));
+        self.moments = aperture_moments(nodes, &self.stencils.shape, self.stop.max(1e-3));
     }
 
     /// What nodes are drawn with.
     pub fn pen<'a>(&'a self, nodes: &'a Nodes, lens: &LensInUse) -> Pen<'a> {
-        Pen::new(nodes, &self.stencils, &self.seen, self.stop, lens.detail)
+        Pen::new(nodes, &self.stencils, &self.moments, self.stop, lens.detail)
     }
 
     /// What is summed of `camera`'s picture.

@@ -19,26 +19,26 @@ pub struct Card {
     sums: Option<GpuSums>,
     is_lost: bool,
     /// Whether pictures stay there until they are asked for.
-    pub keeps: bool,
+    pub keeps_picture: bool,
     /// The rows that are newer there.
-    newer: Range<u32>,
+    stale_rows: Range<u32>,
 }
 
 impl Card {
     /// Uses another card, or none.
     pub fn replace(&mut self, gpu: Option<Gpu>) {
-        *self = Self { gpu, keeps: self.keeps, ..Self::default() };
+        *self = Self { gpu, keeps_picture: self.keeps_picture, ..Self::default() };
     }
 
     /// The same card with other sums of the same nodes, which are there.
     pub fn twin(&self) -> Self {
         // Where it has no room, the next sum finds out.
         let sums = self.sums.as_ref().and_then(|sums| sums.twin().ok());
-        Self { gpu: self.gpu.clone(), sums, keeps: self.keeps, ..Self::default() }
+        Self { gpu: self.gpu.clone(), sums, keeps_picture: self.keeps_picture, ..Self::default() }
     }
 
     /// Uploads the nodes if that has not been done, for a picture of `size`.
-    pub fn take_up(&mut self, nodes: &Nodes, size: [usize; 2]) {
+    pub fn upload_nodes(&mut self, nodes: &Nodes, size: [usize; 2]) {
         let (Some(gpu), None) = (&self.gpu, &self.sums) else { return };
         match GpuSums::new(gpu, nodes, size) {
             Ok(sums) => self.sums = Some(sums),
@@ -47,7 +47,7 @@ impl Card {
     }
 
     /// The next picture is of another aperture.
-    pub fn forget_aperture(&mut self) {
+    pub fn invalidate_aperture(&mut self) {
         if let Some(sums) = &mut self.sums {
             sums.forget_aperture();
         }
@@ -61,7 +61,7 @@ impl Card {
     }
 
     /// The next picture is painted otherwise.
-    pub fn forget_paint(&mut self) {
+    pub fn invalidate_paint(&mut self) {
         if let Some(sums) = &mut self.sums {
             sums.forget_paint();
         }
@@ -95,19 +95,19 @@ impl Card {
     /// The picture on it, of this width and height.
     pub fn picture(&self, size: [u32; 2]) -> Option<PictureOnCard> {
         let (gpu, sums) = (self.gpu.as_ref()?, self.sums.as_ref()?);
-        Some(PictureOnCard::of(gpu, sums.picture(), size))
+        Some(PictureOnCard::from_buffer(gpu, sums.picture(), size))
     }
 
     /// Sums what a scene sends; `None` where the sums are not on a card.
     pub fn sum(&mut self, scene: &Scene, progress: &dyn Progress) -> Option<Result<(), SplatError>> {
         let set = self.sums.as_mut()?.set(scene, progress);
-        Some(self.came_of(set))
+        Some(self.convert_result(set))
     }
 
     /// Takes nodes away and adds others; `None` where the sums are not on a card.
     pub fn change(&mut self, pen: &Pen, changes: &Changes) -> Option<Result<(), SplatError>> {
         let changed = self.sums.as_mut()?.change(pen, changes);
-        Some(self.came_of(changed))
+        Some(self.convert_result(changed))
     }
 
     /// Finds the shares of a standard picture, which stay there, and the gains.
@@ -116,7 +116,7 @@ impl Card {
             Some(sums) => sums.find_shares(nodes),
             None => Err(GpuError::Lost),
         };
-        self.came_of(gains)
+        self.convert_result(gains)
     }
 
     /// Makes pixel rows of a picture, and brings them back unless they are kept.
@@ -129,7 +129,7 @@ impl Card {
         picture: &mut Picture,
     ) -> Result<(), SplatError> {
         let made = self.try_make_picture(nodes, rows, finish, gains, picture);
-        self.came_of(made)
+        self.convert_result(made)
     }
 
     fn try_make_picture(
@@ -145,24 +145,24 @@ impl Card {
         let is_balanced = finish == Finish::Balanced;
         let rest = if is_balanced { rest(&sums.shared_sums(gains)?) } else { NO_REST };
         sums.make_picture(gains, rest, &rows);
-        if !self.keeps {
+        if !self.keeps_picture {
             return sums.read_picture(rows, picture);
         }
-        let newer = std::mem::take(&mut self.newer);
-        self.newer = hull([newer, rows].into_iter().filter(|rows| !rows.is_empty()));
+        let newer = std::mem::take(&mut self.stale_rows);
+        self.stale_rows = hull([newer, rows].into_iter().filter(|rows| !rows.is_empty()));
         sums.finish()
     }
 
     /// Brings back what of the picture is newer here; `None` where nothing is.
     pub fn fetch(&mut self, picture: &mut Picture) -> Option<Result<(), SplatError>> {
-        let rows = std::mem::take(&mut self.newer);
+        let rows = std::mem::take(&mut self.stale_rows);
         let sums = self.sums.as_ref().filter(|_| !rows.is_empty())?;
         let read = sums.read_picture(rows, picture);
-        Some(self.came_of(read))
+        Some(self.convert_result(read))
     }
 
     /// What came of work on the card. The loss of the card stops all work on it.
-    fn came_of<T>(&mut self, result: Result<T, GpuError>) -> Result<T, SplatError> {
+    fn convert_result<T>(&mut self, result: Result<T, GpuError>) -> Result<T, SplatError> {
         result.map_err(|error| match error {
             GpuError::Overflow => SplatError::Overflow,
             GpuError::Cancelled => SplatError::Cancelled,

@@ -5,7 +5,7 @@
 //! ([`crate::balance`]), as coverage is not.
 
 use super::error::SplatError;
-use super::wanted::{Summed, Wanted};
+use super::wanted::{ResolveOutput, SummedPaint};
 use super::{LensInUse, Splatter};
 use lens::Picture;
 use progress::{Progress, Stage};
@@ -53,16 +53,16 @@ impl Mattes {
         let picture = Stage::new(progress, if has_shares { 0.0 } else { 0.5 }, 1.0);
         if !has_shares {
             splatter.in_finest_integers(|splatter| {
-                splatter.sum_nodes(Summed::Standard, &shares)?;
-                splatter.resolve(splatter.frame(), Wanted::Shares)
+                splatter.sum_nodes(SummedPaint::Standard, &shares)?;
+                splatter.resolve(splatter.frame(), ResolveOutput::Shares)
             })?;
             let lens: LensInUse = splatter.lens.clone();
             splatter.shares_of = Some((lens, false));
         }
-        splatter.resolver.balance.forget();
+        splatter.resolver.balance.reset();
         splatter.in_finest_integers(|splatter| {
-            splatter.sum_nodes(Summed::Painted, &picture)?;
-            splatter.resolve(splatter.frame(), Wanted::Picture)
+            splatter.sum_nodes(SummedPaint::Painted, &picture)?;
+            splatter.resolve(splatter.frame(), ResolveOutput::Picture)
         })?;
         Ok(splatter.picture().clone())
     }

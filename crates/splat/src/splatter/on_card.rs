@@ -15,7 +15,7 @@ impl Splatter {
     /// Sets whether pictures stay on the card (no, by default): they are shown from there ([`Self::picture_on_card`]), and
     /// [`Self::picture`] is that of the last [`Self::fetch`].
     pub fn keep_on_card(&mut self, keeps: bool) {
-        self.card.keeps = keeps;
+        self.card.keeps_picture = keeps;
     }
 
     /// The picture on the card, which the next sum writes over. None where it is summed on the processor.
@@ -25,7 +25,7 @@ impl Splatter {
     }
 
     /// Brings back what of the picture stayed on the card; from the processor, summed anew, if that is lost.
-    pub fn fetch(&mut self) -> Result<(), SplatError> {
+    pub fn fetch_picture(&mut self) -> Result<(), SplatError> {
         let Some(fetched) = self.card.fetch(&mut self.resolver.picture) else { return Ok(()) };
         if self.drop_lost_card() { self.sum(&progress::Unwatched) } else { fetched }
     }

@@ -1,6 +1,6 @@
 //! Sums to a picture, on the processor.
 
-use super::wanted::{Finish, Wanted};
+use super::wanted::{Finish, ResolveOutput};
 use crate::balance::{Balance, Scaled};
 use crate::nodes::Nodes;
 use crate::partition::{Parts, Share};
@@ -30,7 +30,7 @@ impl Resolver {
         Self {
             marks: chunks.map(|rows| sums.marks(rows)).collect(),
             shares: vec![Share::NONE; width * height],
-            balance: Balance::none([width, height]),
+            balance: Balance::neutral([width, height]),
             picture: Picture::black(width as u32, height as u32),
         }
     }
@@ -48,29 +48,29 @@ impl Resolver {
         nodes: &Nodes,
         sums: &Sums,
         [rows, columns]: [Range<u32>; 2],
-        wanted: Wanted,
+        output: ResolveOutput,
         finish: Finish,
     ) -> Result<(), Overflow> {
-        if !wanted.has_shares() {
+        if !output.has_shares() {
             if finish != Finish::Balanced {
-                return self.pass(nodes, sums, [rows, columns], wanted, finish);
+                return self.pass(nodes, sums, [rows, columns], output, finish);
             }
             // All of the picture: it is not live.
-            self.pass(nodes, sums, self.frame(), Wanted::Shared, finish)?;
+            self.pass(nodes, sums, self.frame(), ResolveOutput::Shared, finish)?;
             self.balance.find_rest();
-            return self.pass(nodes, sums, self.frame(), Wanted::PictureOverShared, finish);
+            return self.pass(nodes, sums, self.frame(), ResolveOutput::PictureOverShared, finish);
         }
         // What is evened out is only multiplied by the gains, once they are known.
-        self.balance.forget();
-        let may_scale = wanted.has_picture() && finish == Finish::Evened;
-        let first = if may_scale { wanted } else { Wanted::Shares };
+        self.balance.reset();
+        let may_scale = output.has_picture() && finish == Finish::Evened;
+        let first = if may_scale { output } else { ResolveOutput::Shares };
         self.pass(nodes, sums, [rows.clone(), columns.clone()], first, finish)?;
-        self.balance.settle();
-        match wanted {
-            Wanted::SharesAndPicture if !may_scale => {
-                self.pass(nodes, sums, [rows, columns], Wanted::Picture, finish)
+        self.balance.find_gains();
+        match output {
+            ResolveOutput::SharesAndPicture if !may_scale => {
+                self.pass(nodes, sums, [rows, columns], ResolveOutput::Picture, finish)
             }
-            Wanted::SharesAndPicture => {
+            ResolveOutput::SharesAndPicture => {
                 self.balance.gains.scale(&mut self.picture.radiance);
                 Ok(())
             }
@@ -84,7 +84,7 @@ impl Resolver {
         nodes: &Nodes,
         sums: &Sums,
         [rows, columns]: [Range<u32>; 2],
-        wanted: Wanted,
+        output: ResolveOutput,
         finish: Finish,
     ) -> Result<(), Overflow> {
         let width = self.picture.width as usize;
@@ -94,7 +94,7 @@ impl Resolver {
         let (gains, rest) = (&self.balance.gains, self.balance.rest);
         let is_evened = finish == Finish::Evened;
         // Shares need none; gains of all of the light do.
-        let wants_colour = wanted != Wanted::Shares || is_evened;
+        let needs_colour = output != ResolveOutput::Shares || is_evened;
         let scaled = if is_evened { Scaled::All } else { Scaled::Sharing };
         let radiance = self.picture.radiance.par_chunks_mut(RESOLVE_ROWS * width);
         let coverage = self.picture.coverage.par_chunks_mut(RESOLVE_ROWS * width);
@@ -113,11 +113,11 @@ impl Resolver {
                 let window = Window { rows: signed(&here), columns: signed(&columns) };
                 let [free_marks, sharing_marks] = marks;
                 let [mut free, mut sharing] = [None, None];
-                if wanted.has_free() {
+                if output.has_free() {
                     let rows = sums.free.rows(nodes.quanta(), &window, free_marks, room)?;
-                    free = Some(if wants_colour { rows } else { rows.of_coverage() });
+                    free = Some(if needs_colour { rows } else { rows.coverage_only() });
                 }
-                if wanted.has_sharing() {
+                if output.has_sharing() {
                     sharing = Some(sums.sharing.rows(nodes.quanta(), &window, sharing_marks, room)?);
                 }
                 let mut lines = [room.take(columns.len()), room.take(columns.len())];
@@ -130,7 +130,7 @@ impl Resolver {
                     let at = (row - first) as usize;
                     let here = at * width + columns.start as usize..at * width + columns.end as usize;
                     let shares = &mut shares[here.clone()];
-                    if wanted.has_shares() {
+                    if output.has_shares() {
                         parts.find_shares(shares);
                         let sums = &mut of_knots[at * knots.columns()..][..knots.columns()];
                         knots.sum_row(parts, shares, sums, is_evened);
@@ -140,20 +140,20 @@ impl Resolver {
                         radiance: &mut radiance[here.clone()],
                         coverage: &mut coverage[here],
                     };
-                    let gains = || gains.of_row(row as usize, scaled);
-                    match wanted {
-                        Wanted::Shares => (),
-                        Wanted::SharesAndPicture => parts.join(shares, None, is_evened, pixels),
-                        Wanted::Picture => parts.join(shares, Some(&gains()), is_evened, pixels),
-                        Wanted::Shared => {
+                    let gains = || gains.row_gains(row as usize, scaled);
+                    match output {
+                        ResolveOutput::Shares => (),
+                        ResolveOutput::SharesAndPicture => parts.join(shares, None, is_evened, pixels),
+                        ResolveOutput::Picture => parts.join(shares, Some(&gains()), is_evened, pixels),
+                        ResolveOutput::Shared => {
                             let sums = &mut of_spans[at * knots.spans()..][..knots.spans()];
                             parts.share(shares, &gains(), pixels, sums);
                         }
-                        Wanted::PictureOverShared => parts.join_shared(rest, pixels),
+                        ResolveOutput::PictureOverShared => parts.join_shared(rest, pixels),
                     }
                 }
-                lines.into_iter().for_each(|line| room.give_back(line));
-                [free, sharing].into_iter().flatten().for_each(|rows| rows.give_back(room));
+                lines.into_iter().for_each(|line| room.recycle(line));
+                [free, sharing].into_iter().flatten().for_each(|rows| rows.recycle(room));
                 Ok(())
             },
         )

@@ -511,7 +511,7 @@ fn light_stays_within_reach() {
         let offset = FocusOffset::new(t, 0.0);
         splatter.render(&camera, &ByTriangle(vec![offset]), &Unwatched).unwrap();
         let node = &splatter.nodes.as_ref().unwrap().nodes[0];
-        let placed = splatter.lens.place(node, &NodeFocus::of(offset));
+        let placed = splatter.lens.place(node, &NodeFocus::new(offset));
         let [columns, rows] =
             [(0, camera.width), (1, camera.height)].map(|(axis, side)| placed.reach(node, axis, side));
         for (at, &covered) in (0u32..).zip(&splatter.picture().coverage) {

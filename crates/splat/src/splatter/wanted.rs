@@ -4,7 +4,7 @@ use crate::paint::{Paint, STANDARD};
 
 /// What is summed.
 #[derive(Clone, Copy, PartialEq)]
-pub enum Summed {
+pub enum SummedPaint {
     /// All, with nothing painted.
     Standard,
     /// The same; and the changes that make it all as it is painted are found.
@@ -13,7 +13,7 @@ pub enum Summed {
     Painted,
 }
 
-impl Summed {
+impl SummedPaint {
     /// What the nodes are painted with while they are summed, of what they are to be painted with.
     pub fn paint(self, paint: &Paint) -> &Paint {
         if self == Self::Painted { paint } else { &STANDARD }
@@ -33,7 +33,7 @@ pub enum Finish {
 
 /// What is made of the sums.
 #[derive(Clone, Copy, PartialEq)]
-pub enum Wanted {
+pub enum ResolveOutput {
     /// What each pixel is multiplied by, from the sums of the standard picture.
     Shares,
     Picture,
@@ -45,7 +45,7 @@ pub enum Wanted {
     PictureOverShared,
 }
 
-impl Wanted {
+impl ResolveOutput {
     pub fn has_shares(self) -> bool {
         matches!(self, Self::Shares | Self::SharesAndPicture)
     }

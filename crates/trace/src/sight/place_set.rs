@@ -4,12 +4,12 @@ use std::ops::{BitAnd, BitOrAssign, Sub};
 
 /// Some of up to 256 places, a bit each.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct PlaceSet([u64; Self::WORDS]);
+pub struct PointSet([u64; Self::WORDS]);
 
-impl PlaceSet {
+impl PointSet {
     const WORDS: usize = 4;
     /// How many places there can be.
-    pub const MOST: usize = 64 * Self::WORDS;
+    pub const MAX: usize = 64 * Self::WORDS;
 
     /// The bits of 64 places after another.
     #[inline(always)]
@@ -46,7 +46,7 @@ impl PlaceSet {
     }
 }
 
-impl FromIterator<usize> for PlaceSet {
+impl FromIterator<usize> for PointSet {
     fn from_iter<I: IntoIterator<Item = usize>>(places: I) -> Self {
         let mut set = Self::default();
         places.into_iter().for_each(|place| set.0[place / 64] |= 1 << (place % 64));
@@ -54,7 +54,7 @@ impl FromIterator<usize> for PlaceSet {
     }
 }
 
-impl BitAnd for PlaceSet {
+impl BitAnd for PointSet {
     type Output = Self;
 
     #[inline(always)]
@@ -63,14 +63,14 @@ impl BitAnd for PlaceSet {
     }
 }
 
-impl BitOrAssign for PlaceSet {
+impl BitOrAssign for PointSet {
     #[inline(always)]
     fn bitor_assign(&mut self, other: Self) {
         (0..Self::WORDS).for_each(|k| self.0[k] |= other.0[k]);
     }
 }
 
-impl Sub for PlaceSet {
+impl Sub for PointSet {
     type Output = Self;
 
     /// Those that `other` lacks.
@@ -87,10 +87,10 @@ mod tests {
     #[test]
     fn sets_hold_what_was_put_in() {
         let some = [0usize, 3, 63, 64, 130, 255];
-        let set: PlaceSet = some.into_iter().collect();
+        let set: PointSet = some.into_iter().collect();
         assert_eq!(set.iter().collect::<Vec<_>>(), some);
         assert!(some.into_iter().all(|place| set.contains(place)) && !set.contains(129));
-        let low: PlaceSet = (0..64).collect();
+        let low: PointSet = (0..64).collect();
         assert_eq!((set & low).iter().collect::<Vec<_>>(), [0, 3, 63]);
         assert_eq!((set - low).iter().collect::<Vec<_>>(), [64, 130, 255]);
         let mut both = set - low;

@@ -1,17 +1,17 @@
 //! Places on a square.
 
-use crate::sight::PlaceSet;
+use crate::sight::PointSet;
 use crate::sight::shadow::Shadow;
 use glam::{DVec2, Vec4};
 
 /// Places on a square, up to [`PlaceSet::MOST`].
 #[derive(Clone, Debug, Default)]
-pub struct Places {
+pub struct TargetPoints {
     /// By fours; what the last four do not use is at the square's middle.
     coordinates: Vec<[Vec4; 2]>,
-    all: PlaceSet,
+    all: PointSet,
     /// By axis and strip of the square: the places in this strip and in those after it, in this and in those before.
-    strips: [[[PlaceSet; 2]; STRIPS]; 2],
+    strips: [[[PointSet; 2]; STRIPS]; 2],
 }
 
 /// Strips that the square is cut into along either axis: finer than places lie, so that what is small has few of them.
@@ -33,13 +33,13 @@ pub struct Bounds {
     pub high: [f32; 2],
 }
 
-impl Places {
+impl TargetPoints {
     /// From their coordinates in [−1, 1].
     ///
     /// # Panics
     /// If there are more than [`PlaceSet::MOST`].
     pub fn new(places: &[DVec2]) -> Self {
-        assert!(places.len() <= PlaceSet::MOST, "at most {} places", PlaceSet::MOST);
+        assert!(places.len() <= PointSet::MAX, "at most {} places", PointSet::MAX);
         let four = |four: &[DVec2]| {
             let of = |axis: usize| {
                 Vec4::from_array(std::array::from_fn(|k| four.get(k).map_or(0.0, |p| p[axis] as f32)))
@@ -60,19 +60,19 @@ impl Places {
     }
 
     /// All of them.
-    pub fn all(&self) -> PlaceSet {
+    pub fn all(&self) -> PointSet {
         self.all
     }
 
     /// The coordinates of the place at `index`, as they are used: in f32.
-    pub fn at(&self, index: usize) -> DVec2 {
+    pub fn position(&self, index: usize) -> DVec2 {
         let [u, v] = self.coordinates[index / 4];
         DVec2::new(f64::from(u[index % 4]), f64::from(v[index % 4]))
     }
 
     /// Those in a box, and some that are not.
     #[inline(always)]
-    pub(super) fn near(&self, bounds: &Bounds) -> PlaceSet {
+    pub(super) fn near_box(&self, bounds: &Bounds) -> PointSet {
         let along = |axis: usize| {
             let strips = &self.strips[axis];
             strips[strip(bounds.low[axis])][0] & strips[strip(bounds.high[axis])][1]
@@ -82,20 +82,20 @@ impl Places {
 
     /// Those of some that lie in a shadow.
     #[inline(always)]
-    pub(super) fn behind(&self, shadow: &Shadow, some: PlaceSet) -> PlaceSet {
+    pub(super) fn in_shadow(&self, shadow: &Shadow, candidates: PointSet) -> PointSet {
         let [a, b, c] = shadow.edges;
-        let mut found = PlaceSet::default();
+        let mut shadowed = PointSet::default();
         for (word, chunks) in self.coordinates.chunks(16).enumerate() {
-            let mut left = some.words()[word];
+            let mut left = candidates.words()[word];
             while left != 0 {
                 let chunk = left.trailing_zeros() / 4;
                 let at = chunks[chunk as usize];
-                let within = a.of(at).min(b.of(at)).min(c.of(at)).cmpge(Vec4::ZERO);
-                let behind = within & shadow.beyond.of(at).cmpgt(Vec4::ZERO);
-                found.words_mut()[word] |= u64::from(behind.bitmask()) << (4 * chunk);
+                let within = a.evaluate(at).min(b.evaluate(at)).min(c.evaluate(at)).cmpge(Vec4::ZERO);
+                let behind = within & shadow.beyond.evaluate(at).cmpgt(Vec4::ZERO);
+                shadowed.words_mut()[word] |= u64::from(behind.bitmask()) << (4 * chunk);
                 left &= !(0b1111 << (4 * chunk));
             }
         }
-        found & some
+        shadowed & candidates
     }
 }

@@ -81,14 +81,14 @@ impl Projection {
         }
         let [x, y, z] = &from_origin;
         let (mut low, mut high) = ([Vec4::INFINITY; 2], [Vec4::NEG_INFINITY; 2]);
-        let mut is_known = BVec4A::splat(true);
+        let mut is_bounded = BVec4A::splat(true);
         for k in 0..3 {
             let along = |side: Vec3| x[k] * side.x + y[k] * side.y + z[k] * side.z;
             let (mut per_depth, mut depth_share) = (Vec4::ONE, Vec4::ZERO);
             if let Some(toward) = self.toward {
                 let depth = along(toward);
                 // Its error shall be small beside it.
-                is_known &= depth.cmpgt(Vec4::splat(16.0 * self.depth_error));
+                is_bounded &= depth.cmpgt(Vec4::splat(16.0 * self.depth_error));
                 per_depth = depth.recip();
                 depth_share = per_depth * (1.1 * self.depth_error);
             }
@@ -100,12 +100,12 @@ impl Projection {
                 high[axis] = high[axis].max(at + error);
             }
         }
-        Boxes::new(low, high, is_known, u32::MAX >> (31 - last))
+        Boxes::new(low, high, is_bounded, u32::MAX >> (31 - last))
     }
 
     /// The boxes around all that a node's boxes hold.
     #[inline(always)]
-    pub fn boxes_of(&self, node: &Node) -> Boxes {
+    pub fn node_boxes(&self, node: &Node) -> Boxes {
         let mut from_origin = node.sides;
         for (axis, sides) in from_origin.iter_mut().enumerate() {
             let origin = Vec4::splat(self.origin[axis]);
@@ -122,10 +122,10 @@ impl Projection {
             (least, most)
         };
         let (mut nearest, mut farthest, mut depth_share) = (Vec4::ONE, Vec4::ONE, Vec4::ZERO);
-        let mut is_known = BVec4A::splat(true);
+        let mut is_bounded = BVec4A::splat(true);
         if let Some(toward) = self.toward {
             let (least, most) = along(toward);
-            is_known = least.cmpgt(Vec4::splat(16.0 * self.depth_error));
+            is_bounded = least.cmpgt(Vec4::splat(16.0 * self.depth_error));
             (nearest, farthest) = (least.recip(), most.recip());
             depth_share = nearest * (1.1 * self.depth_error);
         }
@@ -137,44 +137,44 @@ impl Projection {
             low[axis] = (least * nearest).min(least * farthest) - self.middle[axis] - error;
             high[axis] = (most * nearest).max(most * farthest) - self.middle[axis] + error;
         }
-        Boxes::new(low, high, is_known, 0b1111)
+        Boxes::new(low, high, is_bounded, 0b1111)
     }
 }
 
 /// Boxes on the square, around triangles or what boxes hold.
 pub(super) struct Boxes {
-    low: [[f32; Self::MOST]; 2],
-    high: [[f32; Self::MOST]; 2],
+    low: [[f32; Self::MAX]; 2],
+    high: [[f32; Self::MAX]; 2],
     /// A bit for each that is known: of others a corner is nearly beside the viewpoint, or behind it.
-    known: u32,
+    bounded: u32,
     /// A bit for each that has something of the square, as far as is known.
     pub reaching: u32,
 }
 
 impl Boxes {
     /// So many are found at once.
-    pub const MOST: usize = 4;
+    pub const MAX: usize = 4;
 
     /// From their ends, `some` of them, a bit each.
     #[inline(always)]
-    fn new(low: [Vec4; 2], high: [Vec4; 2], is_known: BVec4A, some: u32) -> Self {
+    fn new(low: [Vec4; 2], high: [Vec4; 2], is_bounded: BVec4A, some: u32) -> Self {
         // Of a square without sides nothing is known.
-        let is_known = is_known & low[0].cmple(high[0]) & low[1].cmple(high[1]);
+        let is_bounded = is_bounded & low[0].cmple(high[0]) & low[1].cmple(high[1]);
         let is_outside = (low[0].cmpgt(Vec4::ONE) | high[0].cmplt(Vec4::NEG_ONE))
             | (low[1].cmpgt(Vec4::ONE) | high[1].cmplt(Vec4::NEG_ONE));
         Self {
             low: [low[0].to_array(), low[1].to_array()],
             high: [high[0].to_array(), high[1].to_array()],
-            known: is_known.bitmask(),
-            reaching: some & !(is_known & is_outside).bitmask(),
+            bounded: is_bounded.bitmask(),
+            reaching: some & !(is_bounded & is_outside).bitmask(),
         }
     }
 
     /// One of them, if it is known.
     #[inline(always)]
     pub fn get(&self, index: usize) -> Option<Bounds> {
-        let is_known = self.known >> index & 1 == 1;
-        is_known.then(|| Bounds {
+        let is_bounded = self.bounded >> index & 1 == 1;
+        is_bounded.then(|| Bounds {
             low: [self.low[0][index], self.low[1][index]],
             high: [self.high[0][index], self.high[1][index]],
         })

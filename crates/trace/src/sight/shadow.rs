@@ -29,14 +29,14 @@ impl Linear {
     }
 
     #[inline(always)]
-    pub fn of(self, [u, v]: [Vec4; 2]) -> Vec4 {
+    pub fn evaluate(self, [u, v]: [Vec4; 2]) -> Vec4 {
         let [a, b, c] = self.0.map(Vec4::splat);
         (a * u + b * v) + c
     }
 
     /// What [`Self::of`] is at most on the square: it is rounded likewise.
     #[inline(always)]
-    fn most(self) -> f32 {
+    fn max_on_square(self) -> f32 {
         let [a, b, c] = self.0;
         (a.abs() + b.abs()) + c
     }
@@ -52,7 +52,7 @@ impl Shadow {
     /// Of the triangle with these corners on a square that is looked at from `eye`; `None` if it throws none there: it is seen
     /// along its plane, or the whole square lies before that plane or beside an edge.
     #[inline(always)]
-    pub fn of(corners: &[DVec3; 3], eye: Eye, square: &Square) -> Option<Self> {
+    pub fn cast(corners: &[DVec3; 3], eye: Eye, square: &Square) -> Option<Self> {
         let Square { center, right, up } = *square;
         match eye {
             Eye::At(point) => {
@@ -92,13 +92,13 @@ impl Shadow {
         sides: [(DVec3, DVec3); 3],
         edge: impl Fn(DVec3, DVec3) -> Linear,
     ) -> Option<Self> {
-        if !is_faced || beyond.most() <= 0.0 {
+        if !is_faced || beyond.max_on_square() <= 0.0 {
             return None;
         }
         let mut edges = [beyond; 3];
-        for (found, (from, to)) in edges.iter_mut().zip(sides) {
-            *found = edge(from, to);
-            if found.most() < 0.0 {
+        for (edge_line, (from, to)) in edges.iter_mut().zip(sides) {
+            *edge_line = edge(from, to);
+            if edge_line.max_on_square() < 0.0 {
                 return None;
             }
         }

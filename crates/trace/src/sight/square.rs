@@ -15,12 +15,13 @@ pub struct Square {
 
 impl Square {
     /// The world position of a place.
-    pub fn at(&self, place: DVec2) -> DVec3 {
+    pub fn world_position(&self, place: DVec2) -> DVec3 {
         self.center + place.x * self.right + place.y * self.up
     }
 
     pub(crate) fn corners(&self) -> [DVec3; 4] {
-        [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(u, v)| self.at(DVec2::new(u, v)))
+        [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
+            .map(|(u, v)| self.world_position(DVec2::new(u, v)))
     }
 
     /// Its axis, to one side or the other.

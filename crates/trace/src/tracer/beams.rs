@@ -1,23 +1,23 @@
 //! What the rays of a beam meet.
 
 use super::{LeafTriangle, Nearest, Tracer};
-use crate::presence::Presence;
-use crate::watertight::{ShearedRay, ShearedRays};
+use crate::presence::TransparencyMode;
+use crate::watertight::{ShearedRay, ShearedRayPacket};
 use crate::{Beam, Hit, Ray};
 use glam::DVec3;
 use std::ops::Range;
 
 /// Rays of a beam, prepared for the test of many triangles.
-struct Bundle<'a> {
+struct RayPacket<'a> {
     rays: &'a [Ray],
-    sheared: [ShearedRay; Beam::MOST_RAYS],
-    together: ShearedRays,
+    sheared: [ShearedRay; Beam::MAX_RAYS],
+    sheared_packet: ShearedRayPacket,
 }
 
-impl<'a> Bundle<'a> {
+impl<'a> RayPacket<'a> {
     /// `None` of rays that are to be traced one by one.
     fn new(rays: &'a [Ray]) -> Option<Self> {
-        assert!(rays.len() <= Beam::MOST_RAYS, "more rays than a beam has");
+        assert!(rays.len() <= Beam::MAX_RAYS, "more rays than a beam has");
         let is_usable = |ray: &Ray| ray.direction.is_finite() && ray.direction != DVec3::ZERO;
         if rays.is_empty() || !rays.iter().all(is_usable) {
             return None;
@@ -26,8 +26,8 @@ impl<'a> Bundle<'a> {
             let ray = &rays[at.min(rays.len() - 1)];
             ShearedRay::new(ray.origin, ray.direction)
         });
-        let together = ShearedRays::new(&sheared)?;
-        Some(Self { rays, sheared, together })
+        let sheared_packet = ShearedRayPacket::new(&sheared)?;
+        Some(Self { rays, sheared, sheared_packet })
     }
 
     /// A ray; the last one beyond the end.
@@ -37,8 +37,8 @@ impl<'a> Bundle<'a> {
 
     /// Calls `visit` with each ray that does not pass beside a triangle.
     #[inline(always)]
-    fn each_near(&self, triangle: &LeafTriangle, mut visit: impl FnMut(usize, &Ray, &ShearedRay)) {
-        let mut near = self.together.near(&triangle.corners) & (u32::MAX >> (32 - self.rays.len()));
+    fn visit_near_rays(&self, triangle: &LeafTriangle, mut visit: impl FnMut(usize, &Ray, &ShearedRay)) {
+        let mut near = self.sheared_packet.may_hit(&triangle.corners) & (u32::MAX >> (32 - self.rays.len()));
         while near != 0 {
             let at = near.trailing_zeros() as usize;
             near &= near - 1;
@@ -50,24 +50,30 @@ impl<'a> Bundle<'a> {
 impl Tracer {
     /// What each ray of a beam meets first: the same as [`Self::first_hit`] says, for the cost of a few; but what is there in
     /// part is met by all. At most
-    /// [`Beam::MOST_RAYS`] rays; all start at the beam's origin and lie between its edges.
-    pub fn first_hits(&self, beam: &Beam, rays: &[Ray]) -> [Option<Hit>; Beam::MOST_RAYS] {
-        let Some(bundle) = Bundle::new(rays) else {
-            return std::array::from_fn(|at| rays.get(at).and_then(|ray| self.first_shared(ray)));
+    /// [`Beam::MAX_RAYS`] rays; all start at the beam's origin and lie between its edges.
+    pub fn first_hits(&self, beam: &Beam, rays: &[Ray]) -> [Option<Hit>; Beam::MAX_RAYS] {
+        let Some(packet) = RayPacket::new(rays) else {
+            return std::array::from_fn(|at| rays.get(at).and_then(|ray| self.first_fractional_hit(ray)));
         };
-        let mut nearest: [_; Beam::MOST_RAYS] =
-            std::array::from_fn(|at| Nearest { hit: None, t_max: bundle.ray(at).t_max });
+        let mut nearest: [_; Beam::MAX_RAYS] =
+            std::array::from_fn(|at| Nearest { hit: None, t_max: packet.ray(at).t_max });
         let far = |nearest: &[Nearest]| {
             let farthest =
                 nearest[..rays.len()].iter().fold(f64::NEG_INFINITY, |far, ray| far.max(ray.t_max));
             if farthest.is_finite() { beam.height(&self.space, farthest) } else { f32::INFINITY }
         };
         let mut farthest = far(&nearest);
-        self.hierarchy.walk_within(&beam.shaft(&self.space), farthest, &mut |leaf: Range<usize>| {
+        self.hierarchy.walk_halfspaces(&beam.shaft(&self.space), farthest, &mut |leaf: Range<usize>| {
             let mut is_changed = false;
             for triangle in &self.triangles[leaf] {
-                bundle.each_near(triangle, |at, ray, sheared| {
-                    is_changed |= self.take(&mut nearest[at], triangle, ray, sheared, Presence::Shared);
+                packet.visit_near_rays(triangle, |at, ray, sheared| {
+                    is_changed |= self.accept_triangle(
+                        &mut nearest[at],
+                        triangle,
+                        ray,
+                        sheared,
+                        TransparencyMode::Fractional,
+                    );
                 });
             }
             if is_changed {
@@ -81,42 +87,42 @@ impl Tracer {
     /// All that the rays of a beam meet, one behind the other, at most `most` on each: what [`Self::first_hits`] says of
     /// the ray, of the ray behind that hit, and so on. Pairs of a ray's index and a hit, ray by ray; rays as those of
     /// [`Self::first_hits`].
-    pub fn all_hits(&self, beam: &Beam, rays: &[Ray], most: usize) -> Vec<(usize, Hit)> {
-        let Some(bundle) = Bundle::new(rays) else { return self.all_hits_one_by_one(rays, most) };
-        let mut found: Vec<(usize, Hit)> = Vec::new();
-        self.hierarchy.walk_within(&beam.shaft(&self.space), f32::INFINITY, &mut |leaf: Range<usize>| {
+    pub fn all_hits(&self, beam: &Beam, rays: &[Ray], max_hits: usize) -> Vec<(usize, Hit)> {
+        let Some(packet) = RayPacket::new(rays) else { return self.all_hits_per_ray(rays, max_hits) };
+        let mut hits: Vec<(usize, Hit)> = Vec::new();
+        self.hierarchy.walk_halfspaces(&beam.shaft(&self.space), f32::INFINITY, &mut |leaf: Range<usize>| {
             for triangle in &self.triangles[leaf] {
-                bundle.each_near(triangle, |at, ray, sheared| {
+                packet.visit_near_rays(triangle, |at, ray, sheared| {
                     let mut only = Nearest { hit: None, t_max: ray.t_max };
-                    self.take(&mut only, triangle, ray, sheared, Presence::Shared);
-                    found.extend(only.hit.map(|hit| (at, hit)));
+                    self.accept_triangle(&mut only, triangle, ray, sheared, TransparencyMode::Fractional);
+                    hits.extend(only.hit.map(|hit| (at, hit)));
                 });
             }
             f32::INFINITY
         });
         // Of several at one t only the first triangle is met.
         let key = |(at, hit): &(usize, Hit)| (*at, hit.t, hit.point.triangle);
-        found.sort_unstable_by(|a, b| key(a).partial_cmp(&key(b)).expect("t is a number"));
-        found.dedup_by_key(|(at, hit)| (*at, hit.t));
+        hits.sort_unstable_by(|a, b| key(a).partial_cmp(&key(b)).expect("t is a number"));
+        hits.dedup_by_key(|(at, hit)| (*at, hit.t));
         let (mut last, mut count) = (usize::MAX, 0);
-        found.retain(|(at, _)| {
+        hits.retain(|(at, _)| {
             count = if *at == last { count + 1 } else { 1 };
             last = *at;
-            count <= most
+            count <= max_hits
         });
-        found
+        hits
     }
 
     #[cold]
-    fn all_hits_one_by_one(&self, rays: &[Ray], most: usize) -> Vec<(usize, Hit)> {
+    fn all_hits_per_ray(&self, rays: &[Ray], max_hits: usize) -> Vec<(usize, Hit)> {
         let along = |(at, ray): (usize, &Ray)| {
             let mut ray = *ray;
             let next = move || {
-                let hit = self.first_shared(&ray)?;
+                let hit = self.first_fractional_hit(&ray)?;
                 ray = Ray { t_min: hit.t, skip: Some(hit.point.triangle), ..ray };
                 Some((at, hit))
             };
-            std::iter::from_fn(next).take(most)
+            std::iter::from_fn(next).take(max_hits)
         };
         rays.iter().enumerate().flat_map(along).collect()
     }

@@ -1,7 +1,7 @@
 use super::*;
 use crate::Beam;
 use crate::test_scene::*;
-use crate::{Places, Square, Viewpoint};
+use crate::{Square, TargetPoints, Viewpoint};
 use glam::DVec2;
 use scene::{AlphaMode, Material};
 
@@ -28,7 +28,7 @@ fn brute_force(scene: &Scene, ray: &Ray) -> Option<Hit> {
         let crossing = sheared.cross(&scene.corners(triangle))?;
         let within = crossing.t > ray.t_min && crossing.t < ray.t_max && ray.skip != Some(triangle);
         let shows_back = scene.area_normal(triangle).dot(ray.direction) > 0.0;
-        let within = within && !(scene.hides_back(triangle) && shows_back);
+        let within = within && !(scene.culls_back_face(triangle) && shows_back);
         let point = SurfacePoint { triangle, barycentric: crossing.barycentric };
         within.then_some(Hit { point, t: crossing.t })
     });
@@ -99,14 +99,14 @@ fn the_rays_of_a_beam_meet_what_they_meet_alone() {
                 let distance = [0.5, 3.0, 1e3, 1e6][k % 4];
                 let (origin, aim) = (offset + random.in_cube() * distance, offset + random.in_cube() * 0.7);
                 let width = [0.01, 0.3, 1e-9][k % 3] / distance;
-                let (beam, mut rays) = beam(&mut random, origin, aim, width, 1 + k % Beam::MOST_RAYS);
+                let (beam, mut rays) = beam(&mut random, origin, aim, width, 1 + k % Beam::MAX_RAYS);
                 // Through all surfaces, one after the other.
                 let most = 6;
                 let mut all = tracer.all_hits(&beam, &rays, most);
                 for _ in 0..most {
                     let found = tracer.first_hits(&beam, &rays);
                     for (ray, found) in rays.iter().zip(found) {
-                        let alone = tracer.first_shared(ray);
+                        let alone = tracer.first_fractional_hit(ray);
                         assert_eq!(found.map(key), alone.map(key), "{beam:?} {ray:?}");
                         hits += usize::from(alone.is_some());
                     }
@@ -177,7 +177,7 @@ fn a_convex_mesh_does_not_occlude_itself() {
                     continue;
                 }
                 seen += 1;
-                hidden += u32::from(tracer.occluded(point, eye));
+                hidden += u32::from(tracer.is_occluded(point, eye));
             }
             assert_eq!(hidden, 0, "of {seen} around {offset}, {rings} rings");
         }
@@ -193,7 +193,7 @@ fn the_far_side_of_a_closed_mesh_is_occluded() {
         let triangle = (random.unit() * scene.triangles.len() as f64) as u32;
         let point = SurfacePoint { triangle, barycentric: DVec2::splat(1.0 / 3.0) };
         let eye = -2.0 * point.position(&scene) + 0.5 * random.in_cube();
-        assert!(tracer.occluded(point, eye));
+        assert!(tracer.is_occluded(point, eye));
     }
 }
 
@@ -210,7 +210,7 @@ fn shells_occlude_each_other() {
             let triangle = (random.unit() * shells) as u32;
             let point = SurfacePoint { triangle, barycentric: random.barycentric() };
             let eye = offset + random.direction() * 5.0;
-            assert!(tracer.occluded(point, eye), "{offset}: {point:?} sees {eye}");
+            assert!(tracer.is_occluded(point, eye), "{offset}: {point:?} sees {eye}");
         }
     }
 }
@@ -222,9 +222,9 @@ fn neither_end_occludes() {
     let tracer = Tracer::new(scene_of(&[(floor, white()), (wall, white())]));
     let on = |triangle, b1, b2| SurfacePoint { triangle, barycentric: DVec2::new(b1, b2) };
     let on_wall = on(2, 0.5, 0.25).position(tracer.scene());
-    assert!(!tracer.occluded(on(0, 0.5, 0.25), on_wall));
-    assert!(!tracer.occluded(on(1, 0.0, 1.0), DVec3::new(0.5, 1.0, 0.5)), "from the edge they share");
-    assert!(tracer.occluded(on(0, 0.5, 0.25), DVec3::new(-0.5, 0.3, 0.5)), "from behind the wall");
+    assert!(!tracer.is_occluded(on(0, 0.5, 0.25), on_wall));
+    assert!(!tracer.is_occluded(on(1, 0.0, 1.0), DVec3::new(0.5, 1.0, 0.5)), "from the edge they share");
+    assert!(tracer.is_occluded(on(0, 0.5, 0.25), DVec3::new(-0.5, 0.3, 0.5)), "from behind the wall");
 }
 
 #[test]
@@ -366,7 +366,7 @@ fn rays_a_second() {
         for hit in hits.iter().step_by(8) {
             for _ in 0..8 {
                 let eye = DVec3::new(random.unit() - 0.5, random.unit() - 0.5, 0.0) * 0.1;
-                sum += usize::from(tracer.occluded(hit.point, eye));
+                sum += usize::from(tracer.is_occluded(hit.point, eye));
             }
         }
         rate("surface to aperture", hits.len(), start);
@@ -400,17 +400,17 @@ fn sight_is_what_single_rays_see() {
         let up = right.cross(random.direction()).normalize();
         let square = Square { center: offset + 1.5 * random.in_cube(), right: 0.3 * right, up: 0.3 * up };
         let found = places(&mut random);
-        let places = Places::new(&found);
+        let places = TargetPoints::new(&found);
         let point = SurfacePoint { triangle: round as u32 % 60, barycentric: DVec2::splat(0.3) };
         let direction = random.in_cube();
         for infinite in [false, true] {
             let viewpoint = if infinite { Viewpoint::Infinity(direction) } else { Viewpoint::Surface(point) };
-            let hidden_places = tracer.sight(viewpoint, &square, &places).hidden;
+            let hidden_places = tracer.square_visibility(viewpoint, &square, &places).hidden;
             for (k, &place) in found.iter().enumerate() {
                 let is_hidden = if infinite {
-                    tracer.any_hit(&ray(square.at(place), direction))
+                    tracer.any_hit(&ray(square.world_position(place), direction))
                 } else {
-                    tracer.hidden(point, square.at(place))
+                    tracer.is_hidden_from(point, square.world_position(place))
                 };
                 asked += 1;
                 hidden += u32::from(is_hidden);
@@ -434,23 +434,23 @@ fn no_place_shows_between_triangles() {
         let toward = random.in_cube().normalize_or(DVec3::X);
         let right = toward.any_orthonormal_vector() * 0.7;
         let square = Square { center: 3.0 * toward, right, up: toward.cross(right) };
-        let places = Places::new(&places(&mut random));
+        let places = TargetPoints::new(&places(&mut random));
         let point = SurfacePoint { triangle: inner, barycentric: DVec2::new(random.unit(), 0.0) };
-        let inside = tracer.sight(Viewpoint::Surface(point), &square, &places).hidden;
+        let inside = tracer.square_visibility(Viewpoint::Surface(point), &square, &places).hidden;
         assert_eq!(inside, places.all());
-        let outside = tracer.sight(Viewpoint::Infinity(toward), &square, &places).hidden;
+        let outside = tracer.square_visibility(Viewpoint::Infinity(toward), &square, &places).hidden;
         assert!(outside.is_empty());
     }
 }
 
 #[test]
 fn sight_goes_through_what_is_cut_away() {
-    let place = Places::new(&[DVec2::ZERO, DVec2::splat(0.5)]);
+    let place = TargetPoints::new(&[DVec2::ZERO, DVec2::splat(0.5)]);
     let square = Square { center: DVec3::new(0.0, 0.0, 5.0), right: 0.1 * DVec3::X, up: 0.1 * DVec3::Y };
     let toward = Viewpoint::Surface(SurfacePoint { triangle: 4, barycentric: DVec2::splat(0.3) });
     for (opacity, hidden) in [(0.4, 0), (0.6, 2)] {
         let tracer = window(AlphaMode::Mask(0.5), opacity);
-        let found = tracer.sight(toward, &square, &place).hidden;
+        let found = tracer.square_visibility(toward, &square, &place).hidden;
         assert_eq!(found.iter().count(), hidden);
     }
 }
@@ -470,16 +470,16 @@ fn panes_let_their_shares_through() {
     let tracer =
         Tracer::new(scene_of(&[card, pane(0.25, 1.0, -4.5), pane(0.5, 2.0, -4.5), pane(0.9, 3.0, 0.0)]));
     let square = Square { center: DVec3::new(0.0, 0.0, 5.0), right: DVec3::X, up: DVec3::Y };
-    let places = Places::new(&[DVec2::new(-0.7, 0.3), DVec2::new(0.8, -0.4)]);
+    let places = TargetPoints::new(&[DVec2::new(-0.7, 0.3), DVec2::new(0.8, -0.4)]);
     let from = Viewpoint::Surface(SurfacePoint { triangle: 0, barycentric: DVec2::splat(0.3) });
-    let sight = tracer.sight(from, &square, &places);
+    let sight = tracer.square_visibility(from, &square, &places);
     assert!(sight.hidden.is_empty(), "half there is not there and not away");
     let shares = sight.shares.expect("there are panes");
     assert!((shares[0] - 0.375).abs() < 1e-6 && (shares[1] - 0.0375).abs() < 1e-6, "{:?}", &shares[..2]);
     // Rays by chance have the same mean.
     let passes = (0..4000).filter(|k| {
-        let source = square.at(DVec2::new(-0.9 + f64::from(*k) * 2e-4, 0.3));
-        !tracer.hidden(SurfacePoint { triangle: 0, barycentric: DVec2::splat(0.3) }, source)
+        let source = square.world_position(DVec2::new(-0.9 + f64::from(*k) * 2e-4, 0.3));
+        !tracer.is_hidden_from(SurfacePoint { triangle: 0, barycentric: DVec2::splat(0.3) }, source)
     });
     let mean = passes.count() as f64 / 4000.0;
     assert!((mean - 0.375).abs() < 0.03, "{mean}");
@@ -503,16 +503,16 @@ fn an_eye_passes_backs_and_light_does_not() {
     assert_eq!((first(&showing, above), first(&showing, below)), (Some(0), Some(1)));
     let on = |triangle: u32| SurfacePoint { triangle, barycentric: DVec2::splat(0.3) };
     let (on_card, on_floor) = (on(0), on(2));
-    assert!(!tracer.hidden(on_card, above) && !showing.hidden(on_card, above));
-    assert!(tracer.hidden(on_card, below), "its own back");
-    assert!(tracer.hidden(on_floor, above) && tracer.occluded(on_floor, above), "behind the card");
-    assert!(showing.hidden(on_card, below), "the floor's back is in the way");
+    assert!(!tracer.is_hidden_from(on_card, above) && !showing.is_hidden_from(on_card, above));
+    assert!(tracer.is_hidden_from(on_card, below), "its own back");
+    assert!(tracer.is_hidden_from(on_floor, above) && tracer.is_occluded(on_floor, above), "behind the card");
+    assert!(showing.is_hidden_from(on_card, below), "the floor's back is in the way");
     // From beneath, light that comes up to the card is stopped by the floor; an eye would see through it.
-    assert!(tracer.occluded(on_card, below));
+    assert!(tracer.is_occluded(on_card, below));
     // Turned round, the card no longer hides the floor, but still shades it.
     let turned = rectangle(DVec3::new(-1.0, -1.0, 0.0), 2.0 * DVec3::Y, 2.0 * DVec3::X);
     let floor = rectangle(DVec3::new(-2.0, -2.0, -1.0), 4.0 * DVec3::X, 4.0 * DVec3::Y);
     let tracer = Tracer::new(scene_of(&[(turned, one_sided()), (floor, one_sided())]));
-    assert!(!tracer.hidden(on_floor, above) && tracer.occluded(on_floor, above));
+    assert!(!tracer.is_hidden_from(on_floor, above) && tracer.is_occluded(on_floor, above));
     assert_eq!(first(&tracer, above), Some(1));
 }

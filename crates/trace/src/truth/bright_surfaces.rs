@@ -51,7 +51,7 @@ pub(super) struct BrightSurfaces {
 
 impl BrightSurfaces {
     /// Finds them. `window` is where light counts, px.
-    pub fn find(
+    pub fn detect(
         view: &View,
         radiance: &dyn Radiance,
         reach: Reach,
@@ -59,15 +59,17 @@ impl BrightSurfaces {
         options: &TruthOptions,
     ) -> Self {
         let triangles = 0..view.tracer.scene().triangles.len() as u32;
-        let wanted: Vec<f64> = triangles
+        let target_rates: Vec<f64> = triangles
             .into_par_iter()
-            .map(|triangle| rate_wanted(view, radiance, reach, window, triangle))
+            .map(|triangle| target_rate(view, radiance, reach, window, triangle))
             .collect();
-        let total: f64 = wanted.iter().sum();
-        let senders: Vec<u32> = (0..wanted.len() as u32).filter(|&k| wanted[k as usize] > 0.0).collect();
+        let total: f64 = target_rates.iter().sum();
+        let senders: Vec<u32> =
+            (0..target_rates.len() as u32).filter(|&k| target_rates[k as usize] > 0.0).collect();
         let pixels = (window[1] - window[0]).element_product();
         let share = (SHARE_OF_FRAME * pixels / total).min(1.0);
-        let rates = if senders.is_empty() { Vec::new() } else { wanted.iter().map(|n| n * share).collect() };
+        let rates =
+            if senders.is_empty() { Vec::new() } else { target_rates.iter().map(|n| n * share).collect() };
         Self { rates, senders, reach, sampler: options.sampler, seed: u64::from(options.seed) }
     }
 
@@ -90,7 +92,7 @@ impl BrightSurfaces {
     }
 
     /// Sends the rays of one pass.
-    pub fn shine(
+    pub fn expose(
         &self,
         view: &View,
         radiance: &dyn Radiance,
@@ -122,18 +124,18 @@ impl BrightSurfaces {
         let Blurs { own, carried } = view.blurs(Some(point), inverse_depth, u);
         let [to, of_carried] = [own, carried].map(|blur| view.landing_px(position, u, blur.kappa));
         let from = view.landing_px(position, u, optics.standard_kappa(inverse_depth));
-        if !sensor.sees(to) && !sensor.sees(of_carried) {
+        if !sensor.covers(to) && !sensor.covers(of_carried) {
             return;
         }
         let eye = camera.world_from_camera(u.extend(0.0));
-        if view.tracer.hidden(point, eye) {
+        if view.tracer.is_hidden_from(point, eye) {
             return;
         }
         let normal = camera.camera_direction(scene.area_normal(point.triangle));
         let w = optics.pixels_by_area(normal.normalize_or_zero(), position, u);
         let sent = self.rates[point.triangle as usize] / (normal.length() / 2.0);
         let weight = w / if self.reach.contains(from) { w + sent } else { sent };
-        let light = radiance.leaving(point, eye);
+        let light = radiance.outgoing(point, eye);
         sensor.expose(to, light.own, weight, 0.0);
         if light.carried != glam::Vec3::ZERO {
             sensor.expose(of_carried, light.carried, weight, 0.0);
@@ -143,10 +145,10 @@ impl BrightSurfaces {
 
 /// How many rays a triangle should send for each sample of a pixel: so many that each brings little, but not
 /// more than one a pixel of the circle of confusion.
-fn rate_wanted(view: &View, radiance: &dyn Radiance, reach: Reach, window: [DVec2; 2], triangle: u32) -> f64 {
+fn target_rate(view: &View, radiance: &dyn Radiance, reach: Reach, window: [DVec2; 2], triangle: u32) -> f64 {
     let scene = view.tracer.scene();
     let material = scene.material_of(triangle);
-    if !material.emits() || material.may_be_transparent() {
+    if !material.is_emitter() || material.may_be_transparent() {
         return 0.0;
     }
     let corners = scene.corners(triangle).map(|corner| view.camera.camera_from_world(corner));
@@ -156,8 +158,9 @@ fn rate_wanted(view: &View, radiance: &dyn Radiance, reach: Reach, window: [DVec
     let eye = view.camera.position();
     // Looked at in its middle and toward each corner.
     let places = [(1.0, 1.0), (0.5, 0.5), (2.0, 0.5), (0.5, 2.0)].map(|(b1, b2)| DVec2::new(b1, b2) / 3.0);
-    let look = |barycentric| radiance.toward(SurfacePoint { triangle, barycentric }, eye).max_element();
-    let brightest = places.into_iter().map(look).fold(0.0, f32::max);
+    let brightness_at =
+        |barycentric| radiance.total_outgoing(SurfacePoint { triangle, barycentric }, eye).max_element();
+    let brightest = places.into_iter().map(brightness_at).fold(0.0, f32::max);
     if brightest <= WHITE {
         return 0.0;
     }

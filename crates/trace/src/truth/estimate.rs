@@ -127,15 +127,15 @@ impl Statistics {
         let mut normalised_luminance_error = luminance_error.clone();
         // The variance of the mean: Σw(x − mean)²/((passes − 1)·Σw).
         let freedom = f64::from(self.passes.saturating_sub(1)) * f64::from(self.samples);
-        let is_known = freedom > 0.0;
-        let error = |variance: f64| if is_known { variance.sqrt() as f32 } else { f32::INFINITY };
+        let has_error = freedom > 0.0;
+        let error = |variance: f64| if has_error { variance.sqrt() as f32 } else { f32::INFINITY };
         for (k, moments) in self.pixels.iter().enumerate() {
             let [r, g, b, _, coverage] = moments.mean.map(|x| x as f32);
             (picture.radiance[k], picture.coverage[k]) = ([r, g, b], coverage);
             let [r, g, b, luminance, coverage] = moments.squares.map(|squares| error(squares / freedom));
             (standard_error.radiance[k], standard_error.coverage[k]) = ([r, g, b], coverage);
             luminance_error[k] = luminance;
-            if is_known {
+            if has_error {
                 let [r, g, b, luminance] = moments.ratio_variances(1.0 / freedom).map(error);
                 (normalised_error[k], normalised_luminance_error[k]) = ([r, g, b], luminance);
             }

@@ -21,10 +21,10 @@ use super::reach::Reach;
 use super::samples::{self, PixelSample};
 use super::sensor::{self, Sensor};
 use super::sheared::{Sheared, Spread};
-use super::survey::{self, Look, Survey};
+use super::survey::{self, Survey, SurveyHit};
 use super::view::{Blurs, View};
 use crate::random::hash;
-use crate::{Leaving, Radiance, Ray};
+use crate::{OutgoingRadiance, Radiance, Ray};
 use glam::{DVec2, DVec3, Vec3};
 use lens::ApertureSampler;
 use progress::{Cancelled, Progress, Stage};
@@ -45,14 +45,14 @@ pub(super) struct FromSensor {
     options: TruthOptions,
     seed: u64,
     /// Which samples suit which pixel, and those samples; known from the first pass on.
-    suited: OnceLock<(Survey, Sheared)>,
+    fitted: OnceLock<(Survey, Sheared)>,
 }
 
 /// Tells the seed of the rays that are looked at in advance from the samples'.
 const SURVEY: u64 = 0x5375_7276;
 
 /// What a ray found.
-struct Found {
+struct TracedRay {
     /// The surface point, `None` for the background.
     point: Option<SurfacePoint>,
     /// The aperture point in the world.
@@ -71,11 +71,11 @@ struct Found {
 
 impl FromSensor {
     pub fn new(view: &View, radiance: &dyn Radiance, sensor: &Sensor, options: &TruthOptions) -> Self {
-        let reach = Reach::of(view, sensor.window());
-        let bright = BrightSurfaces::find(view, radiance, reach, sensor.window(), options);
+        let reach = Reach::new(view, sensor.window());
+        let bright = BrightSurfaces::detect(view, radiance, reach, sensor.window(), options);
         let aperture = ApertureSampler::new(&view.camera.aperture);
         let (options, seed) = (*options, u64::from(options.seed));
-        Self { reach, bright, aperture, options, seed, suited: OnceLock::new() }
+        Self { reach, bright, aperture, options, seed, fitted: OnceLock::new() }
     }
 
     /// Sends the rays of one pass, the samples `passed` of each pixel.
@@ -88,21 +88,21 @@ impl FromSensor {
         progress: &dyn Progress,
     ) -> Result<(), Cancelled> {
         let own_rays = if self.bright.is_empty() { 0.0 } else { 0.1 };
-        self.bright.shine(view, radiance, sensor, &passed, &Stage::new(progress, 0.0, own_rays))?;
+        self.bright.expose(view, radiance, sensor, &passed, &Stage::new(progress, 0.0, own_rays))?;
         let mut exposure = Exposure { estimator: self, view, radiance, sensor, shared: Vec::new(), passed };
-        let mut looked = own_rays;
+        let mut survey_end = own_rays;
         if self.options.sampler == Sampler::LowDiscrepancy {
-            if self.suited.get().is_none() {
-                looked += 0.1;
-                let survey = exposure.survey(&Stage::new(progress, own_rays, looked))?;
+            if self.fitted.get().is_none() {
+                survey_end += 0.1;
+                let survey = exposure.survey(&Stage::new(progress, own_rays, survey_end))?;
                 let of_levels = survey.levels.iter().map(|&level| Spread { level, moved_px: 0.0 });
                 let spreads = survey.moved.into_iter().chain(of_levels).collect();
                 let sheared = Sheared::new(self.seed, self.options.samples_per_pixel, spreads);
-                self.suited.get_or_init(|| (survey, sheared));
+                self.fitted.get_or_init(|| (survey, sheared));
             }
             // In the order of the survey's choices.
             let plain = self.pixel_samples(view, self.seed, &exposure.passed);
-            if let Some((survey, sheared)) = self.suited.get() {
+            if let Some((survey, sheared)) = self.fitted.get() {
                 let radius = view.camera.aperture_radius;
                 let mut suited =
                     sheared.samples(&exposure.passed, radius, self.pixel_sample(view)).into_iter();
@@ -110,7 +110,7 @@ impl FromSensor {
                 exposure.shared = [moved, plain].into_iter().chain(suited).collect();
             }
         }
-        exposure.expose(&Stage::new(progress, looked, 1.0))
+        exposure.expose(&Stage::new(progress, survey_end, 1.0))
     }
 
     fn pixel_samples(&self, view: &View, seed: u64, passed: &Range<u32>) -> Vec<PixelSample> {
@@ -176,13 +176,13 @@ impl Exposure<'_> {
         };
         let mut expose = |sample: &PixelSample| {
             let from = corner + sample.within_px;
-            let found = self.trace(from, sample.u);
-            let to = from + found.displacement_px;
-            let of_carried = from + found.carried_displacement_px;
-            if !self.sensor.sees(to) && !self.sensor.sees(of_carried) {
+            let traced = self.trace(from, sample.u);
+            let to = from + traced.displacement_px;
+            let of_carried = from + traced.carried_displacement_px;
+            if !self.sensor.covers(to) && !self.sensor.covers(of_carried) {
                 return;
             }
-            let light = self.light(&found, sample.u);
+            let light = self.light(&traced, sample.u);
             if to == of_carried {
                 land(to, light.total(), 1.0);
                 return;
@@ -198,7 +198,7 @@ impl Exposure<'_> {
             self.estimator.pixel_samples(self.view, seed, &self.passed).iter().for_each(&mut expose);
         } else {
             // What is seen from outside of the region goes elsewhere.
-            let suited = self.estimator.suited.get().zip(self.sensor.pixel(corner));
+            let suited = self.estimator.fitted.get().zip(self.sensor.pixel(corner));
             let choice = suited.map_or(survey::MOVED, |((survey, _), pixel)| survey.choices[pixel]);
             self.shared[usize::from(choice)].iter().for_each(&mut expose);
         }
@@ -210,21 +210,21 @@ impl Exposure<'_> {
     /// Chooses the samples of all pixels of the region.
     fn survey(&self, progress: &dyn Progress) -> Result<Survey, Cancelled> {
         let (view, estimator, region) = (self.view, self.estimator, self.sensor.region());
-        let count = survey::rays_of(&estimator.options);
+        let count = survey::rays_per_pixel(&estimator.options);
         let rays = estimator.pixel_samples(view, hash([estimator.seed, SURVEY]), &(0..count));
-        let look = |corner: DVec2, ray: &PixelSample| {
-            let found = self.trace(corner + ray.within_px, ray.u);
-            let standard = view.optics.standard_kappa(found.inverse_depth);
+        let probe = |corner: DVec2, ray: &PixelSample| {
+            let traced = self.trace(corner + ray.within_px, ray.u);
+            let standard = view.optics.standard_kappa(traced.inverse_depth);
             let [radius_px, moved_px] =
-                [standard, found.blurs.own.kappa - standard].map(|kappa| view.optics.splat_radius_px(kappa));
-            let moved_px = if found.blurs.own.is_standard { 0.0 } else { moved_px };
-            Look { radius_px, moved_px, light: self.light(&found, ray.u).total() }
+                [standard, traced.blurs.own.kappa - standard].map(|kappa| view.optics.splat_radius_px(kappa));
+            let moved_px = if traced.blurs.own.is_standard { 0.0 } else { moved_px };
+            SurveyHit { radius_px, moved_px, light: self.light(&traced, ray.u).total() }
         };
-        Survey::of(region, &rays, view.camera.aperture_radius, look, progress)
+        Survey::run(region, &rays, view.camera.aperture_radius, probe, progress)
     }
 
     /// Traces the ray that passes the picture at `pixel` and the aperture at `u`.
-    fn trace(&self, pixel: DVec2, u: DVec2) -> Found {
+    fn trace(&self, pixel: DVec2, u: DVec2) -> TracedRay {
         let (view, optics) = (self.view, &self.view.optics);
         let p = view.camera.q_from_pixel(pixel);
         // Toward the point that p shows on the focus plane; of depth 1, so that t is the depth z.
@@ -238,18 +238,18 @@ impl Exposure<'_> {
         let blurs = view.blurs(point, inverse_depth, u);
         let [displacement_px, carried_displacement_px] =
             [blurs.own, blurs.carried].map(|blur| view.displacement_px(blur, inverse_depth, u));
-        Found { point, eye, direction, inverse_depth, blurs, displacement_px, carried_displacement_px }
+        TracedRay { point, eye, direction, inverse_depth, blurs, displacement_px, carried_displacement_px }
     }
 
     /// The radiance that a sample through the aperture point `u` carries.
-    fn light(&self, found: &Found, u: DVec2) -> Leaving {
-        match found.point {
+    fn light(&self, traced: &TracedRay, u: DVec2) -> OutgoingRadiance {
+        match traced.point {
             Some(point) => {
                 let share = self.estimator.bright.camera_share(self.view, point, u) as f32;
-                let light = self.radiance.leaving(point, found.eye);
-                Leaving { own: light.own * share, carried: light.carried * share, ..light }
+                let light = self.radiance.outgoing(point, traced.eye);
+                OutgoingRadiance { own: light.own * share, carried: light.carried * share, ..light }
             }
-            None => Leaving::own(self.radiance.from_infinity(found.direction)),
+            None => OutgoingRadiance::from_own(self.radiance.environment(traced.direction)),
         }
     }
 }

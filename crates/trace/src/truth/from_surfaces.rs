@@ -47,11 +47,11 @@ enum Extent {
 /// The side of a tile of infinity, px.
 const TILE_PX: f64 = 16.0;
 /// Pieces whose light mostly lands outside get at least this share of the points they else would.
-const LEAST_SHARE: f64 = 1e-6;
+const MIN_SHARE: f64 = 1e-6;
 /// Rays of all sources together for each pixel and sample, at most (surfaces next to the lens want many).
-const MOST_RAYS: f64 = 32.0;
+const MAX_RAYS: f64 = 32.0;
 /// Pieces brighter than white get points by their radiance, but at most so many times as many.
-const BRIGHTEST: f64 = 256.0;
+const MAX_BRIGHTNESS: f64 = 256.0;
 
 /// The estimator.
 pub(super) struct FromSurfaces {
@@ -75,7 +75,7 @@ impl FromSurfaces {
         let mut sources: Vec<Source> = pieces.collect();
         sources.extend(infinity(view, window));
         let total: f64 = sources.iter().map(|source| source.rate).sum();
-        let most = MOST_RAYS * (window[1] - window[0]).element_product();
+        let most = MAX_RAYS * (window[1] - window[0]).element_product();
         let scale = (most / total).min(1.0);
         sources.iter_mut().for_each(|source| source.rate *= scale);
         let aperture = ApertureSampler::new(&view.camera.aperture);
@@ -122,8 +122,8 @@ fn infinity(view: &View, window: [DVec2; 2]) -> impl Iterator<Item = Source> {
     let usable = size.is_finite() && size.cmpgt(DVec2::ZERO).all();
     let count = if usable { (size / TILE_PX).ceil() } else { DVec2::ZERO };
     // A sky that is blurred beyond all measure has larger tiles.
-    const MOST: f64 = 1024.0;
-    let count = count.min(DVec2::splat(MOST));
+    const MAX_SOURCES: f64 = 1024.0;
+    let count = count.min(DVec2::splat(MAX_SOURCES));
     let size = size / count;
     (0..count.y as u64).flat_map(move |row| {
         (0..count.x as u64).map(move |column| {
@@ -140,7 +140,7 @@ fn share_inside(box_px: [DVec2; 2], window: [DVec2; 2]) -> f64 {
     let share = inside / (box_px[1] - box_px[0]);
     // Flat boxes lie in the window with their whole width of 0.
     let along = |share: f64| if share.is_nan() { 1.0 } else { share.clamp(0.0, 1.0) };
-    (along(share.x) * along(share.y)).max(LEAST_SHARE)
+    (along(share.x) * along(share.y)).max(MIN_SHARE)
 }
 
 impl Source {
@@ -186,14 +186,14 @@ impl Source {
                 }
                 let Blurs { own, carried } = view.blurs(Some(point), 1.0 / position.z, u);
                 let [to, of_carried] = [own, carried].map(|blur| view.landing_px(position, u, blur.kappa));
-                let is_seen = sensor.sees(to) || sensor.sees(of_carried);
-                if !is_seen || !is_met_first(view, *triangle, eye, world - eye) {
+                let is_visible = sensor.covers(to) || sensor.covers(of_carried);
+                if !is_visible || !is_met_first(view, *triangle, eye, world - eye) {
                     return;
                 }
                 let normal = camera.camera_direction(view.tracer.scene().area_normal(*triangle));
                 let w = view.optics.pixels_by_area(normal.normalize_or_zero(), position, u);
                 let weight = w * area / self.rate;
-                let light = radiance.leaving(point, eye);
+                let light = radiance.outgoing(point, eye);
                 let carried = f64::from(light.carried_share);
                 sensor.expose(to, light.own, weight, 1.0 - carried);
                 if carried > 0.0 || light.carried != glam::Vec3::ZERO {
@@ -207,11 +207,11 @@ impl Source {
                 let to = view.landing_px(slope.extend(1.0), u, kappa);
                 let direction = camera.world_direction(slope.extend(1.0));
                 let ray = Ray { origin: eye, direction, t_min: 0.0, t_max: f64::INFINITY, skip: None };
-                if !sensor.sees(to) || view.tracer.any_hit(&ray) {
+                if !sensor.covers(to) || view.tracer.any_hit(&ray) {
                     return;
                 }
                 let weight = size.element_product() / self.rate;
-                sensor.expose(to, radiance.from_infinity(direction), weight, 1.0);
+                sensor.expose(to, radiance.environment(direction), weight, 1.0);
             }
         }
     }
@@ -226,15 +226,15 @@ fn is_met_first(view: &View, triangle: u32, eye: DVec3, direction: DVec3) -> boo
 /// How many times as many points a piece gets for being brighter than white: by looking at its middle and
 /// toward its corners. Only surfaces that shine by themselves are looked at: others are seldom so bright.
 fn brightness(view: &View, radiance: &dyn Radiance, patch: &Patch) -> f64 {
-    if !view.tracer.scene().material_of(patch.triangle).emits() {
+    if !view.tracer.scene().material_of(patch.triangle).is_emitter() {
         return 1.0;
     }
     let [a, b, c] = patch.barycentric;
-    let looks =
+    let barycentrics =
         [(a + b + c) / 3.0, (a * 4.0 + b + c) / 6.0, (a + b * 4.0 + c) / 6.0, (a + b + c * 4.0) / 6.0];
-    let look = |barycentric| {
+    let brightness_at = |barycentric| {
         let point = SurfacePoint { triangle: patch.triangle, barycentric };
-        radiance.toward(point, view.camera.position()).max_element()
+        radiance.total_outgoing(point, view.camera.position()).max_element()
     };
-    f64::from(looks.map(look).into_iter().fold(0.0, f32::max)).clamp(1.0, BRIGHTEST)
+    f64::from(barycentrics.map(brightness_at).into_iter().fold(0.0, f32::max)).clamp(1.0, MAX_BRIGHTNESS)
 }

@@ -23,7 +23,9 @@ impl FocusBox {
     pub fn of_triangle(view: &View, triangle: u32) -> Self {
         match view.ray_focus {
             Some(rays) => Self::ByRay(rays.bounds()),
-            None => Self::painted(view.focus.bounds(triangle).unwrap_or_else(|| look(view.focus, triangle))),
+            None => Self::painted(
+                view.focus.bounds(triangle).unwrap_or_else(|| sampled_bounds(view.focus, triangle)),
+            ),
         }
     }
 
@@ -44,7 +46,7 @@ impl FocusBox {
         }
         let carried =
             bounds.into_iter().flat_map(|bound| glosses.map(|gloss| bound.with_gloss(gloss).of_carried()));
-        Self::Painted(carried.fold(bounds, around))
+        Self::Painted(carried.fold(bounds, extended))
     }
 
     /// κ at its corners.
@@ -94,18 +96,18 @@ fn largest(values: impl Iterator<Item = f64>) -> f64 {
 
 /// Bounds of a field that does not know its own: from looking at the corners and within, and a share of the
 /// range that was seen beyond.
-fn look(focus: &dyn SurfaceField<FocusOffset>, triangle: u32) -> [FocusOffset; 2] {
-    const LOOKS: u64 = 29;
+fn sampled_bounds(focus: &dyn SurfaceField<FocusOffset>, triangle: u32) -> [FocusOffset; 2] {
+    const SAMPLES: u64 = 29;
     const BEYOND: f64 = 0.25;
-    let within = (0..LOOKS).map(|k| {
+    let within = (0..SAMPLES).map(|k| {
         let [x, y, ..] = point(Sampler::LowDiscrepancy, 0, k);
         uniform_barycentric(DVec2::new(x, y))
     });
     let at = |barycentric| focus.at(SurfacePoint { triangle, barycentric });
-    let seen = [DVec2::ZERO, DVec2::X, DVec2::Y].into_iter().chain(within).map(at);
+    let sampled = [DVec2::ZERO, DVec2::X, DVec2::Y].into_iter().chain(within).map(at);
     let none = [f64::INFINITY, f64::NEG_INFINITY];
     let none = none.map(|none| FocusOffset::new(none, none).with_gloss(none));
-    let [least, greatest] = seen.fold(none, around);
+    let [least, greatest] = sampled.fold(none, extended);
     let beyond = |of: fn(FocusOffset) -> f64| (of(greatest) - of(least)) * BEYOND;
     let (t, anchor, gloss) = (beyond(|f| f.t), beyond(|f| f.anchor), beyond(|f| f.gloss));
     [
@@ -117,7 +119,7 @@ fn look(focus: &dyn SurfaceField<FocusOffset>, triangle: u32) -> [FocusOffset; 2
 }
 
 /// Bounds that hold one more.
-fn around([least, greatest]: [FocusOffset; 2], focus: FocusOffset) -> [FocusOffset; 2] {
+fn extended([least, greatest]: [FocusOffset; 2], focus: FocusOffset) -> [FocusOffset; 2] {
     [
         FocusOffset::new(least.t.min(focus.t), least.anchor.min(focus.anchor))
             .with_gloss(least.gloss.min(focus.gloss)),

@@ -93,14 +93,14 @@ impl Default for TruthOptions {
 
 /// Passes that a render has at least, if it has as many samples: from their scatter comes the standard error,
 /// and with fewer its own error would show (Student's t with this many degrees of freedom less one).
-const FEWEST_PASSES: u32 = 32;
+const MIN_PASSES: u32 = 32;
 /// Samples of a pass at most: the length of a Sobol' sequence.
-pub(super) const LONGEST_PASS: u32 = 1 << 16;
+pub(super) const MAX_SAMPLES_OF_PASS: u32 = 1 << 16;
 
 impl TruthOptions {
     /// Samples a pixel of one pass: a power of two, so that a pass is itself a set of low discrepancy.
     pub fn samples_of_pass(&self) -> u32 {
-        let wanted = self.samples_per_pixel / FEWEST_PASSES;
-        if wanted == 0 { 1 } else { (1 << wanted.ilog2()).min(LONGEST_PASS) }
+        let target_samples = self.samples_per_pixel / MIN_PASSES;
+        if target_samples == 0 { 1 } else { (1 << target_samples.ilog2()).min(MAX_SAMPLES_OF_PASS) }
     }
 }

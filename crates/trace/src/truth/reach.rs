@@ -24,7 +24,7 @@ pub(super) struct Reach {
 
 impl Reach {
     /// Of everything that is displaced into `window`.
-    pub fn of(view: &View, window: [DVec2; 2]) -> Self {
+    pub fn new(view: &View, window: [DVec2; 2]) -> Self {
         let window = Self { low: window[0], high: window[1] };
         let widest = window.widened(WIDEST * view.optics.half_height_px);
         let background = FocusBox::of_background(view).largest_displacement(view, [0.0; 2]);
@@ -32,8 +32,8 @@ impl Reach {
         let reach = triangles
             .into_par_iter()
             .map(|triangle| Self::of_triangle(view, window, triangle))
-            .reduce(|| window, Self::around)
-            .around(window.widened(view.radius_px(background)));
+            .reduce(|| window, Self::union)
+            .union(window.widened(view.radius_px(background)));
         Self { low: reach.low.max(widest.low).floor(), high: reach.high.min(widest.high).ceil() }
     }
 
@@ -50,7 +50,7 @@ impl Reach {
                     inverse_depths.map(|inverse| view.radius_px(view.optics.standard_kappa(inverse)));
                 let [low, high] = patch.sharp_image(view);
                 let image = Self { low, high }.widened(standard[0].max(standard[1]));
-                reach = reach.around(image.cut_to(window.widened(view.radius_px(displacement))));
+                reach = reach.union(image.intersection(window.widened(view.radius_px(displacement))));
             }
         });
         reach
@@ -61,14 +61,14 @@ impl Reach {
     }
 
     /// The box around both; an empty one adds nothing.
-    fn around(self, other: Self) -> Self {
+    fn union(self, other: Self) -> Self {
         if other.low.cmpgt(other.high).any() {
             return self;
         }
         Self { low: self.low.min(other.low), high: self.high.max(other.high) }
     }
 
-    fn cut_to(self, other: Self) -> Self {
+    fn intersection(self, other: Self) -> Self {
         Self { low: self.low.max(other.low), high: self.high.min(other.high) }
     }
 

@@ -94,7 +94,7 @@ impl Sensor {
     }
 
     /// Whether light that lands at a position counts for any pixel.
-    pub fn sees(&self, position: DVec2) -> bool {
+    pub fn covers(&self, position: DVec2) -> bool {
         let [low, high] = self.window();
         position.cmpge(low).all() && position.cmplt(high).all()
     }

@@ -45,7 +45,7 @@ impl Level {
     const STEP: f64 = 0.04;
 
     /// The one nearest to a signed radius, px.
-    pub fn of(radius_px: f64) -> Self {
+    pub fn from_radius(radius_px: f64) -> Self {
         let largest = f64::from(Self::LARGEST);
         Self((radius_px.asinh() / Self::STEP).round().clamp(-largest, largest) as i16)
     }
@@ -205,14 +205,14 @@ mod tests {
     #[test]
     fn levels_lie_close_and_reach_far() {
         for radius in [0.0, 0.01, -0.5, 1.0, -3.0, 40.0, -1e3, 1e4] {
-            let level = Level::of(radius);
+            let level = Level::from_radius(radius);
             assert!((level.radius_px() - radius).abs() <= 0.0201 * radius.hypot(1.0), "{radius}");
             assert!(level.index() < Level::COUNT);
-            assert_eq!(Level::of(level.radius_px()), level);
+            assert_eq!(Level::from_radius(level.radius_px()), level);
         }
-        assert_eq!(Level::of(0.0), Level::SHARP);
-        assert_eq!(Level::of(f64::INFINITY).index(), Level::COUNT - 1);
-        assert_eq!(Level::of(f64::NEG_INFINITY).index(), 0);
+        assert_eq!(Level::from_radius(0.0), Level::SHARP);
+        assert_eq!(Level::from_radius(f64::INFINITY).index(), Level::COUNT - 1);
+        assert_eq!(Level::from_radius(f64::NEG_INFINITY).index(), 0);
     }
 
     #[test]
@@ -246,7 +246,8 @@ mod tests {
             u: aperture.sample(a, b) * 0.1,
         };
         let of = |radius: f64, seed: u64| {
-            let sheared = Sheared::new(seed, 256, vec![Spread { level: Level::of(radius), moved_px: 0.0 }]);
+            let sheared =
+                Sheared::new(seed, 256, vec![Spread { level: Level::from_radius(radius), moved_px: 0.0 }]);
             let mut samples = sheared.samples(&(0..256), 0.1, sample).remove(0);
             samples.iter_mut().for_each(|sample| sample.u /= 0.1);
             samples
@@ -268,7 +269,7 @@ mod tests {
         let sample =
             |[x, y, a, b]: [f64; 4]| PixelSample { within_px: DVec2::new(x, y), u: aperture.sample(a, b) };
         let of = |moved_px: f64, seed: u64| {
-            let spread = Spread { level: Level::of(1.0), moved_px };
+            let spread = Spread { level: Level::from_radius(1.0), moved_px };
             Sheared::new(seed, 256, vec![spread]).samples(&(0..256), 1.0, sample).remove(0)
         };
         let landing = |samples: Vec<PixelSample>, by: f64| -> Vec<PixelSample> {
@@ -300,8 +301,11 @@ mod tests {
     fn samples_go_on_over_passes_and_pools() {
         let sample =
             |[x, y, a, b]: [f64; 4]| PixelSample { within_px: DVec2::new(x, y), u: DVec2::new(a, b) };
-        let sheared =
-            Sheared::new(3, 4, [0.0, -2.0].map(|r| Spread { level: Level::of(r), moved_px: 0.0 }).into());
+        let sheared = Sheared::new(
+            3,
+            4,
+            [0.0, -2.0].map(|r| Spread { level: Level::from_radius(r), moved_px: 0.0 }).into(),
+        );
         let whole = sheared.samples(&(0..150), 1.0, sample);
         let pieces: Vec<_> =
             [0..40, 40..130, 130..150].map(|piece| sheared.samples(&piece, 1.0, sample)).into();

@@ -18,8 +18,8 @@ use super::options::{Region, TruthOptions};
 use super::samples::PixelSample;
 use super::sheared::{self, Level, Spread};
 use glam::{DVec2, Vec3};
-pub(super) use look::Look;
-use look::{WITHIN, is_dull, scatter, widest_gap};
+pub(super) use look::SurveyHit;
+use look::{WITHIN, is_uniform, scatter, widest_gap};
 use paint::Paint;
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;
@@ -45,48 +45,48 @@ pub(super) const FIRST_LEVEL: u16 = 2;
 
 /// How many rays a pixel are looked at: an eighth of what the render will have, and none where that is too few to
 /// tell anything.
-pub(super) fn rays_of(options: &TruthOptions) -> u32 {
+pub(super) fn rays_per_pixel(options: &TruthOptions) -> u32 {
     match options.samples_per_pixel / 8 {
         _ if !options.surveys_light => 0,
-        0..FEWEST_RAYS => 0,
-        rays => rays.min(MOST_RAYS),
+        0..MIN_RAYS => 0,
+        rays => rays.min(MAX_RAYS),
     }
 }
 
-const FEWEST_RAYS: u32 = 16;
-const MOST_RAYS: u32 = 32;
+const MIN_RAYS: u32 = 16;
+const MAX_RAYS: u32 = 32;
 /// An order helps if the light along it is smoother than this share of what it is without order.
 const SMOOTHER: f32 = 0.8;
 
 impl Survey {
     /// Of a region's pixels. `look` tells what the ray of a pixel with this upper left corner meets.
-    pub fn of(
+    pub fn run(
         region: Region,
         rays: &[PixelSample],
         aperture_radius: f64,
-        look: impl Fn(DVec2, &PixelSample) -> Look + Sync,
+        trace_hit: impl Fn(DVec2, &PixelSample) -> SurveyHit + Sync,
         progress: &dyn Progress,
     ) -> Result<Self, Cancelled> {
-        let mut found = vec![Finding::Nothing; region.pixels()];
+        let mut findings = vec![Finding::Nothing; region.pixels()];
         let orders: Vec<OnceLock<Vec<u32>>> = (0..Level::COUNT).map(|_| OnceLock::new()).collect();
         let order = |level: Level| -> &[u32] {
             orders[level.index()].get_or_init(|| sheared::order(rays, level, aperture_radius))
         };
         let done = AtomicUsize::new(0);
         let width = region.width.max(1) as usize;
-        found.par_chunks_mut(width).enumerate().try_for_each(|(row, pixels)| {
+        findings.par_chunks_mut(width).enumerate().try_for_each(|(row, pixels)| {
             progress.check()?;
             for (column, pixel) in pixels.iter_mut().enumerate() {
                 let corner =
                     DVec2::new(f64::from(region.x) + column as f64, f64::from(region.y) + row as f64);
-                let looks: Vec<Look> = rays.iter().map(|ray| look(corner, ray)).collect();
-                *pixel = find(&looks, order);
+                let hits: Vec<SurveyHit> = rays.iter().map(|ray| trace_hit(corner, ray)).collect();
+                *pixel = classify(&hits, order);
             }
             progress.report((done.fetch_add(1, Ordering::Relaxed) + 1) as f32 / region.height.max(1) as f32);
             Ok(())
         })?;
-        let pixels = (0..found.len()).into_par_iter();
-        let chosen: Vec<Option<Level>> = pixels.map(|pixel| agree(&found, width, pixel)).collect();
+        let pixels = (0..findings.len()).into_par_iter();
+        let chosen: Vec<Option<Level>> = pixels.map(|pixel| vote(&findings, width, pixel)).collect();
         let mut levels: Vec<Level> = chosen.iter().copied().flatten().collect();
         levels.sort_unstable();
         levels.dedup();
@@ -95,12 +95,12 @@ impl Survey {
             Finding::Moved(_) => MOVED,
             _ => level.map_or(PLAIN, choice),
         };
-        let choices = chosen.into_iter().zip(&found).map(choose).collect();
-        let paints = found.iter().filter_map(|finding| match finding {
+        let choices = chosen.into_iter().zip(&findings).map(choose).collect();
+        let paints = findings.iter().filter_map(|finding| match finding {
             Finding::Moved(paint) => Some(*paint),
             _ => None,
         });
-        Ok(Self { moved: paint::suited(paints), levels, choices })
+        Ok(Self { moved: paint::common_spread(paints), levels, choices })
     }
 }
 
@@ -118,44 +118,44 @@ enum Finding {
 }
 
 /// The level whose order suits what a pixel's rays meet.
-fn find<'a>(looks: &[Look], order: impl Fn(Level) -> &'a [u32]) -> Finding {
-    if looks.iter().any(|look| look.moved_px != 0.0) {
-        return Finding::Moved(Paint::of(looks));
+fn classify<'a>(hits: &[SurveyHit], order: impl Fn(Level) -> &'a [u32]) -> Finding {
+    if hits.iter().any(|hit| hit.moved_px != 0.0) {
+        return Finding::Moved(Paint::classify(hits));
     }
-    if is_dull(looks) {
+    if is_uniform(hits) {
         return Finding::Nothing;
     }
-    let mut by_radius = looks.to_vec();
+    let mut by_radius = hits.to_vec();
     by_radius.sort_by(|a, b| a.radius_px.total_cmp(&b.radius_px));
     // κ grows with depth.
     let (front, behind) = by_radius.split_at(widest_gap(&by_radius));
-    let level = Level::of(by_radius[front.len() / 2].radius_px);
+    let level = Level::from_radius(by_radius[front.len() / 2].radius_px);
     let suits = if behind.is_empty() {
-        let along = |order: &mut dyn Iterator<Item = &Look>| -> f32 {
-            let lights: Vec<Vec3> = order.map(|look| look.light).collect();
+        let along = |order: &mut dyn Iterator<Item = &SurveyHit>| -> f32 {
+            let lights: Vec<Vec3> = order.map(|hit| hit.light).collect();
             lights.windows(2).map(|pair| (pair[1] - pair[0]).abs().element_sum()).sum()
         };
-        let smooth = along(&mut order(level).iter().map(|&k| &looks[k as usize]));
-        smooth < SMOOTHER * along(&mut looks.iter())
+        let smooth = along(&mut order(level).iter().map(|&k| &hits[k as usize]));
+        smooth < SMOOTHER * along(&mut hits.iter())
     } else {
-        scatter(front) + scatter(behind) < WITHIN * scatter(looks)
+        scatter(front) + scatter(behind) < WITHIN * scatter(hits)
     };
     if suits { Finding::Level(level) } else { Finding::Plain }
 }
 
 /// The level that most of a pixel and its neighbours agree on, its own if it can: few rays err, and miss what the
 /// neighbours see. `None` for those without an order.
-fn agree(found: &[Finding], width: usize, pixel: usize) -> Option<Level> {
-    let own = match found[pixel] {
+fn vote(findings: &[Finding], width: usize, pixel: usize) -> Option<Level> {
+    let own = match findings[pixel] {
         Finding::Plain | Finding::Moved(_) => return None,
         Finding::Nothing => None,
         Finding::Level(level) => Some(level),
     };
     let (x, y) = (pixel % width, pixel / width);
-    let rows = y.saturating_sub(1)..(y + 2).min(found.len() / width);
+    let rows = y.saturating_sub(1)..(y + 2).min(findings.len() / width);
     let columns = x.saturating_sub(1)..(x + 2).min(width);
     let levels: Vec<Level> = rows
-        .flat_map(|y| columns.clone().map(move |x| found[y * width + x]))
+        .flat_map(|y| columns.clone().map(move |x| findings[y * width + x]))
         .filter_map(|finding| if let Finding::Level(level) = finding { Some(level) } else { None })
         .collect();
     let support = |level: Level| levels.iter().filter(|other| other.is_near(level)).count();
@@ -172,34 +172,34 @@ mod tests {
 
     /// Rays of a pixel whose front half, of the signed radius `front`, is bright to one side of a line; behind it is
     /// the radius `behind`, with light that `texture` gives at where the ray crosses that depth.
-    pub(super) fn looks(
+    pub(super) fn survey_hits(
         rays: &[PixelSample],
         [front, behind]: [f64; 2],
         line: f64,
         texture: impl Fn(DVec2) -> f32,
-    ) -> Vec<Look> {
+    ) -> Vec<SurveyHit> {
         let crossing =
             |ray: &PixelSample, radius: f64| ray.within_px - radius * DVec2::new(ray.u.x, -ray.u.y);
-        let look = |ray: &PixelSample| {
+        let survey_hit = |ray: &PixelSample| {
             let is_front = crossing(ray, front).dot(DVec2::new(0.8, 0.6)) < line;
             let light = if is_front { 5.0 } else { texture(crossing(ray, behind)) };
             let radius_px = if is_front { front } else { behind };
-            Look { radius_px, moved_px: 0.0, light: Vec3::splat(light) }
+            SurveyHit { radius_px, moved_px: 0.0, light: Vec3::splat(light) }
         };
-        rays.iter().map(look).collect()
+        rays.iter().map(survey_hit).collect()
     }
 
     pub(super) fn rays() -> Vec<PixelSample> {
         let aperture = lens::ApertureSampler::new(&lens::ApertureShape::Disc.into());
-        points(Sampler::LowDiscrepancy, 5, 0..u64::from(MOST_RAYS))
+        points(Sampler::LowDiscrepancy, 5, 0..u64::from(MAX_RAYS))
             .map(|[x, y, a, b]| PixelSample { within_px: DVec2::new(x, y), u: aperture.sample(a, b) })
             .collect()
     }
 
-    fn found(radii: [f64; 2], line: f64, texture: impl Fn(DVec2) -> f32) -> Finding {
+    fn finding_of(radii: [f64; 2], line: f64, texture: impl Fn(DVec2) -> f32) -> Finding {
         let rays = rays();
         let orders: Vec<OnceLock<Vec<u32>>> = (0..Level::COUNT).map(|_| OnceLock::new()).collect();
-        find(&looks(&rays, radii, line, texture), |level| {
+        classify(&survey_hits(&rays, radii, line, texture), |level| {
             orders[level.index()].get_or_init(|| sheared::order(&rays, level, 1.0))
         })
     }
@@ -207,28 +207,35 @@ mod tests {
     #[test]
     fn an_edge_has_the_level_of_what_lies_in_front() {
         for radii in [[-4.0, 0.0], [0.0, 9.0], [3.0, 12.0]] {
-            assert_eq!(found(radii, 0.7, |_| 1.0), Finding::Level(Level::of(radii[0])), "{radii:?}");
+            assert_eq!(
+                finding_of(radii, 0.7, |_| 1.0),
+                Finding::Level(Level::from_radius(radii[0])),
+                "{radii:?}"
+            );
         }
     }
 
     #[test]
     fn a_texture_has_its_own_level_but_behind_an_edge_none() {
         let texture = |place: DVec2| if place.x < 0.5 { 0.0 } else { 40.0 };
-        assert_eq!(found([-6.0, 2.0], f64::NEG_INFINITY, texture), Finding::Level(Level::of(2.0)));
-        assert_eq!(found([-6.0, 2.0], 0.7, texture), Finding::Plain);
+        assert_eq!(
+            finding_of([-6.0, 2.0], f64::NEG_INFINITY, texture),
+            Finding::Level(Level::from_radius(2.0))
+        );
+        assert_eq!(finding_of([-6.0, 2.0], 0.7, texture), Finding::Plain);
     }
 
     #[test]
     fn one_light_says_nothing_and_no_order_is_none() {
-        assert_eq!(found([-6.0, 0.0], 0.7, |_| 5.0), Finding::Nothing);
+        assert_eq!(finding_of([-6.0, 0.0], 0.7, |_| 5.0), Finding::Nothing);
         // Light without any order in space.
         let noise = |place: DVec2| (place.x * 12345.678).sin() as f32;
-        assert_eq!(found([2.0, 2.0], f64::NEG_INFINITY, noise), Finding::Plain);
+        assert_eq!(finding_of([2.0, 2.0], f64::NEG_INFINITY, noise), Finding::Plain);
     }
 
     #[test]
     fn neighbours_outvote_an_error_and_tell_those_that_saw_nothing() {
-        let level = |radius| Finding::Level(Level::of(radius));
+        let level = |radius| Finding::Level(Level::from_radius(radius));
         let (edge, error) = (level(3.0), level(9.0));
         let found = [
             edge,
@@ -241,13 +248,13 @@ mod tests {
             Finding::Nothing,
             edge,
         ];
-        let agreed: Vec<_> = (0..9).map(|pixel| agree(&found, 3, pixel)).collect();
-        let [edge, none] = [Some(Level::of(3.0)), None];
+        let agreed: Vec<_> = (0..9).map(|pixel| vote(&found, 3, pixel)).collect();
+        let [edge, none] = [Some(Level::from_radius(3.0)), None];
         assert_eq!(agreed, [edge, edge, edge, edge, none, edge, none, edge, edge]);
-        assert_eq!(agree(&[level(0.0), level(0.0)], 2, 0), None, "in focus the common samples are best");
+        assert_eq!(vote(&[level(0.0), level(0.0)], 2, 0), None, "in focus the common samples are best");
         assert_eq!(
-            agree(&[level(5.0), level(2.0)], 2, 0),
-            Some(Level::of(5.0)),
+            vote(&[level(5.0), level(2.0)], 2, 0),
+            Some(Level::from_radius(5.0)),
             "its own if no more say otherwise"
         );
     }

@@ -1,5 +1,5 @@
 use super::*;
-use crate::Leaving;
+use crate::OutgoingRadiance;
 use crate::test_scene::*;
 use glam::{DVec2, DVec3, Vec3};
 use lens::{ApertureMask, ApertureShape, Picture};
@@ -14,10 +14,10 @@ mod convergence;
 struct BaseColor(Arc<scene::Scene>);
 
 impl Radiance for BaseColor {
-    fn leaving(&self, point: SurfacePoint, _eye: DVec3) -> Leaving {
-        Leaving::own(self.0.base_color(point).truncate())
+    fn outgoing(&self, point: SurfacePoint, _eye: DVec3) -> OutgoingRadiance {
+        OutgoingRadiance::from_own(self.0.base_color(point).truncate())
     }
-    fn from_infinity(&self, _direction: DVec3) -> Vec3 {
+    fn environment(&self, _direction: DVec3) -> Vec3 {
         Vec3::ZERO
     }
 }
@@ -242,10 +242,10 @@ fn threads_do_not_matter() {
 fn the_brightest_light_does_not_overflow() {
     struct Blinding(f32);
     impl Radiance for Blinding {
-        fn leaving(&self, _point: SurfacePoint, _eye: DVec3) -> Leaving {
-            Leaving::own(Vec3::splat(self.0))
+        fn outgoing(&self, _point: SurfacePoint, _eye: DVec3) -> OutgoingRadiance {
+            OutgoingRadiance::from_own(Vec3::splat(self.0))
         }
-        fn from_infinity(&self, _direction: DVec3) -> Vec3 {
+        fn environment(&self, _direction: DVec3) -> Vec3 {
             Vec3::new(self.0, -self.0, f32::NAN)
         }
     }

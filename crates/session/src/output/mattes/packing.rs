@@ -6,7 +6,7 @@ use std::ops::Range;
 const TILE_PX: u32 = 32;
 
 /// No thing.
-const NOBODY: u32 = u32::MAX;
+const NO_OWNER: u32 = u32::MAX;
 
 /// Tiles of a picture where the light of things may land.
 pub(crate) struct Footprints {
@@ -26,7 +26,7 @@ pub(crate) struct Packing {
 
 impl Footprints {
     /// Those of things whose light lands nowhere yet, in a picture of this width and height.
-    pub fn none(things: usize, size: [u32; 2]) -> Self {
+    pub fn empty(things: usize, size: [u32; 2]) -> Self {
         let tiles = size.map(|side| side.div_ceil(TILE_PX));
         let words = (tiles[0] * tiles[1]).div_ceil(64) as usize;
         Self { tiles, of_things: vec![vec![0; words]; things] }
@@ -46,7 +46,7 @@ impl Footprints {
 
     /// Colors for them: the largest first, each has the first color that is free wherever its light lands. What lands nowhere has
     /// none.
-    pub fn packed(self) -> Packing {
+    pub fn pack(self) -> Packing {
         let area = |thing: &usize| self.of_things[*thing].iter().map(|word| word.count_ones()).sum::<u32>();
         let mut order: Vec<usize> = (0..self.of_things.len()).filter(|thing| area(thing) > 0).collect();
         order.sort_by_key(|thing| std::cmp::Reverse(area(thing)));
@@ -54,7 +54,7 @@ impl Footprints {
         let mut taken: Vec<Vec<u64>> = Vec::new();
         let mut packing = Packing {
             columns: self.tiles[0],
-            color_of_thing: vec![NOBODY; self.of_things.len()],
+            color_of_thing: vec![NO_OWNER; self.of_things.len()],
             owners: Vec::new(),
         };
         for thing in order {
@@ -62,7 +62,7 @@ impl Footprints {
             let is_free = |taken: &Vec<u64>| taken.iter().zip(own).all(|(taken, own)| taken & own == 0);
             let color = taken.iter().position(is_free).unwrap_or_else(|| {
                 taken.push(vec![0; own.len()]);
-                packing.owners.push(vec![NOBODY; tiles]);
+                packing.owners.push(vec![NO_OWNER; tiles]);
                 taken.len() - 1
             });
             packing.color_of_thing[thing] = color as u32;
@@ -77,10 +77,10 @@ impl Footprints {
 
 impl Packing {
     /// A color for each thing, whose light may land anywhere.
-    pub fn apart(things: usize, size: [u32; 2]) -> Self {
-        let mut footprints = Footprints::none(things, size);
+    pub fn separate(things: usize, size: [u32; 2]) -> Self {
+        let mut footprints = Footprints::empty(things, size);
         (0..things as u32).for_each(|thing| footprints.add(thing, size.map(|side| 0..side)));
-        footprints.packed()
+        footprints.pack()
     }
 
     /// How many there are.
@@ -96,7 +96,7 @@ impl Packing {
     /// Whose light of a color lands in a pixel.
     pub fn owner(&self, color: usize, x: usize, y: usize) -> Option<u32> {
         let tile = y / TILE_PX as usize * self.columns as usize + x / TILE_PX as usize;
-        Some(self.owners[color][tile]).filter(|owner| *owner != NOBODY)
+        Some(self.owners[color][tile]).filter(|owner| *owner != NO_OWNER)
     }
 }
 
@@ -106,13 +106,13 @@ mod tests {
 
     #[test]
     fn what_meets_is_drawn_apart_and_each_pixel_knows_whose_it_is() {
-        let mut footprints = Footprints::none(5, [100, 70]);
+        let mut footprints = Footprints::empty(5, [100, 70]);
         // A wall, a thing on the left and one on the right, one that meets both, and one that is nowhere.
         footprints.add(0, [0..100, 0..70]);
         footprints.add(1, [0..30, 5..20]);
         footprints.add(2, [70..90, 5..20]);
         footprints.add(3, [28..75, 0..10]);
-        let packing = footprints.packed();
+        let packing = footprints.pack();
         let color = |thing| packing.color_of(thing);
         assert_eq!(packing.colors(), 3);
         assert!(color(1) == color(2) && color(3) != color(1) && color(0) != color(3));
@@ -121,6 +121,6 @@ mod tests {
         assert_eq!(packing.owner(color(1), 80, 10), Some(2));
         assert_eq!(packing.owner(color(1), 50, 10), None);
         assert_eq!(packing.owner(color(0), 99, 69), Some(0));
-        assert_eq!(Packing::apart(4, [100, 70]).colors(), 4);
+        assert_eq!(Packing::separate(4, [100, 70]).colors(), 4);
     }
 }

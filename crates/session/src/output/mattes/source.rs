@@ -12,7 +12,7 @@ use salf::Salf;
 use scene::{Scene, SurfacePoint};
 use splat::SETS;
 use trace::truth::TruthOptions;
-use trace::{Leaving, Radiance, Tracer};
+use trace::{OutgoingRadiance, Radiance, Tracer};
 
 /// In which of the sets that are drawn at once something is.
 #[derive(Clone, Copy, Debug, Default)]
@@ -20,12 +20,12 @@ pub(crate) struct Sets(pub [bool; SETS]);
 
 impl Sets {
     /// In the first alone, or in none.
-    pub fn of_first(is_in: bool) -> Self {
-        Self::of([is_in].into_iter())
+    pub fn first_only(is_in: bool) -> Self {
+        Self::from_flags([is_in].into_iter())
     }
 
     /// In those that are told of, from the first on.
-    pub fn of(is_in: impl Iterator<Item = bool>) -> Self {
+    pub fn from_flags(is_in: impl Iterator<Item = bool>) -> Self {
         let mut sets = Self::default();
         sets.0.iter_mut().zip(is_in).for_each(|(set, is_in)| *set = is_in);
         sets
@@ -48,20 +48,20 @@ pub(crate) trait MatteSource {
 const NO_PART: u32 = u32::MAX;
 
 /// The parts that samples of a light field show.
-pub(crate) struct Shown(Vec<u32>);
+pub(crate) struct SampleParts(Vec<u32>);
 
-impl Shown {
+impl SampleParts {
     /// Those of a scene.
-    pub fn of(salf: &Salf, scene: &Scene) -> Self {
+    pub fn new(salf: &Salf, scene: &Scene) -> Self {
         let runs: Vec<_> = salf.samples.runs().collect();
         let part = |point: SurfacePoint| scene.triangles[point.triangle as usize].part;
-        let of_run = |run: &salf::Run| {
-            let parts = run.spots().map(|spot| spot.address.surface.map_or(NO_PART, part));
+        let parts_of_run = |run: &salf::Run| {
+            let parts = run.locations().map(|spot| spot.address.surface.map_or(NO_PART, part));
             (run.indices.start as usize, parts.collect::<Vec<_>>())
         };
-        let found: Vec<_> = runs.par_iter().map(of_run).collect();
+        let run_parts: Vec<_> = runs.par_iter().map(parts_of_run).collect();
         let mut parts = vec![NO_PART; salf.samples.len()];
-        for (first, of_run) in found {
+        for (first, of_run) in run_parts {
             parts[first..first + of_run.len()].copy_from_slice(&of_run);
         }
         Self(parts)
@@ -74,35 +74,35 @@ impl Shown {
 }
 
 /// Mattes of a light field's picture.
-pub(crate) struct OfLightField {
+pub(crate) struct LightFieldMattes {
     pub mattes: splat::Mattes,
-    pub shown: Shown,
+    pub sample_parts: SampleParts,
     /// A pixel is the mean of so many times so many.
     pub cells_a_side: u32,
 }
 
-impl MatteSource for OfLightField {
+impl MatteSource for LightFieldMattes {
     fn draw(&mut self, sets: &SetsOfPart, progress: &dyn Progress) -> Result<Picture, SessionError> {
-        let Self { mattes, shown, .. } = self;
-        let picture = mattes.draw(&|sample| sets(shown.part(sample)).0, progress)?;
+        let Self { mattes, sample_parts, .. } = self;
+        let picture = mattes.draw(&|sample| sets(sample_parts.part(sample)).0, progress)?;
         Ok(picture.averaged(self.cells_a_side))
     }
 
     fn packing(&self, things: &Things, size: [u32; 2]) -> Packing {
-        let mut footprints = Footprints::none(things.names.len(), size);
+        let mut footprints = Footprints::empty(things.names.len(), size);
         let cells = self.cells_a_side;
         self.mattes.reaches(|sample, window| {
-            if let Some(part) = self.shown.part(sample) {
+            if let Some(part) = self.sample_parts.part(sample) {
                 let window = window.map(|range| range.start / cells..range.end.div_ceil(cells));
                 footprints.add(things.of_part(part), window);
             }
         });
-        footprints.packed()
+        footprints.pack()
     }
 }
 
 /// Mattes by the rays of the ground truth.
-pub(crate) struct OfTruth<'a> {
+pub(crate) struct TruthMattes<'a> {
     pub tracer: &'a Tracer,
     pub radiance: &'a dyn Radiance,
     pub focus: &'a Focus,
@@ -110,7 +110,7 @@ pub(crate) struct OfTruth<'a> {
     pub options: TruthOptions,
 }
 
-impl MatteSource for OfTruth<'_> {
+impl MatteSource for TruthMattes<'_> {
     fn draw(&mut self, sets: &SetsOfPart, progress: &dyn Progress) -> Result<Picture, SessionError> {
         let Self { tracer, radiance, focus, camera, options } = self;
         let light = MatteLight { scene: tracer.scene(), radiance: *radiance, sets };
@@ -118,7 +118,7 @@ impl MatteSource for OfTruth<'_> {
     }
 
     fn packing(&self, things: &Things, size: [u32; 2]) -> Packing {
-        Packing::apart(things.names.len(), size)
+        Packing::separate(things.names.len(), size)
     }
 }
 
@@ -130,22 +130,22 @@ struct MatteLight<'a> {
 }
 
 impl MatteLight<'_> {
-    fn of_part(&self, part: Option<u32>) -> Vec3 {
+    fn color_of_part(&self, part: Option<u32>) -> Vec3 {
         let Sets(sets) = (self.sets)(part);
         Vec3::from_array(sets.map(|is_in| if is_in { 1.0 } else { 0.0 }))
     }
 }
 
 impl Radiance for MatteLight<'_> {
-    fn leaving(&self, point: SurfacePoint, eye: DVec3) -> Leaving {
-        let light = self.of_part(Some(self.scene.triangles[point.triangle as usize].part));
-        let carried_share = self.radiance.leaving(point, eye).carried_share;
+    fn outgoing(&self, point: SurfacePoint, eye: DVec3) -> OutgoingRadiance {
+        let light = self.color_of_part(Some(self.scene.triangles[point.triangle as usize].part));
+        let carried_share = self.radiance.outgoing(point, eye).carried_share;
         let carried = light * carried_share;
-        Leaving { own: light - carried, carried, carried_share, ..Leaving::default() }
+        OutgoingRadiance { own: light - carried, carried, carried_share, ..OutgoingRadiance::default() }
     }
 
-    fn from_infinity(&self, _direction: DVec3) -> Vec3 {
-        self.of_part(None)
+    fn environment(&self, _direction: DVec3) -> Vec3 {
+        self.color_of_part(None)
     }
 }
 
@@ -153,11 +153,11 @@ impl Radiance for MatteLight<'_> {
 pub(crate) struct BlackBackground<'a>(pub &'a dyn Radiance);
 
 impl Radiance for BlackBackground<'_> {
-    fn leaving(&self, point: SurfacePoint, eye: DVec3) -> Leaving {
-        self.0.leaving(point, eye)
+    fn outgoing(&self, point: SurfacePoint, eye: DVec3) -> OutgoingRadiance {
+        self.0.outgoing(point, eye)
     }
 
-    fn from_infinity(&self, _direction: DVec3) -> Vec3 {
+    fn environment(&self, _direction: DVec3) -> Vec3 {
         Vec3::ZERO
     }
 }

@@ -1,13 +1,13 @@
 //! What each pixel shows, counted thing by thing, and ranked.
 
-use project::Ranked;
+use project::RankedCoverage;
 use rayon::prelude::*;
 
 /// Pixels are told apart by this much: what is left of a pixel may be in no matte.
 const NEGLIGIBLE: f32 = 1e-5;
 
 /// The most ranks.
-const MOST_RANKS: usize = 32;
+const MAX_RANKS: usize = 32;
 
 /// A thing's share of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,7 +53,7 @@ impl Tally {
 
     /// The things of each pixel by rank, their shares made to sum to alpha: as many ranks as are needed, one at least. And the most that is left
     /// out of a pixel, if it is more than negligible.
-    pub fn ranks(self, alpha: &[f32]) -> (Vec<Vec<Ranked>>, f32) {
+    pub fn ranks(self, alpha: &[f32]) -> (Vec<Vec<RankedCoverage>>, f32) {
         let width = self.width;
         let Ranking { rows, needed, left_out } = self.ranking(alpha);
         (ranks_of(rows.iter().map(Vec::as_slice), width, needed.max(1)), left_out)
@@ -80,10 +80,10 @@ impl Tally {
                         needed_here = rank + 1;
                     }
                 }
-                if needed_here > MOST_RANKS {
-                    left_out = left_out.max(pixel[MOST_RANKS..].iter().map(|entry| entry.share).sum());
+                if needed_here > MAX_RANKS {
+                    left_out = left_out.max(pixel[MAX_RANKS..].iter().map(|entry| entry.share).sum());
                 }
-                needed = needed.max(needed_here.min(MOST_RANKS));
+                needed = needed.max(needed_here.min(MAX_RANKS));
             }
             (row, needed, left_out)
         });
@@ -99,13 +99,13 @@ pub(crate) fn ranks_of<'a>(
     rows: impl ExactSizeIterator<Item = &'a [Entry]>,
     width: usize,
     count: usize,
-) -> Vec<Vec<Ranked>> {
-    let mut ranks = vec![vec![Ranked::NONE; width * rows.len()]; count];
+) -> Vec<Vec<RankedCoverage>> {
+    let mut ranks = vec![vec![RankedCoverage::NONE; width * rows.len()]; count];
     for (y, row) in rows.enumerate() {
         for pixel in row.chunk_by(|a, b| a.column == b.column) {
             for (entry, rank) in pixel.iter().zip(&mut ranks) {
                 rank[y * width + entry.column as usize] =
-                    Ranked { thing: Some(entry.thing), share: entry.share };
+                    RankedCoverage { name_index: Some(entry.thing), share: entry.share };
             }
         }
     }
@@ -113,10 +113,10 @@ pub(crate) fn ranks_of<'a>(
 }
 
 /// The sentence on what has no rank, of things that are called so; none where all have one.
-pub(crate) fn left_out_warning(said: &str, left_out: f32) -> Option<String> {
+pub(crate) fn left_out_warning(plural_name: &str, left_out: f32) -> Option<String> {
     (left_out > 0.0).then(|| {
         format!(
-            "some pixels show more {said} than Cryptomatte has ranks for: up to {:.2} % of a pixel is in no matte",
+            "some pixels show more {plural_name} than Cryptomatte has ranks for: up to {:.2} % of a pixel is in no matte",
             100.0 * left_out
         )
     })
@@ -135,7 +135,7 @@ mod tests {
         tally.add([0.5, 0.5].into_iter(), |_, _| None);
         let (ranks, left_out) = tally.ranks(&[1.0, 0.75]);
         let of = |pixel: usize| {
-            ranks.iter().map(|rank| (rank[pixel].thing, rank[pixel].share)).collect::<Vec<_>>()
+            ranks.iter().map(|rank| (rank[pixel].name_index, rank[pixel].share)).collect::<Vec<_>>()
         };
         assert_eq!((ranks.len(), left_out), (3, 0.0));
         assert_eq!(of(0).iter().map(|(thing, _)| *thing).collect::<Vec<_>>(), [Some(3), Some(5), Some(7)]);
@@ -146,7 +146,7 @@ mod tests {
 
     #[test]
     fn what_shows_nothing_has_a_rank_of_nothing() {
-        assert_eq!(Tally::new([3, 2]).ranks(&[0.0; 6]), (vec![vec![Ranked::NONE; 6]], 0.0));
+        assert_eq!(Tally::new([3, 2]).ranks(&[0.0; 6]), (vec![vec![RankedCoverage::NONE; 6]], 0.0));
     }
 
     #[test]
@@ -154,7 +154,7 @@ mod tests {
         let mut tally = Tally::new([1, 1]);
         (0..40).for_each(|thing| tally.add([0.025].into_iter(), |_, _| Some(thing)));
         let (ranks, left_out) = tally.ranks(&[1.0]);
-        assert_eq!(ranks.len(), MOST_RANKS);
+        assert_eq!(ranks.len(), MAX_RANKS);
         assert!((left_out - 0.2).abs() < 1e-5, "{left_out}");
     }
 }

@@ -8,7 +8,7 @@ pub(crate) struct Things {
     /// As Cryptomatte calls the kind.
     pub kind: &'static str,
     /// As sentences call it.
-    pub said: &'static str,
+    pub plural_name: &'static str,
     /// Those of one name are one thing, as they are for recipes.
     pub names: Vec<String>,
     of_part: Vec<u32>,
@@ -27,20 +27,20 @@ impl Things {
 
     fn new<'a>(
         kind: &'static str,
-        said: &'static str,
+        plural_name: &'static str,
         scene: &'a Scene,
         name_of: impl Fn(&'a Part) -> &'a String,
     ) -> Self {
-        let (mut known, mut names) = (HashMap::new(), Vec::new());
+        let (mut indices, mut names) = (HashMap::new(), Vec::new());
         let of_part = scene.parts.iter().map(|part| {
             let name = name_of(part);
-            *known.entry(name.as_str()).or_insert_with(|| {
+            *indices.entry(name.as_str()).or_insert_with(|| {
                 names.push(name.clone());
                 names.len() as u32 - 1
             })
         });
         let of_part = of_part.collect();
-        Self { kind, said, names, of_part }
+        Self { kind, plural_name, names, of_part }
     }
 
     /// What a part of the scene belongs to.

@@ -16,18 +16,18 @@
 //! Zhou and Koltun 2014 ("Color map optimization for 3D reconstruction with consumer depth cameras"), without poses of their own: the
 //! lattice has those of small errors in it. o falls out: of every tile only differences from its weighted mean count.
 
-use super::lattice::{Displacement, InCell, Lattice};
+use super::lattice::{CellPosition, Displacement, Lattice};
 use crate::photographs::numbers::{median, solve_positive};
 use glam::{DVec2, Vec2};
 use scene::View;
 
 /// A place where a photograph is compared with what others lead to expect.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Compared {
+pub(crate) struct Comparison {
     /// Where its camera says that it is.
     pub pixel: DVec2,
     /// e − I.
-    pub off: f64,
+    pub residual: f64,
     /// ∇I.
     pub slope: DVec2,
     /// How it counts, > 0.
@@ -37,40 +37,40 @@ pub(crate) struct Compared {
 /// Tiles along a side of a cell.
 const TILES: usize = 2;
 /// Neighbouring points are off in the same way: each says as much as so much of one by itself.
-const COUNTS: f64 = 0.05;
+const POINT_WEIGHT: f64 = 0.05;
 /// σ is thought to be no smaller: 8 bits and JPEG.
-const LEAST_SCALE: f64 = 0.006;
+const MIN_SCALE: f64 = 0.006;
 /// What is off by more scales is something else (Cauchy's weights, squared).
-const ELSE: f64 = 2.0;
+const OUTLIER_SCALES: f64 = 2.0;
 /// s and h, px as they are kept.
-const NEIGHBOURS_DIFFER: f64 = 0.5;
-const OFF: f64 = 4.0;
+const SMOOTHNESS_PX: f64 = 0.5;
+const PRIOR_PX: f64 = 4.0;
 /// No node is off by more px as they are kept: what poses are off by is less, and what is farther off is not found by slopes.
-const MOST_OFF: f64 = 6.0;
+const MAX_DISPLACEMENT_PX: f64 = 6.0;
 
 /// The unknowns of a cell: two for each corner.
-const OF_CELL: usize = 8;
+const UNKNOWNS_PER_CELL: usize = 8;
 
 /// Sums over a tile.
 #[derive(Clone, Copy, Default)]
-struct Sums {
-    matrix: [[f64; OF_CELL]; OF_CELL],
-    right: [f64; OF_CELL],
-    row: [f64; OF_CELL],
-    off: f64,
+struct TileSums {
+    matrix: [[f64; UNKNOWNS_PER_CELL]; UNKNOWNS_PER_CELL],
+    right: [f64; UNKNOWNS_PER_CELL],
+    row: [f64; UNKNOWNS_PER_CELL],
+    residual: f64,
     weight: f64,
 }
 
-impl Sums {
-    fn add(&mut self, row: [f64; OF_CELL], off: f64, weight: f64) {
-        for i in 0..OF_CELL {
+impl TileSums {
+    fn add(&mut self, row: [f64; UNKNOWNS_PER_CELL], residual: f64, weight: f64) {
+        for i in 0..UNKNOWNS_PER_CELL {
             for j in 0..=i {
                 self.matrix[i][j] += weight * row[i] * row[j];
             }
-            self.right[i] += weight * row[i] * off;
+            self.right[i] += weight * row[i] * residual;
             self.row[i] += weight * row[i];
         }
-        self.off += weight * off;
+        self.residual += weight * residual;
         self.weight += weight;
     }
 
@@ -80,50 +80,51 @@ impl Sums {
     }
 
     fn right(&self, i: usize) -> f64 {
-        self.right[i] - self.row[i] * self.off / self.weight
+        self.right[i] - self.row[i] * self.residual / self.weight
     }
 }
 
 /// The displacement after a step from the one `before`. Pixels are kept `reduction` to one each way.
-pub(crate) fn fitted(
+pub(crate) fn refine_displacement(
     view: &View,
-    before: &Displacement,
-    compared: &[Compared],
+    previous: &Displacement,
+    comparisons: &[Comparison],
     reduction: u32,
 ) -> Option<Displacement> {
-    let lattice = Lattice::of(view);
-    let places: Vec<(usize, InCell)> = compared.iter().map(|place| lattice.cell(place.pixel)).collect();
-    let tile = |(cell, at): &(usize, InCell)| {
+    let lattice = Lattice::new(view);
+    let places: Vec<(usize, CellPosition)> =
+        comparisons.iter().map(|place| lattice.cell(place.pixel)).collect();
+    let tile = |(cell, at): &(usize, CellPosition)| {
         let [column, row] =
             [at.share.x, at.share.y].map(|share| ((share * TILES as f64) as usize).min(TILES - 1));
         (cell * TILES + row) * TILES + column
     };
     let mut means = vec![(0.0, 0.0); lattice.cells() * TILES * TILES];
-    for (compared, place) in compared.iter().zip(&places) {
+    for (comparison, place) in comparisons.iter().zip(&places) {
         let mean = &mut means[tile(place)];
-        *mean = (mean.0 + compared.weight * compared.off, mean.1 + compared.weight);
+        *mean = (mean.0 + comparison.weight * comparison.residual, mean.1 + comparison.weight);
     }
-    let beside_mean: Vec<f64> = compared
+    let deviations: Vec<f64> = comparisons
         .iter()
         .zip(&places)
-        .map(|(compared, place)| {
+        .map(|(comparison, place)| {
             let (sum, weight) = means[tile(place)];
-            (compared.off - sum / weight).abs()
+            (comparison.residual - sum / weight).abs()
         })
         .collect();
     // Of a normal distribution.
-    let scale = (1.4826 * median(&mut beside_mean.clone(), f64::total_cmp)?).max(LEAST_SCALE);
-    let mut sums = vec![Sums::default(); means.len()];
-    for ((compared, place), beside_mean) in compared.iter().zip(&places).zip(beside_mean) {
-        let belongs = 1.0 / (1.0 + (beside_mean / (ELSE * scale)).powi(2)).powi(2);
+    let scale = (1.4826 * median(&mut deviations.clone(), f64::total_cmp)?).max(MIN_SCALE);
+    let mut sums = vec![TileSums::default(); means.len()];
+    for ((comparison, place), deviation) in comparisons.iter().zip(&places).zip(deviations) {
+        let inlier_weight = 1.0 / (1.0 + (deviation / (OUTLIER_SCALES * scale)).powi(2)).powi(2);
         let shares = place.1.shares();
-        let row = std::array::from_fn(|i| shares[i / 2] * compared.slope[i % 2]);
-        let off = compared.off + compared.slope.dot(before.at(compared.pixel));
-        sums[tile(place)].add(row, off, compared.weight * belongs);
+        let row = std::array::from_fn(|i| shares[i / 2] * comparison.slope[i % 2]);
+        let residual = comparison.residual + comparison.slope.dot(previous.at(comparison.pixel));
+        sums[tile(place)].add(row, residual, comparison.weight * inlier_weight);
     }
     let n = 2 * lattice.nodes();
     let (mut matrix, mut right) = (vec![0.0; n * n], vec![0.0; n]);
-    let says = COUNTS / (scale * scale);
+    let information = POINT_WEIGHT / (scale * scale);
     let mut is_done = vec![false; means.len()];
     for place in &places {
         let number = tile(place);
@@ -131,10 +132,10 @@ pub(crate) fn fitted(
             continue;
         }
         let unknown = |i: usize| 2 * place.1.nodes[i / 2] + i % 2;
-        for i in 0..OF_CELL {
-            right[unknown(i)] += says * sums[number].right(i);
+        for i in 0..UNKNOWNS_PER_CELL {
+            right[unknown(i)] += information * sums[number].right(i);
             for j in 0..=i {
-                let value = says * sums[number].matrix(i, j);
+                let value = information * sums[number].matrix(i, j);
                 matrix[unknown(i) * n + unknown(j)] += value;
                 if i != j {
                     matrix[unknown(j) * n + unknown(i)] += value;
@@ -143,22 +144,22 @@ pub(crate) fn fitted(
         }
     }
     let unit = f64::from(reduction);
-    let [differ, off] = [NEIGHBOURS_DIFFER, OFF].map(|px| 1.0 / (px * unit).powi(2));
+    let [smoothness_weight, prior_weight] = [SMOOTHNESS_PX, PRIOR_PX].map(|px| 1.0 / (px * unit).powi(2));
     for unknown in 0..n {
-        matrix[unknown * n + unknown] += off;
+        matrix[unknown * n + unknown] += prior_weight;
     }
     for [a, b] in lattice.neighbours() {
         for (a, b) in [(2 * a, 2 * b), (2 * a + 1, 2 * b + 1)] {
-            matrix[a * n + a] += differ;
-            matrix[b * n + b] += differ;
-            matrix[a * n + b] -= differ;
-            matrix[b * n + a] -= differ;
+            matrix[a * n + a] += smoothness_weight;
+            matrix[b * n + b] += smoothness_weight;
+            matrix[a * n + b] -= smoothness_weight;
+            matrix[b * n + a] -= smoothness_weight;
         }
     }
     solve_positive(&mut matrix, &mut right);
-    let most = (MOST_OFF * unit) as f32;
-    let node = |node: &[f64; 2]| Vec2::new(node[0] as f32, node[1] as f32).clamp_length_max(most);
-    Displacement::of_nodes(view, right.as_chunks::<2>().0.iter().map(node).collect())
+    let max_px = (MAX_DISPLACEMENT_PX * unit) as f32;
+    let node = |node: &[f64; 2]| Vec2::new(node[0] as f32, node[1] as f32).clamp_length_max(max_px);
+    Displacement::from_nodes(view, right.as_chunks::<2>().0.iter().map(node).collect())
 }
 
 #[cfg(test)]
@@ -167,7 +168,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_shift_is_found_whatever_is_brighter_and_what_hides_it() {
+    fn a_shift_is_recovered_despite_brightness_changes_and_occluders() {
         let view = view([320, 240]);
         let pattern = |p: DVec2| 0.4 + 0.1 * (0.31 * p.x + 0.05 * p.y).sin() + 0.1 * (0.27 * p.y).cos();
         let slope = |p: DVec2| {
@@ -175,10 +176,10 @@ mod tests {
             DVec2::new(0.31 * along, 0.05 * along - 0.027 * (0.27 * p.y).sin())
         };
         let shift = |p: DVec2| DVec2::new(0.8 - 0.002 * p.x, -0.5 + 0.001 * p.y);
-        let found = |has_card: bool| {
+        let max_error_px = |has_card: bool| {
             let mut displacement = Displacement::none(&view);
             for _ in 0..4 {
-                let compared: Vec<Compared> = (0..80 * 60)
+                let comparisons: Vec<Comparison> = (0..80 * 60)
                     .map(|k| {
                         let pixel = DVec2::new(4.0 * f64::from(k % 80) + 2.0, 4.0 * f64::from(k / 80) + 2.0);
                         let at = pixel + displacement.at(pixel);
@@ -186,16 +187,16 @@ mod tests {
                         // What is expected at p is found at p + shift(p), brighter on the right.
                         let shown = if is_card { 0.9 } else { pattern(at) + 0.0002 * at.x };
                         let expected = pattern(pixel + shift(pixel));
-                        Compared { pixel, off: expected - shown, slope: slope(at), weight: 1.0 }
+                        Comparison { pixel, residual: expected - shown, slope: slope(at), weight: 1.0 }
                     })
                     .collect();
-                displacement = fitted(&view, &displacement, &compared, 1).unwrap();
+                displacement = refine_displacement(&view, &displacement, &comparisons, 1).unwrap();
             }
             let places = [[30.0, 40.0], [160.0, 120.0], [300.0, 60.0], [250.0, 200.0]].map(DVec2::from);
             places.map(|p| (displacement.at(p) - shift(p)).length()).into_iter().fold(0.0, f64::max)
         };
-        assert!(found(false) < 0.08, "{}", found(false));
-        assert!(found(true) < 0.15, "{}", found(true));
-        assert!(fitted(&view, &Displacement::none(&view), &[], 1).is_none(), "nothing is known");
+        assert!(max_error_px(false) < 0.08, "{}", max_error_px(false));
+        assert!(max_error_px(true) < 0.15, "{}", max_error_px(true));
+        assert!(refine_displacement(&view, &Displacement::none(&view), &[], 1).is_none(), "nothing is known");
     }
 }

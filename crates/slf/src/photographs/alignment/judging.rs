@@ -1,75 +1,76 @@
 //! Whether photographs are told better by the others once they are aligned: at texels that they were not aligned by.
 
-use super::halves::{Half, half_of};
+use super::halves::{Fold, fold_of};
 use super::lattice::Displacement;
 use crate::photographs::exposures::Exposure;
 use crate::photographs::odd;
-use crate::photographs::places::Blocks;
-use crate::photographs::telling::{Calibrated, Known, Work, robust_mean, toward};
+use crate::photographs::places::TexelBlocks;
+use crate::photographs::telling::{
+    CalibratedObservations, ResidualSample, Workspace, direction_to_eye, robust_mean,
+};
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;
 use scene::View;
 
 /// Texels that are asked for each photograph, about.
-const OF_A_VIEW: usize = 3_000;
+const TEXELS_PER_VIEW: usize = 3_000;
 /// A texel that fewer photographs see says nothing.
-const FEWEST: usize = 4;
+const MIN_VIEWS: usize = 4;
 /// What is off by more (radiance) is something else.
-const MOST: f32 = 0.25;
+const MAX_ERROR: f32 = 0.25;
 /// A photograph is aligned if that takes so much of what the others tell wrong of it.
-const TAKES: f64 = 0.04;
+const MIN_IMPROVEMENT: f64 = 0.04;
 /// Photographs that are not aligned change what the others are compared with: so often.
 const ROUNDS: usize = 3;
 
 /// What the others tell wrong of each photograph, summed, weighted.
-fn errors(
-    radiance: &Calibrated<'_>,
+fn prediction_errors(
+    radiance: &CalibratedObservations<'_>,
     views: &[View],
     exposures: &[Exposure],
     displacements: &[Displacement],
     texels: &[usize],
 ) -> Vec<f64> {
-    let of_texel = |work: &mut Work, &texel: &usize| -> Vec<(u16, f32)> {
-        let sightings = radiance.sightings.of_texel(texel);
+    let texel_errors = |work: &mut Workspace, &texel: &usize| -> Vec<(u16, f32)> {
+        let observations = radiance.observations.of_texel(texel);
         let from = radiance.texels.position(texel);
-        radiance.samples_into(texel, &mut work.samples);
-        for (sample, sighting) in work.samples.iter_mut().zip(sightings) {
-            let number = usize::from(sighting.view);
+        radiance.collect_samples(texel, &mut work.samples);
+        for (sample, observation) in work.samples.iter_mut().zip(observations) {
+            let number = usize::from(observation.view);
             if !displacements[number].is_none()
                 && let Some(pixel) = views[number].project(from)
             {
-                let picture = &radiance.sightings.pictures[number];
+                let picture = &radiance.observations.pictures[number];
                 let shown = picture.at(picture.place(displacements[number].moved(pixel)));
                 sample.light = shown.light * exposures[number].to_radiance(&views[number], pixel);
             }
         }
         let constant = robust_mean(&work.samples, &mut Vec::new());
-        work.known.clear();
-        for (place, (sample, sighting)) in work.samples.iter().zip(sightings).enumerate() {
-            let direction = toward(from, radiance.eye(sighting));
-            let weight = sample.counts(constant);
-            work.known.push(Known { place, direction, residual: sample.light - constant, weight });
+        work.residuals.clear();
+        for (index, (sample, observation)) in work.samples.iter().zip(observations).enumerate() {
+            let direction = direction_to_eye(from, radiance.eye(observation));
+            let weight = sample.weight_against(constant);
+            work.residuals.push(ResidualSample { index, direction, value: sample.light - constant, weight });
         }
-        work.keep_best();
-        work.leave_out(&odd::KERNEL);
-        let wrong = work
-            .known
-            .iter()
-            .zip(work.errors())
-            .map(|(known, error)| (sightings[known.place].view, known.weight * error.length().min(MOST)));
-        wrong.collect()
+        work.retain_best();
+        work.leave_one_out(&odd::PREDICTION_KERNEL);
+        let errors = work.residuals.iter().zip(work.errors()).map(|(residual, error)| {
+            (observations[residual.index].view, residual.weight * error.length().min(MAX_ERROR))
+        });
+        errors.collect()
     };
-    let found: Vec<Vec<(u16, f32)>> = texels.par_iter().map_init(Work::new, of_texel).collect();
+    let errors_by_texel: Vec<Vec<(u16, f32)>> =
+        texels.par_iter().map_init(Workspace::new, texel_errors).collect();
     let mut sums = vec![0.0; views.len()];
-    for (view, wrong) in found.into_iter().flatten() {
-        sums[usize::from(view)] += f64::from(wrong);
+    for (view, error) in errors_by_texel.into_iter().flatten() {
+        sums[usize::from(view)] += f64::from(error);
     }
     sums
 }
 
 /// Those of the displacements that lower the errors, the others none.
-pub(super) fn better(
-    radiance: &Calibrated<'_>,
+pub(super) fn retain_improvements(
+    radiance: &CalibratedObservations<'_>,
     views: &[View],
     exposures: &[Exposure],
     mut displacements: Vec<Displacement>,
@@ -79,23 +80,23 @@ pub(super) fn better(
         return Ok(displacements);
     }
     let none: Vec<Displacement> = views.iter().map(Displacement::none).collect();
-    let blocks = Blocks::of(radiance.texels.size());
-    let is_judging = |texel: &usize| {
-        radiance.sightings.range(*texel).len() >= FEWEST
-            && half_of(&blocks, radiance.texels, *texel) == Half::Judging
+    let blocks = TexelBlocks::new(radiance.texels.size());
+    let is_validation = |texel: &usize| {
+        radiance.observations.range(*texel).len() >= MIN_VIEWS
+            && fold_of(&blocks, radiance.texels, *texel) == Fold::Validation
     };
-    let texels: Vec<usize> = (0..radiance.texels.count()).filter(is_judging).collect();
-    let count: usize = texels.iter().map(|&texel| radiance.sightings.range(texel).len()).sum();
-    let step = count.div_ceil(OF_A_VIEW * views.len()).max(1);
+    let texels: Vec<usize> = (0..radiance.texels.count()).filter(is_validation).collect();
+    let count: usize = texels.iter().map(|&texel| radiance.observations.range(texel).len()).sum();
+    let step = count.div_ceil(TEXELS_PER_VIEW * views.len()).max(1);
     let texels: Vec<usize> = texels.into_iter().step_by(step).collect();
-    let before = errors(radiance, views, exposures, &none, &texels);
+    let before = prediction_errors(radiance, views, exposures, &none, &texels);
     for _ in 0..ROUNDS {
         progress.check()?;
-        let after = errors(radiance, views, exposures, &displacements, &texels);
+        let after = prediction_errors(radiance, views, exposures, &displacements, &texels);
         let mut is_changed = false;
         for (view, none) in none.iter().enumerate() {
-            let is_better = after[view] < (1.0 - TAKES) * before[view];
-            if !displacements[view].is_none() && !is_better {
+            let is_improved = after[view] < (1.0 - MIN_IMPROVEMENT) * before[view];
+            if !displacements[view].is_none() && !is_improved {
                 displacements[view] = none.clone();
                 is_changed = true;
             }
@@ -105,7 +106,7 @@ pub(super) fn better(
         }
     }
     // What still changes is told by nobody for sure.
-    let after = errors(radiance, views, exposures, &displacements, &texels);
-    let is_better = after.iter().sum::<f64>() < (1.0 - TAKES) * before.iter().sum::<f64>();
-    Ok(if is_better { displacements } else { none })
+    let after = prediction_errors(radiance, views, exposures, &displacements, &texels);
+    let is_improved = after.iter().sum::<f64>() < (1.0 - MIN_IMPROVEMENT) * before.iter().sum::<f64>();
+    Ok(if is_improved { displacements } else { none })
 }

@@ -18,7 +18,7 @@ const CELLS: f64 = 8.0;
 
 /// A place in a lattice.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct InCell {
+pub(crate) struct CellPosition {
     /// Nodes at its corners: upper left and right, lower left and right.
     pub nodes: [usize; 4],
     /// Where in it, in [0, 1].
@@ -34,7 +34,7 @@ pub(crate) struct Displacement {
 }
 
 impl Lattice {
-    pub fn of(view: &View) -> Self {
+    pub fn new(view: &View) -> Self {
         let [width, height] = view.lens.size_px().map(f64::from);
         let side_px = (width.max(height) / CELLS).max(1.0);
         let [columns, rows] = [width, height].map(|side| (side / side_px).ceil() as usize + 1);
@@ -50,14 +50,14 @@ impl Lattice {
     }
 
     /// The number of the cell that a pixel position is in, and where in it; beyond the border that beside it.
-    pub fn cell(&self, pixel: DVec2) -> (usize, InCell) {
+    pub fn cell(&self, pixel: DVec2) -> (usize, CellPosition) {
         let place = pixel / self.side_px;
         let within = |at: f64, nodes: usize| (at.max(0.0) as usize).min(nodes - 2);
         let (column, row) = (within(place.x, self.columns), within(place.y, self.rows));
         let share = (place - DVec2::new(column as f64, row as f64)).clamp(DVec2::ZERO, DVec2::ONE);
         let first = row * self.columns + column;
         let nodes = [first, first + 1, first + self.columns, first + self.columns + 1];
-        (row * (self.columns - 1) + column, InCell { nodes, share })
+        (row * (self.columns - 1) + column, CellPosition { nodes, share })
     }
 
     /// Nodes beside each other.
@@ -71,7 +71,7 @@ impl Lattice {
     }
 }
 
-impl InCell {
+impl CellPosition {
     /// How much each corner counts here.
     pub fn shares(&self) -> [f64; 4] {
         let DVec2 { x, y } = self.share;
@@ -82,14 +82,14 @@ impl InCell {
 impl Displacement {
     /// Of a photograph that is as its camera says.
     pub fn none(view: &View) -> Self {
-        Self { lattice: Lattice::of(view), nodes: Vec::new() }
+        Self { lattice: Lattice::new(view), nodes: Vec::new() }
     }
 
     /// Of nodes, row by row, px; none if they are too many or too few, or one is not a number. None at all are those of [`Self::none`].
-    pub fn of_nodes(view: &View, nodes: Vec<Vec2>) -> Option<Self> {
-        let lattice = Lattice::of(view);
-        let is_one = nodes.is_empty() || nodes.len() == lattice.nodes();
-        (is_one && nodes.iter().all(|node| node.is_finite())).then_some(Self { lattice, nodes })
+    pub fn from_nodes(view: &View, nodes: Vec<Vec2>) -> Option<Self> {
+        let lattice = Lattice::new(view);
+        let has_valid_count = nodes.is_empty() || nodes.len() == lattice.nodes();
+        (has_valid_count && nodes.iter().all(|node| node.is_finite())).then_some(Self { lattice, nodes })
     }
 
     pub fn nodes(&self) -> &[Vec2] {
@@ -116,7 +116,7 @@ impl Displacement {
     }
 
     /// Its largest, px.
-    pub fn most(&self) -> f64 {
+    pub fn max_px(&self) -> f64 {
         self.nodes.iter().map(|node| f64::from(node.length())).fold(0.0, f64::max)
     }
 }
@@ -142,20 +142,20 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn what_is_linear_is_interpolated_exactly_and_goes_on_beyond_the_border() {
+    fn linear_fields_are_interpolated_exactly_and_clamped_at_the_border() {
         let view = view([160, 90]);
-        let lattice = Lattice::of(&view);
+        let lattice = Lattice::new(&view);
         assert_eq!((lattice.nodes(), lattice.cells()), (9 * 6, 8 * 5));
         let plane = |x: f64, y: f64| Vec2::new((0.1 * x - 0.03 * y) as f32, (1.0 + 0.02 * x) as f32);
         let nodes = (0..lattice.nodes()).map(|n| plane(20.0 * (n % 9) as f64, 20.0 * (n / 9) as f64));
-        let displacement = Displacement::of_nodes(&view, nodes.collect()).unwrap();
+        let displacement = Displacement::from_nodes(&view, nodes.collect()).unwrap();
         for [x, y] in [[0.0, 0.0], [33.0, 71.5], [20.0, 40.0], [159.9, 89.9]] {
             let off = displacement.at(DVec2::new(x, y)) - plane(x, y).as_dvec2();
             assert!(off.length() < 1e-5, "{x} {y}: {off}");
         }
         assert_eq!(displacement.at(DVec2::new(-9.0, 40.0)), displacement.at(DVec2::new(0.0, 40.0)));
         assert_eq!(Displacement::none(&view).at(DVec2::new(3.0, 4.0)), DVec2::ZERO);
-        assert!(Displacement::of_nodes(&view, vec![Vec2::ONE; 53]).is_none());
-        assert!(Displacement::of_nodes(&view, vec![Vec2::NAN; 54]).is_none());
+        assert!(Displacement::from_nodes(&view, vec![Vec2::ONE; 53]).is_none());
+        assert!(Displacement::from_nodes(&view, vec![Vec2::NAN; 54]).is_none());
     }
 }

@@ -1,26 +1,26 @@
 //! Surface points that photographs are compared at, and what each is expected to show there.
 
-use super::fitting::Compared;
-use super::halves::{Half, half_of};
+use super::fitting::Comparison;
+use super::halves::{Fold, fold_of};
 use super::lattice::Displacement;
 use crate::photographs::exposures::Exposure;
-use crate::photographs::odd::Belonging;
-use crate::photographs::places::Blocks;
-use crate::photographs::seeing::{KeptPicture, Sighting};
-use crate::photographs::telling::{Calibrated, Sample, robust_mean, roots};
+use crate::photographs::odd::InlierMap;
+use crate::photographs::places::TexelBlocks;
+use crate::photographs::seeing::{Observation, PackedPicture};
+use crate::photographs::telling::{CalibratedObservations, Sample, robust_mean, roots};
 use glam::{DVec2, Vec3};
 use rayon::prelude::*;
 use scene::View;
 
 /// Points that a photograph is asked at, about.
-const OF_A_VIEW: usize = 12_000;
+const POINTS_PER_VIEW: usize = 12_000;
 /// A point that fewer photographs see says nothing.
-const FEWEST: usize = 3;
+const MIN_VIEWS: usize = 3;
 /// Others that tell a photograph what to expect count so much at least.
-const LEAST_OTHERS: f32 = 0.3;
+const MIN_OTHERS_WEIGHT: f32 = 0.3;
 
 /// A point as a photograph sees it.
-struct Seen {
+struct PointView {
     view: u16,
     weight: f32,
     /// Where its camera says that it is.
@@ -30,109 +30,112 @@ struct Seen {
 }
 
 /// All points.
-pub(super) struct Points {
+pub(super) struct ComparisonPoints {
     /// By point.
-    all: Vec<Vec<Seen>>,
+    all: Vec<Vec<PointView>>,
     /// By view: the points that it sees, and its place among those that do.
-    of_view: Vec<Vec<(u32, u16)>>,
+    by_view: Vec<Vec<(u32, u16)>>,
 }
 
 /// By point and photograph that sees it: what others lead to expect, if they do.
-pub(super) type Expected = Vec<Vec<Option<f32>>>;
+pub(super) type Predictions = Vec<Vec<Option<f32>>>;
 
-impl Points {
+impl ComparisonPoints {
     /// Texels that may be asked, not too many of them, where photographs belong.
-    pub fn of(
-        radiance: &Calibrated<'_>,
+    pub fn new(
+        radiance: &CalibratedObservations<'_>,
         views: &[View],
         exposures: &[Exposure],
-        belonging: &[Belonging],
+        inlier_maps: &[InlierMap],
     ) -> Self {
-        let (texels, sightings) = (radiance.texels, radiance.sightings);
-        let blocks = Blocks::of(texels.size());
-        let may_be_asked = |texel: &usize| {
-            sightings.range(*texel).len() >= FEWEST && half_of(&blocks, texels, *texel) == Half::Asked
+        let (texels, observations) = (radiance.texels, radiance.observations);
+        let blocks = TexelBlocks::new(texels.size());
+        let is_usable = |texel: &usize| {
+            observations.range(*texel).len() >= MIN_VIEWS && fold_of(&blocks, texels, *texel) == Fold::Fitting
         };
-        let asked: Vec<usize> = (0..texels.count()).filter(may_be_asked).collect();
-        let count: usize = asked.iter().map(|&texel| sightings.range(texel).len()).sum();
-        let step = count.div_ceil(OF_A_VIEW * views.len()).max(1);
-        let of_texel = |&texel: &usize| -> Vec<Seen> {
-            let seen = |sighting: &Sighting| {
-                let number = usize::from(sighting.view);
+        let candidates: Vec<usize> = (0..texels.count()).filter(is_usable).collect();
+        let count: usize = candidates.iter().map(|&texel| observations.range(texel).len()).sum();
+        let step = count.div_ceil(POINTS_PER_VIEW * views.len()).max(1);
+        let texel_views = |&texel: &usize| -> Vec<PointView> {
+            let point_view = |observation: &Observation| {
+                let number = usize::from(observation.view);
                 let pixel = views[number].project(texels.position(texel))?;
-                let weight = sighting.weight() * belonging[number].at(pixel);
+                let weight = observation.weight() * inlier_maps[number].at(pixel);
                 let to_radiance = exposures[number].to_radiance(&views[number], pixel);
-                (weight > 0.0).then_some(Seen { view: sighting.view, weight, pixel, to_radiance })
+                (weight > 0.0).then_some(PointView { view: observation.view, weight, pixel, to_radiance })
             };
-            sightings.of_texel(texel).iter().filter_map(seen).collect()
+            observations.of_texel(texel).iter().filter_map(point_view).collect()
         };
-        let all: Vec<Vec<Seen>> = asked.par_iter().step_by(step).map(of_texel).collect();
-        let mut of_view = vec![Vec::new(); views.len()];
-        for (point, seen) in all.iter().enumerate() {
-            for (place, seen) in seen.iter().enumerate() {
-                of_view[usize::from(seen.view)].push((point as u32, place as u16));
+        let all: Vec<Vec<PointView>> = candidates.par_iter().step_by(step).map(texel_views).collect();
+        let mut by_view = vec![Vec::new(); views.len()];
+        for (point, point_views) in all.iter().enumerate() {
+            for (index, point_view) in point_views.iter().enumerate() {
+                by_view[usize::from(point_view.view)].push((point as u32, index as u16));
             }
         }
-        Self { all, of_view }
+        Self { all, by_view }
     }
 
     /// What others lead to expect of each photograph at each point that it sees, all displaced.
-    pub fn expected(&self, pictures: &[KeptPicture], displacements: &[Displacement]) -> Expected {
-        let of_point = |(samples, belonging): &mut (Vec<Sample>, Vec<f32>), seen: &Vec<Seen>| {
+    pub fn predict(&self, pictures: &[PackedPicture], displacements: &[Displacement]) -> Predictions {
+        let predict_point = |(samples, inlier_weights): &mut (Vec<Sample>, Vec<f32>),
+                             point_views: &Vec<PointView>| {
             samples.clear();
-            samples.extend(seen.iter().map(|seen| {
-                let number = usize::from(seen.view);
+            samples.extend(point_views.iter().map(|point_view| {
+                let number = usize::from(point_view.view);
                 let picture = &pictures[number];
-                let shown = picture.at(picture.place(displacements[number].moved(seen.pixel)));
+                let shown = picture.at(picture.place(displacements[number].moved(point_view.pixel)));
                 let clipped = shown.clipped.clamp(0.0, 1.0);
-                Sample { light: shown.light * seen.to_radiance, weight: seen.weight, clipped }
+                Sample { light: shown.light * point_view.to_radiance, weight: point_view.weight, clipped }
             }));
-            let mean = robust_mean(samples, belonging);
-            let counts = |(sample, belongs): (&Sample, &f32)| sample.counts(mean) * belongs;
-            let all: f32 = samples.iter().zip(&*belonging).map(counts).sum();
-            let by_others = |(sample, belongs): (&Sample, &f32)| {
-                let own = counts((sample, belongs));
+            let mean = robust_mean(samples, inlier_weights);
+            let effective_weight =
+                |(sample, inlier_weight): (&Sample, &f32)| sample.weight_against(mean) * inlier_weight;
+            let all: f32 = samples.iter().zip(&*inlier_weights).map(effective_weight).sum();
+            let predict_from_others = |(sample, inlier_weight): (&Sample, &f32)| {
+                let own = effective_weight((sample, inlier_weight));
                 let others = all - own;
                 // What was at its limit is not where it seems to be.
-                let is_told = sample.clipped == 0.0 && others >= LEAST_OTHERS;
-                is_told.then(|| root((mean * all - sample.light * own) / others))
+                let is_predictable = sample.clipped == 0.0 && others >= MIN_OTHERS_WEIGHT;
+                is_predictable.then(|| mean_root((mean * all - sample.light * own) / others))
             };
-            samples.iter().zip(&*belonging).map(by_others).collect()
+            samples.iter().zip(&*inlier_weights).map(predict_from_others).collect()
         };
-        self.all.par_iter().map_init(Default::default, of_point).collect()
+        self.all.par_iter().map_init(Default::default, predict_point).collect()
     }
 
     /// A photograph, displaced, beside what others lead to expect.
-    pub fn compared(
+    pub fn compare(
         &self,
         view: usize,
-        picture: &KeptPicture,
+        picture: &PackedPicture,
         displacement: &Displacement,
-        expected: &Expected,
-    ) -> Vec<Compared> {
+        predictions: &Predictions,
+    ) -> Vec<Comparison> {
         let step = f64::from(picture.reduction);
-        let compared = |&(point, place): &(u32, u16)| {
-            let (point, place) = (point as usize, usize::from(place));
-            let expected = expected[point][place]?;
-            let seen = &self.all[point][place];
-            let at = displacement.moved(seen.pixel);
+        let compare_point = |&(point, index): &(u32, u16)| {
+            let (point, index) = (point as usize, usize::from(index));
+            let predicted = predictions[point][index]?;
+            let point_view = &self.all[point][index];
+            let at = displacement.moved(point_view.pixel);
             let shown = |pixel: DVec2| {
                 let shown = picture.at(picture.place(pixel));
-                f64::from(root(shown.light * seen.to_radiance))
+                f64::from(mean_root(shown.light * point_view.to_radiance))
             };
-            let along = |axis: DVec2| (shown(at + axis * step) - shown(at - axis * step)) / (2.0 * step);
-            Some(Compared {
-                pixel: seen.pixel,
-                off: f64::from(expected) - shown(at),
-                slope: DVec2::new(along(DVec2::X), along(DVec2::Y)),
-                weight: f64::from(seen.weight),
+            let gradient_along =
+                |axis: DVec2| (shown(at + axis * step) - shown(at - axis * step)) / (2.0 * step);
+            Some(Comparison {
+                pixel: point_view.pixel,
+                residual: f64::from(predicted) - shown(at),
+                slope: DVec2::new(gradient_along(DVec2::X), gradient_along(DVec2::Y)),
+                weight: f64::from(point_view.weight),
             })
         };
-        self.of_view[view].iter().filter_map(compared).collect()
+        self.by_view[view].iter().filter_map(compare_point).collect()
     }
 }
 
 /// The mean root of its channels: noise is about the same for dark and bright.
-fn root(light: Vec3) -> f32 {
+fn mean_root(light: Vec3) -> f32 {
     roots(light).element_sum() / 3.0
 }

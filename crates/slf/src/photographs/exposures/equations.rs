@@ -1,20 +1,20 @@
 //! The normal equations of exposures.
 
-use super::said::Said;
+use super::said::ExposureObservation;
 use crate::photographs::numbers::median;
 
 /// The normal equations.
-pub(super) struct System<'a> {
+pub(super) struct NormalEquations<'a> {
     pub unknowns: usize,
     pub views: usize,
     pub lens_of: &'a [usize],
 }
 
-impl System<'_> {
+impl NormalEquations<'_> {
     /// Matrix, right side and absolute residuals of some points, weighted by how a solution explains them.
-    pub fn of_points(
+    pub fn accumulate(
         &self,
-        points: &[Vec<Said>],
+        points: &[Vec<ExposureObservation>],
         solution: &[f64],
         scale: f64,
     ) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
@@ -23,32 +23,33 @@ impl System<'_> {
         let mut mean_row = vec![0.0; n];
         for point in points {
             for channel in 0..3 {
-                let row = |said: &Said| {
-                    let lens = 3 * self.views + 2 * self.lens_of[said.view];
-                    let [k1, k2] = said.vignetting;
-                    [(3 * said.view + channel, 1.0), (lens, k1), (lens + 1, k2)]
+                let row = |observation: &ExposureObservation| {
+                    let lens = 3 * self.views + 2 * self.lens_of[observation.view];
+                    let [k1, k2] = observation.vignetting;
+                    [(3 * observation.view + channel, 1.0), (lens, k1), (lens + 1, k2)]
                 };
-                let off = |said: &Said| {
-                    let told: f64 = row(said).iter().map(|&(at, factor)| factor * solution[at]).sum();
-                    said.stops[channel] - told
+                let residual = |observation: &ExposureObservation| {
+                    let predicted: f64 =
+                        row(observation).iter().map(|&(at, factor)| factor * solution[at]).sum();
+                    observation.stops[channel] - predicted
                 };
                 // The point's own light, as most say: a median holds out where half of them are wrong.
-                let mut all: Vec<f64> = point.iter().map(off).collect();
+                let mut all: Vec<f64> = point.iter().map(residual).collect();
                 if all.len() < 2 {
                     continue;
                 }
                 let middle = median(&mut all, f64::total_cmp).unwrap_or(0.0);
                 let (mut weights, mut mean) = (0.0, 0.0);
                 let mut touched = Vec::with_capacity(point.len() * 3);
-                for said in point {
-                    let error = off(said) - middle;
+                for observation in point {
+                    let error = residual(observation) - middle;
                     errors.push(error.abs());
-                    let weight = said.weight / (1.0 + (error / scale).powi(2));
+                    let weight = observation.weight / (1.0 + (error / scale).powi(2));
                     weights += weight;
-                    mean += weight * said.stops[channel];
-                    let row = row(said);
+                    mean += weight * observation.stops[channel];
+                    let row = row(observation);
                     for &(i, a) in &row {
-                        right[i] += weight * a * said.stops[channel];
+                        right[i] += weight * a * observation.stops[channel];
                         for &(j, b) in &row {
                             matrix[i * n + j] += weight * a * b;
                         }

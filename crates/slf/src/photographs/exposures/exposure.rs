@@ -21,14 +21,14 @@ impl Exposure {
     }
 
     /// The most that [`Self::to_radiance`] can be in the picture, of any channel.
-    pub(crate) fn most_to_radiance(&self, view: &View) -> f32 {
+    pub(crate) fn max_to_radiance(&self, view: &View) -> f32 {
         // k₁·r² + k₂·r⁴ over r² in [0, most] is least at an end or where its slope is 0.
         let [k1, k2] = self.vignetting_stops;
         let size = DVec2::from(view.lens.size_px().map(f64::from));
         let corners = [DVec2::ZERO, size, DVec2::new(size.x, 0.0), DVec2::new(0.0, size.y)];
-        let most = corners.map(|corner| radius_squared(view, corner)).into_iter().fold(0.0, f64::max);
-        let turn = if k2 > 0.0 { (-k1 / (2.0 * k2)).clamp(0.0, most) } else { 0.0 };
-        let falloff = [0.0, most, turn].map(|r2| (k1 + k2 * r2) * r2).into_iter().fold(0.0, f64::min);
+        let max_r2 = corners.map(|corner| radius_squared(view, corner)).into_iter().fold(0.0, f64::max);
+        let turn = if k2 > 0.0 { (-k1 / (2.0 * k2)).clamp(0.0, max_r2) } else { 0.0 };
+        let falloff = [0.0, max_r2, turn].map(|r2| (k1 + k2 * r2) * r2).into_iter().fold(0.0, f64::min);
         let gain = self.gain_stops.into_iter().fold(f64::INFINITY, f64::min);
         (-(gain + falloff)).exp2() as f32
     }

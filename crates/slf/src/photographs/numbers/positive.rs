@@ -16,9 +16,9 @@ pub(crate) fn solve_positive(matrix: &mut [f64], right: &mut [f64]) {
         let pivot = matrix[j * n + j].sqrt();
         matrix[j * n + j] = pivot;
         let (head, below) = matrix.split_at_mut((j + 1) * n);
-        let own = &head[j * n..j * n + j];
+        let pivot_row = &head[j * n..j * n + j];
         below.par_chunks_mut(n).with_min_len(ROWS).for_each(|row| {
-            let sum: f64 = own.iter().zip(&row[..j]).map(|(a, b)| a * b).sum();
+            let sum: f64 = pivot_row.iter().zip(&row[..j]).map(|(a, b)| a * b).sum();
             row[j] = (row[j] - sum) / pivot;
         });
     }
@@ -39,12 +39,12 @@ mod tests {
     #[test]
     fn a_system_is_solved() {
         let matrix = [4.0, 1.0, 0.5, 1.0, 3.0, 0.2, 0.5, 0.2, 2.0];
-        let wanted = [1.0, -2.0, 3.0];
+        let expected = [1.0, -2.0, 3.0];
         let mut right: Vec<f64> =
-            (0..3).map(|i| (0..3).map(|j| matrix[3 * i + j] * wanted[j]).sum()).collect();
+            (0..3).map(|i| (0..3).map(|j| matrix[3 * i + j] * expected[j]).sum()).collect();
         solve_positive(&mut matrix.clone(), &mut right);
-        for (found, wanted) in right.iter().zip(wanted) {
-            assert!((found - wanted).abs() < 1e-12, "{right:?}");
+        for (solution, expected) in right.iter().zip(expected) {
+            assert!((solution - expected).abs() < 1e-12, "{right:?}");
         }
     }
 }

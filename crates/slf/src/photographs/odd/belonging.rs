@@ -4,43 +4,43 @@ use glam::DVec2;
 use scene::View;
 
 /// Tiles along the longer side of a photograph.
-const TILES: f64 = 40.0;
+const TILES_PER_LONG_SIDE: f64 = 40.0;
 
 /// How far each place of a photograph belongs.
 #[derive(Debug, PartialEq)]
-pub(crate) struct Belonging {
-    pub(super) grid: Grid,
+pub(crate) struct InlierMap {
+    pub(super) grid: TileGrid,
     pub(super) tiles: Vec<f32>,
 }
 
 /// The tiles of a photograph.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Grid {
+pub(super) struct TileGrid {
     pub columns: usize,
     pub rows: usize,
     /// Pixels a tile each way.
     pub side_px: f64,
 }
 
-impl Grid {
-    pub fn of(view: &View) -> Self {
+impl TileGrid {
+    pub fn new(view: &View) -> Self {
         let [width, height] = view.lens.size_px().map(f64::from);
-        let side_px = (width.max(height) / TILES).max(1.0);
+        let side_px = (width.max(height) / TILES_PER_LONG_SIDE).max(1.0);
         let [columns, rows] = [width, height].map(|side| (side / side_px).ceil() as usize);
         Self { columns, rows, side_px }
     }
 }
 
-impl Belonging {
+impl InlierMap {
     /// All of a view belongs.
-    pub fn whole(view: &View) -> Self {
-        let grid = Grid::of(view);
+    pub fn all_inliers(view: &View) -> Self {
+        let grid = TileGrid::new(view);
         Self { grid, tiles: vec![1.0; grid.columns * grid.rows] }
     }
 
     /// Of tiles as they were stored; none if there are more or fewer.
-    pub fn of_tiles(view: &View, tiles: Vec<f32>) -> Option<Self> {
-        let grid = Grid::of(view);
+    pub fn from_tiles(view: &View, tiles: Vec<f32>) -> Option<Self> {
+        let grid = TileGrid::new(view);
         (tiles.len() == grid.columns * grid.rows).then_some(Self { grid, tiles })
     }
 
@@ -51,7 +51,7 @@ impl Belonging {
 
     /// How far a pixel position belongs, in [0, 1].
     pub fn at(&self, pixel: DVec2) -> f32 {
-        let Grid { columns, rows, side_px } = self.grid;
+        let TileGrid { columns, rows, side_px } = self.grid;
         let place = pixel / side_px - 0.5;
         let floor = place.floor();
         let share = (place - floor).as_vec2();
@@ -65,7 +65,7 @@ impl Belonging {
     }
 
     /// Whether all of it belongs.
-    pub fn is_whole(&self) -> bool {
+    pub fn is_all_inliers(&self) -> bool {
         self.tiles.iter().all(|&tile| tile >= 1.0)
     }
 }

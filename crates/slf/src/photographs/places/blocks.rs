@@ -6,20 +6,20 @@ use rayon::prelude::*;
 
 /// A grid of square blocks over the atlas.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Blocks {
+pub(crate) struct TexelBlocks {
     columns: usize,
     rows: usize,
 }
 
 /// Texels a side of a block.
-const SIDE: usize = 12;
+const BLOCK_TEXELS: usize = 12;
 /// What the eight blocks around say counts this much.
-const AROUND: f32 = 0.25;
+const NEIGHBOUR_WEIGHT: f32 = 0.25;
 
-impl Blocks {
+impl TexelBlocks {
     /// Over an atlas of so many columns and rows of texels.
-    pub fn of(size: [u32; 2]) -> Self {
-        let [columns, rows] = size.map(|side| (side as usize).div_ceil(SIDE).max(1));
+    pub fn new(size: [u32; 2]) -> Self {
+        let [columns, rows] = size.map(|side| (side as usize).div_ceil(BLOCK_TEXELS).max(1));
         Self { columns, rows }
     }
 
@@ -28,13 +28,13 @@ impl Blocks {
     }
 
     /// The block that a texel lies in.
-    pub fn of_texel(&self, texels: &Texels, texel: usize) -> usize {
-        let [x, y] = texels.place(texel).map(|at| at as usize / SIDE);
+    pub fn block_of(&self, texels: &Texels, texel: usize) -> usize {
+        let [x, y] = texels.place(texel).map(|at| at as usize / BLOCK_TEXELS);
         y * self.columns + x
     }
 
     /// Whether a block is a white field, were they a chess board.
-    pub fn is_white(&self, block: usize) -> bool {
+    pub fn is_even(&self, block: usize) -> bool {
         (block % self.columns + block / self.columns).is_multiple_of(2)
     }
 
@@ -47,7 +47,7 @@ impl Blocks {
                 let (mut product, mut square) = (0.0, 0.0);
                 for row in y.saturating_sub(1)..(y + 2).min(self.rows) {
                     for column in x.saturating_sub(1)..(x + 2).min(self.columns) {
-                        let share = if row == y && column == x { 1.0 } else { AROUND };
+                        let share = if row == y && column == x { 1.0 } else { NEIGHBOUR_WEIGHT };
                         product += sums[row * self.columns + column].0 * share;
                         square += sums[row * self.columns + column].1 * share;
                     }
@@ -58,14 +58,14 @@ impl Blocks {
     }
 
     /// The values at all texels.
-    pub fn by_texel(&self, texels: &Texels, values: &[f32]) -> Vec<f32> {
+    pub fn interpolate_texels(&self, texels: &Texels, values: &[f32]) -> Vec<f32> {
         let middle = |texel: usize| DVec2::from(texels.place(texel).map(f64::from)) + 0.5;
         (0..texels.count()).into_par_iter().map(|texel| self.at(middle(texel), values)).collect()
     }
 
     /// The value at a place of the atlas, from the corner of the upper left texel.
     pub fn at(&self, place: DVec2, values: &[f32]) -> f32 {
-        let [x, y] = (place / SIDE as f64 - 0.5).as_vec2().to_array();
+        let [x, y] = (place / BLOCK_TEXELS as f64 - 0.5).as_vec2().to_array();
         let [left, top] = [x.floor(), y.floor()];
         let at = |column: f32, row: f32| {
             let column = (column.max(0.0) as usize).min(self.columns - 1);

@@ -4,14 +4,14 @@ use glam::{Vec2, Vec3};
 
 /// An equirectangular grid of directions: rows from +y down to −y, columns from −x eastward.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Sphere {
+pub(crate) struct DirectionGrid {
     pub columns: usize,
     pub rows: usize,
 }
 
-impl Sphere {
+impl DirectionGrid {
     /// Twice as many columns as rows.
-    pub fn of_rows(rows: usize) -> Self {
+    pub fn with_rows(rows: usize) -> Self {
         Self { columns: 2 * rows, rows }
     }
 
@@ -50,30 +50,33 @@ impl Sphere {
     /// Means of sums and their weights, held by what lies around as by a weight of `hold`; black if nothing is known at all.
     ///
     /// Push and pull (Gortler et al. 1996): each coarser grid joins two by two cells, down to a single one.
-    pub fn smoothed(&self, sums: &[(Vec3, f32)], hold: f32) -> Vec<Vec3> {
+    pub fn smoothed(&self, sums: &[(Vec3, f32)], prior_weight: f32) -> Vec<Vec3> {
         if self.rows == 1 || self.rows % 2 == 1 {
             let (sum, weight) =
                 sums.iter().fold((Vec3::ZERO, 0.0), |(s, w), (sum, weight)| (s + *sum, w + weight));
             let mean = if weight > 0.0 { sum / weight } else { Vec3::ZERO };
-            return sums.iter().map(|(sum, weight)| (*sum + mean * hold) / (weight + hold)).collect();
+            return sums
+                .iter()
+                .map(|(sum, weight)| (*sum + mean * prior_weight) / (weight + prior_weight))
+                .collect();
         }
-        let coarser = Self::of_rows(self.rows / 2);
-        let joined = |cell: usize| {
+        let coarser = Self::with_rows(self.rows / 2);
+        let pooled = |cell: usize| {
             let (x, y) = (2 * (cell % coarser.columns), 2 * (cell / coarser.columns));
             let cells = [[0, 0], [1, 0], [0, 1], [1, 1]].map(|[dx, dy]| (y + dy) * self.columns + x + dx);
             cells.iter().fold((Vec3::ZERO, 0.0), |(sum, weight), &cell| {
                 // A cell speaks for its place, not for how often it was seen.
-                let known = sums[cell].1;
-                let share = if known > hold { hold / known } else { 1.0 };
-                (sum + sums[cell].0 * share, weight + known * share)
+                let evidence = sums[cell].1;
+                let share = if evidence > prior_weight { prior_weight / evidence } else { 1.0 };
+                (sum + sums[cell].0 * share, weight + evidence * share)
             })
         };
-        let around = coarser.smoothed(&(0..coarser.count()).map(joined).collect::<Vec<_>>(), hold);
+        let coarse = coarser.smoothed(&(0..coarser.count()).map(pooled).collect::<Vec<_>>(), prior_weight);
         (0..self.count())
             .map(|cell| {
                 let shares = coarser.around(self.direction(cell));
-                let held = shares.iter().map(|&(cell, share)| around[cell] * share).sum::<Vec3>();
-                (sums[cell].0 + held * hold) / (sums[cell].1 + hold)
+                let prior = shares.iter().map(|&(cell, share)| coarse[cell] * share).sum::<Vec3>();
+                (sums[cell].0 + prior * prior_weight) / (sums[cell].1 + prior_weight)
             })
             .collect()
     }
@@ -84,8 +87,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_cell_lies_where_it_says() {
-        let sphere = Sphere::of_rows(16);
+    fn a_cell_contains_its_own_direction() {
+        let sphere = DirectionGrid::with_rows(16);
         for cell in 0..sphere.count() {
             let around = sphere.around(sphere.direction(cell));
             let own: f32 = around.iter().filter(|(other, _)| *other == cell).map(|(_, share)| share).sum();
@@ -96,8 +99,8 @@ mod tests {
     }
 
     #[test]
-    fn what_lies_at_a_pole_is_passed_without_a_jump() {
-        let sphere = Sphere::of_rows(16);
+    fn interpolation_is_continuous_across_the_poles() {
+        let sphere = DirectionGrid::with_rows(16);
         let value = |cell: usize| (cell * 7 % 11) as f32;
         for pole in [Vec3::Y, Vec3::NEG_Y] {
             let at = |step: f32| {

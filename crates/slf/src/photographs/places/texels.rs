@@ -34,11 +34,11 @@ pub(crate) struct Texels {
 }
 
 /// Up to four texels around a point and their shares, which sum to 1; none where the atlas has no place for it.
-pub(crate) type Around = [(u32, f32); 4];
+pub(crate) type TexelWeights = [(u32, f32); 4];
 
 impl Texels {
     /// The texels of an atlas made finer or coarser by `scale`.
-    pub fn of(scene: &Scene, atlas: &Atlas, scale: f64) -> Self {
+    pub fn new(scene: &Scene, atlas: &Atlas, scale: f64) -> Self {
         let side = |side: u32| (f64::from(side) * scale).ceil().max(1.0) as u32;
         let scaled = |corners: &[Vec2; 3]| corners.map(|corner| corner * scale as f32);
         let finer = Atlas {
@@ -117,7 +117,7 @@ impl TexelGrid {
     }
 
     /// The texels around a point, for linear interpolation.
-    pub fn around(&self, point: SurfacePoint) -> Option<Around> {
+    pub fn around(&self, point: SurfacePoint) -> Option<TexelWeights> {
         let at = self.place(point)? - 0.5;
         let floor = at.floor();
         let share = at - floor;

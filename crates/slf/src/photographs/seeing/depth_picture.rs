@@ -8,23 +8,23 @@ use glam::{DVec2, DVec3};
 use scene::{Scene, View};
 
 /// The depths of a picture's pixels.
-pub(crate) struct DepthPicture {
+pub(crate) struct DepthMap {
     width: usize,
     height: usize,
     /// 1/depth; 0 where no surface is.
     inverse: Vec<f32>,
     /// Pixels to the nearest edge, at most [`FAR_FROM_EDGES`]; 0 beside one.
-    from_edge: Vec<u8>,
+    edge_distances: Vec<u8>,
 }
 
 /// Distances from edges are told up to here, pixels.
-pub(crate) const FAR_FROM_EDGES: u8 = 64;
+pub(crate) const MAX_EDGE_DISTANCE: u8 = 64;
 /// Directions so far off the axis (cosine) have their depth told as distance.
-const OFF_AXIS: f64 = 0.2;
+const MIN_AXIS_COSINE: f64 = 0.2;
 /// What a surface may lie behind the pixel's, as a share of depth, beside what its slope explains.
-const BIAS: f32 = 2e-3;
+const DEPTH_BIAS: f32 = 2e-3;
 /// Depth jumps where neighbours differ by more than this share of it and than their slopes explain.
-const JUMP: f32 = 0.01;
+const MIN_DEPTH_JUMP: f32 = 0.01;
 
 /// A corner of a triangle in the picture.
 #[derive(Clone, Copy)]
@@ -33,24 +33,25 @@ struct Corner {
     inverse: f64,
 }
 
-impl DepthPicture {
+impl DepthMap {
     /// Draws a scene as a view sees it, `reduction` of its pixels to one each way.
-    pub fn of(scene: &Scene, view: &View, reduction: u32) -> Self {
+    pub fn render(scene: &Scene, view: &View, reduction: u32) -> Self {
         let [width, height] = view.lens.size_px().map(|side| side.div_ceil(reduction) as usize);
-        let mut picture = Self { width, height, inverse: vec![0.0; width * height], from_edge: Vec::new() };
+        let mut picture =
+            Self { width, height, inverse: vec![0.0; width * height], edge_distances: Vec::new() };
         let corner = |position: DVec3| corner(view, position, reduction);
         let vertices: Vec<Option<Corner>> = scene.positions.iter().map(|&p| corner(p)).collect();
         for triangle in 0..scene.triangles.len() as u32 {
             let indices = scene.triangles[triangle as usize].vertices;
             let corners = indices.map(|v| vertices[v as usize]);
             let positions = indices.map(|v| scene.positions[v as usize]);
-            if corners.iter().all(Option::is_none) && !may_be_seen(view, &positions) {
+            if corners.iter().all(Option::is_none) && !may_be_visible(view, &positions) {
                 continue;
             }
             picture.draw(&positions, corners, &corner, 0);
         }
-        picture.from_edge = picture.distances_from_edges();
-        picture.shut_holes();
+        picture.edge_distances = picture.distances_from_edges();
+        picture.close_holes();
         picture
     }
 
@@ -118,13 +119,13 @@ impl DepthPicture {
         for y in first(low.y)..last(high.y, self.height) {
             for x in first(low.x)..last(high.x, self.width) {
                 let at = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
-                let of_a = (b.place - at).perp_dot(c.place - at) / area;
-                let of_b = (c.place - at).perp_dot(a.place - at) / area;
-                let of_c = 1.0 - of_a - of_b;
-                if of_a < 0.0 || of_b < 0.0 || of_c < 0.0 {
+                let weight_a = (b.place - at).perp_dot(c.place - at) / area;
+                let weight_b = (c.place - at).perp_dot(a.place - at) / area;
+                let weight_c = 1.0 - weight_a - weight_b;
+                if weight_a < 0.0 || weight_b < 0.0 || weight_c < 0.0 {
                     continue;
                 }
-                let inverse = (of_a * a.inverse + of_b * b.inverse + of_c * c.inverse) as f32;
+                let inverse = (weight_a * a.inverse + weight_b * b.inverse + weight_c * c.inverse) as f32;
                 let pixel = &mut self.inverse[y * self.width + x];
                 *pixel = pixel.max(inverse);
             }
@@ -134,7 +135,7 @@ impl DepthPicture {
     /// How far each pixel is from an edge, up to [`FAR_FROM_EDGES`], in steps to any of the eight neighbours.
     fn distances_from_edges(&self) -> Vec<u8> {
         let (width, height) = (self.width, self.height);
-        let mut distance = vec![FAR_FROM_EDGES; width * height];
+        let mut distance = vec![MAX_EDGE_DISTANCE; width * height];
         for y in 0..height {
             for x in 0..width {
                 for [dx, dy] in [[1, 0], [0, 1]] {
@@ -146,16 +147,16 @@ impl DepthPicture {
             }
         }
         let spread = |distance: &mut Vec<u8>, x: usize, y: usize, neighbours: [(isize, isize); 4]| {
-            let mut least = distance[y * width + x];
+            let mut min = distance[y * width + x];
             for (dx, dy) in neighbours {
                 let (Some(x), Some(y)) = (x.checked_add_signed(dx), y.checked_add_signed(dy)) else {
                     continue;
                 };
                 if x < width && y < height {
-                    least = least.min(distance[y * width + x] + 1);
+                    min = min.min(distance[y * width + x] + 1);
                 }
             }
-            distance[y * width + x] = least;
+            distance[y * width + x] = min;
         };
         for y in 0..height {
             for x in 0..width {
@@ -171,13 +172,13 @@ impl DepthPicture {
     }
 
     /// Has what is surrounded by the surface count as its edge: more often than not a hole of the mesh, not a window to what is behind.
-    fn shut_holes(&mut self) {
+    fn close_holes(&mut self) {
         let (width, height) = (self.width, self.height);
         let mut is_open = vec![false; width * height];
         // What is open opens what is right of it and below, then what is left and above, until nothing more is reached.
-        let mut goes_on = true;
-        while goes_on {
-            goes_on = false;
+        let mut is_changed = true;
+        while is_changed {
+            is_changed = false;
             let mut open = |x: usize, y: usize, across: Option<usize>, along: Option<usize>| {
                 let number = y * width + x;
                 if is_open[number] || self.inverse[number] > 0.0 {
@@ -187,7 +188,7 @@ impl DepthPicture {
                 let is_reached = |neighbour: Option<usize>| neighbour.is_none_or(|number| is_open[number]);
                 if is_reached(across) || is_reached(along) {
                     is_open[number] = true;
-                    goes_on = true;
+                    is_changed = true;
                 }
             };
             for y in 0..height {
@@ -205,9 +206,11 @@ impl DepthPicture {
                 }
             }
         }
-        for ((from_edge, inverse), is_open) in self.from_edge.iter_mut().zip(&self.inverse).zip(is_open) {
+        for ((edge_distance, inverse), is_open) in
+            self.edge_distances.iter_mut().zip(&self.inverse).zip(is_open)
+        {
             if *inverse == 0.0 && !is_open {
-                *from_edge = 0;
+                *edge_distance = 0;
             }
         }
     }
@@ -226,7 +229,7 @@ impl DepthPicture {
         if here == 0.0 {
             return false;
         }
-        let allowed = JUMP * here.max(there);
+        let allowed = MIN_DEPTH_JUMP * here.max(there);
         let step = there - here;
         let explained = |before: Option<f32>, after: Option<f32>| match (before, after) {
             (Some(before), Some(after)) if before > 0.0 && after > 0.0 => {
@@ -239,7 +242,7 @@ impl DepthPicture {
 
     /// Whether a point is what the pixel shows where it is seen, and how many pixels (up to [`FAR_FROM_EDGES`]) edges are away; `None`
     /// where something hides it. `place` in pixels of here.
-    pub fn sees(&self, view: &View, point: DVec3, place: DVec2) -> Option<u8> {
+    pub fn visible_edge_distance(&self, view: &View, point: DVec3, place: DVec2) -> Option<u8> {
         let (x, y) = (place.x as usize, place.y as usize);
         if place.x < 0.0 || place.y < 0.0 || x >= self.width || y >= self.height {
             return None;
@@ -253,23 +256,23 @@ impl DepthPicture {
             let difference = |other: f32| if other > 0.0 { (other - here).abs() } else { f32::INFINITY };
             let less = if can_less { difference(self.inverse[number - step]) } else { f32::INFINITY };
             let more = if can_more { difference(self.inverse[number + step]) } else { f32::INFINITY };
-            let least = less.min(more);
-            if least.is_finite() { least } else { 0.0 }
+            let min = less.min(more);
+            if min.is_finite() { min } else { 0.0 }
         };
         let slopes = slope(1, x > 0, x + 1 < self.width) + slope(self.width, y > 0, y + 1 < self.height);
         let inverse = inverse_depth(view, point)? as f32;
-        (inverse >= here - BIAS * here - slopes).then_some(self.from_edge[number])
+        (inverse >= here - DEPTH_BIAS * here - slopes).then_some(self.edge_distances[number])
     }
 
     /// How many pixels (up to [`FAR_FROM_EDGES`]) the surface is away from a place that shows none, 0 in a hole of it; `None` where it
     /// shows one.
-    pub fn sees_nothing(&self, place: DVec2) -> Option<u8> {
+    pub fn background_edge_distance(&self, place: DVec2) -> Option<u8> {
         let (x, y) = (place.x as usize, place.y as usize);
         if place.x < 0.0 || place.y < 0.0 || x >= self.width || y >= self.height {
             return None;
         }
         let number = y * self.width + x;
-        (self.inverse[number] == 0.0).then_some(self.from_edge[number])
+        (self.inverse[number] == 0.0).then_some(self.edge_distances[number])
     }
 }
 
@@ -283,12 +286,12 @@ fn corner(view: &View, position: DVec3, reduction: u32) -> Option<Corner> {
 fn inverse_depth(view: &View, position: DVec3) -> Option<f64> {
     let offset = position - view.position();
     let (distance, along) = (offset.length(), offset.dot(view.forward()));
-    let depth = if along > OFF_AXIS * distance { along } else { distance };
+    let depth = if along > MIN_AXIS_COSINE * distance { along } else { distance };
     (depth > 0.0).then(|| 1.0 / depth)
 }
 
 /// Whether a triangle with all corners beyond what the lens can see may still be seen in its middle: whether it reaches before the camera.
-fn may_be_seen(view: &View, positions: &[DVec3; 3]) -> bool {
+fn may_be_visible(view: &View, positions: &[DVec3; 3]) -> bool {
     let middle = (positions[0] + positions[1] + positions[2]) / 3.0;
     let reach = positions.iter().map(|p| p.distance(middle)).fold(0.0, f64::max);
     let offset = middle - view.position();
@@ -307,9 +310,10 @@ mod tests {
             ["........", ".#####..", ".#...#..", ".#.#.#..", ".#...#..", ".#####..", ".#......", "........"];
         let inverse: Vec<f32> =
             rows.iter().flat_map(|row| row.bytes().map(|b| if b == b'#' { 0.5 } else { 0.0 })).collect();
-        let mut picture = DepthPicture { width: 8, height: 8, inverse, from_edge: vec![3; 64] };
-        picture.shut_holes();
-        let at = |x: usize, y: usize| picture.sees_nothing(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
+        let mut picture = DepthMap { width: 8, height: 8, inverse, edge_distances: vec![3; 64] };
+        picture.close_holes();
+        let at =
+            |x: usize, y: usize| picture.background_edge_distance(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
         assert_eq!([at(2, 2), at(4, 4), at(1, 1)], [Some(0), Some(0), None]);
         assert_eq!([at(3, 6), at(7, 0), at(0, 7)], [Some(3); 3]);
     }

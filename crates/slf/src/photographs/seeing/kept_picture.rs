@@ -8,7 +8,7 @@ use scene::Photograph;
 
 /// A photograph, linear light between 0 and its brightest pixel.
 #[derive(Debug)]
-pub(crate) struct KeptPicture {
+pub(crate) struct PackedPicture {
     pub width: u32,
     pub height: u32,
     /// How many pixels of the photograph a pixel is wide and high.
@@ -19,7 +19,7 @@ pub(crate) struct KeptPicture {
 
 /// What a picture shows at a place.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Shown {
+pub(crate) struct PictureSample {
     pub light: Vec3,
     /// The share of pixels there that were at the sensor's limit, in [0, 1].
     pub clipped: f32,
@@ -27,14 +27,14 @@ pub(crate) struct Shown {
 
 const STEPS: f32 = 1023.0;
 
-impl KeptPicture {
+impl PackedPicture {
     /// Keeps a photograph, each pixel the mean of `reduction`² of its own.
-    pub fn of(photograph: &Photograph, reduction: u32) -> Self {
+    pub fn new(photograph: &Photograph, reduction: u32) -> Self {
         let reduction = reduction.max(1);
         let [width, height] =
             [photograph.width, photograph.height].map(|side| side.div_ceil(reduction).max(1));
         let brightest = photograph.pixels.iter().flatten().copied().filter(|v| v.is_finite());
-        let (brightest, limit) = (brightest.fold(1.0, f32::max), photograph.limit());
+        let (brightest, limit) = (brightest.fold(1.0, f32::max), photograph.clipping_level());
         let mut pixels = Vec::with_capacity(width as usize * height as usize);
         for y in 0..height {
             for x in 0..width {
@@ -48,7 +48,7 @@ impl KeptPicture {
                         count += 1.0;
                     }
                 }
-                pixels.push(packed(sum / (count * brightest), is_clipped));
+                pixels.push(pack_pixel(sum / (count * brightest), is_clipped));
             }
         }
         Self { width, height, reduction, brightest, pixels }
@@ -69,7 +69,7 @@ impl KeptPicture {
                         count += 1.0;
                     }
                 }
-                pixels.push(packed(sum / (count * self.brightest), is_clipped));
+                pixels.push(pack_pixel(sum / (count * self.brightest), is_clipped));
             }
         }
         Self { width, height, reduction: 2 * self.reduction, brightest: self.brightest, pixels }
@@ -81,12 +81,12 @@ impl KeptPicture {
     }
 
     /// Interpolated linearly at a [`Self::place`]; beyond the border what lies on it.
-    pub fn at(&self, place: DVec2) -> Shown {
+    pub fn at(&self, place: DVec2) -> PictureSample {
         let at = place - 0.5;
         let floor = at.floor();
         let share = (at - floor).as_vec2();
         let (x, y) = (floor.x as i64, floor.y as i64);
-        let mut shown = Shown { light: Vec3::ZERO, clipped: 0.0 };
+        let mut sample = PictureSample { light: Vec3::ZERO, clipped: 0.0 };
         for (dx, dy, weight) in [
             (0, 0, (1.0 - share.x) * (1.0 - share.y)),
             (1, 0, share.x * (1.0 - share.y)),
@@ -96,18 +96,19 @@ impl KeptPicture {
             let column = (x + dx).clamp(0, i64::from(self.width) - 1) as usize;
             let row = (y + dy).clamp(0, i64::from(self.height) - 1) as usize;
             let (light, is_clipped) = self.pixel(row * self.width as usize + column);
-            shown.light += light * weight;
-            shown.clipped += if is_clipped { weight } else { 0.0 };
+            sample.light += light * weight;
+            sample.clipped += if is_clipped { weight } else { 0.0 };
         }
-        shown
+        sample
     }
 
     /// A pixel by its number, row by row, and whether it is clipped.
     pub fn pixel(&self, number: usize) -> (Vec3, bool) {
         let word = self.pixels[number];
-        let root = Vec3::new((word & 1023) as f32, (word >> 10 & 1023) as f32, (word >> 20 & 1023) as f32);
-        let root = root / STEPS;
-        (root * root * self.brightest, word >> 30 != 0)
+        let square_root =
+            Vec3::new((word & 1023) as f32, (word >> 10 & 1023) as f32, (word >> 20 & 1023) as f32);
+        let square_root = square_root / STEPS;
+        (square_root * square_root * self.brightest, word >> 30 != 0)
     }
 
     /// What its brightest pixel may be.
@@ -116,7 +117,7 @@ impl KeptPicture {
     }
 }
 
-fn packed(share: Vec3, is_clipped: bool) -> u32 {
+fn pack_pixel(share: Vec3, is_clipped: bool) -> u32 {
     let [r, g, b] = share.to_array().map(|v| (v.clamp(0.0, 1.0).sqrt() * STEPS + 0.5) as u32);
     r | g << 10 | b << 20 | u32::from(is_clipped) << 30
 }
@@ -131,25 +132,25 @@ mod tests {
     }
 
     #[test]
-    fn what_is_kept_is_what_was_shown() {
-        let kept = KeptPicture::of(&photograph(&[0.0, 0.25, 0.5, 1.0]), 1);
+    fn packing_preserves_light() {
+        let packed = PackedPicture::new(&photograph(&[0.0, 0.25, 0.5, 1.0]), 1);
         for (number, value) in [0.0, 0.25, 0.5, 1.0].into_iter().enumerate() {
-            let (light, is_clipped) = kept.pixel(number);
+            let (light, is_clipped) = packed.pixel(number);
             // Half a step of the root, twice the root.
             assert!((light.x - value).abs() <= value.sqrt() / STEPS + 1e-6, "{light} for {value}");
             assert_eq!(is_clipped, value == 1.0);
         }
-        let middle = kept.at(DVec2::ONE);
+        let middle = packed.at(DVec2::ONE);
         assert!((middle.light.x - 0.4375).abs() < 2e-3 && middle.clipped == 0.25, "{middle:?}");
     }
 
     #[test]
     fn reduced_pixels_are_means_and_bright_ones_stay_bright() {
-        let kept = KeptPicture::of(&photograph(&[0.0, 4.0, 8.0, 4.0]), 2);
-        let (light, is_clipped) = kept.pixel(0);
+        let packed = PackedPicture::new(&photograph(&[0.0, 4.0, 8.0, 4.0]), 2);
+        let (light, is_clipped) = packed.pixel(0);
         assert!((light.x - 4.0).abs() < 0.02 && !is_clipped, "{light}");
-        assert_eq!((kept.width, kept.height, kept.place(DVec2::ONE)), (1, 1, DVec2::splat(0.5)));
-        let halved = KeptPicture::of(&photograph(&[0.0, 4.0, 8.0, 4.0]), 1).halved();
+        assert_eq!((packed.width, packed.height, packed.place(DVec2::ONE)), (1, 1, DVec2::splat(0.5)));
+        let halved = PackedPicture::new(&photograph(&[0.0, 4.0, 8.0, 4.0]), 1).halved();
         assert_eq!((halved.width, halved.height, halved.reduction), (1, 1, 2));
         assert!((halved.pixel(0).0.x - light.x).abs() < 0.02);
     }

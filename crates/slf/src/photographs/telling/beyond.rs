@@ -6,52 +6,55 @@
 use super::constant::{Sample, robust_mean, roots};
 use crate::photographs::exposures::Exposure;
 use crate::photographs::numbers::ramp;
-use crate::photographs::places::Sphere;
-use crate::photographs::seeing::KeptPicture;
+use crate::photographs::places::DirectionGrid;
+use crate::photographs::seeing::PackedPicture;
 use glam::Vec3;
 use rayon::prelude::*;
 use scene::View;
 
 /// Roots of light that differ by more are no agreement: a share of the brighter, or what noise and JPEG leave of the dark (white is 1.7).
-const AGREED: f32 = 0.1;
-const AGREED_IN_THE_DARK: f32 = 0.06;
+const MAX_DIFFERENCE: f32 = 0.1;
+const MAX_DIFFERENCE_IN_THE_DARK: f32 = 0.06;
 /// Shares of agreement from which a cell is believed a little, and in full: what is near and bright, and seen before the dark of a
 /// room, has half of the photographs on its side where it hides that.
-const BELIEVED: [f32; 2] = [0.5, 0.85];
+const TRUSTED_AGREEMENT: [f32; 2] = [0.5, 0.85];
 /// Below this share of agreement, over all cells that several photographs see, there is no picture at infinity.
-const ENOUGH: f32 = 0.5;
+const MIN_AGREEMENT: f32 = 0.5;
 /// A cell is held at those around it as by so much of a photograph.
-const HOLD: f32 = 0.02;
+const PRIOR_WEIGHT: f32 = 0.02;
 
 /// Light from beyond the surface by cell of the sphere. `seen` tells by view, in 255ths, how well each cell is seen.
-pub(crate) fn beyond(
-    sphere: &Sphere,
+pub(crate) fn fit_background(
+    sphere: &DirectionGrid,
     views: &[View],
     exposures: &[Exposure],
-    pictures: &[KeptPicture],
-    seen: &[Vec<u8>],
+    pictures: &[PackedPicture],
+    view_weights: &[Vec<u8>],
 ) -> Vec<Vec3> {
-    let cells: Vec<Cell> = (0..sphere.count())
+    let cells: Vec<DirectionStats> = (0..sphere.count())
         .into_par_iter()
         .map_init(
             || (Vec::new(), Vec::new()),
-            |(samples, belonging), cell| {
+            |(samples, inlier_weights), cell| {
                 let direction = sphere.direction(cell).as_dvec3();
                 samples.clear();
-                samples.extend((0..views.len()).filter(|&view| seen[view][cell] > 0).filter_map(|view| {
-                    let pixel = views[view].project(views[view].position() + direction)?;
-                    let shown = pictures[view].at(pictures[view].place(pixel));
-                    let light = shown.light * exposures[view].to_radiance(&views[view], pixel);
-                    let weight = f32::from(seen[view][cell]) / 255.0;
-                    Some(Sample { light, weight, clipped: shown.clipped.clamp(0.0, 1.0) })
-                }));
-                Cell::of(samples, belonging)
+                samples.extend((0..views.len()).filter(|&view| view_weights[view][cell] > 0).filter_map(
+                    |view| {
+                        let pixel = views[view].project(views[view].position() + direction)?;
+                        let picture_sample = pictures[view].at(pictures[view].place(pixel));
+                        let light = picture_sample.light * exposures[view].to_radiance(&views[view], pixel);
+                        let weight = f32::from(view_weights[view][cell]) / 255.0;
+                        Some(Sample { light, weight, clipped: picture_sample.clipped.clamp(0.0, 1.0) })
+                    },
+                ));
+                DirectionStats::new(samples, inlier_weights)
             },
         )
         .collect();
     let shared = cells.iter().filter(|cell| cell.views >= 2);
-    let (agreed, count) = shared.fold((0.0, 0.0), |(sum, count), cell| (sum + cell.agreement, count + 1.0));
-    if agreed <= ENOUGH * count || count == 0.0 {
+    let (agreement_sum, count) =
+        shared.fold((0.0, 0.0), |(sum, count), cell| (sum + cell.agreement, count + 1.0));
+    if agreement_sum <= MIN_AGREEMENT * count || count == 0.0 {
         let (sum, weights) = cells
             .iter()
             .fold((Vec3::ZERO, 0.0), |(sum, w), cell| (sum + cell.light * cell.weight, w + cell.weight));
@@ -59,21 +62,22 @@ pub(crate) fn beyond(
         return vec![neutral; sphere.count()];
     }
     // One photograph alone says nothing of how far away it is: it is believed as much as those around are.
-    let known = |cell: &Cell| {
+    let agreement_term = |cell: &DirectionStats| {
         let weight = if cell.views >= 2 { cell.weight } else { 0.0 };
         (Vec3::splat(cell.agreement * weight), weight)
     };
-    let around = sphere.smoothed(&cells.iter().map(known).collect::<Vec<_>>(), HOLD);
-    let trusted = |(cell, around): (&Cell, &Vec3)| {
-        let agreement = if cell.views >= 2 { cell.agreement } else { around.x };
-        let weight = cell.weight * ramp(agreement, BELIEVED);
+    let smoothed_agreement =
+        sphere.smoothed(&cells.iter().map(agreement_term).collect::<Vec<_>>(), PRIOR_WEIGHT);
+    let light_term = |(cell, agreement_around): (&DirectionStats, &Vec3)| {
+        let agreement = if cell.views >= 2 { cell.agreement } else { agreement_around.x };
+        let weight = cell.weight * ramp(agreement, TRUSTED_AGREEMENT);
         (cell.light * weight, weight)
     };
-    sphere.smoothed(&cells.iter().zip(&around).map(trusted).collect::<Vec<_>>(), HOLD)
+    sphere.smoothed(&cells.iter().zip(&smoothed_agreement).map(light_term).collect::<Vec<_>>(), PRIOR_WEIGHT)
 }
 
 /// What photographs show in one direction.
-struct Cell {
+struct DirectionStats {
     light: Vec3,
     weight: f32,
     views: usize,
@@ -81,19 +85,19 @@ struct Cell {
     agreement: f32,
 }
 
-impl Cell {
-    fn of(samples: &[Sample], belonging: &mut Vec<f32>) -> Self {
-        let light = robust_mean(samples, belonging);
+impl DirectionStats {
+    fn new(samples: &[Sample], inlier_weights: &mut Vec<f32>) -> Self {
+        let light = robust_mean(samples, inlier_weights);
         let agrees = |sample: &&Sample| {
             let [a, b] = [sample.light, light].map(|light| roots(light.max(Vec3::ZERO)));
-            a.distance(b) <= (AGREED * a.length().max(b.length())).max(AGREED_IN_THE_DARK)
+            a.distance(b) <= (MAX_DIFFERENCE * a.length().max(b.length())).max(MAX_DIFFERENCE_IN_THE_DARK)
         };
         let weight = |samples: &mut dyn Iterator<Item = &Sample>| {
-            samples.map(|sample| sample.counts(light)).sum::<f32>()
+            samples.map(|sample| sample.weight_against(light)).sum::<f32>()
         };
-        let all = weight(&mut samples.iter());
-        let agreeing = weight(&mut samples.iter().filter(agrees));
-        let agreement = if all > 0.0 { agreeing / all } else { 0.0 };
-        Self { light, weight: all.min(1.0), views: samples.len(), agreement }
+        let total = weight(&mut samples.iter());
+        let agreeing_weight = weight(&mut samples.iter().filter(agrees));
+        let agreement = if total > 0.0 { agreeing_weight / total } else { 0.0 };
+        Self { light, weight: total.min(1.0), views: samples.len(), agreement }
     }
 }

@@ -18,13 +18,13 @@ pub(crate) struct Sample {
 }
 
 /// What was at the sensor's limit says that it was at least so bright. Where it is told to be that bright already, it counts this much.
-const CLIPPED_COUNTS: f32 = 0.005;
+const CLIPPED_WEIGHT: f32 = 0.005;
 /// From told brighter by this share on, which is what noise leaves open.
-const CLIPPED_SURE: f32 = 0.05;
+const CLIPPED_MARGIN: f32 = 0.05;
 /// Channels of a clipped sample that are no darker than this share of its brightest one are at their limit, too: it was white.
-const AT_LIMIT: f32 = 0.95;
+const LIMIT_SHARE: f32 = 0.95;
 /// From this share of its pixels on at the limit, a sample is wholly so: noise that is cut off at the limit leaves pixels below it.
-const LIMITED: f32 = 0.25;
+const FULLY_LIMITED_SHARE: f32 = 0.25;
 
 impl Sample {
     /// The same as another light with it changes it: how well it is seen stays.
@@ -33,70 +33,73 @@ impl Sample {
     }
 
     /// How far it is no more than the least that was there, in [0, 1]: a mean of pixels, some at the limit, is too dark as a whole.
-    fn limited(&self) -> f32 {
-        (self.clipped / LIMITED).min(1.0)
+    fn limited_share(&self) -> f32 {
+        (self.clipped / FULLY_LIMITED_SHARE).min(1.0)
     }
 
     /// How it counts whatever it is compared with.
-    pub fn counts_at_least(&self) -> f32 {
-        self.weight * (1.0 - (1.0 - CLIPPED_COUNTS) * self.clipped)
+    pub fn min_weight(&self) -> f32 {
+        self.weight * (1.0 - (1.0 - CLIPPED_WEIGHT) * self.clipped)
     }
 
     /// How it counts against what is told of the place: a limit that is kept says little, one that is not says all that a sample can.
-    pub fn counts(&self, told: Vec3) -> f32 {
+    pub fn weight_against(&self, reference: Vec3) -> f32 {
         if self.clipped == 0.0 {
             return self.weight;
         }
         // The brightest channel is the one that was at its limit.
         let channel = self.light.max_position();
-        let over = told[channel] - self.light[channel];
-        let is_kept =
-            (over / (CLIPPED_SURE * self.light[channel].abs()).max(f32::MIN_POSITIVE)).clamp(0.0, 1.0);
-        self.weight * (1.0 - (1.0 - CLIPPED_COUNTS) * self.limited() * is_kept)
+        let excess = reference[channel] - self.light[channel];
+        let limit_satisfaction =
+            (excess / (CLIPPED_MARGIN * self.light[channel].abs()).max(f32::MIN_POSITIVE)).clamp(0.0, 1.0);
+        self.weight * (1.0 - (1.0 - CLIPPED_WEIGHT) * self.limited_share() * limit_satisfaction)
     }
 }
 
 /// From so many on, some are left out.
-const ENOUGH_TO_REJECT: usize = 5;
+const MIN_SAMPLES_TO_REJECT: usize = 5;
 /// 95 % efficient with normal errors.
 const TUKEY: f32 = 4.685;
 const HUBER: f32 = 1.345;
 /// Differences of square roots are thought to be no smaller: 8 bits and JPEG.
-const LEAST_SCALE: f32 = 0.012;
+const MIN_SCALE: f32 = 0.012;
 const ROUNDS: usize = 6;
 
 /// The robust mean of samples, and in `belonging` how far each belongs to it, in [0, 1]. Black for none.
-pub(crate) fn robust_mean(samples: &[Sample], belonging: &mut Vec<f32>) -> Vec3 {
-    belonging.clear();
-    belonging.resize(samples.len(), 1.0);
+pub(crate) fn robust_mean(samples: &[Sample], inlier_weights: &mut Vec<f32>) -> Vec3 {
+    inlier_weights.clear();
+    inlier_weights.resize(samples.len(), 1.0);
     let all = samples.iter().map(|sample| sample.weight);
     let Some(mut mean) = weighted_mean(samples, all) else { return Vec3::ZERO };
     if samples.len() < 3 {
         return mean;
     }
-    mean = median(samples);
+    mean = channel_medians(samples);
     let mut differences = vec![0.0f32; samples.len()];
-    let (mut sorted, mut counts) = (Vec::with_capacity(samples.len()), Vec::with_capacity(samples.len()));
+    let (mut sorted, mut weights) = (Vec::with_capacity(samples.len()), Vec::with_capacity(samples.len()));
     for _ in 0..ROUNDS {
-        let root = roots(mean);
+        let mean_roots = roots(mean);
         for (difference, sample) in differences.iter_mut().zip(samples) {
-            *difference = roots(sample.light).distance(root);
+            *difference = roots(sample.light).distance(mean_roots);
         }
-        counts.clear();
-        counts.extend(samples.iter().map(|sample| sample.counts(mean)));
+        weights.clear();
+        weights.extend(samples.iter().map(|sample| sample.weight_against(mean)));
         sorted.clear();
-        sorted.extend(differences.iter().copied().zip(counts.iter().copied()));
+        sorted.extend(differences.iter().copied().zip(weights.iter().copied()));
         // Three channels: the median length of normal vectors is 1.54 standard deviations of one.
-        let scale = (weighted_median(&mut sorted) / 1.54).max(LEAST_SCALE) * 3f32.sqrt();
-        for (belongs, &difference) in belonging.iter_mut().zip(&differences) {
-            let off = difference / scale;
-            *belongs = if samples.len() >= ENOUGH_TO_REJECT {
-                (1.0 - (off / TUKEY).powi(2)).max(0.0).powi(2)
+        let scale = (weighted_median(&mut sorted) / 1.54).max(MIN_SCALE) * 3f32.sqrt();
+        for (inlier_weight, &difference) in inlier_weights.iter_mut().zip(&differences) {
+            let scaled = difference / scale;
+            *inlier_weight = if samples.len() >= MIN_SAMPLES_TO_REJECT {
+                (1.0 - (scaled / TUKEY).powi(2)).max(0.0).powi(2)
             } else {
-                (HUBER / off.max(HUBER)).min(1.0)
+                (HUBER / scaled.max(HUBER)).min(1.0)
             };
         }
-        match weighted_mean(samples, counts.iter().zip(&*belonging).map(|(count, belongs)| count * belongs)) {
+        match weighted_mean(
+            samples,
+            weights.iter().zip(&*inlier_weights).map(|(count, inlier_weight)| count * inlier_weight),
+        ) {
             Some(next) => mean = next,
             None => return mean,
         }
@@ -119,39 +122,39 @@ fn weighted_mean(samples: &[Sample], weights: impl Iterator<Item = f32>) -> Opti
 }
 
 /// By channel. What was at the sensor's limit was at least so bright: the product-limit estimate of Kaplan and Meier (1958).
-fn median(samples: &[Sample]) -> Vec3 {
+fn channel_medians(samples: &[Sample]) -> Vec3 {
     let mut values = Vec::with_capacity(samples.len());
     Vec3::from_array(std::array::from_fn(|channel| {
         values.clear();
         for sample in samples {
             let light = sample.light[channel];
-            let is_at_limit = light >= AT_LIMIT * sample.light.max_element();
-            let clipped = if is_at_limit { sample.limited() } else { 0.0 };
-            for (is_least, weight) in [(false, 1.0 - clipped), (true, clipped)] {
+            let is_at_limit = light >= LIMIT_SHARE * sample.light.max_element();
+            let clipped = if is_at_limit { sample.limited_share() } else { 0.0 };
+            for (is_lower_bound, weight) in [(false, 1.0 - clipped), (true, clipped)] {
                 if weight > 0.0 {
-                    values.push(Value { light, is_least, weight: weight * sample.weight });
+                    values.push(CensoredValue { light, is_lower_bound, weight: weight * sample.weight });
                 }
             }
         }
-        median_of_limited(&mut values)
+        censored_median(&mut values)
     }))
 }
 
 /// A value, or the least that it may be.
-struct Value {
+struct CensoredValue {
     light: f32,
-    is_least: bool,
+    is_lower_bound: bool,
     weight: f32,
 }
 
 /// What half of the values lie above; the largest, if that is not known.
-fn median_of_limited(values: &mut [Value]) -> f32 {
-    values.sort_unstable_by(|a, b| a.light.total_cmp(&b.light).then(a.is_least.cmp(&b.is_least)));
+fn censored_median(values: &mut [CensoredValue]) -> f32 {
+    values.sort_unstable_by(|a, b| a.light.total_cmp(&b.light).then(a.is_lower_bound.cmp(&b.is_lower_bound)));
     let mut at_risk: f32 = values.iter().map(|value| value.weight).sum();
     // The share of values that lie above.
     let mut above = 1.0;
     for value in values.iter() {
-        if !value.is_least {
+        if !value.is_lower_bound {
             above *= (1.0 - value.weight / at_risk).max(0.0);
             if above <= 0.5 {
                 return value.light;
@@ -184,22 +187,25 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_belong_is_left_out() {
-        let mut belonging = Vec::new();
+    fn outliers_are_rejected() {
+        let mut inlier_weights = Vec::new();
         let lights = [0.30, 0.31, 0.29, 0.30, 0.32, 0.28, 0.30, 0.29, 0.95, 0.90];
-        let mean = robust_mean(&samples(&lights), &mut belonging);
+        let mean = robust_mean(&samples(&lights), &mut inlier_weights);
         assert!((mean.x - 0.299).abs() < 3e-3, "{mean}");
-        assert!(belonging[8] == 0.0 && belonging[9] == 0.0 && belonging[0] > 0.8, "{belonging:?}");
+        assert!(
+            inlier_weights[8] == 0.0 && inlier_weights[9] == 0.0 && inlier_weights[0] > 0.8,
+            "{inlier_weights:?}"
+        );
     }
 
     #[test]
-    fn few_are_not_judged() {
-        let mut belonging = Vec::new();
-        assert_eq!(robust_mean(&samples(&[0.25, 0.75]), &mut belonging), Vec3::splat(0.5));
+    fn few_samples_are_not_rejected() {
+        let mut inlier_weights = Vec::new();
+        assert_eq!(robust_mean(&samples(&[0.25, 0.75]), &mut inlier_weights), Vec3::splat(0.5));
         // Of three, the odd one counts less, but counts.
-        let mean = robust_mean(&samples(&[0.2, 0.2, 0.8]), &mut belonging).x;
-        assert!(belonging[2] > 0.0 && (0.2..0.3).contains(&mean), "{mean} {belonging:?}");
-        assert_eq!(robust_mean(&[], &mut belonging), Vec3::ZERO);
+        let mean = robust_mean(&samples(&[0.2, 0.2, 0.8]), &mut inlier_weights).x;
+        assert!(inlier_weights[2] > 0.0 && (0.2..0.3).contains(&mean), "{mean} {inlier_weights:?}");
+        assert_eq!(robust_mean(&[], &mut inlier_weights), Vec3::ZERO);
     }
 
     #[test]
@@ -220,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn few_that_were_below_their_limits_say_how_bright_it_was() {
+    fn few_unclipped_samples_determine_the_brightness() {
         // 1.3, by exposures whose limits lie below, but for two; a quarter of each one's pixels just misses its limit.
         let limits = [0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95, 1.0, 1.1, 1.2];
         let mut samples = samples(&[1.28, 1.32]);
@@ -240,8 +246,8 @@ mod tests {
         };
         let mut samples: Vec<Sample> = [0.7, 0.75, 0.8, 0.85, 0.9, 0.95, 1.0].map(limited).to_vec();
         samples.extend([0.98, 1.0, 1.02].map(|v| Sample { light: cream * v, weight: 1.0, clipped: 0.0 }));
-        let found = median(&samples);
-        assert!(found.distance(cream) < 0.05, "{found}");
+        let medians = channel_medians(&samples);
+        assert!(medians.distance(cream) < 0.05, "{medians}");
     }
 
     #[test]

@@ -21,7 +21,7 @@
 use glam::{DVec3, Vec3};
 
 /// Photographs of a texel that count; the best seen of more.
-pub(crate) const MOST: usize = 40;
+pub(crate) const MAX_PHOTOGRAPHS: usize = 40;
 
 /// How residuals go with direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,12 +34,12 @@ pub(crate) struct Kernel {
 
 /// What a photograph knows of a texel's residual.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Known {
+pub(crate) struct ResidualSample {
     /// Its place among the texel's sightings.
-    pub place: usize,
+    pub index: usize,
     /// Unit, from the texel.
     pub direction: Vec3,
-    pub residual: Vec3,
+    pub value: Vec3,
     /// In (0, 1].
     pub weight: f32,
 }
@@ -62,11 +62,11 @@ impl Kernel {
     }
 
     /// k between the direction of `toward`, which may be of any length, and a unit `direction`: |u − v|² = 2 − 2·u·v.
-    pub fn between(&self, toward: Vec3, direction: Vec3) -> f32 {
+    pub fn between_directions(&self, toward: Vec3, direction: Vec3) -> f32 {
         let (dot, square) = (toward.dot(direction), toward.length_squared());
         // u·v at which |u − v| is the reach. x·|x| grows with x: what is out of reach is known without a root.
-        let least = 1.0 - 0.5 * self.reach * self.reach;
-        if dot * dot.abs() <= least * least.abs() * square {
+        let min_cosine = 1.0 - 0.5 * self.reach * self.reach;
+        if dot * dot.abs() <= min_cosine * min_cosine.abs() * square {
             return 0.0;
         }
         self.at((2.0 - 2.0 * dot / square.sqrt()).max(0.0).sqrt())
@@ -75,15 +75,18 @@ impl Kernel {
 
 impl Regression {
     pub fn new() -> Self {
-        Self { matrix: vec![0.0; MOST * MOST], inverse: vec![0.0; MOST * MOST] }
+        Self {
+            matrix: vec![0.0; MAX_PHOTOGRAPHS * MAX_PHOTOGRAPHS],
+            inverse: vec![0.0; MAX_PHOTOGRAPHS * MAX_PHOTOGRAPHS],
+        }
     }
 
     /// Cholesky's decomposition of K + N, its lower triangle, for directions and weights of what is known (at most [`MOST`]).
-    pub fn decompose(&mut self, kernel: &Kernel, known: &[Known]) {
-        for (i, a) in known.iter().enumerate() {
-            let (above, rows) = self.matrix.split_at_mut(i * MOST);
-            for (j, b) in known[..i].iter().enumerate() {
-                let other = &above[j * MOST..j * MOST + j + 1];
+    pub fn decompose(&mut self, kernel: &Kernel, residuals: &[ResidualSample]) {
+        for (i, a) in residuals.iter().enumerate() {
+            let (above, rows) = self.matrix.split_at_mut(i * MAX_PHOTOGRAPHS);
+            for (j, b) in residuals[..i].iter().enumerate() {
+                let other = &above[j * MAX_PHOTOGRAPHS..j * MAX_PHOTOGRAPHS + j + 1];
                 let sum = dot(&rows[..j], &other[..j]);
                 rows[j] = (kernel.at(a.direction.distance(b.direction)) - sum) / other[j];
             }
@@ -94,41 +97,48 @@ impl Regression {
     }
 
     /// The α of what is known, into `alpha`; after [`Self::decompose`] of the same directions and weights.
-    pub fn solve(&self, known: &[Known], alpha: &mut Vec<Vec3>) {
-        let n = known.len();
+    pub fn solve(&self, residuals: &[ResidualSample], alpha: &mut Vec<Vec3>) {
+        let n = residuals.len();
         alpha.clear();
-        alpha.extend(known.iter().map(|k| k.residual));
+        alpha.extend(residuals.iter().map(|k| k.value));
         for i in 0..n {
             for k in 0..i {
                 let before = alpha[k];
-                alpha[i] -= before * self.matrix[i * MOST + k];
+                alpha[i] -= before * self.matrix[i * MAX_PHOTOGRAPHS + k];
             }
-            alpha[i] /= self.matrix[i * MOST + i];
+            alpha[i] /= self.matrix[i * MAX_PHOTOGRAPHS + i];
         }
         for i in (0..n).rev() {
             for k in i + 1..n {
                 let after = alpha[k];
-                alpha[i] -= after * self.matrix[k * MOST + i];
+                alpha[i] -= after * self.matrix[k * MAX_PHOTOGRAPHS + i];
             }
-            alpha[i] /= self.matrix[i * MOST + i];
+            alpha[i] /= self.matrix[i * MAX_PHOTOGRAPHS + i];
         }
     }
 
     /// What each photograph would be told to show by the others, into `told`; after [`Self::solve`] of the same.
-    pub fn left_out(&mut self, known: &[Known], alpha: &[Vec3], told: &mut Vec<Vec3>) {
-        let n = known.len();
+    pub fn leave_one_out(
+        &mut self,
+        residuals: &[ResidualSample],
+        alpha: &[Vec3],
+        predictions: &mut Vec<Vec3>,
+    ) {
+        let n = residuals.len();
         // The inverse of the triangle; columns of it give the diagonal of the whole inverse.
         for j in 0..n {
-            self.inverse[j * MOST + j] = 1.0 / self.matrix[j * MOST + j];
+            self.inverse[j * MAX_PHOTOGRAPHS + j] = 1.0 / self.matrix[j * MAX_PHOTOGRAPHS + j];
             for i in j + 1..n {
-                let sum: f32 = (j..i).map(|k| self.matrix[i * MOST + k] * self.inverse[k * MOST + j]).sum();
-                self.inverse[i * MOST + j] = -sum / self.matrix[i * MOST + i];
+                let sum: f32 = (j..i)
+                    .map(|k| self.matrix[i * MAX_PHOTOGRAPHS + k] * self.inverse[k * MAX_PHOTOGRAPHS + j])
+                    .sum();
+                self.inverse[i * MAX_PHOTOGRAPHS + j] = -sum / self.matrix[i * MAX_PHOTOGRAPHS + i];
             }
         }
-        told.clear();
-        told.extend((0..n).map(|j| {
-            let diagonal: f32 = (j..n).map(|i| self.inverse[i * MOST + j].powi(2)).sum();
-            known[j].residual - alpha[j] / diagonal
+        predictions.clear();
+        predictions.extend((0..n).map(|j| {
+            let diagonal: f32 = (j..n).map(|i| self.inverse[i * MAX_PHOTOGRAPHS + j].powi(2)).sum();
+            residuals[j].value - alpha[j] / diagonal
         }));
     }
 }
@@ -148,7 +158,7 @@ fn dot(a: &[f32], b: &[f32]) -> f32 {
 }
 
 /// The unit direction from a texel to an eye.
-pub(crate) fn toward(from: DVec3, eye: DVec3) -> Vec3 {
+pub(crate) fn direction_to_eye(from: DVec3, eye: DVec3) -> Vec3 {
     (eye - from).as_vec3().normalize_or_zero()
 }
 
@@ -165,62 +175,64 @@ mod tests {
             for angle in (0..=180).map(|degree| (degree as f32).to_radians()) {
                 let unit = direction * angle.cos() + aside * angle.sin();
                 for length in [1e-3, 1.0, 40.0] {
-                    let (found, wanted) =
-                        (kernel.between(unit * length, direction), kernel.at(unit.distance(direction)));
-                    assert!((found - wanted).abs() < 1e-5, "{reach} {angle}: {found}, {wanted}");
+                    let (value, expected) = (
+                        kernel.between_directions(unit * length, direction),
+                        kernel.at(unit.distance(direction)),
+                    );
+                    assert!((value - expected).abs() < 1e-5, "{reach} {angle}: {value}, {expected}");
                 }
             }
         }
-        assert_eq!(Kernel { reach: 1.6, noise: 0.1 }.between(Vec3::ZERO, direction), 0.0);
+        assert_eq!(Kernel { reach: 1.6, noise: 0.1 }.between_directions(Vec3::ZERO, direction), 0.0);
     }
 
-    fn known(count: usize) -> Vec<Known> {
+    fn test_residuals(count: usize) -> Vec<ResidualSample> {
         (0..count)
             .map(|k| {
                 let azimuth = k as f32 * 2.4;
                 let z = 1.0 - 0.6 * (k as f32 + 0.5) / count as f32;
                 let r = (1.0 - z * z).sqrt();
                 let direction = Vec3::new(r * azimuth.cos(), r * azimuth.sin(), z);
-                Known {
-                    place: k,
+                ResidualSample {
+                    index: k,
                     direction,
-                    residual: Vec3::new(direction.x, direction.y.powi(2), 0.1),
+                    value: Vec3::new(direction.x, direction.y.powi(2), 0.1),
                     weight: 1.0,
                 }
             })
             .collect()
     }
 
-    fn at(kernel: &Kernel, known: &[Known], alpha: &[Vec3], direction: Vec3) -> Vec3 {
-        known.iter().zip(alpha).map(|(k, a)| *a * kernel.at(k.direction.distance(direction))).sum()
+    fn at(kernel: &Kernel, residuals: &[ResidualSample], alpha: &[Vec3], direction: Vec3) -> Vec3 {
+        residuals.iter().zip(alpha).map(|(k, a)| *a * kernel.at(k.direction.distance(direction))).sum()
     }
 
     #[test]
-    fn what_was_left_out_is_what_the_others_tell() {
-        let (kernel, all) = (Kernel { reach: 1.2, noise: 0.1 }, known(12));
-        let (mut regression, mut alpha, mut told) = (Regression::new(), Vec::new(), Vec::new());
+    fn leave_one_out_is_the_prediction_of_the_others() {
+        let (kernel, all) = (Kernel { reach: 1.2, noise: 0.1 }, test_residuals(12));
+        let (mut regression, mut alpha, mut predictions) = (Regression::new(), Vec::new(), Vec::new());
         regression.decompose(&kernel, &all);
         regression.solve(&all, &mut alpha);
-        regression.left_out(&all, &alpha, &mut told);
-        for (left, told) in told.iter().enumerate() {
+        regression.leave_one_out(&all, &alpha, &mut predictions);
+        for (left, predicted) in predictions.iter().enumerate() {
             let mut others = all.clone();
             let out = others.remove(left);
             let mut of_others = Vec::new();
             regression.decompose(&kernel, &others);
             regression.solve(&others, &mut of_others);
-            let wanted = at(&kernel, &others, &of_others, out.direction);
-            assert!(told.distance(wanted) < 1e-4, "{left}: {told} for {wanted}");
+            let expected = at(&kernel, &others, &of_others, out.direction);
+            assert!(predicted.distance(expected) < 1e-4, "{left}: {predicted} for {expected}");
         }
     }
 
     #[test]
-    fn little_noise_leads_through_what_is_known_and_nothing_reaches_beyond_evidence() {
-        let (kernel, all) = (Kernel { reach: 0.5, noise: 1e-3 }, known(12));
+    fn little_noise_interpolates_the_data_and_the_kernel_has_compact_support() {
+        let (kernel, all) = (Kernel { reach: 0.5, noise: 1e-3 }, test_residuals(12));
         let (mut regression, mut alpha) = (Regression::new(), Vec::new());
         regression.decompose(&kernel, &all);
         regression.solve(&all, &mut alpha);
-        for one in &all {
-            assert!(at(&kernel, &all, &alpha, one.direction).distance(one.residual) < 0.02);
+        for sample in &all {
+            assert!(at(&kernel, &all, &alpha, sample.direction).distance(sample.value) < 0.02);
         }
         assert_eq!(at(&kernel, &all, &alpha, Vec3::NEG_Z), Vec3::ZERO);
     }

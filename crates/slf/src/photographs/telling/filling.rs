@@ -13,13 +13,13 @@ use std::collections::HashMap;
 type Cells = HashMap<IVec3, (Vec3, f32)>;
 
 /// A cell that holds the evidence of so many texels needs no coarser one.
-const ENOUGH: f32 = 2.0;
+const FULL_EVIDENCE: f32 = 2.0;
 /// The finest cells are so many texels wide.
-const FINEST: f64 = 2.0;
+const FINEST_CELL_TEXELS: f64 = 2.0;
 
 /// Gives every texel light: its own as far as it is seen (`seen`, in [0, 1]), that from around for the rest.
-pub(crate) fn fill(texels: &Texels, seen: &[f32], light: &mut [Vec3]) {
-    if seen.iter().all(|&seen| seen >= 1.0) {
+pub(crate) fn fill_unobserved(texels: &Texels, observed_share: &[f32], light: &mut [Vec3]) {
+    if observed_share.iter().all(|&share| share >= 1.0) {
         return;
     }
     let area: f64 = (0..texels.count()).map(|texel| f64::from(texels.area(texel))).sum();
@@ -30,7 +30,7 @@ pub(crate) fn fill(texels: &Texels, seen: &[f32], light: &mut [Vec3]) {
     if !(texel_side > 0.0 && size.is_finite()) {
         return;
     }
-    let mut spacings = vec![FINEST * texel_side];
+    let mut spacings = vec![FINEST_CELL_TEXELS * texel_side];
     while *spacings.last().unwrap_or(&size) < 2.0 * size && spacings.len() < 24 {
         spacings.push(spacings[spacings.len() - 1] * 2.0);
     }
@@ -44,8 +44,12 @@ pub(crate) fn fill(texels: &Texels, seen: &[f32], light: &mut [Vec3]) {
             sum.1 += weight;
         };
         if number == 0 {
-            for texel in (0..texels.count()).filter(|&texel| seen[texel] > 0.0) {
-                add(((texels.position(texel) - low) / spacing).floor().as_ivec3(), light[texel], seen[texel]);
+            for texel in (0..texels.count()).filter(|&texel| observed_share[texel] > 0.0) {
+                add(
+                    ((texels.position(texel) - low) / spacing).floor().as_ivec3(),
+                    light[texel],
+                    observed_share[texel],
+                );
             }
         } else {
             // In an order that does not depend on how the map is laid out.
@@ -53,13 +57,13 @@ pub(crate) fn fill(texels: &Texels, seen: &[f32], light: &mut [Vec3]) {
             finer.sort_unstable_by_key(|(cell, _)| cell.to_array());
             for (cell, &(sum, weight)) in finer {
                 // A cell speaks for its place, not for how many texels lie in it.
-                let speaks = weight.min(ENOUGH);
-                add(cell.div_euclid(IVec3::splat(2)), sum / weight, speaks);
+                let capped = weight.min(FULL_EVIDENCE);
+                add(cell.div_euclid(IVec3::splat(2)), sum / weight, capped);
             }
         }
         levels.push(cells);
     }
-    let filled = |position: DVec3| {
+    let light_around = |position: DVec3| {
         let (mut result, mut rest) = (Vec3::ZERO, 1.0);
         for (cells, &spacing) in levels.iter().zip(&spacings) {
             let at = (position - low) / spacing - 0.5;
@@ -68,17 +72,18 @@ pub(crate) fn fill(texels: &Texels, seen: &[f32], light: &mut [Vec3]) {
             let (mut sum, mut weights) = (Vec3::ZERO, 0.0);
             for k in 0..8 {
                 let step = IVec3::new(k & 1, k >> 1 & 1, k >> 2);
-                let of_axis = |axis: usize| if step[axis] == 0 { 1.0 - share[axis] } else { share[axis] };
+                let axis_weight = |axis: usize| if step[axis] == 0 { 1.0 - share[axis] } else { share[axis] };
                 if let Some(&(light, weight)) = cells.get(&(floor.as_ivec3() + step)) {
-                    let speaks = of_axis(0) * of_axis(1) * of_axis(2) * weight.min(ENOUGH);
-                    sum += light / weight * speaks;
-                    weights += speaks;
+                    let cell_weight =
+                        axis_weight(0) * axis_weight(1) * axis_weight(2) * weight.min(FULL_EVIDENCE);
+                    sum += light / weight * cell_weight;
+                    weights += cell_weight;
                 }
             }
             if weights > 0.0 {
-                let known = (weights / ENOUGH).min(1.0) * rest;
-                result += sum / weights * known;
-                rest -= known;
+                let used = (weights / FULL_EVIDENCE).min(1.0) * rest;
+                result += sum / weights * used;
+                rest -= used;
             }
             if rest <= 1e-3 {
                 break;
@@ -86,7 +91,9 @@ pub(crate) fn fill(texels: &Texels, seen: &[f32], light: &mut [Vec3]) {
         }
         if rest < 1.0 { result / (1.0 - rest) } else { Vec3::ZERO }
     };
-    light.par_iter_mut().enumerate().filter(|(texel, _)| seen[*texel] < 1.0).for_each(|(texel, light)| {
-        *light = filled(texels.position(texel)).lerp(*light, seen[texel]);
-    });
+    light.par_iter_mut().enumerate().filter(|(texel, _)| observed_share[*texel] < 1.0).for_each(
+        |(texel, light)| {
+            *light = light_around(texels.position(texel)).lerp(*light, observed_share[texel]);
+        },
+    );
 }

@@ -23,20 +23,20 @@
 
 mod surroundings;
 
-use super::calibrated::Calibrated;
+use super::calibrated::CalibratedObservations;
 use super::constant::robust_mean;
-use super::directions::toward;
-use super::reflection::{fresnel, reflection};
-use crate::photographs::places::{Blocks, Sphere};
+use super::directions::direction_to_eye;
+use super::reflection::{fresnel, mirror_direction};
+use crate::photographs::places::{DirectionGrid, TexelBlocks};
 use glam::Vec3;
 use progress::{Cancelled, Progress, Stage};
 use rayon::prelude::*;
-use surroundings::{Asked, Surroundings};
+use surroundings::{ReflectionTexel, Surroundings};
 
 /// E and s.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Mirrored {
-    pub sphere: Sphere,
+    pub sphere: DirectionGrid,
     /// E by cell.
     pub surroundings: Vec<Vec3>,
     /// s by texel.
@@ -46,14 +46,14 @@ pub(crate) struct Mirrored {
 }
 
 /// Rows of the sphere: 1.4° each, about the sharpest gloss that a mesh's normals leave sharp.
-const ROWS: usize = 128;
+const GRID_ROWS: usize = 128;
 /// No surface mirrors more than this, by F: a metal at normal incidence.
-const MOST: f32 = 25.0;
+const MAX_STRENGTH: f32 = 25.0;
 
 impl Mirrored {
     /// Nothing, of so many texels.
     pub fn none(texels: usize) -> Self {
-        let sphere = Sphere::of_rows(1);
+        let sphere = DirectionGrid::with_rows(1);
         Self {
             sphere,
             surroundings: vec![Vec3::ZERO; sphere.count()],
@@ -63,33 +63,36 @@ impl Mirrored {
     }
 
     /// Finds what is mirrored, given the constant part without it; also returns the constant part beside it.
-    pub fn of(
-        radiance: &Calibrated<'_>,
+    pub fn fit(
+        radiance: &CalibratedObservations<'_>,
         constant: &[Vec3],
         progress: &dyn Progress,
     ) -> Result<(Self, Vec<Vec3>), Cancelled> {
         let texels = radiance.texels;
-        let sphere = Sphere::of_rows(ROWS);
-        let found = Surroundings::find(radiance, &sphere, constant, &Stage::new(progress, 0.0, 0.8))?;
-        let Surroundings { of_all: surroundings, of_halves } = found;
+        let sphere = DirectionGrid::with_rows(GRID_ROWS);
+        let solved = Surroundings::solve(radiance, &sphere, constant, &Stage::new(progress, 0.0, 0.8))?;
+        let Surroundings { from_all: surroundings, from_halves: of_halves } = solved;
         let (strength, strength_of_block) = Default::default();
         let mut mirrored = Self { sphere, surroundings, strength, strength_of_block };
-        let blocks = Blocks::of(texels.size());
-        mirrored.strength_of_block = mirrored.strengths(radiance, constant, &blocks, &of_halves);
-        mirrored.strength = blocks.by_texel(texels, &mirrored.strength_of_block);
+        let blocks = TexelBlocks::new(texels.size());
+        mirrored.strength_of_block = mirrored.fit_strengths(radiance, constant, &blocks, &of_halves);
+        mirrored.strength = blocks.interpolate_texels(texels, &mirrored.strength_of_block);
         let strength = &mirrored.strength;
         let mut constant = constant.to_vec();
         constant.par_iter_mut().enumerate().filter(|(texel, _)| strength[*texel] > 0.0).for_each_init(
             || (Vec::new(), Vec::new()),
-            |(samples, belonging), (texel, constant)| {
-                radiance.samples_into(texel, samples);
+            |(samples, inlier_weights), (texel, constant)| {
+                radiance.collect_samples(texel, samples);
                 let from = texels.position(texel);
-                let sightings = radiance.sightings.of_texel(texel);
-                for (sample, sighting) in samples.iter_mut().zip(sightings).filter(|(_, s)| !s.is_blocked()) {
-                    let outgoing = toward(from, radiance.eye(sighting));
-                    sample.light -= mirrored.sent(texels.shading_normal(texel), outgoing) * strength[texel];
+                let observations = radiance.observations.of_texel(texel);
+                for (sample, observation) in
+                    samples.iter_mut().zip(observations).filter(|(_, s)| !s.is_blocked())
+                {
+                    let outgoing = direction_to_eye(from, radiance.eye(observation));
+                    sample.light -=
+                        mirrored.unit_light(texels.shading_normal(texel), outgoing) * strength[texel];
                 }
-                *constant = robust_mean(samples, belonging).max(Vec3::ZERO);
+                *constant = robust_mean(samples, inlier_weights).max(Vec3::ZERO);
             },
         );
         Ok((mirrored, constant))
@@ -107,31 +110,31 @@ impl Mirrored {
     }
 
     /// What a texel mirrors toward a direction with this normal.
-    pub fn at(&self, texel: usize, normal: Vec3, outgoing: Vec3) -> Vec3 {
+    pub fn light(&self, texel: usize, normal: Vec3, outgoing: Vec3) -> Vec3 {
         match self.strength(texel) {
-            strength if strength > 0.0 => self.sent(normal, outgoing) * strength,
+            strength if strength > 0.0 => self.unit_light(normal, outgoing) * strength,
             _ => Vec3::ZERO,
         }
     }
 
     /// How strongly a surface of s mirrors: the share that a mirror at normal incidence would have, [0, 1].
-    pub fn share_of(&self, strength: f32, normal: Vec3, outgoing: Vec3) -> f32 {
+    pub fn carried_share(&self, strength: f32, normal: Vec3, outgoing: Vec3) -> f32 {
         (strength * fresnel(normal.dot(outgoing).abs())).min(1.0)
     }
 
     /// F·E: what a surface of s = 1 mirrors toward a direction with this normal.
-    pub fn sent(&self, normal: Vec3, outgoing: Vec3) -> Vec3 {
-        let (direction, share) = reflection(normal, outgoing);
+    pub fn unit_light(&self, normal: Vec3, outgoing: Vec3) -> Vec3 {
+        let (direction, share) = mirror_direction(normal, outgoing);
         let around = self.sphere.around(direction);
         around.iter().map(|&(cell, weight)| self.surroundings[cell] * weight).sum::<Vec3>() * share
     }
 
     /// s by block.
-    fn strengths(
+    fn fit_strengths(
         &self,
-        radiance: &Calibrated<'_>,
+        radiance: &CalibratedObservations<'_>,
         constant: &[Vec3],
-        blocks: &Blocks,
+        blocks: &TexelBlocks,
         halves: &[Vec<Vec3>; 2],
     ) -> Vec<f32> {
         let texels = radiance.texels;
@@ -139,16 +142,16 @@ impl Mirrored {
         let sums: Vec<(usize, f32, f32)> = (0..texels.count())
             .into_par_iter()
             .filter_map(|texel| {
-                let point = Asked::of(radiance, &self.sphere, texel, constant[texel])?;
+                let point = ReflectionTexel::new(radiance, &self.sphere, texel, constant[texel])?;
                 let (product, square) = point.covariance(halves);
-                Some((blocks.of_texel(texels, texel), product, square))
+                Some((blocks.block_of(texels, texel), product, square))
             })
             .collect();
-        let mut joined = vec![(0.0, 0.0); blocks.count()];
+        let mut block_sums = vec![(0.0, 0.0); blocks.count()];
         for (block, product, square) in sums {
-            joined[block].0 += product;
-            joined[block].1 += square;
+            block_sums[block].0 += product;
+            block_sums[block].1 += square;
         }
-        blocks.quotients(&joined, [0.0, MOST])
+        blocks.quotients(&block_sums, [0.0, MAX_STRENGTH])
     }
 }

@@ -1,23 +1,23 @@
 //! The texture that one photograph a texel makes: what light from many is compared with.
 
-use super::calibrated::Calibrated;
+use super::calibrated::CalibratedObservations;
 use super::mirrored::Mirrored;
 use super::residuals::Residuals;
-use super::told::{Told, seen};
+use super::told::{RadianceModel, observed_shares};
 use glam::Vec3;
 use rayon::prelude::*;
 
 /// The colours of the photographs that see each texel finest: most pixels over its area, as far as they see it at all.
-pub(crate) fn one_view(radiance: &Calibrated<'_>) -> Told {
+pub(crate) fn fit_single_view(radiance: &CalibratedObservations<'_>) -> RadianceModel {
     let texels = radiance.texels;
     let constant = (0..texels.count())
         .into_par_iter()
         .map_init(Vec::new, |samples, texel| {
-            radiance.samples_into(texel, samples);
+            radiance.collect_samples(texel, samples);
             let (position, normal) = (texels.position(texel), texels.normal(texel).as_dvec3());
             let fineness = |number: usize| {
-                let sighting = &radiance.sightings.of_texel(texel)[number];
-                let away = radiance.eye(sighting) - position;
+                let observation = &radiance.observations.of_texel(texel)[number];
+                let away = radiance.eye(observation) - position;
                 samples[number].weight * (normal.dot(away).abs() / away.length().powi(3)) as f32
             };
             let finest = (0..samples.len()).max_by(|&a, &b| fineness(a).total_cmp(&fineness(b)));
@@ -25,5 +25,5 @@ pub(crate) fn one_view(radiance: &Calibrated<'_>) -> Told {
         })
         .collect();
     let (mirrored, residuals) = (Mirrored::none(texels.count()), Residuals::none(texels.count()));
-    Told { constant, seen: seen(radiance), mirrored, residuals }
+    RadianceModel { constant, observed_share: observed_shares(radiance), mirrored, residuals }
 }

@@ -5,7 +5,7 @@ use scene::SurfacePoint;
 use trace::Tracer;
 
 /// The direction that is mirrored toward another, and F.
-pub(super) fn reflection(normal: Vec3, outgoing: Vec3) -> (Vec3, f32) {
+pub(super) fn mirror_direction(normal: Vec3, outgoing: Vec3) -> (Vec3, f32) {
     let cosine = normal.dot(outgoing);
     (normal * (2.0 * cosine) - outgoing, fresnel(cosine.abs()))
 }
@@ -21,10 +21,15 @@ pub(super) fn fresnel(cosine: f32) -> f32 {
 ///
 /// Where a smooth surface is made of flat faces, the mirrored direction may lie below its own face; it is then looked along the face, as
 /// the smooth surface would not be in its own way.
-pub(crate) fn is_blocked(tracer: &Tracer, point: SurfacePoint, normal: Vec3, outgoing: Vec3) -> bool {
-    let (direction, _) = reflection(normal, outgoing);
+pub(crate) fn is_reflection_blocked(
+    tracer: &Tracer,
+    point: SurfacePoint,
+    normal: Vec3,
+    outgoing: Vec3,
+) -> bool {
+    let (direction, _) = mirror_direction(normal, outgoing);
     let face = tracer.scene().area_normal(point.triangle).normalize_or_zero();
     let face = if face.dot(outgoing.as_dvec3()) < 0.0 { -face } else { face };
     let direction: DVec3 = direction.as_dvec3();
-    tracer.meets(point, direction - face * face.dot(direction).min(0.0))
+    tracer.any_hit_from(point, direction - face * face.dot(direction).min(0.0))
 }

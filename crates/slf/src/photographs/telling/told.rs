@@ -1,55 +1,70 @@
 //! What is told of each texel: parts that together are its light.
 
-use super::calibrated::Calibrated;
+use super::calibrated::CalibratedObservations;
 use super::constant::robust_mean;
 use super::mirrored::Mirrored;
-use super::residuals::{Residuals, Ways};
+use super::residuals::{CandidateModels, Residuals};
 use glam::Vec3;
 use progress::{Cancelled, Progress, Stage};
 use rayon::prelude::*;
 
 /// What is told of the texels that photographs see.
-pub(crate) struct Told {
+pub(crate) struct RadianceModel {
     pub constant: Vec<Vec3>,
     /// 1 photographed, 0 not.
-    pub seen: Vec<f32>,
+    pub observed_share: Vec<f32>,
     pub mirrored: Mirrored,
     pub residuals: Residuals,
 }
 
 /// How far each texel was photographed, in [0, 1].
-pub(crate) fn seen(radiance: &Calibrated<'_>) -> Vec<f32> {
-    let evidence =
-        |texel| radiance.sightings.of_texel(texel).iter().map(|sighting| sighting.weight()).sum::<f32>();
-    (0..radiance.texels.count()).into_par_iter().map(|texel| (evidence(texel) / SEEN).min(1.0)).collect()
+pub(crate) fn observed_shares(radiance: &CalibratedObservations<'_>) -> Vec<f32> {
+    let evidence = |texel| {
+        radiance.observations.of_texel(texel).iter().map(|observation| observation.weight()).sum::<f32>()
+    };
+    (0..radiance.texels.count())
+        .into_par_iter()
+        .map(|texel| (evidence(texel) / FULL_EVIDENCE).min(1.0))
+        .collect()
 }
 
 /// Evidence of a texel (weights of its samples, summed) from which on it counts as photographed.
-pub(crate) const SEEN: f32 = 0.25;
+pub(crate) const FULL_EVIDENCE: f32 = 0.25;
 
 /// The robust means of what photographs show of each texel.
-fn means(radiance: &Calibrated<'_>, progress: &dyn Progress) -> Result<Vec<Vec3>, Cancelled> {
-    let mean = |(samples, belonging): &mut (Vec<_>, Vec<_>), texel| {
+fn constant_parts(
+    radiance: &CalibratedObservations<'_>,
+    progress: &dyn Progress,
+) -> Result<Vec<Vec3>, Cancelled> {
+    let mean = |(samples, inlier_weights): &mut (Vec<_>, Vec<_>), texel| {
         progress.check()?;
-        radiance.samples_into(texel, samples);
-        Ok(robust_mean(samples, belonging))
+        radiance.collect_samples(texel, samples);
+        Ok(robust_mean(samples, inlier_weights))
     };
     (0..radiance.texels.count()).into_par_iter().map_init(Default::default, mean).collect()
 }
 
 /// All that photographs carry.
-pub(crate) fn told(radiance: &Calibrated<'_>, progress: &dyn Progress) -> Result<Told, Cancelled> {
+pub(crate) fn fit_radiance_model(
+    radiance: &CalibratedObservations<'_>,
+    progress: &dyn Progress,
+) -> Result<RadianceModel, Cancelled> {
     let texels = Stage::named(progress, "texels", 0.0, 0.15);
-    let mut constant = means(radiance, &texels)?;
-    let seen = seen(radiance);
+    let mut constant = constant_parts(radiance, &texels)?;
+    let observed_share = observed_shares(radiance);
     texels.report(1.0);
     let mirrors = Stage::named(progress, "mirrors", 0.15, 0.45);
-    let (mirrored, beside_mirrored) = Mirrored::of(radiance, &constant, &mirrors)?;
-    let ways = Ways { radiance, plain: &constant, beside_mirrored: &beside_mirrored, mirrored: &mirrored };
-    let (share, residuals) = ways.residuals(&Stage::named(progress, "gloss", 0.45, 1.0))?;
-    for ((constant, beside), share) in constant.iter_mut().zip(beside_mirrored).zip(&share) {
-        *constant = constant.lerp(beside, *share);
+    let (mirrored, beside_mirrored) = Mirrored::fit(radiance, &constant, &mirrors)?;
+    let candidates = CandidateModels {
+        radiance,
+        plain: &constant,
+        beside_mirrored: &beside_mirrored,
+        mirrored: &mirrored,
+    };
+    let (share, residuals) = candidates.fit_residuals(&Stage::named(progress, "gloss", 0.45, 1.0))?;
+    for ((constant, beside_value), share) in constant.iter_mut().zip(beside_mirrored).zip(&share) {
+        *constant = constant.lerp(beside_value, *share);
     }
     let mirrored = mirrored.scaled(&share);
-    Ok(Told { constant, seen, mirrored, residuals })
+    Ok(RadianceModel { constant, observed_share, mirrored, residuals })
 }

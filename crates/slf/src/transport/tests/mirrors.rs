@@ -43,7 +43,7 @@ fn cards(is_mirrored: bool) -> Vec<Rectangle> {
                 emissive: Vec3::new(glow, glow * 0.5, 0.3),
                 base_color: Vec4::ZERO,
                 double_sided: true,
-                ..Material::of_lambert()
+                ..Material::lambertian_white()
             };
             Rectangle(DVec3::new(x, y, place(z)), DVec3::X * 0.7, DVec3::Y * 0.5, material)
         })
@@ -59,7 +59,10 @@ fn psnr(a: &[[f32; 3]], b: &[[f32; 3]]) -> f64 {
 #[test]
 fn a_mirror_shows_the_ordinary_picture_of_the_mirrored_scene() {
     let mirror = Material {
-        workflow: Workflow::MetallicRoughness { metallic: Scalar::plain(1.0), roughness: Scalar::plain(0.0) },
+        workflow: Workflow::MetallicRoughness {
+            metallic: Scalar::constant(1.0),
+            roughness: Scalar::constant(0.0),
+        },
         ..Material::default()
     };
     let plane =

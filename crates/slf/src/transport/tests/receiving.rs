@@ -3,9 +3,9 @@ use crate::{Irradiance, IrradianceOptions};
 use scene::{Environment, EnvironmentMap};
 
 /// Spots of a floor, a pixel each.
-fn spots() -> Vec<Spot> {
+fn spots() -> Vec<ShadingPoint> {
     let place = |k: u32| DVec2::new(f64::from(k % 8), f64::from(k / 8)) + 0.5;
-    let spot = |k: u32| Spot {
+    let spot = |k: u32| ShadingPoint {
         // A square within the first triangle.
         point: SurfacePoint { triangle: 0, barycentric: DVec2::splat(0.1) + place(k) * 0.04 },
         pixel: place(k),
@@ -24,7 +24,7 @@ fn sky() -> World {
 }
 
 #[test]
-fn what_is_told_is_what_a_point_finds_by_itself() {
+fn interpolated_light_equals_that_of_single_points() {
     let gloss = |roughness: f32| Material {
         workflow: Workflow::MetallicRoughness {
             metallic: Scalar { factor: 0.0, texture: None },
@@ -46,21 +46,21 @@ fn what_is_told_is_what_a_point_finds_by_itself() {
             let tracer = Arc::new(Tracer::new(Arc::new(scene)));
             let transport = Transport::new(tracer, sky(), options);
             let solved = IrradianceOptions { patches: 200, rays: 64 };
-            let kept = Irradiance::solve(&transport, solved, &Unwatched).unwrap();
-            let transport = transport.with_irradiance(Arc::new(kept));
+            let irradiance = Irradiance::solve(&transport, solved, &Unwatched).unwrap();
+            let transport = transport.with_irradiance(Arc::new(irradiance));
             let spots = spots();
-            let told = transport.received(&spots, ABOVE);
-            for (spot, received) in spots.iter().zip(told).step_by(9) {
+            let interpolated = transport.incident_batch(&spots, ABOVE);
+            for (spot, received) in spots.iter().zip(interpolated).step_by(9) {
                 assert!(received.is_some(), "nothing shades {spot:?}");
                 let leaving = |received, seed| {
-                    let among = Among { received, ..Among::alone(seed) };
-                    transport.leaving_among(spot.point, ABOVE, among).own
+                    let slot = SampleSlot { incident: received, ..SampleSlot::single(seed) };
+                    transport.outgoing_sample(spot.point, ABOVE, slot).own
                 };
                 const SEEDS: u64 = 256;
-                let found = leaving(received, 0);
+                let actual = leaving(received, 0);
                 let expected = (0..SEEDS).map(|seed| leaving(None, seed)).sum::<Vec3>() / SEEDS as f32;
-                let off = (found - expected).abs().max_element() / expected.max_element();
-                assert!(off < 0.02, "{} lights: {found}, not {expected}", lights.len());
+                let off = (actual - expected).abs().max_element() / expected.max_element();
+                assert!(off < 0.02, "{} lights: {actual}, not {expected}", lights.len());
             }
         }
     }
@@ -87,19 +87,20 @@ fn lit_in_a_box(lid: bool) -> f32 {
         normal.y > 0.9 && (at.y + 1.0).abs() < 1e-3
     };
     let triangle = (0..2 * walls.len() as u32).find(is_floor).expect("a floor");
-    let on_floor = |spot: Spot| Spot { point: SurfacePoint { triangle, ..spot.point }, ..spot };
+    let on_floor =
+        |spot: ShadingPoint| ShadingPoint { point: SurfacePoint { triangle, ..spot.point }, ..spot };
     let spots: Vec<_> = spots().into_iter().map(on_floor).collect();
     let transport =
         Transport::new(Arc::new(Tracer::new(Arc::new(scene))), sky(), TransportOptions::default());
     let solved = IrradianceOptions { patches: 400, rays: 64 };
-    let kept = Arc::new(Irradiance::solve(&transport, solved, &Unwatched).unwrap());
-    let unshaded = kept.unshaded(&sky(), DVec3::Y).unwrap().as_vec3();
-    let transport = transport.with_irradiance(kept.clone());
-    let told = transport.received(&spots, DVec3::new(0.0, 0.9, 0.0));
-    let told: Vec<_> = told.into_iter().flatten().collect();
-    assert!(!told.is_empty());
+    let irradiance = Arc::new(Irradiance::solve(&transport, solved, &Unwatched).unwrap());
+    let unshaded = irradiance.unshaded(&sky(), DVec3::Y).unwrap().as_vec3();
+    let transport = transport.with_irradiance(irradiance.clone());
+    let interpolated = transport.incident_batch(&spots, DVec3::new(0.0, 0.9, 0.0));
+    let interpolated: Vec<_> = interpolated.into_iter().flatten().collect();
+    assert!(!interpolated.is_empty());
     let all: Vec<_> =
-        told.iter().map(|received| kept.received(&sky(), received, DVec3::Y).as_vec3()).collect();
+        interpolated.iter().map(|received| irradiance.shaded(&sky(), received, DVec3::Y).as_vec3()).collect();
     (all.iter().sum::<Vec3>() / all.len() as f32 / unshaded).max_element()
 }
 
@@ -113,7 +114,7 @@ fn a_shut_box_gets_nothing_of_the_sky_to_the_last_bit() {
 }
 
 #[test]
-fn rough_metal_sends_what_a_sky_of_lamps_does() {
+fn rough_metal_agrees_under_a_sky_and_a_dome_of_lamps() {
     let (width, height) = (64u32, 32u32);
     let mut texels = vec![[0.02f32; 3]; (width * height) as usize];
     for (k, [x, y]) in
@@ -136,23 +137,23 @@ fn rough_metal_sends_what_a_sky_of_lamps_does() {
         let tracer = Arc::new(Tracer::new(Arc::new(scene_of(&[floor(metal(roughness))], &[]))));
         let transport = Transport::new(tracer, world.clone(), TransportOptions::default());
         let solved = IrradianceOptions { patches: 200, rays: 64 };
-        let kept = Irradiance::solve(&transport, solved, &Unwatched).unwrap();
-        let transport = transport.with_irradiance(Arc::new(kept));
+        let irradiance = Irradiance::solve(&transport, solved, &Unwatched).unwrap();
+        let transport = transport.with_irradiance(Arc::new(irradiance));
         let spots = spots();
         for eye in [ABOVE, DVec3::new(3.0, 1.5, -2.0)] {
-            let told = transport.received(&spots, eye);
-            let (mut found, mut expected) = (Vec3::ZERO, Vec3::ZERO);
-            for (spot, received) in spots.iter().zip(told).step_by(9) {
+            let interpolated = transport.incident_batch(&spots, eye);
+            let (mut actual, mut expected) = (Vec3::ZERO, Vec3::ZERO);
+            for (spot, received) in spots.iter().zip(interpolated).step_by(9) {
                 let leaving = |received, seed| {
-                    let among = Among { received, ..Among::alone(seed) };
-                    transport.leaving_among(spot.point, eye, among).own
+                    let slot = SampleSlot { incident: received, ..SampleSlot::single(seed) };
+                    transport.outgoing_sample(spot.point, eye, slot).own
                 };
                 const SEEDS: u64 = 256;
-                found += leaving(received, 0);
+                actual += leaving(received, 0);
                 expected += (0..SEEDS).map(|seed| leaving(None, seed)).sum::<Vec3>() / SEEDS as f32;
             }
-            let off = (found / expected - 1.0).abs().max_element();
-            assert!(off < 0.05, "roughness {roughness} from {eye}: {found}, not {expected}");
+            let off = (actual / expected - 1.0).abs().max_element();
+            assert!(off < 0.05, "roughness {roughness} from {eye}: {actual}, not {expected}");
         }
     }
 }

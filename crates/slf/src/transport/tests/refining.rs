@@ -8,12 +8,12 @@ const LAMP: f32 = 8.0;
 
 /// A room with a red wall and a lamp, and in it a matte box and one of metal, on a floor of glossy paint.
 fn room() -> Scene {
-    let matte = |color: Vec3| Material { base_color: color.extend(1.0), ..Material::of_lambert() };
+    let matte = |color: Vec3| Material { base_color: color.extend(1.0), ..Material::lambertian_white() };
     let glossy = |color: Vec3, metallic: f32, roughness: f32| Material {
         base_color: color.extend(1.0),
         workflow: Workflow::MetallicRoughness {
-            metallic: Scalar::plain(metallic),
-            roughness: Scalar::plain(roughness),
+            metallic: Scalar::constant(metallic),
+            roughness: Scalar::constant(roughness),
         },
         ..Material::default()
     };
@@ -23,7 +23,8 @@ fn room() -> Scene {
     walls.extend(outside(DVec3::new(0.3, 0.0, 0.4), DVec3::new(0.7, 0.5, 0.8), &matte(Vec3::splat(0.6))));
     let metal = glossy(Vec3::new(0.9, 0.7, 0.4), 1.0, 0.15);
     walls.extend(outside(DVec3::new(1.1, 0.0, 0.5), DVec3::new(1.5, 0.7, 0.9), &metal));
-    let lamp = Material { emissive: Vec3::splat(LAMP), base_color: Vec4::ZERO, ..Material::of_lambert() };
+    let lamp =
+        Material { emissive: Vec3::splat(LAMP), base_color: Vec4::ZERO, ..Material::lambertian_white() };
     walls.push(Rectangle(DVec3::new(0.7, 1.19, 0.5), DVec3::X * 0.5, DVec3::Z * 0.5, lamp));
     scene_of(&walls, &[])
 }
@@ -59,30 +60,30 @@ fn coarse(tracer: &Arc<Tracer>) -> Arc<Irradiance> {
 fn sent(transport: &Transport, points: &[SurfacePoint], run: u64) -> Vec<Vec3> {
     let at = |(number, &point): (usize, &SurfacePoint)| {
         let seed = (number as u64) << 32 | run;
-        transport.leaving_among(point, EYE, Among::alone(seed)).total()
+        transport.outgoing_sample(point, EYE, SampleSlot::single(seed)).total()
     };
     points.iter().enumerate().map(at).collect()
 }
 
 /// The root mean square of what some are off from others.
-fn off(found: &[Vec3], truth: &[Vec3]) -> f64 {
-    let squares = found.iter().zip(truth).map(|(a, b)| f64::from((*a - *b).length_squared()) / 3.0);
-    (squares.sum::<f64>() / found.len() as f64).sqrt()
+fn off(actual: &[Vec3], truth: &[Vec3]) -> f64 {
+    let squares = actual.iter().zip(truth).map(|(a, b)| f64::from((*a - *b).length_squared()) / 3.0);
+    (squares.sum::<f64>() / actual.len() as f64).sqrt()
 }
 
 #[test]
-fn refined_light_has_no_floor_and_what_is_kept_has_one() {
+fn refined_light_has_no_error_floor_and_cached_light_has_one() {
     let tracer = Arc::new(Tracer::new(Arc::new(room())));
     let points = points(tracer.scene());
     assert!(points.len() > 40, "{}", points.len());
-    let kept = coarse(&tracer);
+    let irradiance = coarse(&tracer);
     let truth = sent(&transport(&tracer, 1 << 13), &points, 0);
     let refined = |paths: u32| {
-        let checking = transport(&tracer, paths).checking(kept.clone());
+        let checking = transport(&tracer, paths).with_control_variate(irradiance.clone());
         off(&sent(&checking, &points, 1), &truth)
     };
     let errors = [16, 64, 256, 1024].map(refined);
-    let trusted = transport(&tracer, 1024).with_irradiance(kept.clone());
+    let trusted = transport(&tracer, 1024).with_irradiance(irradiance.clone());
     let floor = off(&sent(&trusted, &points, 1), &truth);
     // Sixteen times the paths, a quarter of the error.
     for (few, many) in errors.iter().zip(&errors[2..]) {
@@ -93,19 +94,19 @@ fn refined_light_has_no_floor_and_what_is_kept_has_one() {
 }
 
 #[test]
-fn refined_light_is_that_of_whole_paths_whatever_is_kept() {
+fn refined_light_equals_full_path_tracing_whatever_the_cache_holds() {
     // Light that is kept of another world altogether: three times as much of everything.
     let tracer = Arc::new(Tracer::new(Arc::new(room())));
     let points = &points(tracer.scene())[..24];
-    let kept = coarse(&tracer);
-    let [direct, indirect] = kept.values().map(|values| values.iter().map(|v| *v * 3.0).collect());
+    let irradiance = coarse(&tracer);
+    let [direct, indirect] = irradiance.values().map(|values| values.iter().map(|v| *v * 3.0).collect());
     let options = IrradianceOptions { patches: 24, rays: 64 };
     let world = World::uniform(Vec3::ZERO);
-    let wrong = Irradiance::of_values(tracer.scene(), &world, options, [direct, indirect]).unwrap();
+    let wrong = Irradiance::from_values(tracer.scene(), &world, options, [direct, indirect]).unwrap();
     let mean = |all: &[Vec3]| all.iter().sum::<Vec3>() / all.len() as f32;
     let truth = mean(&sent(&transport(&tracer, 1 << 12), points, 0));
     let wrong = Arc::new(wrong);
-    let refined = mean(&sent(&transport(&tracer, 1 << 12).checking(wrong.clone()), points, 1));
+    let refined = mean(&sent(&transport(&tracer, 1 << 12).with_control_variate(wrong.clone()), points, 1));
     let trusted = mean(&sent(&transport(&tracer, 64).with_irradiance(wrong), points, 1));
     assert!((refined / truth - 1.0).abs().max_element() < 0.015, "{refined}, not {truth}");
     assert!((trusted / truth).min_element() > 1.3, "trusted, it is far off: {trusted}, not {truth}");

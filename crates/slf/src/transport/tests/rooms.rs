@@ -22,7 +22,7 @@ fn transport(scene: Scene, world: World, paths: u32) -> Transport {
     Transport::new(Arc::new(Tracer::new(Arc::new(scene))), world, options)
 }
 
-fn with_known(transport: Transport) -> Transport {
+fn with_cached_irradiance(transport: Transport) -> Transport {
     let irradiance =
         Irradiance::solve(&transport, IrradianceOptions { patches: 6000, rays: 128 }, &Unwatched).unwrap();
     transport.with_irradiance(Arc::new(irradiance))
@@ -41,7 +41,7 @@ fn mean(transport: &Transport, eye: DVec3, triangles: std::ops::Range<u32>) -> V
             SurfacePoint { triangle, barycentric }
         })
     });
-    let all: Vec<Vec3> = points.map(|point| transport.toward(point, eye)).collect();
+    let all: Vec<Vec3> = points.map(|point| transport.total_outgoing(point, eye)).collect();
     all.iter().sum::<Vec3>() / all.len() as f32
 }
 
@@ -50,15 +50,18 @@ fn a_closed_room_that_glows_has_its_series_sum() {
     // L = Le/(1 − ρ), whatever the room: every wall sends what it gets and its own.
     for (albedo, glow) in [(0.5f32, 1.0f32), (0.8, 0.25)] {
         let color = Vec3::new(albedo, albedo / 2.0, 0.0);
-        let wall =
-            Material { base_color: color.extend(1.0), emissive: Vec3::splat(glow), ..Material::of_lambert() };
+        let wall = Material {
+            base_color: color.extend(1.0),
+            emissive: Vec3::splat(glow),
+            ..Material::lambertian_white()
+        };
         let expected = glow / (Vec3::ONE - color);
         let room = || scene_of(&inside(DVec3::ZERO, DVec3::new(2.0, 1.0, 1.5), &wall), &[]);
         let eye = DVec3::new(1.0, 0.5, 0.7);
         let by_paths = mean(&transport(room(), dark(), 64), eye, 0..12);
         assert!((by_paths / expected - 1.0).abs().max_element() < 0.01, "{by_paths}, not {expected}");
-        let known = mean(&with_known(transport(room(), dark(), 8)), eye, 0..12);
-        assert!((known / expected - 1.0).abs().max_element() < 0.01, "known: {known}, not {expected}");
+        let cached = mean(&with_cached_irradiance(transport(room(), dark(), 8)), eye, 0..12);
+        assert!((cached / expected - 1.0).abs().max_element() < 0.01, "known: {cached}, not {expected}");
         // The control: after two bounces the rest of the series is missing.
         let cut = mean(&transport(room(), World { bounces: Some(1), ..dark() }, 64), eye, 0..12);
         assert!(cut.x < 0.95 * expected.x, "{cut}");
@@ -67,14 +70,15 @@ fn a_closed_room_that_glows_has_its_series_sum() {
 
 #[test]
 fn a_closed_box_lit_from_without_stays_dark() {
-    let wall = Material { base_color: Vec4::new(0.8, 0.8, 0.8, 1.0), ..Material::of_lambert() };
+    let wall = Material { base_color: Vec4::new(0.8, 0.8, 0.8, 1.0), ..Material::lambertian_white() };
     // Walls of some thickness.
     let mut walls = inside(DVec3::splat(-1.0), DVec3::ONE, &wall);
     walls.extend(outside(DVec3::splat(-1.02), DVec3::splat(1.02), &wall));
     let lamp = light(LightKind::Point, DVec3::new(2.0, 3.0, 1.0), DVec3::ZERO);
     let scene = scene_of(&walls, &[lamp]);
     let sky = World::uniform(Vec3::splat(0.5));
-    for transport in [transport(scene.clone(), sky.clone(), 32), with_known(transport(scene.clone(), sky, 4))]
+    for transport in
+        [transport(scene.clone(), sky.clone(), 32), with_cached_irradiance(transport(scene.clone(), sky, 4))]
     {
         let within = mean(&transport, DVec3::ZERO, 0..12).max_element();
         let without = mean(&transport, DVec3::new(9.0, 9.0, 9.0), 12..24).max_element();
@@ -82,32 +86,36 @@ fn a_closed_box_lit_from_without_stays_dark() {
     }
     // The control: a box without its floor.
     let open = scene_of(&walls[1..6], &[]);
-    let open = with_known(transport(open, World::uniform(Vec3::ONE), 4));
+    let open = with_cached_irradiance(transport(open, World::uniform(Vec3::ONE), 4));
     assert!(mean(&open, DVec3::ZERO, 0..10).max_element() > 0.05);
 }
 
 #[test]
 fn a_white_floor_under_an_even_sky_is_as_bright_as_the_sky() {
-    let of =
-        |paths| transport(scene_of(&[floor(Material::of_lambert())], &[]), World::uniform(Vec3::ONE), paths);
-    for transport in [of(64), with_known(of(4))] {
-        let found = mean(&transport, ABOVE, 0..2);
-        assert!((found - 1.0).abs().max_element() < 0.01, "{found}");
+    let of = |paths| {
+        transport(scene_of(&[floor(Material::lambertian_white())], &[]), World::uniform(Vec3::ONE), paths)
+    };
+    for transport in [of(64), with_cached_irradiance(of(4))] {
+        let actual = mean(&transport, ABOVE, 0..2);
+        assert!((actual - 1.0).abs().max_element() < 0.01, "{actual}");
     }
 }
 
 /// A slab of glass, its upper face first, over a glowing floor.
 fn slab(ior: f32, volume: Option<Volume>, thickness: f64) -> Scene {
     let glass = Material {
-        transmission: Scalar::plain(1.0),
-        workflow: Workflow::MetallicRoughness { metallic: Scalar::plain(0.0), roughness: Scalar::plain(0.0) },
+        transmission: Scalar::constant(1.0),
+        workflow: Workflow::MetallicRoughness {
+            metallic: Scalar::constant(0.0),
+            roughness: Scalar::constant(0.0),
+        },
         ior,
         volume,
         ..Material::default()
     };
     let mut walls = outside(DVec3::new(-9.0, 1.0, -9.0), DVec3::new(9.0, 1.0 + thickness, 9.0), &glass);
     walls.swap(0, 1);
-    let glow = Material { emissive: Vec3::ONE, base_color: Vec4::ZERO, ..Material::of_lambert() };
+    let glow = Material { emissive: Vec3::ONE, base_color: Vec4::ZERO, ..Material::lambertian_white() };
     walls.push(Rectangle(DVec3::new(-50.0, 0.0, 50.0), DVec3::X * 100.0, DVec3::Z * -100.0, glow));
     scene_of(&walls, &[])
 }
@@ -121,23 +129,27 @@ fn beers_law_holds_through_a_slab() {
     let color = Vec3::new(0.5, 0.25, 1.0);
     for (thickness, distance) in [(0.5, 1.0), (2.0, 0.5)] {
         let volume = Volume { attenuation_color: color, attenuation_distance: distance };
-        let found = transport(slab(1.0, Some(volume), thickness), dark(), 16).toward(ON_SLAB, FAR_ABOVE);
+        let actual =
+            transport(slab(1.0, Some(volume), thickness), dark(), 16).total_outgoing(ON_SLAB, FAR_ABOVE);
         let expected = color.powf((thickness / distance) as f32);
-        assert!((found - expected).abs().max_element() < 1e-4, "{found}, not {expected}");
+        assert!((actual - expected).abs().max_element() < 1e-4, "{actual}, not {expected}");
     }
     // The control: nothing is lost where nothing attenuates.
     let clear = Volume { attenuation_color: color, attenuation_distance: f64::INFINITY };
-    assert_eq!(transport(slab(1.0, Some(clear), 0.5), dark(), 16).toward(ON_SLAB, FAR_ABOVE), Vec3::ONE);
+    assert_eq!(
+        transport(slab(1.0, Some(clear), 0.5), dark(), 16).total_outgoing(ON_SLAB, FAR_ABOVE),
+        Vec3::ONE
+    );
 }
 
 #[test]
 fn a_slab_of_glass_lets_through_what_its_faces_do() {
     // Seen straight on: (1 − r)/(1 + r) of both faces with all that goes to and fro, r = 0.04.
     let clear = Volume { attenuation_color: Vec3::ONE, attenuation_distance: f64::INFINITY };
-    let found = transport(slab(1.5, Some(clear), 0.5), dark(), 1 << 14).toward(ON_SLAB, FAR_ABOVE);
-    assert!((found.y - 0.96 / 1.04).abs() < 4e-3, "{found}");
+    let actual = transport(slab(1.5, Some(clear), 0.5), dark(), 1 << 14).total_outgoing(ON_SLAB, FAR_ABOVE);
+    assert!((actual.y - 0.96 / 1.04).abs() < 4e-3, "{actual}");
     // A wall that is thin lets 0.96 through, and so does the other.
-    let thin = transport(slab(1.5, None, 0.5), dark(), 1 << 14).toward(ON_SLAB, FAR_ABOVE);
+    let thin = transport(slab(1.5, None, 0.5), dark(), 1 << 14).total_outgoing(ON_SLAB, FAR_ABOVE);
     assert!((thin.y - 0.96 / 1.04).abs() < 4e-3, "{thin}");
 }
 
@@ -154,17 +166,17 @@ fn a_pane_without_thickness_mirrors_as_one_face_tints_and_bends_nothing() {
     // glTF's thin wall is one interface, R, where a real pane's two faces mirror 2R/(1 + R). It is tinted by its base colour, once.
     let tint = Vec3::new(0.9, 0.5, 0.2);
     let pane = |roughness: f32| Material {
-        transmission: Scalar::plain(1.0),
+        transmission: Scalar::constant(1.0),
         workflow: Workflow::MetallicRoughness {
-            metallic: Scalar::plain(0.0),
-            roughness: Scalar::plain(roughness),
+            metallic: Scalar::constant(0.0),
+            roughness: Scalar::constant(roughness),
         },
         base_color: tint.extend(1.0),
         double_sided: true,
         ..Material::default()
     };
     // A floor that glows to one side of x = 0 alone, far below the pane.
-    let glow = Material { emissive: Vec3::ONE, base_color: Vec4::ZERO, ..Material::of_lambert() };
+    let glow = Material { emissive: Vec3::ONE, base_color: Vec4::ZERO, ..Material::lambertian_white() };
     let scene = |roughness: f32| {
         let floor =
             Rectangle(DVec3::new(0.0, -4.0, 200.0), DVec3::X * 400.0, DVec3::Z * -400.0, glow.clone());
@@ -173,16 +185,17 @@ fn a_pane_without_thickness_mirrors_as_one_face_tints_and_bends_nothing() {
     let sky = Vec3::new(0.25, 0.5, 1.0);
     for cos in [1.0f64, 0.5, 0.2] {
         let from = DVec3::new((1.0 - cos * cos).sqrt(), cos, 0.0) * 50.0;
-        let found =
-            |sky: Vec3, eye: DVec3| transport(scene(0.0), World::uniform(sky), 1 << 13).toward(MIDDLE, eye);
+        let actual = |sky: Vec3, eye: DVec3| {
+            transport(scene(0.0), World::uniform(sky), 1 << 13).total_outgoing(MIDDLE, eye)
+        };
         let share = mirrored(cos, 1.5) as f32;
         // Seen from +x the ray goes on to −x, which is dark but for the sky; from −x straight on to the glow.
-        let through = found(Vec3::ZERO, from * DVec3::new(-1.0, 1.0, 1.0) - DVec3::X * 1e-3);
+        let through = actual(Vec3::ZERO, from * DVec3::new(-1.0, 1.0, 1.0) - DVec3::X * 1e-3);
         assert!((through - tint * (1.0 - share)).abs().max_element() < 0.012, "cos {cos}: {through}");
         if cos < 1.0 {
-            let beside = found(Vec3::ZERO, from);
+            let beside = actual(Vec3::ZERO, from);
             assert_eq!(beside, Vec3::ZERO, "nothing is bent toward the glow");
-            let mirror = found(sky, from);
+            let mirror = actual(sky, from);
             let expected = sky * share + tint * (1.0 - share) * sky;
             assert!((mirror - expected).abs().max_element() < 0.012, "cos {cos}: {mirror}, not {expected}");
         }
@@ -192,17 +205,20 @@ fn a_pane_without_thickness_mirrors_as_one_face_tints_and_bends_nothing() {
     }
     // A rough one blurs what is behind it: at the glow's edge half of it shows, and beside it what a smooth one does not.
     let eye = DVec3::new(0.2, 50.0, 0.0);
-    let blurred = transport(scene(0.5), dark(), 1 << 13).toward(MIDDLE, eye).x;
-    let sharp = transport(scene(0.0), dark(), 1 << 13).toward(MIDDLE, eye).x;
+    let blurred = transport(scene(0.5), dark(), 1 << 13).total_outgoing(MIDDLE, eye).x;
+    let sharp = transport(scene(0.0), dark(), 1 << 13).total_outgoing(MIDDLE, eye).x;
     assert!((0.3..0.6).contains(&(blurred / tint.x)) && sharp == 0.0, "{blurred} and {sharp}");
 }
 
 #[test]
-fn a_body_within_another_of_its_kind_is_not_seen() {
+fn a_body_within_another_of_its_kind_is_invisible() {
     // Between equal media nothing is mirrored: a block in a block lets through what one block does, but for its own colour.
     let body = |color: Vec3| Material {
-        transmission: Scalar::plain(1.0),
-        workflow: Workflow::MetallicRoughness { metallic: Scalar::plain(0.0), roughness: Scalar::plain(0.0) },
+        transmission: Scalar::constant(1.0),
+        workflow: Workflow::MetallicRoughness {
+            metallic: Scalar::constant(0.0),
+            roughness: Scalar::constant(0.0),
+        },
         volume: Some(Volume { attenuation_color: color, attenuation_distance: 1.0 }),
         ..Material::default()
     };
@@ -228,7 +244,7 @@ fn a_body_within_another_of_its_kind_is_not_seen() {
         scene.materials.extend(inner.materials);
         scene
     };
-    let through = |ior| transport(scene(ior), dark(), 1 << 14).toward(ON_SLAB, FAR_ABOVE);
+    let through = |ior| transport(scene(ior), dark(), 1 << 14).total_outgoing(ON_SLAB, FAR_ABOVE);
     let alike = through(1.5);
     assert!((alike.y - 0.96 / 1.04).abs() < 4e-3, "{alike}");
     // Red is lost in the inner body alone, over half a unit.
@@ -239,15 +255,19 @@ fn a_body_within_another_of_its_kind_is_not_seen() {
 }
 
 #[test]
-fn what_is_known_agrees_with_whole_paths() {
+fn cached_irradiance_agrees_with_full_path_tracing() {
     // A room with a lamp, a matte box and a box of rough metal.
-    let white = Material { base_color: Vec4::new(0.7, 0.6, 0.5, 1.0), ..Material::of_lambert() };
+    let white = Material { base_color: Vec4::new(0.7, 0.6, 0.5, 1.0), ..Material::lambertian_white() };
     let metal = Material {
         base_color: Vec4::new(0.9, 0.7, 0.4, 1.0),
-        workflow: Workflow::MetallicRoughness { metallic: Scalar::plain(1.0), roughness: Scalar::plain(0.4) },
+        workflow: Workflow::MetallicRoughness {
+            metallic: Scalar::constant(1.0),
+            roughness: Scalar::constant(0.4),
+        },
         ..Material::default()
     };
-    let lamp = Material { emissive: Vec3::splat(8.0), base_color: Vec4::ZERO, ..Material::of_lambert() };
+    let lamp =
+        Material { emissive: Vec3::splat(8.0), base_color: Vec4::ZERO, ..Material::lambertian_white() };
     let mut walls = outside(DVec3::new(0.4, 0.0, 0.4), DVec3::new(0.8, 0.5, 0.8), &metal);
     walls.extend(outside(DVec3::new(1.1, 0.0, 0.5), DVec3::new(1.5, 0.7, 0.9), &white));
     walls.extend(inside(DVec3::ZERO, DVec3::new(2.0, 1.2, 1.5), &white));
@@ -258,8 +278,8 @@ fn what_is_known_agrees_with_whole_paths() {
         (0..18).map(|face| mean(&transport, eye, 2 * face..2 * face + 2)).collect()
     };
     let paths = of_faces(transport(scene(), dark(), 256));
-    let known = of_faces(with_known(transport(scene(), dark(), 64)));
-    for (face, (a, b)) in paths.iter().zip(&known).enumerate() {
+    let cached = of_faces(with_cached_irradiance(transport(scene(), dark(), 64)));
+    for (face, (a, b)) in paths.iter().zip(&cached).enumerate() {
         let near = (*a - *b).abs().max_element() < 0.03 * a.max_element() + 0.004;
         assert!(near, "face {face}: {a} by paths, {b} known");
     }

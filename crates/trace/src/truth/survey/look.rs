@@ -4,7 +4,7 @@ use glam::Vec3;
 
 /// What a ray meets.
 #[derive(Clone, Copy, Debug)]
-pub struct Look {
+pub struct SurveyHit {
     /// The signed radius of its circle of confusion under the standard lens, px.
     pub radius_px: f64,
     /// What paint adds to it, px.
@@ -20,13 +20,13 @@ pub const WITHIN: f32 = 0.01;
 const APART: f64 = 0.1;
 
 /// Whether all bring the same light.
-pub fn is_dull(looks: &[Look]) -> bool {
-    looks.windows(2).all(|pair| pair[0].light == pair[1].light)
+pub fn is_uniform(hits: &[SurveyHit]) -> bool {
+    hits.windows(2).all(|pair| pair[0].light == pair[1].light)
 }
 
 /// How many of those looks, in the order of their radii, lie in front of the widest gap between depths; all if there
 /// is one depth.
-pub fn widest_gap(by_radius: &[Look]) -> usize {
+pub fn widest_gap(by_radius: &[SurveyHit]) -> usize {
     let radius = |k: usize| by_radius[k].radius_px;
     let gap = (1..by_radius.len())
         .max_by(|&a, &b| (radius(a) - radius(a - 1)).total_cmp(&(radius(b) - radius(b - 1))));
@@ -35,7 +35,7 @@ pub fn widest_gap(by_radius: &[Look]) -> usize {
 }
 
 /// The sum of the light's squared deviations from its mean.
-pub fn scatter(looks: &[Look]) -> f32 {
-    let mean = looks.iter().map(|look| look.light).sum::<Vec3>() / looks.len().max(1) as f32;
-    looks.iter().map(|look| (look.light - mean).length_squared()).sum()
+pub fn scatter(hits: &[SurveyHit]) -> f32 {
+    let mean = hits.iter().map(|hit| hit.light).sum::<Vec3>() / hits.len().max(1) as f32;
+    hits.iter().map(|hit| (hit.light - mean).length_squared()).sum()
 }

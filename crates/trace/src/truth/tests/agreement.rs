@@ -2,7 +2,7 @@
 //! apart than their standard errors allow.
 
 use super::*;
-use crate::Leaving;
+use crate::OutgoingRadiance;
 use glam::{Vec4, vec4};
 use scene::{AlphaMode, Material};
 
@@ -10,14 +10,14 @@ use scene::{AlphaMode, Material};
 struct Shaded(Arc<scene::Scene>);
 
 impl Radiance for Shaded {
-    fn leaving(&self, point: SurfacePoint, eye: DVec3) -> Leaving {
+    fn outgoing(&self, point: SurfacePoint, eye: DVec3) -> OutgoingRadiance {
         let position = point.position(&self.0);
         let toward = (eye - position).normalize();
         let normal = self.0.area_normal(point.triangle).normalize();
         let shade = 0.6 + 0.2 * (3.0 * position.x + position.y).sin() + 0.2 * normal.dot(toward).abs();
-        Leaving::own(self.0.base_color(point).truncate() * shade as f32)
+        OutgoingRadiance::from_own(self.0.base_color(point).truncate() * shade as f32)
     }
-    fn from_infinity(&self, direction: DVec3) -> Vec3 {
+    fn environment(&self, direction: DVec3) -> Vec3 {
         Vec3::new(0.2, 0.3, 0.5) * (1.0 + direction.normalize().y as f32)
     }
 }
@@ -160,12 +160,17 @@ fn both_estimators_agree() {
 struct Mirroring(Shaded, f32);
 
 impl Radiance for Mirroring {
-    fn leaving(&self, point: SurfacePoint, eye: DVec3) -> Leaving {
-        let (all, share) = (self.0.toward(point, eye), self.1);
-        Leaving { own: all * (1.0 - share), carried: all * share, carried_share: share, ..Leaving::default() }
+    fn outgoing(&self, point: SurfacePoint, eye: DVec3) -> OutgoingRadiance {
+        let (all, share) = (self.0.total_outgoing(point, eye), self.1);
+        OutgoingRadiance {
+            own: all * (1.0 - share),
+            carried: all * share,
+            carried_share: share,
+            ..OutgoingRadiance::default()
+        }
     }
-    fn from_infinity(&self, direction: DVec3) -> Vec3 {
-        self.0.from_infinity(direction)
+    fn environment(&self, direction: DVec3) -> Vec3 {
+        self.0.environment(direction)
     }
 }
 
