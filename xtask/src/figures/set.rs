@@ -71,6 +71,8 @@ impl Sets {
         Ok(())
     }
 
+    /// # Errors
+    /// The text is not JSON of this form.
     #[cfg(test)]
     pub fn from_text(file: &str, text: &str) -> Result<Self, String> {
         let mut sets = Self(BTreeMap::new());

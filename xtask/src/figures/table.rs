@@ -59,23 +59,28 @@ fn sign<'a>(notes: &mut Vec<&'a str>, note: &'a str) -> &'static str {
     SIGNS.get(at).copied().unwrap_or("*")
 }
 
-/// Machine and day, and the commits.
-type Run<'a> = (String, Vec<&'a str>);
+/// A machine, and the days on which it ran a command, each with its commits.
+type Runs<'a> = (&'a str, Vec<(&'a str, Vec<&'a str>)>);
 
-/// Commands, and for each of them where and when it was run, and at which commits.
+/// Commands, and for each of them on which machines and days it was run, and at which commits.
 fn origins(records: &[Record]) -> String {
-    let mut commands: Vec<(&str, Vec<Run>)> = Vec::new();
+    let mut commands: Vec<(&str, Vec<Runs>)> = Vec::new();
     for record in records {
-        let run = format!("{}, {}", record.machine, record.date);
-        let runs = entry(&mut commands, record.command.as_str());
-        let commits = entry(runs, run);
+        let machines = entry(&mut commands, &*record.command);
+        let days = entry(machines, &*record.machine);
+        let commits = entry(days, &*record.date);
         if !commits.contains(&&*record.commit) {
             commits.push(&record.commit);
         }
     }
-    let parts = commands.into_iter().map(|(command, runs)| {
-        let runs = runs.into_iter().map(|(run, commits)| format!("{run} ({})", commits.join(", ")));
-        format!("`{command}`: {}", runs.collect::<Vec<_>>().join("; "))
+    let day = |(day, commits): (&str, Vec<&str>)| format!("{day} ({})", commits.join(", "));
+    let machine = |(machine, days): Runs| {
+        let days: Vec<String> = days.into_iter().map(day).collect();
+        format!("{machine}, {}", days.join(", "))
+    };
+    let parts = commands.into_iter().map(|(command, machines)| {
+        let machines: Vec<String> = machines.into_iter().map(machine).collect();
+        format!("`{command}`: {}", machines.join("; "))
     });
     format!("*{}.*", parts.collect::<Vec<_>>().join(". "))
 }
