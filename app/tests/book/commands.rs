@@ -1,4 +1,4 @@
-//! The page of commands is what the program says of itself.
+//! The page of commands is the program's own help.
 
 use crate::pages::repository;
 use crate::program::done;
@@ -16,7 +16,7 @@ fn page() -> String {
     let folder = tempfile::tempdir().unwrap();
     let help = done(folder.path(), "--help");
     let mut page = String::from(
-        "# Commands\n\nWhat `focus-brush --help` and `focus-brush COMMAND --help` say; the forms of files are in [Files](files.md).\n",
+        "# Commands\n\nThe output of `focus-brush --help` and `focus-brush COMMAND --help`; file formats are in [Files](files.md).\n",
     );
     let mut section = |title: &str, help: &str| {
         let help: Vec<&str> = help.trim().lines().map(str::trim_end).collect();
@@ -29,7 +29,7 @@ fn page() -> String {
     page
 }
 
-/// `UPDATE_BOOK=1 cargo test -p focus-brush --test book` writes it anew.
+/// `UPDATE_BOOK=1 cargo test -p focus-brush --test book` updates it.
 #[test]
 fn the_page_of_commands_is_the_programs_own_help() {
     let file = repository().join("docs/reference/commands.md");
@@ -41,6 +41,6 @@ fn the_page_of_commands_is_the_programs_own_help() {
     let differs = written.lines().zip(page.lines()).find(|(written, told)| written != told);
     assert!(
         written == page,
-        "docs/reference/commands.md is not what the program says: {differs:?} (write it anew: UPDATE_BOOK=1 cargo test -p focus-brush --test book)"
+        "docs/reference/commands.md is not the program's help: {differs:?} (update it: UPDATE_BOOK=1 cargo test -p focus-brush --test book)"
     );
 }
