@@ -7,39 +7,27 @@
 //! surface address, its weight toward every aperture point, its radiance, and what of the aperture it sees ([`Visibility`]);
 //! they are kept packed ([`Samples`]).
 
-mod aperture_parts;
-mod bake;
 mod baker;
 mod carried;
 mod domain;
 mod file;
 mod jitter;
-mod layers;
 mod margin;
-mod occluders;
 mod options;
-mod outgoing;
-mod outliers;
-mod own_change;
-mod parts;
-mod placement;
-mod reach;
 mod salf;
 mod sample;
 mod samples;
-mod surface_patches;
 pub mod tree;
 mod view;
-mod visibility;
 
-pub use bake::{bake, bake_with_outliers};
+pub use baker::outliers::Outliers;
+pub use baker::parts::{PartsBaker, Surroundings};
+pub use baker::{bake, bake_with_outliers};
 pub use carried::Carried;
 pub use domain::{Cell, Domain};
 pub use file::{SalfFile, SalfFileError};
 pub use margin::LARGEST_MARGIN_HEIGHTS;
 pub use options::BakeOptions;
-pub use outliers::Outliers;
-pub use parts::{PartsBaker, Surroundings};
 pub use salf::{Salf, SalfStatistics};
 pub use sample::{Address, Sample, SampleFocus, Visibility};
 pub use samples::{Addresses, Run, SampleLocation, Samples};

@@ -13,22 +13,22 @@
 //! ```
 //!
 //! Sums are integers, and nodes are drawn from their place within the whole. What a picture decides as a whole is left to who joins:
-//! gains, for which crops tell what each of their rows brings to the knots ([`crate::knots`]); whether anything is painted; and
+//! gains, for which crops tell what each of their rows brings to the knots ([`crate::resolve::knots`]); whether anything is painted; and
 //! whether its integers are the finest that hold it ([`Integers`]).
 
 mod integers;
-mod joining;
+mod joiner;
 mod picture;
 mod row;
 mod sums;
 
 pub use integers::{Integers, Kind};
-pub use joining::CropJoiner;
+pub use joiner::CropJoiner;
 pub use picture::{CropFacts, CropPicture};
 pub use row::{CropForm, CropRow, KNOT_NUMBERS};
 pub use sums::{CropError, CropOptions, CropSums};
 
-use crate::knots::SPACING;
+use crate::resolve::knots::SPACING;
 
 /// A part of a picture, px.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

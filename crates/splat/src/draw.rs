@@ -10,12 +10,12 @@ mod image;
 mod large;
 mod paper;
 mod pen;
-mod seen_runs;
 mod sized_box;
 mod small;
 mod stencilled;
+mod visible_runs;
 
-pub use image::{Image, WHOLE};
+pub use image::Image;
 pub use large::Large;
 pub use paper::Paper;
 pub use pen::{ALL, Form, Pen};

@@ -6,6 +6,9 @@
 /// One as a share.
 pub const ONE: i32 = 1 << 14;
 
+/// A share of 1, as shares of light are told: times 2²⁴.
+pub const WHOLE: u32 = 1 << 24;
+
 /// ⌊a·b / 2^`shift`⌋, its lower 32 bits; `shift` ≤ 63.
 #[inline(always)]
 pub fn mul_shift(a: u32, b: u32, shift: u32) -> u32 {

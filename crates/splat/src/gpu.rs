@@ -6,8 +6,6 @@
 //! taken away and added there too.
 //! Portable WGSL that needs no optional features: 64 bits are pairs of words, adders of 64 bits carry by atomics.
 
-mod adapter;
-mod buffers;
 mod device;
 mod error;
 mod layout;
@@ -20,14 +18,12 @@ mod records;
 mod resolve;
 mod scene;
 mod shapes;
-mod stopwatch;
 mod sums;
 #[cfg(test)]
 mod tests;
-mod work;
 
-pub use adapter::{AdapterDescription, BackendChoice, GpuAbsent, adapters};
 pub use device::Gpu;
+pub use device::adapter::{AdapterDescription, BackendChoice, GpuAbsent, adapters};
 pub(crate) use error::GpuError;
 pub use picture_on_card::PictureOnCard;
 pub(crate) use sums::GpuSums;

@@ -1,9 +1,9 @@
 //! The lens that a picture is summed with, and what it makes of each node.
 
+use crate::aperture::shape::Shape;
 use crate::canvas::POSITION_BITS;
 use crate::fixed::ONE;
 use crate::nodes::{CONTRASTS, SplatNode, wider_by_contrast};
-use crate::shape::Shape;
 use lens::{FocusOffset, Optics};
 use salf::tree::LEVELS;
 use std::ops::Range;

@@ -16,28 +16,21 @@
 //!
 //! A picture that is too large for memory is summed in crops ([`CropSums`]), from a light field in parts.
 
-mod balance;
+mod aperture;
 mod bands;
 mod canvas;
 mod crop;
 mod draw;
-mod drawn;
+mod draw_list;
 mod fixed;
 mod gpu;
-mod knots;
 mod lens_in_use;
-mod marks;
 mod nodes;
 mod paint;
-mod partition;
-mod parts_to_pixels;
 mod resolve;
-mod seen;
-mod shape;
+mod simd_dispatch;
 mod splatter;
-mod stencil;
 mod sums;
-mod widest;
 
 pub use crop::{
     Crop, CropError, CropFacts, CropForm, CropJoiner, CropOptions, CropPicture, CropRow, CropSums, Integers,

@@ -1,8 +1,14 @@
 //! Accumulators to pictures: running sums, and each level upsampled onto the next finer one.
 
+pub mod balance;
+pub mod knots;
+pub mod marks;
+pub mod partition;
+pub mod parts_to_pixels;
+
 use crate::canvas::{Accumulator, Level, Pixel, Row, Word};
-use crate::marks::{Mark, Marks, SPAN, spans};
-use crate::widest::with_widest_simd;
+use crate::resolve::marks::{Mark, Marks, SPAN, spans};
+use crate::simd_dispatch::with_widest_simd;
 use std::ops::Range;
 
 /// A pixel holds more light than its integers are sure to hold.

@@ -5,14 +5,14 @@ mod card;
 mod error;
 mod mattes;
 mod on_card;
+mod resolve_steps;
 mod resolver;
-mod wanted;
 
 pub use error::SplatError;
 pub use mattes::{Mattes, SETS};
 
 use crate::bands::Pace;
-use crate::drawn::{BlockList, Changes};
+use crate::draw_list::{BlockList, Changes};
 use crate::lens_in_use::{LensInUse, Tolerance};
 use crate::nodes::{Nodes, Scale};
 use crate::paint::Paint;
@@ -22,12 +22,12 @@ use card::Card;
 use lens::{Camera, FocusOffset, Picture};
 use progress::{Progress, Stage};
 use rayon::prelude::*;
+use resolve_steps::{Finish, ResolveOutput, SummedPaint};
 use resolver::Resolver;
 use salf::Salf;
 use scene::SurfaceField;
 use std::ops::Range;
 use std::sync::Arc;
-use wanted::{Finish, ResolveOutput, SummedPaint};
 
 /// A SALF being looked at: sums that follow the focus as it is painted.
 pub struct Splatter {

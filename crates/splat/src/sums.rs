@@ -3,12 +3,12 @@
 use crate::bands::{Pace, Work};
 use crate::canvas::{Accumulator, Level, Word};
 use crate::draw::{Paper, Pen};
-use crate::drawn::{AHEAD, BlockList, Changes, DrawnNode};
+use crate::draw_list::{AHEAD, BlockList, Changes, DrawnNode};
 use crate::lens_in_use::Placed;
-use crate::marks::Marks;
 use crate::nodes::SplatNode;
+use crate::resolve::marks::Marks;
 use crate::resolve::{Columns, LevelRows, Light, Overflow, Quanta, Room, Window, add_row};
-use crate::widest::{prefetch, with_widest_simd};
+use crate::simd_dispatch::{prefetch, with_widest_simd};
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;
 use salf::tree::{BLOCK_PX, LEVELS};
@@ -42,7 +42,7 @@ pub struct Sum {
 pub struct Sums {
     /// Open samples, and painted ones.
     pub free: Sum,
-    /// Unpainted samples that see part of the aperture: they share what open ones leave (see [`crate::partition`]).
+    /// Unpainted samples that see part of the aperture: they share what open ones leave (see [`crate::resolve::partition`]).
     pub sharing: Sum,
 }
 

@@ -1,12 +1,12 @@
 //! The scene's triangles in a bounding volume hierarchy.
 
 mod beams;
-mod sights;
+mod square_visibility;
 
 use crate::hierarchy::Hierarchy;
 use crate::local_space::LocalSpace;
-use crate::presence::TransparencyMode;
-use crate::sight::Outline;
+use crate::transparency::TransparencyMode;
+use crate::visibility::Outline;
 use crate::watertight::{Crossing, ShearedRay, has_area, in_plane};
 use crate::{Hit, Ray};
 use glam::DVec3;

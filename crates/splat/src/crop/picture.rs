@@ -2,9 +2,9 @@
 
 use super::integers::Integers;
 use super::row::{CropForm, KNOT_NUMBERS};
-use crate::knots::{KnotSums, Knots};
-use crate::partition::{Parts, Share};
-use crate::parts_to_pixels::Pixels;
+use crate::resolve::knots::{KnotSums, Knots};
+use crate::resolve::partition::{Parts, Share};
+use crate::resolve::parts_to_pixels::Pixels;
 use crate::resolve::{BLACK, Light, Overflow, Quanta, Room, Window};
 use crate::sums::{RESOLVE_ROWS, Sums};
 use lens::Picture;

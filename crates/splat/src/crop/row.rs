@@ -1,8 +1,8 @@
 //! The numbers of a crop's rows.
 
-use crate::knots::KnotSums;
-use crate::partition::{Parts, Share};
-use crate::parts_to_pixels::Pixels;
+use crate::resolve::knots::KnotSums;
+use crate::resolve::partition::{Parts, Share};
+use crate::resolve::parts_to_pixels::Pixels;
 use crate::resolve::{BLACK, Light};
 
 /// What a crop tells of each pixel.

@@ -1,12 +1,12 @@
 //! Small images as boxes.
 
+use crate::aperture::stencil::HEIGHT_BITS;
 use crate::canvas::{PIXEL, POSITION_BITS, Word};
 use crate::draw::image::Image;
 use crate::draw::paper::Paper;
 use crate::draw::pen::Pen;
 use crate::draw::sized_box::{HALF_PIXEL, UnsizedBox, too_blurred};
 use crate::fixed::{ONE, mul_shift};
-use crate::stencil::HEIGHT_BITS;
 
 /// Half the longest side of a stretched footprint, 1/4096 px.
 const LARGEST_HALF: u32 = 10 << POSITION_BITS;
@@ -109,8 +109,9 @@ impl Image<'_> {
 mod tests {
     use super::*;
     use crate::canvas::Accumulator;
-    use crate::draw::image::{Light, WHOLE};
+    use crate::draw::image::Light;
     use crate::draw::sized_box::SizedBox;
+    use crate::fixed::WHOLE;
     use crate::fixed::{Reciprocal, hypotenuse};
 
     #[test]

@@ -4,9 +4,6 @@ use crate::canvas::POSITION_BITS;
 use crate::fixed::{mul_shift, signed_mul_shift};
 use crate::nodes::SplatNode;
 
-/// All of the light, as a share.
-pub const WHOLE: u32 = 1 << 24;
-
 /// Red, green, blue and coverage: `mantissa`·2^`exponent` quanta. The largest mantissa has 31 bits.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Light {

@@ -1,12 +1,12 @@
 //! Images too large for stencils.
 
+use crate::aperture::stencil::HEIGHT_BITS;
 use crate::canvas::{PIXEL, POSITION_BITS, Rows, Word};
 use crate::draw::image::Image;
 use crate::draw::pen::Pen;
-use crate::draw::seen_runs::{Row, VisibleRuns};
+use crate::draw::visible_runs::{Row, VisibleRuns};
 use crate::fixed::{Divisor, ONE, mul_shift, signed_mul_shift};
 use crate::nodes::Cells;
-use crate::stencil::HEIGHT_BITS;
 
 /// The light of larger images, in pixel rows, is what their area says; that of smaller ones what their rows say.
 const MAX_ROWS: i32 = 1 << 12;

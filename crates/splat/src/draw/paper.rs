@@ -1,10 +1,10 @@
 //! What is drawn on.
 
 use crate::canvas::{Rows, Word};
-use crate::draw::seen_runs::VisibleRun;
 use crate::draw::sized_box::{UnsizedBox, too_blurred};
 use crate::draw::small::SmallBoxes;
-use crate::widest::with_widest_simd;
+use crate::draw::visible_runs::VisibleRun;
+use crate::simd_dispatch::with_widest_simd;
 
 /// Some rows of a level, and what waits to be drawn on them.
 pub struct Paper<'a, W> {

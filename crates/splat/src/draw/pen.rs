@@ -1,12 +1,12 @@
 //! What nodes are drawn with, and in which form each is drawn.
 
+use crate::aperture::moments::ApertureMoments;
+use crate::aperture::stencil::Stencils;
 use crate::canvas::{PIXEL, POSITION_BITS};
-use crate::draw::image::{Image, Light, WHOLE, seed};
-use crate::fixed::{ONE, mul_shift};
+use crate::draw::image::{Image, Light, seed};
+use crate::fixed::{ONE, WHOLE, mul_shift};
 use crate::lens_in_use::{Detail, Placed};
 use crate::nodes::{Cells, Nodes, SplatNode};
-use crate::seen::ApertureMoments;
-use crate::stencil::Stencils;
 
 /// Aperture images of a smaller standard deviation, px, are boxes.
 const BOX_DEVIATION_PX: f64 = 0.75;

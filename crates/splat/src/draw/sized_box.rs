@@ -1,9 +1,9 @@
 //! A box: how large it is, and its pixels.
 
+use crate::aperture::stencil::HEIGHT_BITS;
 use crate::canvas::{PIXEL, POSITION_BITS, Rows, Word};
 use crate::draw::image::{Image, Light};
 use crate::fixed::{Reciprocal, hypotenuse, mul_shift};
-use crate::stencil::HEIGHT_BITS;
 
 /// Half the shortest side of a box, 1/4096 px.
 pub const SMALLEST_HALF: u32 = PIXEL as u32 / 32;

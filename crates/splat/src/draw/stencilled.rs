@@ -1,14 +1,14 @@
 //! Images as stencils.
 
+use crate::aperture::stencil::{HEIGHT_BITS, Stencil, StencilSize};
 use crate::canvas::{PIXEL, POSITION_BITS, Word};
 use crate::draw::image::Image;
 use crate::draw::paper::Paper;
 use crate::draw::pen::Pen;
-use crate::draw::seen_runs::{Row, VisibleRun, VisibleRuns};
+use crate::draw::visible_runs::{Row, VisibleRun, VisibleRuns};
 use crate::fixed::{ONE, mul_shift, ratio};
 use crate::nodes::Cells;
-use crate::stencil::{HEIGHT_BITS, Stencil, StencilSize};
-use crate::widest::with_widest_simd;
+use crate::simd_dispatch::with_widest_simd;
 
 /// What is let through of a stencil is scaled by this at most.
 const LARGEST_SCALE: u32 = 4;

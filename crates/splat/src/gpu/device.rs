@@ -1,5 +1,10 @@
 //! A graphics card in use.
 
+pub mod adapter;
+mod buffers;
+pub mod commands;
+pub mod stopwatch;
+
 use crate::gpu::passes::Passes;
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::sync::{Arc, OnceLock};

@@ -1,13 +1,13 @@
 //! The list of what is drawn, made on the card.
 
-use crate::drawn::Scene as Drawn;
+use crate::aperture::stencil::{COARSER, Place, Stencils};
+use crate::draw_list::Scene as Drawn;
 use crate::gpu::Gpu;
 use crate::gpu::device::Lost;
+use crate::gpu::device::commands::Commands;
 use crate::gpu::passes::KINDS;
 use crate::gpu::records;
 use crate::gpu::scene::{Chunk, Scene};
-use crate::gpu::work::Commands;
-use crate::stencil::{COARSER, Place, Stencils};
 use salf::tree::LEVELS;
 use std::ops::Range;
 use wgpu::{BindGroup, Buffer, BufferUsages};

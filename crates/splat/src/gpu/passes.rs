@@ -9,10 +9,15 @@ pub const LANES: u32 = 16;
 /// Kinds of records, as in pen.wgsl.
 pub const KINDS: usize = 4;
 
-const FIXED: &str = include_str!("fixed.wgsl");
-const LIST: &str = concat!(include_str!("pen.wgsl"), "\n", include_str!("list.wgsl"));
-const DRAW: &str =
-    concat!(include_str!("pen.wgsl"), "\n", include_str!("draw.wgsl"), "\n", include_str!("seen_runs.wgsl"));
+const FIXED: &str = include_str!("../fixed.wgsl");
+const LIST: &str = concat!(include_str!("../draw/pen.wgsl"), "\n", include_str!("../draw_list.wgsl"));
+const DRAW: &str = concat!(
+    include_str!("../draw/pen.wgsl"),
+    "\n",
+    include_str!("../draw.wgsl"),
+    "\n",
+    include_str!("../draw/visible_runs.wgsl")
+);
 const RESOLVE: &str = include_str!("resolve.wgsl");
 const PROBE: &str = include_str!("probe.wgsl");
 /// A running sum over a workgroup: by steps that any card does, and by subgroups.

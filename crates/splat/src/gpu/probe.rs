@@ -5,7 +5,7 @@
 
 use crate::gpu::Gpu;
 use crate::gpu::device::Lost;
-use crate::gpu::work::Commands;
+use crate::gpu::device::commands::Commands;
 use wgpu::BufferUsages;
 
 /// Threads of the pass.

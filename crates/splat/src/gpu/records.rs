@@ -1,10 +1,10 @@
 //! What is drawn, as the card reads it: listed here where a stroke changes it, else by the card itself ([`super::listing`]).
 
+use crate::aperture::stencil::Place;
 use crate::draw::{ALL, Form, Image, Large, Pen};
 use crate::gpu::passes::KINDS;
 use crate::lens_in_use::Placed;
 use crate::nodes::{Cells, SplatNode};
-use crate::stencil::Place;
 use crate::sums::is_sharing;
 use rayon::prelude::*;
 

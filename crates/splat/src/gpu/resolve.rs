@@ -1,14 +1,14 @@
 //! Accumulators to a picture, on the card.
 
-use crate::balance::Gains;
 use crate::gpu::Gpu;
 use crate::gpu::device::Lost;
+use crate::gpu::device::commands::Commands;
 use crate::gpu::error::GpuError;
 use crate::gpu::layout::{Layout, Level};
 use crate::gpu::passes::Pass;
-use crate::gpu::work::Commands;
-use crate::knots::{KnotSums, Knots, SharedSums};
 use crate::nodes::{BRIGHT, Nodes};
+use crate::resolve::balance::Gains;
+use crate::resolve::knots::{KnotSums, Knots, SharedSums};
 use crate::resolve::{MARGIN, Overflow, Quanta};
 use std::ops::Range;
 use wgpu::{BindGroup, Buffer, BufferUsages};

@@ -1,11 +1,11 @@
 //! Nodes in the card's memory.
 
+use crate::aperture::moments::ApertureMoments;
 use crate::gpu::Gpu;
 use crate::gpu::device::Lost;
 use crate::lens_in_use::NodeFocus;
 use crate::nodes::{Nodes, SplatNode};
 use crate::paint::Paint;
-use crate::seen::ApertureMoments;
 use std::iter::repeat_n;
 use std::ops::Range;
 use std::sync::Arc;

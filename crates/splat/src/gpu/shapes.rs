@@ -1,11 +1,11 @@
 //! What nodes are drawn with, in the card's memory: the pen, the aperture's rows, its stencils.
 
+use crate::aperture::stencil::{Place, Stencils};
 use crate::draw::Pen;
 use crate::gpu::Gpu;
 use crate::gpu::device::Lost;
 use crate::gpu::layout::Layout;
 use crate::nodes::Scale;
-use crate::stencil::{Place, Stencils};
 use wgpu::{Buffer, BufferUsages};
 
 /// Words of a table's beginning: where each stencil's runs lie.

@@ -1,10 +1,11 @@
 //! The sums on the card: accumulators, and what is drawn onto them.
 
-use crate::balance::{Gains, NO_REST};
 use crate::draw::Pen;
-use crate::drawn::{BlockChanges, Changes, Scene};
+use crate::draw_list::{BlockChanges, Changes, Scene};
 use crate::gpu::Gpu;
 use crate::gpu::device::Lost;
+use crate::gpu::device::commands::Commands;
+use crate::gpu::device::stopwatch::Stopwatch;
 use crate::gpu::error::GpuError;
 use crate::gpu::layout::Layout;
 use crate::gpu::listing::{Listed, Listing};
@@ -14,10 +15,9 @@ use crate::gpu::records::{self, LARGE, Records, complete_large};
 use crate::gpu::resolve::Resolve;
 use crate::gpu::scene::Scene as Uploaded;
 use crate::gpu::shapes::Shapes;
-use crate::gpu::stopwatch::Stopwatch;
-use crate::gpu::work::Commands;
-use crate::knots::{Knots, SharedSums};
 use crate::nodes::Nodes;
+use crate::resolve::balance::{Gains, NO_REST};
+use crate::resolve::knots::{Knots, SharedSums};
 use lens::Picture;
 use progress::Progress;
 use salf::tree::LEVELS;

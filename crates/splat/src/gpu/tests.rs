@@ -320,7 +320,8 @@ fn strokes_on_the_card_equal_renders_from_scratch() {
 #[test]
 fn no_feature_is_needed() {
     let Some(gpu) = gpu() else { return };
-    let plain = super::adapter::with_features(gpu.name(), wgpu::Features::empty()).expect("it opened before");
+    let plain =
+        super::device::adapter::with_features(gpu.name(), wgpu::Features::empty()).expect("it opened before");
     let features = gpu.device().features();
     eprintln!("{}: compared with none of {features:?}", gpu.name());
     assert!(!plain.device().features().intersects(Gpu::features(wgpu::Features::all())));

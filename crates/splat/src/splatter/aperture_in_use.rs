@@ -1,13 +1,13 @@
 //! The aperture that a picture is summed with.
 
+use crate::aperture::moments::{ApertureMoments, aperture_moments};
+use crate::aperture::shape::Shape;
+use crate::aperture::stencil::Stencils;
 use crate::draw::Pen;
-use crate::drawn::Scene;
+use crate::draw_list::Scene;
 use crate::lens_in_use::LensInUse;
 use crate::nodes::Nodes;
 use crate::paint::Paint;
-use crate::seen::{ApertureMoments, aperture_moments};
-use crate::shape::Shape;
-use crate::stencil::Stencils;
 use lens::{Aperture, Camera};
 
 /// What depends on the aperture's shape, and on how far it is stopped down from the baked one.

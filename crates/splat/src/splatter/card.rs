@@ -1,12 +1,12 @@
 //! The graphics card that a picture is summed on, until it is lost.
 
 use super::error::SplatError;
-use super::wanted::Finish;
-use crate::balance::{Gains, NO_REST, rest};
+use super::resolve_steps::Finish;
 use crate::draw::Pen;
-use crate::drawn::{Changes, Scene, hull};
+use crate::draw_list::{Changes, Scene, hull};
 use crate::gpu::{Gpu, GpuError, GpuSums, PictureOnCard};
 use crate::nodes::Nodes;
+use crate::resolve::balance::{Gains, NO_REST, rest};
 use lens::Picture;
 use progress::Progress;
 use std::ops::Range;

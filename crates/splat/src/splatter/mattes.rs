@@ -2,10 +2,10 @@
 //!
 //! A matte is the picture of a scene in which some samples send 1 and all others nothing. It is made of the sums that make the picture, with
 //! the same nodes, places and shares: mattes that leave no sample out sum to the coverage. Their light is not scaled by gains
-//! ([`crate::balance`]), as coverage is not.
+//! ([`crate::resolve::balance`]), as coverage is not.
 
 use super::error::SplatError;
-use super::wanted::{ResolveOutput, SummedPaint};
+use super::resolve_steps::{ResolveOutput, SummedPaint};
 use super::{LensInUse, Splatter};
 use lens::Picture;
 use progress::{Progress, Stage};

@@ -1,10 +1,10 @@
 //! Sums to a picture, on the processor.
 
-use super::wanted::{Finish, ResolveOutput};
-use crate::balance::{Balance, Scaled};
+use super::resolve_steps::{Finish, ResolveOutput};
 use crate::nodes::Nodes;
-use crate::partition::{Parts, Share};
-use crate::parts_to_pixels::Pixels;
+use crate::resolve::balance::{Balance, Scaled};
+use crate::resolve::partition::{Parts, Share};
+use crate::resolve::parts_to_pixels::Pixels;
 use crate::resolve::{BLACK, Overflow, Room, Window};
 use crate::sums::{RESOLVE_ROWS, SumMarks, Sums};
 use lens::Picture;

@@ -1,7 +1,7 @@
 //! What the rays of a beam meet.
 
 use super::{LeafTriangle, Nearest, Tracer};
-use crate::presence::TransparencyMode;
+use crate::transparency::TransparencyMode;
 use crate::watertight::{ShearedRay, ShearedRayPacket};
 use crate::{Beam, Hit, Ray};
 use glam::DVec3;

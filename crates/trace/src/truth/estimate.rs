@@ -1,6 +1,7 @@
 //! What a render knows so far: the picture, and how far off it may be.
 
 use lens::{Exposure, Picture};
+use numerics::luminance;
 use rayon::prelude::*;
 
 /// A picture with the standard error of every number in it.
@@ -60,14 +61,10 @@ pub(super) struct Moments {
     with_coverage: [f64; 4],
 }
 
-/// Rec. 709's luminance of linear red, green and blue.
-const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
-
 impl Moments {
     /// Adds a pass of mean red, green, blue and coverage; `share` is what part of all samples so far it has.
     fn add(&mut self, [r, g, b, coverage]: [f64; 4], weight: f64, share: f64) {
-        let luminance = LUMINANCE[0] * r + LUMINANCE[1] * g + LUMINANCE[2] * b;
-        let x = [r, g, b, luminance, coverage];
+        let x = [r, g, b, luminance([r, g, b]), coverage];
         let before: [f64; 5] = std::array::from_fn(|c| x[c] - self.mean[c]);
         for c in 0..5 {
             self.mean[c] += before[c] * share;

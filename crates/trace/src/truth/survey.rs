@@ -11,20 +11,20 @@
 //! construction (see [`super::samples`]). If nearly all that is there to decide is of one circle of confusion and moved
 //! alike, that sequence suits it ([`Survey::moved`]); where several paints meet, no sequence suits them all.
 
-mod look;
 mod paint;
+mod survey_hit;
 
 use super::options::{Region, TruthOptions};
 use super::samples::PixelSample;
 use super::sheared::{self, Level, Spread};
 use glam::{DVec2, Vec3};
-pub(super) use look::SurveyHit;
-use look::{WITHIN, is_uniform, scatter, widest_gap};
 use paint::Paint;
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
+pub(super) use survey_hit::SurveyHit;
+use survey_hit::{WITHIN, is_uniform, scatter, widest_gap};
 
 /// Every pixel's samples.
 pub(super) struct Survey {

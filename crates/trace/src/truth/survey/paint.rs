@@ -1,8 +1,9 @@
 //! What the common samples of pixels whose light paint moves should suit.
 
 use super::super::sheared::{Level, Spread};
-use super::look::{SurveyHit, WITHIN, is_uniform, scatter, widest_gap};
+use super::survey_hit::{SurveyHit, WITHIN, is_uniform, scatter, widest_gap};
 use glam::Vec3;
+use numerics::upper_median;
 
 /// Which share of the pixels that paint decides something in must agree for the common samples to suit them: the others
 /// would be worse off than without an order.
@@ -66,8 +67,7 @@ pub(super) fn common_spread(paints: impl Iterator<Item = Paint>) -> Option<Sprea
                 _ => None,
             })
             .collect();
-        values.sort_by(f64::total_cmp);
-        values.get(values.len() / 2).copied()
+        upper_median(&mut values)
     };
     let (radius, moved) = (median(|radius, _| radius)?, median(|_, moved| moved)?);
     let (level, by) = (Level::from_radius(radius), Level::from_radius(moved));

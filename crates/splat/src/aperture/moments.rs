@@ -1,9 +1,8 @@
 //! What partly occluded nodes see of the lens's aperture, in one number and one point.
 
-use crate::draw::WHOLE;
-use crate::fixed::ONE;
+use crate::aperture::shape::Shape;
+use crate::fixed::{ONE, WHOLE};
 use crate::nodes::Nodes;
-use crate::shape::Shape;
 use glam::DVec2;
 use rayon::prelude::*;
 

@@ -1,12 +1,15 @@
 //! What a surface sends toward the aperture, in the least form that tells it.
 //!
 //! Own light changes little over the aperture, and is one radiance, but where views of a light field told otherwise
-//! (`own_change`). Carried light of a lobe of width ω, as seen from the whole aperture, which spans the angle δ there, needs about 6 δ/ω radiances a side; where it is thrown as an image of c px, no more
+//! (`own_light_change`). Carried light of a lobe of width ω, as seen from the whole aperture, which spans the angle δ there, needs about 6 δ/ω radiances a side; where it is thrown as an image of c px, no more
 //! than c over the tolerance can be told apart. It is asked for on so many cells, which are joined again where they are alike.
 //!
 //! Own and carried light share the weight of their patch, as they share its coverage, so each is divided by its share.
 
-use crate::aperture_parts::{ApertureCells, AperturePart, MAX_CELLS};
+pub mod aperture_parts;
+pub mod own_light_change;
+
+use crate::baker::outgoing::aperture_parts::{ApertureCells, AperturePart, MAX_CELLS};
 use crate::carried::Carried;
 use crate::jitter::jitter;
 use crate::sample::Visibility;

@@ -5,13 +5,13 @@
 //! So a part of the picture is surveyed first, with as much around it ([`PartsBaker::around`]); then its squares are baked, some at
 //! a time. The parts of a light field have its camera, its blocks and its hierarchy.
 
-use crate::bake::{map_rows, outside_domain, patches};
-use crate::baker::BlockBaker;
+use crate::baker::block_baker::BlockBaker;
+use crate::baker::occluders::Occluders;
+use crate::baker::outliers::Outliers;
+use crate::baker::reach::{Bound, Reach, SQUARE_PX};
+use crate::baker::{map_rows, outside_domain, patches};
 use crate::domain::Domain;
-use crate::occluders::Occluders;
 use crate::options::BakeOptions;
-use crate::outliers::Outliers;
-use crate::reach::{Bound, Reach, SQUARE_PX};
 use crate::salf::Salf;
 use crate::sample::Sample;
 use crate::samples::Samples;

@@ -16,11 +16,11 @@
 //! is taken out by `even`, which is 1 to within a
 //! tenth: a pixel that lacks more has a hole. Where anything is painted it is 1: coverage then has a shape of its own.
 //!
-//! Light that either takes from a surface is given back nearby ([`crate::balance`]): none is made or lost.
+//! Light that either takes from a surface is given back nearby ([`crate::resolve::balance`]): none is made or lost.
 
 use crate::fixed::{floored, ratio};
 use crate::resolve::Light;
-use crate::widest::with_widest_simd;
+use crate::simd_dispatch::with_widest_simd;
 
 /// A pixel's factors.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,7 +2,7 @@
 
 use super::{LeafTriangle, Tracer};
 use crate::hierarchy::{Node, Visit};
-use crate::sight::{Eye, PointSet, Square, SquareVisibility, TargetPoints, Viewpoint, VisibilityQuery};
+use crate::visibility::{Eye, PointSet, Square, SquareVisibility, TargetPoints, Viewpoint, VisibilityQuery};
 use crate::watertight::ShearedRay;
 use glam::DVec3;
 use scene::SurfacePoint;

@@ -1,8 +1,8 @@
 //! Crops to the whole picture, row by row.
 
 use super::row::{CropForm, CropRow, KNOT_NUMBERS, knot_sums};
-use crate::balance::{Gains, NO_REST, Scaled, rest};
-use crate::knots::{KnotSums, Knots, SPACING, SharedSums, position};
+use crate::resolve::balance::{Gains, NO_REST, Scaled, rest};
+use crate::resolve::knots::{KnotSums, Knots, SPACING, SharedSums, position};
 
 /// What a whole picture decides of its crops, and makes of them.
 pub struct CropJoiner {

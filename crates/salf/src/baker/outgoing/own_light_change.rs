@@ -1,7 +1,7 @@
 //! How the own light of a point changes over the aperture.
 
-use crate::aperture_parts::{ApertureCells, AperturePart, MAX_CELLS};
-use crate::outgoing::{ALIKE, LightComponent, RadianceQuery, cells_of_lobe};
+use crate::baker::outgoing::aperture_parts::{ApertureCells, AperturePart, MAX_CELLS};
+use crate::baker::outgoing::{ALIKE, LightComponent, RadianceQuery, cells_of_lobe};
 use crate::sample::Visibility;
 use glam::{DVec2, Vec3};
 use scene::SurfacePoint;

@@ -1,7 +1,7 @@
 //! What sharing and evening take away is given back nearby.
 //!
 //! That partly occluded samples share what open ones leave, and that the standard picture's coverage is evened out (see
-//! [`crate::partition`]), makes each pixel's coverage right, but moves light: what a small card that is hidden in part
+//! [`crate::resolve::partition`]), makes each pixel's coverage right, but moves light: what a small card that is hidden in part
 //! loses, the wall beside it gets. So light is scaled, colour by colour, by gains g that vary slowly over the picture,
 //!
 //! ```text
@@ -23,8 +23,8 @@
 //! sum of a painted picture is off by some 0.05 %; but for live ones, a further gain for each colour of the light that shares
 //! makes it what it was ([`rest`]).
 
-use crate::knots::{KnotSums, Knots, SPACING, SharedSums, position};
-use crate::widest::with_widest_simd;
+use crate::resolve::knots::{KnotSums, Knots, SPACING, SharedSums, position};
+use crate::simd_dispatch::with_widest_simd;
 use rayon::prelude::*;
 
 /// Which light is scaled: that of the sharing samples, where the picture is not evened out; else all.
@@ -237,7 +237,7 @@ fn mix(a: [f32; 4], b: [f32; 4], behind: f32) -> [f32; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::partition::{Parts, Share};
+    use crate::resolve::partition::{Parts, Share};
 
     const SIZE: [usize; 2] = [150, 90];
 

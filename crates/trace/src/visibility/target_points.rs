@@ -1,7 +1,7 @@
 //! Places on a square.
 
-use crate::sight::PointSet;
-use crate::sight::shadow::Shadow;
+use crate::visibility::PointSet;
+use crate::visibility::shadow::Shadow;
 use glam::{DVec2, Vec4};
 
 /// Places on a square, up to [`PlaceSet::MOST`].

@@ -2,11 +2,11 @@
 //!
 //! A triangle's outline tells roughly which of the places it may hide (`projection`), its shadow tells exactly (`shadow`).
 
-mod place_set;
-mod places;
+mod point_set;
 mod projection;
 mod shadow;
 mod square;
+mod target_points;
 mod viewpoint;
 
 use crate::Ray;
@@ -14,12 +14,12 @@ use crate::hierarchy::{Halfspaces, Node};
 use crate::local_space::LocalSpace;
 use crate::watertight::in_plane;
 use glam::{DVec2, DVec3};
-pub use place_set::PointSet;
-pub use places::TargetPoints;
+pub use point_set::PointSet;
 pub(crate) use projection::Outline;
 use projection::{Boxes, Projection};
 use shadow::Shadow;
 pub use square::Square;
+pub use target_points::TargetPoints;
 pub(crate) use viewpoint::Eye;
 pub use viewpoint::Viewpoint;
 

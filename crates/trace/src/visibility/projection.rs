@@ -2,8 +2,8 @@
 
 use crate::hierarchy::Node;
 use crate::local_space::LocalSpace;
-use crate::sight::places::Bounds;
-use crate::sight::{Eye, Square};
+use crate::visibility::target_points::Bounds;
+use crate::visibility::{Eye, Square};
 use glam::{BVec4A, DVec3, Mat4, Vec3, Vec4};
 
 /// A triangle's corners in local space, rounded: x, y and z, the last corner twice.

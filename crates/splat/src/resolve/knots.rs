@@ -1,8 +1,8 @@
 //! What sharing and evening do to the light around knots that lie all over the picture: what gains are found from.
 
-use crate::partition::{Parts, Share};
 use crate::resolve::Light;
-use crate::widest::with_widest_simd;
+use crate::resolve::partition::{Parts, Share};
+use crate::simd_dispatch::with_widest_simd;
 use glam::Vec4;
 use rayon::prelude::*;
 

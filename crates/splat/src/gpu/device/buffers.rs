@@ -8,7 +8,12 @@ use wgpu::{BindGroup, BindGroupLayout, Buffer, BufferUsages};
 
 impl Gpu {
     /// A buffer of so many words (at least a few, for none can be bound that is empty).
-    pub(super) fn buffer(&self, label: &str, words: usize, usage: BufferUsages) -> Result<Buffer, Lost> {
+    pub(in crate::gpu) fn buffer(
+        &self,
+        label: &str,
+        words: usize,
+        usage: BufferUsages,
+    ) -> Result<Buffer, Lost> {
         let size = 4 * words.max(16) as u64;
         if size > self.largest_binding() {
             return Err(Lost);
@@ -24,19 +29,19 @@ impl Gpu {
     }
 
     /// Writes words to a buffer's beginning.
-    pub(super) fn write(&self, buffer: &Buffer, words: &[u32]) {
+    pub(in crate::gpu) fn write(&self, buffer: &Buffer, words: &[u32]) {
         self.write_at(buffer, 0, words);
     }
 
     /// Writes words, from the one at `first` on, to their places in a buffer.
-    pub(super) fn write_at(&self, buffer: &Buffer, first: usize, words: &[u32]) {
+    pub(in crate::gpu) fn write_at(&self, buffer: &Buffer, first: usize, words: &[u32]) {
         if first < words.len() {
             self.queue().write_buffer(buffer, 4 * first as u64, bytemuck::cast_slice(&words[first..]));
         }
     }
 
     /// Buffers at their bindings.
-    pub(super) fn bind<'a>(
+    pub(in crate::gpu) fn bind<'a>(
         &self,
         layout: &BindGroupLayout,
         buffers: impl IntoIterator<Item = (u32, &'a Buffer)>,
@@ -51,12 +56,12 @@ impl Gpu {
     }
 
     /// The words of a range of bytes of a buffer.
-    pub(super) fn read(&self, buffer: &Buffer, range: Range<u64>) -> Result<Vec<u32>, Lost> {
+    pub(in crate::gpu) fn read(&self, buffer: &Buffer, range: Range<u64>) -> Result<Vec<u32>, Lost> {
         self.read_all(&[(buffer, range)])
     }
 
     /// The words of ranges of bytes of buffers, one after the other, waited for once.
-    pub(super) fn read_all(&self, parts: &[(&Buffer, Range<u64>)]) -> Result<Vec<u32>, Lost> {
+    pub(in crate::gpu) fn read_all(&self, parts: &[(&Buffer, Range<u64>)]) -> Result<Vec<u32>, Lost> {
         self.check()?;
         let size = parts.iter().map(|(_, range)| range.end - range.start).sum::<u64>();
         let usage = BufferUsages::MAP_READ | BufferUsages::COPY_DST;

@@ -1,10 +1,10 @@
 //! The parts of a row's pixels, joined to a picture: what is free, and what shares the rest, scaled by its gains.
 
-use crate::balance::RowGains;
-use crate::knots::{SPACING, SharedSums};
-use crate::partition::{Parts, Share};
+use crate::resolve::balance::RowGains;
+use crate::resolve::knots::{SPACING, SharedSums};
+use crate::resolve::partition::{Parts, Share};
 use crate::resolve::{BLACK, Light};
-use crate::widest::with_widest_simd;
+use crate::simd_dispatch::with_widest_simd;
 
 impl Parts<'_> {
     /// Joins them to pixels, which `gains` scale if they are known; evened out if asked for: only where nothing is painted.

@@ -1,12 +1,12 @@
 //! The pinhole picture, one cell at a time: which surfaces lie along its chief rays.
 
+use crate::baker::occluders::{Depths, Occluders};
+use crate::baker::outgoing::own_light_change::OwnLightChange;
+use crate::baker::outgoing::{self, ApertureRadiance, LightComponent, MeanRadiance, RadianceQuery};
+use crate::baker::placement::Placement;
 use crate::domain::{Cell, CellPart, Density};
 use crate::jitter::Net;
-use crate::occluders::{Depths, Occluders};
 use crate::options::BakeOptions;
-use crate::outgoing::{self, ApertureRadiance, LightComponent, MeanRadiance, RadianceQuery};
-use crate::own_change::OwnLightChange;
-use crate::placement::Placement;
 use crate::sample::Sample;
 use crate::samples::BakedSample;
 use crate::view::View;

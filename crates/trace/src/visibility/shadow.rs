@@ -11,7 +11,7 @@
 //! once and tried on all places with two multiplications each. Two triangles that share an edge have exactly opposite
 //! functions there, so that no ray passes between them. Toward a point at infinity the same holds with its direction.
 
-use crate::sight::{Eye, Square};
+use crate::visibility::{Eye, Square};
 use glam::{DVec3, Vec4};
 
 /// A linear function of u and v.

@@ -2,17 +2,17 @@
 //!
 //! A triangle whose plane passes through or close by the aperture covers next to nothing of the pinhole picture, yet the
 //! rim of the aperture sees it: the weight |n·(P − U)|/|n·P| of pinhole samples has no bound there. And a small lamp may
-//! lie between the pinhole's rays. Such triangles ([`crate::placement`]) are cut into patches of about a pixel, and each
+//! lie between the pinhole's rays. Such triangles ([`crate::baker::placement`]) are cut into patches of about a pixel, and each
 //! side of a patch that can be seen is a sample.
 
-use crate::baker::BlockBaker;
+use crate::baker::block_baker::BlockBaker;
+use crate::baker::outgoing::{LightComponent, MeanRadiance};
+use crate::baker::shadow_rays::{self, Fineness, Patterns, VisiblePart};
 use crate::domain::Domain;
 use crate::jitter::jitter;
-use crate::outgoing::{LightComponent, MeanRadiance};
 use crate::sample::Sample;
 use crate::samples::block_corner;
 use crate::view::View;
-use crate::visibility::{self, Fineness, Patterns, VisiblePart};
 use glam::{DVec2, DVec3, IVec2};
 use scene::SurfacePoint;
 use trace::Viewpoint;
@@ -120,7 +120,7 @@ fn patch(baker: &BlockBaker, point: SurfacePoint, piece: Piece, normal: DVec3) -
     let seed = [point.triangle, (jitter(point.barycentric.x.to_bits() as u32, 0, 0)[0] * 1e9) as u32];
     let is_on_side = |u: DVec2| weight + tilt.dot(u) > 0.0;
     let from = Viewpoint::Surface(point);
-    let parts = visibility::visible_parts(
+    let parts = shadow_rays::visible_parts(
         tracer,
         view,
         patterns,

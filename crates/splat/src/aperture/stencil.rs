@@ -4,8 +4,8 @@
 //! the splat's centre, so that a splat costs a few integer operations a row. Radii are tabled by their squares, in steps of
 //! 1/256 of themselves, the centre's height in 32nds of a pixel or, of large ones, more coarsely.
 
+use crate::aperture::shape::{Part, Shape};
 use crate::canvas::{PIXEL, POSITION_BITS};
-use crate::shape::{Part, Shape};
 use glam::DVec4;
 use lens::Run;
 use progress::Progress;

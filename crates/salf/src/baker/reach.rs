@@ -10,8 +10,8 @@
 //! is linear in each of t, a and 1/z, and so largest at a corner of the three ranges. A surface that something hides counts like
 //! any other, and everywhere there may be background.
 
+use crate::baker::placement::Placement;
 use crate::domain::Domain;
-use crate::placement::Placement;
 use crate::view::View;
 use glam::{DVec2, DVec3, IVec2};
 use lens::FocusOffset;

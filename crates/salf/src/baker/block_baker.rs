@@ -1,0 +1,287 @@
+//! How a block of the picture is baked: its cells are looked at twice.
+
+use crate::baker::layers::{Group, Layers, Tile, trace_cell};
+use crate::baker::occluders::{Depths, Footprint, Occluders};
+use crate::baker::outgoing::{self, ApertureRadiance, RadianceQuery};
+use crate::baker::outliers::{self, Outliers};
+use crate::baker::placement::Placement;
+use crate::baker::shadow_rays::{self, Fineness, Patterns, VisiblePart};
+use crate::domain::{Cell, Density, Domain};
+use crate::margin::standard_margin_px;
+use crate::options::BakeOptions;
+use crate::sample::{Sample, Visibility};
+use crate::samples::{BakedSample, Packer, Samples, block_corner};
+use crate::view::View;
+use glam::{DVec2, IVec2, Vec3};
+use lens::Camera;
+use std::collections::BTreeMap;
+use std::rc::Rc;
+use trace::{IncidentLight, Radiance, Tracer, Viewpoint};
+
+/// So many cells are looked at together where nothing is told of more at once: what they take is given back, and taken again by the
+/// next ones, from the few pieces of memory that a thread has at hand.
+const BATCH_CELLS: usize = 4;
+
+/// A surface of a cell, before it is known what it sees of the aperture.
+struct Candidate {
+    center: DVec2,
+    inverse_depth: f64,
+    slope: DVec2,
+    /// From where it is asked what it sees.
+    viewpoint: Viewpoint,
+    /// Whether no other surface of its own cell is in front of it.
+    is_in_front: bool,
+}
+
+/// What the first look at a cell found.
+pub struct CellSurvey {
+    pub cell: Cell,
+    density: Density,
+    pub depths: Depths,
+    has_gap: bool,
+    has_pane: bool,
+    /// Its nearest surfaces, each with its samples as if they saw all.
+    surfaces: Vec<(Candidate, Vec<BakedSample>)>,
+}
+
+/// The samples of one block.
+fn pack_samples(corner: IVec2, baked: Vec<BakedSample>, packs: bool) -> Samples {
+    if !packs {
+        return Samples::from(baked.into_iter().map(|baked| baked.sample).collect::<Vec<_>>());
+    }
+    let mut packer = Packer::new(corner);
+    baked.into_iter().for_each(|baked| packer.push(baked));
+    packer.finish()
+}
+
+/// What every cell is sampled with.
+pub struct BlockBaker<'a> {
+    pub tracer: &'a Tracer,
+    pub radiance: &'a dyn Radiance,
+    pub view: View<'a>,
+    pub placement: Placement,
+    pub patterns: Patterns,
+    /// Where the pinhole picture is sampled.
+    pub domain: Domain,
+    packs: bool,
+}
+
+impl<'a> BlockBaker<'a> {
+    /// For `camera`, which must be valid.
+    pub fn new(
+        tracer: &'a Tracer,
+        radiance: &'a dyn Radiance,
+        camera: &'a Camera,
+        options: &BakeOptions,
+    ) -> Self {
+        let view = View::new(camera, options.tolerance_px).with_carried(options.carried);
+        let margin = standard_margin_px(tracer.scene(), &view).max(options.margin_px);
+        let domain = Domain::new(camera.width, camera.height, margin);
+        let placement = Placement::new(tracer.scene(), &view);
+        let packs = options.packs;
+        Self { tracer, radiance, view, placement, patterns: Patterns::new(), domain, packs }
+    }
+
+    /// The samples of a block that was looked at, and of the surface patches in it.
+    pub fn bake_block(
+        &self,
+        occluders: &Occluders,
+        surveys: &[CellSurvey],
+        patches: &[Sample],
+    ) -> (Samples, Outliers) {
+        let Some(first) = surveys.first() else { return Default::default() };
+        let mut baked: Vec<_> = surveys
+            .chunks(self.batch_cells())
+            .flat_map(|surveys| self.sample_visible(occluders, surveys))
+            .collect();
+        let unplaced =
+            |patch: &Sample| BakedSample { sample: patch.clone(), part_of: None, noisy: Vec3::ZERO };
+        baked.extend(patches.iter().map(unplaced));
+        let outliers = outliers::spread_outliers(&mut baked, self.tracer.scene());
+        (pack_samples(block_corner(first.cell.corner), baked, self.packs), outliers)
+    }
+
+    /// How many cells of a block are looked at together.
+    fn batch_cells(&self) -> usize {
+        if self.radiance.supports_batches() { usize::MAX } else { BATCH_CELLS }
+    }
+
+    fn trace_layers(&self, cell: Cell, density: Density, hidden: bool) -> Layers {
+        trace_cell(self.tracer, &self.view, &self.placement, cell, density, hidden)
+    }
+
+    /// The nearest surfaces of a cell, as densely traced as they need.
+    fn trace_nearest(&self, cell: Cell) -> (Density, Layers) {
+        let layers = self.trace_layers(cell, Density::Coarse, false);
+        if layers.has_outline() {
+            return (Density::Fine, self.trace_layers(cell, Density::Fine, false));
+        }
+        (Density::Coarse, layers)
+    }
+
+    /// What the chief rays of a cell tell of the depths around it: as [`Self::first_looks`] does, and no more.
+    pub fn depths(&self, cell: Cell) -> Depths {
+        self.trace_nearest(cell).1.depths(cell)
+    }
+
+    /// Looks at the cells of a block.
+    pub fn survey_cells(&self, cells: &[Cell]) -> Vec<CellSurvey> {
+        let mut surveys = Vec::with_capacity(cells.len());
+        cells.chunks(self.batch_cells()).for_each(|cells| surveys.extend(self.survey_batch(cells)));
+        surveys
+    }
+
+    /// Looks at some of them, of which light is told together.
+    fn survey_batch(&self, cells: &[Cell]) -> impl Iterator<Item = CellSurvey> {
+        let of_cell = |&cell: &Cell| {
+            let (density, layers) = self.trace_nearest(cell);
+            (cell, density, layers)
+        };
+        let traced: Vec<_> = cells.iter().map(of_cell).collect();
+        let groups =
+            traced.iter().flat_map(|(cell, _, layers)| layers.groups.iter().map(|group| (*cell, group)));
+        let mut sampled = self.sample_groups(&groups.collect::<Vec<_>>()).into_iter();
+        let survey = move |(cell, density, layers): (Cell, Density, Layers)| {
+            let candidates = layers.groups.iter().map(|group| self.candidate(cell, &layers, group));
+            let nearest = candidates.zip(&mut sampled).collect();
+            let (has_gap, has_pane) = (layers.has_gap, layers.has_pane);
+            CellSurvey { cell, density, depths: layers.depths(cell), has_gap, has_pane, surfaces: nearest }
+        };
+        traced.into_iter().map(survey)
+    }
+
+    /// The samples of surfaces that are of one block, as if they saw all.
+    fn sample_groups(&self, groups: &[(Cell, &Group)]) -> Vec<Vec<BakedSample>> {
+        if !self.radiance.supports_batches() {
+            let of_group = |&(cell, group): &(Cell, &Group)| {
+                group.baked_samples(self.radiance, &self.view, cell, None, None)
+            };
+            return groups.iter().map(of_group).collect();
+        }
+        let spots: Vec<_> =
+            groups.iter().map(|(cell, group)| group.shading_point(self.tracer.scene(), *cell)).collect();
+        let queries: Vec<_> = spots.iter().copied().flatten().collect();
+        let mut incident_lights = self.radiance.incident_batch(&queries, self.view.eye).into_iter();
+        let incident: Vec<_> =
+            spots.iter().map(|spot| spot.and_then(|_| incident_lights.next().flatten())).collect();
+        let shared = self.shared_carried(groups, &incident);
+        let samples = |((&(cell, group), received), shared): ((&(Cell, &Group), _), Option<Rc<_>>)| {
+            group.baked_samples(self.radiance, &self.view, cell, received, shared.as_deref())
+        };
+        groups.iter().zip(incident).zip(shared).map(samples).collect()
+    }
+
+    /// The carried light that surfaces share with their neighbours ([`Group::tile`]), where what is own of them is told.
+    fn shared_carried(
+        &self,
+        groups: &[(Cell, &Group)],
+        incident: &[Option<IncidentLight>],
+    ) -> Vec<Option<Rc<ApertureRadiance>>> {
+        let mut tiles: BTreeMap<Tile, Vec<usize>> = BTreeMap::new();
+        for (index, (cell, group)) in groups.iter().enumerate() {
+            let is_own_interpolated = incident[index].is_some_and(|incident| incident.gloss.is_some());
+            if is_own_interpolated && let Some(tile) = group.tile(self.radiance, &self.view, *cell) {
+                tiles.entry(tile).or_default().push(index);
+            }
+        }
+        let mut shared = vec![None; groups.len()];
+        for (tile, members) in tiles.into_iter().filter(|(_, members)| members.len() > 1) {
+            let points = members.iter().flat_map(|&index| groups[index].1.weighted_points());
+            let points: Vec<_> = points.filter(|(_, weight)| *weight > 0.0).collect();
+            if points.is_empty() {
+                continue;
+            }
+            let query = RadianceQuery {
+                radiance: self.radiance,
+                view: &self.view,
+                seed: tile.corner.map(|at| at as u32),
+                incident: incident[members[0]],
+                own_only: false,
+                blurred: outgoing::blurred_px(&self.view, groups[members[0]].1.mean_inverse_depth()),
+            };
+            let radiance = Rc::new(ApertureRadiance::gather(&query, &points, tile.side));
+            members.into_iter().for_each(|index| shared[index] = Some(radiance.clone()));
+        }
+        shared
+    }
+
+    fn candidate(&self, cell: Cell, layers: &Layers, group: &Group) -> Candidate {
+        Candidate {
+            center: group.center(cell),
+            inverse_depth: group.mean_inverse_depth(),
+            slope: group.slope,
+            viewpoint: group.viewpoint(&self.view, cell),
+            is_in_front: group.is_nearest && !layers.has_nearer(group, self.view.radius_per_kappa_px),
+        }
+    }
+
+    /// What the looks at a block's cells found, with what it sees of the aperture, and what else is found there.
+    fn sample_visible(&self, occluders: &Occluders, surveys: &[CellSurvey]) -> Vec<BakedSample> {
+        let is_pinhole = self.view.optics.aperture_radius == 0.0;
+        let may_show = |survey: &CellSurvey| {
+            survey.has_pane
+                || !is_pinhole && (survey.has_gap || occluders.may_reveal(survey.cell, survey.depths.nearest))
+        };
+        let behind = |survey: &CellSurvey| {
+            let layers = self.trace_layers(survey.cell, survey.density, true);
+            let visible = |(index, group): (usize, &Group)| {
+                let candidate = self.candidate(survey.cell, &layers, group);
+                self.visible_parts(occluders, survey.cell, &candidate, index)
+            };
+            let visible: Vec<_> = layers.groups.iter().enumerate().map(visible).collect();
+            let groups = layers.groups.into_iter().zip(visible).filter(|(_, parts)| !parts.is_empty());
+            groups.collect::<Vec<_>>()
+        };
+        let behind: Vec<_> = surveys.iter().map(|survey| may_show(survey).then(|| behind(survey))).collect();
+        let groups = surveys
+            .iter()
+            .zip(&behind)
+            .flat_map(|(survey, groups)| groups.iter().flatten().map(|(group, _)| (survey.cell, group)));
+        let mut sampled = self.sample_groups(&groups.collect::<Vec<_>>()).into_iter();
+        let mut samples = Vec::new();
+        // The quadrants of a cell see about the same: they are not asked one by one.
+        let mut push = |parts: &[VisiblePart], baked: &[BakedSample]| {
+            samples.extend(
+                baked.iter().flat_map(|sample| parts.iter().filter_map(|part| occluded(sample, part))),
+            );
+        };
+        for (survey, behind) in surveys.iter().zip(&behind) {
+            match behind {
+                None => survey.surfaces.iter().enumerate().for_each(|(index, (candidate, baked))| {
+                    push(&self.visible_parts(occluders, survey.cell, candidate, index), baked);
+                }),
+                Some(groups) => {
+                    groups.iter().zip(&mut sampled).for_each(|((_, parts), baked)| push(parts, &baked))
+                }
+            }
+        }
+        samples
+    }
+
+    /// What a cell's `index`-th surface sees.
+    fn visible_parts(
+        &self,
+        occluders: &Occluders,
+        cell: Cell,
+        candidate: &Candidate,
+        index: usize,
+    ) -> Vec<VisiblePart> {
+        let Self { tracer, view, patterns, .. } = self;
+        let Candidate { center, inverse_depth, slope, viewpoint, is_in_front } = *candidate;
+        let is_open =
+            || is_in_front && !occluders.may_occlude(&Footprint { center, cell, inverse_depth, slope });
+        if view.optics.aperture_radius == 0.0 || is_open() {
+            return vec![(Visibility::Open, 1.0)];
+        }
+        let (fineness, number) = (Fineness::for_depth(view, inverse_depth), Patterns::number_of(cell, index));
+        shadow_rays::visible_parts(tracer, view, patterns, viewpoint, fineness, number, |_| true)
+    }
+}
+
+/// A sample past what hides a part of the aperture from it, or lets only a share of its light through.
+fn occluded(baked: &BakedSample, (visibility, share): &VisiblePart) -> Option<BakedSample> {
+    let sample = &baked.sample;
+    let visibility = sample.visibility.intersection(visibility)?;
+    let (weight, tilt) = (sample.weight * share, sample.tilt * *share);
+    Some(BakedSample { sample: Sample { visibility, weight, tilt, ..sample.clone() }, ..*baked })
+}
