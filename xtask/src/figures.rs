@@ -11,11 +11,12 @@ mod quantity;
 mod record;
 mod set;
 mod table;
+mod table_set;
 #[cfg(test)]
 mod tests;
 
 use crate::chore::{Failure, repository};
-use page::Page;
+use page::{PLOTS, Page};
 use set::Sets;
 use std::path::Path;
 
@@ -26,9 +27,6 @@ const PAGES: [Page; 4] = [
     Page { file: "docs/performance-captures.md", most_characters: 6000 },
     Page { file: "README.md", most_characters: 4000 },
 ];
-
-/// Where the plots are written, as `FILE/SET.svg`.
-const PLOTS: &str = "docs/figures";
 
 /// Writes pages and plots; with `--check` only says which are not what the figures give.
 pub fn figures(arguments: &[std::ffi::OsString]) -> Result<(), Failure> {

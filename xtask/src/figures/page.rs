@@ -1,8 +1,10 @@
 //! A page with marks between which figures stand, and what such a page must keep to.
 
-use super::PLOTS;
 use super::set::{Set, Sets};
 use crate::chore::Failure;
+
+/// Where the plots are written, as `FILE/SET.svg`.
+pub const PLOTS: &str = "docs/figures";
 
 const BEGIN: &str = "<!-- figures: ";
 const END: &str = "<!-- end -->";

@@ -1,7 +1,7 @@
 //! A set of figures as a table in Markdown, and where its figures come from.
 
 use super::record::Record;
-use super::set::TableSet;
+use super::table_set::TableSet;
 
 /// Signs of notes, in their order.
 const SIGNS: [&str; 9] = ["¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"];
