@@ -3,13 +3,12 @@
 use glam::{DVec2, Vec2};
 use scene::SurfacePoint;
 use sha2::{Digest, Sha256};
-use std::fmt::Write;
 use std::ops::Range;
 
-/// Where every triangle of a scene lies in one texture. Texel coordinates: x right, y down, texel (i, j) is
-/// the square [i, i+1] × [j, j+1].
+/// The place of every triangle of a scene in one texture. Texel coordinates: x right, y down, texel (i, j) is the
+/// square [i, i+1] × [j, j+1].
 ///
-/// Charts do not overlap and lie at least [`crate::MIN_GUTTER`] empty texels apart. A triangle without area has a
+/// Charts do not overlap and are at least [`crate::MIN_GUTTER`] empty texels apart. A triangle without area has a
 /// place without area.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Atlas {
@@ -23,11 +22,11 @@ pub struct Atlas {
     pub chart_of: Vec<u32>,
     /// The charts.
     pub charts: Vec<Chart>,
-    /// Hex SHA-256 of size and corners: focus maps name the atlas they belong to by it.
+    /// Hex SHA-256 of size and corners, by which focus maps name the atlas they belong to.
     pub hash: String,
-    /// Texels per unit of world length (charts below a texel are finer).
+    /// Texels per unit of world length (charts smaller than a texel are finer).
     pub density: f64,
-    /// What did not go as asked, a sentence each. Not stored.
+    /// Deviations from the requested options, a sentence each. Not stored.
     pub notes: Vec<String>,
 }
 
@@ -36,12 +35,12 @@ pub struct Atlas {
 pub struct Chart {
     /// The part it belongs to.
     pub part: u32,
-    /// Its box in texels, x and y.
+    /// Its bounding box in texels: columns, rows.
     pub bounds: [Range<u32>; 2],
 }
 
 impl Atlas {
-    /// An atlas of these places; boxes of the charts and hash are computed. `part_of_chart` names the part of each
+    /// An atlas of these places; computes the charts' boxes and the hash. `part_of_chart` gives the part of each
     /// chart. Places must be finite, ≥ 0 and within the size.
     pub fn new(
         [width, height]: [u32; 2],
@@ -95,8 +94,5 @@ pub(crate) fn hash_of(width: u32, height: u32, corners: &[[Vec2; 3]]) -> String 
         buffer.extend(block.iter().flatten().flat_map(|c| [c.x, c.y]).flat_map(f32::to_le_bytes));
         sha.update(&buffer);
     }
-    sha.finalize().iter().fold(String::with_capacity(64), |mut hex, byte| {
-        write!(hex, "{byte:02x}").expect("writing to a string");
-        hex
-    })
+    hex::encode(sha.finalize())
 }

@@ -1,7 +1,7 @@
 //! The atlas as bytes, for the project file.
 //!
-//! Little endian: `FBATLAS1`, width, height, triangles, charts (u32 each), density (f64); six f32 a triangle
-//! (corners), u32 a triangle (chart), u32 a chart (part); the 64 hex digits of the hash.
+//! Little endian: `FBATLAS1`, width, height, triangles, charts (u32 each), density (f64); six f32 per triangle
+//! (corners), u32 per triangle (chart), u32 per chart (part); the 64 hex digits of the hash.
 
 use crate::atlas::hash_of;
 use crate::{Atlas, AtlasError, MAX_SIDE};
@@ -25,20 +25,20 @@ impl Atlas {
         bytes
     }
 
-    /// The atlas of a stored form, if it is whole and fits the scene.
+    /// Reads the stored form, if it is complete and fits the scene.
     ///
     /// # Errors
-    /// [`AtlasError::Stored`] says what is wrong: damaged, or of another scene.
+    /// [`AtlasError::Stored`] if the bytes are damaged or belong to another scene.
     pub fn from_bytes(bytes: &[u8], scene: &Scene) -> Result<Self, AtlasError> {
         let wrong = |reason: &str| AtlasError::Stored { reason: reason.to_owned() };
         let mut reader = Reader { rest: bytes };
         if reader.take(MAGIC.len()).map_err(wrong)? != MAGIC {
-            return Err(wrong("it does not begin as one"));
+            return Err(wrong("it does not start with the header of one"));
         }
         let [width, height, triangles, charts] = reader.numbers(u32::from_le_bytes).map_err(wrong)?;
         let [density] = reader.numbers(f64::from_le_bytes).map_err(wrong)?;
         if !(1..=MAX_SIDE).contains(&width) || !(1..=MAX_SIDE).contains(&height) {
-            return Err(wrong(&format!("{width}×{height} is no size of an atlas")));
+            return Err(wrong(&format!("{width}×{height} is not a valid size of an atlas")));
         }
         if triangles as usize != scene.triangles.len() {
             let expected = scene.triangles.len();
@@ -47,7 +47,7 @@ impl Atlas {
             )));
         }
         if !(density > 0.0 && density.is_finite()) {
-            return Err(wrong("its density is no number above zero"));
+            return Err(wrong("its density is not above zero"));
         }
         let corners =
             reader.list(triangles, 24, |c| [0, 8, 16].map(|at| Vec2::new(f32_at(c, at), f32_at(c, at + 4))));
@@ -56,10 +56,10 @@ impl Atlas {
         let part_of_chart = reader.list(charts, 4, u32_at).map_err(wrong)?;
         let hash = reader.take(64).map_err(wrong)?;
         if !reader.rest.is_empty() {
-            return Err(wrong("there is more after its end"));
+            return Err(wrong("there are bytes after its end"));
         }
         let size = Vec2::new(width as f32, height as f32);
-        // NaN is neither above nor below anything.
+        // Written so that NaN fails.
         if !corners.iter().flatten().all(|c| c.cmpge(Vec2::ZERO).all() && c.cmple(size).all()) {
             return Err(wrong("a corner lies outside"));
         }

@@ -1,4 +1,4 @@
-//! What can go wrong between a scene and its atlas.
+//! Errors of this crate.
 
 use progress::Cancelled;
 use scene::SceneError;
@@ -7,23 +7,23 @@ use std::path::PathBuf;
 /// Why there is no atlas, or why one cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum AtlasError {
-    /// The watcher asked to stop.
+    /// The work was cancelled.
     #[error("cancelled")]
     Cancelled,
     /// The scene has nothing to unwrap.
     #[error("the scene has no triangles (nothing to unwrap)")]
     NoTriangles,
-    /// Even at one texel a chart the charts do not fit.
+    /// The charts do not fit even at one texel each.
     #[error(
         "{charts} separate pieces of surface do not fit an atlas of {side}×{side} texels (join the mesh's faces, or remove parts)"
     )]
     TooManyCharts {
-        /// How many pieces.
+        /// Number of charts.
         charts: usize,
-        /// The largest atlas side.
+        /// The maximum side of an atlas.
         side: u32,
     },
-    /// Stored bytes are no atlas, or not of this scene.
+    /// Stored bytes are not an atlas, or not one of this scene.
     #[error("the stored atlas is unusable: {reason} (unwrap the scene again)")]
     Stored {
         /// What is wrong with them.
@@ -32,7 +32,7 @@ pub enum AtlasError {
     /// The scene's file cannot be read again.
     #[error(transparent)]
     Scene(SceneError),
-    /// The scene's file is not what it was when the scene was read.
+    /// The scene's file has changed since the scene was read.
     #[error("{}: has changed since it was opened (open it again)", path.display())]
     SceneChanged {
         /// The scene's file.
@@ -43,7 +43,7 @@ pub enum AtlasError {
         "the exported file would take {bytes} bytes, more than a GLB can hold (export fewer parts or smaller textures)"
     )]
     GlbTooLarge {
-        /// Its size.
+        /// Its size in bytes.
         bytes: u64,
     },
     /// A file could not be written.
@@ -51,7 +51,7 @@ pub enum AtlasError {
     Write {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// The error of the file system.
         source: std::io::Error,
     },
 }

@@ -1,29 +1,39 @@
 //! From a scene to its atlas.
 
-use crate::chart::{UnpackedChart, signed_area};
-use crate::child::{self, ChildError};
-use crate::engine::{Engine, flatten_with_uvunwrap};
-use crate::flattening::{FlattenedPatch, SurfacePatch, UNPLACED};
-use crate::islands::is_badly_stretched;
-use crate::overlap::has_overlaps;
-use crate::pack::{PackedCharts, pack};
-use crate::part_mesh::{CheckedPart, PartMesh};
-use crate::patches::PATCH_TRIANGLES;
-use crate::{Atlas, AtlasError, UnwrapOptions, UvPolicy, islands, patches, planar};
+pub mod child;
+mod engine;
+mod part_mesh;
+mod patches;
+mod planar;
+mod reusable_charts;
+mod surface_patch;
+mod xatlas;
+
+use crate::packing::overlap::has_overlaps;
+use crate::packing::unpacked_chart::{UnpackedChart, signed_area};
+use crate::packing::{PackedCharts, pack};
+use crate::{Atlas, AtlasError, UnwrapOptions, UvPolicy};
+use child::ChildError;
+use engine::{Engine, flatten_with_uvunwrap};
 use glam::{DVec2, DVec3, Vec2};
+use part_mesh::{CheckedPart, PartMesh};
+use patches::PATCH_TRIANGLES;
 use progress::{Progress, Stage};
 use rayon::prelude::*;
+use reusable_charts::is_badly_stretched;
 use scene::Scene;
 use std::collections::{BTreeMap, HashMap};
+use surface_patch::{FlattenedPatch, SurfacePatch, UNPLACED};
 
 impl Atlas {
     /// Gives every triangle of the scene a place of its own.
     ///
-    /// Every scene with a triangle gets an atlas: what the engines cannot do is projected, and triangles without
-    /// area get places without area. What did not go as asked is told in [`Atlas::notes`].
+    /// Every scene with a triangle gets an atlas: what the engines fail on is projected, and triangles without area
+    /// get places without area. Deviations from the options are listed in [`Atlas::notes`].
     ///
     /// # Errors
-    /// Cancelled; no triangle; more separate pieces than the largest atlas holds.
+    /// [`AtlasError::Cancelled`]; [`AtlasError::NoTriangles`]; [`AtlasError::TooManyCharts`] if there are more
+    /// separate pieces than the largest atlas holds.
     pub fn unwrap(
         scene: &Scene,
         options: &UnwrapOptions,
@@ -44,7 +54,7 @@ impl Atlas {
         let mut notes = Vec::new();
         let mut charts = flatten_patches(&parts, options, &Stage::new(progress, 0.1, 0.8), &mut notes)?;
         charts.extend(parts.iter().flat_map(|part| part.charts.iter().cloned()));
-        // A part of which nothing has area gets a chart of one point.
+        // A part without any area gets a chart of one point.
         for (part, prepared) in parts.iter().enumerate() {
             if prepared.meshes.is_empty() && !prepared.degenerate.is_empty() {
                 let triangles = prepared.degenerate.clone();
@@ -63,12 +73,12 @@ impl Atlas {
     }
 }
 
-/// A part on its way: what needs no engine is a chart already.
+/// A part during unwrapping: what needs no engine is already a chart.
 struct PreparedPart {
     meshes: Vec<PartMesh>,
     degenerate: Vec<u32>,
     charts: Vec<UnpackedChart>,
-    /// Pieces for the engines: the mesh and its triangles.
+    /// Pieces for the engines: index of the mesh, and its triangles.
     patches: Vec<(usize, Vec<u32>)>,
 }
 
@@ -76,7 +86,7 @@ impl PreparedPart {
     fn new(scene: &Scene, part: u32, policy: UvPolicy) -> Self {
         let checked = CheckedPart::new(scene, part);
         let reused = match policy {
-            UvPolicy::Auto => islands::reusable_charts(scene, part, &checked),
+            UvPolicy::Auto => reusable_charts::reusable_charts(scene, part, &checked),
             UvPolicy::Ignore => None,
         };
         let CheckedPart { meshes, degenerate } = checked;
@@ -88,7 +98,7 @@ impl PreparedPart {
         prepared
     }
 
-    /// Flat pieces become charts; the others patches.
+    /// Turns flat pieces into charts and the others into patches.
     fn cut_patches(&mut self) {
         for (index, mesh) in self.meshes.iter().enumerate() {
             let all: Vec<u32> = (0..mesh.triangles.len() as u32).collect();
@@ -112,7 +122,7 @@ impl PreparedPart {
     }
 }
 
-/// The charts of all patches: by the engines in turn, and by projection where they fail.
+/// The charts of all patches: by each engine in turn, and by projection where they fail.
 fn flatten_patches(
     parts: &[PreparedPart],
     options: &UnwrapOptions,
@@ -143,7 +153,7 @@ fn flatten_patches(
     let failed = flattened.iter().filter(|f| f.is_none()).count();
     if failed > 0 {
         notes.push(format!(
-            "{failed} of {} patches were projected: no unwrapping engine could do them",
+            "{failed} of {} patches were projected: every unwrapping engine failed on them",
             work.len()
         ));
     }
@@ -209,7 +219,8 @@ fn run_engines(
     Ok(flattened)
 }
 
-/// Triangles of a child's batch: enough that starting it does not count, few enough that all cores stay busy.
+/// Triangles of a child's batch: enough that starting the process does not matter, few enough that all cores stay
+/// busy.
 fn batch_size(patches: &[&SurfacePatch]) -> usize {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let triangles: usize = patches.iter().map(|p| p.corners.len()).sum();
@@ -261,7 +272,7 @@ fn sound_charts(mesh: &PartMesh, triangles: &[u32], flattened: &FlattenedPatch) 
     charts
 }
 
-/// Puts the packed charts and what was set aside into the atlas.
+/// Puts the packed charts and the degenerate triangles into the atlas.
 fn assemble(scene: &Scene, charts: &[UnpackedChart], packed: PackedCharts, parts: &[PreparedPart]) -> Atlas {
     let mut corners = vec![[Vec2::ZERO; 3]; scene.triangles.len()];
     let mut chart_of = vec![0; scene.triangles.len()];

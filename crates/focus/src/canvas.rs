@@ -1,13 +1,18 @@
-//! The surface behind the texels of a focus map, found by world position.
+//! The surface behind the texels of a focus map, searchable by world position.
 
-use crate::texel_tree::TexelTree;
+mod selection;
+mod texel_tree;
+
+pub use selection::{CombineMode, Selection, SelectionResult};
+
 use crate::{ChangedTexels, FocusMap};
 use atlas::{Atlas, AtlasTexel};
 use glam::{DVec3, Vec3};
 use lens::FocusOffset;
 use scene::Scene;
+use texel_tree::TexelTree;
 
-/// A texel that covers some surface, as painting sees it.
+/// A texel that covers some surface, with what painting needs of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CanvasTexel {
     /// Column in the map.
@@ -20,25 +25,25 @@ pub struct CanvasTexel {
     pub normal: Vec3,
     /// World area it covers.
     pub area: f64,
-    /// The scene's part.
+    /// Index of its part in the scene.
     pub part: u32,
-    /// The atlas's chart.
+    /// Index of its chart in the atlas.
     pub chart: u32,
 }
 
-/// Every covered texel of an atlas in the order of a spatial tree, with the gutter texels that copy it.
+/// All covered texels of an atlas in the order of a spatial tree, with the gutter texels that copy them.
 ///
-/// A brush finds its texels here by distance in the world, so chart seams, mirrored texture coordinates and
+/// A brush selects its texels here by distance in world space, so chart seams, mirrored texture coordinates and
 /// instances do not matter to it.
 #[derive(Clone, Debug)]
 pub struct Canvas {
     size: [u32; 2],
-    /// World position of the tree's origin: its points are relative to it, in f32.
+    /// World position of the tree's origin; the tree's points are relative to it, in f32.
     origin: DVec3,
     tree: TexelTree,
     /// In the tree's order.
     texels: Vec<CanvasTexel>,
-    /// Where each texel's gutters start in `gutters`; one more at the end.
+    /// Where each texel's gutters start in `gutters`; one entry more than there are texels.
     gutter_starts: Vec<u32>,
     gutters: Vec<[u32; 2]>,
     largest_texel: f32,
@@ -47,8 +52,8 @@ pub struct Canvas {
 }
 
 impl Canvas {
-    /// The canvas of an atlas: its covered texels and, for each gutter texel, the covered texel that it
-    /// copies (both as [x, y]).
+    /// The canvas of an atlas: its covered texels and, for each gutter texel, the covered texel that it copies (both
+    /// as [x, y]).
     pub fn new(scene: &Scene, atlas: &Atlas, texels: &[AtlasTexel], gutters: &[[[u32; 2]; 2]]) -> Self {
         let canvas_texel = |texel: &AtlasTexel| {
             let triangle = texel.centroid.triangle;
@@ -71,8 +76,8 @@ impl Canvas {
         )
     }
 
-    /// The canvas of the given texels. `gutters` pairs each gutter texel with the covered texel that it
-    /// copies; `part_owners` holds node and material of each part.
+    /// A canvas of these texels. `gutters` pairs each gutter texel with the covered texel that it copies;
+    /// `part_owners` holds node and material of each part.
     pub fn from_texels(
         size: [u32; 2],
         texels: Vec<CanvasTexel>,
@@ -91,7 +96,8 @@ impl Canvas {
         Self { size, origin, tree, texels, gutter_starts, gutters, largest_texel, part_owners }
     }
 
-    /// The same surface in other materials: `scene` has the triangles and parts that the canvas was made of.
+    /// The same surface with other materials. `scene` must have the triangles and parts that the canvas was made
+    /// from.
     pub fn with_part_owners(&self, scene: &Scene) -> Self {
         Self { part_owners: part_owners(scene), ..self.clone() }
     }
@@ -101,7 +107,7 @@ impl Canvas {
         self.size
     }
 
-    /// The covered texels, neighbours in space near each other.
+    /// The covered texels, in tree order: neighbours in space are near each other.
     pub fn texels(&self) -> &[CanvasTexel] {
         &self.texels
     }
@@ -121,7 +127,7 @@ impl Canvas {
         &self.gutters[self.gutter_starts[index] as usize..self.gutter_starts[index + 1] as usize]
     }
 
-    /// A map with these values of the texels, in their order.
+    /// A map with one value for each covered texel, in the canvas's order.
     pub(crate) fn map_from_values(&self, values: &[[f32; 2]], background: FocusOffset) -> FocusMap {
         let [width, height] = self.size();
         let mut map = FocusMap::new(width, height, FocusOffset::STANDARD);
@@ -135,15 +141,14 @@ impl Canvas {
         map
     }
 
-    /// Calls `visit` with the index and distance of every texel whose centroid is at most `radius` from
-    /// `center`.
+    /// Calls `visit` with the index and distance of every texel whose centroid is at most `radius` from `center`.
     pub(crate) fn visit_within(&self, center: DVec3, radius: f64, mut visit: impl FnMut(usize, f32)) {
         let center = (center - self.origin).as_vec3();
         self.tree.visit_within(center, radius as f32, &mut |index, squared| visit(index, squared.sqrt()));
     }
 
-    /// The texel nearest to `center` among those that `accept` lets through, if its centroid is no further
-    /// away than its own size (the side of a square of its area).
+    /// The texel nearest to `center` for which `accept` is true, if its centroid is no farther away than the texel's
+    /// own size (the side of a square of its area).
     pub fn nearest(&self, center: DVec3, accept: impl Fn(&CanvasTexel) -> bool) -> Option<usize> {
         let reach = |texel: &CanvasTexel| texel.area.sqrt() as f32;
         self.nearest_where(center, self.largest_texel as f64, |texel, distance| {
@@ -151,7 +156,7 @@ impl Canvas {
         })
     }
 
-    /// The texel nearest to `center`, at most `radius` away: sought in ever wider spheres, the first as wide as `guess`.
+    /// The texel nearest to `center`, at most `radius` away. Searches growing spheres, the first of radius `guess`.
     pub(crate) fn nearest_within(&self, center: DVec3, guess: f64, radius: f64) -> Option<usize> {
         let mut reach = guess.max(radius * 1e-3).min(radius);
         loop {
@@ -179,7 +184,7 @@ impl Canvas {
         best.map(|(_, index)| index)
     }
 
-    /// World position of a texel relative to a point.
+    /// World-space offset of a texel from a point.
     pub(crate) fn offset_from(&self, index: usize, center: DVec3) -> Vec3 {
         self.tree.points()[index] - (center - self.origin).as_vec3()
     }
@@ -191,8 +196,8 @@ impl Canvas {
         [t, anchor, map.gloss_at(x, y), map.mask_at(x, y)]
     }
 
-    /// Writes [t, anchor, gloss, mask] of a texel and the gutters that copy it (a map without mask ignores the mask);
-    /// notes in `changed` what was not so before.
+    /// Writes [t, anchor, gloss, mask] of a texel and of the gutters that copy it (a map without a mask ignores the
+    /// mask), and appends the texels that changed to `changed`.
     pub(crate) fn write(
         &self,
         map: &mut FocusMap,
@@ -220,7 +225,7 @@ impl Canvas {
         }
     }
 
-    /// The same for the touched channels alone, where that changes anything.
+    /// Writes only the channels whose flag is set, and only if that changes anything.
     pub(crate) fn write_channels(
         &self,
         map: &mut FocusMap,
@@ -252,8 +257,8 @@ fn part_owners(scene: &Scene) -> Vec<[u32; 2]> {
     scene.parts.iter().map(|part| [part.node, part.material]).collect()
 }
 
-/// The gutters sorted by the texel that they copy, and where each texel's start. Gutters of texels that
-/// are not covered are left out.
+/// The gutters sorted by the texel that they copy, and where each texel's gutters start. Gutters of uncovered texels
+/// are dropped.
 fn gutters_by_texel(
     [width, height]: [u32; 2],
     texels: &[CanvasTexel],

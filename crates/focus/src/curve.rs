@@ -1,12 +1,12 @@
-//! A curve drawn through points: smooth, and never beyond what the points say.
+//! A smooth curve through points that never overshoots them.
 
 use serde::{Deserialize, Serialize};
 
-/// A curve y(x) through points: between them a monotone cubic, beyond the first and the last constant.
+/// A curve y(x) through points: a monotone cubic between them, constant beyond the first and the last.
 ///
-/// Where neighbouring points rise, the curve rises, where they fall it falls, and nowhere does it swing beyond them
-/// (Fritsch and Carlson 1980): the slope at a point is the harmonic mean of its two sides' slopes weighted by their
-/// lengths (Fritsch and Butland 1984), 0 at peaks and at both ends.
+/// Where neighbouring points rise, the curve rises; where they fall, it falls; it never overshoots (Fritsch and
+/// Carlson 1980). The slope at a point is the harmonic mean of the slopes on its two sides, weighted by their lengths
+/// (Fritsch and Butland 1984), and 0 at peaks and at both ends.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Curve {
@@ -15,11 +15,11 @@ pub struct Curve {
 }
 
 impl Curve {
-    /// Points that a curve may have.
+    /// Maximum number of points of a curve.
     pub const MAX_POINTS: usize = 64;
 
-    /// The curve through `points`, sorted by x; of points at one x the last counts. `None` without points, with too
-    /// many, or with numbers that are not finite.
+    /// The curve through `points`, sorted by x; of several points at one x the last counts. `None` if there are no
+    /// points, too many, or any that are not finite.
     pub fn new(points: impl IntoIterator<Item = [f64; 2]>) -> Option<Self> {
         let mut sorted: Vec<[f64; 2]> = Vec::new();
         for point in points {
@@ -33,7 +33,7 @@ impl Curve {
         curve.is_valid().then_some(curve)
     }
 
-    /// Whether it is a curve: [`Self::new`] makes no other, but a file may hold one.
+    /// Whether it is a valid curve. [`Self::new`] makes no others, but a file may contain one.
     pub fn is_valid(&self) -> bool {
         (1..=Self::MAX_POINTS).contains(&self.points.len())
             && self.points.as_flattened().iter().all(|number| number.is_finite())
@@ -55,7 +55,7 @@ impl Curve {
         let [[x0, y0], [x1, y1]] = [self.points[before], *after];
         let (h, s) = (x1 - x0, (x - x0) / (x1 - x0));
         let (m0, m1) = (self.slope(before) * h, self.slope(next) * h);
-        // Cubic Hermite, from y0 on so that equal ends give exactly their value.
+        // Cubic Hermite, written from y0 so that equal ends give exactly their value.
         let (s2, s3) = (s * s, s * s * s);
         y0 + (y1 - y0) * (3.0 * s2 - 2.0 * s3) + m0 * (s3 - 2.0 * s2 + s) + m1 * (s3 - s2)
     }

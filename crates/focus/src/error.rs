@@ -1,4 +1,4 @@
-//! What can go wrong with a focus.
+//! Errors of this crate.
 
 /// Why a focus cannot be used or painted.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -10,7 +10,7 @@ pub enum FocusError {
         kind: &'static str,
         /// The name in the recipe.
         name: String,
-        /// Names that come near, or some that there are.
+        /// Similar names, or some of the existing ones.
         hint: String,
     },
     /// A map on a part without texture coordinates.
@@ -25,7 +25,7 @@ pub enum FocusError {
     },
     /// The background cannot have a map.
     #[error(
-        "background: a map needs texture coordinates, which the background has not (give it a constant t)"
+        "background: a map needs texture coordinates, which the background does not have (give it a constant t)"
     )]
     BackgroundMap,
     /// A number that cannot be used.
@@ -34,19 +34,19 @@ pub enum FocusError {
         /// The recipe's entry.
         entry: String,
     },
-    /// A brush that cannot paint.
+    /// A brush with invalid settings.
     #[error("brush: {problem}")]
     BadBrush {
-        /// What is wrong with it.
+        /// What is invalid.
         problem: &'static str,
     },
-    /// A change of the layers that cannot be made.
+    /// A change of the layers that is not possible.
     #[error("layers: {problem}")]
     BadLayerEdit {
         /// What is wrong with it.
         problem: &'static str,
     },
-    /// One layer more than there may be.
+    /// The stack already has the maximum number of layers.
     #[error("layers: there are {} already (remove one first)", crate::LayerStack::MAX_LAYERS)]
     TooManyLayers,
     /// The map belongs to another atlas.

@@ -1,40 +1,53 @@
-//! A focus offset a texel of the atlas, and on a layer how much each counts.
+//! One focus offset for each texel of the atlas and, for a layer, its mask.
 
-use crate::tile_grid::{Tile, TileGrid, is_blank};
+mod bake;
+mod changed_texels;
+mod edit;
+mod edit_thumbnail;
+pub(crate) mod focus_image;
+pub(crate) mod tile_grid;
+
+pub use changed_texels::{ChangedTexels, rectangle_union};
+pub use edit::Edit;
+pub use edit_thumbnail::{EditThumbnail, ThumbnailCell};
+pub use focus_image::FocusImage;
+pub use tile_grid::TILE_SIDE;
+
 use glam::{DVec2, UVec2};
 use lens::FocusOffset;
 use std::sync::Arc;
+use tile_grid::{Tile, TileGrid, is_blank};
 
-/// The painted focus map: t, anchor and gloss over the atlas, and the background's focus. Texels that no surface
-/// covers hold dilated values.
+/// The painted focus map: t, anchor and gloss over the atlas, and the background's focus. Texels that cover no
+/// surface hold dilated values.
 ///
-/// Gloss is seldom painted: where it never was, its tiles are one blank tile that all maps share.
+/// Gloss is seldom painted: where it never was, its tiles are one blank tile shared by all maps.
 ///
-/// The map of a layer may have a *mask*: how much each texel of it counts, in [0, 1]. Without one all count
-/// fully.
+/// The map of a layer may have a *mask*: the weight of each of its texels, in [0, 1]. Without a mask all texels have
+/// weight 1.
 ///
-/// The texels lie in tiles that clones share until one of them is written: a clone is a snapshot that costs
-/// a pointer a tile, so a renderer may hold one while painting goes on.
+/// The texels lie in tiles that clones share until one of them is written: a clone is a snapshot that costs a pointer
+/// per tile, so a renderer may hold one while painting goes on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FocusMap {
     pub(crate) texels: TileGrid<[f32; 2]>,
     pub(crate) gloss: TileGrid<f32>,
     pub(crate) mask: Option<TileGrid<f32>>,
-    /// The focus of what lies at infinity.
+    /// The focus of the background (at infinity).
     pub background: FocusOffset,
-    /// The mask of what lies at infinity, in [0, 1]; 1 in a map without mask.
+    /// The mask of the background, in [0, 1]; 1 in a map without a mask.
     pub background_mask: f32,
 }
 
 impl FocusMap {
-    /// A map of one value, the background included. Both sides must be above 0.
+    /// A map of one value, the background included. Width and height must be above 0.
     pub fn new(width: u32, height: u32, value: FocusOffset) -> Self {
         let texels = TileGrid::new(width, height, to_texel(value));
         let gloss = TileGrid::new(width, height, value.gloss as f32).with_blank_tiles();
         Self { texels, gloss, mask: None, background: value, background_mask: 1.0 }
     }
 
-    /// A map of the ordinary lens whose mask is 0: nothing of it counts yet.
+    /// A fully transparent map: the ordinary lens with a mask of 0 everywhere.
     pub fn transparent(width: u32, height: u32) -> Self {
         let mut map = Self::new(width, height, FocusOffset::STANDARD);
         map.mask = Some(TileGrid::new(width, height, 0.0));
@@ -42,7 +55,8 @@ impl FocusMap {
         map
     }
 
-    /// A map of the given texels, [t, anchor] each and without gloss, row 0 on top. `None` unless there are width × height.
+    /// A map of these texels, [t, anchor] each and without gloss, row 0 on top. `None` unless there are width ×
+    /// height.
     pub fn from_rows(width: u32, height: u32, texels: &[[f32; 2]], background: FocusOffset) -> Option<Self> {
         let texels = TileGrid::from_rows(width, height, texels, to_texel(FocusOffset::STANDARD))?;
         let gloss = TileGrid::blank(width, height);
@@ -60,7 +74,8 @@ impl FocusMap {
         self.gloss.tiles().iter().any(is_some).then(|| self.gloss.to_rows())
     }
 
-    /// Gives the texels their gloss, row 0 on top. False, and nothing is done, unless there are width × height values.
+    /// Sets the gloss of all texels, row 0 on top. Returns false, and changes nothing, unless there are width ×
+    /// height values.
     #[must_use]
     pub fn set_gloss_rows(&mut self, gloss: &[f32]) -> bool {
         let [width, height] = self.size();
@@ -68,12 +83,12 @@ impl FocusMap {
         grid.map(|grid| self.gloss = grid).is_some()
     }
 
-    /// Whether gloss obeys the paint anywhere, the background included, or did once: quick.
+    /// Whether gloss obeys the paint anywhere, the background included, or once did. Quick.
     pub fn has_gloss(&self) -> bool {
         self.background.gloss != 0.0 || !self.gloss.is_blank()
     }
 
-    /// The mask of all texels, row 0 on top; `None` where there is no mask.
+    /// The mask of all texels, row 0 on top; `None` if there is no mask.
     pub fn mask_rows(&self) -> Option<Vec<f32>> {
         self.mask.as_ref().map(TileGrid::to_rows)
     }
@@ -83,8 +98,8 @@ impl FocusMap {
         self.mask.is_some()
     }
 
-    /// Gives the map a mask, row 0 on top, or takes it away. False, and nothing is done, unless there are
-    /// width × height values.
+    /// Sets the mask, row 0 on top, or removes it. Returns false, and changes nothing, unless there are width ×
+    /// height values.
     #[must_use]
     pub fn set_mask_rows(&mut self, mask: Option<&[f32]>) -> bool {
         let [width, height] = self.size();
@@ -96,18 +111,18 @@ impl FocusMap {
         true
     }
 
-    /// Gives a map without mask one that counts everywhere, so that it can be painted.
+    /// Adds a mask of 1 everywhere to a map without one, so that the mask can be painted.
     pub fn add_mask(&mut self) {
         let [width, height] = self.size();
         self.mask.get_or_insert_with(|| TileGrid::new(width, height, 1.0));
     }
 
-    /// Takes the mask away: the map counts everywhere.
+    /// Removes the mask: every texel counts fully.
     pub fn remove_mask(&mut self) {
         (self.mask, self.background_mask) = (None, 1.0);
     }
 
-    /// Makes the map count where it did not, and the other way round.
+    /// Inverts the mask.
     pub fn invert_mask(&mut self) {
         let [width, height] = self.size();
         let inverted: Vec<f32> = match &self.mask {
@@ -118,12 +133,12 @@ impl FocusMap {
         self.background_mask = 1.0 - self.background_mask;
     }
 
-    /// Columns, the atlas's.
+    /// Number of columns, that of the atlas.
     pub fn width(&self) -> u32 {
         self.size()[0]
     }
 
-    /// Rows, the atlas's.
+    /// Number of rows, that of the atlas.
     pub fn height(&self) -> u32 {
         self.size()[1]
     }
@@ -159,16 +174,16 @@ impl FocusMap {
         self.texels.set(x, y, value);
     }
 
-    /// Sets how far gloss obeys the paint on a texel, which must lie in the map; the same.
+    /// Sets how far gloss obeys the paint on a texel, which must lie in the map. Copies its tile if a clone shares
+    /// it.
     pub fn set_gloss(&mut self, x: u32, y: u32, gloss: f32) {
         if self.gloss.at(x, y) != gloss {
             self.gloss.set(x, y, gloss);
         }
     }
 
-    /// The value at a position in texel coordinates (x right, y down; texel (i, j) is centred at
-    /// (i + ½, j + ½)), bilinear; outside the map its border goes on. Between equal texels it is exactly
-    /// their value.
+    /// The value at a position in texel coordinates (x right, y down; texel (i, j) is centred at (i + ½, j + ½)),
+    /// bilinear; outside the map its border continues. Between equal texels it is exactly their value.
     pub fn sample(&self, position: DVec2) -> FocusOffset {
         let (corners, share) = self.bilinear_corners(position);
         let [t, anchor] = bilinear(corners.map(|[x, y]| self.texel(x, y)), share);
@@ -179,13 +194,13 @@ impl FocusMap {
         FocusOffset { t, anchor, gloss }
     }
 
-    /// The same of the mask: how much the map counts as a layer there, in [0, 1].
+    /// The mask at a position, sampled in the same way: the weight of the map as a layer, in [0, 1].
     pub fn sample_mask(&self, position: DVec2) -> f32 {
         let (corners, share) = self.bilinear_corners(position);
         bilinear(corners.map(|[x, y]| [self.mask_at(x, y)]), share)[0] as f32
     }
 
-    /// The four texels around a position, and where it lies between them.
+    /// The four texels around a position, and the position between them, in [0, 1]².
     fn bilinear_corners(&self, position: DVec2) -> ([[u32; 2]; 4], DVec2) {
         let last = UVec2::from(self.size()) - UVec2::ONE;
         let p = (position - DVec2::splat(0.5)).clamp(DVec2::ZERO, last.as_dvec2());
@@ -195,13 +210,13 @@ impl FocusMap {
         (corners, p - low.as_dvec2())
     }
 
-    /// The least and the greatest t, anchor and gloss of the texels of a box, the first and the last column and row;
-    /// outside the map its border goes on.
+    /// The minimum and maximum of t, anchor and gloss over a box of texels, given by its first and last column and
+    /// row; outside the map its border continues.
     pub fn bounds(&self, box_texels: [DVec2; 2]) -> [FocusOffset; 2] {
         let texel_range = |axis: usize, count: u32| {
             let [first, last] = box_texels.map(|corner| corner[axis]);
             let greatest = f64::from(count - 1);
-            // Not `clamp`, which keeps what is not a number: that may be anywhere.
+            // Not `clamp`, which keeps NaN: a NaN may stand for any texel.
             let first = if first > 0.0 { first.min(greatest) } else { 0.0 };
             let last = if last < greatest { last.max(0.0) } else { greatest };
             first as u32..=last as u32
@@ -211,8 +226,8 @@ impl FocusMap {
         bounds(texel_range(1, height).flat_map(|y| columns.clone().map(move |x| self.at(x, y))))
     }
 
-    /// Whether this is a snapshot of another map, or the other way round, and neither was written since. Quick: where both
-    /// were written alike it says no.
+    /// Whether one of the maps is a snapshot of the other and neither has been written since. Quick; false if both
+    /// were written, even with the same values.
     pub fn shares_tiles_with(&self, other: &Self) -> bool {
         self.size() == other.size()
             && self.background == other.background
@@ -232,7 +247,7 @@ impl FocusMap {
     }
 }
 
-/// The least and the greatest t, anchor and gloss of some texels, at least one.
+/// The minimum and maximum of t, anchor and gloss over some texels, at least one.
 pub(crate) fn bounds(texels: impl Iterator<Item = FocusOffset>) -> [FocusOffset; 2] {
     let all = |number: f64| FocusOffset { t: number, anchor: number, gloss: number };
     let componentwise = |pick: fn(f64, f64) -> f64, a: FocusOffset, b: FocusOffset| FocusOffset {
@@ -245,12 +260,12 @@ pub(crate) fn bounds(texels: impl Iterator<Item = FocusOffset>) -> [FocusOffset;
     })
 }
 
-/// [t, anchor] of a value, as the map holds it.
+/// [t, anchor] of a value, in the map's precision.
 pub(crate) fn to_texel(value: FocusOffset) -> [f32; 2] {
     [value.t as f32, value.anchor as f32]
 }
 
-/// t, anchor and gloss of a value, as the map holds them.
+/// t, anchor and gloss of a value, in the map's precision.
 pub(crate) fn to_numbers(value: FocusOffset) -> [f32; 3] {
     [value.t as f32, value.anchor as f32, value.gloss as f32]
 }

@@ -1,10 +1,10 @@
-//! What of focus moves: values at times, and how one becomes the next.
+//! Animation of the focus: keyframes and their interpolation.
 //!
-//! * [`Keys`]: values of anything at times, each with the [`Ease`] by which it becomes the next.
-//! * [`LensMotion`]: where the lens focuses ([`FocusTarget`]: a distance, or a point of the surface that is followed) and its f-number.
-//! * [`LayerMotion`]: how much a layer counts, as a whole and by depth.
+//! * [`Keys`]: keyframes of any value, each with the [`Ease`] that leads to the next.
+//! * [`LensMotion`]: where the lens focuses ([`FocusTarget`]: a distance, or a surface point that is followed) and its f-number.
+//! * [`LayerMotion`]: a layer's weight, as a whole and by depth.
 //!
-//! Whatever lies between two keys lies between their values: nothing swings beyond them.
+//! A value between two keys always lies between their values: nothing overshoots.
 
 mod keys;
 mod layer_motion;

@@ -1,4 +1,4 @@
-//! Focus by name: what scripts and farms hand to the renderer.
+//! Focus by name, as scripts and render farms give it.
 
 use crate::{Focus, FocusError, FocusImage, FocusSource};
 use lens::FocusOffset;
@@ -14,13 +14,13 @@ pub enum RecipeEntry {
     Map(Arc<FocusImage>),
 }
 
-/// The focus of a scene by the names of its materials and nodes. Nodes win over materials, materials over
-/// the default, and of two entries of one kind the later one wins.
+/// The focus of a scene by the names of its materials and nodes. Nodes take precedence over materials, materials over
+/// the default; of two entries of one kind the later one counts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FocusRecipe {
-    /// For what no other entry names.
+    /// For everything that no other entry names.
     pub default: RecipeEntry,
-    /// For the background; `None` takes the default's value (the standard lens where that is a map).
+    /// For the background; `None` takes the default's value (the standard lens if that is a map).
     pub background: Option<RecipeEntry>,
     /// By material name.
     pub materials: Vec<(String, RecipeEntry)>,
@@ -46,8 +46,11 @@ impl FocusRecipe {
         Self { default: RecipeEntry::Value(value), ..Self::default() }
     }
 
-    /// The focus it gives `scene`. A name that the scene does not have is an error, and so is a map on a part
-    /// without texture coordinates.
+    /// The focus of `scene`.
+    ///
+    /// # Errors
+    /// A name that does not occur in the scene, a map on a part without texture coordinates or on the background, a
+    /// value that is not valid.
     pub fn evaluate(&self, scene: &Arc<Scene>) -> Result<Focus, FocusError> {
         let material_names = || scene.materials.iter().map(|m| m.name.as_str());
         let node_names = || scene.nodes.iter().map(|n| n.name.as_str());
@@ -92,8 +95,8 @@ impl FocusRecipe {
     }
 }
 
-/// The wrap of the texture that gives the material its colour: base colour, or emission where the base is
-/// black; without a texture it repeats.
+/// The wrap mode of the texture that gives the material its colour: the base colour, or emission if the base is
+/// black. Without a texture it repeats.
 fn material_wrap(material: &Material) -> [Wrap; 2] {
     let black = material.base_color.truncate() == glam::Vec3::ZERO;
     let (first, second) = (material.base_color_texture, material.emissive_texture);
@@ -101,7 +104,7 @@ fn material_wrap(material: &Material) -> [Wrap; 2] {
     texture.map_or_else(Default::default, |texture| texture.wrap)
 }
 
-/// An error for the first entry that names nothing in the scene.
+/// An error for the first entry whose name does not occur in the scene.
 fn require_names<'a, Names: Iterator<Item = &'a str>>(
     kind: &'static str,
     entries: &[(String, RecipeEntry)],
@@ -117,9 +120,9 @@ fn require_names<'a, Names: Iterator<Item = &'a str>>(
     }
 }
 
-/// The names nearest to a mistyped one, or, if none is near, some of those that there are.
+/// The names most similar to a mistyped one or, if none is similar, some of the existing names.
 fn suggest_names<'a>(kind: &str, unknown_name: &str, names: impl Iterator<Item = &'a str>) -> String {
-    /// Names listed at most.
+    /// Maximum number of names listed.
     const LISTED: usize = 5;
     let lower = unknown_name.to_lowercase();
     let mut ranked: Vec<(usize, &str)> = names
@@ -147,7 +150,7 @@ fn suggest_names<'a>(kind: &str, unknown_name: &str, names: impl Iterator<Item =
     format!("there are {}{more}", listed.join(", "))
 }
 
-/// Levenshtein's distance: insertions, deletions and replacements that turn one word into the other.
+/// Levenshtein distance: the number of insertions, deletions and replacements that turn one word into the other.
 fn edit_distance(a: &str, b: &str) -> usize {
     let b: Vec<char> = b.chars().collect();
     let mut row: Vec<usize> = (0..=b.len()).collect();

@@ -1,6 +1,6 @@
-//! Where the focus of a surface point comes from: a constant, a texture in the mesh's UV, or the painted atlas.
+//! The source of the focus of a surface point: a constant, a texture in the mesh's UVs, or the painted atlas.
 
-use crate::focus_image::interpolate_uv;
+use crate::focus_map::focus_image::interpolate_uv;
 use crate::{FocusImage, FocusMap};
 use atlas::Atlas;
 use glam::DVec2;
@@ -8,7 +8,7 @@ use lens::FocusOffset;
 use scene::{Scene, SurfaceField, SurfacePoint, Wrap};
 use std::sync::Arc;
 
-/// Where a part's focus comes from.
+/// Source of a part's focus.
 #[derive(Clone, Debug)]
 pub enum FocusSource {
     /// One value.
@@ -29,12 +29,12 @@ pub enum FocusSource {
     },
 }
 
-/// The focus of a whole scene: a source a part, and the background's value.
+/// The focus of a whole scene: one source for each part, and the background's value.
 #[derive(Clone)]
 pub struct Focus {
     /// The scene.
     pub scene: Arc<Scene>,
-    /// One source for each of the scene's parts.
+    /// One source for each part of the scene.
     pub parts: Vec<FocusSource>,
     /// The background's focus.
     pub background: FocusOffset,
@@ -74,7 +74,7 @@ impl SurfaceField<FocusOffset> for Focus {
     }
 
     fn affects_carried_light(&self) -> bool {
-        // One map is most often that of all parts.
+        // Usually all parts share one map.
         let mut last_checked = std::ptr::null();
         let mut has_gloss = |source: &FocusSource| match source {
             FocusSource::Constant(value) => value.gloss != 0.0,
@@ -86,7 +86,7 @@ impl SurfaceField<FocusOffset> for Focus {
         self.background.gloss != 0.0 || self.parts.iter().any(&mut has_gloss)
     }
 
-    /// Those of all texels that any point of the triangle may be interpolated from.
+    /// Bounds over all texels that any point of the triangle may be interpolated from.
     fn bounds(&self, triangle: u32) -> Option<[FocusOffset; 2]> {
         let part = self.scene.triangles[triangle as usize].part;
         let texels = |corners: [DVec2; 3]| {

@@ -13,7 +13,7 @@ pub struct ViewFrame {
     pub yfov: f64,
     /// Width over height.
     pub aspect: f64,
-    /// How far its frame lies from its axis, in its heights, right and up ([`lens::Camera::shift`]).
+    /// Offset of its frame from its axis, in frame heights, right and up ([`lens::Camera::shift`]).
     #[serde(default, skip_serializing_if = "is_zero")]
     pub shift: DVec2,
 }
@@ -23,19 +23,19 @@ fn is_zero(shift: &DVec2) -> bool {
 }
 
 impl ViewFrame {
-    /// What a camera shows.
+    /// The view of a camera.
     pub fn from_camera(camera: &Camera) -> Self {
         let &Camera { camera_to_world, yfov, shift, .. } = camera;
         Self { camera_to_world, yfov, aspect: camera.aspect(), shift }
     }
 
-    /// Where the view looks from.
+    /// World position of the eye.
     pub fn eye(&self) -> DVec3 {
         self.camera_to_world.w_axis.truncate()
     }
 
-    /// Where the view looks from, and the world direction of a position in it ((0, 0) upper left, (1, 1) lower
-    /// right), of depth 1 along the view's axis.
+    /// The eye, and the world direction of a position in the view ((0, 0) upper left, (1, 1) lower right), with depth
+    /// 1 along the view's axis.
     pub fn ray(&self, position: DVec2) -> (DVec3, DVec3) {
         let half_height = (self.yfov / 2.0).tan();
         let x = ((2.0 * position.x - 1.0) * self.aspect + 2.0 * self.shift.x) * half_height;
@@ -45,7 +45,7 @@ impl ViewFrame {
         (self.eye(), direction)
     }
 
-    /// Where in the view a world point appears; `None` behind the eye. Inverse of [`Self::ray`].
+    /// Position in the view of a world point; `None` behind the eye. Inverse of [`Self::ray`].
     pub fn position(&self, point: DVec3) -> Option<DVec2> {
         let m = &self.camera_to_world;
         let away = point - self.eye();
@@ -56,7 +56,7 @@ impl ViewFrame {
         (depth > 0.0).then(|| DVec2::new(1.0 + x, 1.0 - y) / 2.0)
     }
 
-    /// Whether it can be looked through.
+    /// Whether it is a valid perspective view.
     pub fn is_valid(&self) -> bool {
         let angle = self.yfov > 0.0 && self.yfov < std::f64::consts::PI;
         angle

@@ -37,16 +37,16 @@ pub enum ApertureShape {
     Mask(Arc<ApertureMask>),
 }
 
-/// A picture of an aperture: how much light passes, row 0 at v = +R.
+/// A picture of an aperture's transmission, row 0 at v = +R.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ApertureMask {
     /// Columns.
     pub width: u32,
     /// Rows.
     pub height: u32,
-    /// Transmission in [0, 1] a texel, row by row from the top.
+    /// Transmission of each texel, in [0, 1], row by row from the top.
     pub transmission: Vec<f32>,
-    /// Where it came from, as written in the camera file.
+    /// The file it came from, as written in the camera file.
     pub file: String,
 }
 
@@ -63,7 +63,10 @@ impl From<ApertureShape> for Aperture {
 }
 
 impl Aperture {
-    /// The first field that makes the aperture unusable.
+    /// Checks all fields.
+    ///
+    /// # Errors
+    /// The first field that makes the aperture invalid.
     pub fn validate(&self) -> Result<(), CameraError> {
         let error = |field, must| Err(CameraError { field, must });
         if !(self.ratio > 0.0 && self.ratio.is_finite()) {
@@ -98,7 +101,7 @@ impl Aperture {
         Ok(())
     }
 
-    /// How much light passes at u in [−1, 1]², in [0, 1]; 0 outside.
+    /// Transmission at u in [−1, 1]², in [0, 1]; 0 outside.
     pub fn transmission(&self, u: DVec2) -> f64 {
         let u = u / self.squeeze();
         if u.abs().max_element() > 1.0 {
@@ -126,10 +129,10 @@ impl Aperture {
         DVec2::new((1.0 / self.ratio).min(1.0), self.ratio.min(1.0))
     }
 
-    /// The aperture as `n` rows of runs, for splatting: what passes through row i of the square between
-    /// v = −1 + 2i/n and −1 + 2(i+1)/n. Areas are those of the shape to better than 1e-3.
+    /// The aperture as `n` rows of runs, for splatting: the transmission of row i of the square between v = −1 + 2i/n
+    /// and −1 + 2(i+1)/n. Areas are those of the shape to better than 1e-3.
     pub fn rows(&self, n: usize) -> ApertureRows {
-        /// Scan lines a row: the chord of a row is the mean of theirs.
+        /// Scan lines per row: the chord of a row is the mean of theirs.
         const SCAN_LINES: usize = 32;
         let mut rows = Vec::with_capacity(n);
         for i in 0..n {
@@ -243,7 +246,7 @@ fn polygon_radius(angle: f64, blades: u32, roundness: f64) -> f64 {
     straight + (1.0 - straight) * roundness
 }
 
-/// Part of a row: between u = `start` and `end` this much light passes.
+/// Part of a row: the transmission between u = `start` and `end`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Run {
     /// Left end, in [−1, 1].
@@ -280,14 +283,14 @@ impl ApertureRows {
 /// Warps uniform numbers to aperture points whose density is the transmission.
 pub struct ApertureSampler {
     aperture: Aperture,
-    /// Running shares: of the angle within a rounded wedge, or of a mask's texels, each row by itself.
+    /// Cumulative weights: of the angle within a rounded wedge, or of a mask's texels within each row.
     cumulative: Vec<f64>,
-    /// Running shares of a mask's rows.
+    /// Cumulative weights of a mask's rows.
     rows: Vec<f64>,
 }
 
 impl ApertureSampler {
-    /// Steps of the table of a rounded polygon's wedge.
+    /// Entries of the table of a rounded polygon's wedge.
     const WEDGE_STEPS: usize = 4096;
 
     /// Prepares to sample `aperture`, which must be valid.
@@ -350,7 +353,7 @@ impl ApertureSampler {
     }
 }
 
-/// The step of a table of running shares that `a` in [0, 1) falls into, and where in it.
+/// The interval of a table of cumulative weights that `a` in [0, 1) falls into, and the position in it.
 fn pick(cumulative: &[f64], a: f64) -> (usize, f64) {
     let step = cumulative.partition_point(|&end| end <= a).min(cumulative.len() - 1);
     let start = if step == 0 { 0.0 } else { cumulative[step - 1] };
@@ -358,7 +361,7 @@ fn pick(cumulative: &[f64], a: f64) -> (usize, f64) {
     (step, if width > 0.0 { ((a - start) / width).clamp(0.0, 1.0) } else { 0.5 })
 }
 
-/// Running sums of `shares`, scaled to end at 1; where all are 0 they stay 0.
+/// Cumulative sums of `shares`, scaled to end at 1; if all are 0 they stay 0.
 fn running_shares(shares: impl Iterator<Item = f64>) -> Vec<f64> {
     let mut sums: Vec<f64> = shares
         .scan(0.0, |sum, share| {

@@ -1,8 +1,9 @@
-//! The lens of a real camera as calibration found it: which direction falls on which pixel of its photographs.
+//! The calibrated lens of a real camera: the mapping between directions and pixels of its photographs.
 //!
-//! A direction is projected to a plane ([`Projection`]), moved there by what the lens does wrong ([`Distortion`]), and scaled and shifted
-//! to pixels. Polynomials fold back somewhere: beyond, two directions would share a pixel, and what calibration found means nothing.
-//! How far out a lens is valid is found when it is made; nothing beyond is projected, no pixel beyond has a direction.
+//! A direction is projected to a plane ([`Projection`]), displaced there by the lens's distortion ([`Distortion`]),
+//! and scaled and shifted to pixels. Polynomials fold back at some distance: beyond it two directions would share a
+//! pixel, and the calibration is meaningless. The valid radius is computed on construction; nothing beyond it is
+//! projected, and no pixel beyond it has a direction.
 
 mod distortion;
 mod projection;
@@ -31,24 +32,24 @@ pub struct CalibratedLens {
     valid_radius: f64,
 }
 
-/// Scale and place of the picture plane, px.
+/// Scale and position of the picture plane, px.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Intrinsics {
-    /// Width and height of the photographs that they are of.
+    /// Width and height of the photographs that they refer to.
     pub size_px: [u32; 2],
     /// fx and fy, > 0.
     pub focal_px: [f64; 2],
-    /// b: how far a focal length down leads to the right; 0 unless pixels are askew.
+    /// b: horizontal offset per focal length downward; 0 unless pixels are skewed.
     pub skew_px: f64,
-    /// (cx, cy): where the lens's axis meets the picture.
+    /// (cx, cy): the principal point.
     pub principal_px: [f64; 2],
 }
 
 impl CalibratedLens {
-    /// The lens of these numbers.
+    /// A lens with these parameters.
     ///
     /// # Errors
-    /// A number that no lens can have.
+    /// A parameter is out of range.
     pub fn new(
         intrinsics: Intrinsics,
         projection: Projection,
@@ -82,7 +83,7 @@ impl CalibratedLens {
     /// A pinhole of a focal length, its axis in the middle of the picture.
     ///
     /// # Errors
-    /// A number that no lens can have.
+    /// A parameter is out of range.
     pub fn pinhole(size_px: [u32; 2], focal_px: f64) -> Result<Self, CameraError> {
         let principal_px = size_px.map(|side| 0.5 * f64::from(side));
         let intrinsics = Intrinsics { size_px, focal_px: [focal_px; 2], skew_px: 0.0, principal_px };
@@ -92,7 +93,7 @@ impl CalibratedLens {
     /// A panorama of all directions ([`Projection::Equirectangular`]), straight ahead in its middle.
     ///
     /// # Errors
-    /// A size of 0.
+    /// A side of the picture is 0.
     pub fn panorama(size_px: [u32; 2]) -> Result<Self, CameraError> {
         let [width, height] = size_px.map(f64::from);
         let focal_px = [width / (2.0 * PI), height / PI];
@@ -101,28 +102,28 @@ impl CalibratedLens {
         Self::new(intrinsics, Projection::Equirectangular, Distortion::default())
     }
 
-    /// Scale and place of its picture.
+    /// Scale and position of its picture.
     pub fn intrinsics(&self) -> &Intrinsics {
         &self.intrinsics
     }
 
-    /// How it maps directions to the plane.
+    /// Its ideal projection.
     pub fn projection(&self) -> &Projection {
         &self.projection
     }
 
-    /// How far it is off that.
+    /// Its deviation from the ideal projection.
     pub fn distortion(&self) -> &Distortion {
         &self.distortion
     }
 
-    /// How far from the axis an ideal point may lie, in focal lengths (of [`Projection::Equidistant`] an angle, rad); infinite where
-    /// nothing folds back.
+    /// The valid radius: maximum distance of an ideal point from the axis, in focal lengths (for
+    /// [`Projection::Equidistant`] an angle, rad); infinite if nothing folds back.
     pub fn valid_radius(&self) -> f64 {
         self.valid_radius
     }
 
-    /// Width and height of the photographs that it is the lens of, px.
+    /// Width and height of its photographs, px.
     pub fn size_px(&self) -> [u32; 2] {
         self.intrinsics.size_px
     }
@@ -133,8 +134,8 @@ impl CalibratedLens {
         pixel.cmpge(DVec2::ZERO).all() && pixel.x < width && pixel.y < height
     }
 
-    /// The pixel position of a point or direction in camera space (x right, y up, z forward; any length), in the picture or beside it.
-    /// `None` for what is behind the lens, and where its distortion folds back.
+    /// The pixel position of a point or direction in camera space (x right, y up, z forward; any length), inside or
+    /// outside the picture. `None` behind the lens and beyond the valid radius.
     pub fn project(&self, direction: DVec3) -> Option<DVec2> {
         let ideal = self.projection.plane_from_direction(direction)?;
         if self.distortion.is_none() {
@@ -145,8 +146,8 @@ impl CalibratedLens {
         is_valid.then(|| self.pixel_from_plane(self.distortion.distorted(ideal)))
     }
 
-    /// The unit direction in camera space that falls on a pixel position. Inverse of [`Self::project`]; `None` for a position that no
-    /// direction falls on.
+    /// The unit direction in camera space of a pixel position. Inverse of [`Self::project`]; `None` for a position
+    /// that no direction is projected to.
     pub fn unproject(&self, pixel: DVec2) -> Option<DVec3> {
         let Intrinsics { focal_px: [fx, fy], skew_px, principal_px, .. } = self.intrinsics;
         let offset = pixel - DVec2::from(principal_px);
@@ -158,10 +159,10 @@ impl CalibratedLens {
         self.projection.direction_from_plane(self.undistorted(distorted)?)
     }
 
-    /// The same lens on photographs that were stored larger or smaller.
+    /// The same lens for photographs that were scaled.
     ///
     /// # Errors
-    /// A size of 0.
+    /// A side of the picture is 0.
     pub fn resized(&self, size_px: [u32; 2]) -> Result<Self, CameraError> {
         let [across, down] = [0, 1].map(|axis| f64::from(size_px[axis]) / f64::from(self.size_px()[axis]));
         let Intrinsics { focal_px: [fx, fy], skew_px, principal_px: [cx, cy], .. } = self.intrinsics;
@@ -179,11 +180,12 @@ impl CalibratedLens {
         DVec2::new(fx * point.x + skew_px * point.y, fy * point.y) + DVec2::from(principal_px)
     }
 
-    /// The ideal point that is distorted to `target`: Newton's method, from where the radial terms alone lead.
+    /// The ideal point that is distorted to `target`: Newton's method, starting from the inverse of the radial terms
+    /// alone.
     fn undistorted(&self, target: DVec2) -> Option<DVec2> {
-        /// Quadratic convergence takes some five; the rest is for lenses near their fold.
+        /// Quadratic convergence takes about five; the rest is for lenses near their fold.
         const MAX_STEPS: usize = 40;
-        /// In focal lengths: a thousandth of a millionth of a pixel of any camera there is.
+        /// In focal lengths: a millionth of a thousandth of a pixel of any existing camera.
         const TOLERANCE: f64 = 1e-14;
         if self.distortion.is_none() {
             return Some(target);
@@ -208,7 +210,7 @@ impl CalibratedLens {
                 return None;
             }
             let step = jacobian.inverse() * error;
-            // Half the step, as long as that leads nearer.
+            // Halve the step while that leads nearer.
             let nearer = (0..8)
                 .map(|halvings| q - step * 0.5f64.powi(halvings))
                 .find(|next| (self.distortion.distorted(*next) - target).length() < error.length());
@@ -221,10 +223,10 @@ impl CalibratedLens {
         (is_met && is_valid).then_some(q)
     }
 
-    /// The ideal distance from the middle that the radial terms take to `radius`: Newton's method within the bounds of a bisection, for
-    /// within the valid radius they rise.
+    /// The ideal distance from the middle that the radial terms map to `radius`: Newton's method within the bounds of
+    /// a bisection, as they increase within the valid radius.
     fn undistorted_radius(&self, radius: f64) -> Option<f64> {
-        /// As many as halve any interval down to two neighbouring numbers.
+        /// Enough to halve any interval down to two neighbouring numbers.
         const MAX_STEPS: usize = 100;
         // The distorted distance and its derivative.
         let distorted = |r: f64| {
@@ -254,11 +256,11 @@ impl CalibratedLens {
     }
 }
 
-/// How far from the middle an ideal point may lie before the distortion folds back, at the widest of some bearings.
+/// The maximum distance of an ideal point from the middle before the distortion folds back, over some bearings.
 fn valid_radius(projection: &Projection, distortion: &Distortion) -> f64 {
     /// The tangent of 89.4°.
     const WIDEST: f64 = 100.0;
-    /// Distances grow by this factor from the nearest on; where the lens is the same all around, the radius is all there is to tell by.
+    /// Distances grow by this factor from the nearest on; for a rotationally symmetric lens the radius alone decides.
     const FINE: f64 = 1.01;
     /// Of all others.
     const COARSE: f64 = 1.05;

@@ -1,4 +1,4 @@
-//! The camera: what is saved, and its checks.
+//! The camera as it is saved, and its validation.
 
 use crate::{Aperture, CameraError, Optics};
 use glam::{DMat3, DMat4, DVec2, DVec3};
@@ -16,14 +16,14 @@ pub struct Camera {
     pub focus_distance: f64,
     /// Half the side of the square that the aperture lies in; 0 is a pinhole.
     pub aperture_radius: f64,
-    /// Height of the sensor: decides how much blur a focus offset means.
+    /// Height of the sensor: decides how much blur a focus offset causes.
     pub sensor_height: f64,
-    /// How far the sensor is moved in its plane, in picture heights, right and up as the picture shows it: the picture is the part of the
-    /// image about this place instead of the axis. Perspective and depth stay those of the axis.
+    /// Offset of the sensor in its plane, in picture heights, right and up as seen in the picture: the picture is the
+    /// part of the image around this point instead of the axis. Perspective and depth stay those of the axis.
     pub shift: DVec2,
     /// Pose, a rigid motion; glTF axes: the camera looks down −Z, +Y up.
     pub camera_to_world: DMat4,
-    /// Radiance where no surface is, linear RGB, if one was chosen; else the scene's world decides.
+    /// Radiance where there is no surface, linear RGB, if chosen; otherwise the scene's world decides.
     pub background: Option<[f64; 3]>,
     /// The aperture's shape.
     pub aperture: Aperture,
@@ -48,12 +48,15 @@ impl Default for Camera {
 }
 
 impl Camera {
-    /// The widest picture side that is accepted, px.
+    /// Maximum side of a picture, px.
     pub const LARGEST_SIDE_PX: u32 = 16384;
-    /// The farthest shift that is accepted, picture heights: what stands that far from the axis is seen at a grazing angle.
+    /// Maximum shift, picture heights: farther from the axis light arrives at a grazing angle.
     pub const LARGEST_SHIFT: f64 = 100.0;
 
-    /// The first field that makes the camera unusable.
+    /// Checks all fields.
+    ///
+    /// # Errors
+    /// The first field that makes the camera invalid.
     pub fn validate(&self) -> Result<(), CameraError> {
         let require = |ok: bool, field, must| if ok { Ok(()) } else { Err(CameraError { field, must }) };
         let side = 1..=Self::LARGEST_SIDE_PX;
@@ -90,8 +93,8 @@ impl Camera {
         Self { width, height, ..self.clone() }
     }
 
-    /// The same camera with `px` more pixels of the same picture on each side: its lens and what it shows of a focus offset stay,
-    /// sensor and angle of view grow.
+    /// The same camera with `px` more pixels of the same picture on each side: its lens and the effect of a focus
+    /// offset stay, sensor and angle of view grow.
     pub fn overscanned(&self, px: u32) -> Self {
         let grown = |side: u32| side.saturating_add(px.saturating_mul(2));
         let factor = f64::from(grown(self.height)) / f64::from(self.height);

@@ -1,12 +1,12 @@
-//! Large aperture pictures, made as small as what is asked of them.
+//! Downsampling large aperture pictures.
 
 use crate::{Aperture, ApertureMask, ApertureShape};
 use std::borrow::Cow;
 use std::sync::Arc;
 
 impl Aperture {
-    /// The aperture with a mask of at most `side` × `side` texels, each the mean of what it stands for; itself
-    /// where it is no larger. The light that passes any whole texel of it is unchanged.
+    /// The aperture with a mask of at most `side` × `side` texels, each the mean of the texels that it replaces;
+    /// unchanged if it is no larger. The light that passes any whole texel of it is unchanged.
     pub fn coarsened(&self, side: u32) -> Cow<'_, Self> {
         match &self.shape {
             ApertureShape::Mask(mask) if mask.width > side || mask.height > side => {

@@ -1,6 +1,6 @@
-//! What cameras are refused for.
+//! Errors of invalid cameras.
 
-/// What is wrong with a camera.
+/// An invalid field of a camera.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CameraError {
     /// The field.

@@ -19,8 +19,8 @@ pub struct FocusOffset {
     pub t: f64,
     /// What t is relative to, in [0, 1]: 0 the sensor, 1 the point's focal conjugate.
     pub anchor: f64,
-    /// How far the light that the point carries (mirrors, lets through) obeys t and anchor, too, in [0, 1]: 0 not at all, 1 as
-    /// its own light does.
+    /// How far the light that the point carries (mirrors, transmits) also obeys t and anchor, in [0, 1]: 0 not at
+    /// all, 1 like its own light.
     pub gloss: f64,
 }
 
@@ -30,12 +30,12 @@ impl FocusOffset {
     /// In focus, wherever the camera focuses.
     pub const SHARP: Self = Self::new(1.0, 1.0);
 
-    /// An offset of `t`, relative to `anchor`, that gloss does not obey.
+    /// An offset of `t`, relative to `anchor`, which gloss does not obey.
     pub const fn new(t: f64, anchor: f64) -> Self {
         Self { t, anchor, gloss: 0.0 }
     }
 
-    /// The same, obeyed by gloss so far.
+    /// The same with this gloss.
     pub const fn with_gloss(self, gloss: f64) -> Self {
         Self { gloss, ..self }
     }
@@ -55,12 +55,12 @@ impl FocusOffset {
         if gloss >= 1.0 { Self::new(t, anchor) } else { Self::new(1.0 + gloss * (t - 1.0), gloss * anchor) }
     }
 
-    /// Whether the point is focused by the ordinary thin lens, and so all light that it sends.
+    /// Whether the point, and so all of its light, is focused by the ordinary thin lens.
     pub fn is_standard(self) -> bool {
         (self.t, self.anchor) == (Self::STANDARD.t, Self::STANDARD.anchor)
     }
 
-    /// Itself where it is valid, else the standard lens: what every renderer takes it for.
+    /// Itself if valid, else the standard lens: the value that every renderer uses.
     #[inline]
     pub fn or_standard(self) -> Self {
         if self.is_valid() { self } else { Self::STANDARD }

@@ -26,7 +26,7 @@ pub struct Optics {
     pub half_height_px: f64,
 }
 
-/// Beyond this t any lens blurs beyond any picture, and the terms of κ could overflow.
+/// Beyond this t any lens blurs more than any picture's size, and the terms of κ could overflow.
 const LARGEST_OFFSET: f64 = 1e100;
 
 impl Optics {

@@ -1,9 +1,9 @@
-//! What a camera makes: radiance and coverage a pixel.
+//! The output of a camera: radiance and coverage per pixel.
 
-/// How the model's sum becomes what is shown.
+/// How the model's sum becomes the displayed picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Exposure {
-    /// The model as it is: radiance is conserved, and a uniform wall is not uniform where its paint steps.
+    /// The model as it is: radiance is conserved, and a uniform wall is not uniform at steps of its paint.
     Conserve,
     /// Radiance over coverage: a white scene stays white.
     #[default]
@@ -17,20 +17,20 @@ pub struct Picture {
     pub width: u32,
     /// Height, px.
     pub height: u32,
-    /// Linear RGB a pixel, row 0 on top, conserved (not divided by coverage).
+    /// Linear RGB per pixel, row 0 on top, conserved (not divided by coverage).
     pub radiance: Vec<[f32; 3]>,
     /// The same sum for a scene of radiance 1: 1 everywhere in a standard picture.
     pub coverage: Vec<f32>,
 }
 
 impl Picture {
-    /// A black picture that nothing covers.
+    /// A black picture with zero coverage.
     pub fn black(width: u32, height: u32) -> Self {
         let pixels = width as usize * height as usize;
         Self { width, height, radiance: vec![[0.0; 3]; pixels], coverage: vec![0.0; pixels] }
     }
 
-    /// Pixels that are means of `side` × `side` of this picture, whose sides must be multiples of it.
+    /// The picture averaged over blocks of `side` × `side` pixels; its sides must be multiples of `side`.
     pub fn averaged(&self, side: u32) -> Self {
         assert!(side > 0 && self.width.is_multiple_of(side) && self.height.is_multiple_of(side));
         let mut mean = Self::black(self.width / side, self.height / side);
@@ -51,7 +51,7 @@ impl Picture {
         mean
     }
 
-    /// The picture under `exposure`. A pixel that nothing covers is black.
+    /// The picture under `exposure`. Pixels without coverage are black.
     pub fn exposed(&self, exposure: Exposure) -> Vec<[f32; 3]> {
         match exposure {
             Exposure::Conserve => self.radiance.clone(),

@@ -1,17 +1,18 @@
-//! One small part of the aperture: the scene as it looks from there.
+//! One small part of the aperture: the scene as seen from there.
 
 use crate::{Aperture, ApertureMask, ApertureShape};
 use glam::DVec2;
 use std::f64::consts::SQRT_2;
 use std::sync::Arc;
 
-/// Radius of a sub-aperture, as a share of the aperture radius R: circles of confusion are drawn at 1/16 of their size.
+/// Radius of a sub-aperture, as a fraction of the aperture radius R: circles of confusion are drawn at 1/16 of their
+/// size.
 pub const SUB_APERTURE_RADIUS: f64 = 1.0 / 16.0;
 
-/// Texels of a sub-aperture's mask over [−1, 1], a side: four across the opening.
+/// Texels per side of a sub-aperture's mask over [−1, 1]: four across the opening.
 const SIDE: u32 = 64;
 
-/// Points a texel of the mask is looked at, a side.
+/// Samples per texel of the mask and side.
 const POINTS: u32 = 8;
 
 impl Aperture {
@@ -37,8 +38,8 @@ impl Aperture {
         ApertureShape::Mask(Arc::new(ApertureMask { width: SIDE, height: SIDE, transmission, file })).into()
     }
 
-    /// The middle of the sub-aperture that lies in the opening as far out as can be at `angle` (rad, counter-clockwise from
-    /// +u as seen from behind the camera); the aperture's middle where nothing is open that way.
+    /// The centre of the outermost sub-aperture that lies in the opening at `angle` (rad, counter-clockwise from +u
+    /// as seen from behind the camera); the aperture's centre if nothing is open there.
     pub fn rim(&self, angle: f64) -> DVec2 {
         const STEPS: u32 = 256;
         let direction = DVec2::from_angle(angle);

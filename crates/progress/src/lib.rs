@@ -1,38 +1,40 @@
-//! How far a long computation is, and whether it should stop.
+//! Progress reporting and cancellation of long computations.
 //!
-//! Long work (unwrapping, baking, rendering) takes a `&dyn Progress`. It calls [`Progress::report`] now and
-//! then and stops with [`Cancelled`] when [`Progress::cancelled`] says so. The trait knows no clock and no
-//! thread; who watches decides what to show.
+//! Long work (unwrapping, baking, rendering) takes a `&dyn Progress`. It calls [`Progress::report`] from time to time
+//! and stops with [`Cancelled`] once [`Progress::cancelled`] is true. The trait depends on no clock and no thread;
+//! the observer decides what to show.
 
-/// What long work tells its watcher.
+/// Receives the progress of long work and can cancel it.
 pub trait Progress: Sync {
-    /// The share of the work that is done, in [0, 1]. May be called from any thread, and out of order.
+    /// Reports the fraction of the work that is done, in [0, 1]. May be called from any thread, and out of order.
     fn report(&self, fraction: f32);
-    /// Whether the work is no longer wanted. Cheap: called in inner loops.
+    /// Whether the work has been cancelled. Cheap: called in inner loops.
     fn cancelled(&self) -> bool;
 
-    /// A part of the work begins: what it is called, in a word, and the share of the whole that it goes from and to. Who shows no names
-    /// does nothing.
+    /// Reports that a named part of the work begins. Observers that show no names ignore it.
     fn begin_part(&self, _part: &Part) {}
 
-    /// `Err(Cancelled)` once the work is no longer wanted.
+    /// Checks for cancellation.
+    ///
+    /// # Errors
+    /// [`Cancelled`] once the work has been cancelled.
     fn check(&self) -> Result<(), Cancelled> {
         if self.cancelled() { Err(Cancelled) } else { Ok(()) }
     }
 }
 
-/// A part of long work.
+/// A named part of long work.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Part {
-    /// A word.
+    /// Its name, one word.
     pub name: &'static str,
-    /// The share of the whole that is done when it begins, in [0, 1].
+    /// The fraction of the whole that is done when it begins, in [0, 1].
     pub from: f32,
-    /// And when it ends.
+    /// The fraction of the whole that is done when it ends.
     pub to: f32,
 }
 
-/// The work was stopped because nobody wants its result any more.
+/// The work was cancelled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cancelled;
 
@@ -44,7 +46,7 @@ impl std::fmt::Display for Cancelled {
 
 impl std::error::Error for Cancelled {}
 
-/// A watcher that neither looks nor stops.
+/// An observer that ignores reports and never cancels.
 pub struct Unwatched;
 
 impl Progress for Unwatched {
@@ -54,7 +56,7 @@ impl Progress for Unwatched {
     }
 }
 
-/// Part of a longer computation: its [0, 1] is `start..end` of the whole.
+/// A part of a longer computation: its [0, 1] is `start..end` of the whole.
 pub struct Stage<'a> {
     whole: &'a dyn Progress,
     start: f32,
@@ -67,7 +69,7 @@ impl<'a> Stage<'a> {
         Self { whole, start, end }
     }
 
-    /// The same, which begins now and is called by a word.
+    /// As [`Self::new`], reporting that the named part begins now.
     pub fn named(whole: &'a dyn Progress, name: &'static str, start: f32, end: f32) -> Self {
         whole.begin_part(&Part { name, from: start, to: end });
         Self { whole, start, end }

@@ -10,13 +10,18 @@
 //! yfov is the full angle in rad, lengths are scene units, focus_distance is axial, to the focus plane;
 //! shift moves the sensor right and up, in picture heights (none: [0, 0]); camera_to_world has glTF axes (looks down −Z, +Y up). Any field may be missing.
 
+mod aperture_mask_file;
+pub(crate) mod mask_rows;
+
+pub use aperture_mask_file::read_aperture_mask;
+
 use crate::ProjectError;
-use crate::aperture_mask_file::read_aperture_mask;
+
 use crate::disk::write_bytes;
 use crate::json::{Field, Fields, Json};
-use crate::mask_rows::mask_from_json;
 use glam::{DMat4, DVec2, DVec4};
 use lens::{Aperture, ApertureMask, ApertureShape, Camera};
+use mask_rows::mask_from_json;
 use serde_json::{Value, json};
 use std::path::Path;
 use std::sync::Arc;
@@ -35,11 +40,14 @@ const FIELDS: [&str; 10] = [
 ];
 const APERTURE_FIELDS: [&str; 6] = ["shape", "blades", "rotation", "roundness", "ratio", "mask"];
 
-/// Corners of a polygon whose file does not say.
+/// Number of corners of a polygon whose file gives none.
 const DEFAULT_BLADES: u32 = 6;
 
-/// Reads a camera file. Fields that it lacks keep the value of `defaults`. Unknown fields are errors, as a
-/// misspelt one would otherwise go unnoticed. A mask is looked up beside the file.
+/// Reads a camera file. Missing fields take the value of `defaults`. Unknown fields are errors, since a misspelt one
+/// would otherwise go unnoticed. A mask's path is relative to the camera file.
+///
+/// # Errors
+/// The file or its mask cannot be read, a field is unknown or of the wrong type, or the camera is invalid.
 pub fn read_camera(file: &Path, defaults: &Camera) -> Result<Camera, ProjectError> {
     camera_from_fields(file, &Json::read(file)?, defaults, &|path| {
         let mask = file.parent().unwrap_or(Path::new("")).join(path);
@@ -47,8 +55,11 @@ pub fn read_camera(file: &Path, defaults: &Camera) -> Result<Camera, ProjectErro
     })
 }
 
-/// The camera of the JSON text of `file` (used in messages); `mask` finds an aperture mask by the name that
-/// the text gives it.
+/// Parses a camera from the JSON text of `file` (used in messages); `mask` loads an aperture mask by the name given
+/// in the text.
+///
+/// # Errors
+/// As [`read_camera`].
 pub fn camera_from_json(
     file: &Path,
     text: &str,
@@ -111,7 +122,8 @@ fn camera_from_fields(
     Ok(camera)
 }
 
-/// The aperture of its JSON fields. A mask is a picture's file, found by `mask`, or stands there itself.
+/// Parses an aperture from its JSON fields. A mask is either the name of a picture file, loaded by `mask`, or given
+/// inline.
 pub(crate) fn aperture_from_json(
     fields: &Fields<'_>,
     mask: &dyn Fn(&str) -> Result<ApertureMask, ProjectError>,
@@ -136,14 +148,19 @@ pub(crate) fn aperture_from_json(
             return Err(shape.error("is \"mask\", but no mask is given", "add \"mask\": FILE"));
         }
         (_, _, Some(shape)) => {
-            return Err(shape.error(format!("\"{name}\" is no shape"), "give disc, polygon, square or mask"));
+            return Err(
+                shape.error(format!("\"{name}\" is not a shape"), "give disc, polygon, square or mask")
+            );
         }
         (_, _, None) => unreachable!("a missing shape is a disc"),
     };
     Ok(Aperture { shape, ratio })
 }
 
-/// Writes a camera file. A mask is named as the camera names it, and not copied.
+/// Writes a camera file. A mask is stored by name, not copied.
+///
+/// # Errors
+/// The file cannot be written.
 pub fn write_camera(file: &Path, camera: &Camera) -> Result<(), ProjectError> {
     let text = serde_json::to_string_pretty(&camera_to_json(camera)).expect("a JSON value has a text");
     write_bytes(file, (text + "\n").as_bytes())
@@ -175,7 +192,7 @@ pub fn camera_to_json(camera: &Camera) -> Value {
     json
 }
 
-/// The aperture as a JSON value; a mask is named, and not copied.
+/// The aperture as a JSON value; a mask is stored by name, not copied.
 pub(crate) fn aperture_to_json(aperture: &Aperture) -> Value {
     let mut json = match &aperture.shape {
         ApertureShape::Disc => json!({"shape": "disc"}),

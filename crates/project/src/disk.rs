@@ -6,10 +6,10 @@ use std::fs::File;
 use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-/// The largest file that is read, bytes.
+/// Maximum size of a file, bytes.
 const MAX_FILE_BYTES: u64 = 4 << 30;
 
-/// The largest text file that is read, bytes.
+/// Maximum size of a text file, bytes.
 const MAX_TEXT_BYTES: u64 = 64 << 20;
 
 /// The whole file.
@@ -36,13 +36,13 @@ fn read_limited(file: &Path, limit: u64) -> Result<Vec<u8>, ProjectError> {
     Ok(bytes)
 }
 
-/// Writes the file: it holds either all of `bytes` or what it held before.
+/// Writes the file atomically: afterwards it holds either all of `bytes` or what it held before.
 pub(crate) fn write_bytes(file: &Path, bytes: &[u8]) -> Result<(), ProjectError> {
     write_verified(file, bytes, |_| Ok(()))
 }
 
-/// Writes the file, reads it back from the disk and replaces the old one only if it holds `bytes` and
-/// `verify` accepts it.
+/// Writes the file, reads it back from the disk and replaces the old one only if it holds `bytes` and `verify`
+/// accepts it.
 pub(crate) fn write_verified(
     file: &Path,
     bytes: &[u8],
@@ -64,7 +64,7 @@ pub(crate) fn write_verified(
     }
 }
 
-/// `file` with `suffix` after its whole name.
+/// `file` with `suffix` appended to its whole name.
 pub(crate) fn with_suffix(file: &Path, suffix: &str) -> PathBuf {
     let mut name = file.as_os_str().to_owned();
     name.push(suffix);

@@ -1,4 +1,4 @@
-//! What can be wrong with a file. Every message reads `FILE: what is wrong (what to do)`.
+//! Errors about files. Every message has the form `FILE: what is wrong (what to do)`.
 
 use focus::FocusError;
 use std::path::{Path, PathBuf};
@@ -6,23 +6,23 @@ use std::path::{Path, PathBuf};
 /// Why a file could not be read, written or used.
 #[derive(Debug, thiserror::Error)]
 pub enum ProjectError {
-    /// The file system said no while reading.
+    /// The file system refused to read.
     #[error("{}: cannot be read: {source} ({})", file.display(), io_cure(source))]
     Read {
         /// The file.
         file: PathBuf,
-        /// What the file system said.
+        /// The error of the file system.
         source: std::io::Error,
     },
-    /// The file system said no while writing. What was there before is still there.
+    /// The file system refused to write. The previous content is still there.
     #[error("{}: cannot be written: {source} ({})", file.display(), io_cure(source))]
     Write {
         /// The file.
         file: PathBuf,
-        /// What the file system said.
+        /// The error of the file system.
         source: std::io::Error,
     },
-    /// The file's content is not what it should be.
+    /// The file's content is invalid.
     #[error("{}: {problem} ({cure})", file.display())]
     Content {
         /// The file.
@@ -44,7 +44,7 @@ pub enum ProjectError {
         /// What to do.
         cure: String,
     },
-    /// The project was written by a later version of the program.
+    /// The project was written by a newer version of the program.
     #[error("{}: written in format version {version}, this program reads up to {newest} (update the program)", file.display())]
     Newer {
         /// The file.
@@ -66,8 +66,8 @@ pub enum ProjectError {
         /// What to do.
         cure: String,
     },
-    /// What was written could not be read back the same. What was there before is still there.
-    #[error("{}: not saved: what was written read back wrong: {problem} (check the disk, or save elsewhere)", file.display())]
+    /// The written file did not read back the same. The previous content is still there.
+    #[error("{}: not saved: the written file did not read back the same: {problem} (check the disk, or save elsewhere)", file.display())]
     Unverified {
         /// The file.
         file: PathBuf,
@@ -90,7 +90,7 @@ pub enum ProjectError {
         /// Columns and rows of the other.
         b: [u32; 2],
     },
-    /// Two pictures whose errors are not known well enough to say whether they agree.
+    /// Two pictures that lack the standard errors needed to test whether they agree.
     #[error(
         "the pictures cannot be tested for agreement: {0} (render both with --aov stderr, in passes of the ground truth)"
     )]
@@ -104,7 +104,7 @@ impl ProjectError {
     }
 }
 
-/// What to do about an error of the file system.
+/// The remedy for an error of the file system.
 fn io_cure(error: &std::io::Error) -> &'static str {
     use std::io::ErrorKind::*;
     match error.kind() {

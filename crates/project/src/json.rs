@@ -1,11 +1,11 @@
-//! JSON that people write: keys keep their order, and every complaint names file and field.
+//! JSON written by people: keys keep their order, and every error names file and field.
 
 use crate::ProjectError;
 use crate::disk::read_text;
 use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
 use std::path::{Path, PathBuf};
 
-/// A JSON value. Objects keep the order of their keys, and keys that come twice.
+/// A JSON value. Objects keep the order of their keys, including duplicates.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Json {
     Null,
@@ -31,7 +31,7 @@ impl Json {
             ProjectError::content(
                 file,
                 problem,
-                "mend it there; JSON has no NaN, no comments and no commas at the end",
+                "correct it there; JSON has no NaN, no comments and no commas at the end",
             )
         })
     }
@@ -48,7 +48,7 @@ impl Json {
     }
 }
 
-/// The key of the last `"key":` before a place in the text.
+/// The key of the last `"key":` before a position in the text.
 fn key_before(text: &str, line: usize, column: usize) -> Option<&str> {
     let line_start: usize = text.split_inclusive('\n').take(line.checked_sub(1)?).map(str::len).sum();
     let place = (line_start + column).min(text.len());
@@ -103,7 +103,7 @@ impl<'de> Deserialize<'de> for Json {
     }
 }
 
-/// A value with the file and field that it stands in.
+/// A value with its file and field.
 #[derive(Clone, Copy)]
 pub(crate) struct Field<'a> {
     pub file: &'a Path,
@@ -207,25 +207,25 @@ impl<'a> Field<'a> {
 }
 
 impl<'a> Fields<'a> {
-    /// The field of this name; of two, the later.
+    /// The field of this name; of duplicates, the last.
     pub fn get(&'a self, name: &'a str) -> Option<Field<'a>> {
         let (name, value) = self.entries.iter().rev().find(|(key, _)| key == name)?;
         Some(Field { file: self.file, value, parent: Some(self), name })
     }
 
-    /// All fields in order.
+    /// All fields, in order.
     pub fn iter(&'a self) -> impl Iterator<Item = (&'a str, Field<'a>)> {
         self.entries.iter().map(move |(name, value)| {
             (name.as_str(), Field { file: self.file, value, parent: Some(self), name })
         })
     }
 
-    /// An error for a field that is not one of `known`.
+    /// An error for the first field that is not one of `allowed`.
     pub fn allow_only(&'a self, allowed: &[&str]) -> Result<(), ProjectError> {
         match self.iter().find(|(name, _)| !allowed.contains(name)) {
             None => Ok(()),
             Some((_, field)) => {
-                Err(field.error("is not a known field", format!("known are {}", allowed.join(", "))))
+                Err(field.error("is not a valid field", format!("valid fields are {}", allowed.join(", "))))
             }
         }
     }
@@ -236,7 +236,7 @@ impl<'a> Fields<'a> {
         ProjectError::Field { file: self.file.to_owned(), field, problem: problem.into(), cure: cure.into() }
     }
 
-    /// The folder that the file's relative paths start from.
+    /// The folder that relative paths of the file start from.
     pub fn folder(&self) -> PathBuf {
         self.file.parent().unwrap_or(Path::new("")).to_owned()
     }

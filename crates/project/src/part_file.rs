@@ -1,14 +1,14 @@
-//! A part of a picture that is yet to be merged: sections of numbers, what they are, and a seal.
+//! A part of a picture that is yet to be merged: sections of numbers, their description, and a seal.
 //!
 //! ```text
 //! "focus-brush part 1\n"
-//! sections                  numbers of 32 bits, little-endian
-//! what they are             JSON, UTF-8
+//! sections                  32-bit numbers, little-endian
+//! description               JSON, UTF-8
 //! its length                u64, little-endian
-//! SHA-256                   of all before it, 32 bytes
+//! SHA-256                   of everything before it, 32 bytes
 //! ```
 //!
-//! A part is written from beginning to end, and is there only once it is whole.
+//! A part is written sequentially, and exists only once it is complete.
 
 use crate::ProjectError;
 use crate::replacement::replacement;
@@ -21,18 +21,18 @@ use std::path::{Path, PathBuf};
 
 const MAGIC: &[u8] = b"focus-brush part 1\n";
 
-/// Bytes behind the description: its length, and the seal.
+/// Bytes after the description: its length, and the seal.
 const END: u64 = 8 + 32;
 
-/// A description is no longer, bytes.
+/// Maximum length of a description, bytes.
 const MAX_DESCRIPTION_BYTES: u64 = 64 << 20;
 
-/// Where numbers are in a part.
+/// A range of numbers in a part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Section {
-    /// The first byte.
+    /// Offset of its first byte.
     pub first: u64,
-    /// How many numbers of 32 bits.
+    /// How many 32-bit numbers it has.
     pub count: u64,
 }
 
@@ -45,7 +45,7 @@ pub struct PartWriter {
 }
 
 impl PartWriter {
-    /// Begins a part.
+    /// Creates a part.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -63,7 +63,7 @@ impl PartWriter {
         self.out.write_all(bytes).map_err(|source| ProjectError::Write { file: self.file.clone(), source })
     }
 
-    /// Adds floats; returns where.
+    /// Appends floats; returns their section.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -71,7 +71,7 @@ impl PartWriter {
         self.write_words(numbers.into_iter().map(f32::to_bits))
     }
 
-    /// Adds integers; returns where.
+    /// Appends integers; returns their section.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -90,7 +90,7 @@ impl PartWriter {
         Ok(Section { first, count: (self.written - first) / 4 })
     }
 
-    /// Ends the part with what it is.
+    /// Completes the part with its description.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -107,24 +107,24 @@ impl PartWriter {
     }
 }
 
-/// A part that is whole.
+/// A complete part.
 #[derive(Clone, Debug)]
 pub struct PartFile {
-    /// Where it is.
+    /// Its path.
     pub file: PathBuf,
-    /// What its sections are.
+    /// The description of its sections.
     pub description: Value,
 }
 
 impl PartFile {
-    /// Opens a part, and reads all of it once.
+    /// Opens a part, reading all of it once to verify the seal.
     ///
     /// # Errors
-    /// It cannot be read, is something else, or is not whole.
+    /// It cannot be read, is not a part, or is incomplete.
     pub fn open(file: &Path) -> Result<Self, ProjectError> {
         let error = |source| ProjectError::Read { file: file.to_owned(), source };
         let damaged = || {
-            let problem = "is cut short or damaged";
+            let problem = "is truncated or damaged";
             ProjectError::content(file, problem, "render its tile again, or take another copy")
         };
         let mut from = File::open(file).map_err(error)?;
@@ -133,7 +133,11 @@ impl PartFile {
         from.read_exact(&mut magic).map_err(error)?;
         if !MAGIC.starts_with(&magic) || magic.is_empty() {
             let problem = "is no part of a picture";
-            return Err(ProjectError::content(file, problem, "give what render --tiles --shard wrote"));
+            return Err(ProjectError::content(
+                file,
+                problem,
+                "give a file written by render --tiles --shard",
+            ));
         }
         let sealed =
             length.checked_sub(32).filter(|sealed| *sealed >= MAGIC.len() as u64 + 8).ok_or_else(damaged)?;
@@ -161,7 +165,7 @@ impl PartFile {
         Ok(Self { file: file.to_owned(), description })
     }
 
-    /// Reads a section from its beginning on.
+    /// Reads a section from its beginning.
     ///
     /// # Errors
     /// The file cannot be read.
@@ -174,7 +178,7 @@ impl PartFile {
     }
 }
 
-/// The numbers of a section, one after the other.
+/// Reads the numbers of a section in order.
 pub struct NumberReader {
     file: PathBuf,
     from: BufReader<std::io::Take<File>>,
@@ -182,7 +186,7 @@ pub struct NumberReader {
 }
 
 impl NumberReader {
-    /// The next so many integers.
+    /// The next `count` integers.
     ///
     /// # Errors
     /// There are fewer, or the file cannot be read.
@@ -195,7 +199,7 @@ impl NumberReader {
         Ok(words.iter().map(|word| u32::from_le_bytes(*word)).collect())
     }
 
-    /// The next so many floats.
+    /// The next `count` floats.
     ///
     /// # Errors
     /// There are fewer, or the file cannot be read.

@@ -1,39 +1,58 @@
-//! The project file: a document, saved.
+//! The project file: a saved document.
 //!
 //! Three layers: the container (bytes), the manifest (format and version), and [`ProjectFile`] (the model). A
 //! `.fbrush` is a ZIP of
 //!
-//! | entry | what |
+//! | entry | content |
 //! | --- | --- |
 //! | `manifest.json` | format, version, scene, cameras, exposure, brush, view, checksums of the rest |
-//! | `atlas.bin` | the unwrapping, as the atlas writes it |
-//! | `focus.f32` | t and anchor a texel, f32 little endian, row by row: what all layers make together |
-//! | `focus.gloss.f32` | how far gloss obeys them, the same way; where it does |
-//! | `layers/N.f32`, `layers/N.gloss.f32`, `layers/N.mask.f32` | the same of one layer, and its mask; where there are layers |
-//! | `selection.bits` | what may be painted, a bit a texel; where that is not everything |
-//! | `thumbnail.png` | what the picture looked like when it was saved, for file managers; where one was shown |
+//! | `atlas.bin` | the unwrapping, as written by the atlas |
+//! | `focus.f32` | t and anchor per texel, f32 little endian, row by row: the composite of all layers |
+//! | `focus.gloss.f32` | gloss per texel, in the same form; if not all 0 |
+//! | `layers/N.f32`, `layers/N.gloss.f32`, `layers/N.mask.f32` | the same for each layer, and its mask; if there are layers |
+//! | `selection.bits` | which texels may be painted, one bit each; if not all |
+//! | `thumbnail.png` | the picture when it was saved, for file managers; if one was shown |
 //! | `masks/N.f32` | the aperture mask of camera N: width and height as u32, then transmissions as f32 |
 //!
-//! The scene itself stays where it is; its path is kept relative to the project, so that both may be moved
+//! The scene itself stays where it is; its path is stored relative to the project, so that both may be moved
 //! together, with its checksum, so that a change is noticed.
 
+mod capture_choices;
+mod container;
+mod layer_entries;
+mod layer_rows;
+pub(crate) mod manifest;
+mod recovery;
+mod scene_checksum;
+pub(crate) mod scene_path;
+mod surface_file;
+mod texel_bytes;
+mod texel_set;
+mod thumbnail;
+
+pub use capture_choices::CaptureChoices;
+pub use recovery::{find_recovery, recovery_path_for, remove_recovery, unsaved_recovery_path};
+pub use surface_file::{surface_from_bytes, surface_to_bytes};
+pub use texel_set::TexelSet;
+pub use thumbnail::Thumbnail;
+
 use crate::camera::{camera_from_json, camera_to_json};
-use crate::capture_choices::{CaptureChoices, CaptureEntry};
-use crate::container::{Container, DAMAGED_CURE, pack};
 use crate::disk::{read_bytes, write_verified};
-use crate::layer_entries;
-use crate::manifest::{CameraEntry, MANIFEST, Manifest, MapEntry, SceneReference, sha256_hex};
-use crate::scene_checksum::scene_checksum;
-use crate::scene_path::ScenePath;
-use crate::texel_bytes::{bytes_from_floats, floats_from_bytes, pairs_from_bytes};
-use crate::texel_set::TexelSet;
-use crate::thumbnail::{THUMBNAIL, Thumbnail};
+use capture_choices::CaptureEntry;
+use container::{Container, DAMAGED_CURE, pack};
+
+use manifest::{CameraEntry, MANIFEST, Manifest, MapEntry, SceneReference, sha256_hex};
+use scene_checksum::scene_checksum;
+use scene_path::ScenePath;
+use texel_bytes::{bytes_from_floats, floats_from_bytes, pairs_from_bytes};
+
 use crate::{ProjectError, WorldFile};
 use focus::{Brush, FocusLayer, FocusMap, LayerStack, LensMotion};
 use lens::{ApertureMask, ApertureShape, Camera, Exposure, FocusOffset};
 use scene::BackFaces;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
+use thumbnail::THUMBNAIL;
 
 const ATLAS: &str = "atlas.bin";
 const SURFACE: &str = "surface.bin";
@@ -41,16 +60,16 @@ const FOCUS_MAP: &str = "focus.f32";
 const FOCUS_GLOSS: &str = "focus.gloss.f32";
 const SELECTION: &str = "selection.bits";
 
-/// The largest atlas that is read, bytes.
+/// Maximum size of an atlas that is read, bytes.
 const MAX_ATLAS_BYTES: u64 = 2 << 30;
 
-/// The widest and highest focus map and mask that are read.
+/// Maximum width and height of a focus map or mask that is read.
 const MAX_SIDE: u32 = 32768;
 
-/// The largest focus map and mask that are read, bytes.
+/// Maximum size of a focus map or mask that is read, bytes.
 const MAX_MAP_BYTES: u64 = 4 << 30;
 
-/// A camera and what it is called.
+/// A camera and its name.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamedCamera {
     /// Its name.
@@ -59,66 +78,70 @@ pub struct NamedCamera {
     pub camera: Camera,
 }
 
-/// A document as it is saved.
+/// A saved document.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProjectFile {
     /// The scene file, or the folder of a capture.
     pub scene: PathBuf,
     /// Hex SHA-256 of the scene file when the document was made; see [`Self::scene_state`].
     pub scene_sha256: String,
-    /// The cameras, one at least.
+    /// The cameras, at least one.
     pub cameras: Vec<NamedCamera>,
-    /// The camera in use: index into `cameras`.
+    /// The active camera: index into `cameras`.
     pub active_camera: usize,
     /// How the sum becomes the picture.
     pub exposure: Exposure,
-    /// Whether faces that are not double sided are seen from behind.
+    /// Whether the backs of faces that are not double-sided are visible.
     pub back_faces: BackFaces,
-    /// The scene's variant that was chosen, by name; else it has its own materials.
+    /// The name of the chosen variant of the scene; `None`: its own materials.
     pub variant: Option<String>,
-    /// Of a project of a capture: what of it was chosen.
+    /// For a project of a capture: the user's choices.
     pub capture: Option<CaptureChoices>,
-    /// The world that was chosen; else the scene has one of its own.
+    /// The chosen world; `None`: the scene's own.
     pub world: Option<WorldFile>,
     /// The brush.
     pub brush: Brush,
-    /// Layout and viewpoint, as the window wants them; any JSON.
+    /// Layout and viewpoint of the window; any JSON.
     pub view: Value,
-    /// The unwrapping, as the atlas writes it; `None` if there is none yet.
+    /// The unwrapping, as written by the atlas; `None` if there is none yet.
     pub atlas: Option<Vec<u8>>,
-    /// The surface that was unwrapped ([`crate::surface_to_bytes`]): the scene's file may be another when it is opened again.
+    /// The surface that was unwrapped ([`crate::surface_to_bytes`]): the scene's file may have changed when it is
+    /// opened again.
     pub surface: Option<Vec<u8>>,
     /// The focus map; `None` if nothing is painted.
     pub focus_map: Option<FocusMap>,
-    /// The layers that make the focus map; `None` where one plain layer does. The values of adjustment layers are
-    /// not saved: they follow from curve and camera ([`LayerStack::evaluate`]).
+    /// The layers whose composite is the focus map; `None` if there is just one plain layer. The values of adjustment
+    /// layers are not saved: they follow from curve and camera ([`LayerStack::evaluate`]).
     pub layers: Option<LayerStack>,
-    /// How the lens moves over time; how layers do, they know themselves.
+    /// The lens's keyframes; those of layers are stored with the layers.
     pub lens_motion: LensMotion,
-    /// What may be painted; `None` for everything.
+    /// The selection; `None`: everything.
     pub selection: Option<TexelSet>,
-    /// The background's focus where there is no focus map; else the map's own counts.
+    /// The background's focus if there is no focus map; else the map's own counts.
     pub background_focus: FocusOffset,
-    /// What its picture looked like when it was saved.
+    /// The picture when it was saved.
     pub thumbnail: Option<Thumbnail>,
 }
 
 /// Whether the scene is still the one that the document was made for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SceneState {
-    /// It is.
+    /// It is the same.
     Same,
     /// It has changed since.
     Changed,
-    /// It is not there.
+    /// It does not exist.
     Missing,
 }
 
 impl ProjectFile {
-    /// What a project file's name ends in.
+    /// The extension of a project file.
     pub const EXTENSION: &'static str = "fbrush";
 
-    /// A document of a scene that nothing is painted on yet. Reads the scene file for its checksum.
+    /// A document of a scene without paint. Reads the scene file to compute its checksum.
+    ///
+    /// # Errors
+    /// The scene file cannot be read.
     pub fn new(scene: &Path, cameras: Vec<NamedCamera>) -> Result<Self, ProjectError> {
         Ok(Self {
             scene: scene.to_owned(),
@@ -143,12 +166,15 @@ impl ProjectFile {
         })
     }
 
-    /// Hex SHA-256 of a scene file; of a capture's folder that of the files that tell of its cameras and its surface.
+    /// Hex SHA-256 of a scene file; for a capture's folder, of the files that define its cameras and its surface.
+    ///
+    /// # Errors
+    /// A file cannot be read.
     pub fn scene_checksum(scene: &Path) -> Result<String, ProjectError> {
         scene_checksum(scene)
     }
 
-    /// Whether the scene file is still what it was.
+    /// Compares the scene file with the stored checksum.
     pub fn scene_state(&self) -> SceneState {
         match Self::scene_checksum(&self.scene) {
             Ok(sum) if sum == self.scene_sha256 => SceneState::Same,
@@ -157,8 +183,11 @@ impl ProjectFile {
         }
     }
 
-    /// Saves the document. `file` is replaced only when the new one is complete on the disk and has been read
-    /// back and found equal; whatever fails, the old one stays.
+    /// Saves the document. `file` is replaced only once the new one is complete on the disk and has been read back
+    /// and compared; whatever fails, the old one stays.
+    ///
+    /// # Errors
+    /// The document is invalid, or the file cannot be written or does not read back the same.
     pub fn save(&self, file: &Path) -> Result<(), ProjectError> {
         self.check(file)?;
         let bytes =
@@ -170,12 +199,15 @@ impl ProjectFile {
         })
     }
 
-    /// Reads a document. The scene's path is made absolute from where the project now lies.
+    /// Reads a document. The scene's path is made absolute from the project's location.
+    ///
+    /// # Errors
+    /// The file cannot be read, is damaged, is not a project, or was written by a newer version.
     pub fn load(file: &Path) -> Result<Self, ProjectError> {
         Self::from_bytes(file, &read_bytes(file)?)
     }
 
-    /// Whether another has the same scene and paint. The values of adjustment layers are not looked at.
+    /// Whether another document has the same scene and paint. The values of adjustment layers are ignored.
     fn has_same_paint(&self, other: &Self) -> bool {
         let layers = |project: &Self| {
             project.layers.clone().map(|stack| {
@@ -191,9 +223,9 @@ impl ProjectFile {
             && layers(self) == layers(other)
     }
 
-    /// What would be saved but not read again.
+    /// Rejects what would be saved but could not be read again.
     fn check(&self, file: &Path) -> Result<(), ProjectError> {
-        let error = |problem: String| ProjectError::content(file, problem, "mend it before saving");
+        let error = |problem: String| ProjectError::content(file, problem, "correct it before saving");
         if self.active_camera >= self.cameras.len() {
             return Err(error(format!("camera {} of {} is in use", self.active_camera, self.cameras.len())));
         }
@@ -314,12 +346,12 @@ impl ProjectFile {
         let exposure = match manifest.exposure.as_str() {
             "conserve" => Exposure::Conserve,
             "normalise" => Exposure::Normalise,
-            other => return Err(error(format!("\"{other}\" is no exposure"))),
+            other => return Err(error(format!("\"{other}\" is not an exposure"))),
         };
         let back_faces = match manifest.back_faces.as_deref() {
             None => BackFaces::default(),
             Some(name) => BackFaces::from_name(name)
-                .ok_or_else(|| error(format!("\"{name}\" says nothing of back faces")))?,
+                .ok_or_else(|| error(format!("\"{name}\" is not a setting of back faces")))?,
         };
         let world = manifest.world.as_ref().map(|world| WorldFile::from_value(file, world)).transpose()?;
         if let Some(problem) = manifest.brush.problem() {
@@ -391,7 +423,7 @@ impl ProjectFile {
     }
 }
 
-/// What the manifest calls an exposure.
+/// The manifest's name of an exposure.
 fn exposure_name(exposure: Exposure) -> &'static str {
     match exposure {
         Exposure::Conserve => "conserve",
@@ -413,7 +445,7 @@ fn read_camera(
             let bytes = manifest.read_entry(file, container, &entry, MAX_MAP_BYTES)?;
             Some(
                 mask_from_bytes(&bytes, mask_file)
-                    .ok_or_else(|| container.error(&entry, "is no aperture mask"))?,
+                    .ok_or_else(|| container.error(&entry, "is not an aperture mask"))?,
             )
         }
         None => None,
@@ -421,7 +453,7 @@ fn read_camera(
     let stored_mask =
         |_: &str| mask.clone().ok_or_else(|| container.error(MANIFEST, "names no aperture mask"));
     let camera = camera_from_json(file, &json.to_string(), &Camera::default(), &stored_mask)?;
-    // Projects used to say black where nobody had chosen anything; who wants darkness chooses a world.
+    // Projects used to store black if nothing had been chosen; darkness is now chosen by a world.
     let background = camera.background.filter(|color| *color != [0.0; 3]);
     Ok(Camera { background, ..camera })
 }
@@ -441,7 +473,7 @@ fn read_focus_map(
         );
     }
     let bytes = manifest.read_entry(file, container, &entry.entry, size)?;
-    let wrong_size = "does not have the size that the manifest says";
+    let wrong_size = "does not have the size given in the manifest";
     let mut map = FocusMap::from_rows(entry.width, entry.height, &pairs_from_bytes(&bytes), background)
         .ok_or_else(|| container.error(&entry.entry, wrong_size))?;
     if let Some(gloss) = &entry.gloss {
@@ -470,7 +502,7 @@ fn read_selection(
     let size = (entry.width as u64 * entry.height as u64).div_ceil(8);
     let bytes = manifest.read_entry(file, container, &entry.entry, size)?;
     TexelSet::from_bytes([entry.width, entry.height], bytes)
-        .ok_or_else(|| container.error(&entry.entry, "does not have the size that the manifest says"))
+        .ok_or_else(|| container.error(&entry.entry, "does not have the size given in the manifest"))
 }
 
 fn mask_to_bytes(mask: &ApertureMask) -> Vec<u8> {

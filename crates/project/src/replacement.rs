@@ -1,4 +1,4 @@
-//! Files that take the place of others once they are whole.
+//! Files that replace others once they are complete.
 
 use atomic_write_file::AtomicWriteFile;
 use std::ffi::OsStr;
@@ -6,15 +6,15 @@ use std::fs::File;
 use std::io::{Error, ErrorKind, Result};
 use std::path::{Path, PathBuf};
 
-/// A new file that takes the place of `file` once it is committed; through a link, of the file behind it. What runs that were killed
-/// left of theirs goes.
+/// A new file that replaces `file` once it is committed; through a link, the file that it points to. Abandoned files
+/// of killed runs are removed.
 pub(crate) fn replacement(file: &Path) -> Result<AtomicWriteFile> {
     let target: PathBuf = std::fs::canonicalize(file).unwrap_or_else(|_| file.to_owned());
     if target.is_dir() {
         return Err(ErrorKind::IsADirectory.into());
     }
     remove_abandoned(&target);
-    // Another run may take one that is not yet locked for a left-over.
+    // Another run may mistake a file that is not yet locked for an abandoned one.
     const TRIES: usize = 16;
     for _ in 0..TRIES {
         let new = AtomicWriteFile::options().read(true).open(&target)?;
@@ -23,14 +23,15 @@ pub(crate) fn replacement(file: &Path) -> Result<AtomicWriteFile> {
             return Ok(new);
         }
     }
-    Err(Error::other("others write it all the time"))
+    Err(Error::other("other processes keep writing it"))
 }
 
-/// Characters of which the name of a file that is being written has some more than that of the one that it replaces, and a dot in front.
+/// Number of random characters that the name of a file being written has, after a dot, in addition to that of the
+/// file that it replaces and a dot in front.
 const SUFFIX: usize = 6;
 
-/// Removes what is beside `target`, is called as files that are to replace it are, and is written by no one: who writes holds a lock. Where
-/// there are no locks it stays.
+/// Removes abandoned replacements of `target`: files with the name of a replacement that no one holds a lock on. On
+/// systems without locks they stay.
 fn remove_abandoned(target: &Path) {
     let (Some(folder), Some(name)) = (target.parent(), target.file_name()) else { return };
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
@@ -39,7 +40,7 @@ fn remove_abandoned(target: &Path) {
     for path in left_over.map(|entry| entry.path()) {
         let opened = File::options().write(true).open(&path);
         if opened.is_ok_and(|file| file.try_lock().is_ok()) {
-            // Whoever else wants to remove it may be quicker.
+            // Another run may have removed it first.
             let _ = std::fs::remove_file(path);
         }
     }
@@ -47,7 +48,7 @@ fn remove_abandoned(target: &Path) {
 
 fn is_replacement_name(candidate: &OsStr, name: &OsStr) -> bool {
     let (candidate, name) = (candidate.as_encoded_bytes(), name.as_encoded_bytes());
-    let Some(suffix) = candidate.strip_prefix(b".").and_then(|found| found.strip_prefix(name)) else {
+    let Some(suffix) = candidate.strip_prefix(b".").and_then(|rest| rest.strip_prefix(name)) else {
         return false;
     };
     matches!(suffix, [b'.', random @ ..] if random.len() == SUFFIX && random.iter().all(u8::is_ascii_alphanumeric))

@@ -1,16 +1,16 @@
-//! World files, and the world of a project: what lies beyond all surfaces.
+//! World files, and the world of a project: environment and backdrop.
 //!
 //! ```json
 //! {"environment": "FILE.hdr" | "FILE.exr" | "studio" | "scene" | [r, g, b], "rotation": rad, "strength": 1.0,
 //!  "backdrop": "environment" | [r, g, b], "bounces": null}
 //! ```
 //!
-//! Missing fields take the defaults: the studio, 0, 1, the environment (before the studio a neutral grey), as many bounces as
-//! matter. A file's path starts from the folder of what names it.
+//! Defaults: the studio, 0, 1, the environment (for the studio a neutral grey), as many bounces as matter. A path is
+//! relative to the folder of the file that names it.
 
 use crate::ProjectError;
 use crate::json::{Field, Fields, Json};
-use crate::picture_file::read_picture;
+use crate::pictures::linear_picture::read_picture;
 use glam::Vec3;
 use scene::{Backdrop, Environment, EnvironmentMap, Scene, World};
 use serde_json::{Value, json};
@@ -19,29 +19,29 @@ use std::sync::Arc;
 
 const FIELDS: [&str; 5] = ["environment", "rotation", "strength", "backdrop", "bounces"];
 
-/// A world as a file says it, its environment not yet read.
+/// A world as given by a file, its environment not yet loaded.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WorldFile {
-    /// What shines.
+    /// The source of its light.
     pub environment: EnvironmentChoice,
     /// About +Y, rad.
     pub rotation: f64,
     /// Scales its radiance, ≥ 0.
     pub strength: f32,
-    /// What the camera sees where no surface is; `None` as suits the environment.
+    /// What the camera sees where there is no surface; `None`: the environment's default.
     pub backdrop: Option<Backdrop>,
     /// See [`World::bounces`].
     pub bounces: Option<u32>,
 }
 
-/// What shines from infinity.
+/// The source of light from infinity.
 #[derive(Clone, Debug, PartialEq)]
 pub enum EnvironmentChoice {
     /// An equirectangular picture, .hdr or .exr.
     File(PathBuf),
-    /// Our own.
+    /// The built-in studio.
     Studio,
-    /// What the scene brings ([`Scene::own_world`]).
+    /// The one embedded in the scene's file ([`Scene::embedded_world`]).
     Scene,
     /// The same radiance from everywhere.
     Uniform(Vec3),
@@ -63,13 +63,13 @@ impl WorldFile {
     /// Reads a world file.
     ///
     /// # Errors
-    /// What is wrong with it, by file and field.
+    /// The file cannot be read, a field is unknown, or a value is out of range.
     pub fn read(file: &Path) -> Result<Self, ProjectError> {
         let json = Json::read(file)?;
         Self::from_fields(&Field::root(file, &json).object()?)
     }
 
-    /// What says a world of `scene` that was read before.
+    /// Describes the world of a `scene` that was loaded before.
     pub fn from_world(world: &World, scene: &Scene) -> Self {
         let embedded = scene.embedded_world.as_ref().map(|own| &own.environment);
         let environment = match &world.environment {
@@ -87,12 +87,12 @@ impl WorldFile {
         }
     }
 
-    /// An environment's file alone, seen and lighting.
+    /// An environment file alone, for light and backdrop.
     pub fn from_environment_file(file: &Path) -> Self {
         Self { environment: EnvironmentChoice::File(file.into()), ..Self::default() }
     }
 
-    /// What a project in `file` says.
+    /// The world stored in a project at `file`.
     pub(crate) fn from_value(file: &Path, value: &Value) -> Result<Self, ProjectError> {
         let json = Json::parse(file, &value.to_string())?;
         Self::from_fields(&Field::root(file, &json).object()?)
@@ -115,14 +115,14 @@ impl WorldFile {
         if let Some(field) = fields.get("strength") {
             world.strength = field.number()? as f32;
             if !(world.strength >= 0.0 && world.strength.is_finite()) {
-                return Err(field.error("is no strength", "give a number of 0 or more"));
+                return Err(field.error("is not a strength", "give a number of 0 or more"));
             }
         }
         if let Some(field) = fields.get("backdrop") {
             world.backdrop = Some(match field.value {
                 Json::Text(text) if text == "environment" => Backdrop::Environment,
                 Json::Text(_) => {
-                    return Err(field.error("is no backdrop", "give \"environment\" or [r, g, b]"));
+                    return Err(field.error("is not a backdrop", "give \"environment\" or [r, g, b]"));
                 }
                 _ => Backdrop::Color(radiance(&field)?),
             });
@@ -133,13 +133,15 @@ impl WorldFile {
         Ok(world)
     }
 
-    /// As JSON; a file's path as seen from `from`, a file beside which it is kept.
+    /// As JSON; a file's path becomes relative to `from`, the file that will contain it.
     pub fn to_json(&self, from: &Path) -> Value {
         let environment = match &self.environment {
             EnvironmentChoice::Studio => json!("studio"),
             EnvironmentChoice::Scene => json!("scene"),
             EnvironmentChoice::Uniform(color) => json!(color.to_array()),
-            EnvironmentChoice::File(file) => json!(crate::scene_path::ScenePath::new(file, from).path),
+            EnvironmentChoice::File(file) => {
+                json!(crate::project_file::scene_path::ScenePath::new(file, from).path)
+            }
         };
         let mut json = json!({
             "environment": environment,
@@ -155,10 +157,10 @@ impl WorldFile {
         json
     }
 
-    /// The world of `scene`, its environment read.
+    /// Loads the environment and returns the world of `scene`.
     ///
     /// # Errors
-    /// If the environment's file cannot be used, or the scene does not bring what is asked of it.
+    /// The environment's file cannot be used, or the scene has no embedded world.
     pub fn load(&self, scene: &Scene) -> Result<World, ProjectError> {
         let (environment, default_backdrop) = match &self.environment {
             EnvironmentChoice::Studio => {
@@ -169,7 +171,7 @@ impl WorldFile {
                 Some(own) => (own.environment.clone(), own.backdrop),
                 None => {
                     let problem =
-                        "brings no environment (EXT_lights_image_based), which its world is to have";
+                        "has no embedded environment (EXT_lights_image_based), which its world refers to";
                     return Err(ProjectError::content(&scene.path, problem, "choose another environment"));
                 }
             },
@@ -193,18 +195,18 @@ fn radiance(field: &Field<'_>) -> Result<Vec3, ProjectError> {
     let is_radiance = color.is_finite() && color.cmpge(Vec3::ZERO).all();
     is_radiance
         .then_some(color)
-        .ok_or_else(|| field.error("is no radiance", "give three numbers of 0 or more"))
+        .ok_or_else(|| field.error("is not a radiance", "give three numbers of 0 or more"))
 }
 
 /// Reads an equirectangular picture: .hdr or .exr.
 ///
 /// # Errors
-/// If it is no picture, another kind of picture, or not about twice as wide as high.
+/// It is not a picture, has another format, or is not about twice as wide as high.
 fn read_environment(file: &Path) -> Result<EnvironmentMap, ProjectError> {
     let extension = file.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
     if !["hdr", "exr"].contains(&extension.as_str()) {
         let cure = "give an equirectangular .hdr or .exr";
-        return Err(ProjectError::content(file, "is no environment", cure));
+        return Err(ProjectError::content(file, "is not an environment", cure));
     }
     let picture = read_picture(file)?;
     let aspect = f64::from(picture.width) / f64::from(picture.height.max(1));
@@ -215,7 +217,7 @@ fn read_environment(file: &Path) -> Result<EnvironmentMap, ProjectError> {
         );
         return Err(ProjectError::content(file, problem, "give one that shows all directions"));
     }
-    // What is not a number, or negative, shines not at all.
+    // NaN and negative values count as 0.
     let sane = |channel: f32| if channel.is_finite() { channel.max(0.0) } else { 0.0 };
     Ok(EnvironmentMap {
         name: file.to_string_lossy().into_owned(),
@@ -326,13 +328,13 @@ mod tests {
             .into_iter()
             .enumerate()
             .map(|(c, name)| (name.to_string(), picture.radiance.iter().map(|texel| texel[c]).collect()));
-        let exr = crate::exr_file::ExrImage {
+        let exr = crate::openexr::image::ExrImage {
             width: 4,
             height: 2,
             channels: channels.collect(),
             ..Default::default()
         };
-        crate::exr_file::write_exr(&file, exr, crate::exr_form::ExrOptions::default()).unwrap();
+        crate::openexr::image::write_exr(&file, exr, crate::openexr::options::ExrOptions::default()).unwrap();
         let World { environment: Environment::Map(map), .. } =
             WorldFile::from_environment_file(&file).load(&Scene::default()).unwrap()
         else {

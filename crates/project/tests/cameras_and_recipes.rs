@@ -94,7 +94,7 @@ fn bad_cameras_are_told_with_file_and_field() {
     let cases = [
         (r#"{"width": 0}"#, "width"),
         (r#"{"width": 1.5}"#, "width: is 1.5"),
-        (r#"{"heigth": 100}"#, "heigth: is not a known field"),
+        (r#"{"heigth": 100}"#, "heigth: is not a valid field"),
         (r#"{"yfov": "wide"}"#, "yfov: is the text \"wide\""),
         (r#"{"yfov": NaN}"#, "in \"yfov\""),
         (r#"{"yfov": 1e999}"#, "in \"yfov\""),
@@ -103,7 +103,7 @@ fn bad_cameras_are_told_with_file_and_field() {
         (r#"{"background": [1, 2]}"#, "background: has 2 numbers"),
         (r#"{"camera_to_world": [1, 2]}"#, "camera_to_world"),
         (r#"{"camera_to_world": [[2,0,0,0],[0,2,0,0],[0,0,2,0],[0,0,0,1]]}"#, "camera_to_world"),
-        (r#"{"aperture": {"shape": "star"}}"#, "aperture.shape: \"star\" is no shape"),
+        (r#"{"aperture": {"shape": "star"}}"#, "aperture.shape: \"star\" is not a shape"),
         (r#"{"aperture": {"shape": "polygon", "blades": 2}}"#, "aperture.blades"),
         (r#"{"aperture": {"shape": "mask"}}"#, "no mask is given"),
         (r#"{"aperture": {"blads": 2}}"#, "aperture.blads"),
@@ -152,9 +152,9 @@ fn bad_recipes_are_told_with_their_key() {
         (r#"{"materials": {"wall": {"gloss": -0.1}}}"#, "materials.wall.gloss: is -0.1"),
         (r#"{"nodes": {"car": {"gloss": true}}}"#, "nodes.car.gloss: is"),
         (r#"{"nodes": {"car": {"gloss": 1, "map": "x.exr"}}}"#, "nodes.car: has a map and a value"),
-        (r#"{"materials": {"wall": {"blur": 1}}}"#, "materials.wall.blur: is not a known field"),
+        (r#"{"materials": {"wall": {"blur": 1}}}"#, "materials.wall.blur: is not a valid field"),
         (r#"{"materials": {"wall": {"t": 1, "map": "x.exr"}}}"#, "materials.wall: has a map and a value"),
-        (r#"{"material": {}}"#, "material: is not a known field"),
+        (r#"{"material": {}}"#, "material: is not a valid field"),
         (r#"{"nodes": []}"#, "nodes: is a list"),
     ];
     for (text, expected) in cases {

@@ -1,4 +1,4 @@
-//! What can be wrong with a scene file.
+//! Errors of reading a scene file.
 
 use progress::Cancelled;
 use std::path::PathBuf;
@@ -6,12 +6,12 @@ use std::path::PathBuf;
 /// Why a scene did not open. Displays as `FILE: what is wrong (what to do)`.
 #[derive(Debug, thiserror::Error)]
 pub enum SceneError {
-    /// The file was read, but holds no triangle, so there is nothing to see. [`crate::inspect`] still opens it.
+    /// The file was read, but has no triangle, so there is nothing to render. [`crate::inspect`] still opens it.
     #[error("{}: no triangle: {why} (export at least one visible mesh made of triangles)", file.display())]
     NoTriangles {
         /// The scene file.
         file: PathBuf,
-        /// What it holds instead.
+        /// What it contains instead.
         why: String,
     },
     /// The file cannot be read as a scene.
@@ -22,18 +22,18 @@ pub enum SceneError {
         /// What is wrong with it, where, and what to do.
         fault: Fault,
     },
-    /// Loading was called off.
+    /// Loading was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
 
-/// What is wrong inside a scene file.
+/// A fault inside a scene file.
 #[derive(Debug, thiserror::Error)]
 pub enum Fault {
     /// The file itself cannot be read.
     #[error("cannot be read: {0} (check the path and its permissions)")]
     Unreadable(std::io::Error),
-    /// The file is no glTF.
+    /// The file is not glTF.
     #[error("not a glTF 2.0 file: {0} (export it again as .glb or .gltf)")]
     NotGltf(String),
     /// A part of the document that the picture needs is missing or malformed.
@@ -44,7 +44,7 @@ pub enum Fault {
         /// What is wrong there.
         what: String,
     },
-    /// A file that the scene refers to cannot be had.
+    /// A file that the scene refers to cannot be read.
     #[error("{place}: {uri}: {what}")]
     Resource {
         /// JSON pointer to what refers to it.
@@ -54,13 +54,13 @@ pub enum Fault {
         /// What is wrong and what to do.
         what: String,
     },
-    /// A buffer has neither a URI nor a binary chunk: its data come from elsewhere, as glTF allows.
+    /// A buffer has neither a URI nor a binary chunk: its data comes from elsewhere, as glTF allows.
     #[error("{place}: the file does not contain its data (export the scene with its buffers)")]
     NoData {
         /// JSON pointer to the buffer.
         place: String,
     },
-    /// The file needs an extension that is not understood.
+    /// The file requires an unsupported extension.
     #[error("it requires the extension {extension}, which is not supported ({cure})")]
     Extension {
         /// The extension's name.
@@ -68,39 +68,39 @@ pub enum Fault {
         /// What to do.
         cure: String,
     },
-    /// It does not have the variant that was chosen.
+    /// The requested variant does not exist.
     #[error("no variant is called {name:?} ({available})")]
     NoVariant {
-        /// What was asked for.
+        /// The requested name.
         name: String,
-        /// The names that there are, in words.
+        /// The existing names, as a phrase.
         available: String,
     },
-    /// It does not have the animation that was asked for.
+    /// The requested animation does not exist.
     #[error("no animation is called {name:?} ({available})")]
     NoAnimation {
-        /// What was asked for.
+        /// The requested name.
         name: String,
-        /// The names that there are, in words.
+        /// The existing names, as a phrase.
         available: String,
     },
-    /// A limit of [`crate::LoadOptions`] was passed.
+    /// A limit of [`crate::LoadOptions`] was exceeded.
     #[error("{what} (simplify the scene or raise the limit)")]
     TooBig {
         /// What is too big, and the limit.
         what: String,
     },
-    /// A decoder gave up in an unforeseen way.
-    #[error("the decoder failed: {0} (export the file again; this file shows a flaw of the importer)")]
+    /// A decoder panicked.
+    #[error("the decoder failed: {0} (export the file again; this is a bug in the importer)")]
     Panicked(String),
 }
 
-/// What stops loading below the level that knows the file's name.
+/// Why loading stops, at levels that do not have the file's name.
 #[derive(Debug)]
 pub(crate) enum Stop {
-    /// Something is wrong.
+    /// A fault of the file.
     Fault(Fault),
-    /// Nobody wants the scene any more.
+    /// Loading was cancelled.
     Cancelled,
 }
 

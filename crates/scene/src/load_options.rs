@@ -1,20 +1,22 @@
-//! How a scene file is read: in which of its variants, and how much of the machine it may use.
+//! Options of reading a scene file: its variant, and resource limits.
 
-/// Which materials a scene has, and limits that keep a hostile or mistaken file from taking the machine.
+/// The variant, and limits that protect the machine from a hostile or broken file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LoadOptions {
-    /// Bytes that loading may hold at once: files, decoded images, vertices and triangles together.
+    /// Maximum bytes held at once: files, decoded images, vertices and triangles together.
     pub max_memory: u64,
     /// Triangles after instancing.
     pub max_triangles: u64,
     /// Texels of one image.
     pub max_texels: u64,
-    /// The name of a variant (KHR_materials_variants), one of [`crate::Scene::variants`]; none: the file's own materials.
+    /// The name of a variant (KHR_materials_variants), one of [`crate::Scene::variants`]; `None`: the file's own
+    /// materials.
     pub variant: Option<String>,
 }
 
 impl Default for LoadOptions {
-    /// 640 MiB (so that the whole program stays below 1 GiB), 5 million triangles, images up to 8192²; the file's own materials.
+    /// 640 MiB (so that the whole program stays below 1 GiB), 5 million triangles, images up to 8192²; the file's own
+    /// materials.
     fn default() -> Self {
         Self { max_memory: 640 << 20, max_triangles: 5_000_000, max_texels: 8192 * 8192, variant: None }
     }

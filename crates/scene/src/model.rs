@@ -1,72 +1,89 @@
 //! The scene in memory: flat, world space, triangles only.
 
-use crate::picture_texture::PictureTexture;
-use crate::{BackFaces, CameraLens, Material, PhotoLookup, View, World};
+mod back_faces;
+mod inverted_faces;
+mod material;
+mod mesh_health;
+mod surface_color;
+mod surface_mesh;
+mod surface_point;
+
+pub use back_faces::BackFaces;
+pub use material::{
+    AlphaMode, Anisotropy, Clearcoat, DiffuseTransmission, Iridescence, Material, NormalMap, Scalar, Sheen,
+    Tint, Volume, Workflow,
+};
+pub use mesh_health::MeshHealth;
+pub use surface_mesh::SurfaceMesh;
+pub use surface_point::{SurfaceField, SurfacePoint};
+
+use crate::{CameraLens, Image, PhotoLookup, PictureTexture, View, World};
 use glam::{DMat4, DVec3, Vec2, Vec3, Vec4};
 use std::ops::Range;
 use std::path::PathBuf;
 
-/// A scene: triangles in world space with their materials, and what lights and views them.
+/// A scene: triangles in world space with their materials, lights and cameras.
 ///
-/// Instances are flattened: each (node, instance, primitive) is a [`Part`] with vertices of its own, so that
-/// every instance can be painted apart. Vertex arrays run in parallel to `positions`; an array of an attribute
-/// that no part has is empty.
+/// Instances are flattened: each (node, instance, primitive) is a [`Part`] with vertices of its own, so that every
+/// instance can be painted separately. Vertex arrays are parallel to `positions`; the array of an attribute that no
+/// part has is empty.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
     /// The file it was read from.
     pub path: PathBuf,
     /// World positions.
     pub positions: Vec<DVec3>,
-    /// Unit shading normals in world space; zero where the file gives none (shade flat).
+    /// Unit shading normals in world space; zero if the file has none (flat shading).
     pub normals: Vec<Vec3>,
     /// Texture coordinates of sets 0 and 1 (glTF: origin at the image's upper left).
     pub uv: [Vec<Vec2>; 2],
-    /// Texture coordinates of further sets, as far as textures lie in them: entry k is what [`TextureRef::uv_set`](crate::TextureRef::uv_set)
-    /// k + 2 means, for each part that of its own material.
+    /// Texture coordinates of further sets that textures use: entry k corresponds to
+    /// [`TextureRef::uv_set`](crate::TextureRef::uv_set) k + 2, for each part that of its own material.
     pub further_uv: Vec<Vec<Vec2>>,
-    /// Linear vertex colours, multiplied into the base colour; 1 where the file gives none.
+    /// Linear vertex colours, multiplied into the base colour; 1 if the file has none.
     pub colors: Vec<Vec4>,
-    /// Counter-clockwise seen from the front, negative scales already undone.
+    /// Counter-clockwise seen from the front; negative scales are already undone.
     pub triangles: Vec<Triangle>,
-    /// Of each triangle's corners the direction in which u of the material's normal map runs (or of its anisotropy), unit, and
-    /// the sign of the bitangent, sign · normal × tangent; zero where a part needs none. Empty if no part does.
+    /// For each triangle's corners the unit direction in which u of the material's normal map (or of its anisotropy)
+    /// increases, and the sign of the bitangent, sign · normal × tangent; zero if a part needs none. Empty if no part
+    /// does.
     pub tangents: Vec<[Vec4; 3]>,
-    /// What the triangles belong to, in order; their ranges tile `triangles`.
+    /// The parts that the triangles belong to, in order; their ranges cover `triangles`.
     pub parts: Vec<Part>,
     /// The nodes that have parts.
     pub nodes: Vec<Node>,
     /// Materials; the last may be glTF's default material.
     pub materials: Vec<Material>,
-    /// What the file's variants are called (KHR_materials_variants), no two alike: other choices among the materials.
+    /// The names of the file's variants (KHR_materials_variants), all different: alternative material assignments.
     pub variants: Vec<String>,
-    /// The variant that it is in, one of them; none: the file's own choice.
+    /// The chosen variant, one of `variants`; `None`: the file's own materials.
     pub variant: Option<String>,
     /// Decoded images that the materials refer to.
     pub images: Vec<Image>,
     /// Lights in world space.
     pub lights: Vec<Light>,
-    /// Perspective cameras in file order. Never empty: a scene without one gets a framing of its own.
+    /// Perspective cameras in file order. Never empty: a scene without one gets a default camera that frames it.
     pub cameras: Vec<SceneCamera>,
-    /// Whether the first camera was made up because the file has none.
+    /// Whether the file has no camera and the first one is a default.
     pub has_default_camera: bool,
-    /// Whether faces that are not double sided are seen from behind.
+    /// Whether the backs of faces that are not double-sided are visible.
     pub back_faces: BackFaces,
-    /// What lies beyond all surfaces as the file has it (EXT_lights_image_based): the world where none was chosen.
+    /// The world embedded in the file (EXT_lights_image_based), used unless another is chosen.
     pub embedded_world: Option<World>,
-    /// The world that was chosen for it; else it has one of its own ([`World::of_scene`]).
+    /// The chosen world; if `None`, [`World::from_scene`] derives one.
     pub world: Option<World>,
-    /// Whether light that meets microfacets more than once is left out, as in renderers that do.
+    /// Whether light that meets microfacets more than once is ignored, as many renderers do.
     pub single_scattering: bool,
-    /// Photographs of it, where these light it.
+    /// The photographs that light it.
     pub views: Vec<View>,
-    /// Where the light of photographs is looked up.
+    /// Where the light of photographs is sampled.
     pub photo_lookup: PhotoLookup,
-    /// Photographs that are looked through and compared with, no light is made of them: those left out, and the views of a light field,
-    /// whose light the texture has.
+    /// Photographs that are viewed and compared with but do not light it: excluded ones, and the views of a light
+    /// field, whose light is in the texture.
     pub excluded_views: Vec<View>,
-    /// Of a surface that was made from a picture: the picture as its texture.
+    /// For a surface that was made from a picture: the picture as its texture.
     pub picture: Option<PictureTexture>,
-    /// What was wrong with the file but did no harm, a sentence each.
+    /// Harmless defects of the file, a sentence each.
     pub warnings: Vec<String>,
 }
 
@@ -90,7 +107,7 @@ pub struct Part {
     pub triangles: Range<u32>,
     /// Which of UV sets 0 and 1 the primitive has.
     pub has_uv: [bool; 2],
-    /// Whether the transform mirrored it (its UVs then run the other way round).
+    /// Whether the transform mirrors it (its UVs are then mirrored as well).
     pub mirrored: bool,
 }
 
@@ -105,36 +122,12 @@ pub struct Node {
     pub world: DMat4,
 }
 
-/// A decoded image: encoded values as in the file, four channels a texel, row 0 on top.
-#[derive(Clone, Debug)]
-pub struct Image {
-    /// Its name or URI, for messages.
-    pub name: String,
-    /// Columns.
-    pub width: u32,
-    /// Rows.
-    pub height: u32,
-    /// RGBA texels.
-    pub texels: ImageLevel,
-}
-
-/// The texels of an image, RGBA interleaved; colour of 8 or 16 bits is sRGB-encoded, opacity linear.
-#[derive(Clone, Debug)]
-pub enum ImageLevel {
-    /// 8 bits a channel.
-    Bits8(Vec<u8>),
-    /// 16 bits a channel.
-    Bits16(Vec<u16>),
-    /// Radiance: linear, any brightness, opacity 1.
-    Float(Vec<f32>),
-}
-
 /// A punctual light in world space (KHR_lights_punctual).
 #[derive(Clone, Debug)]
 pub struct Light {
     /// Its name, for messages.
     pub name: String,
-    /// Kind and its extent.
+    /// Its kind and angular extent.
     pub kind: LightKind,
     /// Linear colour times intensity: radiant intensity (W/sr) of point and spot, irradiance of directional.
     pub intensity: Vec3,
@@ -142,7 +135,7 @@ pub struct Light {
     pub position: DVec3,
     /// Unit direction in which it shines.
     pub direction: DVec3,
-    /// Beyond this distance it does not shine; infinite unless the file says so.
+    /// Its light ends at this distance; infinite unless the file gives a range.
     pub range: f64,
 }
 
@@ -167,7 +160,7 @@ pub enum LightKind {
 pub struct SceneCamera {
     /// Its name, or its node's, or `camera N`.
     pub name: String,
-    /// Its index among the file's cameras; none of one that was made up.
+    /// Its index among the file's cameras; `None` for a default camera.
     pub index: Option<u32>,
     /// Rigid pose, glTF axes; scale of the node hierarchy removed.
     pub camera_to_world: DMat4,
@@ -175,9 +168,9 @@ pub struct SceneCamera {
     pub yfov: f64,
     /// Width over height, if the file says so.
     pub aspect: Option<f64>,
-    /// A focus distance that suits the scene: to the first surface ahead, or the middle of the scene.
+    /// A suitable focus distance: to the first surface ahead, or the middle of the scene.
     pub focus_distance: f64,
-    /// What the file says of its lens.
+    /// The file's settings of its lens.
     pub lens: CameraLens,
 }
 
@@ -201,7 +194,7 @@ impl Scene {
         &self.materials[self.part_of(triangle).material as usize]
     }
 
-    /// Whether a triangle is seen from its front alone.
+    /// Whether a triangle's back face is hidden.
     pub fn culls_back_face(&self, triangle: u32) -> bool {
         self.material_of(triangle).culls_back_faces(self.back_faces)
     }
@@ -213,7 +206,7 @@ impl Scene {
         self.uv.get(set).or_else(|| self.further_uv.get(set - self.uv.len())).map_or(&[], Vec::as_slice)
     }
 
-    /// The texture coordinates of a triangle's corners; zero where the part has none.
+    /// The texture coordinates of a triangle's corners; zero if the part has none.
     pub fn corner_uv(&self, triangle: u32, set: u8) -> [Vec2; 3] {
         let uv = self.uv_set(set);
         self.triangles[triangle as usize].vertices.map(|v| uv.get(v as usize).copied().unwrap_or_default())
@@ -226,7 +219,7 @@ impl Scene {
         (b - a).cross(c - a)
     }
 
-    /// The corners of the box around all triangles.
+    /// The lower and upper corner of the bounding box of all triangles.
     pub fn bounds(&self) -> (DVec3, DVec3) {
         let corners = self.triangles.iter().flat_map(|t| t.vertices).map(|v| self.positions[v as usize]);
         corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)))

@@ -1,7 +1,8 @@
-//! What lies beyond all surfaces: it lights them, and it is seen where none is.
+//! The world beyond all surfaces: it lights them, and is the backdrop.
 
 mod cube_map;
 mod environment_map;
+mod scene_world;
 mod studio;
 
 pub(crate) use cube_map::CubeMap;
@@ -13,25 +14,25 @@ use std::sync::Arc;
 /// The world around a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct World {
-    /// What shines on the scene from infinity.
+    /// Light from infinity.
     pub environment: Environment,
-    /// Turns the environment about +Y, counter-clockwise seen from above, rad.
+    /// Rotation of the environment about +Y, counter-clockwise seen from above, rad.
     pub rotation: f64,
-    /// Scales its radiance, ≥ 0.
+    /// Factor of its radiance, ≥ 0.
     pub strength: f32,
-    /// What the camera sees where no surface is. It lights nothing.
+    /// What the camera sees where there is no surface. It lights nothing.
     pub backdrop: Backdrop,
-    /// How often light is scattered before it leaves toward the camera at last, beyond the first time: 0 is direct light only;
-    /// `None` as often as it matters.
+    /// Maximum number of scattering events before the last one, toward the camera: 0 is direct light only; `None`: as
+    /// many as matter.
     pub bounces: Option<u32>,
 }
 
 /// Radiance from infinity.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Environment {
-    /// The same from everywhere, linear RGB.
+    /// The same from all directions, linear RGB.
     Uniform(Vec3),
-    /// A picture of all directions.
+    /// An environment map.
     Map(Arc<EnvironmentMap>),
 }
 
@@ -44,11 +45,11 @@ pub enum Backdrop {
     Color(Vec3),
 }
 
-/// The grey that a scene without light stands before: the middle of a display's scale.
+/// The backdrop of a scene without light: the middle of a display's scale.
 const NEUTRAL_GREY: f32 = 0.21;
 
 impl World {
-    /// The same radiance everywhere, seen and lighting.
+    /// The same radiance everywhere, as light and as backdrop.
     pub fn uniform(radiance: Vec3) -> Self {
         Self {
             environment: Environment::Uniform(radiance),
@@ -59,7 +60,7 @@ impl World {
         }
     }
 
-    /// A soft neutral studio, before a neutral grey.
+    /// A soft neutral studio, with a neutral grey backdrop.
     pub fn studio() -> Self {
         Self {
             environment: Environment::Map(EnvironmentMap::studio()),
@@ -77,7 +78,7 @@ impl World {
         radiance * self.strength
     }
 
-    /// What the camera sees in a direction (unit).
+    /// The radiance that the camera sees in a direction (unit) without a surface.
     pub fn backdrop_radiance(&self, direction: DVec3) -> Vec3 {
         match self.backdrop {
             Backdrop::Environment => self.radiance(direction),
@@ -90,7 +91,7 @@ impl World {
         glam::DQuat::from_rotation_y(-self.rotation) * direction
     }
 
-    /// And back.
+    /// A direction of the environment's own axes in the world.
     pub fn world_from_environment(&self, direction: DVec3) -> DVec3 {
         glam::DQuat::from_rotation_y(self.rotation) * direction
     }

@@ -1,36 +1,37 @@
-//! Values at times.
+//! Keyframes.
 
+use numerics::smooth_fraction;
 use serde::{Deserialize, Serialize};
 
-/// How a value becomes the next.
+/// Interpolation from a value to the next.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Ease {
-    /// It stays until the next.
+    /// Constant until the next.
     Hold,
-    /// At an even pace.
+    /// Linear.
     Linear,
-    /// Slowly at both ends: 3u² − 2u³.
+    /// Smooth at both ends: 3u² − 2u³.
     #[default]
     Smooth,
 }
 
 impl Ease {
-    /// All of them, by name.
+    /// All of them, with their names.
     pub const ALL: [(&'static str, Ease); 3] =
         [("hold", Ease::Hold), ("linear", Ease::Linear), ("smooth", Ease::Smooth)];
 
-    /// The one of this name.
+    /// The interpolation of this name.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.iter().find(|(candidate, _)| *candidate == name).map(|(_, ease)| *ease)
     }
 
-    /// How far the way is gone, in [0, 1], after a share u in [0, 1] of the time.
+    /// Interpolation weight of the next value, in [0, 1], at the fraction u in [0, 1] of the time between.
     pub fn share(self, u: f64) -> f64 {
         match self {
             Self::Hold => 0.0,
             Self::Linear => u,
-            Self::Smooth => u * u * (3.0 - 2.0 * u),
+            Self::Smooth => smooth_fraction(u),
         }
     }
 }
@@ -42,12 +43,12 @@ pub struct Key<T> {
     pub seconds: f64,
     /// The value.
     pub value: T,
-    /// How it becomes the next.
+    /// Interpolation to the next key.
     #[serde(default)]
     pub ease: Ease,
 }
 
-/// Values at times, the times ascending. Before the first and after the last it stands still.
+/// Keyframes, in ascending order of time. Before the first and after the last the value is constant.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Keys<T>(Vec<Key<T>>);
@@ -58,44 +59,45 @@ impl<T> Default for Keys<T> {
     }
 }
 
-/// Two neighbouring values, and how far the way from one to the other is gone, in [0, 1].
+/// Two neighbouring values and the interpolation weight between them, in [0, 1].
 #[derive(Debug, PartialEq)]
 pub struct KeySpan<'a, T> {
     /// The value before.
     pub from: &'a T,
     /// The value after.
     pub to: &'a T,
-    /// 0 at the one, 1 at the other.
+    /// 0 at `from`, 1 at `to`.
     pub share: f64,
 }
 
 impl KeySpan<'_, f64> {
-    /// The number between, never beyond either.
+    /// The interpolated number, never beyond either end.
     pub fn interpolate(&self) -> f64 {
         mix(*self.from, *self.to, self.share)
     }
 }
 
-/// The number a share of the way from a to b, never beyond either.
+/// The number at `share` of the way from a to b, never beyond either.
 pub(crate) fn mix(a: f64, b: f64, share: f64) -> f64 {
     (a + (b - a) * share).clamp(a.min(b), a.max(b))
 }
 
 impl<T> Keys<T> {
-    /// Keys that one thing may have.
+    /// Maximum number of keys of one property.
     pub const MAX_KEYS: usize = 4096;
 
-    /// The keys, by time.
+    /// The keys, in order of time.
     pub fn keys(&self) -> &[Key<T>] {
         &self.0
     }
 
-    /// Whether there are none: then nothing moves.
+    /// Whether there are none, so that nothing is animated.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// Sets a key; one at the same time is replaced. False, and nothing is done, where there are too many already.
+    /// Inserts a key; one at the same time is replaced. Returns false, and changes nothing, if there are too many
+    /// already.
     #[must_use]
     pub fn insert(&mut self, key: Key<T>) -> bool {
         let at = self.0.partition_point(|other| other.seconds < key.seconds);
@@ -109,14 +111,14 @@ impl<T> Keys<T> {
         true
     }
 
-    /// Takes the key at a time away. Whether there was one.
+    /// Removes the key at a time. Returns whether there was one.
     pub fn remove(&mut self, seconds: f64) -> bool {
         let count = self.0.len();
         self.0.retain(|key| key.seconds != seconds);
         self.0.len() < count
     }
 
-    /// The values around a time; `None` without keys.
+    /// The two values around a time; `None` without keys.
     pub fn span_at(&self, seconds: f64) -> Option<KeySpan<'_, T>> {
         let after = self.0.partition_point(|key| key.seconds <= seconds);
         let before = after.checked_sub(1).and_then(|before| self.0.get(before));
@@ -132,7 +134,7 @@ impl<T> Keys<T> {
         })
     }
 
-    /// Whether times ascend and are finite, and all values are usable: a file may hold others.
+    /// Whether times ascend and are finite and all values are usable; a file may contain others.
     pub fn is_valid(&self, is_usable: impl Fn(&T) -> bool) -> bool {
         self.0.len() <= Self::MAX_KEYS
             && self.0.iter().all(|key| key.seconds.is_finite() && is_usable(&key.value))

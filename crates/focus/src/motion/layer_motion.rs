@@ -1,24 +1,24 @@
-//! A layer in motion.
+//! A layer's weight over time.
 
 use super::keys::{KeySpan, Keys, mix};
 use crate::{Canvas, Curve, FocusMap};
 use lens::Camera;
 use serde::{Deserialize, Serialize};
 
-/// How much a layer counts over time.
+/// A layer's weight over time.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct LayerMotion {
-    /// Its opacity, in [0, 1], instead of the one that it has.
+    /// Its opacity, in [0, 1], in place of the layer's own.
     #[serde(default, skip_serializing_if = "Keys::is_empty")]
     pub opacity: Keys<f64>,
-    /// How much it counts at each depth, over the logarithm of depth in the shot camera (in scene units): multiplied into the mask that
-    /// is painted. Values beyond [0, 1] count as the nearer end.
+    /// Its weight over the logarithm of depth in the shot camera (in scene units): multiplied into the painted mask.
+    /// Values outside [0, 1] are clamped.
     #[serde(default, skip_serializing_if = "Keys::is_empty")]
     pub mask: Keys<Curve>,
 }
 
 impl LayerMotion {
-    /// Whether nothing of it moves.
+    /// Whether nothing is animated.
     pub fn is_empty(&self) -> bool {
         self.opacity.is_empty() && self.mask.is_empty()
     }
@@ -28,13 +28,14 @@ impl LayerMotion {
         self.opacity.is_valid(|opacity| (0.0..=1.0).contains(opacity)) && self.mask.is_valid(Curve::is_valid)
     }
 
-    /// All times of keys.
+    /// The times of all keys.
     pub fn times(&self) -> impl Iterator<Item = f64> {
         let opacity = self.opacity.keys().iter().map(|key| key.seconds);
         opacity.chain(self.mask.keys().iter().map(|key| key.seconds))
     }
 
-    /// Multiplies the mask of a time into that of a map, for what lies where `canvas` says, as `camera` sees it.
+    /// Multiplies the depth mask at a time into that of a map, for the surface positions of `canvas` as seen by
+    /// `camera`.
     pub(crate) fn apply_mask(&self, seconds: f64, map: &mut FocusMap, canvas: &Canvas, camera: &Camera) {
         let Some(span) = self.mask.span_at(seconds) else { return };
         let [width, height] = map.size();
@@ -52,7 +53,7 @@ impl LayerMotion {
     }
 }
 
-/// How much counts at a depth; what lies behind the camera is as near as can be.
+/// The weight at a depth; depths behind the camera count as the nearest.
 fn share_at(span: &KeySpan<'_, Curve>, depth: f64) -> f32 {
     let at = depth.max(f64::MIN_POSITIVE).ln();
     mix(span.from.evaluate(at), span.to.evaluate(at), span.share).clamp(0.0, 1.0) as f32

@@ -1,4 +1,4 @@
-//! The lens in motion.
+//! Keyframes of the lens.
 
 use super::keys::{Keys, mix};
 use glam::{DVec2, DVec3};
@@ -13,7 +13,7 @@ pub enum FocusTarget {
     /// An axial distance > 0; may be infinite.
     #[serde(with = "distance")]
     Distance(f64),
-    /// A point of the surface at rest, wherever it is now: its depth.
+    /// A point of the surface, named on the scene at rest and followed as it moves: its depth.
     #[serde(with = "surface_point")]
     Point(SurfacePoint),
 }
@@ -29,7 +29,8 @@ impl FocusTarget {
         }
     }
 
-    /// The reciprocal of its depth, 1/length; that of the camera's own focus distance where it cannot be seen.
+    /// The reciprocal of its depth, 1/length; that of the camera's own focus distance if the point is not in front of
+    /// the camera.
     fn inverse_depth(&self, camera: &Camera, position: &dyn Fn(SurfacePoint) -> Option<DVec3>) -> f64 {
         let depth = match self {
             Self::Distance(distance) => Some(*distance),
@@ -39,20 +40,20 @@ impl FocusTarget {
     }
 }
 
-/// The lens in motion: what it is focused on, and its f-number.
+/// Keyframes of the lens: what it is focused on, and its f-number.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct LensMotion {
-    /// What it is focused on. Between two keys the reciprocal of the distance runs from that of the one to that of the other, so
-    /// that a rack from infinity is no special case.
+    /// What it is focused on. Between two keys the reciprocal of the distance is interpolated, so that a rack from
+    /// infinity is no special case.
     #[serde(default, skip_serializing_if = "Keys::is_empty")]
     pub focus: Keys<FocusTarget>,
-    /// f/(2R), > 0. Between two keys its logarithm runs, as stops are counted.
+    /// f/(2R), > 0. Between two keys its logarithm is interpolated, as stops are counted.
     #[serde(default, skip_serializing_if = "Keys::is_empty")]
     pub f_number: Keys<f64>,
 }
 
 impl LensMotion {
-    /// Whether nothing of it moves.
+    /// Whether nothing is animated.
     pub fn is_empty(&self) -> bool {
         self.focus.is_empty() && self.f_number.is_empty()
     }
@@ -68,14 +69,14 @@ impl LensMotion {
         size_of::<Self>() + size_of_val(self.focus.keys()) + size_of_val(self.f_number.keys())
     }
 
-    /// All times of keys.
+    /// The times of all keys.
     pub fn times(&self) -> impl Iterator<Item = f64> {
         let focus = self.focus.keys().iter().map(|key| key.seconds);
         focus.chain(self.f_number.keys().iter().map(|key| key.seconds))
     }
 
-    /// `camera` with the lens as it is at a time. `position` tells where a point of the surface is then; nothing where that is
-    /// not there.
+    /// `camera` with the lens as it is at a time. `position` returns the position of a surface point at that time;
+    /// `None` if the point does not exist.
     pub fn camera_at(
         &self,
         seconds: f64,
@@ -86,7 +87,7 @@ impl LensMotion {
         if let Some(span) = self.focus.span_at(seconds) {
             let [from, to] = [span.from, span.to].map(|target| target.inverse_depth(camera, position));
             moved.focus_distance = match span.from {
-                // What stands still is exactly what it was set to.
+                // A constant distance is returned exactly as it was set.
                 FocusTarget::Distance(distance) if span.from == span.to => *distance,
                 _ => 1.0 / mix(from, to, span.share),
             };
@@ -97,10 +98,10 @@ impl LensMotion {
         moved
     }
 
-    /// The f-number at a time, if it moves.
+    /// The f-number at a time, if it is animated.
     pub fn f_number_at(&self, seconds: f64) -> Option<f64> {
         let span = self.f_number.span_at(seconds)?;
-        // Equal ones stay exactly what they are.
+        // Equal values are returned exactly.
         if span.from == span.to {
             return Some(*span.from);
         }
@@ -129,12 +130,12 @@ mod distance {
         match Form::deserialize(from)? {
             Form::Number(distance) => Ok(distance),
             Form::Word(word) if word == "inf" => Ok(f64::INFINITY),
-            Form::Word(word) => Err(D::Error::custom(format!("{word:?} is no distance"))),
+            Form::Word(word) => Err(D::Error::custom(format!("{word:?} is not a distance"))),
         }
     }
 }
 
-/// A point of a surface as its triangle and two weights.
+/// A surface point as its triangle and two barycentric weights.
 mod surface_point {
     use super::{DVec2, SurfacePoint};
     use serde::{Deserialize, Deserializer, Serialize, Serializer};

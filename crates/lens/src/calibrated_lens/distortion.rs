@@ -1,4 +1,4 @@
-//! How far a real lens is off its ideal projection: radial, tangential and thin-prism terms.
+//! Deviation of a real lens from its ideal projection: radial, tangential and thin-prism terms.
 
 use glam::{DMat2, DVec2};
 
@@ -34,12 +34,12 @@ pub struct Distortion {
     pub tangential_growth: [f64; 2],
     /// s₁ to s₄.
     pub prism: [f64; 4],
-    /// Whether the other terms act on what the radial ones have made.
+    /// Whether the other terms are applied to the result of the radial ones.
     pub radial_first: bool,
 }
 
 impl Distortion {
-    /// Radial terms k₁, k₂ … alone.
+    /// Only radial terms k₁, k₂ …
     pub fn radial(terms: &[f64]) -> Self {
         let mut radial = [0.0; 6];
         radial.iter_mut().zip(terms).for_each(|(to, from)| *to = *from);
@@ -53,17 +53,17 @@ impl Distortion {
         all.into_iter().flatten().all(|number| number.is_finite())
     }
 
-    /// Whether it changes nothing.
+    /// Whether it is the identity.
     pub fn is_none(&self) -> bool {
         self.is_radial() && self.radial == [0.0; 6] && self.radial_denominator == [0.0; 3]
     }
 
-    /// Whether it is the same all around.
+    /// Whether it is rotationally symmetric.
     pub fn is_radial(&self) -> bool {
         self.tangential == [0.0; 2] && self.prism == [0.0; 4]
     }
 
-    /// Where an ideal point comes to lie.
+    /// The distorted position of an ideal point.
     pub fn distorted(&self, q: DVec2) -> DVec2 {
         let radial = q * self.radial_factor(q.length_squared())[0];
         if self.is_radial() {

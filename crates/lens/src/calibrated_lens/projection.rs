@@ -1,4 +1,4 @@
-//! How a lens without flaws maps directions to the plane of its picture.
+//! Ideal lens projections from directions to the plane of the picture.
 
 use glam::{DVec2, DVec3};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -38,7 +38,7 @@ pub enum Projection {
 }
 
 impl Projection {
-    /// Where a direction of any length comes to lie; `None` where the projection has no place for it.
+    /// The point of a direction of any length; `None` outside the projection's domain.
     pub fn plane_from_direction(&self, direction: DVec3) -> Option<DVec2> {
         let DVec3 { x, y, z } = direction;
         let across = DVec2::new(x, -y);
@@ -79,8 +79,8 @@ impl Projection {
         point.is_finite().then_some(point)
     }
 
-    /// The unit direction that comes to lie at a point. Inverse of [`Self::plane_from_direction`]; `None` for a point that no direction
-    /// comes to lie at.
+    /// The unit direction of a point. Inverse of [`Self::plane_from_direction`]; `None` for a point that no direction
+    /// is projected to.
     pub fn direction_from_plane(&self, point: DVec2) -> Option<DVec3> {
         let r2 = point.length_squared();
         let r = r2.sqrt();

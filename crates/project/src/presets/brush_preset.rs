@@ -1,15 +1,15 @@
-//! What of a brush is no matter of the scene that it was made in.
+//! Brush presets: the settings of a brush that do not depend on the scene.
 
 use crate::ProjectError;
 use focus::Brush;
 use serde_json::{Map, Value};
 use std::path::Path;
 
-/// Fields that belong to the scene, or to what is being painted in it: size, where cloning takes from, symmetry.
+/// Fields that depend on the scene or on what is being painted: size, source of cloning, symmetry.
 const SCENE_FIELDS: [&str; 7] =
     ["radius", "clone_offset", "mirror", "radial", "mirror_center", "mirror_axes", "mirror_by_object"];
 
-/// `current` with all that a preset says of a brush.
+/// `current` with all settings of the preset.
 pub(super) fn apply_to_brush(preset: &Brush, current: &Brush) -> Brush {
     Brush {
         radius: current.radius,
@@ -23,7 +23,7 @@ pub(super) fn apply_to_brush(preset: &Brush, current: &Brush) -> Brush {
     }
 }
 
-/// Reads the fields of `"brush"` of a file; those that are missing are the default brush's.
+/// Reads the fields of `"brush"` of a file; missing ones are those of the default brush.
 pub(super) fn read(file: &Path, value: &Value) -> Result<Brush, ProjectError> {
     let error = |field: String, problem: String, cure: &str| {
         Err(ProjectError::Field { file: file.to_owned(), field, problem, cure: cure.into() })
@@ -36,7 +36,7 @@ pub(super) fn read(file: &Path, value: &Value) -> Result<Brush, ProjectError> {
         );
     }
     let wrong =
-        |problem: String| error("brush".into(), format!("cannot be used: {problem}"), "mend it there");
+        |problem: String| error("brush".into(), format!("cannot be used: {problem}"), "correct it there");
     match serde_json::from_value::<Brush>(value.clone()) {
         Err(problem) => wrong(problem.to_string()),
         Ok(brush) => match brush.problem() {

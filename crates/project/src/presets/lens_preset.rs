@@ -1,12 +1,12 @@
-//! A lens as a photographer names it.
+//! A lens in a photographer's terms.
 
 use crate::ProjectError;
 use crate::json::Fields;
 use lens::Camera;
 use serde_json::{Value, json};
 
-/// Focal length, f-number and the sensor before which the lens stands. Where the camera stands, what it focuses on, the size
-/// of the picture and the aperture's shape are no matter of it.
+/// Focal length, f-number and sensor size. The camera's pose, its focus distance, the picture's size and the
+/// aperture's shape are not part of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LensPreset {
     /// f of the thin lens, scene units (glTF: metres), > 0.
@@ -27,8 +27,8 @@ impl LensPreset {
         }
     }
 
-    /// The camera with this lens, focused where it was: 1/d = 1/f − 1/s decides how far the sensor is, and that the angle of
-    /// view. `None` where the camera focuses nearer than the focal length, which a lens cannot.
+    /// The camera with this lens, focused at the same distance: 1/d = 1/f − 1/s gives the image distance and thus the
+    /// angle of view. `None` if the camera focuses nearer than the focal length, which no lens can.
     pub fn apply_to(&self, camera: &Camera) -> Option<Camera> {
         let inverse_image_distance = 1.0 / self.focal_length - 1.0 / camera.focus_distance;
         (inverse_image_distance > 0.0).then(|| Camera {

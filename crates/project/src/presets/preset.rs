@@ -7,25 +7,25 @@
 use super::brush_preset;
 use super::lens_preset::LensPreset;
 use crate::ProjectError;
+use crate::camera::mask_rows::mask_to_json;
 use crate::camera::{aperture_from_json, aperture_to_json};
 use crate::disk::{read_text, write_verified};
 use crate::json::{Field, Json};
-use crate::mask_rows::mask_to_json;
 use focus::Brush;
 use lens::{Aperture, ApertureShape, Camera};
 use serde_json::{Value, json};
 use std::path::Path;
 
-/// What the file calls its format.
+/// The file's name of its format.
 const FORMAT: &str = "focus-brush preset";
 
 /// The newest version.
 const VERSION: u32 = 1;
 
-/// The longest name, characters.
+/// Maximum length of a name, characters.
 const MAX_NAME_CHARS: usize = 80;
 
-/// What a preset is of.
+/// The kind of a preset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum PresetKind {
     /// How a brush paints.
@@ -40,7 +40,7 @@ impl PresetKind {
     /// All, in the order in which they are listed.
     pub const ALL: [Self; 3] = [Self::Brush, Self::Lens, Self::Bokeh];
 
-    /// Its word in files and folders.
+    /// Its name in files and folders.
     pub fn name(self) -> &'static str {
         match self {
             Self::Brush => "brush",
@@ -53,16 +53,16 @@ impl PresetKind {
 /// A preset.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Preset {
-    /// What it is called.
+    /// Its name.
     pub name: String,
-    /// What it holds.
+    /// Its settings.
     pub content: PresetContent,
 }
 
-/// What a preset holds.
+/// The settings of a preset.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PresetContent {
-    /// A brush; what of it belongs to a scene (size, symmetry) is not meant.
+    /// A brush; its scene-dependent fields (size, symmetry) are ignored.
     Brush(Box<Brush>),
     /// A lens.
     Lens(LensPreset),
@@ -71,7 +71,10 @@ pub enum PresetContent {
 }
 
 impl Preset {
-    /// A preset of this name. An empty name, or one too long, is an error in words.
+    /// A preset of this name.
+    ///
+    /// # Errors
+    /// A sentence for the user, if the name is empty or too long.
     pub fn new(name: &str, content: PresetContent) -> Result<Self, &'static str> {
         let name = name.trim();
         if name.is_empty() {
@@ -83,7 +86,7 @@ impl Preset {
         Ok(Self { name: name.to_string(), content })
     }
 
-    /// What it is of.
+    /// Its kind.
     pub fn kind(&self) -> PresetKind {
         match self.content {
             PresetContent::Brush(_) => PresetKind::Brush,
@@ -92,7 +95,7 @@ impl Preset {
         }
     }
 
-    /// The brush with this preset, where it is one of brushes: size and symmetry stay.
+    /// The brush with this preset applied, or `None` if it is not a brush preset: size and symmetry stay.
     pub fn apply_to_brush(&self, current: &Brush) -> Option<Brush> {
         match &self.content {
             PresetContent::Brush(brush) => Some(brush_preset::apply_to_brush(brush, current)),
@@ -100,14 +103,15 @@ impl Preset {
         }
     }
 
-    /// The camera with this preset, where it is one of lenses or bokeh. An error in words where the camera cannot have it.
+    /// The camera with this preset applied, or `None` if it is a brush preset. An error, as a sentence for the user,
+    /// if the camera cannot have it.
     pub fn apply_to_camera(&self, current: &Camera) -> Option<Result<Camera, String>> {
         match &self.content {
             PresetContent::Brush(_) => None,
             PresetContent::Lens(lens) => Some(lens.apply_to(current).ok_or_else(|| {
                 let distance = current.focus_distance;
                 format!(
-                    "{}: no such lens focuses as near as {distance} (focus farther away first)",
+                    "{}: this lens cannot focus as near as {distance} (focus farther away first)",
                     self.name
                 )
             })),
@@ -117,12 +121,12 @@ impl Preset {
         }
     }
 
-    /// Whether the brush is as this preset says.
+    /// Whether the brush has this preset's settings.
     pub fn matches_brush(&self, brush: &Brush) -> bool {
         self.apply_to_brush(brush).is_some_and(|own| own == *brush)
     }
 
-    /// Whether the camera's lens, or its aperture's shape, is as this preset says: to a millionth.
+    /// Whether the camera's lens, or its aperture's shape, has this preset's settings, to a millionth.
     pub fn matches_camera(&self, camera: &Camera) -> bool {
         let near = |a: f64, b: f64| a == b || (a / b - 1.0).abs() < 1e-6;
         match &self.content {
@@ -137,12 +141,15 @@ impl Preset {
         }
     }
 
-    /// Reads a preset file. An aperture mask that it names is looked up beside it.
+    /// Reads a preset file. The path of an aperture mask is relative to it.
+    ///
+    /// # Errors
+    /// The file cannot be read, is not a preset, or has invalid settings.
     pub fn read(file: &Path) -> Result<Self, ProjectError> {
         Self::parse(file, &read_text(file)?)
     }
 
-    /// The preset of the text of `file`.
+    /// Parses the text of `file`.
     pub(super) fn parse(file: &Path, text: &str) -> Result<Self, ProjectError> {
         let json = Json::parse(file, text)?;
         let fields = Field::root(file, &json).object()?;
@@ -168,7 +175,7 @@ impl Preset {
         let present: Vec<_> = kinds.into_iter().filter(|name| fields.get(name).is_some()).collect();
         let [kind] = present[..] else {
             return Err(file_error(
-                "holds not one of brush, lens and bokeh",
+                "must have exactly one of brush, lens and bokeh",
                 "give one, and only one, of them",
             ));
         };
@@ -177,7 +184,7 @@ impl Preset {
         };
         let content = match kind {
             "brush" => {
-                // Parsed already, as JSON that knows its fields.
+                // Parsed a second time, by serde, which checks the fields.
                 let value: Value = serde_json::from_str(text).unwrap_or_default();
                 let brush = brush_preset::read(file, &value["brush"])?;
                 PresetContent::Brush(Box::new(brush))
@@ -218,7 +225,10 @@ impl Preset {
         format!("{json:#}\n")
     }
 
-    /// Writes a preset file; a mask is written within it.
+    /// Writes a preset file; a mask is written inline.
+    ///
+    /// # Errors
+    /// The file cannot be written.
     pub fn write(&self, file: &Path) -> Result<(), ProjectError> {
         let text = self.to_text();
         write_verified(file, text.as_bytes(), |back| {

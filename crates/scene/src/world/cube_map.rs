@@ -1,9 +1,9 @@
-//! A picture of all directions on the faces of a cube, and the same laid out equirectangularly.
+//! An environment on the faces of a cube, and its conversion to an equirectangular map.
 
 use super::EnvironmentMap;
 use glam::{DQuat, DVec2, DVec3, Vec3};
 
-/// Radiance from every direction, on the faces of a cube seen from its middle.
+/// Radiance from every direction, on the faces of a cube seen from its centre.
 ///
 /// | face | looks toward | columns go toward | rows go toward |
 /// | --- | --- | --- | --- |
@@ -11,7 +11,7 @@ use glam::{DQuat, DVec2, DVec3, Vec3};
 /// | 2, 3 | +Y, −Y | −X | +Z, −Z |
 /// | 4, 5 | +Z, −Z | −X, +X | −Y |
 ///
-/// Within a face radiance is bilinear between texel centres; beyond the outermost ones it is theirs.
+/// Within a face radiance is bilinear between texel centres; beyond the outermost ones it is constant.
 pub(crate) struct CubeMap {
     /// Columns and rows of a face.
     pub side: u32,
@@ -19,7 +19,7 @@ pub(crate) struct CubeMap {
     pub faces: [Vec<[f32; 3]>; 6],
 }
 
-/// Of each face: where it looks, where its columns and where its rows go.
+/// For each face: viewing direction, direction of its columns, direction of its rows.
 const AXES: [[DVec3; 3]; 6] = [
     [DVec3::X, DVec3::Z, DVec3::NEG_Y],
     [DVec3::NEG_X, DVec3::NEG_Z, DVec3::NEG_Y],
@@ -29,25 +29,26 @@ const AXES: [[DVec3; 3]; 6] = [
     [DVec3::NEG_Z, DVec3::X, DVec3::NEG_Y],
 ];
 
-/// A laid out picture is as wide as four faces, but no narrower than this, so that edges between small faces stay sharp.
+/// An equirectangular map is as wide as four faces, but no narrower than this, so that edges between small faces stay
+/// sharp.
 const MIN_WIDTH: u32 = 256;
 /// And no wider than this: 4096 × 2048 texels are 100 MB.
 const MAX_WIDTH: u32 = 4096;
-/// Places a side of each of its texels that are looked up at the least.
+/// Minimum number of samples per side of each of its texels.
 const MIN_SAMPLES_PER_SIDE: u32 = 2;
 
 impl CubeMap {
-    /// Columns of the equirectangular picture of a cube of this side.
+    /// Width of the equirectangular map of a cube of this side.
     fn equirectangular_width(side: u32) -> u32 {
         side.saturating_mul(4).clamp(MIN_WIDTH, MAX_WIDTH)
     }
 
-    /// Places that are looked up along a side of a texel of that picture, so that every texel of the cube counts.
+    /// Samples per side of a texel of that map, such that every texel of the cube counts.
     fn samples_per_side(side: u32) -> u32 {
         MIN_SAMPLES_PER_SIDE * side.saturating_mul(4).div_ceil(Self::equirectangular_width(side)).max(1)
     }
 
-    /// Texels of the equirectangular picture of a cube of this side, and how many lookups it takes.
+    /// Number of texels of the equirectangular map of a cube of this side, and number of lookups to compute it.
     pub fn conversion_cost(side: u32) -> [u64; 2] {
         let width = u64::from(Self::equirectangular_width(side));
         let texels = width * width / 2;
@@ -78,7 +79,7 @@ impl CubeMap {
         row(y).lerp(row(next(y)), share.y)
     }
 
-    /// Laid out equirectangularly, turned by `rotation` (unit): what lay in direction d lies in `rotation` · d.
+    /// The equirectangular map, rotated by `rotation` (unit): the radiance of direction d moves to `rotation` · d.
     pub fn to_equirectangular(&self, name: String, rotation: DQuat) -> EnvironmentMap {
         let width = Self::equirectangular_width(self.side);
         let mut map = EnvironmentMap { name, width, height: width / 2, texels: Vec::new() };

@@ -1,16 +1,16 @@
-//! A picture of all directions, equirectangular.
+//! An equirectangular environment map.
 
 use glam::{DVec2, DVec3, Vec3};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Radiance from every direction, as Blender and three.js read equirectangular pictures: the middle column lies toward +X, a
-/// quarter to its left −Z, a quarter to its right +Z; the top row is +Y.
+/// Radiance from every direction, with the convention of Blender and three.js for equirectangular pictures: the
+/// middle column is toward +X, a quarter to its left −Z, a quarter to its right +Z; the top row is +Y.
 ///
-/// Between texel centres radiance is bilinear in longitude and latitude; above the first row's centre and below the last one's
-/// it is theirs.
+/// Between texel centres radiance is bilinear in longitude and latitude; above the first row's centre and below the
+/// last one's it is constant.
 #[derive(Clone, PartialEq)]
 pub struct EnvironmentMap {
-    /// Where it is from, for messages.
+    /// Its origin, for messages.
     pub name: String,
     /// Columns.
     pub width: u32,
@@ -28,7 +28,7 @@ impl std::fmt::Debug for EnvironmentMap {
 }
 
 impl EnvironmentMap {
-    /// A texel's radiance; columns go round, rows end.
+    /// A texel's radiance; columns wrap around, rows are clamped.
     #[inline]
     pub fn texel(&self, column: i64, row: i64) -> Vec3 {
         let x = column.rem_euclid(i64::from(self.width)) as usize;
@@ -36,7 +36,7 @@ impl EnvironmentMap {
         Vec3::from_array(self.texels[y * self.width as usize + x])
     }
 
-    /// Where a direction (unit) lies: texels from the upper left corner.
+    /// The position of a (unit) direction: texels from the upper left corner.
     pub fn texel_position(&self, direction: DVec3) -> DVec2 {
         let u = direction.z.atan2(direction.x) / TAU + 0.5;
         let v = 0.5 - direction.y.clamp(-1.0, 1.0).asin() / PI;

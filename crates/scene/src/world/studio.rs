@@ -1,21 +1,22 @@
-//! A photographer's studio, made by code: soft boxes in a grey room.
+//! A procedural photographer's studio: soft boxes in a grey room.
 
 use super::EnvironmentMap;
 use glam::{DVec3, Vec3};
+use numerics::smooth_fraction;
 use std::sync::{Arc, LazyLock};
 
-/// A soft box: light through a frame, whose edges fade.
+/// A soft box: a rectangular light with fading edges.
 struct SoftBox {
-    /// Toward its middle; need not be unit.
+    /// Direction to its middle; need not be unit.
     toward: DVec3,
     /// Half width and half height over the distance.
     half: [f64; 2],
-    /// In its middle.
+    /// Radiance in its middle.
     radiance: f32,
 }
 
-/// Key light from the upper left front, fill from the right, a rim from behind, and a ceiling. A white wall that faces the
-/// camera has a radiance near 1.
+/// Key light from the upper left front, fill from the right, a rim light from behind, and a ceiling. A white wall
+/// facing the camera has a radiance near 1.
 const SOFT_BOXES: [SoftBox; 4] = [
     SoftBox { toward: DVec3::new(-0.75, 0.75, 0.9), half: [0.5, 0.65], radiance: 3.9 },
     SoftBox { toward: DVec3::new(1.0, 0.25, 0.6), half: [0.35, 0.7], radiance: 1.4 },
@@ -27,7 +28,7 @@ const WIDTH: u32 = 512;
 const HEIGHT: u32 = 256;
 
 impl EnvironmentMap {
-    /// A soft neutral studio. Its front is +Z, as that of glTF's models.
+    /// A soft neutral studio. Its front is +Z, as for glTF's models.
     pub fn studio() -> Arc<Self> {
         static STUDIO: LazyLock<Arc<EnvironmentMap>> = LazyLock::new(|| Arc::new(render_studio()));
         STUDIO.clone()
@@ -43,7 +44,7 @@ fn render_studio() -> EnvironmentMap {
 }
 
 fn studio_radiance(direction: DVec3) -> Vec3 {
-    // Walls that are lighter above than below.
+    // Walls, lighter above than below.
     let height = (direction.y as f32 + 1.0) / 2.0;
     let room = 0.16 + 0.3 * height * height;
     let boxes: f32 = SOFT_BOXES.iter().map(|soft_box| soft_box.radiance(direction)).sum();
@@ -62,12 +63,9 @@ impl SoftBox {
             return 0.0;
         }
         let across = [direction.dot(right) / ahead, direction.dot(up) / ahead];
-        /// Of the half width.
+        /// Width of the fading edge as a fraction of the half width.
         const FADE: f64 = 0.35;
-        let inside = |at: f64, half: f64| {
-            let x = ((1.0 - at.abs() / half) / FADE).clamp(0.0, 1.0);
-            x * x * (3.0 - 2.0 * x)
-        };
+        let inside = |at: f64, half: f64| smooth_fraction(((1.0 - at.abs() / half) / FADE).clamp(0.0, 1.0));
         let share = inside(across[0], self.half[0]) * inside(across[1], self.half[1]);
         self.radiance * share as f32
     }

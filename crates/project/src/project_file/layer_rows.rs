@@ -1,0 +1,61 @@
+//! The layers of focus in the manifest of a project.
+
+use focus::{Adjustment, BlendMode, DepthCurve, FocalPlane, LayerMotion};
+use serde::{Deserialize, Serialize};
+
+/// Whether a number can be omitted.
+pub(crate) fn is_zero(number: &f64) -> bool {
+    *number == 0.0
+}
+
+/// The layers' part of the manifest.
+#[derive(Debug, Serialize, Deserialize)]
+pub(crate) struct LayerEntries {
+    /// Index of the layer that is painted on, counted from the bottom.
+    pub active: usize,
+    /// Bottom to top.
+    pub layers: Vec<LayerEntry>,
+}
+
+/// A layer.
+#[derive(Debug, Serialize, Deserialize)]
+pub(crate) struct LayerEntry {
+    pub name: String,
+    pub visible: bool,
+    pub opacity: f64,
+    pub blend: BlendMode,
+    /// The background's t, anchor and mask.
+    pub background: [f64; 3],
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub curve: Option<DepthCurve>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub plane: Option<FocalPlane>,
+    /// Container entry of the values: t and anchor of every texel.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub values: Option<String>,
+    /// The background's gloss, if not 0.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub background_gloss: f64,
+    /// Container entry of the gloss: one number per texel; absent if all are 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gloss: Option<String>,
+    /// Container entry of the mask: one number per texel.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mask: Option<String>,
+    /// Its weight over time, if animated.
+    #[serde(default, skip_serializing_if = "LayerMotion::is_empty")]
+    pub motion: LayerMotion,
+}
+
+impl LayerEntry {
+    /// Whether gloss obeys the paint anywhere.
+    pub fn has_gloss(&self) -> bool {
+        self.background_gloss != 0.0 || self.gloss.is_some()
+    }
+
+    /// The rule of an adjustment layer.
+    pub fn adjustment(&self) -> Option<Adjustment> {
+        let curve = self.curve.clone().map(Adjustment::Curve);
+        curve.or_else(|| self.plane.clone().map(Adjustment::Plane))
+    }
+}

@@ -1,0 +1,73 @@
+//! Resource limits of loading a file: memory, triangles, time.
+
+use crate::LoadOptions;
+use crate::error::Fault;
+use std::cell::Cell;
+
+/// What loading may still use.
+pub(crate) struct Budget {
+    memory: Cell<u64>,
+    triangles: Cell<u64>,
+    work: Cell<u64>,
+    checks: Cell<u64>,
+    pub options: LoadOptions,
+}
+
+/// Total number of values that may be read or computed: some seconds' worth.
+const MAX_WORK: u64 = 1 << 30;
+
+/// Total number of values that may be read only to lint the file: some tenths of a second's worth.
+const MAX_CHECKS: u64 = 1 << 27;
+
+impl Budget {
+    pub fn new(options: &LoadOptions) -> Self {
+        Self {
+            memory: Cell::new(options.max_memory),
+            triangles: Cell::new(options.max_triangles),
+            work: Cell::new(MAX_WORK),
+            checks: Cell::new(MAX_CHECKS),
+            options: options.clone(),
+        }
+    }
+
+    /// Takes `bytes` for `what`.
+    pub fn take_memory(&self, bytes: u64, what: &str) -> Result<(), Fault> {
+        let limit = self.options.max_memory >> 20;
+        take(&self.memory, bytes, || {
+            format!("{what} takes {} MiB of a limit of {limit} MiB in all", bytes >> 20)
+        })
+    }
+
+    /// Remaining bytes.
+    pub fn memory_left(&self) -> u64 {
+        self.memory.get()
+    }
+
+    /// Returns `bytes`.
+    pub fn release_memory(&self, bytes: u64) {
+        self.memory.set(self.memory.get() + bytes);
+    }
+
+    /// Takes `count` triangles.
+    pub fn take_triangles(&self, count: u64) -> Result<(), Fault> {
+        take(&self.triangles, count, || format!("it has more than {} triangles", self.options.max_triangles))
+    }
+
+    /// Takes the time for `count` values, on behalf of `place`.
+    pub fn take_work(&self, count: u64, place: &str) -> Result<(), Fault> {
+        take(&self.work, count, || format!("{place}: reading the scene takes too many steps"))
+    }
+
+    /// Takes the time to lint `count` values; false if it is used up and they must be skipped.
+    pub fn try_take_checks(&self, count: usize) -> bool {
+        let left = self.checks.get().checked_sub(count as u64);
+        self.checks.set(left.unwrap_or(self.checks.get()));
+        left.is_some()
+    }
+}
+
+fn take(cell: &Cell<u64>, amount: u64, what: impl Fn() -> String) -> Result<(), Fault> {
+    let left = cell.get().checked_sub(amount).ok_or_else(|| Fault::TooBig { what: what() })?;
+    cell.set(left);
+    Ok(())
+}

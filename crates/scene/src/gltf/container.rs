@@ -1,0 +1,10 @@
+//! The outer layers of a file: GLB chunks, JSON text, the files and data it refers to, compressed meshes.
+
+pub(crate) mod compressed;
+pub(crate) mod data_uri;
+pub(crate) mod file_reference;
+pub(crate) mod glb_chunks;
+pub(crate) mod json_object;
+pub(crate) mod json_text;
+pub(crate) mod percent_encoding;
+pub(crate) mod resource;

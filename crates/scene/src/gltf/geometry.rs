@@ -1,0 +1,11 @@
+//! The geometry of a file: nodes, accessors, primitives, instances and skins, and their assembly into a scene.
+
+pub(crate) mod accessor;
+pub(crate) mod assembly;
+pub(crate) mod attribute_name;
+pub(crate) mod hierarchy;
+pub(crate) mod instancing;
+pub(crate) mod primitive;
+pub(crate) mod skin;
+pub(crate) mod tangents;
+pub(crate) mod triangulation;

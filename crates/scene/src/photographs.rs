@@ -1,0 +1,16 @@
+//! Photographs: views with their pixels and masks, and surfaces made from pictures.
+
+mod gloss_lookup;
+mod linear_conversion;
+mod mask;
+mod photograph;
+mod picture_gloss;
+mod picture_texture;
+mod scene_photographs;
+mod view;
+
+pub use mask::Mask;
+pub use photograph::{Photograph, PictureError};
+pub use picture_gloss::PictureGloss;
+pub use picture_texture::PictureTexture;
+pub use view::{PhotoLookup, View};
