@@ -1,9 +1,9 @@
-//! What all chores share: where the repository is, how a command is run, how a chore fails.
+//! Shared by all chores: the repository's location, running commands, failures.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Why a chore ended early: a sentence for the person who started it, and the exit code.
+/// A chore's failure: a message for the user and the exit code.
 #[derive(Debug)]
 pub struct Failure {
     message: String,
@@ -16,7 +16,7 @@ impl Failure {
         Self { message: message.into(), exit_code: 1 }
     }
 
-    /// The code that the process should end with.
+    /// The exit code of the process.
     pub fn exit_code(&self) -> u8 {
         self.exit_code
     }
@@ -35,17 +35,17 @@ pub fn repository() -> PathBuf {
     own.parent().map(Path::to_path_buf).unwrap_or(own)
 }
 
-/// Cargo, for this repository: the one that runs this chore.
+/// The cargo that runs this chore, set up for this repository.
 pub fn cargo(subcommand: &str) -> Command {
     let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     command.arg(subcommand).arg("--manifest-path").arg(repository().join("Cargo.toml"));
     command
 }
 
-/// Runs a command to its end; its output goes where ours goes.
+/// Runs a command to completion with inherited output.
 ///
 /// # Errors
-/// When it does not start, or ends with a code other than 0 (which becomes ours).
+/// The command does not start, or ends with a code other than 0, which becomes the chore's exit code.
 pub fn execute(command: &mut Command) -> Result<(), Failure> {
     let shown = shown(command);
     let status = command.status().map_err(|e| Failure::new(format!("{shown}: does not start: {e}")))?;
@@ -59,7 +59,7 @@ pub fn execute(command: &mut Command) -> Result<(), Failure> {
 /// Runs a command and returns what it printed.
 ///
 /// # Errors
-/// When it does not start or ends with a code other than 0; the message holds what it said.
+/// The command does not start or ends with a code other than 0; the message contains its output.
 pub fn output_of(command: &mut Command) -> Result<Vec<u8>, Failure> {
     let shown = shown(command);
     let output = command.output().map_err(|e| Failure::new(format!("{shown}: does not start: {e}")))?;
@@ -70,7 +70,7 @@ pub fn output_of(command: &mut Command) -> Result<Vec<u8>, Failure> {
     Err(Failure::new(format!("{shown}: failed ({})\n{}", output.status, stderr.trim_end())))
 }
 
-/// A command as a person would type it.
+/// A command as typed in a shell.
 pub fn shown(command: &Command) -> String {
     let program = Path::new(command.get_program()).file_name().unwrap_or(command.get_program());
     let words = std::iter::once(program).chain(command.get_args());

@@ -1,10 +1,13 @@
-//! `ci`: everything that must be green, the quick checks first.
+//! `ci`: all checks, the quick ones first.
 
 use crate::chore::{Failure, cargo, execute};
 use crate::packages::{TO_BUILD, TO_RUN, install_missing};
 use crate::{crate_directions, licences, module_circles, shared_build};
 
 /// Runs every check and stops at the first that fails.
+///
+/// # Errors
+/// The first check that fails.
 pub fn ci() -> Result<(), Failure> {
     install_missing(&[TO_BUILD, TO_RUN])?;
     crate_directions::check()?;

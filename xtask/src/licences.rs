@@ -1,9 +1,10 @@
-//! Every crate that we link must be free to use in a program under MIT or Apache-2.0.
+//! Licences: every linked crate must be usable in a program under MIT or Apache-2.0.
 
 use crate::chore::{Failure, cargo, output_of};
 use serde_json::Value;
 
-/// Licences that ask for no more than a notice; MPL-2.0 also for changes to its own files, and we make none.
+/// Licences that require no more than a notice; MPL-2.0 also requires the publication of changes to its own
+/// files, of which there are none.
 const PERMISSIVE: &[&str] = &[
     "0BSD",
     "Apache-2.0",
@@ -25,6 +26,9 @@ const PERMISSIVE: &[&str] = &[
 ];
 
 /// Checks all dependencies for this machine's platform.
+///
+/// # Errors
+/// A licence is not permissive, or `cargo metadata` fails.
 pub fn check() -> Result<(), Failure> {
     let platform = format!("{}-unknown-linux-gnu", std::env::consts::ARCH);
     let metadata =
@@ -47,9 +51,9 @@ pub fn check() -> Result<(), Failure> {
     )))
 }
 
-/// Whether an SPDX expression leaves a choice that is permissive: of each `AND`, one of its `OR`s.
+/// Whether an SPDX expression offers a permissive choice: in each operand of `AND`, one alternative of `OR`.
 ///
-/// `A OR B AND C` is read as `(A OR B) AND C`, stricter than SPDX: a licence is refused rather than let pass.
+/// `A OR B AND C` is read as `(A OR B) AND C`, stricter than SPDX: in doubt, a licence is rejected.
 fn is_permissive(expression: &str) -> bool {
     let plain = expression.replace(['(', ')'], " ").replace('/', " OR ");
     plain

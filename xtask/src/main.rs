@@ -1,16 +1,17 @@
-//! `cargo xtask CHORE`: what a developer does with this repository.
+//! `cargo xtask CHORE`: the chores of a developer.
 //!
-//! * `run [FILE…]` installs what is missing, builds `focus-brush` and opens it; without a display it renders the
-//!   demo to a picture.
+//! * `run [FILE…]` installs what is missing, builds `focus-brush` and opens it; without a display it renders
+//!   the demo to a picture.
 //! * `test [ARG…]` installs what is missing and runs the whole test suite.
-//! * `window` acts on the real window by mouse and keys, under Xvfb.
-//! * `circles [CRATE…]` names the modules of a crate that use one another; there must be none.
-//! * `ci` is everything that must be green: crate directions, circles of modules, licences, formatting, lints, docs, tests.
-//! * `package` makes what people install who have no compiler, and a source archive that builds without a network.
-//! * `demo` makes the demo scene in `assets/demo` anew.
+//! * `window` drives the real window with mouse and keyboard, under Xvfb.
+//! * `circles [CRATE…]` lists cyclic dependencies between modules of a crate; there must be none.
+//! * `ci` runs all checks: crate directions, module cycles, licences, formatting, lints, docs, tests.
+//! * `package` builds packages for users without a compiler, and a source archive that builds without a
+//!   network.
+//! * `demo` regenerates the demo scene in `assets/demo`.
 //! * `figures` writes the tables and plots of the performance pages from `docs/figures`.
 //!
-//! Pure Rust without build scripts of its own, so that it runs where only Rust and a C linker are.
+//! Pure Rust without build scripts of its own, so that it needs nothing but Rust and a C linker.
 
 mod chore;
 mod ci;
@@ -35,15 +36,15 @@ usage: cargo xtask CHORE
   package [deb|tarball|source…]
                 packages to install, a folder that runs from anywhere, a source archive that
                 builds without a network; in target/package
-  demo          make the demo scene in assets/demo anew
+  demo          regenerate the demo scene in assets/demo
   figures [--check]
                 write the tables and plots of the performance pages from docs/figures
-  window [ARG…] act on the real window under Xvfb, with a screenshot of every step
+  window [ARG…] drive the real window under Xvfb, with a screenshot of every step
   circles [CRATE…]
-                modules of a crate that use one another, and by which names
-  ci            crate directions, circles of modules, licences, formatting, lints, docs, tests";
+                cyclic dependencies between the modules of a crate, with the names that cause them
+  ci            crate directions, module cycles, licences, formatting, lints, docs, tests";
 
-/// Rays a texel for `demo`: the one argument it takes, for drafts.
+/// The argument of `demo`: rays per texel, fewer for drafts.
 fn sky_rays(arguments: &[std::ffi::OsString]) -> usize {
     arguments.first().and_then(|a| a.to_str()?.parse().ok()).unwrap_or(80)
 }

@@ -1,12 +1,14 @@
-//! No circle of modules: within a crate, what two modules need of each other stands below both.
+//! No cycles between modules: within a crate, what two modules need of each other belongs in a module below
+//! both.
 //!
-//! A module here is a source file. It leads to another when its code names something that the other *defines*, in a
-//! `use` or by a path: `tokens` reads the text (without tests), `source` what each module declares and names,
-//! `crate_modules` follows every name through `pub use` and `*` to the file that defines it, `circle` finds the files
-//! that lead to one another. `mod x;` leads nowhere, nor does passing on what a module below defines.
+//! A module here is a source file. It depends on another if its code names something that the other
+//! *defines*, in a `use` or by a path: `tokens` reads the text (without tests), `source` what each module
+//! declares and names, `crate_modules` follows every name through `pub use` and `*` to the file that defines
+//! it, `circle` finds the files that depend on one another. `mod x;` is no dependency, nor is the re-export
+//! of an item of a child module.
 //!
-//! It reads text, not types. What is used by no name is not seen: methods and fields, and so `impl`s of one type in
-//! several files.
+//! It reads text, not types, and therefore ignores uses without a path: methods and fields, and so `impl`s of
+//! one type in several files.
 
 mod circle;
 mod crate_modules;
@@ -22,15 +24,15 @@ use serde_json::Value;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
-/// Checks the workspace as it is.
+/// Checks the workspace.
 pub fn check() -> Result<(), Failure> {
     circles(&[])
 }
 
-/// Checks the crates that are named, or all.
+/// Checks the named crates, or all.
 ///
 /// # Errors
-/// When modules lead to one another: each circle, with the names that tie it.
+/// There are cycles; the message lists each of them with the names that cause it.
 pub fn circles(crates: &[OsString]) -> Result<(), Failure> {
     let metadata = output_of(cargo("metadata").args(["--no-deps", "--format-version", "1"]))?;
     let metadata: Value =
@@ -49,7 +51,8 @@ pub fn circles(crates: &[OsString]) -> Result<(), Failure> {
     Err(Failure::new(format!("circles of modules:\n\n{}", messages.join("\n"))))
 }
 
-/// The libraries and programs in the output of `cargo metadata --no-deps`: the package's name and the root file.
+/// The libraries and programs in the output of `cargo metadata --no-deps`: the package's name and the root
+/// file.
 fn roots(metadata: &Value) -> Vec<(String, PathBuf)> {
     let mut roots = Vec::new();
     for package in metadata["packages"].as_array().into_iter().flatten() {
@@ -64,7 +67,7 @@ fn roots(metadata: &Value) -> Vec<(String, PathBuf)> {
     roots
 }
 
-/// The circles of the crate whose root is the file `root`, each as a person would want to read it.
+/// Descriptions of the cycles in the crate whose root is the file `root`.
 fn circles_in(root: &Path, read: &dyn Fn(&Path) -> Option<String>) -> Result<Vec<String>, String> {
     let modules = CrateModules::read(root, read)?;
     let folder = root.parent().unwrap_or(Path::new(""));
@@ -75,7 +78,7 @@ fn circles_in(root: &Path, read: &dyn Fn(&Path) -> Option<String>) -> Result<Vec
     Ok(circles_of(&modules.arrows()).iter().map(|circle| describe_circle(circle, &shown)).collect())
 }
 
-/// A circle in words: how many modules, then a line for every arrow.
+/// Describes a cycle: the number of modules, then one line per dependency.
 fn describe_circle(circle: &Circle, shown: &dyn Fn(usize) -> String) -> String {
     let mut lines = vec![format!("{} modules in a circle", circle.files.len())];
     for arrows in circle.arrows.chunk_by(|a, b| (a.from, a.to) == (b.from, b.to)) {

@@ -1,4 +1,4 @@
-//! `package`: what people install who have no compiler, and a source archive that builds without a network.
+//! `package`: packages for users without a compiler, and a source archive that builds without a network.
 //!
 //! ```text
 //! cargo build --release ─▶ layout ─┬▶ deb      focus-brush_VERSION_ARCH.deb
@@ -6,7 +6,8 @@
 //! git, cargo vendor ────────────────▶ source   focus-brush-VERSION-source.tar.xz
 //! ```
 //!
-//! Of the same commit, compiler and system libraries come the same bytes: times in archives are the commit's.
+//! Builds are reproducible: the same commit, compiler and system libraries give the same bytes. Times in
+//! archives are the commit's.
 
 mod deb;
 mod layout;
@@ -21,7 +22,10 @@ use release::{Release, target};
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-/// Makes the packages that are named, `deb`, `tarball` or `source`; all of them where none is.
+/// Builds the named packages, `deb`, `tarball` or `source`; all of them if none is named.
+///
+/// # Errors
+/// An unknown kind of package, or one that cannot be made.
 pub fn package(kinds: &[OsString]) -> Result<(), Failure> {
     const KINDS: [&str; 3] = ["deb", "tarball", "source"];
     if let Some(other) = kinds.iter().find(|kind| !KINDS.iter().any(|supported| kind == supported)) {

@@ -1,4 +1,4 @@
-//! `run` opens the program on the demo or on files; `test` runs all tests; `window` acts on the real window.
+//! `run` opens the program on the demo or on files; `test` runs all tests; `window` drives the real window.
 
 use crate::chore::{Failure, cargo, execute, repository};
 use crate::packages::{TO_ACT, TO_BUILD, TO_RUN, install_missing};
@@ -6,8 +6,11 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Builds and opens `focus-brush` with these arguments; where there is no display and nothing but files is asked
-/// for, renders them (or the demo) to pictures instead.
+/// Builds and opens `focus-brush` with these arguments. Without a display, if the arguments are only files,
+/// renders them (or the demo) to pictures instead.
+///
+/// # Errors
+/// A package cannot be installed, or the build or the program fails.
 pub fn run(arguments: &[OsString]) -> Result<(), Failure> {
     install_missing(&[TO_BUILD, TO_RUN])?;
     let is_file = |argument: &OsString| Path::new(argument).exists();
@@ -25,13 +28,19 @@ pub fn run(arguments: &[OsString]) -> Result<(), Failure> {
 }
 
 /// Runs the whole test suite; the arguments go to `cargo test`.
+///
+/// # Errors
+/// A package cannot be installed, or a test fails.
 pub fn test(arguments: &[OsString]) -> Result<(), Failure> {
     install_missing(&[TO_BUILD, TO_RUN])?;
     execute(cargo("test").arg("--workspace").args(arguments))
 }
 
-/// Acts on the real window by mouse and keys, on a display of its own, and leaves a screenshot of every step; the
-/// arguments go to the script.
+/// Drives the real window with mouse and keyboard on a virtual display and saves a screenshot of every step;
+/// the arguments go to the script.
+///
+/// # Errors
+/// A package cannot be installed, or the build or the script fails.
 pub fn window(arguments: &[OsString]) -> Result<(), Failure> {
     install_missing(&[TO_BUILD, TO_RUN, TO_ACT])?;
     let program = build_focus_brush()?;
@@ -51,11 +60,14 @@ fn render(stem: &str, file: &Path) -> Result<(), Failure> {
 }
 
 /// Builds the program and runs it with these arguments.
+///
+/// # Errors
+/// The build or the program fails.
 pub fn focus_brush(arguments: &[OsString]) -> Result<(), Failure> {
     execute(Command::new(build_focus_brush()?).args(arguments))
 }
 
-/// Builds the program; where it lies.
+/// Builds the program. Returns its path.
 fn build_focus_brush() -> Result<PathBuf, Failure> {
     execute(cargo("build").args(["--package", "focus-brush"]))?;
     let target =

@@ -1,13 +1,16 @@
-//! The program and its tests are built from the same dependencies: same crates, same features.
+//! The program and its tests must be built from the same dependencies with the same features.
 //!
-//! A test tool may turn on features of a crate that the program uses too. Then that crate, and all above it, are
-//! compiled twice, once for the program and once for its tests: minutes, for the window. So features that the
-//! tools of the tests want are turned on for the program as well.
+//! A test dependency may enable features of a crate that the program uses, too. That crate and its dependents
+//! are then compiled twice, for the program and for its tests, which takes minutes for the window. Features
+//! that test dependencies need are therefore enabled for the program as well.
 
 use crate::chore::{Failure, cargo, output_of};
 use std::collections::BTreeSet;
 
-/// Checks the workspace as it is.
+/// Checks the workspace.
+///
+/// # Errors
+/// A crate is built with other features for the tests, or `cargo tree` fails.
 pub fn check() -> Result<(), Failure> {
     let (program, with_tests) = (crates("normal,build")?, crates("normal,build,dev")?);
     let twice = built_twice(&program, &with_tests);
@@ -15,12 +18,13 @@ pub fn check() -> Result<(), Failure> {
         return Ok(());
     }
     Err(Failure::new(format!(
-        "the tests of focus-brush build these once more, with other features (turn those on in Cargo.toml):\n  {}",
+        "the tests of focus-brush build these once more, with other features (turn those on in \
+         Cargo.toml):\n  {}",
         twice.join("\n  ")
     )))
 }
 
-/// The crates under focus-brush by edges of these kinds, a line each: name, version, features.
+/// The dependencies of focus-brush by edges of these kinds, one line each: name, version, features.
 fn crates(edges: &str) -> Result<String, Failure> {
     let arguments =
         ["-p", "focus-brush", "-e", edges, "--prefix", "none", "--no-dedupe", "-f", "{p} {f}", "--locked"];
@@ -28,7 +32,7 @@ fn crates(edges: &str) -> Result<String, Failure> {
     Ok(String::from_utf8_lossy(&listed).into_owned())
 }
 
-/// The lines of the program that its tests do not share.
+/// Lines of the program that are not among those of its tests.
 fn built_twice<'a>(program: &'a str, tests: &str) -> Vec<&'a str> {
     let shared: BTreeSet<_> = tests.lines().collect();
     let own: BTreeSet<_> = program.lines().filter(|line| !shared.contains(line)).collect();

@@ -1,5 +1,5 @@
-//! Runs the whole suite and prints it as Markdown: `cargo run -p hard-cases --example table > docs/hard-cases.md`.
-//! What is named on the command line is the filter; seconds go to stderr.
+//! Runs the whole suite and prints it as Markdown: `cargo run -p hard-cases --example table >
+//! docs/hard-cases.md`. The first argument is the filter of case names; times are printed to stderr.
 
 use hard_cases::{Effort, suite};
 use progress::Unwatched;
@@ -7,8 +7,8 @@ use std::time::Instant;
 
 const HEAD: &str = "# Hard cases
 
-Inputs that break careless code: each with what must come out, what does, and a *control*, a deliberately wrong
-computation put through the same check, which must fail it. `focus-brush report --hard` runs them; so does
+Inputs that break careless code: each with the expected and the measured result, and a *control*, a deliberately wrong
+computation that must fail the same check. `focus-brush report --hard` runs them; so does
 `cargo test -p hard-cases`, with fewer rays. This page is written by
 `cargo run -p hard-cases --example table > docs/hard-cases.md`.
 ";

@@ -1,20 +1,20 @@
-//! What a case is, and what comes out of one.
+//! A hard case and its outcome.
 
 use progress::{Cancelled, Progress};
 use serde::Serialize;
 
-/// How many rays and samples the cases spend.
+/// Number of rays and samples that the cases use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Effort {
-    /// As many as the claims need: some tens of seconds for all.
+    /// As many as the stated accuracy needs: some tens of seconds for the suite.
     #[default]
     Full,
-    /// A small share of them, for tests.
+    /// A small share of these, for tests.
     Reduced,
 }
 
 impl Effort {
-    /// `full` or `reduced`, whichever applies.
+    /// `full` or `reduced`, depending on the effort.
     pub(crate) fn choose<T>(self, full: T, reduced: T) -> T {
         match self {
             Self::Full => full,
@@ -26,17 +26,20 @@ impl Effort {
 /// One hard case.
 #[derive(Clone, Copy)]
 pub struct Case {
-    /// Its name, unique in the suite.
+    /// Name, unique in the suite.
     pub name: &'static str,
-    /// Why what is expected must come out: a sentence.
+    /// The reason for the expected result, a sentence.
     pub reason: &'static str,
-    /// What the negative control computes wrongly: a phrase.
+    /// What the negative control computes wrongly, a phrase.
     pub control: &'static str,
     pub(crate) check: fn(Effort, &dyn Progress) -> Result<Verdict, Cancelled>,
 }
 
 impl Case {
-    /// Computes it and its control.
+    /// Runs the case and its control.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if `progress` is cancelled.
     pub fn run(&self, effort: Effort, progress: &dyn Progress) -> Result<Outcome, Cancelled> {
         let Verdict { expected, measured, pass, control_fails } = (self.check)(effort, progress)?;
         Ok(Outcome { case: self.name.into(), expected, measured, pass, control_fails })
@@ -48,20 +51,20 @@ impl Case {
 pub struct Outcome {
     /// The case's name.
     pub case: String,
-    /// What must come out.
+    /// The expected result.
     pub expected: String,
-    /// What came out, and what the control made of it.
+    /// The measured result, and that of the control.
     pub measured: String,
-    /// Whether that is what must come out.
+    /// Whether the measured result is as expected.
     pub pass: bool,
     /// Whether the deliberately wrong computation fails the same check, as it must.
     pub control_fails: bool,
 }
 
-/// The value of a number that a control does not compute: it is within every limit.
+/// Value of a number that a control does not compute; it is within every limit.
 pub(crate) const NOT_COMPUTED: f64 = f64::NEG_INFINITY;
 
-/// What a case found.
+/// The result of a case's check.
 #[derive(Clone, Debug)]
 pub(crate) struct Verdict {
     pub expected: String,
@@ -71,8 +74,8 @@ pub(crate) struct Verdict {
 }
 
 impl Verdict {
-    /// Numbers that must stay within limits: each of `limits` a name and the most it may be; `right` what the
-    /// product makes, `wrong` what the control does ([`UNTRIED`] where it does not). NaN is never within a limit.
+    /// Checks numbers against upper limits, each given with its name: `right` are those of the product, `wrong`
+    /// those of the control ([`NOT_COMPUTED`] where it has none). NaN is never within a limit.
     pub fn new<const N: usize>(
         expected: impl Into<String>,
         limits: [(&str, f64); N],
@@ -94,7 +97,7 @@ impl Verdict {
     }
 }
 
-/// A number as the table shows it: counts as they are, others with two digits.
+/// Formats a number for the table: integers exactly, others with two to three digits.
 fn format_value(value: f64) -> String {
     if value.fract() == 0.0 && value.abs() < 1e9 {
         format!("{value}")

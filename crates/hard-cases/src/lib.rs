@@ -1,56 +1,51 @@
 //! The numerically hard cases, by name.
 //!
-//! Each [`Case`] puts one awkward input through the product, measures what comes out against a closed form or a
-//! reasoned bound, and applies *the same check* to a deliberately wrong computation, which must fail it: a check
-//! that passes both proves nothing. [`suite`] lists them, [`run`] runs them; `docs/hard-cases.md` shows the table.
+//! Each [`Case`] runs the product on one awkward input, compares the result with a closed form or a derived
+//! bound, and applies *the same check* to a deliberately wrong computation, which must fail it: a check that
+//! passes both proves nothing. [`suite`] lists the cases, [`run`] runs them; `docs/hard-cases.md` shows the
+//! table.
 //!
-//! | file | idea |
+//! | file | cases |
 //! | --- | --- |
-//! | `defocus` | κ where other forms of the formula have a pole |
-//! | `offsets` | focus offsets that make no sense |
-//! | `aperture_plane` | surfaces on, behind and across the aperture, and up to the horizon |
-//! | `scaling` | the same scene in other units |
-//! | `rays` | closed meshes and close shells |
-//! | `triangles` | triangles without area, needles, duplicates |
-//! | `texels` | texels whose centre lies beside their triangle, paint at a seam |
-//! | `ranges` | the very bright beside the very dim |
-//! | `furnace` | a scene of radiance 1 is 1 |
-//! | `energy` | light is neither made nor lost |
-//! | `sampling` | aperture points have the density of the transmission |
-//! | `masks` | aperture pictures without light, with little, with very many texels |
-//! | `lobes` | how a surface scatters: energy, reciprocity, density |
-//! | `rooms` | light that goes to and fro, and the sky |
-//! | `glass` | what is let through |
-//! | `mirrors` | what is mirrored keeps the standard focus |
-//! | `panes` | half there is half there |
+//! | `optics/defocus` | the defocus κ where other forms of its formula have a pole |
+//! | `optics/offsets` | invalid focus offsets |
+//! | `optics/aperture_plane` | surfaces on, behind and across the aperture plane, and up to the horizon |
+//! | `optics/scaling` | the same scene in other units |
+//! | `optics/sampling` | aperture points are distributed with the transmission as density |
+//! | `optics/masks` | aperture masks that are black, of one texel, of very many texels |
+//! | `geometry/rays` | closed meshes and nearly coincident shells |
+//! | `geometry/triangles` | zero-area triangles, needles, duplicates |
+//! | `geometry/texels` | texels whose centre lies outside their triangle; paint at a seam |
+//! | `light/ranges` | very bright light next to very dim light |
+//! | `light/furnace` | a scene of radiance 1 is 1 |
+//! | `light/energy` | energy is conserved |
+//! | `light/lobes` | scattering: energy, reciprocity, sampling density |
+//! | `light/rooms` | interreflection and skies |
+//! | `light/glass` | transmission |
+//! | `light/mirrors` | mirrored light keeps the standard focus |
+//! | `light/panes` | partial opacity |
+//! | `light/chance` | lamps that paths find by chance |
+//!
+//! ```
+//! use hard_cases::{Effort, run};
+//! use progress::Unwatched;
+//!
+//! let outcomes = run("aperture mask all black", Effort::Reduced, &Unwatched)?;
+//! assert!(outcomes[0].pass && outcomes[0].control_fails);
+//! # Ok::<(), progress::Cancelled>(())
+//! ```
 
-mod aperture_plane;
 mod case;
-mod chance;
-mod defocus;
-mod energy;
-mod furnace;
-mod glass;
-mod light_field;
-mod lobes;
-mod masks;
-mod measure;
-mod mirrors;
-mod offsets;
-mod panes;
-mod random;
-mod ranges;
-mod rays;
-mod rooms;
-mod sampling;
-mod scaling;
-mod scenery;
-mod shot;
-mod texels;
-mod triangles;
+mod geometry;
+mod light;
+mod optics;
+mod support;
 
 pub use case::{Case, Effort, Outcome};
 
+use geometry::{rays, texels, triangles};
+use light::{chance, energy, furnace, glass, lobes, mirrors, panes, ranges, rooms};
+use optics::{aperture_plane, defocus, masks, offsets, sampling, scaling};
 use progress::{Cancelled, Progress};
 
 /// All cases, in the order of the table.
@@ -80,7 +75,10 @@ pub fn suite() -> Vec<Case> {
 
 /// Runs the cases whose names contain `filter` (all if it is empty).
 ///
-/// Progress goes by cases, the longest of which take some seconds at [`Effort::Full`].
+/// Progress is reported per case; the longest take some seconds at [`Effort::Full`].
+///
+/// # Errors
+/// [`Cancelled`] if `progress` is cancelled.
 pub fn run(filter: &str, effort: Effort, progress: &dyn Progress) -> Result<Vec<Outcome>, Cancelled> {
     let chosen: Vec<_> = suite().into_iter().filter(|case| case.name.contains(filter)).collect();
     let count = chosen.len() as f32;
@@ -93,7 +91,7 @@ pub fn run(filter: &str, effort: Effort, progress: &dyn Progress) -> Result<Vec<
     outcomes.collect()
 }
 
-/// Lets a case be cancelled, but not tell how far each of its pictures is.
+/// Passes on cancellation, but not the progress of single pictures.
 struct CancelOnly<'a>(&'a dyn Progress);
 
 impl Progress for CancelOnly<'_> {

@@ -1,4 +1,4 @@
-//! The suite as a test, with fewer rays and samples than `focus-brush report --hard` spends.
+//! The suite as a test, with fewer rays and samples than `focus-brush report --hard`.
 
 use hard_cases::{Effort, run, suite};
 use progress::{Cancelled, Progress, Unwatched};

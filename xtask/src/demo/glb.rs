@@ -1,4 +1,5 @@
-//! Writes the scene as one .glb: a node, mesh, primitive and material an object, one texture for all that is baked.
+//! Writes the scene as one .glb: a node, mesh, primitive and material an object, one texture for all that is
+//! baked.
 
 use super::sheet::Sheet;
 use super::surface::{Object, Shine};
@@ -11,7 +12,7 @@ use serde_json::{Value, json};
 /// The file's bytes.
 ///
 /// # Errors
-/// When the texture cannot be encoded.
+/// The texture cannot be encoded.
 pub fn glb(objects: &[Object], sheet: &Sheet, texture: &[u8], view: &View) -> Result<Vec<u8>, Failure> {
     let mut blob = Blob::default();
     let (mut meshes, mut nodes, mut materials) = (Vec::new(), Vec::new(), Vec::new());

@@ -1,4 +1,5 @@
-//! The light of the scene, and the radiance it gives a surface: soft sky, lamps with soft shadows, one bounce, a wet coat.
+//! The light of the scene, and the radiance it gives a surface: soft sky, lamps with soft shadows, one
+//! bounce, a wet coat.
 
 use super::noise::{hash, smoothstep, spread};
 use super::rays::Rays;
@@ -17,7 +18,7 @@ pub struct Lamp {
     pub intensity: Vec3,
 }
 
-/// What a ray finds: mean reflectance and glow of each triangle.
+/// Appearance of a triangle to rays: mean reflectance and emission.
 #[derive(Clone, Copy)]
 pub struct Facing {
     /// Reflectance.
@@ -26,17 +27,17 @@ pub struct Facing {
     pub glow: Vec3,
 }
 
-/// All that lights a surface.
+/// All light on a surface.
 pub struct Lighting<'a> {
     /// The triangles.
     pub rays: &'a Rays,
-    /// What each is like.
+    /// Their appearance.
     pub facing: &'a [Facing],
     /// The lamps.
     pub lamps: &'a [Lamp],
-    /// Where the picture is taken from: the wet coat mirrors for it.
+    /// Position of the camera, for reflections of the wet coat.
     pub eye: Vec3,
-    /// Rays a texel for the sky.
+    /// Sky rays per texel.
     pub sky_rays: usize,
 }
 
@@ -56,7 +57,7 @@ pub fn sky(direction: Vec3) -> Vec3 {
 }
 
 impl Lighting<'_> {
-    /// The radiance that leaves a place.
+    /// The outgoing radiance of a point.
     pub fn radiance(&self, place: &Place, skin: &Skin, thin: bool, seed: i32) -> Vec3 {
         let toward_eye = (self.eye - place.position).normalize_or(Vec3::Y);
         let mut normal = skin.normal;
@@ -105,7 +106,7 @@ impl Lighting<'_> {
         let to = lamp.position - origin;
         let distance2 = to.length_squared();
         let unshadowed = lamp.intensity * (normal.dot(to.normalize()).max(0.0) / distance2);
-        // What cannot be seen on an 8-bit picture is not worth its shadow rays.
+        // Light below the precision of an 8-bit picture gets no shadow rays.
         if geometric.dot(to) <= 0.0 || unshadowed.max_element() < 2e-3 {
             return Vec3::ZERO;
         }
@@ -121,7 +122,7 @@ impl Lighting<'_> {
         unshadowed * (open as f32 / count as f32)
     }
 
-    /// What a coat of water mirrors toward the eye.
+    /// The light reflected toward the eye by a coat of water.
     fn coat(
         &self,
         position: Vec3,
@@ -146,7 +147,7 @@ impl Lighting<'_> {
                 continue;
             }
             let fresnel = 0.03 + 0.97 * (1.0 - cosine).powi(5);
-            // A lone bright bulb in the lobe would be a speck: limit what one ray brings.
+            // A lone bright bulb in the lobe would be a speck: clamp the contribution of one ray.
             sum += self.incoming_radiance(origin, direction, true).min(Vec3::splat(2.5)) * fresnel;
         }
         sum / count as f32
@@ -158,7 +159,7 @@ impl Lighting<'_> {
             Some(hit) => {
                 let facing = self.facing[hit as usize];
                 let bounced = facing.albedo * 0.12;
-                // Lamps are summed apart: what is brighter than the sky is left to them.
+                // Lamps are summed separately: light brighter than the sky is left to them.
                 let counted = with_glow || facing.glow.max_element() <= 1.2;
                 if counted { bounced + facing.glow } else { bounced }
             }

@@ -28,7 +28,7 @@ impl Rays {
         Self { nodes, order, corners }
     }
 
-    /// The index of the triangle that is hit first within `limit`.
+    /// The index of the first triangle hit within `limit`.
     pub fn first(&self, origin: Vec3, direction: Vec3, limit: f32) -> Option<u32> {
         self.walk(origin, direction, limit, false)
     }

@@ -1,5 +1,5 @@
-//! The light sheet: one texture in which every surface has a block of its own, so that its texture coordinates serve
-//! as the atlas for painting too.
+//! The light sheet: one texture in which every surface has a block of its own, so that its texture
+//! coordinates serve as the atlas for painting too.
 
 use super::light::{Facing, Lamp, Lighting};
 use super::rays::Rays;
@@ -20,7 +20,7 @@ pub struct Block {
     pub size: [usize; 2],
 }
 
-/// Where the surfaces lie.
+/// The layout of the surfaces.
 pub struct Sheet {
     /// Columns.
     pub width: usize,
@@ -54,8 +54,8 @@ impl Sheet {
         Self { width, height: height.next_multiple_of(16), blocks }
     }
 
-    /// The texture coordinates of (u, v) in a block: from the centre of its first texel to that of its last, so that
-    /// filtering never reads beyond it.
+    /// The texture coordinates of (u, v) in a block: from the centre of its first texel to that of its last,
+    /// so that filtering never reads beyond it.
     pub fn texture_uv(&self, block: &Block, uv: Vec2) -> Vec2 {
         let along = |start: usize, size: usize, t: f32| start as f32 + 0.5 + t * (size - 1) as f32;
         Vec2::new(
@@ -124,7 +124,7 @@ fn bake_block(surface: &Surface, block: &Block, lighting: &Lighting) -> Vec<Vec3
         .collect()
 }
 
-/// All triangles, and what a ray finds on each.
+/// All triangles, with the appearance of each.
 fn gather(objects: &[Object]) -> (Vec<[Vec3; 3]>, Vec<Facing>) {
     let (mut triangles, mut facing) = (Vec::new(), Vec::new());
     for object in objects {
@@ -144,7 +144,7 @@ fn gather(objects: &[Object]) -> (Vec<[Vec3; 3]>, Vec<Facing>) {
     (triangles, facing)
 }
 
-/// Bends what is brighter than 0.6 gently below 1, the most an unlit texture holds.
+/// Compresses values above 0.6 smoothly to below 1, the maximum of an unlit texture.
 fn shoulder(radiance: Vec3) -> Vec3 {
     let bend = |x: f32| if x <= 0.6 { x } else { 0.6 + 0.4 * (1.0 - (-(x - 0.6) / 0.4).exp()) };
     Vec3::from_array(radiance.max(Vec3::ZERO).to_array().map(bend))

@@ -1,9 +1,9 @@
-//! What the scene is built of: surfaces over the unit square, and objects made of them.
+//! Building blocks of the scene: surfaces over the unit square, and objects made of them.
 
 use glam::{Vec2, Vec3};
 use std::sync::Arc;
 
-/// A place on a surface, as a look sees it.
+/// A point of a surface: the input of a shader.
 #[derive(Clone, Copy)]
 pub struct Place {
     /// Over the surface, both in [0, 1].
@@ -14,18 +14,18 @@ pub struct Place {
     pub normal: Vec3,
 }
 
-/// What a surface is like at a place.
+/// Appearance of a surface at a point.
 #[derive(Clone, Copy)]
 pub struct Skin {
     /// Diffuse reflectance.
     pub albedo: Vec3,
-    /// Radiance of its own.
+    /// Emitted radiance.
     pub glow: Vec3,
-    /// Share of light that shines through from behind, as through a leaf.
+    /// Share of light transmitted from behind, as through a leaf.
     pub translucency: f32,
-    /// How wet: scales a mirroring coat.
+    /// Wetness: strength of a reflecting coat.
     pub wetness: f32,
-    /// How far the coat scatters what it mirrors, rad².
+    /// Angular variance of the coat's reflection, rad².
     pub ripple: f32,
     /// Unit normal, finer than the mesh's.
     pub normal: Vec3,
@@ -45,10 +45,10 @@ impl Skin {
     }
 }
 
-/// A look: what a surface is like everywhere.
+/// A shader: the appearance of a surface at every point.
 pub type SkinShader = Arc<dyn Fn(&Place) -> Skin + Send + Sync>;
 
-/// The look of one matt colour.
+/// The shader of one matt colour.
 pub fn plain(albedo: Vec3) -> SkinShader {
     Arc::new(move |place| Skin::matt(place, albedo))
 }
@@ -64,9 +64,9 @@ pub struct Surface {
     pub points: Vec<Vec3>,
     /// Texels along u and v.
     pub texels: [usize; 2],
-    /// What it is like.
+    /// Its shader.
     pub shader: SkinShader,
-    /// Whether both sides are seen, and lit alike.
+    /// Whether both sides are visible, and lit alike.
     pub thin: bool,
 }
 
@@ -98,7 +98,7 @@ impl Surface {
         Self { columns: 2, rows: 2, points: vec![a, b, d, c], texels, shader, thin: false }
     }
 
-    /// The same, seen and lit from both sides.
+    /// The same, visible and lit from both sides.
     pub fn thin(mut self) -> Self {
         self.thin = true;
         self
@@ -109,7 +109,8 @@ impl Surface {
         self.columns == 0
     }
 
-    /// The place of (u, v). A facet's corners are (0, 0), (1, 0) and (0, 1); beyond its long side the place stays on it.
+    /// The place of (u, v). A facet's corners are (0, 0), (1, 0) and (0, 1); beyond its long side the place
+    /// stays on it.
     pub fn place(&self, uv: Vec2) -> Place {
         if self.is_facet() {
             let [a, b, c] = [self.points[0], self.points[1], self.points[2]];
@@ -139,7 +140,7 @@ impl Surface {
         let at = |i: usize, j: usize| self.points[j * self.columns + i];
         let along = |j: usize| at((i + 1).min(self.columns - 1), j) - at(i.saturating_sub(1), j);
         let across = |i: usize| at(i, (j + 1).min(self.rows - 1)) - at(i, j.saturating_sub(1));
-        // At a pole a whole row is one point: look at the neighbouring row for the missing direction.
+        // At a pole a whole row is one point: the neighbouring row gives the missing direction.
         let mut du = along(j);
         if du.length_squared() < 1e-14 {
             du = along(if j == 0 { 1 } else { j - 1 });
@@ -188,27 +189,27 @@ impl Surface {
     }
 }
 
-/// How an object shines.
+/// Light of an object.
 #[derive(Clone, Copy)]
 pub enum Shine {
-    /// By the light that is baked into the sheet.
+    /// Baked into the sheet.
     Baked,
-    /// By itself: colour (its largest part 1) and strength.
+    /// Emission: colour (largest component 1) and strength.
     Emitter(Vec3, f32),
 }
 
-/// A named thing: a node, a mesh and a material of its own.
+/// A named object: a node, a mesh and a material of its own.
 pub struct Object {
     /// Name of all three.
     pub name: &'static str,
-    /// What it is made of.
+    /// Its surfaces.
     pub surfaces: Vec<Surface>,
-    /// How it shines.
+    /// Its light.
     pub shine: Shine,
 }
 
 impl Object {
-    /// One whose light is baked.
+    /// An object with baked light.
     pub fn baked(name: &'static str, surfaces: Vec<Surface>) -> Self {
         Self { name, surfaces, shine: Shine::Baked }
     }

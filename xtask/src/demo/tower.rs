@@ -88,7 +88,7 @@ fn disc(base: Vec3, radius: f32, proud: f32, texels: [usize; 2], shader: SkinSha
     })
 }
 
-/// Shows a look that is drawn on a square on the grid that [`to_disc`] bends.
+/// Applies a shader defined on a square to the grid that [`to_disc`] bends.
 fn round(shader: SkinShader) -> SkinShader {
     Arc::new(move |place: &Place| shader(&Place { uv: to_disc(place.uv * 2.0 - 1.0) * 0.5 + 0.5, ..*place }))
 }

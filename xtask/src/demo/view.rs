@@ -1,4 +1,4 @@
-//! The shot: where the camera stands, and places in the world named by where they appear in its picture.
+//! The shot: the camera, and points of the world given by their position in its picture.
 
 use glam::{Mat4, Quat, Vec3};
 use serde_json::{Value, json};
@@ -51,9 +51,9 @@ impl View {
         self.at(x, 0.0, depth).with_y(0.0)
     }
 
-    /// Forced perspective, as on a stage: moves a point along its line of sight so that what lies beyond a metre is
-    /// squeezed into 3.3 m. From the eye nothing changes; but the far things shrink, and no longer take the
-    /// atlas's texels from the near ones.
+    /// Forced perspective, as on a stage: moves a point along its line of sight so that what lies beyond a
+    /// metre is squeezed into 3.3 m. From the eye nothing changes; but the far things shrink, and no longer
+    /// take the atlas's texels from the near ones.
     ///
     /// 1/depth becomes F + (1 − F)/depth with F = 0.3, a projective map: straight lines stay straight.
     pub fn staged(&self, point: Vec3) -> Vec3 {

@@ -1,9 +1,9 @@
-//! Circles of arrows: files that all lead to one another.
+//! Cycles in the dependency graph of files.
 
 use super::crate_modules::Arrow;
 use std::collections::BTreeSet;
 
-/// Files each of which uses every other, by whatever detour.
+/// A strongly connected set of files: each uses every other, directly or indirectly.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Circle {
     /// The files, in order.
@@ -12,7 +12,7 @@ pub struct Circle {
     pub arrows: Vec<Arrow>,
 }
 
-/// All circles among `arrows`; no file is in two of them.
+/// All cycles in the graph of `arrows`; no file is in two of them.
 pub fn circles_of(arrows: &[Arrow]) -> Vec<Circle> {
     let files: BTreeSet<usize> = arrows.iter().map(|arrow| arrow.from).collect();
     let mut circles: Vec<Circle> = Vec::new();
@@ -31,7 +31,7 @@ pub fn circles_of(arrows: &[Arrow]) -> Vec<Circle> {
     circles
 }
 
-/// The files that arrows lead to from `start`, in one step or more.
+/// The files reachable from `start` in one step or more.
 fn reached_from(start: usize, arrows: &[Arrow]) -> BTreeSet<usize> {
     let mut reached = BTreeSet::new();
     let mut open = vec![start];

@@ -1,4 +1,4 @@
-//! The modules of one crate, and which module it is that a path ends in.
+//! The modules of one crate, and the resolution of paths to modules.
 
 use super::source::{Import, Source, source_of};
 use super::tokens::{tokens_of, without_tests};
@@ -11,7 +11,7 @@ pub struct CrateModules {
 }
 
 struct Module {
-    /// Which of the files it stands in.
+    /// Index of its file.
     file: usize,
     parent: Option<usize>,
     children: Vec<(String, usize)>,
@@ -25,22 +25,23 @@ enum Named {
     Item { module: usize, name: String },
 }
 
-/// That the code of one file names what another defines.
+/// A dependency: the code of one file names an item that another defines.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Arrow {
-    /// The file that uses, by its place in [`CrateModules::files`].
+    /// The using file, as an index into [`CrateModules::files`].
     pub from: usize,
-    /// The file that is used.
+    /// The used file.
     pub to: usize,
-    /// What is used; `*` for all that a module has.
+    /// The used name; `*` for all names of a module.
     pub name: String,
 }
 
 impl CrateModules {
-    /// Reads the crate whose root is the file `root`; `read` gives the text of a file, or nothing where none is.
+    /// Reads the crate whose root is the file `root`; `read` returns the text of a file, or `None` if it does
+    /// not exist.
     ///
     /// # Errors
-    /// A sentence, when a module has no file.
+    /// A module has no file.
     pub fn read(root: &Path, read: &dyn Fn(&Path) -> Option<String>) -> Result<Self, String> {
         let mut this = Self { modules: Vec::new(), files: Vec::new() };
         let text = read(root).ok_or_else(|| format!("{}: cannot be read", root.display()))?;
@@ -54,7 +55,7 @@ impl CrateModules {
         &self.files
     }
 
-    /// Adds the module in `file`, whose children stand in `folder`.
+    /// Adds the module in `file`, whose children are in `folder`.
     fn add_file(
         &mut self,
         parent: Option<usize>,
@@ -97,7 +98,7 @@ impl CrateModules {
         Ok(this)
     }
 
-    /// Which file uses what of which other, in order and each once.
+    /// The dependencies, sorted and without duplicates.
     pub fn arrows(&self) -> Vec<Arrow> {
         let mut arrows = Vec::new();
         for (index, module) in self.modules.iter().enumerate() {
@@ -105,7 +106,7 @@ impl CrateModules {
             let walked =
                 module.source.paths.iter().filter_map(|path| self.resolve(index, path, &mut Vec::new()));
             for named in imports.chain(walked) {
-                // A module's name alone is only the way to what is in it.
+                // A module's name alone is no use of its items.
                 let Named::Item { module: to, name } = named else { continue };
                 let (from, to) = (module.file, self.modules[to].file);
                 if from != to {
@@ -118,13 +119,13 @@ impl CrateModules {
         arrows
     }
 
-    /// What an import of a module brings to its own code.
+    /// The names that an import brings into its module.
     fn imported(&self, module: usize, import: &Import) -> Option<Named> {
         let named = self.resolve(module, &import.path, &mut Vec::new())?;
         let defining = match &named {
             Named::Module(defining) | Named::Item { module: defining, .. } => *defining,
         };
-        // Passing on what a module below has is not using it.
+        // A re-export from a child module is no use of it.
         let passed_on = import.public && self.is_below(defining, module);
         match &import.name {
             None if passed_on => None,
@@ -141,7 +142,8 @@ impl CrateModules {
         std::iter::successors(Some(module), |m| self.modules[*m].parent).skip(1).any(|m| m == above)
     }
 
-    /// What `path`, written in `module`, names within this crate. `asked` are the names that wait for this answer.
+    /// What `path`, written in `module`, names within this crate. `asked` are the names that wait for this
+    /// answer.
     fn resolve(
         &self,
         module: usize,
@@ -165,16 +167,17 @@ impl CrateModules {
             match self.find_name(at, name, leads_on, visited) {
                 Some(Named::Module(inner)) => at = inner,
                 Some(item) => return Some(item),
-                // A name that leads to another crate, or a local one.
+                // A name of another crate, or a local one.
                 None if index == 0 && !anchored => return None,
-                // Nothing that is seen here; whatever it is, this module has it.
+                // The name is not resolvable from the text, but belongs to this module.
                 None => return Some(Named::Item { module: at, name: name.clone() }),
             }
         }
         Some(Named::Module(at))
     }
 
-    /// What `name` means within `module`. Where it leads on to another name, a module goes before a function of its name.
+    /// What `name` means within `module`. Where it leads on to another name, a module goes before a function
+    /// of its name.
     fn find_name(
         &self,
         module: usize,

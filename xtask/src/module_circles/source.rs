@@ -1,9 +1,9 @@
-//! What one module says: which modules and items it declares, what it imports, which paths it walks.
+//! The contents of one module: the modules and items it declares, its imports, and the paths in its code.
 
 use super::tokens::{Token, after_brackets};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A module as it is written.
+/// A module's text, parsed.
 #[derive(Debug, Default)]
 pub struct Source {
     /// `mod x;`: modules with files of their own.
@@ -12,29 +12,29 @@ pub struct Source {
     pub inline: BTreeMap<String, Source>,
     /// The names of its own types, functions, constants and macros.
     pub items: BTreeSet<String>,
-    /// Every name of every `use`, wherever in the module it stands.
+    /// Every name of every `use`, anywhere in the module.
     pub imports: Vec<Import>,
-    /// The paths of two names and more in its code.
+    /// The paths of two or more names in its code.
     pub paths: BTreeSet<Vec<String>>,
-    /// The names in its code that no other name and no dot leads to.
+    /// The names in its code that follow neither another name nor a dot.
     pub words: BTreeSet<String>,
 }
 
 /// A name of a `use`.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Import {
-    /// What is imported; of `use a::*`, `a`.
+    /// The imported path; `a` for `use a::*`.
     pub path: Vec<String>,
-    /// What it is called from here on; nothing for `*`.
+    /// Its local name; `None` for `*`.
     pub name: Option<String>,
-    /// `pub use`, to whomever.
+    /// Whether it is re-exported, with any visibility.
     pub public: bool,
 }
 
 const DECLARATIONS: [&str; 10] =
     ["struct", "enum", "union", "trait", "type", "fn", "const", "static", "macro_rules", "mod"];
 
-/// The module that `tokens` are the text of.
+/// Parses the module with these `tokens`.
 pub fn source_of(tokens: &[Token]) -> Source {
     let mut source = Source::default();
     source.read(tokens, true);
@@ -94,7 +94,7 @@ impl Source {
         }
     }
 
-    /// Reads the path that begins at `at`; tells where it ends.
+    /// Reads the path that begins at `at`. Returns its end.
     fn read_path(&mut self, tokens: &[Token], at: usize) -> usize {
         let mut end = at + 1;
         let mut path = vec![tokens[at].word().unwrap_or_default().to_string()];
@@ -113,7 +113,7 @@ impl Source {
     }
 }
 
-/// What stands between the bracket at `open` and the one that closes it, before `end`.
+/// The tokens between the bracket at `open` and its closing bracket, before `end`.
 fn within(tokens: &[Token], open: usize, end: usize) -> &[Token] {
     tokens.get(open + 1..end - 1).unwrap_or_default()
 }
@@ -123,7 +123,7 @@ fn end_of_statement(tokens: &[Token], at: usize) -> usize {
     length.map_or(tokens.len(), |length| at + length)
 }
 
-/// Reads what stands between `use` (or a bracket within) and its end: `a::{b as c, d::*}`.
+/// Reads the tree of a `use`, or of a bracket in it: `a::{b as c, d::*}`.
 fn read_use(tokens: &[Token], before: &[String], public: bool, imports: &mut Vec<Import>) {
     let mut path = before.to_vec();
     let mut at = 0;

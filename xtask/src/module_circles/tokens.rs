@@ -1,6 +1,6 @@
-//! Rust's text as tokens: without comments, without what stands in quotes, and without what only tests see.
+//! Tokenises Rust code, without comments, quoted text and test-only code.
 
-/// A piece of code, as far as names are concerned.
+/// A token, with only the distinctions that names need.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Token {
     /// A name, a keyword or a number.
@@ -14,7 +14,7 @@ pub enum Token {
 }
 
 impl Token {
-    /// The word that this is, if it is one.
+    /// The word, if the token is one.
     pub fn word(&self) -> Option<&str> {
         match self {
             Self::Word(word) => Some(word),
@@ -28,7 +28,7 @@ impl Token {
     }
 }
 
-/// The tokens of `text`. Literals in quotes leave nothing but a mark, so that nobody takes their words for names.
+/// The tokens of `text`. Quoted literals become a single mark, so that their words are not taken for names.
 pub fn tokens_of(text: &str) -> Vec<Token> {
     let text: Vec<char> = text.chars().collect();
     let mut tokens = Vec::new();
@@ -94,7 +94,7 @@ fn end_of_line(text: &[char], at: usize) -> usize {
     at + text[at..].iter().take_while(|c| **c != '\n').count()
 }
 
-/// Behind the comment that opens at `at`; such comments may hold others.
+/// The index after the comment that opens at `at`; block comments nest.
 fn after_comment(text: &[char], mut at: usize) -> usize {
     let mut depth = 0;
     while at < text.len() {
@@ -125,7 +125,7 @@ fn after_raw_quote(text: &[char], mut at: usize, hashes: usize) -> usize {
     at + 1 + hashes
 }
 
-/// Behind the bracket that closes the one at `at`.
+/// The index after the bracket that closes the one at `at`.
 pub fn after_brackets(tokens: &[Token], mut at: usize) -> usize {
     let mut depth = 0;
     while at < tokens.len() {
@@ -142,7 +142,7 @@ pub fn after_brackets(tokens: &[Token], mut at: usize) -> usize {
     at.min(tokens.len())
 }
 
-/// `tokens` without what `#[cfg(test)]` and `#[cfg(all(test, …))]` stand before.
+/// `tokens` without the items under `#[cfg(test)]` and `#[cfg(all(test, …))]`.
 pub fn without_tests(tokens: &[Token]) -> Vec<Token> {
     let mut product_tokens = Vec::with_capacity(tokens.len());
     let mut at = 0;
@@ -174,7 +174,7 @@ const DECLARING: [&str; 14] = [
 ];
 const WITH_SEMICOLON: [&str; 5] = ["const", "let", "static", "type", "use"];
 
-/// Behind the item, field, arm or statement whose attributes begin at `at`.
+/// The index after the item, field, arm or statement whose attributes begin at `at`.
 fn after_item(tokens: &[Token], mut at: usize) -> usize {
     while tokens.get(at) == Some(&Token::Mark('#')) {
         at = after_brackets(tokens, at + 1);

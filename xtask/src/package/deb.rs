@@ -1,4 +1,4 @@
-//! The package for Debian and its kin.
+//! The package for Debian and its derivatives.
 
 use super::layout::PROGRAM;
 use super::release::Release;
@@ -8,7 +8,10 @@ use crate::packages::{TO_RUN, names};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Makes it with Debian's own tools.
+/// Builds the package with Debian's own tools.
+///
+/// # Errors
+/// A file cannot be written, or a tool fails.
 pub fn make(release: &Release, program: &Path) -> Result<PathBuf, Failure> {
     let root = empty_folder(release, "deb")?;
     lay_out(&root.join("usr"), program)?;
@@ -43,7 +46,7 @@ pub fn make(release: &Release, program: &Path) -> Result<PathBuf, Failure> {
     Ok(package)
 }
 
-/// Where Debian looks for licences and changes, in its own forms.
+/// Licences and changelog at Debian's locations and in its formats.
 fn copyright(root: &Path) -> Result<(), Failure> {
     let folder = root.join("usr/share/doc/focus-brush");
     let apache = "/usr/share/common-licenses/Apache-2.0";
@@ -74,7 +77,7 @@ fn copyright(root: &Path) -> Result<(), Failure> {
     execute(Command::new("gzip").args(["--best", "--no-name", "--force"]).arg(&changes))
 }
 
-/// The libraries that the program is linked with, and their least versions.
+/// The libraries that the program is linked with, and their minimum versions.
 fn depends(release: &Release, program: &Path) -> Result<String, Failure> {
     let place = empty_folder(release, "shlibdeps")?;
     write(&place.join("debian/control"), "Source: focus-brush\n\nPackage: focus-brush\nArchitecture: any\n")?;

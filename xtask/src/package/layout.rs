@@ -1,6 +1,6 @@
-//! What is installed, and where: below `/usr`, or below the folder that an archive unpacks to.
+//! The installed files and their locations below `/usr`, or below the folder of an unpacked archive.
 
-/// A file or folder of the repository, and where it goes.
+/// A file or folder of the repository, and its destination.
 #[derive(Clone, Copy, Debug)]
 pub struct Installed {
     pub from: &'static str,
@@ -11,10 +11,10 @@ const fn installed(from: &'static str, to: &'static str) -> Installed {
     Installed { from, to }
 }
 
-/// Where the program goes; everything else is found from there.
+/// Destination of the program, from which it locates everything else.
 pub const PROGRAM: &str = "bin/focus-brush";
 
-/// What the program needs, and what makes a desktop know it.
+/// Files needed by the program, and its integration into the desktop.
 pub const SHARED: &[Installed] = &[
     installed("assets/demo", "share/focus-brush/demo"),
     installed("assets/desktop/focus-brush.desktop", "share/applications/focus-brush.desktop"),

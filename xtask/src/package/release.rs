@@ -1,19 +1,21 @@
-//! What is packaged: a version, as old as its commit.
+//! The packaged release: a version with the time of its commit.
 
 use crate::chore::{Failure, output_of, repository};
 use std::path::PathBuf;
 use std::process::Command;
 
-/// What is packaged.
+/// The packaged release.
 pub struct Release {
     pub version: String,
-    /// Seconds since 1970 that everything in archives is as old as: the commit's.
+    /// Time of the commit, seconds since 1970; all files in archives get it.
     pub time: String,
-    /// Where packages go.
+    /// Folder of the packages.
     pub output: PathBuf,
 }
 
 impl Release {
+    /// # Errors
+    /// Git fails.
     pub fn of_commit() -> Result<Self, Failure> {
         let output = target().join("package");
         std::fs::create_dir_all(&output).map_err(|e| Failure::new(format!("{}: {e}", output.display())))?;
@@ -33,7 +35,7 @@ pub fn git() -> Command {
     command
 }
 
-/// Where cargo builds.
+/// Cargo's target folder.
 pub fn target() -> PathBuf {
     std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| repository().join("target"), PathBuf::from)
 }

@@ -1,4 +1,4 @@
-//! The source archive: this commit, and the crates that it needs, so that it builds without a network.
+//! The source archive: this commit with its dependencies, so that it builds without a network.
 
 use super::release::{Release, git};
 use super::staging::{empty_folder, failed, pack, set_rights, write};
@@ -6,7 +6,10 @@ use crate::chore::{Failure, execute, output_of};
 use std::path::PathBuf;
 use std::process::Command;
 
-/// Makes it of the commit, whatever else lies in the working tree.
+/// Builds the archive from the commit, ignoring other changes in the working tree.
+///
+/// # Errors
+/// A file cannot be written, or git, cargo or tar fails.
 pub fn make(release: &Release) -> Result<PathBuf, Failure> {
     let name = format!("focus-brush-{}-source", release.version);
     let folder = empty_folder(release, &name)?;
@@ -16,7 +19,7 @@ pub fn make(release: &Release) -> Result<PathBuf, Failure> {
     std::fs::remove_file(&tree).map_err(|error| failed(&tree, &error))?;
     let mut vendor = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     vendor.args(["vendor", "--locked", "--versioned-dirs", "vendor"]).current_dir(&folder);
-    // What it prints is what cargo has to be told.
+    // Its output is the configuration that cargo needs.
     let sources = output_of(&mut vendor)?;
     let config = folder.join(".cargo/config.toml");
     let own = std::fs::read_to_string(&config).map_err(|error| failed(&config, &error))?;

@@ -1,4 +1,4 @@
-//! The tree that a package holds, laid out on disk before it is packed.
+//! The file tree of a package, laid out on disk before it is packed.
 
 use super::layout::{Installed, PROGRAM, SHARED};
 use super::release::Release;
@@ -6,7 +6,10 @@ use crate::chore::{Failure, execute, repository};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Makes an empty folder for a package.
+/// Creates an empty folder for a package.
+///
+/// # Errors
+/// The folder cannot be emptied or created.
 pub fn empty_folder(release: &Release, name: &str) -> Result<PathBuf, Failure> {
     let folder = release.output.join("staging").join(name);
     if folder.exists() {
@@ -16,7 +19,10 @@ pub fn empty_folder(release: &Release, name: &str) -> Result<PathBuf, Failure> {
     Ok(folder)
 }
 
-/// Lays out below `root` what is installed, the program without its debug information.
+/// Lays out the installed files below `root`, the program without its debug information.
+///
+/// # Errors
+/// A file cannot be copied, or `strip` fails.
 pub fn lay_out(root: &Path, program: &Path) -> Result<(), Failure> {
     let placed = root.join(PROGRAM);
     copy(program, &placed)?;
@@ -27,7 +33,10 @@ pub fn lay_out(root: &Path, program: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Copies a file, or a folder with all that is in it.
+/// Copies a file, or a folder with its contents.
+///
+/// # Errors
+/// A file cannot be read or written.
 pub fn copy(from: &Path, to: &Path) -> Result<(), Failure> {
     if from.is_dir() {
         let entries = std::fs::read_dir(from).map_err(|error| failed(from, &error))?;
@@ -44,18 +53,27 @@ pub fn copy(from: &Path, to: &Path) -> Result<(), Failure> {
 }
 
 /// Writes a file.
+///
+/// # Errors
+/// The file cannot be written.
 pub fn write(file: &Path, text: &str) -> Result<(), Failure> {
     let folder = file.parent().unwrap_or(file);
     std::fs::create_dir_all(folder).map_err(|error| failed(folder, &error))?;
     std::fs::write(file, text).map_err(|error| failed(file, &error))
 }
 
-/// Sets the rights that files and folders have in packages, whatever they are here.
+/// Sets the permissions that files and folders have in packages, independently of the local ones.
+///
+/// # Errors
+/// `chmod` fails.
 pub fn set_rights(root: &Path) -> Result<(), Failure> {
     execute(Command::new("chmod").args(["-R", "u=rwX,go=rX"]).arg(root))
 }
 
-/// Packs a folder, under its own name.
+/// Packs a folder into an archive, under the folder's name.
+///
+/// # Errors
+/// `tar` fails.
 pub fn pack(release: &Release, folder: &Path, archive: &Path) -> Result<(), Failure> {
     let (above, name) = (folder.parent().unwrap_or(folder), folder.file_name().unwrap_or_default());
     let mut tar = Command::new("tar");
@@ -69,10 +87,11 @@ pub fn pack(release: &Release, folder: &Path, archive: &Path) -> Result<(), Fail
         "--format=gnu",
     ]);
     tar.arg(format!("--mtime=@{}", release.time)).arg("--file").arg(archive).arg("-C").arg(above).arg(name);
-    // Many small files: more than the default does not make them smaller.
+    // For many small files, levels above the default do not improve compression.
     execute(tar.env("XZ_OPT", "-6"))
 }
 
+/// The failure of an operation on `file`.
 pub fn failed(file: &Path, error: &std::io::Error) -> Failure {
     Failure::new(format!("{}: {error}", file.display()))
 }

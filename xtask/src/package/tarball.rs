@@ -1,11 +1,14 @@
-//! The archive that runs from wherever it is unpacked.
+//! The relocatable archive: the program runs from wherever it is unpacked.
 
 use super::release::Release;
 use super::staging::{empty_folder, lay_out, pack, set_rights, write};
 use crate::chore::Failure;
 use std::path::{Path, PathBuf};
 
-/// Makes it.
+/// Builds the archive.
+///
+/// # Errors
+/// A file cannot be written, or `tar` fails.
 pub fn make(release: &Release, program: &Path) -> Result<PathBuf, Failure> {
     let name = format!("focus-brush-{}-linux-{}", release.version, std::env::consts::ARCH);
     let folder = empty_folder(release, &name)?;

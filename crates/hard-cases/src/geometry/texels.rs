@@ -1,10 +1,9 @@
-//! Texels whose centre lies beside their triangle, and paint at a seam.
+//! Texels whose centre lies outside their triangle, and paint at a UV seam.
 
 use crate::case::{Case, Effort, NOT_COMPUTED, Verdict};
-use crate::light_field::offset_of;
-use crate::measure::worst;
-use crate::scenery::{Mesh, scene_of};
-use crate::shot::Shot;
+use crate::support::light_field::offset_of;
+use crate::support::measure::worst;
+use crate::support::shot::Shot;
 use atlas::{Atlas, Density, TexelMap, UnwrapOptions};
 use focus::{Canvas, Channels, FillTarget, Focus, FocusMap, fill};
 use glam::{DVec2, DVec3, Vec2};
@@ -13,38 +12,40 @@ use progress::{Cancelled, Progress};
 use scene::{Scene, SurfaceField, SurfacePoint};
 use std::f64::consts::PI;
 use std::sync::Arc;
+use test_scenes::{Mesh, unlit_scene_of};
 
 pub const CASES: &[Case] = &[
     Case {
         name: "texel centres outside their triangle",
-        reason: "A texel stands for what it covers, to which its centre need not belong: areas of texel ∩ triangle sum to \
-                 the mesh's.",
-        control: "a texel counted where its centre lies in the triangle",
+        reason: "A texel represents the area it covers, which need not contain its centre: the areas of texel \
+                 ∩ triangle sum to that of the mesh.",
+        control: "a texel counted if its centre lies in the triangle",
         check: covered_areas,
     },
     Case {
         name: "t step across a UV seam",
-        reason: "Painted to the seam, each side keeps its value up to it: the gutter repeats its own chart.",
+        reason: "If one side of a seam is painted, each side keeps its value up to the seam: the gutter \
+                 repeats its own chart.",
         control: "the gutter left unpainted",
         check: seam,
     },
     Case {
         name: "t step across a UV seam, in the picture",
-        reason: "Beside the step the sharp half keeps its 1 and the blurred one adds the part of the disc that reaches over: \
-                 radiance is conserved, so a wall of 1 shows 1.5 and 0.5.",
-        control: "the white that blurring a finished picture leaves white",
+        reason: "At the step the sharp half keeps its radiance 1, and the blurred half adds the part of its \
+                 disc that extends over it: radiance is conserved, so a wall of 1 shows 1.5 and 0.5.",
+        control: "the white that blurring a finished picture leaves unchanged",
         check: seam_in_the_picture,
     },
 ];
 
-/// The atlas of a scene; `None` if there is none, which only a cancelled unwrapping gives here.
+/// The atlas of a scene; `None` only if unwrapping is cancelled.
 fn unwrapped(scene: &Scene, side: u32, progress: &dyn Progress) -> Result<Atlas, Cancelled> {
     let options = UnwrapOptions { density: Density::Side(side), ..UnwrapOptions::default() };
     Atlas::unwrap(scene, &options, progress).map_err(|_| Cancelled)
 }
 
 fn covered_areas(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
-    // Thousands of triangles below a texel, a fan of needles, and two without area.
+    // Thousands of triangles smaller than a texel, a fan of needles, and two triangles without area.
     let sphere = Mesh::sphere(DVec3::ZERO, 1.0, effort.choose(60, 24));
     let mut fan = Mesh { positions: vec![DVec3::new(3.0, 0.0, 0.0)], triangles: Vec::new() };
     for k in 0..=200u32 {
@@ -55,7 +56,7 @@ fn covered_areas(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Can
     }
     let nothing = [[DVec3::ONE; 3], [DVec3::ZERO, DVec3::X, DVec3::X * 3.0]].map(Mesh::triangle);
     let meshes = [&sphere, &fan, &nothing[0], &nothing[1]];
-    let scene = scene_of(meshes.map(|mesh| (mesh, [1.0; 3])));
+    let scene = unlit_scene_of(meshes.map(|mesh| (mesh, [1.0; 3])));
     let mesh_area: f64 = (0..scene.triangles.len() as u32).map(|t| scene.area_normal(t).length() / 2.0).sum();
     let (mut right, mut wrong) = (Vec::new(), f64::INFINITY);
     for side in [64, 256] {
@@ -87,7 +88,7 @@ fn centre_sampled_area(atlas: &Atlas, scene: &Scene) -> f64 {
     (0..scene.triangles.len() as u32).map(of_triangle).sum()
 }
 
-/// Two squares that share the edge x = 0 at z = −3, each a chart; the right one can be painted.
+/// Two squares that share the edge x = 0 at z = −3, each a separate chart; the right one can be painted.
 struct Seam {
     scene: Arc<Scene>,
     atlas: Arc<Atlas>,
@@ -100,19 +101,19 @@ impl Seam {
         let squares = [-side.x, 0.0].map(|x| {
             Mesh::rectangle(DVec3::new(x, -side.y / 2.0, -DEPTH), DVec3::X * side.x, DVec3::Y * side.y)
         });
-        let scene = scene_of(squares.iter().map(|mesh| (mesh, [1.0; 3])));
+        let scene = unlit_scene_of(squares.iter().map(|mesh| (mesh, [1.0; 3])));
         let atlas = Arc::new(unwrapped(&scene, 128, progress)?);
         let texels = atlas.texel_map(&scene);
         Ok(Self { scene, atlas, texels })
     }
 
-    /// The gutter texels and what they copy.
+    /// The gutter texels and their sources.
     fn gutters(&self) -> Vec<[[u32; 2]; 2]> {
         let place = |index: u32| [index % self.texels.width, index / self.texels.width];
         self.texels.dilations.iter().map(|d| [place(d.texel), place(d.source)]).collect()
     }
 
-    /// The right square filled with `offset`; `None` if it cannot be.
+    /// The map with the right square filled with `offset`; `None` if that fails.
     fn painted(&self, offset: FocusOffset, gutters: &[[[u32; 2]; 2]]) -> Option<Focus> {
         let mut map = FocusMap::new(self.atlas.width, self.atlas.height, FocusOffset::STANDARD);
         let canvas = Canvas::new(&self.scene, &self.atlas, &self.texels.texels, gutters);
@@ -121,7 +122,7 @@ impl Seam {
     }
 }
 
-/// Of the squares, which the camera of the picture focuses.
+/// Depth of the squares, on which the camera is focused.
 const DEPTH: f64 = 3.0;
 
 fn seam(_: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
@@ -140,7 +141,7 @@ fn seam(_: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
     Ok(Verdict::new(expected, [("error", 0.0)], [error(&seam.gutters())], [error(&[])]))
 }
 
-/// Points of either square on and by its edge at x = 0.
+/// Points of both squares at and near the edge x = 0.
 fn points_at_the_seam(scene: &Scene) -> Vec<SurfacePoint> {
     let mut points = Vec::new();
     for triangle in 0..4 {
@@ -195,9 +196,9 @@ fn seam_in_the_picture(effort: Effort, progress: &dyn Progress) -> Result<Verdic
     Ok(Verdict::new(expected, limits, [worst(splatted), worst(traced)], [wrong, NOT_COMPUTED]))
 }
 
-/// What a pixel from x to x + 1 (px right of the seam) holds of a wall of radiance 1 that is sharp on the left and
-/// blurred by a disc of radius r on the right: [x < 0] + F(x/r), with F(s) = 1/2 + (s·√(1 − s²) + asin s)/π the share
-/// of a disc left of s. The mean over the pixel.
+/// Mean over a pixel from x to x + 1 (px right of the seam) of a wall of radiance 1 that is sharp on the left
+/// and blurred by a disc of radius r on the right: [x < 0] + F(x/r), where F(s) = 1/2 + (s·√(1 − s²) + asin
+/// s)/π is the share of a disc left of s.
 fn step_of_blur(x: f64, radius_px: f64) -> f64 {
     const STEPS: usize = 64;
     let left_of = |s: f64| 0.5 + (s * (1.0 - s * s).sqrt() + s.asin()) / PI;

@@ -1,33 +1,33 @@
-//! What is let through: by Beer's law, through one body within another, and not at all beyond the critical angle.
+//! Transmission: Beer's law, nested bodies, and total reflection beyond the critical angle.
 
 use crate::case::{Case, Effort, NOT_COMPUTED, Verdict};
-use crate::measure::worst;
-use crate::random::Random;
-use crate::scenery::{Mesh, made_of};
+use crate::support::measure::worst;
 use glam::{DVec2, DVec3, Vec3, Vec4};
 use material::{Bsdf, Frame, Interface, Surface};
 use progress::{Cancelled, Progress};
 use scene::{Material, Scalar, SurfacePoint, Volume, Workflow, World};
 use slf::{Transport, TransportOptions};
 use std::sync::Arc;
+use test_scenes::{Mesh, Random, scene_of};
 use trace::{Radiance, Tracer};
 
 pub const CASES: &[Case] = &[
     Case {
         name: "Beer's law through a slab",
-        reason: "A slab without an interface leaves color^(thickness/distance) of the light.",
+        reason: "A slab without an interface transmits color^(thickness/distance) of the light.",
         control: "half the thickness",
         check: beer,
     },
     Case {
         name: "a body within another of its kind",
-        reason: "Between equal media nothing is mirrored: the inner body takes its own colour and nothing else.",
-        control: "an inner body of another index of refraction",
+        reason: "Between equal media nothing is reflected: the inner body only absorbs its own colour.",
+        control: "an inner body with another index of refraction",
         check: nested,
     },
     Case {
         name: "total reflection",
-        reason: "Beyond the critical angle all light stays within: every direction is the mirror's, with weight 1.",
+        reason: "Beyond the critical angle all light stays inside: every sampled direction is the mirror \
+                 direction, with weight 1.",
         control: "an eye just within the critical angle",
         check: total_reflection,
     },
@@ -46,12 +46,12 @@ fn glass(ior: f32, color: Vec3, distance: f64) -> Material {
     }
 }
 
-/// What comes straight up from a glowing floor through slabs that lie over it: bottom, top and material of each, the one on top
-/// first.
+/// Radiance straight up from a glowing floor through the slabs above it: bottom, top and material of each, the
+/// topmost first.
 fn through(slabs: &[(f64, f64, Material)], paths: u32) -> Vec3 {
     let flat = |height: f64| DVec3::new(9.0, height, 9.0);
     let bodies = slabs.iter().enumerate().map(|(k, (bottom, top, material))| {
-        // None ends where another does.
+        // No two slabs end at the same place.
         let inset = DVec3::new(1.0, 0.0, 1.0) * k as f64;
         (
             Mesh::cuboid(flat(*bottom) * DVec3::new(-1.0, 1.0, -1.0) + inset, flat(*top) - inset),
@@ -60,10 +60,10 @@ fn through(slabs: &[(f64, f64, Material)], paths: u32) -> Vec3 {
     });
     let glow = Material { emissive: Vec3::ONE, base_color: Vec4::ZERO, ..Material::lambertian_white() };
     let floor = Mesh::rectangle(DVec3::new(-50.0, 0.0, 50.0), DVec3::X * 100.0, DVec3::Z * -100.0);
-    let scene = made_of(bodies.chain([(floor, glow)]));
+    let scene = scene_of(bodies.chain([(floor, glow)]));
     let options = TransportOptions { paths, ..TransportOptions::default() };
     let transport = Transport::new(Arc::new(Tracer::new(scene)), World::uniform(Vec3::ZERO), options);
-    // The middle of the upper face of the first body.
+    // The centre of the upper face of the first body.
     let point = SurfacePoint { triangle: 0, barycentric: DVec2::new(0.0, 0.5) };
     transport.total_outgoing(point, DVec3::new(0.0, 400.0, 0.0))
 }
@@ -81,7 +81,8 @@ fn beer(_: Effort, _: &dyn Progress) -> Result<Verdict, Cancelled> {
 
 fn nested(effort: Effort, _: &dyn Progress) -> Result<Verdict, Cancelled> {
     let paths = effort.choose(1 << 15, 1 << 13);
-    // Straight on, both outer faces let (1 − r)/(1 + r) through, r = 0.04; red is lost over half a unit of the inner body.
+    // At normal incidence both outer faces transmit (1 − r)/(1 + r), r = 0.04; red is absorbed over half a
+    // unit of the inner body.
     let off = |inner: f32| {
         let outer = glass(1.5, Vec3::ONE, 1.0);
         let transmitted =
@@ -97,7 +98,7 @@ fn nested(effort: Effort, _: &dyn Progress) -> Result<Verdict, Cancelled> {
 fn total_reflection(effort: Effort, _: &dyn Progress) -> Result<Verdict, Cancelled> {
     let surface =
         Surface { metallic: 0.0, roughness: 0.0, transmission: 1.0, is_thin: false, ..Surface::default() };
-    // From within glass of 1.5: sin of the critical angle is 2/3.
+    // Inside glass with an index of 1.5: the sine of the critical angle is 2/3.
     let interface = Interface::between(1.5, 1.0);
     let bsdf = Bsdf::new(&surface, Frame::flat(DVec3::Z), &interface);
     let count = effort.choose(20_000, 2_000);

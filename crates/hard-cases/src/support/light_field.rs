@@ -1,15 +1,15 @@
-//! Light fields made sample by sample: background samples, which the focus at infinity places.
+//! Synthetic light fields of background samples, which are displaced by the focus at infinity.
 
-use crate::scenery::scene_of;
-use crate::shot::picture_of;
+use super::shot::picture_of;
 use focus::Focus;
 use glam::{DVec2, Vec2, Vec3};
 use lens::{Camera, FocusOffset, Picture};
 use progress::{Cancelled, Progress};
 use salf::{Salf, Sample, Visibility};
+use test_scenes::unlit_scene_of;
 
-/// A sample of the background at a pixel position, a square of the given half side, px, that sees the whole aperture.
-/// Its weight is its area.
+/// A background sample at a pixel position: a square with the given half side, px, that sees the whole
+/// aperture. Its weight is its area.
 pub fn star(center: DVec2, half_px: f64, radiance: f32) -> Sample {
     Sample {
         center: center.as_vec2(),
@@ -29,14 +29,17 @@ pub fn offset_of(kappa: f64, camera: &Camera) -> FocusOffset {
     FocusOffset::new(1.0 + kappa * camera.optics().image_distance, 1.0)
 }
 
-/// The picture of such samples under one focus.
+/// The picture of such samples with a constant focus.
+///
+/// # Errors
+/// [`Cancelled`] if `progress` is cancelled.
 pub fn picture_of_stars(
     camera: &Camera,
     samples: Vec<Sample>,
     offset: FocusOffset,
     progress: &dyn Progress,
 ) -> Result<Picture, Cancelled> {
-    let focus = Focus::constant(scene_of([]), offset);
+    let focus = Focus::constant(unlit_scene_of([]), offset);
     picture_of(
         Salf {
             camera: camera.clone(),

@@ -1,40 +1,40 @@
-//! The very bright beside the very dim, very many samples in one place, and blur wider than the picture.
+//! Dynamic range: very bright beside very dim, very many samples on one pixel, and blur wider than the picture.
 
 use crate::case::{Case, Effort, NOT_COMPUTED, Verdict};
-use crate::light_field::{offset_of, picture_of_stars, star};
-use crate::measure::{energy, farthest_from, worst};
-use crate::random::Random;
-use crate::scenery::{Mesh, scene_of};
-use crate::shot::Shot;
+use crate::support::light_field::{offset_of, picture_of_stars, star};
+use crate::support::measure::{energy, farthest_from, worst};
+use crate::support::shot::Shot;
 use glam::{DVec2, DVec3};
 use lens::{Camera, Exposure, FocusOffset, Picture};
 use progress::{Cancelled, Progress};
 use std::f64::consts::{PI, SQRT_2};
+use test_scenes::{Mesh, Random, unlit_scene_of};
 
 pub const CASES: &[Case] = &[
     Case {
         name: "1e6 fireflies next to 1e-3 walls",
-        reason: "Sums are integers: pixels that the firefly's light does not reach have the same bits without it.",
+        reason: "Sums are integers: pixels that the light of the firefly does not reach have the same bits \
+                 without it.",
         control: "running sums in f32",
         check: fireflies,
     },
     Case {
         name: "1e4 dim samples on one pixel",
-        reason: "Each is rounded up or down to a quantum in each of its pixels, so a quantum (2⁻²²) a sample and pixel is \
-                 the most that can be lost.",
+        reason: "Each contribution to a pixel is rounded up or down to a quantum, so that at most one quantum \
+                 (2⁻²²) per sample and pixel is lost.",
         control: "quanta of 2⁻¹²",
         check: dim_samples,
     },
     Case {
         name: "circle of confusion wider than the picture",
-        reason: "Light from outside the frame makes up for what leaves it, and normalised a white scene stays white \
-                 however wide the blur.",
+        reason: "Light from outside the frame replaces the light that leaves it, and a normalised white scene \
+                 stays white, however wide the blur.",
         control: "no light from outside the frame",
         check: wide_blur,
     },
 ];
 
-/// The step of the splat's sums.
+/// Quantum of the splat's integer sums.
 const STEP: f64 = splat::QUANTUM;
 
 const FIREFLY: f32 = 1e6;
@@ -58,7 +58,7 @@ fn fireflies(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancell
     };
     let (mut splatted, mut traced) = (Vec::new(), Vec::new());
     for radius in [-9.0, 0.0, 0.4, 9.0] {
-        // A splat: a pixel of the wall is the firefly.
+        // Splatted: a pixel of the wall is the firefly.
         let stars = |firefly: f32| {
             let radiance = |k: u32| {
                 let center = DVec2::new(f64::from(k % 72) + 0.5, f64::from(k / 72) + 0.5);
@@ -72,19 +72,19 @@ fn fireflies(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancell
             )
         };
         splatted.push(largest_beyond(&stars(FIREFLY)?, &stars(WALL)?, f64::abs(radius)));
-        // A ray: a lamp of a pixel on the wall.
+        // Traced: a lamp with the size of a pixel on the wall.
         let z = 3.0;
         let px = z * camera.optics().tan_half_yfov / camera.optics().half_height_px;
         let lamp = Mesh::rectangle(DVec3::new(0.0, -px, -z), DVec3::X * px, DVec3::Y * px);
         let wall = Mesh::wall(z, 5.0);
         let shot =
-            |light: f32| Shot::new(scene_of([(&lamp, [light; 3]), (&wall, [WALL; 3])]), camera.clone());
+            |light: f32| Shot::new(unlit_scene_of([(&lamp, [light; 3]), (&wall, [WALL; 3])]), camera.clone());
         let offset = offset_of(radius / per_kappa, &camera);
         let samples = effort.choose(16, 4);
         let with = shot(FIREFLY).truth(offset, samples, progress)?;
         traced.push(largest_beyond(&with, &shot(WALL).truth(offset, samples, progress)?, f64::abs(radius)));
     }
-    // A row of the wall with a firefly spread over 18² px in its middle, as differences summed in f32.
+    // A row of the wall with a firefly spread over 18² px in its centre, as running sums of differences in f32.
     let spread = FIREFLY / (18.0 * 18.0);
     let differences = [WALL, spread, -spread];
     let after = differences.iter().sum::<f32>();
@@ -111,7 +111,7 @@ fn dim_samples(_: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled>
         let samples = places.iter().map(|&place| star(place, half, 1.0)).collect();
         let offset = offset_of(radius / camera.optics().splat_radius_px(1.0), &camera);
         errors.push(energy(&picture_of_stars(&camera, samples, offset, progress)?) - 1.0);
-        // The disc, grown by a pixel's diagonal, holds all the pixels that it touches.
+        // The disc, enlarged by the diagonal of a pixel, contains all pixels that it touches.
         let pixels = PI * (radius + SQRT_2).powi(2);
         shares.push(errors[errors.len() - 1] / (STEP * pixels * COUNT as f64));
     }
@@ -126,7 +126,7 @@ fn dim_samples(_: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled>
 fn wide_blur(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
     let (width, height) = effort.choose((40, 30), (20, 15));
     let camera = camera(width, height);
-    let shot = Shot::new(scene_of([(&Mesh::wall(3.0, 200.0), [1.0; 3])]), camera.clone());
+    let shot = Shot::new(unlit_scene_of([(&Mesh::wall(3.0, 200.0), [1.0; 3])]), camera.clone());
     let offset = |heights: f64| {
         let kappa = camera.optics().kappa_for_circle_px(heights * f64::from(height)).unwrap_or(0.0);
         offset_of(kappa, &camera)
@@ -142,10 +142,10 @@ fn wide_blur(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancell
         let white = picture.exposed(Exposure::Normalise);
         normalised.push(farthest_from(&Picture { radiance: white, ..picture }, 1.0));
     }
-    // Baked for the unpainted picture alone.
+    // Baked for the unpainted picture only.
     let framed = shot.salf(FocusOffset::SHARP, progress)?;
     let wide = shot.focus(offset(2.5));
-    let without = farthest_from(&crate::shot::picture_of(framed, &wide, progress)?, 1.0);
+    let without = farthest_from(&crate::support::shot::picture_of(framed, &wide, progress)?, 1.0);
     let limits = [("splat", 1e-3), ("truth", 1e-3), ("normalised", 1e-5)];
     let expected = "1 ± 0.1 % up to 2.5 picture heights; normalised 1 at 40";
     let right = [worst(splatted), worst(traced), worst(normalised)];

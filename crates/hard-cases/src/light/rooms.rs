@@ -1,45 +1,48 @@
-//! Light that goes to and fro between walls, what keeps it out, and a sky with a small sun.
+//! Interreflection in rooms, light leaks, and a sky with a small sun.
 
 use crate::case::{Case, Effort, Verdict};
-use crate::measure::worst;
-use crate::random::spread;
-use crate::scenery::{Mesh, made_of};
+use crate::support::measure::worst;
 use glam::{DVec2, DVec3, Vec3};
 use progress::{Cancelled, Progress};
 use scene::{Environment, EnvironmentMap, Light, LightKind, Material, Scene, SurfacePoint, World};
 use slf::{Irradiance, IrradianceOptions, Transport, TransportOptions};
 use std::f64::consts::PI;
 use std::sync::Arc;
+use test_scenes::{Mesh, scene_of, spread};
 use trace::{Radiance, Tracer};
 
 pub const CASES: &[Case] = &[
     Case {
         name: "a closed room that glows",
-        reason: "In a closed room whose walls glow alike, light is the sum of a geometric series, L/(1 − ρ), whatever its shape.",
+        reason: "In a closed room with uniformly emitting walls the radiance is the sum of a geometric \
+                 series, L/(1 − ρ), for any shape.",
         control: "two bounces",
         check: closed_room,
     },
     Case {
         name: "a closed box lit from without",
-        reason: "No light comes through walls: where light is kept, no patch of one side stands for the other.",
+        reason: "No light passes through walls: no patch of the irradiance cache represents both sides.",
         control: "a box without its floor",
         check: closed_box,
     },
     Case {
         name: "kept light has no borders",
-        reason: "What is kept is told from several patches around a place, so it changes smoothly along a wall and over its bends.",
-        control: "paths from each point by itself",
+        reason: "The cached irradiance is interpolated from several patches around a point, so that it varies \
+                 smoothly along walls and across edges.",
+        control: "independent paths from each point",
         check: borders,
     },
     Case {
         name: "refined light has no floor",
-        reason: "What is kept is a control variate of the paths that refine it: whatever it is off, their mean is that of whole paths.",
-        control: "as many paths that trust what is kept",
+        reason: "The cached irradiance is a control variate of the paths that refine it: whatever its error, \
+                 the mean is that of full paths.",
+        control: "as many paths that rely on the cache",
         check: refined,
     },
     Case {
         name: "a sun of five texels",
-        reason: "A sun of 5 texels among 131,072 is drawn as often as it matters: it neither vanishes nor sparkles.",
+        reason: "A sun of 5 texels among 131,072 is sampled in proportion to its importance: it neither \
+                 vanishes nor causes fireflies.",
         control: "the sky without it",
         check: sun,
     },
@@ -64,7 +67,7 @@ fn with_cached_irradiance(
         .map(|irradiance| transport.with_irradiance(Arc::new(irradiance)))
 }
 
-/// The mean of what leaves points all over some triangles toward an eye.
+/// Mean outgoing radiance toward an eye over points of some triangles.
 fn mean(transport: &Transport, eye: DVec3, triangles: std::ops::Range<u32>) -> f64 {
     let points = triangles.flat_map(|triangle| {
         (0..64).map(move |k| {
@@ -83,7 +86,7 @@ fn closed_room(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cance
     let mut errors = [Vec::new(), Vec::new(), Vec::new()];
     for (albedo, glow) in [(0.5f32, 1.0f32), (0.8, 0.25)] {
         let wall = Material { emissive: Vec3::splat(glow), ..lambert(albedo) };
-        let scene = made_of([(&room, wall)]);
+        let scene = scene_of([(&room, wall)]);
         let expected = f64::from(glow / (1.0 - albedo));
         let world = World::uniform(Vec3::ZERO);
         let off = |transport: &Transport| mean(transport, eye, 0..12) / expected - 1.0;
@@ -106,20 +109,21 @@ fn closed_box(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancel
     let within = Mesh::cuboid(-DVec3::ONE, DVec3::ONE).turned();
     let without = Mesh::cuboid(DVec3::splat(-1.02), DVec3::splat(1.02));
     let sky = World::uniform(Vec3::splat(0.5));
-    let scene = made_of([(&within, lambert(0.8)), (&without, lambert(0.8))]);
+    let scene = scene_of([(&within, lambert(0.8)), (&without, lambert(0.8))]);
     let closed = with_cached_irradiance(transport(scene, sky.clone(), 4), effort, progress)?;
     let outside = mean(&closed, DVec3::splat(9.0), 12..24);
     let inside = mean(&closed, DVec3::ZERO, 0..12) / outside;
     let mut open = within;
     open.triangles.truncate(10);
-    let open = with_cached_irradiance(transport(made_of([(&open, lambert(0.8))]), sky, 4), effort, progress)?;
+    let open =
+        with_cached_irradiance(transport(scene_of([(&open, lambert(0.8))]), sky, 4), effort, progress)?;
     let control = mean(&open, DVec3::ZERO, 0..10) / outside;
     Ok(Verdict::new("dark to 0.1 % of its outside", [("inside", 1e-3)], [inside], [control]))
 }
 
 fn borders(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
     let room = Mesh::cuboid(DVec3::ZERO, DVec3::new(2.0, 1.0, 1.5)).turned();
-    let mut scene = (*made_of([(&room, lambert(0.7))])).clone();
+    let mut scene = (*scene_of([(&room, lambert(0.7))])).clone();
     scene.lights.push(Light {
         name: String::new(),
         kind: LightKind::Point,
@@ -130,7 +134,7 @@ fn borders(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled
     });
     let scene = Arc::new(scene);
     let count = effort.choose(4000, 1000);
-    // Along both triangles of each wall, a little off their common side.
+    // Along both triangles of each wall, close to their common side.
     let step = |transport: &Transport, count: u32| {
         let along = |triangle: u32| {
             let at = |k: u32| SurfacePoint {
@@ -155,9 +159,9 @@ fn refined(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled
     let block = Mesh::cuboid(DVec3::new(0.5, 0.0, 0.5), DVec3::new(0.9, 0.6, 0.9));
     let lamp = Mesh::cuboid(DVec3::new(1.3, 0.7, 0.6), DVec3::new(1.5, 0.8, 0.8));
     let glow = Material { emissive: Vec3::splat(8.0), ..lambert(0.0) };
-    let scene = made_of([(&room, lambert(0.7)), (&block, lambert(0.6)), (&lamp, glow)]);
+    let scene = scene_of([(&room, lambert(0.7)), (&block, lambert(0.6)), (&lamp, glow)]);
     let dark = World::uniform(Vec3::ZERO);
-    // So few patches that they are far off where surfaces meet.
+    // So few patches that the error is large where surfaces meet.
     let options = IrradianceOptions { patches: 24, rays: 64 };
     let irradiance = Irradiance::solve(&transport(scene.clone(), dark.clone(), 1), options, progress)?;
     let irradiance = Arc::new(irradiance);
@@ -195,8 +199,8 @@ fn sun(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
         World { environment, ..World::uniform(Vec3::ONE) }
     };
     let floor = Mesh::rectangle(DVec3::new(-1.0, 0.0, 1.0), DVec3::X * 2.0, DVec3::Z * -2.0);
-    let scene = made_of([(&floor, lambert(1.0))]);
-    // Texels of the map are mixed bilinearly, which moves no light to speak of at this height: 5 of them, at their latitude.
+    let scene = scene_of([(&floor, lambert(1.0))]);
+    // Bilinear interpolation of the map displaces a negligible amount of light at this latitude: 5 texels.
     let polar = (row as f64 + 0.5) / f64::from(SIZE[1]) * PI;
     let solid_angle = 5.0 * (PI / f64::from(SIZE[1])).powi(2) * polar.sin();
     let expected = f64::from(dim) + f64::from(glare - dim) * solid_angle * polar.cos() / PI;

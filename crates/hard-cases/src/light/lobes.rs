@@ -1,35 +1,36 @@
-//! How a surface scatters light: all that comes goes, both ways alike, and as densely as it says.
+//! Scattering at surfaces: energy, reciprocity, and sampling densities.
 
 use crate::case::{Case, Effort, Verdict};
-use crate::measure::worst;
-use crate::random::Random;
+use crate::support::measure::worst;
 use glam::DVec3;
 use material::{Bsdf, Clearcoat, Film, Frame, Interface, Scattering, Sheen, Surface};
 use progress::{Cancelled, Progress};
 use std::f64::consts::{PI, TAU};
+use test_scenes::Random;
 
 pub const CASES: &[Case] = &[
     Case {
         name: "furnace of metal and plastic",
-        reason: "What meets all light and absorbs none is as bright as what is around it, however rough, from any direction.",
-        control: "light that meets facets more than once left out",
+        reason: "A surface that reflects all light and absorbs none is as bright as its surroundings, at any \
+                 roughness, from any direction.",
+        control: "light scattered by facets more than once left out",
         check: white_furnace,
     },
     Case {
         name: "furnace of a ball of rough glass",
-        reason: "A ball of clear glass in white light is white, after up to 64 bounces within.",
-        control: "light that meets facets more than once left out",
+        reason: "A ball of clear glass in white light is white, after up to 64 bounces inside.",
+        control: "light scattered by facets more than once left out",
         check: ball,
     },
     Case {
         name: "reciprocity",
-        reason: "Light goes both ways alike: f(o, i) = f(i, o), across an interface f/n².",
-        control: "a ground mixed beneath its reflection by the eye's angle alone",
+        reason: "Scattering is reciprocal: f(o, i) = f(i, o), and f/n² across an interface.",
+        control: "a base layer blended with the reflection above it by the angle of the eye alone",
         check: reciprocity,
     },
     Case {
         name: "lobes χ²",
-        reason: "Directions are drawn as their density says, in 576 cells of the sphere.",
+        reason: "Directions are sampled with their stated density, tested in 576 cells of the sphere.",
         control: "the density times z + 1",
         check: densities,
     },
@@ -49,7 +50,7 @@ fn glass(roughness: f64) -> Surface {
     Surface { transmission: 1.0, is_thin: false, ..plastic(roughness) }
 }
 
-/// A direction by the cosine to z and the azimuth.
+/// The direction with the given cosine to z and azimuth.
 fn toward(cos: f64, azimuth: f64) -> DVec3 {
     let flat = (1.0 - cos * cos).max(0.0).sqrt();
     DVec3::new(flat * azimuth.cos(), flat * azimuth.sin(), cos)
@@ -75,11 +76,11 @@ fn every() -> Vec<Surface> {
     ]
 }
 
-/// How far from 1 the mean of what is sent is, of light 1 from everywhere.
+/// Deviation from 1 of the mean outgoing radiance under radiance 1 from all directions.
 fn furnace(surface: &Surface, cos: f64, count: u32) -> f64 {
     let interface = Interface::from_ior(surface.ior);
     let bsdf = Bsdf::new(surface, Frame::flat(DVec3::Z), &interface);
-    // Roberts's sequence in three dimensions: it covers the cube far more evenly than chance does.
+    // Roberts's sequence in three dimensions, which covers the cube more evenly than random numbers.
     const STEP: DVec3 = DVec3::new(0.819_172_513_396_164_4, 0.671_043_606_703_789_3, 0.549_700_477_901_970_3);
     let place = |k: u32| (STEP * f64::from(k) + 0.5).fract().to_array();
     let sent = (0..count).filter_map(|k| bsdf.sample(toward(cos, 0.3), place(k)));
@@ -110,7 +111,7 @@ fn ball(effort: Effort, _: &dyn Progress) -> Result<Verdict, Cancelled> {
         let mut random = Random(7);
         let mut sum = 0.0;
         for _ in 0..count {
-            // A unit ball; the eye looks along −x at a place of its disc.
+            // A unit ball; the eye looks along −x at a point of its disc.
             let [a, b, _] = random.three();
             let (r, angle) = (a.sqrt() * 0.99, b * TAU);
             let (y, z) = (r * angle.cos(), r * angle.sin());
@@ -124,7 +125,7 @@ fn ball(effort: Effort, _: &dyn Progress) -> Result<Verdict, Cancelled> {
                     sum += carried;
                     break;
                 }
-                // Through the ball to its other side; rounding must not lead away from its surface.
+                // Through the ball to the other side; rounding must not accumulate away from its surface.
                 place += scattered.incident * (-2.0 * place.dot(scattered.incident));
                 place = place.normalize();
                 outgoing = -scattered.incident;
@@ -167,7 +168,7 @@ fn reciprocity(effort: Effort, _: &dyn Progress) -> Result<Verdict, Cancelled> {
     Ok(Verdict::new(expected, [("relative difference", 1e-4)], [right], [worst_of(&mixed, None)]))
 }
 
-/// Bands of z and sectors of azimuth that directions are counted in.
+/// Bands in z and sectors in azimuth of the cells in which directions are counted.
 const SIDE: usize = 24;
 
 fn densities(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
@@ -187,7 +188,7 @@ fn densities(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancell
     Ok(Verdict::new(expected, [("deviations", 5.0)], [worst(right)], [wrong]))
 }
 
-/// χ² over its degrees of freedom, in standard deviations: of the density as it is, and tilted.
+/// Deviation of χ² from its degrees of freedom in standard deviations, for the true density and a tilted one.
 fn deviations_of(surface: &Surface, cos: f64, count: u32) -> [f64; 2] {
     let interface = Interface::from_ior(surface.ior);
     let bsdf = Bsdf::new(surface, Frame::flat(DVec3::Z), &interface);
@@ -209,7 +210,7 @@ fn deviations_of(surface: &Surface, cos: f64, count: u32) -> [f64; 2] {
         };
         (0..n * n).map(place).sum::<f64>() / (n * n) as f64 * 4.0 * PI / (SIDE * SIDE) as f64
     };
-    // Where much falls, it is looked at closely.
+    // Finer quadrature where the density is high.
     let cell =
         |cell: usize| Some(mean(cell, 12)).filter(|&share| share <= 2e-3).unwrap_or_else(|| mean(cell, 56));
     let expected: Vec<f64> = (0..SIDE * SIDE).map(cell).collect();
@@ -222,7 +223,7 @@ fn deviations_of(surface: &Surface, cos: f64, count: u32) -> [f64; 2] {
             if expected < 10.0 {
                 (rest, rest_expected) = (rest + observed, rest_expected + expected);
             } else {
-                // The cell's own integral is known to a fifth of a percent only.
+                // The integral of a cell is accurate to only a fifth of a percent.
                 chi2 += (observed - expected).powi(2) / (expected + (2e-3 * expected).powi(2));
                 cells += 1.0;
             }

@@ -1,26 +1,26 @@
-//! What is measured on pictures.
+//! Measurements on pictures.
 
 use lens::Picture;
 
-/// The largest of some magnitudes; NaN if any of them is.
+/// The largest magnitude; NaN if any is NaN.
 pub fn worst(magnitudes: impl IntoIterator<Item = f64>) -> f64 {
     magnitudes.into_iter().fold(0.0, |most: f64, value| {
         if most.is_nan() || value.is_nan() { f64::NAN } else { most.max(value.abs()) }
     })
 }
 
-/// How many of a picture's numbers are NaN, infinite or below 0.
+/// Number of values of a picture that are NaN, infinite or negative.
 pub fn senseless(picture: &Picture) -> f64 {
     let numbers = picture.radiance.iter().flatten().chain(&picture.coverage);
     numbers.filter(|value| !(value.is_finite() && **value >= 0.0)).count() as f64
 }
 
-/// The largest distance of any radiance (conserved) from `value`.
+/// The largest difference of any conserved radiance from `value`.
 pub fn farthest_from(picture: &Picture, value: f64) -> f64 {
     worst(picture.radiance.iter().flatten().map(|&c| f64::from(c) - value))
 }
 
-/// The largest difference between two pictures, radiance and coverage.
+/// The largest difference between two pictures, in radiance and coverage.
 pub fn largest_difference(a: &Picture, b: &Picture) -> f64 {
     let numbers = |p: &Picture| {
         p.radiance.iter().flatten().chain(&p.coverage).map(|&c| f64::from(c)).collect::<Vec<_>>()
@@ -35,12 +35,12 @@ pub fn rms_difference(a: &Picture, b: &Picture) -> f64 {
     (squares / (3.0 * a.radiance.len() as f64)).sqrt()
 }
 
-/// The sum of all pixels, green.
+/// Sum of the green channel over all pixels.
 pub fn energy(picture: &Picture) -> f64 {
     energies(picture)[1]
 }
 
-/// The sum of all pixels, colour by colour.
+/// Sums of the channels over all pixels.
 pub fn energies(picture: &Picture) -> [f64; 3] {
     [0, 1, 2].map(|c| picture.radiance.iter().map(|rgb| f64::from(rgb[c])).sum())
 }

@@ -1,34 +1,34 @@
-//! Closed meshes and close shells.
+//! Watertightness of closed meshes, and occlusion between close shells.
 
 use crate::case::{Case, Effort, NOT_COMPUTED, Verdict};
-use crate::measure::worst;
-use crate::random::Random;
-use crate::scenery::{Mesh, scene_of};
-use crate::shot::Shot;
+use crate::support::measure::worst;
+use crate::support::shot::Shot;
 use glam::DVec3;
 use lens::{Camera, FocusOffset, Picture};
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;
 use scene::{Scene, SurfacePoint};
 use std::sync::atomic::{AtomicU64, Ordering};
+use test_scenes::{Mesh, Random, unlit_scene_of};
 use trace::{Ray, Tracer};
 
 pub const CASES: &[Case] = &[
     Case {
         name: "watertight closed meshes",
-        reason: "A ray from inside a closed mesh hits it, through every edge and vertex, near the origin and far from it.",
+        reason: "A ray from inside a closed mesh hits it, also through edges and vertices, near the origin \
+                 and far from it.",
         control: "Möller and Trumbore's test in f32, triangle by triangle",
         check: closed_meshes,
     },
     Case {
         name: "shells 4e-5 apart at distance 1",
-        reason: "The nearer shell hides the farther one from every point of the aperture.",
-        control: "occlusion looked for from 1e-4 off the surface on",
+        reason: "The nearer shell occludes the farther one from every point of the aperture.",
+        control: "occlusion rays that start 1e-4 off the surface",
         check: close_shells,
     },
 ];
 
-/// Rays of one piece of parallel work.
+/// Rays per parallel task.
 const CHUNK: u32 = 20_000;
 
 fn closed_meshes(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
@@ -36,7 +36,7 @@ fn closed_meshes(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Can
     let total = effort.choose(10_000_000, 200_000);
     let (mut leaks, mut naive_leaks) = (0, 0);
     for center in places {
-        let scene = scene_of([(&Mesh::sphere(center, 1.0, 24), [1.0; 3])]);
+        let scene = unlit_scene_of([(&Mesh::sphere(center, 1.0, 24), [1.0; 3])]);
         let tracer = Tracer::new(scene.clone());
         let chunks = total / CHUNK / places.len() as u32;
         let of_chunk = |chunk: u32| -> Result<u64, Cancelled> {
@@ -57,7 +57,7 @@ fn closed_meshes(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Can
     Ok(Verdict::new(expected, [("leaks", 0.0)], [leaks as f64], [naive_leaks as f64]))
 }
 
-/// Rays from inside a sphere about `center` at random edges and vertices of it.
+/// Rays from inside a sphere around `center` to random points on its edges and vertices.
 fn aimed_rays(scene: &Scene, center: DVec3, mut random: Random, count: u32) -> impl Iterator<Item = Ray> {
     (0..count).map(move |_| {
         let triangle = (random.unit() * scene.triangles.len() as f64) as u32;
@@ -83,13 +83,13 @@ fn is_hit_in_f32(scene: &Scene, ray: &Ray) -> bool {
 }
 
 fn close_shells(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
-    // Seen: white before red; the camera at distance 1.
+    // In pictures: a white shell in front of a red one, with the camera at distance 1.
     let (width, height) = effort.choose((48, 36), (24, 18));
     let camera =
         Camera { width, height, yfov: 0.7, aperture_radius: 0.1, focus_distance: 2.0, ..Camera::default() };
     let center = DVec3::new(0.0, 0.0, -2.0);
     let [near, far] = [1.0, 1.0 - 4e-5].map(|radius| Mesh::sphere(center, radius, 48));
-    let scene = scene_of([(&far, [1.0, 0.0, 0.0]), (&near, [0.0, 1.0, 0.0])]);
+    let scene = unlit_scene_of([(&far, [1.0, 0.0, 0.0]), (&near, [0.0, 1.0, 0.0])]);
     let shot = Shot::new(scene.clone(), camera);
     let red = |picture: Picture| worst(picture.radiance.iter().map(|rgb| f64::from(rgb[0])));
     let offset = FocusOffset::new(0.99, 1.0);
@@ -108,7 +108,8 @@ fn close_shells(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Canc
         let ray = Ray { origin, direction, t_min: 1e-4, t_max: f64::INFINITY, skip: None };
         visible_with_offset += u32::from(!shot.tracer.any_hit(&ray));
     }
-    let expected = "nothing of the farther shell in any picture; every point of it occluded from every direction outside";
+    let expected = "nothing of the farther shell in any picture; every point of it occluded from every \
+                    direction outside";
     let limits = [("seen", 0.0), ("radiance", 0.0)];
     Ok(Verdict::new(
         expected,

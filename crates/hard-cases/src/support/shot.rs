@@ -1,4 +1,4 @@
-//! A scene before a camera, rendered by the splat and by the ground truth.
+//! A scene with a camera, rendered by the splat and by the ground truth.
 
 use focus::Focus;
 use lens::{Camera, FocusOffset, Picture};
@@ -19,6 +19,7 @@ pub struct Shot {
 }
 
 impl Shot {
+    /// A shot of `scene` with `camera`.
     pub fn new(scene: Arc<Scene>, camera: Camera) -> Self {
         let tracer = Arc::new(Tracer::new(scene));
         let background = camera.background.map(|background| glam::DVec3::from(background).as_vec3());
@@ -27,32 +28,44 @@ impl Shot {
         Self { tracer, camera, radiance }
     }
 
-    /// The same scene before another camera.
+    /// The same scene with another camera.
     pub fn with_camera(&self, camera: Camera) -> Self {
         Self { tracer: self.tracer.clone(), camera, radiance: self.radiance.clone() }
     }
 
-    /// One focus for everything.
+    /// A constant focus.
     pub fn focus(&self, offset: FocusOffset) -> Focus {
         Focus::constant(self.tracer.scene().clone(), offset)
     }
 
-    /// The light field, sampled as far outside the frame as `offset` needs.
+    /// The light field, with the margin that `offset` needs.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if `progress` is cancelled.
     pub fn salf(&self, offset: FocusOffset, progress: &dyn Progress) -> Result<Salf, Cancelled> {
         self.salf_for(&self.focus(offset), progress)
     }
 
     /// The splatted picture.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if `progress` is cancelled.
     pub fn splat(&self, offset: FocusOffset, progress: &dyn Progress) -> Result<Picture, Cancelled> {
         self.splat_with(&self.focus(offset), progress)
     }
 
-    /// The same with a focus of its own for every point.
+    /// The splatted picture with the given focus.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if `progress` is cancelled.
     pub fn splat_with(&self, focus: &Focus, progress: &dyn Progress) -> Result<Picture, Cancelled> {
         picture_of(self.salf_for(focus, progress)?, focus, progress)
     }
 
-    /// The ray-traced picture, of `samples` rays a pixel.
+    /// The ray-traced picture with `samples` rays per pixel.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if `progress` is cancelled.
     pub fn truth(
         &self,
         offset: FocusOffset,
@@ -62,7 +75,10 @@ impl Shot {
         self.truth_with(&self.focus(offset), samples, 1, progress)
     }
 
-    /// The same by rays that start at the surfaces.
+    /// The ray-traced picture, with rays that start at the surfaces.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if `progress` is cancelled.
     pub fn truth_from_surfaces(
         &self,
         offset: FocusOffset,
@@ -77,7 +93,10 @@ impl Shot {
         Ok(rendered.picture)
     }
 
-    /// The ray-traced picture with a focus of its own for every point, and chosen random numbers.
+    /// The ray-traced picture with the given focus and seed.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if `progress` is cancelled.
     pub fn truth_with(
         &self,
         focus: &Focus,
@@ -96,7 +115,10 @@ impl Shot {
     }
 }
 
-/// A light field's picture. One that was refused as too bright is all NaN, which no check lets pass.
+/// The picture of a light field; all NaN, which fails every check, if it is rejected as too bright.
+///
+/// # Errors
+/// [`Cancelled`] if `progress` is cancelled.
 pub fn picture_of(
     salf: Salf,
     focus: &dyn SurfaceField<FocusOffset>,
@@ -105,7 +127,10 @@ pub fn picture_of(
     picture_by(Splatter::new(Arc::new(salf)), focus, progress)
 }
 
-/// The same by a splatter.
+/// The picture of a splatter; all NaN if it is rejected as too bright.
+///
+/// # Errors
+/// [`Cancelled`] if `progress` is cancelled.
 pub fn picture_by(
     mut splatter: Splatter,
     focus: &dyn SurfaceField<FocusOffset>,

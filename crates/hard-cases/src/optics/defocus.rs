@@ -1,8 +1,8 @@
-//! κ where other forms of the formula have a pole.
+//! κ at the poles of other forms of its formula.
 
 use crate::case::{Case, Effort, NOT_COMPUTED, Verdict};
-use crate::light_field::{offset_of, picture_of_stars, star};
-use crate::measure::{energy, worst};
+use crate::support::light_field::{offset_of, picture_of_stars, star};
+use crate::support::measure::{energy, worst};
 use glam::DVec2;
 use lens::{Aperture, ApertureShape, Camera, FocusOffset, Optics, Picture};
 use progress::{Cancelled, Progress};
@@ -10,27 +10,27 @@ use progress::{Cancelled, Progress};
 pub const CASES: &[Case] = &[
     Case {
         name: "κ → 0 through both signs",
-        reason: "A splat's rays move by at most its radius, so its picture tends to the sharp one, keeps its mass, and \
-                 turns by 180° where κ changes its sign.",
-        control: "a disc of density 1/(area·r²), asked at pixel centres",
+        reason: "The rays of a splat are displaced by at most its radius, so its picture converges to the \
+                 sharp one, keeps its mass, and is rotated by 180° when κ changes sign.",
+        control: "a disc of density 1/(area·r²), sampled at pixel centres",
         check: kappa_to_zero,
     },
     Case {
         name: "z = f and both sides",
-        reason: "At z = f the conjugate is at infinity and κ = (a·t − 1)/d, linear in 1/z to both sides.",
-        control: "κ = (T/z' − 1)/d with the conjugate z' and T = t·lerp(d, z', a) formed",
+        reason: "At z = f the conjugate is at infinity and κ = (a·t − 1)/d; on both sides κ is linear in 1/z.",
+        control: "κ = (T/z' − 1)/d, computed through the conjugate z' and T = t·lerp(d, z', a)",
         check: depth_of_the_focal_length,
     },
     Case {
         name: "s = ∞, s = f, object at infinity",
-        reason: "Infinite distances are the value 0 of their reciprocals; with s = f the sensor is at infinity, and \
-                 paint relative to it does nothing.",
-        control: "κ = (z − s)/(s·z) from the distances",
+        reason: "Infinite distances are represented by a reciprocal of 0; with s = f the sensor is at \
+                 infinity, and paint relative to it has no effect.",
+        control: "κ = (z − s)/(s·z), computed from the distances",
         check: infinite_distances,
     },
 ];
 
-/// κ of the first case: radii from 13 px down.
+/// κ of the first case: radii of 13 px and less.
 const SMALL_KAPPAS: [f64; 9] = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 0.0];
 
 fn small_camera() -> Camera {
@@ -57,7 +57,7 @@ fn kappa_to_zero(_: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelle
     Ok(Verdict::new(expected, limits, tends_to_sharp(&camera, splat_at)?, tends_to_sharp(&camera, naive)?))
 }
 
-/// Largest error of the mass, L1 distance from the sharp picture over 4r, and difference between either sign's.
+/// Largest error of the mass, L1 distance from the sharp picture over 4r, and difference between both signs.
 fn tends_to_sharp(
     camera: &Camera,
     picture_at: impl Fn(f64) -> Result<Picture, Cancelled>,
@@ -71,14 +71,14 @@ fn tends_to_sharp(
         let (far_values, near_values, sharp) = (values(&far), values(&near), values(&sharp));
         let distance: f64 = far_values.iter().zip(&sharp).map(|(a, b)| (a - b).abs()).sum();
         mass.extend([energy(&far) - 1.0, energy(&near) - 1.0]);
-        // The integers' own step lets even an unmoved splat differ.
+        // Even an undisplaced splat differs by the quantum of the integer sums.
         moved.push(distance / (4.0 * camera.optics().splat_radius_px(kappa) + 1e-6));
         turned.extend(far_values.iter().zip(near_values.iter().rev()).map(|(a, b)| a - b));
     }
     Ok([worst(mass), worst(moved), worst(turned)])
 }
 
-/// The aperture's shape scaled to r and divided by its area, at each pixel centre.
+/// The aperture's shape scaled by r and divided by its area, sampled at pixel centres.
 fn naive_disc(camera: &Camera, radius_px: f64) -> Picture {
     let mut picture = Picture::black(camera.width, camera.height);
     let area = camera.aperture.rows(64).open_area() * radius_px * radius_px;
@@ -90,7 +90,7 @@ fn naive_disc(camera: &Camera, radius_px: f64) -> Picture {
     picture
 }
 
-/// An aperture's numbers that are exact in binary: s = 4, d = 1/32, 1/f = 32.25.
+/// An aperture whose numbers are exact in binary: s = 4, d = 1/32, 1/f = 32.25.
 fn exact_optics() -> Optics {
     Optics {
         inverse_focus_distance: 0.25,
@@ -119,7 +119,7 @@ fn depth_of_the_focal_length(_: Effort, _: &dyn Progress) -> Result<Verdict, Can
     ))
 }
 
-/// The largest error of `kappa` relative to (1 + |t|)/d, from z = f/2 over f to 2f.
+/// The largest error of `kappa` relative to (1 + |t|)/d, from z = f/2 through f to 2f.
 fn error_about_the_focal_length(optics: &Optics, kappa: impl Fn(f64, FocusOffset) -> f64) -> f64 {
     let d = optics.image_distance;
     let at_f = 1.0 / optics.focal_length();
@@ -149,7 +149,7 @@ fn infinite_distances(_: Effort, progress: &dyn Progress) -> Result<Verdict, Can
         let known = [(far, far, 0.0), (far, 2.0, -0.5), (2.0, far, 0.5), (2.0, 2.0, 0.0), (1e-3, far, 1e3)];
         worst(known.map(|(s, z, expected)| kappa(s, z) - expected))
     };
-    // A star is a point for a lens focused at infinity, and the aperture's size for another.
+    // For a lens focused at infinity a star is a point; for others it has the aperture's shape.
     let radius = |s: f64| -> Result<f64, Cancelled> {
         let camera = Camera { focus_distance: s, aperture: Aperture::default(), ..small_camera() };
         let samples = vec![star(DVec2::splat(32.5), 0.5, 1.0)];
@@ -158,7 +158,7 @@ fn infinite_distances(_: Effort, progress: &dyn Progress) -> Result<Verdict, Can
     let at = |s: f64| Camera { focus_distance: s, ..small_camera() }.optics().splat_radius_px(1.0 / s);
     let stars =
         worst([radius(f64::INFINITY)?, radius(100.0)? / at(100.0) - 1.0, radius(200.0)? / at(200.0) - 1.0]);
-    // s = f: the sensor infinitely far, and so infinitely high.
+    // s = f: the sensor is infinitely far, and therefore infinitely high.
     let far_sensor = Optics { image_distance: f64::INFINITY, ..exact_optics() };
     let painted = worst([-3.0, 0.0, 0.9, 1e6].map(|t| far_sensor.kappa(0.5, FocusOffset::new(t, 1.0))));
     let same_f = far_sensor.focal_length() * far_sensor.inverse_focus_distance - 1.0;
@@ -169,7 +169,7 @@ fn infinite_distances(_: Effort, progress: &dyn Progress) -> Result<Verdict, Can
     Ok(Verdict::new(expected, limits, right, [error(&naive), NOT_COMPUTED, NOT_COMPUTED]))
 }
 
-/// The radius of the disc, px, that a picture has the second moment of, its pixels' own taken off.
+/// Radius of the disc with the same second moment as the picture, after subtracting that of a pixel, px.
 fn disc_radius(picture: &Picture) -> f64 {
     let (mut mass, mut second) = (0.0, 0.0);
     for (k, rgb) in picture.radiance.iter().enumerate() {
@@ -177,6 +177,7 @@ fn disc_radius(picture: &Picture) -> f64 {
         mass += f64::from(rgb[1]);
         second += f64::from(rgb[1]) * place.length_squared();
     }
-    // A star's square and a pixel's box spread by 1/12 each in x and y; pixel sums see neither where all falls in one.
+    // The square of a star and the box of a pixel add a variance of 1/12 each in x and y; neither shows if
+    // all light falls on one pixel.
     if mass > 0.999 && second == 0.0 { 0.0 } else { (2.0 * (second / mass - 1.0 / 3.0)).max(0.0).sqrt() }
 }

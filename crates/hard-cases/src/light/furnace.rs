@@ -1,21 +1,22 @@
-//! A scene of radiance 1 is 1.
+//! Furnace test: a scene of radiance 1 gives a picture of 1.
 
 use crate::case::{Case, Effort, NOT_COMPUTED, Verdict};
-use crate::light_field::offset_of;
-use crate::measure::{farthest_from, worst};
-use crate::sampling::{every_shape, mask};
-use crate::scenery::{Mesh, scene_of};
-use crate::shot::Shot;
+use crate::optics::sampling::{every_shape, mask};
+use crate::support::light_field::offset_of;
+use crate::support::measure::{farthest_from, worst};
+use crate::support::shot::Shot;
 use glam::DVec2;
 use lens::Camera;
 use progress::{Cancelled, Progress};
 use splat::Splatter;
 use std::sync::Arc;
+use test_scenes::{Mesh, unlit_scene_of};
 
 pub const CASES: &[Case] = &[Case {
     name: "furnace",
-    reason: "At a uniform κ every ray moves alike, so a scene of radiance 1 is 1 everywhere, whatever the aperture.",
-    control: "weights that fall off by cos⁴ as those of a lens without the 1/z³ do",
+    reason: "At a uniform κ all rays are displaced alike, so a scene of radiance 1 is 1 everywhere, for any \
+             aperture.",
+    control: "weights with the cos⁴ falloff of a lens without the 1/z³",
     check: furnace,
 }];
 
@@ -23,13 +24,13 @@ fn furnace(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled
     let (width, height) = effort.choose((32, 24), (20, 15));
     let camera =
         Camera { width, height, yfov: 0.6, aperture_radius: 0.1, focus_distance: 3.0, ..Camera::default() };
-    let shot = Shot::new(scene_of([(&Mesh::wall(3.0, 100.0), [1.0; 3])]), camera.clone());
+    let shot = Shot::new(unlit_scene_of([(&Mesh::wall(3.0, 100.0), [1.0; 3])]), camera.clone());
     let per_kappa = camera.optics().splat_radius_px(1.0);
     let offset = |radius_px: f64| offset_of(radius_px / per_kappa, &camera);
     let every: &[f64] = &[-20.0, -7.3, -1.5, -0.6, -0.2, -1e-6, 0.0, 0.1, 0.37, 0.8, 2.0, 4.5, 11.0, 20.0];
     let radii = effort.choose(every, &[-7.3, -0.2, 0.0, 4.5]);
 
-    // Baked once, for the widest blur and the whole square; every aperture and focus is splatted from it.
+    // Baked once for the widest blur and the whole square; every aperture and focus is splatted from it.
     let salf = shot.salf(offset(20.0), progress)?;
     let optics = camera.optics();
     let fall_off = |sample: &mut salf::Sample| {

@@ -1,14 +1,14 @@
 //! The demo scene: a garden at dusk, made by code.
 //!
-//! A paper fox sits on a wet path behind an iron fence; far behind it stands a clock tower. The camera focuses on the
-//! fox with a wide aperture, so that the fence, the lanterns and the strings of bulbs melt into veils and discs. The
-//! painted focus keeps two more things sharp that no lens could: a butterfly on the fence, close to the lens, and the
-//! tower at the end of the garden.
+//! A paper fox sits on a wet path behind an iron fence; far behind it stands a clock tower. The camera
+//! focuses on the fox with a wide aperture, so that the fence, the lanterns and the strings of bulbs melt
+//! into veils and discs. The painted focus keeps two more things sharp that no lens could: a butterfly on the
+//! fence, close to the lens, and the tower at the end of the garden.
 //!
-//! It is built like a stage set: see [`view::View::staged`]. The light falls in the garden as it is meant to be.
+//! It is built like a stage set: see [`view::View::staged`]. Light is computed in the unsqueezed garden.
 //!
-//! Everything is unlit: the light is baked into one texture (the *light sheet*), in which every surface has a block
-//! of its own; its texture coordinates therefore serve as an atlas as they are.
+//! Everything is unlit: the light is baked into one texture (the *light sheet*), in which every surface has a
+//! block of its own; its texture coordinates therefore serve as an atlas as they are.
 
 mod butterfly;
 mod fence;
@@ -39,6 +39,9 @@ const SHEET_WIDTH: usize = 1024;
 
 /// Writes `demo.glb`, `demo.camera.json`, `demo.focus.json` and the project of the three, `demo.fbrush`, into
 /// `assets/demo`. `sky_rays` a texel decide how smooth the light is.
+///
+/// # Errors
+/// A file cannot be written, or `focus-brush` fails.
 pub fn demo(sky_rays: usize) -> Result<(), Failure> {
     let view = View::default();
     let (objects, lamps) = garden_at_dusk(&view);

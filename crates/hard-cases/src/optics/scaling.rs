@@ -1,36 +1,38 @@
-//! The same scene in other units.
+//! Invariance of the picture under a change of units.
 
 use crate::case::{Case, Effort, Verdict};
-use crate::measure::{largest_difference, rms_difference, worst};
-use crate::scenery::{Mesh, scene_of};
-use crate::shot::Shot;
+use crate::support::measure::{largest_difference, rms_difference, worst};
+use crate::support::shot::Shot;
 use glam::{DMat4, DQuat, DVec3};
 use lens::{Camera, FocusOffset, Picture};
 use progress::{Cancelled, Progress};
+use test_scenes::{Mesh, unlit_scene_of};
 
 pub const CASES: &[Case] = &[
     Case {
         name: "scaled by 2^±20",
-        reason: "A power of two changes exponents alone, if nothing holds a length of its own: the picture has the same \
-                 bits.",
-        control: "all lengths scaled but the aperture's radius",
+        reason: "A power of two changes only exponents, provided that no absolute length is built in: the \
+                 picture is bit-identical.",
+        control: "all lengths scaled except the aperture's radius",
         check: by_powers_of_two,
     },
     Case {
         name: "scaled by 1e±6",
-        reason: "Other factors round differently, which moves a ray across an outline now and then and no more.",
-        control: "all lengths scaled but the aperture's radius",
+        reason: "Other factors change rounding, which occasionally moves a ray across an outline, and nothing \
+                 else.",
+        control: "all lengths scaled except the aperture's radius",
         check: by_powers_of_ten,
     },
 ];
 
-/// The scene with all lengths times `factor` but the aperture's radius, which has a factor of its own.
+/// The scene with all lengths times `factor`, and the aperture's radius times `aperture_factor`.
 fn shot(effort: Effort, factor: f64, aperture_factor: f64) -> Shot {
     let sphere = Mesh::sphere(DVec3::new(0.3, 0.1, -2.0), 0.4, 12).scaled(factor);
     let wall = Mesh::wall(5.0, 20.0).scaled(factor);
     let floor =
         Mesh::rectangle(DVec3::new(-9.0, -0.6, -1.0), DVec3::X * 18.0, DVec3::Z * -17.0).scaled(factor);
-    let scene = scene_of([(&sphere, [0.9, 0.4, 0.1]), (&wall, [0.2, 0.3, 0.4]), (&floor, [0.5, 0.6, 0.5])]);
+    let scene =
+        unlit_scene_of([(&sphere, [0.9, 0.4, 0.1]), (&wall, [0.2, 0.3, 0.4]), (&floor, [0.5, 0.6, 0.5])]);
     let turn = DQuat::from_rotation_y(0.1) * DQuat::from_rotation_x(-0.05);
     let pose = DMat4::from_rotation_translation(turn, DVec3::new(0.1, 0.2, 0.3) * factor);
     let (width, height) = effort.choose((64, 48), (40, 30));
@@ -52,8 +54,8 @@ fn pictures(shot: &Shot, progress: &dyn Progress) -> Result<[Picture; 2], Cancel
     Ok([shot.splat(offset, progress)?, shot.truth(offset, 16, progress)?])
 }
 
-/// The largest of some difference to the scene as it is, splatted and traced, of scenes scaled by pairs of factors: of
-/// all lengths but the aperture's radius, and of that.
+/// The largest difference from the unscaled scene, splatted and traced, over scenes scaled by pairs of factors:
+/// for all lengths, and for the aperture's radius.
 fn compared(
     effort: Effort,
     factors: &[[f64; 2]],

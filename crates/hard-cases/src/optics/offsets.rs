@@ -1,32 +1,34 @@
-//! Focus offsets that make no sense.
+//! Invalid and extreme focus offsets.
 
 use crate::case::{Case, Effort, NOT_COMPUTED, Verdict};
-use crate::measure::{largest_difference, senseless, worst};
-use crate::scenery::{Mesh, scene_of};
-use crate::shot::Shot;
+use crate::support::measure::{largest_difference, senseless, worst};
+use crate::support::shot::Shot;
 use focus::{Brush, FocusMap, FocusRecipe, RecipeEntry};
 use glam::DVec3;
 use lens::{Camera, FocusOffset, Picture};
 use progress::{Cancelled, Progress};
+use test_scenes::{Mesh, unlit_scene_of};
 
 pub const CASES: &[Case] = &[
     Case {
         name: "t = 0, negative, up to 1e300",
-        reason: "Any finite t is a lens: the picture has finite numbers of 0 or more, however far the light goes.",
+        reason: "Any finite t is a lens: the picture consists of finite, non-negative numbers, however far \
+                 the light is displaced.",
         control: "(t − 1)/d and the rest of κ added where both overflow",
         check: any_finite_offset,
     },
     Case {
         name: "t = NaN, ±∞, anchor outside [0, 1]",
-        reason: "Recipes, brushes and maps refuse what is no offset; where one gets into a field all the same it counts as unpainted.",
-        control: "κ of the number as it is",
+        reason: "Recipes, brushes and maps reject invalid offsets; if one reaches the renderers nevertheless, \
+                 it counts as unpainted.",
+        control: "κ computed from the invalid number",
         check: not_a_number,
     },
 ];
 
 fn shot() -> Shot {
     let patch = Mesh::rectangle(DVec3::new(-0.2, -0.3, -2.0), DVec3::X * 0.5, DVec3::Y * 0.4);
-    let scene = scene_of([(&Mesh::wall(4.0, 50.0), [1.0, 0.5, 0.2]), (&patch, [0.1, 2.0, 0.7])]);
+    let scene = unlit_scene_of([(&Mesh::wall(4.0, 50.0), [1.0, 0.5, 0.2]), (&patch, [0.1, 2.0, 0.7])]);
     Shot::new(scene, Camera { width: 18, height: 12, aperture_radius: 0.1, ..Camera::default() })
 }
 
@@ -43,7 +45,7 @@ fn any_finite_offset(effort: Effort, progress: &dyn Progress) -> Result<Verdict,
             in_pictures += senseless(&shot.splat(offset, progress)?);
             raw += f64::from(!raw_kappa(&shot.camera, offset).is_finite());
         }
-        // Wide blur is slow to trace.
+        // Tracing wide blur is slow.
         if index % effort.choose(1, 4) == 0 {
             in_pictures += senseless(&shot.truth(FocusOffset::new(t, 0.5), 1, progress)?);
             in_pictures += senseless(&shot.truth_from_surfaces(FocusOffset::new(t, 0.5), 1, progress)?);
@@ -53,7 +55,7 @@ fn any_finite_offset(effort: Effort, progress: &dyn Progress) -> Result<Verdict,
     Ok(Verdict::new(expected, [("senseless", 0.0)], [in_pictures], [raw]))
 }
 
-/// κ at depth 2 as it is written, without a guard.
+/// κ at depth 2 computed without a guard.
 fn raw_kappa(camera: &Camera, FocusOffset { t, anchor, .. }: FocusOffset) -> f64 {
     let optics = camera.optics();
     (t - 1.0) / optics.image_distance + t * (1.0 - anchor) * (optics.inverse_focus_distance - 0.5)
@@ -86,7 +88,8 @@ fn not_a_number(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Canc
         let optics = shot.camera.optics();
         raw.push(raw_kappa(&shot.camera, *offset) - optics.standard_kappa(0.5));
     }
-    let expected = "recipes, brushes and maps refuse it; given to the renderers (splat, rays from the sensor, rays from the surfaces), the unpainted picture bit for bit";
+    let expected = "recipes, brushes and maps refuse it; given to the renderers (splat, rays from the \
+                    sensor, rays from the surfaces), the unpainted picture bit for bit";
     let limits = [("accepted", 0.0), ("difference", 0.0)];
     Ok(Verdict::new(expected, limits, [accepted, worst(differences)], [NOT_COMPUTED, worst(raw)]))
 }

@@ -1,31 +1,34 @@
-//! Surfaces on, behind and across the aperture plane, and those that run to the horizon.
+//! Surfaces on, behind and across the aperture plane, and planes that extend to the horizon.
 
 use crate::case::{Case, Effort, NOT_COMPUTED, Verdict};
-use crate::measure::{farthest_from, largest_difference, rms_difference, senseless, worst};
-use crate::scenery::{Mesh, scene_of};
-use crate::shot::{Shot, picture_of};
+use crate::support::measure::{farthest_from, largest_difference, rms_difference, senseless, worst};
+use crate::support::shot::{Shot, picture_of};
 use glam::{DVec3, Vec2};
 use lens::{Camera, FocusOffset, Picture};
 use progress::{Cancelled, Progress};
+use test_scenes::{Mesh, unlit_scene_of};
 
 pub const CASES: &[Case] = &[
     Case {
         name: "points on and behind the aperture plane",
-        reason: "They send no light through the aperture to the sensor: with them the picture is what it is without.",
-        control: "(x, y)/z taken for them too: how many land in the frame",
+        reason: "They send no light through the aperture to the sensor: the picture is the same with and \
+                 without them.",
+        control: "(x, y)/z evaluated for them, too: the number that land in the frame",
         check: behind,
     },
     Case {
         name: "triangles that straddle the aperture plane",
-        reason: "Of a floor that runs under the camera the part in front is seen whole: splat and ray tracing agree.",
-        control: "triangles with a corner behind left out",
+        reason: "The part in front of the camera of a floor that continues beneath it is entirely visible: \
+                 splat and ray tracing agree.",
+        control: "triangles with a corner behind the aperture plane left out",
         check: straddling,
     },
     Case {
         name: "grazing planes to the horizon",
-        reason: "A floor of radiance 1 under a background of radiance 1 is 1 everywhere, however grazing, as a sample's \
-                 weight is linear over the aperture, w + tilt·u; what is left is a ripple by the nearest floor.",
-        control: "a weight without tilt, the same toward every aperture point",
+        reason: "A floor of radiance 1 under a background of radiance 1 is 1 everywhere, at any grazing \
+                 angle, because a sample's weight is linear over the aperture, w + tilt·u; what remains is a \
+                 ripple at the nearest floor.",
+        control: "weights without tilt, constant over the aperture",
         check: grazing,
     },
 ];
@@ -37,7 +40,7 @@ fn camera(effort: Effort) -> Camera {
     Camera { width, height, yfov: 0.6, aperture_radius: 0.1, focus_distance: 3.0, ..Camera::default() }
 }
 
-/// A horizontal rectangle from `from` to `to` in depth, `half` to either side.
+/// A horizontal rectangle from depth `from` to `to`, with the half width `half`.
 fn floor(height: f64, [from, to]: [f64; 2], half: f64) -> Mesh {
     Mesh::rectangle(DVec3::new(-half, height, -from), DVec3::X * 2.0 * half, DVec3::Z * (from - to))
 }
@@ -52,9 +55,9 @@ fn behind(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled>
         Mesh::triangle([DVec3::new(0.3, 0.0, 0.0), DVec3::new(0.4, 0.2, 2.0), DVec3::new(0.5, 0.0, 2.0)]),
     ];
     let camera = camera(effort);
-    let alone = Shot::new(scene_of([(&wall, WHITE)]), camera.clone());
+    let alone = Shot::new(unlit_scene_of([(&wall, WHITE)]), camera.clone());
     let all = std::iter::once((&wall, WHITE)).chain(unseen.iter().map(|mesh| (mesh, [9.0, 9.0, 9.0])));
-    let both = Shot::new(scene_of(all), camera.clone());
+    let both = Shot::new(unlit_scene_of(all), camera.clone());
     let mut differences = Vec::new();
     for offset in [FocusOffset::STANDARD, FocusOffset::new(0.97, 1.0)] {
         let pictures = |shot: &Shot| -> Result<[Picture; 2], Cancelled> {
@@ -79,9 +82,9 @@ fn straddling(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancel
         (Mesh::rectangle(DVec3::new(0.45, -2.0, 2.0), DVec3::Y * 4.0, DVec3::Z * -9.0), [0.2, 0.5, 0.9]),
     ];
     let camera = Camera { background: Some([0.05; 3]), ..camera(effort) };
-    let shot = Shot::new(scene_of(meshes.iter().map(|(mesh, color)| (mesh, *color))), camera.clone());
+    let shot = Shot::new(unlit_scene_of(meshes.iter().map(|(mesh, color)| (mesh, *color))), camera.clone());
     let samples = effort.choose(256, 200);
-    let culled = Shot::new(scene_of([]), camera);
+    let culled = Shot::new(unlit_scene_of([]), camera);
     let mut right = [0.0f64; 2];
     let mut wrong = 0.0f64;
     for offset in [FocusOffset::STANDARD, FocusOffset::new(0.98, 1.0)] {
@@ -99,7 +102,7 @@ fn grazing(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled
     let camera = Camera { background: Some([1.0; 3]), ..camera(effort) };
     let (mut splatted, mut traced, mut untilted) = (Vec::new(), Vec::new(), Vec::new());
     for height in [-0.2, -0.4, -1.0, -20.0] {
-        let scene = scene_of([(&floor(height, [-1.0, 1e6], 1e6), WHITE)]);
+        let scene = unlit_scene_of([(&floor(height, [-1.0, 1e6], 1e6), WHITE)]);
         let shot = Shot::new(scene, camera.clone());
         let salf = shot.salf(FocusOffset::STANDARD, progress)?;
         let focus = shot.focus(FocusOffset::STANDARD);

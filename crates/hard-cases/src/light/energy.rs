@@ -1,11 +1,9 @@
-//! Light is neither made nor lost.
+//! Conservation of energy.
 
 use crate::case::{Case, Effort, NOT_COMPUTED, Verdict};
-use crate::light_field::{offset_of, picture_of_stars, star};
-use crate::measure::{energies, energy, worst};
-use crate::random::Random;
-use crate::scenery::{Mesh, scene_of};
-use crate::shot::{Shot, picture_by, picture_of};
+use crate::support::light_field::{offset_of, picture_of_stars, star};
+use crate::support::measure::{energies, energy, worst};
+use crate::support::shot::{Shot, picture_by, picture_of};
 use glam::{DVec2, DVec3};
 use lens::{Camera, Exposure, FocusOffset, Picture};
 use progress::{Cancelled, Progress};
@@ -14,48 +12,52 @@ use scene::{SurfaceField, SurfacePoint};
 use splat::Splatter;
 use std::f64::consts::{PI, SQRT_2};
 use std::sync::Arc;
+use test_scenes::{Mesh, Random, unlit_scene_of};
 use trace::Ray;
 
 pub const CASES: &[Case] = &[
     Case {
         name: "energy: picture + outside = input",
-        reason: "What a frame cuts off is what an over-wide frame has beyond it, bit for bit, and all of it is the input, but \
-                 for the rounding of each of a splat's pixels to a quantum of 2⁻²².",
-        control: "mass of the rays that land in the frame, taken for all",
+        reason: "The part cut off by a frame is what a wider frame has beyond it, bit for bit, and the total \
+                 is the input, except for the rounding of each pixel of a splat to a quantum of 2⁻²².",
+        control: "the mass of the rays inside the frame, taken as the total",
         check: inside_and_outside,
     },
     Case {
         name: "energy: the sum does not depend on t",
-        reason: "Paint moves light and makes none: over a frame wide enough the sum of each colour stays. So it does where nothing \
-                 is painted, though that picture's coverage is evened out.",
-        control: "the normalised picture, whose sum is not energy",
+        reason: "Paint displaces light without creating any: over a sufficiently wide frame the sum of each \
+                 colour is constant. The same holds without paint, although the coverage of that picture is \
+                 normalised.",
+        control: "the normalised picture, whose sum is not the energy",
         check: invariant_to_paint,
     },
     Case {
         name: "energy: behind an occluder",
-        reason: "What an occluder takes is the same for every t. Where nothing is painted, samples that it hides in part share what \
-                 open ones leave, and what that takes from each colour is given back.",
-        control: "nothing given back: the picture all but unpainted, divided by its coverage; every sample taken to see the \
-                  whole aperture",
+        reason: "An occluder removes the same light for every t. Without paint, samples that are partly \
+                 hidden share the coverage that open ones leave, and the light this removes from each colour \
+                 is added back.",
+        control: "no light added back: the picture with almost no paint, divided by its coverage; every \
+                  sample treated as seeing the whole aperture",
         check: behind_an_occluder,
     },
     Case {
         name: "energy: cards just behind one another",
-        reason: "Steps of depth far smaller than a pixel's parallax against infinity reveal, along all their length, a part of what \
-                 lies behind: as much light as they hide.",
-        control: "only what the aperture's centre sees, partly hidden as it is",
+        reason: "Depth steps far smaller than the parallax of a pixel against infinity reveal, along their \
+                 whole length, as much light from behind as they hide.",
+        control: "only the samples visible from the centre of the aperture, with their partial occlusion",
         check: just_behind_one_another,
     },
     Case {
         name: "energy: a part of the scene is painted",
-        reason: "So it is where paint takes some of the half hidden samples from those that share what open ones leave: the rest \
-                 share otherwise, but what they lose is given back.",
-        control: "the live picture, in which paint changes what it moves and nothing else",
+        reason: "The same holds if paint removes some of the partly hidden samples from those that share the \
+                 coverage left by open ones: the others share it differently, but the light they lose is \
+                 added back.",
+        control: "the live picture, in which paint changes only the samples it displaces",
         check: partly_painted,
     },
 ];
 
-/// The step of the splat's sums.
+/// Quantum of the splat's integer sums.
 const STEP: f64 = splat::QUANTUM;
 
 fn inside_and_outside(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
@@ -65,14 +67,14 @@ fn inside_and_outside(effort: Effort, progress: &dyn Progress) -> Result<Verdict
     let (small, wide) = (camera(FRAME), camera(FRAME + 2 * BORDER));
     let count = effort.choose(400, 60);
     let mut random = Random(11);
-    // On a grid that f32 holds exactly in either frame.
+    // Coordinates that f32 represents exactly in both frames.
     let mut coordinate = || (random.unit() * f64::from(FRAME) * 256.0).floor() / 256.0;
     let places: Vec<_> = (0..count).map(|_| DVec2::new(coordinate(), coordinate())).collect();
     let (mut crop, mut lost, mut shares, mut cut) = (Vec::new(), Vec::new(), Vec::new(), f64::INFINITY);
     for radius in [-30.0, -3.0, 0.7, 11.0, 40.0] {
         let crop_energy = |camera: &Camera, shift: f64| {
             let samples = places.iter().map(|&place| star(place + shift, 0.5, 1.0)).collect();
-            // The same radius in px in both.
+            // The same radius in px for both.
             let offset = offset_of(radius / camera.optics().splat_radius_px(1.0), camera);
             picture_of_stars(camera, samples, offset, progress)
         };
@@ -80,7 +82,7 @@ fn inside_and_outside(effort: Effort, progress: &dyn Progress) -> Result<Verdict
         crop.push(difference_to_crop(&inner, &outer, BORDER as usize));
         let lost_by_splat = (energy(&outer) - f64::from(count)) / f64::from(count);
         lost.push(lost_by_splat);
-        // The disc, grown by a pixel's diagonal, holds all the pixels that it touches.
+        // The disc, enlarged by the diagonal of a pixel, contains all pixels that it touches.
         shares.push(lost_by_splat / (STEP * PI * (f64::abs(radius) + SQRT_2).powi(2)));
         cut = cut.min((energy(&inner) - f64::from(count)).abs() / f64::from(count));
     }
@@ -95,7 +97,7 @@ fn inside_and_outside(effort: Effort, progress: &dyn Progress) -> Result<Verdict
     ))
 }
 
-/// The largest difference between a picture and the middle of a wider one.
+/// The largest difference between a picture and the central crop of a wider one.
 fn difference_to_crop(inner: &Picture, outer: &Picture, border: usize) -> f64 {
     let (width, outer_width) = (inner.width as usize, outer.width as usize);
     worst((0..inner.radiance.len()).map(|k| {
@@ -104,7 +106,8 @@ fn difference_to_crop(inner: &Picture, outer: &Picture, border: usize) -> f64 {
     }))
 }
 
-/// Two squares before a black background, the nearer one at `near_x`: 0 hides part of the farther one.
+/// Two squares in front of a black background, the nearer one at `near_x`; at 0 it hides a part of the
+/// farther one.
 fn squares(effort: Effort, near_x: f64) -> Shot {
     let side = effort.choose(160, 96);
     let camera = Camera {
@@ -118,10 +121,10 @@ fn squares(effort: Effort, near_x: f64) -> Shot {
     };
     let near = Mesh::rectangle(DVec3::new(near_x, -0.1, -2.0), DVec3::X * 0.3, DVec3::new(0.0, 0.3, -0.2));
     let far = Mesh::rectangle(DVec3::new(-0.3, -0.4, -4.0), DVec3::X * 0.9, DVec3::Y * 0.6);
-    Shot::new(scene_of([(&near, [0.5, 0.8, 0.2]), (&far, [0.9, 0.3, 0.4])]), camera)
+    Shot::new(unlit_scene_of([(&near, [0.5, 0.8, 0.2]), (&far, [0.9, 0.3, 0.4])]), camera)
 }
 
-/// Paint that moves light about; the last is none.
+/// Paint that displaces light; the last one is unpainted.
 const OFFSETS: [FocusOffset; 5] = [
     FocusOffset::new(0.85, 1.0),
     FocusOffset::new(1.1, 0.0),
@@ -130,7 +133,7 @@ const OFFSETS: [FocusOffset; 5] = [
     FocusOffset::STANDARD,
 ];
 
-/// How far sums of pictures differ, as a share of the largest: of the colour that differs most.
+/// The relative difference of the sums of pictures, for the colour that differs most.
 fn spread<'a>(pictures: impl IntoIterator<Item = &'a [f64; 3]> + Clone) -> f64 {
     worst((0..3).map(|c| {
         let sums = pictures.clone().into_iter().map(|sums| sums[c]);
@@ -139,7 +142,7 @@ fn spread<'a>(pictures: impl IntoIterator<Item = &'a [f64; 3]> + Clone) -> f64 {
     }))
 }
 
-/// A picture's sums once it is divided by its coverage.
+/// Sums of a picture divided by its coverage.
 fn normalised(picture: Picture) -> [f64; 3] {
     energies(&Picture { radiance: picture.exposed(Exposure::Normalise), ..picture })
 }
@@ -153,7 +156,7 @@ fn invariant_to_paint(effort: Effort, progress: &dyn Progress) -> Result<Verdict
         divided.push(normalised(picture));
         traced.push(energies(&shot.truth(offset, 16, progress)?));
     }
-    // The traced sum's own uncertainty, from other random numbers.
+    // The uncertainty of the traced sum, from different random numbers.
     let mut others = Vec::new();
     for seed in 2..effort.choose(10, 6) {
         let unpainted = shot.focus(FocusOffset::STANDARD);
@@ -185,12 +188,13 @@ fn behind_an_occluder(effort: Effort, progress: &dyn Progress) -> Result<Verdict
     let right = [spread(&sums), worst(sums.iter().map(relative))];
     let wrong =
         [spread(&[sums[0], picture_normalised]), blind.iter().map(relative).fold(f64::INFINITY, f64::min)];
-    let expected = "each colour's sum the same for every t and anchor, painted or not, to 0.01 %; that of the truth to 1 %";
+    let expected = "each colour's sum the same for every t and anchor, painted or not, to 0.01 %; that of \
+                    the truth to 1 %";
     Ok(Verdict::new(expected, limits, right, wrong))
 }
 
-/// Slanted cards of growing depth, fanned out: each hides most of the next one, less than a pixel of parallax behind, and
-/// their outlines lie farther from each other than any parallax.
+/// Slanted cards of increasing depth, fanned out: each hides most of the next, which is less than a pixel of
+/// parallax behind; their outlines are farther apart than any parallax.
 fn fan(effort: Effort) -> Shot {
     let side = effort.choose(240, 120);
     let camera = Camera {
@@ -211,10 +215,10 @@ fn fan(effort: Effort) -> Shot {
             (card, [0.9, 0.4 + 0.1 * f32::from(k), 0.2])
         })
         .collect();
-    Shot::new(scene_of(cards.iter().map(|(card, color)| (card, *color))), camera)
+    Shot::new(unlit_scene_of(cards.iter().map(|(card, color)| (card, *color))), camera)
 }
 
-/// Whether the ray from the aperture's centre meets another surface before a sample.
+/// Whether another surface occludes a sample from the centre of the aperture.
 fn is_hidden_from_center(shot: &Shot, sample: &Sample) -> bool {
     let Some(point) = sample.surface else { return false };
     let (scene, eye) = (shot.tracer.scene(), shot.camera.position());
@@ -244,7 +248,7 @@ fn just_behind_one_another(effort: Effort, progress: &dyn Progress) -> Result<Ve
     Ok(Verdict::new(expected, limits, errors(&sums), errors(&central)))
 }
 
-/// Slanted cards in disorder that hide each other.
+/// Slanted cards in random order that occlude each other.
 fn heap(effort: Effort) -> Shot {
     let side = effort.choose(160, 120);
     let camera = Camera {
@@ -267,10 +271,10 @@ fn heap(effort: Effort) -> Shot {
         (card, (0.5 + 0.4 * color).as_vec3().to_array())
     };
     let cards: Vec<_> = (0..24).map(|_| card()).collect();
-    Shot::new(scene_of(cards.iter().map(|(card, color)| (card, *color))), camera)
+    Shot::new(unlit_scene_of(cards.iter().map(|(card, color)| (card, *color))), camera)
 }
 
-/// Every other rectangle of a scene of rectangles is painted.
+/// A focus that paints every other rectangle of a scene of rectangles.
 struct EveryOther(FocusOffset);
 
 impl SurfaceField<FocusOffset> for EveryOther {

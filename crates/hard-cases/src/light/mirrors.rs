@@ -1,24 +1,25 @@
-//! What a mirror shows is the ordinary lens's picture of the mirrored scene, whatever is painted on the mirror.
+//! A mirror shows the ordinary lens's picture of the mirrored scene, whatever is painted on the mirror.
 
 use crate::case::{Case, Effort, Verdict};
-use crate::measure::rms_difference;
-use crate::scenery::{Mesh, made_of};
-use crate::shot::{Shot, picture_of};
+use crate::support::measure::rms_difference;
+use crate::support::shot::{Shot, picture_of};
 use focus::Focus;
 use glam::{DVec3, Vec4};
 use lens::{Camera, FocusOffset};
 use progress::{Cancelled, Progress};
 use salf::Salf;
 use scene::{Material, Scalar, Workflow};
+use test_scenes::{Mesh, scene_of};
 
 pub const CASES: &[Case] = &[Case {
     name: "a mirror and the mirrored scene",
-    reason: "A mirror's light keeps the standard κ of where it is mirrored, and so shows what the lens sees behind it.",
-    control: "its light taken for its own: the paint moves it",
+    reason: "The light of a mirror keeps the standard κ of the reflected point, and so shows what the lens \
+             sees behind the mirror plane.",
+    control: "its light treated as emitted by its surface, which paint displaces",
     check: mirror,
 }];
 
-/// Cards that show their colour, at some depths behind the camera, or in front of it beyond the mirror's plane.
+/// Unlit coloured cards at several depths behind the camera, or mirrored to beyond the mirror plane.
 fn cards(is_mirrored: bool) -> Vec<(Mesh, Material)> {
     const MIRROR: f64 = -4.0;
     let cards =
@@ -53,7 +54,7 @@ fn mirror(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled>
     };
     let mut meshes = cards(false);
     meshes.push((Mesh::wall(4.0, 20.0), silver));
-    let shot_of = |meshes: Vec<(Mesh, Material)>| Shot::new(made_of(meshes), camera.clone());
+    let shot_of = |meshes: Vec<(Mesh, Material)>| Shot::new(scene_of(meshes), camera.clone());
     let (shot, mirrored) = (shot_of(meshes), shot_of(cards(true)));
     let expected = mirrored.truth(FocusOffset::STANDARD, effort.choose(1024, 256), progress)?;
     let paint = FocusOffset::new(1.06, 1.0);

@@ -1,9 +1,9 @@
-//! Aperture pictures without light, with little, with very many texels.
+//! Aperture masks without light, with a single open texel, and with very many texels.
 
+use super::sampling::mask;
 use crate::case::{Case, Effort, NOT_COMPUTED, Verdict};
-use crate::light_field::{offset_of, picture_of_stars, star};
-use crate::measure::{energy, largest_difference, worst};
-use crate::sampling::mask;
+use crate::support::light_field::{offset_of, picture_of_stars, star};
+use crate::support::measure::{energy, largest_difference, worst};
 use glam::DVec2;
 use lens::{Aperture, ApertureShape, Camera, Picture};
 use progress::{Cancelled, Progress};
@@ -11,21 +11,23 @@ use progress::{Cancelled, Progress};
 pub const CASES: &[Case] = &[
     Case {
         name: "aperture mask all black",
-        reason: "No light passes, and exposure divides by the open area: such a mask is refused by name.",
-        control: "a check of the range of the transmissions alone",
+        reason: "No light passes, and the exposure divides by the open area: such a mask is rejected, with \
+                 its name.",
+        control: "a check of only the range of the transmissions",
         check: black,
     },
     Case {
         name: "aperture mask of one texel",
-        reason: "The splat of one open texel is the sharp one, moved by κ·R times the texel's place, up in the mask being up \
-                 on the picture in far defocus; a mask of 1 × 1 is the square.",
-        control: "the mask read from the bottom row up",
+        reason: "The splat of a single open texel is the sharp picture, displaced by κ·R times the position \
+                 of the texel; up in the mask is up in the picture for far blur. A mask of 1 × 1 is the \
+                 square.",
+        control: "the mask read from the bottom row upward",
         check: one_texel,
     },
     Case {
         name: "aperture mask of 4096²",
-        reason: "A checkerboard of single texels passes half the light, whatever it is cut to.",
-        control: "the mask asked at the middle of each of 128² cells",
+        reason: "A checkerboard of single texels passes half of the light, at any resolution it is reduced to.",
+        control: "the mask sampled at the centre of each of 128² cells",
         check: many_texels,
     },
 ];
@@ -52,7 +54,7 @@ fn black(_: Effort, _: &dyn Progress) -> Result<Verdict, Cancelled> {
 
 const FRAME_PX: u32 = 97;
 
-/// Mass, and the centroid from the frame's middle, px, y up.
+/// Mass, and centroid relative to the centre of the frame, px, y up.
 fn centroid(picture: &Picture) -> (f64, DVec2) {
     let middle = f64::from(FRAME_PX - 1) / 2.0;
     let mass = energy(picture);
@@ -78,7 +80,7 @@ fn camera_with(aperture: Aperture) -> Camera {
 fn one_texel(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
     let side = effort.choose(512, 128);
     let half_texel = 1.0 / f64::from(side);
-    // A texel in the upper right, off every coarser grid's symmetry.
+    // A texel in the upper right, not symmetric in any coarser grid.
     let open = DVec2::new(0.4, 0.7);
     let is_open = move |u: DVec2| f32::from((u - open).abs().max_element() < half_texel);
     let upright = mask(side, is_open);

@@ -1,31 +1,32 @@
-//! Triangles without area, needles, duplicates.
+//! Triangles without area, needles, and duplicates.
 
 use crate::case::{Case, Effort, NOT_COMPUTED, Verdict};
-use crate::measure::{farthest_from, largest_difference, senseless, worst};
-use crate::scenery::{Mesh, scene_of};
-use crate::shot::{Shot, picture_of};
+use crate::support::measure::{farthest_from, largest_difference, senseless, worst};
+use crate::support::shot::{Shot, picture_of};
 use glam::DVec3;
 use lens::{Camera, FocusOffset};
 use progress::{Cancelled, Progress};
 use salf::{Salf, Sample, Visibility};
+use test_scenes::{Mesh, unlit_scene_of};
 
 pub const CASES: &[Case] = &[
     Case {
         name: "zero-area triangles",
-        reason: "They cover nothing, so the picture is what it is without them; no division by their area shows.",
-        control: "their unit normals by division by the length",
+        reason: "They cover nothing, so the picture is the same without them; no division by their area has \
+                 an effect.",
+        control: "their unit normals, computed by division by the length",
         check: without_area,
     },
     Case {
         name: "needles",
-        reason: "White needles before a white wall change nothing: what they hide they replace.",
-        control: "each drawn as if it hid nothing",
+        reason: "White needles in front of a white wall change nothing: they replace what they hide.",
+        control: "each needle drawn as if it hid nothing",
         check: needles,
     },
     Case {
         name: "duplicate coplanar triangles",
-        reason: "Of surfaces in one place one is seen: radiance 1 stays 1, facing the camera and edge-on.",
-        control: "each copy drawn",
+        reason: "Of coincident surfaces one is visible: radiance 1 stays 1, facing the camera and edge-on.",
+        control: "every copy drawn",
         check: duplicates,
     },
 ];
@@ -51,9 +52,9 @@ fn without_area(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Canc
         [DVec3::Z, DVec3::ZERO, -DVec3::Z],
     ]
     .map(Mesh::triangle);
-    let alone = Shot::new(scene_of([(&wall, WHITE)]), camera(effort));
+    let alone = Shot::new(unlit_scene_of([(&wall, WHITE)]), camera(effort));
     let meshes = std::iter::once((&wall, WHITE)).chain(flat.iter().map(|mesh| (mesh, [7.0; 3])));
-    let all = Shot::new(scene_of(meshes), camera(effort));
+    let all = Shot::new(unlit_scene_of(meshes), camera(effort));
     let mut differences = Vec::new();
     for offset in [FocusOffset::STANDARD, FocusOffset::new(0.98, 1.0)] {
         differences.push(largest_difference(&all.splat(offset, progress)?, &alone.splat(offset, progress)?));
@@ -86,7 +87,7 @@ fn needles(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled
         })
         .collect();
     let meshes = std::iter::once((&wall, WHITE)).chain(needles.iter().map(|mesh| (mesh, WHITE)));
-    let shot = Shot::new(scene_of(meshes), camera(effort));
+    let shot = Shot::new(unlit_scene_of(meshes), camera(effort));
     let salf = shot.salf(FocusOffset::STANDARD, progress)?;
     let focus = shot.focus(FocusOffset::STANDARD);
     let open = |sample: &mut Sample| sample.visibility = Visibility::Open;
@@ -107,7 +108,7 @@ fn duplicates(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancel
     let copies = |count: usize| {
         let copies = |mesh: &Mesh| vec![mesh.clone(); count];
         let meshes: Vec<_> = [vec![wall.clone()], copies(&facing), copies(&edge_on)].concat();
-        Shot::new(scene_of(meshes.iter().map(|mesh| (mesh, WHITE))), camera(effort))
+        Shot::new(unlit_scene_of(meshes.iter().map(|mesh| (mesh, WHITE))), camera(effort))
     };
     let (once, thrice) = (copies(1), copies(3));
     let standard = FocusOffset::STANDARD;

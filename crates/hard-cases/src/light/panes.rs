@@ -1,24 +1,25 @@
-//! Half there is half there: no grain, whatever stands behind what.
+//! Partial opacity without grain.
 
 use crate::case::{Case, Effort, Verdict};
-use crate::scenery::{Mesh, made_of};
-use crate::shot::Shot;
+use crate::support::shot::Shot;
 use glam::Vec4;
 use lens::{Camera, FocusOffset, Picture};
 use progress::{Cancelled, Progress};
 use scene::{AlphaMode, Material};
+use test_scenes::{Mesh, scene_of};
 
 pub const CASES: &[Case] = &[
     Case {
         name: "a card of opacity 0.5",
-        reason: "Each sample behind it sees half of every aperture point, so the picture is even.",
-        control: "rays that pass or not by chance",
+        reason: "Half of every aperture point is visible from each sample behind it, so the picture has no \
+                 grain.",
+        control: "rays that pass at random",
         check: card,
     },
     Case {
         name: "twelve panes",
-        reason: "What is seen of each is the product of what those before it leave.",
-        control: "the panes in the opposite order",
+        reason: "The visibility of each pane is the product of the transmissions of those in front of it.",
+        control: "the panes in reverse order",
         check: stack,
     },
 ];
@@ -33,7 +34,7 @@ fn camera(effort: Effort) -> Camera {
     Camera { width, height, yfov: 0.6, aperture_radius: 0.05, focus_distance: 3.0, ..Camera::default() }
 }
 
-/// The mean of each colour over the picture's middle, and the largest relative deviation.
+/// The mean of each colour over the centre of the picture, and the largest relative deviation.
 fn middle(picture: &Picture) -> ([f64; 3], f64) {
     let (width, height) = (picture.width as usize, picture.height as usize);
     let pixels: Vec<_> = (height / 3..2 * height / 3)
@@ -52,7 +53,7 @@ fn middle(picture: &Picture) -> ([f64; 3], f64) {
 fn card(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
     let [wall, card] = [[0.8f32, 0.6, 0.4], [0.2, 0.3, 0.9]];
     let meshes = [(Mesh::wall(4.0, 9.0), unlit(wall, 1.0)), (Mesh::wall(2.0, 5.0), unlit(card, 0.5))];
-    let shot = Shot::new(made_of(meshes), camera(effort));
+    let shot = Shot::new(scene_of(meshes), camera(effort));
     let off = |picture: &Picture| {
         let (mean, deviation) = middle(picture);
         let wanted = |c: usize| f64::from(wall[c] + card[c]) / 2.0;
@@ -74,7 +75,7 @@ fn stack(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> 
         .collect();
     let ground = [0.5, 0.4, 0.9];
     let composited = |panes: &[([f32; 3], f32)]| {
-        // From the back, each over what is behind it.
+        // Composited from back to front.
         panes.iter().rev().fold(ground.map(f64::from), |behind, (color, opacity)| {
             let opacity = f64::from(*opacity);
             std::array::from_fn(|c| opacity * f64::from(color[c]) + (1.0 - opacity) * behind[c])
@@ -87,7 +88,7 @@ fn stack(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> 
         .chain([(Mesh::wall(4.0, 12.0), unlit(ground, 1.0))])
         .collect();
     let shot = |focus_distance: f64| {
-        let scene = made_of(meshes.clone());
+        let scene = scene_of(meshes.clone());
         Shot::new(scene, Camera { focus_distance, ..camera(effort) })
     };
     let mut measured = Vec::new();

@@ -1,21 +1,22 @@
-//! Aperture points have the density of the transmission.
+//! Sampled aperture points have the density of the transmission.
 
 use crate::case::{Case, Effort, Verdict};
-use crate::measure::worst;
-use crate::random::Random;
+use crate::support::measure::worst;
 use glam::DVec2;
 use lens::{Aperture, ApertureMask, ApertureSampler, ApertureShape};
 use progress::{Cancelled, Progress};
 use std::sync::Arc;
+use test_scenes::Random;
 
 pub const CASES: &[Case] = &[Case {
     name: "sampler χ² for every aperture shape",
-    reason: "Counts of samples over a grid of cells are χ² distributed about the transmission's integrals.",
-    control: "points scaled by their own distance from the middle: a radius drawn evenly",
+    reason: "The counts of samples in a grid of cells are χ² distributed about the integrals of the \
+             transmission.",
+    control: "points scaled by their own distance from the centre: a uniformly distributed radius",
     check: sampler,
 }];
 
-/// A picture of an aperture, from a function of u in [−1, 1]².
+/// An aperture mask from a function of u in [−1, 1]².
 pub fn mask(side: u32, transmission: impl Fn(DVec2) -> f32) -> ApertureShape {
     let texel = |k: u32| {
         let place = DVec2::new(f64::from(k % side) + 0.5, f64::from(k / side) + 0.5);
@@ -31,7 +32,7 @@ pub fn mask(side: u32, transmission: impl Fn(DVec2) -> f32) -> ApertureShape {
     }))
 }
 
-/// Apertures of every shape, at the ends of their parameters and between.
+/// Apertures of every shape, with extreme and intermediate parameters.
 pub fn every_shape() -> Vec<(&'static str, Aperture)> {
     let polygon = |blades, rotation, roundness| ApertureShape::Polygon { blades, rotation, roundness }.into();
     let ring = mask(96, |u| f32::from((0.5..0.9).contains(&u.length())));
@@ -71,7 +72,7 @@ fn sampler(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled
     Ok(Verdict::new(expected, [("deviations", 4.0)], [worst(right)], [wrong]))
 }
 
-/// Cells a side.
+/// Cells per side.
 const CELLS: usize = 8;
 
 fn cell_of(u: DVec2) -> usize {
@@ -80,7 +81,7 @@ fn cell_of(u: DVec2) -> usize {
     place.y as usize * CELLS + place.x as usize
 }
 
-/// The transmission's share of each cell, by 1024² points.
+/// The share of the transmission in each cell, from 1024² points.
 fn cell_shares(aperture: &Aperture) -> [f64; CELLS * CELLS] {
     const SIDE: usize = 1024;
     let mut shares = [0.0; CELLS * CELLS];
@@ -92,8 +93,8 @@ fn cell_shares(aperture: &Aperture) -> [f64; CELLS * CELLS] {
     shares.map(|share| share / total)
 }
 
-/// How many standard deviations the χ² of `count` points lies above its mean, by the cube-root rule that makes it
-/// normal (Wilson and Hilferty 1931). Cells that expect few points are counted as one.
+/// Deviation of the χ² of `count` points from its mean in standard deviations, with the cube-root
+/// transformation to normality (Wilson and Hilferty 1931). Cells with few expected points are merged.
 fn deviations(shares: &[f64], count: u32, mut draw: impl FnMut() -> DVec2) -> f64 {
     const FEW: f64 = 20.0;
     let mut observed = [0.0; CELLS * CELLS];
@@ -114,9 +115,9 @@ mod tests {
 
     #[test]
     fn the_deviation_is_that_of_chi_squared() {
-        // The 0.1 % point of χ² with 63 degrees of freedom is 103.44; its normal deviate 3.09.
+        // The 0.1 % quantile of χ² with 63 degrees of freedom is 103.44; its normal deviate is 3.09.
         let shares = [1.0 / 64.0; 64];
-        // An even count but for two cells that differ by ±d: χ² = 2d²/e.
+        // Equal counts except for two cells that differ by ±d: χ² = 2d²/e.
         let (count, e) = (64_000u32, 1000.0f64);
         let d = (103.44 * e / 2.0).sqrt().round() as usize;
         let cells = (0..64usize).flat_map(|cell| {
