@@ -5,11 +5,11 @@ use glam::{DVec2, DVec3, Vec3};
 use scene::{Scene, SurfacePoint};
 use std::collections::HashMap;
 
-/// The triangles that light others, chosen by how much of what they send may arrive ([`LightTree`]).
+/// The emissive triangles that light other surfaces, sampled by how much of their power may arrive ([`LightTree`]).
 #[derive(Debug, Default)]
 pub(crate) struct Emitters {
     triangles: Vec<Emitter>,
-    /// By triangle of the scene: its place in `triangles`.
+    /// Index into `triangles` by triangle of the scene.
     triangle_indices: HashMap<u32, u32>,
     tree: LightTree,
 }
@@ -18,26 +18,27 @@ pub(crate) struct Emitters {
 struct Emitter {
     triangle: u32,
     area: f64,
-    /// Unit, on its counter-clockwise side.
+    /// Unit normal of the counter-clockwise side.
     normal: DVec3,
     both_sides: bool,
 }
 
-/// A place on an emitter, seen from a position.
+/// A sampled point on an emitter, as a position receives it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct EmitterSample {
-    /// The place.
+    /// World position of the sampled point.
     pub place: DVec3,
     /// Unit direction toward it.
     pub direction: DVec3,
-    /// The radiance it sends, were nothing in between.
+    /// Radiance the point sends toward the position, ignoring occlusion.
     pub radiance: Vec3,
-    /// Of its direction, 1/sr.
+    /// Probability density of the direction, 1/sr.
     pub density: f64,
 }
 
 impl Emitters {
-    /// The emissive triangles of a scene. Unlit ones are not: their radiance is a picture, not light.
+    /// Collects the emissive triangles of a scene. Unlit triangles are left out: their radiance is a picture, not
+    /// light.
     pub fn from_scene(scene: &Scene) -> Self {
         let (mut triangles, mut lights) = (Vec::new(), Vec::new());
         for part in &scene.parts {
@@ -65,13 +66,13 @@ impl Emitters {
         Self { triangles, triangle_indices, tree: LightTree::new(&lights) }
     }
 
-    /// Whether there are none.
+    /// Whether the scene has no emitters.
     pub fn is_empty(&self) -> bool {
         self.triangles.is_empty()
     }
 
-    /// Draws a place on an emitter by uniform numbers, for light that arrives at a position. `None` where that place sends nothing
-    /// there.
+    /// Samples a point on an emitter from uniform numbers, for light arriving at `position`. `None` if the sampled
+    /// point sends nothing there.
     pub fn sample(&self, scene: &Scene, position: DVec3, choice: f64, u: [f64; 2]) -> Option<EmitterSample> {
         let (chosen, share) = self.tree.draw(position, choice)?;
         let emitter = &self.triangles[chosen];
@@ -84,7 +85,8 @@ impl Emitters {
         Some(EmitterSample { place, direction, radiance: scene.emitted_radiance(point), density })
     }
 
-    /// The density, 1/sr, with which [`Self::sample`] finds a place on `triangle` from a position: 0 if none.
+    /// Density, 1/sr, with which [`Self::sample`] chooses `place` on `triangle` from `position`; 0 if the triangle is
+    /// not an emitter.
     pub fn density(&self, triangle: u32, place: DVec3, position: DVec3) -> f64 {
         let Some(&number) = self.triangle_indices.get(&triangle) else { return 0.0 };
         let area_density = self.triangles[number as usize].density(place - position);
@@ -93,7 +95,8 @@ impl Emitters {
 }
 
 impl Emitter {
-    /// One over the solid angle that its area is seen under, were it all as that place; none where it sends nothing there.
+    /// Reciprocal of the solid angle that the whole emitter would subtend if it lay at `toward`; `None` where that
+    /// point sends nothing.
     fn density(&self, toward: DVec3) -> Option<f64> {
         let r2 = toward.length_squared();
         let facing = -toward.dot(self.normal) / r2.sqrt();
@@ -102,8 +105,8 @@ impl Emitter {
     }
 }
 
-/// The mean luminance that a triangle emits. A hundredth of its peak is added, so that no lit texel has
-/// probability 0 just because the few texels looked at here are dark.
+/// Mean luminance emitted by a triangle. A hundredth of its peak is added so that no lit texel gets probability 0
+/// merely because the few texels examined here are dark.
 fn mean_emission(scene: &Scene, triangle: u32) -> f64 {
     const SIDE: u32 = 8;
     let luminance = |rgb: Vec3| f64::from(rgb.dot(Vec3::new(0.2126, 0.7152, 0.0722)));
@@ -119,7 +122,8 @@ fn mean_emission(scene: &Scene, triangle: u32) -> f64 {
     sum / f64::from(SIDE * SIDE) + 0.01 * peak
 }
 
-/// The unit square onto the triangle, area for area (Heitz 2019): no fold, so spread points stay spread.
+/// Maps the unit square to barycentric coordinates, preserving area (Heitz 2019). The map has no fold, so
+/// well-distributed points stay well distributed.
 pub(crate) fn uniform_barycentric(u: DVec2) -> DVec2 {
     if u.y > u.x { DVec2::new(0.5 * u.x, u.y - 0.5 * u.x) } else { DVec2::new(u.x - 0.5 * u.y, 0.5 * u.y) }
 }

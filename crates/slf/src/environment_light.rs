@@ -1,37 +1,39 @@
-//! Light from the environment, found where it is bright.
+//! Importance sampling of the environment.
 //!
-//! Between the centres of four texels radiance is bilinear ([`scene::EnvironmentMap`]), so the cells between centres are what is
-//! chosen from: each in proportion to the mean of its corners times its solid angle, by inverting running sums, of rows and within
-//! the row, so that evenly spread numbers give evenly spread directions; and a direction in it uniform over the solid angle. A sun
-//! of one texel is the corner of four cells: nowhere is the radiance more than four times what its cell was chosen for, so it
-//! neither vanishes nor sparkles. All that shines has a density above 0.
+//! Radiance is bilinear between the centres of four texels ([`scene::EnvironmentMap`]), so the cells between texel
+//! centres are what is sampled: each in proportion to the mean of its corners times its solid angle. Rows, then cells
+//! within a row, are chosen by inverting cumulative sums, which keeps evenly distributed numbers evenly distributed
+//! over directions; within a cell the direction is uniform in solid angle. A sun of one texel is the corner of four
+//! cells: nowhere does the radiance exceed four times the value its cell was chosen for, so the sun neither vanishes
+//! nor causes fireflies. Everything that emits light has a density above 0.
 
 use glam::{DVec2, DVec3, Vec3};
 use scene::{Environment, EnvironmentMap, World};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// The environment as a light.
+/// The environment as a sampled light source.
 #[derive(Debug)]
 pub(crate) struct EnvironmentLight {
     map: Arc<EnvironmentMap>,
-    /// The probabilities of rows of cells, summed up from the top; begins with 0.
+    /// Cumulative probabilities of rows of cells, from the top; starts with 0.
     rows: Vec<f64>,
-    /// Of each row those of its cells, given the row, summed up from the left; each begins with 0.
+    /// Cumulative probabilities of the cells of each row, given the row, from the left; each row starts with 0.
     cells: Vec<f64>,
-    /// The sines of latitude between which each row of cells lies, from the top.
+    /// Sines of the latitudes that bound each row of cells, from the top.
     sines: Vec<[f64; 2]>,
 }
 
 impl EnvironmentLight {
-    /// None where the world is dark, or the same everywhere: a surface finds that best by how it scatters.
+    /// Builds the sampler. `None` if the world is dark or uniform: sampling the BSDF handles those best.
     pub fn from_world(world: &World) -> Option<Self> {
         let Environment::Map(map) = &world.environment else { return None };
         if world.strength <= 0.0 {
             return None;
         }
         let (width, height) = (i64::from(map.width), i64::from(map.height));
-        // Cells begin at texel centres; the first row ends at the first centre, the last one begins at the last.
+        // Cells start at texel centres; the first row ends at the first centre and the last one starts at the last
+        // centre.
         let edge = |row: i64| map.row_latitude((row as f64 - 0.5).clamp(0.0, height as f64)).sin();
         let sines: Vec<[f64; 2]> = (0..=height).map(|row| [edge(row), edge(row + 1)]).collect();
         let luminance =
@@ -51,13 +53,13 @@ impl EnvironmentLight {
         (rows_sum > 0.0 && rows_sum.is_finite()).then(|| Self { map: map.clone(), rows, cells, sines })
     }
 
-    /// The cells of a row, given the row.
+    /// Cumulative probabilities of the cells of a row.
     fn row(&self, row: usize) -> &[f64] {
         let ends = self.map.width as usize + 1;
         &self.cells[row * ends..(row + 1) * ends]
     }
 
-    /// Draws a direction in the environment's own axes, by uniform numbers, and tells its density.
+    /// Samples a direction in the environment's own axes from uniform numbers; returns it with its density, 1/sr.
     pub fn sample(&self, u: [f64; 2]) -> (DVec3, f64) {
         let (row, down) = invert_cumulative(&self.rows, u[1]);
         let (column, along) = invert_cumulative(self.row(row), u[0]);
@@ -70,7 +72,7 @@ impl EnvironmentLight {
         (direction, self.density_of_cell(row, column))
     }
 
-    /// The density, 1/sr, with which a direction is drawn.
+    /// Density, 1/sr, with which a direction in the environment's own axes is sampled.
     pub fn density(&self, direction: DVec3) -> f64 {
         let at = self.map.texel_position(direction) - 0.5;
         let column = (at.x.floor() as i64).rem_euclid(i64::from(self.map.width));
@@ -86,7 +88,7 @@ impl EnvironmentLight {
     }
 }
 
-/// Weights summed up and scaled to end at 1; begins with 0. Of no weights at all, even steps.
+/// Cumulative sums of weights, scaled to end at 1; starts with 0. Even steps if all weights are 0.
 fn cumulative_shares(weights: &[f64]) -> Vec<f64> {
     let sum: f64 = weights.iter().sum();
     let (terms, total) =
@@ -101,7 +103,7 @@ fn cumulative_shares(weights: &[f64]) -> Vec<f64> {
     steps
 }
 
-/// The step of running sums that a uniform number falls into, and how far into it.
+/// The interval of cumulative sums that contains a uniform number, and the relative position within it.
 fn invert_cumulative(steps: &[f64], u: f64) -> (usize, f64) {
     let step = steps.partition_point(|&sum| sum <= u).clamp(1, steps.len() - 1) - 1;
     let (from, to) = (steps[step], steps[step + 1]);
@@ -122,7 +124,7 @@ mod tests {
     }
 
     fn spread(count: u32) -> impl Iterator<Item = [f64; 2]> {
-        // The steps of Roberts's R2 sequence.
+        // Steps of Roberts's R2 sequence.
         const STEPS: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_3];
         (0..count).map(|k| STEPS.map(|step| (f64::from(k) * step + 0.5).fract()))
     }
@@ -163,7 +165,8 @@ mod tests {
             let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
             let max = ratios.iter().copied().fold(0.0, f64::max);
             assert!(max < 4.2 * mean, "{sun}: {max} of {mean}");
-            // The sun's own light: its peak over the pyramid that bilinear interpolation makes of it.
+            // Light of the sun alone: its peak integrated over the pyramid that bilinear interpolation makes of one
+            // texel.
             let latitude = std::f64::consts::FRAC_PI_2 - 9.5 / 32.0 * std::f64::consts::PI;
             let texel = (std::f64::consts::PI / 32.0).powi(2) * latitude.cos();
             let expected = 0.3 * 4.0 * std::f64::consts::PI + f64::from(sun - 0.3) * texel;

@@ -1,10 +1,11 @@
-//! Irradiance kept on the surface: what has been scattered before, for every camera.
+//! Irradiance cached on the surface, independent of the camera.
 //!
-//! The surface is parted into patches ([`patches`]): what lies in one cell of a lattice, of one part, and faces about one way. Each
-//! knows the light that arrives at it: *direct* (of lights that are drawn, as far as nothing stands between) and *indirect* (all else),
-//! solved for bounce by bounce (`solving`). Between patches it is interpolated by place and normal, so that it has no borders but
-//! those of parts, and what faces away, a wall's other side above all, has no say. What a surface sends of it is its diffuse lobes'
-//! times E/π. Beside them it knows what the sky sends where nothing shades (`open_sky`).
+//! The surface is divided into patches ([`patches`]): the surface of one part within one lattice cell that faces
+//! roughly one direction. Each stores the light that arrives at it: *direct* (from sampled lights, with occlusion) and
+//! *indirect* (everything else), solved bounce by bounce (`irradiance_solver`). Between patches irradiance is
+//! interpolated by position and normal, so it is continuous except between parts; surfaces that face away, such as the
+//! other side of a wall, do not contribute. A surface point sends its diffuse albedo times E/π of it. The cache also
+//! holds the light of an unoccluded sky by normal (`open_sky`).
 
 mod lattice;
 pub(crate) mod patches;
@@ -17,50 +18,56 @@ use place::Place;
 use scene::World;
 use trace::IncidentLight;
 
-/// Light that arrives at every patch of a scene's surface.
+/// Irradiance at every patch of a scene's surface.
+///
+/// Solved once for a scene and its world by [`Irradiance::solve`]; used by
+/// [`Transport::with_irradiance`](crate::Transport::with_irradiance) and
+/// [`Transport::with_control_variate`](crate::Transport::with_control_variate).
 #[derive(Debug)]
 pub struct Irradiance {
     patches: Patches,
-    /// Irradiance/π by patch: of lights that are drawn.
+    /// Irradiance/π by patch, from sampled lights.
     direct: Vec<Vec3>,
-    /// And all other.
+    /// Irradiance/π by patch, all other light.
     indirect: Vec<Vec3>,
     sky: Option<OpenSky>,
 }
 
 impl Irradiance {
-    /// Of what was solved for: irradiance/π by patch, in a world.
+    /// Wraps solved values: irradiance/π by patch, in a world.
     pub(crate) fn new(patches: Patches, [direct, indirect]: [Vec<Vec3>; 2], world: &World) -> Self {
         Self { patches, direct, indirect, sky: OpenSky::from_world(world) }
     }
 
-    /// Irradiance/π by patch: direct and indirect. With scene, world and the options it was solved with, all there is to keep.
+    /// Irradiance/π by patch (linear RGB radiance units): direct and indirect. Together with the scene, the world and
+    /// the solver's options this is all that needs to be stored; see [`Irradiance::from_values`].
     pub fn values(&self) -> [&[Vec3]; 2] {
         [&self.direct, &self.indirect]
     }
 
-    /// Irradiance/π that the environment would send, did nothing shade the surface of this normal; none where it is not drawn.
+    /// Irradiance/π that an unoccluded environment sends to a surface with this normal; `None` if the environment is
+    /// not sampled as a light.
     pub(crate) fn unshaded(&self, world: &World, normal: DVec3) -> Option<DVec3> {
         self.sky.as_ref().map(|sky| sky.at(world, normal))
     }
 
-    /// Irradiance/π that a spot receives whose shaded normal is this.
+    /// Irradiance/π that incident light gives to a surface with this shading normal.
     pub(crate) fn shaded(&self, world: &World, shaded: &IncidentLight, normal: DVec3) -> DVec3 {
         (self.unshaded(world, normal).unwrap_or_default() + shaded.irradiance_over_pi(normal).as_dvec3())
             .max(DVec3::ZERO)
     }
 
-    /// The side of a patch, world units.
+    /// Side of a lattice cell, world units.
     pub(crate) fn spacing(&self) -> f64 {
         self.patches.spacing()
     }
 
-    /// Indirect irradiance/π at a place; `None` where no patch is.
+    /// Indirect irradiance/π at a place; `None` if no patch covers it.
     pub(crate) fn indirect(&self, place: &Place) -> Option<Vec3> {
         self.interpolate(place, |patch| self.indirect[patch])
     }
 
-    /// All irradiance/π at a place; `None` where no patch is.
+    /// Direct and indirect irradiance/π at a place; `None` if no patch covers it.
     pub(crate) fn total(&self, place: &Place) -> Option<Vec3> {
         self.interpolate(place, |patch| self.direct[patch] + self.indirect[patch])
     }

@@ -1,29 +1,30 @@
-//! Which of many lights to draw, by how much of each may arrive at a position.
+//! Importance sampling of many lights.
 //!
-//! A tree over all lights (Conty Estevez and Kulla 2018). Each node bounds where its lights are and which way they face, so that one
-//! can tell how much of their power may arrive: Φ·cos θ′/d², θ′ the least angle under which any of them may be left, d the distance to
-//! their middle. From the root on down one goes by that. What cannot arrive has probability 0, and nothing else has.
+//! A binary tree over all lights (Conty Estevez and Kulla 2018). Each node bounds the positions and orientations of its
+//! lights, which gives an estimate of how much of their power arrives at a position: Φ·cos θ′/d², where θ′ is the least
+//! angle at which any of them may be left and d the distance to their centre. Sampling descends from the root by these
+//! estimates. A light has probability 0 exactly if its light cannot arrive.
 
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// A light as the tree sees it.
+/// Bounds of one light.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LightBounds {
     pub low: DVec3,
     pub high: DVec3,
-    /// Unit.
+    /// Unit normal.
     pub normal: DVec3,
     pub both_sides: bool,
     pub power: f64,
 }
 
-/// The lights, numbered as they came.
+/// A tree over lights, which keep the numbers of the input.
 #[derive(Debug, Default)]
 pub(crate) struct LightTree {
-    /// The first child of a node follows it.
+    /// A node's first child follows it directly.
     nodes: Vec<Node>,
-    /// Of each light which children lead to it, from the lowest bit on.
+    /// By light: which child leads to it at each level, starting from the lowest bit.
     trails: Vec<u64>,
 }
 
@@ -35,31 +36,31 @@ struct Node {
 
 #[derive(Clone, Copy, Debug)]
 enum NodeKind {
-    /// The light of this number.
+    /// The light with this number.
     Leaf(u32),
-    /// Two nodes, the second of them this one.
+    /// Two child nodes; this is the index of the second.
     Inner(u32),
 }
 
-/// What is known of some lights.
+/// Bounds of the lights of a node.
 #[derive(Clone, Copy, Debug)]
 struct NodeBounds {
     low: DVec3,
     high: DVec3,
-    /// The axis of a cone that all normals lie in, and its half angle, rad.
+    /// Axis of a cone that contains all normals, and its half angle, rad.
     axis: DVec3,
     spread: f64,
     both_sides: bool,
     power: f64,
 }
 
-/// Splits are looked for between so many slices of an axis.
+/// Number of buckets along an axis between which splits are tried.
 const BUCKETS: usize = 12;
-/// Below so many nodes lights are halved by their number, so that a trail has bits enough.
+/// At this depth and below, lights are split by number so that the trail bits suffice.
 const MAX_SPLIT_DEPTH: usize = 32;
 
 impl LightTree {
-    /// Of lights with power.
+    /// Builds the tree over lights that have power.
     pub fn new(lights: &[LightBounds]) -> Self {
         let mut tree = Self { nodes: Vec::new(), trails: vec![0; lights.len()] };
         let mut lights_left: Vec<u32> = (0..lights.len() as u32).collect();
@@ -86,8 +87,8 @@ impl LightTree {
         self.build(lights, second, depth + 1, trail | 1 << depth);
     }
 
-    /// Draws a light for a position by a uniform number: its number, and its probability. `None` where none can arrive of those it
-    /// came to.
+    /// Samples a light for a position from a uniform number; returns its number and probability. `None` if no light of
+    /// the node it descended to can arrive.
     pub fn draw(&self, position: DVec3, mut choice: f64) -> Option<(usize, f64)> {
         let (mut node, mut probability) = (0, 1.0);
         loop {
@@ -105,7 +106,7 @@ impl LightTree {
         }
     }
 
-    /// The probability with which [`Self::draw`] draws a light.
+    /// The probability with which [`Self::draw`] chooses a light.
     pub fn probability(&self, position: DVec3, number: usize) -> f64 {
         let (mut node, mut probability, mut trail) = (0, 1.0, self.trails[number]);
         while let NodeKind::Inner(second) = self.nodes[node].kind {
@@ -128,7 +129,8 @@ impl LightTree {
     }
 }
 
-/// Parts lights in two, neither of them empty: where what is known of both is least in all (the surface area orientation heuristic).
+/// Splits lights in two non-empty groups at the least total cost (surface area orientation heuristic); returns the size
+/// of the first.
 fn split_lights(lights: &[LightBounds], numbers: &mut [u32], depth: usize) -> usize {
     let middle_of = |number: u32| {
         let light = &lights[number as usize];
@@ -153,7 +155,7 @@ fn split_lights(lights: &[LightBounds], numbers: &mut [u32], depth: usize) -> us
         let slice = &mut slices[slice_of(number)];
         *slice = Some(slice.map_or(bounds, |sum| sum.union(bounds)));
     }
-    // What the slices up to each, from either end, are joined to.
+    // Bounds of the buckets up to each one, from either end.
     let join = |sum: &mut Option<NodeBounds>, slice: &Option<NodeBounds>| {
         *sum = match (*sum, *slice) {
             (Some(sum), Some(slice)) => Some(sum.union(slice)),
@@ -165,7 +167,7 @@ fn split_lights(lights: &[LightBounds], numbers: &mut [u32], depth: usize) -> us
     let above: Vec<f64> = slices.iter().rev().scan(None, join).collect();
     let cost_at = |end: usize| below[end - 1] + above[BUCKETS - 1 - end];
     let best = (1..BUCKETS).min_by(|&a, &b| cost_at(a).total_cmp(&cost_at(b))).expect("there are slices");
-    // Those of the first slice and those of the last are never on one side.
+    // The lights of the first and of the last bucket never end up on the same side.
     numbers.sort_by_key(|&number| slice_of(number) >= best);
     numbers.partition_point(|&number| slice_of(number) < best)
 }
@@ -188,13 +190,13 @@ impl NodeBounds {
         }
     }
 
-    /// How much of the power may arrive at a position, up to a factor that all have in common.
+    /// Estimate of the power that may arrive at a position, up to a common factor.
     fn importance(&self, position: DVec3) -> f64 {
         let toward = position - 0.5 * (self.low + self.high);
         let radius2 = 0.25 * (self.high - self.low).length_squared();
         let d2 = toward.length_squared();
         if d2 <= radius2 {
-            // Among them: any may be near, and face this way.
+            // The position lies within the bounds: any light may be near and face it.
             return self.power / radius2;
         }
         let along = self.axis.dot(toward) / d2.sqrt();
@@ -204,23 +206,23 @@ impl NodeBounds {
         if min_angle >= FRAC_PI_2 { 0.0 } else { self.power * min_angle.max(0.0).cos() / d2 }
     }
 
-    /// Power by how large it is and how much of all directions it lights.
+    /// Cost of a node: power by size and by the share of directions it lights.
     fn cost(&self) -> f64 {
         let size = self.high - self.low;
         let area = size.x * size.y + size.y * size.z + size.z * size.x;
-        // ∫ of the cosine from the cone's rim on, over all directions.
+        // Integral of the cosine beyond the cone's rim over all directions.
         let spread = if self.both_sides { PI } else { self.spread };
         let end = (spread + FRAC_PI_2).min(PI);
         let lit = 2.0 * PI * (1.0 - spread.cos())
             + FRAC_PI_2
                 * (2.0 * end * spread.sin() - (spread - 2.0 * end).cos() - 2.0 * spread * spread.sin()
                     + spread.cos());
-        // What is flat along two axes still tells near from far by its length.
+        // Bounds that are flat along two axes still distinguish near from far by their length.
         self.power * (area + size.length_squared()) * lit
     }
 }
 
-/// The narrowest cone around two, by axis and half angle.
+/// The narrowest cone that contains two cones, by axis and half angle.
 fn joint_cone((a, spread_a): (DVec3, f64), (b, spread_b): (DVec3, f64)) -> (DVec3, f64) {
     let between = a.angle_between(b);
     if (between + spread_b).min(PI) <= spread_a {
@@ -242,7 +244,7 @@ fn joint_cone((a, spread_a): (DVec3, f64), (b, spread_b): (DVec3, f64)) -> (DVec
 mod tests {
     use super::*;
 
-    /// A number in [0, 1) by another (splitmix64).
+    /// Pseudo-random number in [0, 1) (splitmix64).
     fn random(seed: u64) -> f64 {
         let mut z = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15);
         z = (z ^ z >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -270,7 +272,7 @@ mod tests {
         (0..count).map(light).collect()
     }
 
-    /// What a light's middle sends, and whether any corner of its box may be seen from its front.
+    /// Light sent by a light's centre.
     fn sends(light: &LightBounds, position: DVec3) -> f64 {
         let toward = position - 0.5 * (light.low + light.high);
         let facing = light.normal.dot(toward.normalize());
@@ -286,13 +288,13 @@ mod tests {
             let position = place(1000 + 5 * eye) * 14.0 - 2.0;
             let all: Vec<f64> = (0..lights.len()).map(|k| tree.probability(position, k)).collect();
             for (light, probability) in lights.iter().zip(&all) {
-                assert!(*probability > 0.0 || sends(light, position) == 0.0, "{light:?} is never drawn");
+                assert!(*probability > 0.0 || sends(light, position) == 0.0, "{light:?} is never sampled");
             }
-            // The choices of a light are as wide as it is probable.
+            // The interval of choices that lead to a light is as wide as its probability.
             const STEPS: usize = 20_000;
             let mut counts = vec![0; lights.len()];
             for k in 0..STEPS {
-                // A node that may be lit from need not have a child that may.
+                // A node with a nonzero estimate may have children whose estimates are 0.
                 let Some((number, probability)) = tree.draw(position, (k as f64 + 0.5) / STEPS as f64) else {
                     continue;
                 };
@@ -310,7 +312,7 @@ mod tests {
         let lights = lights(3000);
         let tree = LightTree::new(&lights);
         let power: f64 = lights.iter().map(|light| light.power).sum();
-        // The second moment of sent/probability, over the square of the mean: 1 of what has no noise.
+        // Second moment of sent/probability over the squared mean: 1 for a noise-free estimator.
         let (mut by_tree, mut by_power) = (0.0, 0.0);
         for eye in 0..20 {
             let position = place(90_000 + 5 * eye) * 10.0;
@@ -335,7 +337,7 @@ mod tests {
             both_sides: true,
             power: 1.0,
         };
-        // Each twice as far as the one before: the worst for slices.
+        // Each twice as far away as the one before: the worst case for buckets.
         let far: Vec<LightBounds> = (0..200).map(|k| at(2f64.powi(k))).collect();
         for lights in [vec![at(1.0); 100], far, vec![at(0.0)]] {
             let tree = LightTree::new(&lights);

@@ -1,4 +1,4 @@
-//! All that shines, as a surface point finds it: by drawing a light for it.
+//! Light sampling: all light sources of a scene and its world.
 
 use crate::emitters::Emitters;
 use crate::environment_light::EnvironmentLight;
@@ -11,26 +11,27 @@ use scene::{Scene, World};
 pub(crate) struct Lights {
     emitters: Emitters,
     environment: Option<EnvironmentLight>,
-    /// How many punctual lights there are.
+    /// Number of punctual lights.
     punctual: usize,
-    /// Longer than the scene is wide.
+    /// A distance that leaves the scene from anywhere in it.
     outside_distance: f64,
 }
 
 /// Light that may arrive from one direction.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LightSample {
-    /// Unit, toward the light.
+    /// Unit direction toward the light.
     pub direction: DVec3,
-    /// The world position between which and the point nothing may stand.
+    /// World position of the light, or a point outside the scene; the light arrives unless the segment to it is
+    /// occluded.
     pub source: DVec3,
-    /// Whether that is the light itself; else it lies beyond the scene.
+    /// Whether `source` is the light itself; otherwise the light is infinitely far away.
     pub is_near: bool,
-    /// Radiance over density, or a punctual light's irradiance over the probability to have chosen it.
+    /// Radiance over density, or a punctual light's irradiance over the probability of having chosen it.
     pub light: Vec3,
-    /// Of the direction, 1/sr; none of a punctual light, which no other way of sampling finds.
+    /// Density of the direction, 1/sr; `None` for a punctual light, which no other sampling technique can hit.
     pub density: Option<f64>,
-    /// Which of the scene's lights it is, if it is punctual.
+    /// Index into the scene's lights, if the light is punctual.
     pub punctual_index: Option<usize>,
 }
 
@@ -41,16 +42,16 @@ impl LightSample {
     }
 }
 
-/// How often lights are drawn.
+/// How many light samples to take.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct DrawCounts {
-    /// Draws in all.
+    /// Total number of samples.
     pub total: u32,
-    /// The first of them, in which punctual lights are among them.
+    /// How many of them, from the first on, include punctual lights.
     pub punctual: u32,
 }
 
-/// So many punctual lights are all asked; of more one is drawn by what it would send.
+/// Up to this many punctual lights are all visited; of more, one is sampled by the light it would send.
 const MAX_PUNCTUAL_ENUMERATED: usize = 3;
 
 impl Lights {
@@ -61,29 +62,30 @@ impl Lights {
         Self { emitters, environment, punctual: scene.lights.len(), outside_distance }
     }
 
-    /// How many punctual lights there are.
+    /// Number of punctual lights.
     pub fn punctual_count(&self) -> usize {
         self.punctual
     }
 
-    /// Whether anything shines that has an extent: the sky, a lamp.
+    /// Whether there is any light source of finite extent: the environment or an emissive surface.
     pub fn has_areas(&self) -> bool {
         self.environment.is_some() || !self.emitters.is_empty()
     }
 
-    /// Whether any surface is a light.
+    /// Whether any surface emits light.
     pub fn has_emitters(&self) -> bool {
         !self.emitters.is_empty()
     }
 
-    /// How often lamps and sky are to be drawn, and how often punctual lights, where so often would do: what is the same every time
-    /// is asked once.
+    /// The number of samples for area lights and for punctual lights if `requested` samples are asked for. Sources that
+    /// give the same result every time are sampled once.
     pub fn draw_counts(&self, requested: u32) -> DrawCounts {
         let punctual = if self.punctual <= MAX_PUNCTUAL_ENUMERATED { 1 } else { requested.min(4) };
         DrawCounts { total: if self.has_areas() { requested.max(punctual) } else { punctual }, punctual }
     }
 
-    /// Draws lights for a position, each kind once, punctual ones if they are wanted; `draw` gives uniform numbers.
+    /// Samples one direction of the environment, one point on an emitter and, if `with_punctual`, the punctual lights.
+    /// `draw` returns uniform numbers in [0, 1).
     pub fn sample(
         &self,
         scene: &Scene,
@@ -99,7 +101,7 @@ impl Lights {
         }
     }
 
-    /// Draws a direction of the sky and a place on a lamp.
+    /// Samples one direction of the environment and one point on an emitter.
     pub fn sample_areas(
         &self,
         scene: &Scene,
@@ -138,7 +140,8 @@ impl Lights {
         }
     }
 
-    /// Visits the punctual lights, all if they are `few` or less; else one is drawn by what it would send.
+    /// Visits all punctual lights if there are at most `max_enumerated`; otherwise samples one by the light it would
+    /// send.
     pub fn sample_punctual(
         &self,
         scene: &Scene,
@@ -175,14 +178,14 @@ impl Lights {
         }
     }
 
-    /// The density, 1/sr, with which [`Self::sample`] draws a direction (unit) from the environment.
+    /// Density, 1/sr, with which [`Self::sample`] chooses a direction (unit) of the environment.
     pub fn environment_density(&self, world: &World, direction: DVec3) -> f64 {
         self.environment
             .as_ref()
             .map_or(0.0, |environment| environment.density(world.environment_from_world(direction)))
     }
 
-    /// The same of a place on a triangle.
+    /// Density, 1/sr, with which [`Self::sample`] chooses a point on a triangle from a position.
     pub fn emitter_density(&self, triangle: u32, place: DVec3, position: DVec3) -> f64 {
         self.emitters.density(triangle, place, position)
     }

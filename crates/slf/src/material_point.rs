@@ -1,25 +1,25 @@
-//! What a surface point is made of and how it lies, its textures looked up.
+//! Material and shading frame of a surface point, with textures evaluated.
 
 use crate::media::effective_ior;
 use glam::{DVec2, DVec3, Vec3};
 use material::{Clearcoat, Film, Frame, Scattering, Sheen, Surface};
 use scene::{Anisotropy, Scene, SurfacePoint, Workflow};
 
-/// A surface point as light finds it.
+/// A surface point prepared for shading.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MaterialPoint {
-    /// In the world.
+    /// World position.
     pub position: DVec3,
-    /// What it is made of.
+    /// Material parameters.
     pub surface: Surface,
-    /// How it lies.
+    /// Shading frame.
     pub frame: Frame,
     /// Index into [`Scene::materials`].
     pub material: u32,
 }
 
 impl MaterialPoint {
-    /// Looks a point up.
+    /// Evaluates the material at a point.
     pub fn new(scene: &Scene, point: SurfacePoint, scattering: Scattering) -> Self {
         let material = scene.part_of(point.triangle).material;
         Self {
@@ -31,7 +31,8 @@ impl MaterialPoint {
     }
 }
 
-/// The radiance that a point sends toward a direction by itself: from its front, from its back if it is double sided.
+/// Radiance that a point itself emits toward a direction: from its front, and from its back if the material is double
+/// sided.
 pub(crate) fn emitted(scene: &Scene, point: SurfacePoint, outgoing: DVec3) -> Vec3 {
     let material = scene.material_of(point.triangle);
     let shows =
@@ -54,7 +55,7 @@ fn frame(scene: &Scene, point: SurfacePoint) -> Frame {
     let frame = Frame::new(geometric, normal, tangent.unwrap_or(DVec3::ZERO));
     match &material.clearcoat {
         None => frame,
-        // The bumps of what lies beneath are none of the coat's.
+        // The coat does not follow the normal map of the base.
         Some(coat) => frame.coated(match &coat.normal_map {
             Some(map) => scene.bumped_normal(map, point),
             None => scene.shading_normal(point),
@@ -62,7 +63,7 @@ fn frame(scene: &Scene, point: SurfacePoint) -> Frame {
     }
 }
 
-/// The direction of anisotropy in tangent space.
+/// Direction of anisotropy in tangent space.
 fn anisotropy_direction(scene: &Scene, anisotropy: &Anisotropy, point: SurfacePoint) -> DVec2 {
     let own = anisotropy.texture.as_ref().map(|texture| scene.sample_texture_at(texture, point));
     let own = own.map_or(DVec2::X, |rgba| DVec2::new(f64::from(rgba.x), f64::from(rgba.y)) * 2.0 - 1.0);

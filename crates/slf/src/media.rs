@@ -1,4 +1,4 @@
-//! What a path is in: air, or bodies of glass and water, one within another.
+//! The medium a path is in: air, or nested bodies of glass and water.
 
 use glam::DVec3;
 use material::{Interface, attenuation, dispersed_ior};
@@ -6,48 +6,48 @@ use scene::{Material, Scene};
 use std::collections::HashMap;
 use std::sync::OnceLock;
 
-/// Stands for an infinite index of refraction, which glTF writes as 0: a mirror.
+/// Stands for an infinite index of refraction, which glTF writes as 0: a perfect mirror.
 const INFINITE_IOR: f64 = 1e6;
 
-/// The index of refraction of a material.
+/// Index of refraction of a material, with glTF's 0 replaced.
 pub(crate) fn effective_ior(material: &Material) -> f64 {
     if material.ior == 0.0 { INFINITE_IOR } else { f64::from(material.ior) }
 }
 
-/// Wavelengths that stand for red, green and blue where glass disperses, nm: the peaks of sRGB's primaries.
+/// Wavelengths that represent red, green and blue where glass disperses, nm: the peaks of sRGB's primaries.
 const WAVELENGTHS: [f64; 3] = [611.4, 549.1, 464.2];
 
-/// The bodies of a scene, and the surfaces between them.
+/// Interiors of a scene's materials, and the interfaces between them.
 #[derive(Debug)]
 pub(crate) struct Media {
-    /// By material: what its body is filled with.
+    /// By material: the medium that fills its body.
     interiors: Vec<Interior>,
-    /// Different indices of refraction; vacuum's is the first.
+    /// The distinct indices of refraction; vacuum comes first.
     iors: Vec<f64>,
-    /// From one index to another, by front and back.
+    /// By front and back index: the interface between them.
     interfaces: Vec<OnceLock<Interface>>,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Interior {
-    /// Whether there is a body at all.
+    /// Whether the material encloses a volume.
     is_solid: bool,
     disperses: bool,
-    /// Index into `iors` for all colours together, and for red, green and blue.
+    /// Indices into `iors` for all colours together and for red, green and blue.
     ior: [u16; 4],
     color: DVec3,
     distance: f64,
 }
 
-/// How many bodies within each other are kept apart.
+/// Maximum number of nested bodies that are told apart.
 const MAX_NESTED: usize = 8;
 
-/// The bodies that a path is in, the innermost last.
+/// The bodies a path is in, innermost last.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct MediumStack {
     materials: [u32; MAX_NESTED],
     count: usize,
-    /// The colour that is followed, 0 to 2, once the path was dispersed.
+    /// The colour channel followed, 0 to 2, once the path has been dispersed.
     pub channel: Option<usize>,
 }
 
@@ -87,12 +87,12 @@ impl Media {
         Self { interiors, iors, interfaces }
     }
 
-    /// Whether a material's glass bends each colour differently.
+    /// Whether a material refracts each colour differently.
     pub fn disperses(&self, material: u32) -> bool {
         self.interiors[material as usize].disperses
     }
 
-    /// The two sides of a surface of a material that a path meets on its front or its back.
+    /// The interface that a path meets on the front or the back of a material.
     pub fn interface(&self, material: u32, inside: &MediumStack, is_front: bool) -> &Interface {
         let own = self.ior(material, inside);
         let mut around = *inside;
@@ -112,7 +112,7 @@ impl Media {
         self.interiors[material as usize].ior[inside.channel.map_or(0, |channel| channel + 1)]
     }
 
-    /// What is left of light after a way through the innermost body.
+    /// Transmittance of a segment of this length (world units) through the innermost body.
     pub fn attenuation(&self, inside: &MediumStack, length: f64) -> DVec3 {
         inside.innermost().map_or(DVec3::ONE, |material| {
             let interior = &self.interiors[material as usize];
@@ -120,7 +120,7 @@ impl Media {
         })
     }
 
-    /// Goes through a surface of a material, from its front or out of it.
+    /// Crosses a surface of a material, into its body or out of it.
     pub fn cross(&self, inside: &mut MediumStack, material: u32, enters: bool) {
         if !self.interiors[material as usize].is_solid {
             return;
@@ -133,7 +133,7 @@ impl Media {
         }
     }
 
-    /// Where light is that leaves a surface of a material toward its front or its back.
+    /// The medium of light that leaves a surface of a material toward its front or its back.
     pub fn outgoing_medium(&self, material: u32, is_front: bool) -> MediumStack {
         let mut inside = MediumStack::default();
         self.cross(&mut inside, material, !is_front);
@@ -146,7 +146,8 @@ impl MediumStack {
         self.count.checked_sub(1).map(|last| self.materials[last])
     }
 
-    /// Leaves the innermost body of this material; a body whose walls are of several materials is left by any of them.
+    /// Leaves the innermost body of this material. A body whose walls have several materials is left through any of
+    /// them.
     fn leave(&mut self, material: u32) {
         let bodies = &mut self.materials[..self.count];
         let place = bodies.iter().rposition(|&other| other == material).or(bodies.len().checked_sub(1));

@@ -1,23 +1,24 @@
-//! What an environment sends to a surface that nothing shades: by its normal, tabulated.
+//! Irradiance of an unoccluded environment, tabulated by normal.
 
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use scene::{Environment, EnvironmentMap, World};
 use std::f64::consts::{PI, TAU};
 
-/// Irradiance/π by the normal, over longitude and latitude as an environment's picture has them.
+/// Irradiance/π by normal, over longitude and latitude as in an environment map.
 #[derive(Debug)]
 pub(crate) struct OpenSky {
     values: EnvironmentMap,
 }
 
-/// Normals of the table. Between them it is bilinear: off by a thousandth of a sky's light, by three of a sun's at its horizon.
+/// Size of the table. Bilinear interpolation is off by a thousandth of a sky's light, and by three thousandths of a
+/// sun's at its horizon.
 const NORMALS: [u32; 2] = [256, 128];
-/// The sky is summed up to so many cells, each with the direction that its light comes from in the mean.
+/// The sky is binned into this many cells, each with the mean direction of its light.
 const CELLS: [usize; 2] = [128, 64];
 
 impl OpenSky {
-    /// None where the world is dark or the same everywhere: such light is not drawn.
+    /// Tabulates the environment. `None` if the world is dark or uniform: such light is not sampled.
     pub fn from_world(world: &World) -> Option<Self> {
         match &world.environment {
             Environment::Map(map) if world.strength > 0.0 => Some(Self::from_map(map)),
@@ -44,15 +45,15 @@ impl OpenSky {
         Self { values }
     }
 
-    /// At a normal (unit) in the world that it was made of.
+    /// Irradiance/π at a unit normal, in the world that the table was made for.
     pub fn at(&self, world: &World, normal: DVec3) -> DVec3 {
         self.values.radiance(world.environment_from_world(normal)).as_dvec3() * f64::from(world.strength)
     }
 }
 
-/// Directions (their length below 1 where light of a cell comes from several) and radiance times solid angle.
+/// Directions (shorter than 1 where a cell's light comes from several) with radiance times solid angle.
 fn binned_flux(map: &EnvironmentMap) -> Vec<(DVec3, DVec3)> {
-    /// Texels are cut so finely that the bilinear radiance between their centres is summed well.
+    /// Each texel is subdivided this often so that the bilinear radiance between texel centres is integrated well.
     const CUTS: u32 = 2;
     let (width, height) = (map.width * CUTS, map.height * CUTS);
     let mut sums = vec![(DVec3::ZERO, DVec3::ZERO, 0.0); CELLS[0] * CELLS[1]];
@@ -84,7 +85,7 @@ mod tests {
 
     #[test]
     fn it_is_the_integral_over_the_hemisphere() {
-        // Radiance 1 from above, 0.25 from below; and a sun.
+        // Radiance 1 from above and 0.25 from below, and a sun.
         let (width, height) = (128, 64);
         let mut texels: Vec<[f32; 3]> =
             (0..width * height).map(|k| if k / width < height / 2 { [1.0; 3] } else { [0.25; 3] }).collect();

@@ -1,23 +1,24 @@
-//! The numbers that a path is drawn by: the same for the same point, the same path.
+//! Random numbers of paths: the same point gives the same path.
 
 use glam::DVec3;
 use scene::SurfacePoint;
 
 /// A stream of uniform numbers in [0, 1).
 ///
-/// Its first numbers are points of a Sobol' sequence, Owen-scrambled apart for every seed (Burley 2020), so that the paths of one
-/// seed are spread evenly over their first scatterings and lights; then come independent ones.
+/// The first numbers are points of a Sobol' sequence, Owen-scrambled separately for every seed (Burley 2020), so the
+/// paths of one seed are evenly distributed over their first scattering events and lights; then follow independent
+/// numbers.
 #[derive(Clone, Debug)]
 pub(crate) struct PathRandom {
     index: u32,
     seed: u32,
     dimension: u32,
-    /// The four dimensions that this one is among.
+    /// The four dimensions of the sequence that contain the current one.
     batch: [f32; 4],
     state: u64,
 }
 
-/// Numbers that are spread evenly: of the first two scatterings.
+/// Number of low-discrepancy dimensions: those of the first two scattering events.
 const SOBOL_DIMENSIONS: u32 = 24;
 
 impl PathRandom {
@@ -27,9 +28,9 @@ impl PathRandom {
         numbers.fold(mix(u64::from(point.triangle)), |state, number| mix(state ^ number.to_bits()))
     }
 
-    /// Of path `index` of those of a seed.
+    /// The stream of path `index` of a seed.
     pub fn new(seed: u64, index: u32) -> Self {
-        // A Sobol' sequence has 2¹⁶ points here; then another scramble goes on.
+        // The Sobol' sequence has 2¹⁶ points here; beyond them another scramble is used.
         let scramble = mix(seed ^ u64::from(index >> 16));
         Self {
             index: index & 0xffff,

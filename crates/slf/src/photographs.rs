@@ -1,30 +1,32 @@
 //! Light from photographs: a surface light field whose radiance was photographed.
 //!
 //! ```text
-//! views ─▶ seeing (who sees which texel) ─▶ exposures ─▶ odd ─▶ alignment ─▶ telling ─▶ PhotographLight
+//! views ─▶ observations (what each photograph shows of each texel) ─▶ exposures ─▶ transients ─▶ alignment ─▶ fitting ─▶ PhotographLight
 //! ```
 //!
-//! A texel sends what it sends toward all directions (`constant`: a robust mean), what it mirrors of the surroundings (`mirrored`: one
-//! picture at infinity for all texels, as in Wood et al. 2000 the mirrored direction is what a lobe stays still in), and what remains
-//! toward directions near those of its photographs (`residuals`, interpolated by `directions`; all in `telling`). Each part is there as far
-//! as photographs that are left out are told better with it. Where directions are far from all photographs, only the first two remain.
+//! The radiance of a texel has three parts: the same toward all directions (`robust_averaging`: a robust mean);
+//! mirrored surroundings (`mirrored`: one picture at infinity for all texels; as in Wood et al. 2000, lobes are
+//! stationary in the mirrored direction); and a residual toward directions near those of its photographs (`residuals`,
+//! interpolated by `directional_regression`). All of them are in `fitting`. Each part is used to the extent that it
+//! improves the prediction of left-out photographs. Far from all photographed directions only the first two remain.
 //!
-//! `solving` goes this way. `odd` tells what does not belong in photographs, `alignment` where in them things really are. `places` are what light
-//! is kept at, and how finely; `stored` has it as bytes, `texture` as a picture. `direct` looks up points in the photographs themselves.
+//! `solver` runs these steps. `transients` finds what does not belong to the scene, `alignment` the displacements of
+//! photographs. `texels` defines where light is stored and at what resolution; `stored` writes it as bytes, `texture`
+//! as a picture. `direct` evaluates points in the photographs themselves.
 
 mod alignment;
 mod direct;
 mod error;
 mod exposures;
+mod fitting;
 mod numbers;
-mod odd;
+mod observations;
 mod options;
-mod places;
-mod seeing;
-mod solving;
+mod solver;
 mod stored;
-mod telling;
+mod texels;
 mod texture;
+mod transients;
 
 pub use direct::DirectPhotographs;
 pub use error::PhotographError;
@@ -33,32 +35,34 @@ pub use options::{PhotographModel, PhotographOptions, Poses};
 pub use texture::LightTexture;
 
 use alignment::Displacement;
+use fitting::{Mirrored, Residuals, direction_to_eye, is_reflection_blocked};
 use glam::{DVec3, Vec3};
-use odd::InlierMap;
-use places::{DirectionGrid, TexelGrid};
 use scene::SurfacePoint;
 use std::sync::Arc;
-use telling::{Mirrored, Residuals, direction_to_eye, is_reflection_blocked};
+use texels::{DirectionGrid, TexelGrid};
 use trace::{OutgoingRadiance, Radiance, Tracer};
+use transients::InlierMap;
 
-/// Radiance of a surface as photographs of it show it, kept at the texels of an atlas.
+/// Radiance of a surface as its photographs show it, stored at the texels of an atlas.
+///
+/// Made by [`PhotographLight::solve`]; evaluated through [`Radiance`].
 pub struct PhotographLight {
     tracer: Arc<Tracer>,
     grid: TexelGrid,
     exposures: Vec<Exposure>,
     eyes: Vec<DVec3>,
-    /// By view, how far it is off.
+    /// By view: displacement of the photograph.
     displacements: Vec<Displacement>,
-    /// By view, what of it belongs.
+    /// By view: which pixels show the scene rather than a transient object.
     inlier_maps: Vec<InlierMap>,
-    /// By texel: what goes toward all directions alike.
+    /// By texel: view-independent radiance.
     constant: Vec<Vec3>,
-    /// By texel, 1 photographed, 0 filled.
+    /// By texel: 1 observed, 0 filled in.
     observed_share: Vec<f32>,
-    /// By texel, how many photographs see it.
+    /// By texel: number of photographs that observe it.
     observation_counts: Vec<u16>,
     residuals: Residuals,
-    /// Cells at infinity, and the light from them.
+    /// Cells at infinity, and the radiance from them.
     sphere: DirectionGrid,
     background: Vec<Vec3>,
     mirrored: Mirrored,
@@ -70,17 +74,17 @@ impl PhotographLight {
         &self.exposures
     }
 
-    /// By photograph, how many pixels it was moved at most to agree with the others; 0 where it is as its camera says.
+    /// By photograph: the largest displacement applied to align it with the others, px; 0 if it was left unchanged.
     pub fn max_displacements_px(&self) -> Vec<f64> {
         self.displacements.iter().map(Displacement::max_px).collect()
     }
 
-    /// How far a point was photographed: 1 it was, 0 it is filled from around.
+    /// How far a point was observed, in [0, 1]: 1 fully, 0 filled in from around.
     pub fn observed_share(&self, point: SurfacePoint) -> f32 {
         self.interpolate(point, |texel| self.observed_share[texel])
     }
 
-    /// How many photographs see a point, at least; glancing and blocked ones not counted.
+    /// Number of photographs that observe a point, at least; grazing and occluded views do not count.
     pub fn observation_count(&self, point: SurfacePoint) -> u16 {
         let around = self.grid.around(point).into_iter().flatten();
         around
@@ -90,14 +94,14 @@ impl PhotographLight {
             .unwrap_or(0)
     }
 
-    /// What a point sends toward all directions alike.
+    /// View-independent radiance of a point.
     pub fn constant(&self, point: SurfacePoint) -> Vec3 {
         self.grid.around(point).map_or(Vec3::ZERO, |around| {
             around.iter().map(|&(texel, share)| self.constant[texel as usize] * share).sum()
         })
     }
 
-    /// What a point that mirrors by `strength` mirrors of the surroundings toward a direction, and its share.
+    /// Mirrored radiance of a point with mirror strength `strength` toward a direction, and the mirrored share.
     fn mirrored_light(
         &self,
         point: SurfacePoint,
@@ -143,7 +147,7 @@ impl Radiance for PhotographLight {
             strength += self.mirrored.strength(texel) * share;
         }
         let (carried, carried_share) = self.mirrored_light(point, strength, normal, outgoing);
-        // What was left over may be below 0 where less is mirrored than was thought.
+        // The residual may be negative where less is mirrored than estimated.
         let own = sum.max(-carried);
         OutgoingRadiance { own, carried, carried_share, ..OutgoingRadiance::default() }
     }

@@ -1,21 +1,22 @@
-//! The laws of KHR_lights_punctual: what arrives of a light at a point, were nothing in between.
+//! KHR_lights_punctual: unoccluded irradiance of a light at a point.
 
 use glam::{DVec3, Vec3};
 use scene::{Light, LightKind};
 
-/// Light that arrives at a point.
+/// Light of a punctual source at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct PunctualLight {
-    /// Unit direction from which it comes.
+    /// Unit direction toward the light.
     pub direction: DVec3,
-    /// The world position between which and the point nothing may stand.
+    /// World position of the light, or a point outside the scene; the light arrives unless the segment to it is
+    /// occluded.
     pub source: DVec3,
-    /// Irradiance on a surface that faces it.
+    /// Irradiance on a surface that faces the light.
     pub irradiance: Vec3,
 }
 
-/// What arrives of `light` at `position`; `None` if nothing does. `beyond` is a distance
-/// that leads out of the scene from anywhere in it: where directional light comes from.
+/// Unoccluded light of `light` at `position`; `None` if there is none. `beyond` is a distance that leaves the scene
+/// from anywhere in it, where directional light starts.
 ///
 /// | kind | irradiance |
 /// | --- | --- |
@@ -42,16 +43,16 @@ pub(crate) fn unshadowed_light(light: &Light, position: DVec3, beyond: f64) -> O
                 LightKind::Spot { inner, outer } => cone(light.direction.dot(-direction), inner, outer),
                 _ => 1.0,
             };
-            // At the light itself there is no direction, and no finite irradiance.
+            // At the light itself there is no direction and no finite irradiance.
             let irradiance = if r2 > 0.0 { share(window * cone / r2) } else { None };
             Some(PunctualLight { direction, source: light.position, irradiance: irradiance? })
         }
     }
 }
 
-/// A spot light's share of its intensity at an angle of cosine `cos` from its axis.
+/// Share of a spot light's intensity at an angle of cosine `cos` from its axis.
 fn cone(cos: f64, inner: f64, outer: f64) -> f64 {
-    // KHR_lights_punctual's own guard against a division by zero: the falloff is at least this wide.
+    // The specification's guard against a division by zero: minimum width of the falloff.
     const NARROWEST_FALLOFF: f64 = 1e-3;
     let falloff = (inner.cos() - outer.cos()).max(NARROWEST_FALLOFF);
     ((cos - outer.cos()) / falloff).clamp(0.0, 1.0).powi(2)

@@ -1,10 +1,10 @@
-//! Light transport: what surfaces send by themselves and what they scatter of each other's light, by paths.
+//! Light transport by path tracing: emitted light, and light scattered between surfaces.
 
-mod beside;
-mod following;
-mod gathered;
-mod known;
-mod receiving;
+mod batch_measurement;
+mod irradiance_lookup;
+mod path_tracing;
+mod scattered_light;
+mod uncached_light;
 
 use crate::irradiance::Irradiance;
 use crate::irradiance::patches::{PatchPoint, Patches};
@@ -13,23 +13,24 @@ use crate::lights::{LightSample, Lights};
 use crate::material_point::{MaterialPoint, emitted};
 use crate::media::{Media, MediumStack};
 use crate::path_random::PathRandom;
-use gathered::{ScatteredLight, max_split, scale_split};
 use glam::{DVec3, Vec3};
-use known::{CacheMode, IrradianceLookup};
+use irradiance_lookup::{CacheMode, IrradianceLookup};
 use material::{Bsdf, Frame, OutgoingBsdf, Parts, Scattered, Scattering, Split, Surface};
+use scattered_light::{ScatteredLight, max_split, scale_split};
 use scene::{Scene, SurfacePoint, World};
 use std::sync::{Arc, OnceLock};
 use trace::{IncidentLight, OutgoingRadiance, Radiance, SampleSlot, ShadingPoint, Tracer};
 
-/// How light is gathered.
+/// Sampling effort and scattering model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TransportOptions {
-    /// Paths for each point and eye, fewer where the mean of many points is wanted ([`Radiance::leaving_among`]). Their noise is that
-    /// of the picture where each surface point is asked once; where many points fall into a pixel, as in the ground truth, one will do.
+    /// Paths per point and eye; fewer where only the mean of many points matters ([`Radiance::outgoing_sample`]). Their
+    /// noise is that of a picture that evaluates each surface point once; where many points share a pixel, as in the
+    /// ground truth, one will do.
     pub paths: u32,
-    /// Lights that are drawn for each point and eye, where irradiance is known; elsewhere each path draws one.
+    /// Light samples per point and eye where irradiance is cached; elsewhere each path takes one.
     pub light_samples: u32,
-    /// Whether light that meets microfacets more than once counts.
+    /// Whether light that scatters more than once between microfacets counts.
     pub scattering: Scattering,
 }
 
@@ -39,24 +40,25 @@ impl Default for TransportOptions {
     }
 }
 
-/// Radiance of a lit scene, traced by paths (Kajiya 1986).
+/// Radiance of a lit scene by path tracing (Kajiya 1986).
 ///
 /// | surface | radiance |
 /// | --- | --- |
-/// | unlit | its base colour, on both sides; of a picture's surface + what views showed otherwise from elsewhere |
+/// | unlit | its base colour, on both sides; for a picture's surface + the view-dependent change found in other views |
 /// | emissive | the emitted radiance, on the front; on both sides if double sided |
-/// | any but unlit | + what its lobes scatter of light that arrives ([`Bsdf`]) |
+/// | any but unlit | + incident light scattered by its lobes ([`Bsdf`]) |
 ///
-/// At every surface a path meets, light is looked for in two ways: a light is drawn (an emissive triangle by what of its power
-/// may arrive, a direction of the environment by its brightness, punctual lights all, or one by what it would send), and a direction is drawn by
-/// how the surface scatters. What both may find is weighted by the power heuristic (Veach and Guibas 1995). Unlit surfaces send the
-/// colour they show, and are found by the second way alone. Paths end by Russian roulette, or after the world's bounces: nothing
-/// else is left out or cut off, so the mean over points and paths is exact, and depends on the point and the eye alone.
+/// At every surface a path meets, two techniques are combined by the power heuristic (Veach and Guibas 1995): light
+/// sampling (an emissive triangle by the share of its power that may arrive, a direction of the environment by its
+/// brightness; punctual lights all, or one by the light it would send) and BSDF sampling. Unlit surfaces send the
+/// colour they show and are found by BSDF sampling alone. Paths end by Russian roulette or after the world's bounces.
+/// Nothing else is left out or clamped, so the mean over points and paths is exact and depends on the point and the eye
+/// alone.
 ///
-/// With [`Irradiance`] a path ends where it comes to what is known, that is, at the next diffuse surface; and what arrives at a
-/// point's own diffuse lobes from other surfaces is known as well. That is faster by far, and off by what patches do not tell:
-/// their mean stands for every point of them. Where that is to be refined ([`Self::checking`]), what is known is a control variate:
-/// paths end there, too, but some of them, drawn by chance, go on and count for all by how far off they found it.
+/// With cached [`Irradiance`] a path ends at the next diffuse surface, and the indirect light of the point's own
+/// diffuse lobes is looked up as well. That is much faster, at the cost of the error of interpolation between patches.
+/// To remove that error ([`Self::with_control_variate`]), the cache serves as a control variate: paths still end there,
+/// but randomly chosen ones go on and correct for the difference they find.
 pub struct Transport {
     tracer: Arc<Tracer>,
     world: World,
@@ -66,58 +68,58 @@ pub struct Transport {
     cache_mode: CacheMode,
     /// Whether any surface receives light.
     is_lit: bool,
-    /// Directions of the sky, once they are asked for.
+    /// Directions of the sky, sampled on first use.
     sky_samples: OnceLock<Vec<LightSample>>,
 }
 
-/// Where a path has come to.
+/// State of a path.
 struct Path {
     random: PathRandom,
     inside: MediumStack,
-    /// How many lights were drawn at its first surface for each direction that was.
+    /// Light samples taken at its first surface per sampled direction.
     lights: LightsPerDirection,
 }
 
-/// How many directions of the sky and places on lamps are drawn for each direction that a surface scatters to.
+/// Light samples of the sky and of emitters per direction sampled from the BSDF.
 #[derive(Clone, Copy)]
 struct LightsPerDirection {
     sky: f64,
-    lamps: f64,
+    emitters: f64,
 }
 
 impl LightsPerDirection {
-    /// As many of either.
+    /// The same number of either.
     fn uniform(lights: f64) -> Self {
-        Self { sky: lights, lamps: lights }
+        Self { sky: lights, emitters: lights }
     }
 
-    /// Of what is drawn where this one is.
+    /// The number for the kind of light of this sample.
     fn for_sample(&self, sample: &LightSample) -> f64 {
-        if sample.is_sky() { self.sky } else { self.lamps }
+        if sample.is_sky() { self.sky } else { self.emitters }
     }
 }
 
-/// Light on its way back along a path: from where, in which direction, and how likely that was drawn.
+/// One step along a path, from a surface in a direction.
 #[derive(Clone, Copy)]
 struct Step {
     origin: SurfacePoint,
     position: DVec3,
     direction: DVec3,
-    /// 1/sr; none where no light that is drawn could have been it.
+    /// Density of the direction, 1/sr; `None` if no light sample could have produced it.
     density: Option<f64>,
 }
 
-/// What a patch finds in one direction, as irradiance/π.
+/// Result of one ray of a patch, as irradiance/π.
 pub(crate) struct PatchRay {
     pub direct: Vec3,
     pub indirect: Vec3,
     pub distance: f64,
-    /// Where more comes from, the share of it, and a uniform number.
+    /// The place whose irradiance is passed on, its weight, and a uniform number.
     pub link: Option<(Place, Vec3, f64)>,
 }
 
 impl Transport {
-    /// Prepares the scene in `tracer` in a world.
+    /// Prepares the scene in `tracer`, lit by a world.
     pub fn new(tracer: Arc<Tracer>, world: World, options: TransportOptions) -> Self {
         let scene = tracer.scene();
         let (lights, media) = (Lights::new(scene, &world), Media::from_scene(scene));
@@ -134,29 +136,29 @@ impl Transport {
         }
     }
 
-    /// The same with light that is known already, of the same scene and world.
+    /// Uses cached irradiance of the same scene and world, trusting it.
     pub fn with_irradiance(self, irradiance: Arc<Irradiance>) -> Self {
         Self { cache_mode: CacheMode::Trusted(irradiance), ..self }
     }
 
-    /// The same with light that is known but not trusted: what it tells is used, and one path of a few checks it by going on to the
-    /// end. So the mean over points and paths is exact, as without it, whatever it tells; the noise is that of
-    /// [`TransportOptions::paths`].
+    /// Uses cached irradiance of the same scene and world as a control variate: some paths go on past it and correct
+    /// its error. The mean over points and paths is therefore as exact as without the cache, whatever it holds; the
+    /// noise is that of [`TransportOptions::paths`].
     pub fn with_control_variate(self, irradiance: Arc<Irradiance>) -> Self {
         Self { cache_mode: CacheMode::ControlVariate(irradiance), ..self }
     }
 
-    /// The scene it lights.
+    /// The lit scene.
     pub(crate) fn scene(&self) -> &Scene {
         self.tracer.scene()
     }
 
-    /// The world it stands in.
+    /// The world around the scene.
     pub(crate) fn world(&self) -> &World {
         &self.world
     }
 
-    /// What one ray of a patch finds, `index` of those of the patch that begins with `seed`.
+    /// Traces ray `index` of the patch whose first point is `seed`.
     pub(crate) fn trace_patch_ray(
         &self,
         seed: SurfacePoint,
@@ -190,18 +192,18 @@ impl Transport {
         if let Some(scattered) = lobes.sample(path.random.next3()) {
             let step = self.step(point, &at, &scattered, &mut path);
             let weight = scattered.weight.own;
-            let incident = self.trace_path(step, &mut path, IrradianceLookup::Unsolved(patches));
-            ray.direct += (weight * incident.direct).as_vec3();
-            ray.indirect = (weight * incident.indirect).as_vec3();
-            ray.distance = incident.distance;
-            ray.link = incident
+            let path_light = self.trace_path(step, &mut path, IrradianceLookup::Unsolved(patches));
+            ray.direct += (weight * path_light.direct).as_vec3();
+            ray.indirect = (weight * path_light.indirect).as_vec3();
+            ray.distance = path_light.distance;
+            ray.link = path_light
                 .cached_end
-                .map(|(reached, share)| (reached.place, (weight * share).as_vec3(), path.random.next()));
+                .map(|(cached, share)| (cached.place, (weight * share).as_vec3(), path.random.next()));
         }
         ray
     }
 
-    /// What a surface scatters toward the eye of light that one path finds.
+    /// Light scattered toward the eye, found by one path.
     fn scatter_path(
         &self,
         point: SurfacePoint,
@@ -218,17 +220,17 @@ impl Transport {
         let mut sum = ScatteredLight { light: self.direct(point, at, &lobes, path), noisy: Split::default() };
         if let Some(scattered) = lobes.sample(path.random.next3()) {
             let step = self.step(point, at, &scattered, path);
-            let incident = self.trace_path(step, path, lookup);
+            let path_light = self.trace_path(step, path, lookup);
             sum += ScatteredLight::from_direction(
                 &scattered,
-                incident.direct + incident.cached_light(),
-                incident.indirect,
+                path_light.direct + path_light.cached_light(),
+                path_light.indirect,
             );
         }
         sum.scaled(dispersed)
     }
 
-    /// Goes where a surface scatters, through it if it must.
+    /// Continues a path in a sampled direction, through the surface if the direction crosses it.
     fn step(&self, origin: SurfacePoint, at: &MaterialPoint, scattered: &Scattered, path: &mut Path) -> Step {
         if scattered.crosses {
             let enters = at.frame.geometric.dot(scattered.incident) < 0.0;
@@ -238,7 +240,7 @@ impl Transport {
         Step { origin, position: at.position, direction, density }
     }
 
-    /// Follows one colour from here on, where the glass bends each differently: its share of the light.
+    /// Where glass disperses, continues with a single colour channel; returns its weight.
     fn disperse(&self, at: &MaterialPoint, path: &mut Path) -> DVec3 {
         if path.inside.channel.is_some()
             || !self.media.disperses(at.material)
@@ -251,7 +253,7 @@ impl Transport {
         DVec3::from_array(std::array::from_fn(|k| if k == channel { 3.0 } else { 0.0 }))
     }
 
-    /// What lights that are drawn send by way of a surface.
+    /// Scattered light of sampled lights, with the weights of multiple importance sampling.
     fn direct(
         &self,
         point: SurfacePoint,
@@ -265,7 +267,7 @@ impl Transport {
         })
     }
 
-    /// What of it is carried, as far as drawing a direction for sharp lobes alone does not find it.
+    /// The carried part of it, as far as BSDF sampling of the sharp lobes alone does not find it.
     fn direct_carried(
         &self,
         point: SurfacePoint,
@@ -281,7 +283,7 @@ impl Transport {
         sent.carried
     }
 
-    /// The same by what is sent on of the light of a sample.
+    /// Sums the sampled lights that are not occluded; `send` returns what is scattered of the light of a sample.
     fn sum_direct(
         &self,
         point: SurfacePoint,
@@ -312,13 +314,13 @@ impl Transport {
         sum
     }
 
-    /// The light of a sample, past what absorbs it on the way to a position.
+    /// Light of a sample after absorption on the way to a position.
     fn attenuated_light(&self, sample: &LightSample, position: DVec3, inside: &MediumStack) -> DVec3 {
         let distance = if sample.is_near { position.distance(sample.source) } else { f64::INFINITY };
         sample.light.as_dvec3() * self.media.attenuation(inside, distance)
     }
 
-    /// What a lamp sends straight from a direction that was drawn with a density, less what lamps that are drawn tell of it.
+    /// Light of an emitter hit in a direction sampled with `density`, weighted against light sampling.
     fn emitter_light_along(
         &self,
         from: SurfacePoint,
@@ -333,20 +335,21 @@ impl Transport {
         if light_density == 0.0 {
             return DVec3::ZERO;
         }
-        let share = power_heuristic(density, light_density * path.lights.lamps);
+        let share = power_heuristic(density, light_density * path.lights.emitters);
         let light = emitted(self.scene(), hit.point, -direction).as_dvec3() * share;
         light * self.media.attenuation(&path.inside, hit.t)
     }
 }
 
-/// How many of `wanted` each of so many points takes, whose mean is wanted: as many as it would alone, up to four points.
+/// How many of `requested` samples each point takes if only the mean of a batch matters: all of them for up to four
+/// points, fewer beyond.
 fn samples_per_point(slot: SampleSlot, requested: u32) -> u32 {
     const FULL_SAMPLING_POINTS: u32 = 4;
     (requested * FULL_SAMPLING_POINTS).div_ceil(slot.count.max(FULL_SAMPLING_POINTS)).max(1)
 }
 
-/// The share of a way of sampling with density `own` in what another with density `other` finds as well (Veach and Guibas 1995,
-/// the power heuristic): own²/(own² + other²).
+/// Power heuristic (Veach and Guibas 1995): weight of a technique with density `own` beside another with density
+/// `other`, own²/(own² + other²).
 fn power_heuristic(own: f64, other: f64) -> f64 {
     let ratio = other / own;
     1.0 / (1.0 + ratio * ratio)
@@ -377,7 +380,7 @@ impl Radiance for Transport {
         let lobes = bsdf.toward(outgoing);
         let cached = self.cache_mode.trusted().and_then(|cached| {
             let irradiance = match slot.incident {
-                Some(received) => cached.shaded(&self.world, &received, lobes.normal()),
+                Some(incident) => cached.shaded(&self.world, &incident, lobes.normal()),
                 None => cached.indirect(&Place::new(scene, point, is_front))?.as_dvec3(),
             };
             Some((cached, irradiance))
@@ -386,7 +389,7 @@ impl Radiance for Transport {
             Some((cache, irradiance)) => {
                 let spread = lobes.spread_albedo();
                 let Split { own, carried } = lobes.albedo();
-                let gloss = slot.incident.and_then(|received| received.gloss);
+                let gloss = slot.incident.and_then(|incident| incident.gloss);
                 let interpolated = irradiance * spread
                     + gloss.map_or(DVec3::ZERO, |gloss| gloss.as_dvec3() * (own - spread).max(DVec3::ZERO));
                 let needs_tracing = match (slot.incident, gloss) {
@@ -407,7 +410,7 @@ impl Radiance for Transport {
                     .cache_mode
                     .control_variate()
                     .map_or(IrradianceLookup::Unavailable, IrradianceLookup::ControlVariate);
-                // Of another number of paths all are others: how far two means are apart tells their noise.
+                // Another number of paths uses another seed, so that the difference of two means shows their noise.
                 let seed =
                     if lookup.is_control_variate() { slot.seed ^ u64::from(paths) << 1 } else { slot.seed };
                 let mut sum = ScatteredLight::default();
@@ -420,7 +423,7 @@ impl Radiance for Transport {
                     sum += path_light;
                 }
                 if lookup.is_control_variate() {
-                    // Many paths together are no chance: one that found more than all others may be.
+                    // The mean of many paths is not noisy, but one path that found more than all others may be.
                     sum.noisy = max_noisy;
                 }
                 sum * (1.0 / f64::from(paths))
@@ -439,14 +442,14 @@ impl Radiance for Transport {
         self.is_lit && self.cache_mode.trusted().is_some()
     }
 
-    fn incident_batch(&self, spots: &[ShadingPoint], eye: DVec3) -> Vec<Option<IncidentLight>> {
-        self.measure_batch(spots, eye)
+    fn incident_batch(&self, points: &[ShadingPoint], eye: DVec3) -> Vec<Option<IncidentLight>> {
+        self.measure_batch(points, eye)
     }
 
     fn varies_within_pixel(&self, point: SurfacePoint) -> bool {
         let scene = self.scene();
         let material = scene.material_of(point.triangle);
-        // Where few points would be taken for all, the mean would not be exact.
+        // If few points stood for all, the mean would not be exact.
         let is_exact = self.cache_mode.control_variate().is_some();
         is_exact || material.unlit || !scene.colors.is_empty() || material.has_textures()
     }
@@ -460,7 +463,7 @@ impl Radiance for Transport {
     }
 
     fn own_lobe_width(&self, point: SurfacePoint) -> Option<f64> {
-        /// Angles of the captured aperture: eight cells of a light field are one.
+        /// In apertures of the captured light field: eight cells make one.
         const CAPTURED_APERTURES: f64 = 0.75;
         self.scene().picture_gloss_angle(point).map(|angle| CAPTURED_APERTURES * angle)
     }

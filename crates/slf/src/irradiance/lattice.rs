@@ -1,20 +1,20 @@
-//! Numbers by the cells of a lattice in space.
+//! A lattice of cubic cells in space that lists the items in each cell.
 
 use glam::{DVec3, IVec3};
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};
 
-/// Cubic cells with numbers in each.
+/// Cubic cells, each with the numbers of the items that lie in it.
 #[derive(Debug, Default)]
 pub(super) struct Lattice {
-    /// The side of a cell.
+    /// Side of a cell, world units.
     pub spacing: f64,
-    /// Where each cell's numbers begin in `numbers`, and how many there are.
+    /// By cell: where its items start in `numbers`, and how many there are.
     cells: HashMap<u64, (u32, u32), BuildHasherDefault<WordHasher>>,
     numbers: Vec<u32>,
 }
 
-/// A hash of one word that is mixed well enough.
+/// A cheap hash of one word.
 #[derive(Default)]
 pub(super) struct WordHasher(u64);
 
@@ -30,7 +30,7 @@ impl Hasher for WordHasher {
     }
 }
 
-/// Cells beyond ±2²⁰ have the names of others, which is slow and no harm.
+/// Cell coordinates as one word. Cells beyond ±2²⁰ share words with others, which costs time but does no harm.
 fn key(cell: IVec3) -> u64 {
     const BITS: u32 = 21;
     let part = |x: i32| u64::from(x as u32) & ((1 << BITS) - 1);
@@ -38,7 +38,7 @@ fn key(cell: IVec3) -> u64 {
 }
 
 impl Lattice {
-    /// Of the numbers 0.. by their cells.
+    /// Sorts the items 0.. into their cells.
     pub fn new(spacing: f64, cells: &[IVec3]) -> Self {
         let mut numbers: Vec<u32> = (0..cells.len() as u32).collect();
         numbers.sort_by_key(|&number| (key(cells[number as usize]), number));
@@ -52,18 +52,18 @@ impl Lattice {
         lattice
     }
 
-    /// The cell of a position.
+    /// The cell that contains a position.
     pub fn cell(spacing: f64, position: DVec3) -> IVec3 {
         (position / spacing).floor().as_ivec3()
     }
 
-    /// The numbers in a cell.
+    /// The items in a cell.
     pub fn numbers(&self, cell: IVec3) -> &[u32] {
         let (begin, count) = self.cells.get(&key(cell)).copied().unwrap_or_default();
         &self.numbers[begin as usize..(begin + count) as usize]
     }
 
-    /// Visits the numbers of the eight cells around a position, each with its share by trilinear interpolation.
+    /// Visits the items of the eight cells around a position, each with its trilinear weight.
     #[inline]
     pub fn visit_around(&self, position: DVec3, mut visit: impl FnMut(u32, f64)) {
         let at = position / self.spacing - 0.5;

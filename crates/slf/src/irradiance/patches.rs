@@ -1,4 +1,4 @@
-//! The surface in patches.
+//! The surface divided into patches.
 
 use super::lattice::Lattice;
 use super::place::Place;
@@ -12,36 +12,36 @@ use std::collections::HashMap;
 pub(crate) struct Patches {
     lattice: Lattice,
     patches: Vec<Patch>,
-    /// Of all patches, in their order: points spread over each.
+    /// Points distributed over the patches, in the order of the patches.
     points: Vec<PatchPoint>,
 }
 
-/// What lies in one cell of the lattice, of one part, and faces about one way.
+/// The surface of one part within one lattice cell that faces roughly one direction.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Patch {
     pub part: u32,
-    /// The mean of its points.
+    /// Mean position of its points.
     pub position: DVec3,
-    /// The mean of its points' normals, unit.
+    /// Mean normal of its points, unit.
     pub normal: DVec3,
     pub area: f64,
     first_point: u32,
     points: u32,
 }
 
-/// A point that light is gathered at.
+/// A surface point where incident light is gathered.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PatchPoint {
     pub point: SurfacePoint,
     pub is_front: bool,
 }
 
-/// Points of a patch.
+/// Maximum number of points of a patch.
 const MAX_POINTS: usize = 16;
-/// Points a patch of full size is looked for with.
+/// Candidate points examined per cell-sized square of surface.
 const CANDIDATES_PER_CELL: f64 = 24.0;
 
-/// A point on its way into a patch.
+/// A candidate point before it is assigned to a patch.
 struct Candidate {
     key: (IVec3, u32, u8),
     point: PatchPoint,
@@ -51,8 +51,8 @@ struct Candidate {
 }
 
 impl Patches {
-    /// Parts the surface of a scene into about so many patches, and never more than twice as many. Unlit surfaces have none: no
-    /// light matters to them.
+    /// Divides a scene's surface into about `target_count` patches, and never more than twice as many. Unlit surfaces
+    /// get none, since light does not affect them.
     pub fn new(scene: &Scene, target_count: u32) -> Self {
         let lit = || {
             let parts = scene.parts.iter().filter(|part| !scene.materials[part.material as usize].unlit);
@@ -86,7 +86,7 @@ impl Patches {
                 members.iter().map(|member| property(member) * member.area).sum::<DVec3>() / area
             };
             let first_point = points.len() as u32;
-            // Evenly through the running sum of areas.
+            // Points at even steps of cumulative area.
             let count = members.len().min(MAX_POINTS);
             let (mut area_sum, mut next) = (0.0, 0);
             for member in &members {
@@ -121,8 +121,8 @@ impl Patches {
         &self.points[patch.first_point as usize..(patch.first_point + patch.points) as usize]
     }
 
-    /// Visits the patches around a place with what they have to say about it: by distance, along the surface and off it, and by
-    /// how they face.
+    /// Visits the patches around a place with their interpolation weights, by distance along and off the surface and by
+    /// orientation.
     #[inline]
     pub fn visit_around(&self, place: &Place, mut visit: impl FnMut(u32, f32)) {
         let spacing = self.lattice.spacing;
@@ -133,7 +133,7 @@ impl Patches {
             }
             let facing = patch.normal.dot(place.normal);
             let off = (place.position - patch.position).dot(place.normal).abs() / spacing;
-            // What faces more than 70° away, or lies more than a cell off the plane, has no say.
+            // Patches that face more than 70° away, or lie more than a cell off the tangent plane, do not contribute.
             let weight = share * (facing - 0.35).max(0.0).powi(2) * (1.0 - off).max(0.0);
             if weight > 0.0 {
                 visit(number, weight as f32);
@@ -141,14 +141,14 @@ impl Patches {
         });
     }
 
-    /// Whether some patch has anything to say about a place.
+    /// Whether any patch contributes at a place.
     pub fn covers(&self, place: &Place) -> bool {
         let mut is_covered = false;
         self.visit_around(place, |_, _| is_covered = true);
         is_covered
     }
 
-    /// Visits the patches in the cells around another that face about as it does.
+    /// Visits the patches in the surrounding cells that face roughly the same direction.
     pub fn visit_neighbors(&self, patch: &Patch, mut visit: impl FnMut(u32)) {
         let cell = Lattice::cell(self.lattice.spacing, patch.position);
         for k in 0..27 {
@@ -163,8 +163,8 @@ impl Patches {
     }
 }
 
-/// Points all over some triangles, about [`CANDIDATES`] a square of the lattice's spacing, at least one each, on either side that can
-/// be lit and seen.
+/// Points distributed over triangles, about [`CANDIDATES_PER_CELL`] per square of the lattice's spacing and at least
+/// one each, on every side that can be lit and visible.
 fn surface_candidates(scene: &Scene, triangles: impl Iterator<Item = u32>, spacing: f64) -> Vec<Candidate> {
     let mut candidates = Vec::new();
     for triangle in triangles {
@@ -194,7 +194,7 @@ fn surface_candidates(scene: &Scene, triangles: impl Iterator<Item = u32>, spaci
     candidates
 }
 
-/// Which of the six axes a normal is nearest to.
+/// Which of the six axis directions a normal is nearest to.
 pub(crate) fn facing(normal: DVec3) -> u8 {
     let size = normal.abs();
     let axis = if size.x >= size.y && size.x >= size.z {
@@ -207,7 +207,7 @@ pub(crate) fn facing(normal: DVec3) -> u8 {
     2 * axis + u8::from(normal[usize::from(axis)] < 0.0)
 }
 
-/// Point `k` of `count` spread over a triangle (Roberts 2018), none on its border.
+/// Point `k` of `count` evenly distributed over a triangle (Roberts 2018), none on its border.
 fn barycentric(k: u32, count: u32) -> DVec2 {
     if count == 1 {
         return DVec2::splat(1.0 / 3.0);

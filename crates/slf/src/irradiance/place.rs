@@ -1,19 +1,19 @@
-//! A surface point, as irradiance is asked for.
+//! A surface point as an irradiance query.
 
 use glam::DVec3;
 use scene::{Scene, SurfacePoint};
 
-/// Where a surface point lies and how it faces.
+/// Position and orientation of a surface point.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Place {
     pub position: DVec3,
-    /// On the side that is asked for; unit, without bumps.
+    /// Unit interpolated normal of the queried side, without the normal map.
     pub normal: DVec3,
     pub part: u32,
 }
 
 impl Place {
-    /// A point of the scene, on its front or back.
+    /// A point of the scene, on its front or its back.
     pub fn new(scene: &Scene, point: SurfacePoint, is_front: bool) -> Self {
         let normal = scene.shading_normal(point);
         Self {

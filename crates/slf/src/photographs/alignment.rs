@@ -1,48 +1,52 @@
-//! Photographs aligned by the few pixels that their poses, and the surface, are off.
+//! Alignment of photographs that are a few pixels off because of errors in poses or surface.
 //!
 //! ```text
-//! sightings ─▶ points ─▶ what others lead to expect ─▶ fitting (a step of each photograph's lattice) ─▶ judging ─▶ Displacement
-//!                                └────────── again, from coarse pictures to fine ──────────┘
+//! observations ─▶ points ─▶ predictions by the other photographs ─▶ gauss_newton (one step of each lattice) ─▶ validation ─▶ Displacement
+//!                               └────────── repeated, from coarse pictures to fine ──────────┘
 //! ```
 //!
-//! What a photograph shows of a surface point is expected to be what the others show of it, in light whose exposures are undone; it is moved
-//! by a lattice of displacements until it is (`fitting`), all photographs in turn with what they tell each other. Then what they show of
-//! points that were not asked is compared (`judging`): a photograph whose others tell it no better than before stays as it was.
+//! A photograph is expected to show of a surface point what the others show of it, with exposures undone. It is warped
+//! by a lattice of displacements until it does (`gauss_newton`); all photographs are updated in turn from each other's
+//! predictions. Held-out points are then compared (`validation`): a photograph that the others predict no better than
+//! before stays unchanged.
 
-mod fitting;
-mod halves;
-mod judging;
+mod folds;
+mod gauss_newton;
 mod lattice;
 mod points;
+mod validation;
 
 pub(crate) use lattice::Displacement;
 
 use super::exposures::Exposure;
-use super::odd::InlierMap;
-use super::seeing::PackedPicture;
-use super::telling::CalibratedObservations;
+use super::fitting::CalibratedObservations;
+use super::observations::PackedPicture;
+use super::transients::InlierMap;
 use points::ComparisonPoints;
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;
 use scene::View;
 
-/// How often all photographs are moved by what pictures of a quarter, half and all of their pixels each way show. What is a few pixels off is
-/// less than two of the coarsest.
+/// Number of passes over all photographs at a quarter, half and full resolution. A displacement of a few pixels is less
+/// than two at the coarsest level.
 const PASSES_PER_LEVEL: [usize; 3] = [4, 3, 2];
-/// Photographs that are nowhere off by so much, px as they are kept, are not off.
+/// Photographs displaced by less than this everywhere, px as stored, are left unchanged.
 const MIN_DISPLACEMENT_PX: f64 = 0.1;
 
-/// How far each view is off, as far as that lowers the errors of what others tell of it.
+/// The displacement of each view, kept only where it lowers the error of predictions by the other views.
+///
+/// # Errors
+/// [`Cancelled`] if `progress` asks to stop.
 pub(crate) fn align_photographs(
-    radiance: &CalibratedObservations<'_>,
+    calibrated: &CalibratedObservations<'_>,
     views: &[View],
     exposures: &[Exposure],
     inlier_maps: &[InlierMap],
     progress: &dyn Progress,
 ) -> Result<Vec<Displacement>, Cancelled> {
     let zeros: Vec<Displacement> = views.iter().map(Displacement::none).collect();
-    let points = ComparisonPoints::new(radiance, views, exposures, inlier_maps);
-    let pictures = &radiance.observations.pictures;
+    let points = ComparisonPoints::new(calibrated, views, exposures, inlier_maps);
+    let pictures = &calibrated.observations.pictures;
     let mut current = zeros.clone();
     let passes: usize = PASSES_PER_LEVEL.iter().sum();
     let mut done = 0;
@@ -51,11 +55,11 @@ pub(crate) fn align_photographs(
     for (pictures, passes_of_level) in [&quarter[..], &half, pictures].into_iter().zip(PASSES_PER_LEVEL) {
         for _ in 0..passes_of_level {
             progress.check()?;
-            let expected = points.predict(pictures, &current);
-            let refined = |(number, before): (usize, &Displacement)| {
-                let compared = points.compare(number, &pictures[number], before, &expected);
-                let reduction = radiance.observations.pictures[number].reduction;
-                fitting::refine_displacement(&views[number], before, &compared, reduction)
+            let predictions = points.predict(pictures, &current);
+            let refined = |(view_index, before): (usize, &Displacement)| {
+                let comparisons = points.compare(view_index, &pictures[view_index], before, &predictions);
+                let reduction = calibrated.observations.pictures[view_index].reduction;
+                gauss_newton::refine_displacement(&views[view_index], before, &comparisons, reduction)
                     .unwrap_or_else(|| before.clone())
             };
             current = current.par_iter().enumerate().map(refined).collect();
@@ -69,12 +73,12 @@ pub(crate) fn align_photographs(
             *displacement = zero;
         }
     }
-    let aligned = judging::retain_improvements(radiance, views, exposures, current, progress)?;
+    let aligned = validation::retain_improvements(calibrated, views, exposures, current, progress)?;
     progress.report(1.0);
     Ok(aligned)
 }
 
-/// Pictures of half as many pixels each way.
+/// Pictures at half the resolution.
 fn halved_pictures(pictures: &[PackedPicture]) -> Vec<PackedPicture> {
     pictures.par_iter().map(PackedPicture::halved).collect()
 }

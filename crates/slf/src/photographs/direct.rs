@@ -1,14 +1,15 @@
-//! Light looked up in the photographs themselves (seed §3.3.4): nothing is resampled to texels first.
+//! Light evaluated in the photographs themselves (seed §3.3.4), without resampling to texels first.
 //!
-//! What was solved for all photographs together (exposures, what is mirrored, what leaving out told by blocks) is that of
-//! [`PhotographLight`]; constant part and residuals of a point are found anew each time it is asked, as those of a texel are.
+//! What was solved for all photographs together (exposures, mirrored surroundings, cross-validation by blocks) comes
+//! from [`PhotographLight`]; the constant part and the residuals of a point are fitted anew for each query, just as for
+//! a texel.
 
 use super::error::PhotographError;
-use super::places::{MemoryBudget, TexelBlocks};
-use super::seeing::{LoadedView, ViewLoader, ViewVisibility, border_weight};
-use super::telling::{
+use super::fitting::{
     FULL_EVIDENCE, ResidualSample, Sample, Workspace, direction_to_eye, is_reflection_blocked, robust_mean,
 };
+use super::observations::{LoadedView, ViewLoader, ViewVisibility, border_weight};
+use super::texels::{MemoryBudget, TexelBlocks};
 use super::{PhotographLight, PhotographOptions};
 use glam::{DVec3, Vec3};
 use progress::Progress;
@@ -16,7 +17,7 @@ use scene::SurfacePoint;
 use std::sync::Arc;
 use trace::{OutgoingRadiance, Radiance};
 
-/// Radiance of a surface, looked up in the photographs that light was made from.
+/// Radiance of a surface, looked up in the photographs that a [`PhotographLight`] was made from.
 pub struct DirectPhotographs {
     light: Arc<PhotographLight>,
     /// By view of the scene.
@@ -24,10 +25,12 @@ pub struct DirectPhotographs {
 }
 
 impl DirectPhotographs {
-    /// Reads the photographs that the light was made from. Reduced where they would not fit the memory of `options`.
+    /// Loads the photographs that the light was made from, at reduced resolution if they would not fit the memory of
+    /// `options`.
     ///
     /// # Errors
-    /// One cannot be read, or `progress` says to stop.
+    /// [`PhotographError::Picture`] if a photograph or its mask cannot be read; [`PhotographError::Cancelled`] if
+    /// `progress` asks to stop.
     pub fn load(
         light: Arc<PhotographLight>,
         options: &PhotographOptions,
@@ -36,11 +39,11 @@ impl DirectPhotographs {
         let scene = light.tracer.scene();
         let (reduction, at_once) = MemoryBudget::for_direct_lookup(&scene.views, options.max_memory);
         let loader = ViewLoader { load: &options.load, reduction, at_once };
-        let loaded_views = loader.load_each(scene, &scene.views, progress, |_, loaded_views| loaded_views)?;
+        let loaded_views = loader.load_each(scene, &scene.views, progress, |_, loaded| loaded)?;
         Ok(Self { light, loaded_views })
     }
 
-    /// What photographs show of a place, and from where: those that see the side that is seen better.
+    /// What the photographs of the better-observed side show of a position, by view.
     fn samples(&self, position: DVec3, normal: Vec3) -> Vec<(usize, Sample)> {
         let views = &self.light.tracer.scene().views;
         let is_front =
@@ -75,7 +78,7 @@ impl DirectPhotographs {
     }
 }
 
-/// Texels have their weights in 255ths: less is none.
+/// Weights of texels are quantised to 255ths: anything less is zero.
 const MIN_WEIGHT: f32 = 0.5 / 255.0;
 
 impl Radiance for DirectPhotographs {
@@ -98,7 +101,7 @@ impl Radiance for DirectPhotographs {
         let share = block_value(&residuals.cross_validation.mirrored_share);
         let strength = block_value(&mirrored.strength_of_block);
         let mirrored_strength = strength * share;
-        // Of each sample: from where, and what is mirrored there by a strength of 1.
+        // By sample: direction to its camera, and mirrored radiance there for a strength of 1.
         let reflections: Vec<(Vec3, Vec3)> = samples
             .iter()
             .map(|&(view_index, _)| {
@@ -108,26 +111,26 @@ impl Radiance for DirectPhotographs {
                 (direction, if is_open { mirrored.unit_light(normal, direction) } else { Vec3::ZERO })
             })
             .collect();
-        let mut work = Workspace::new();
+        let mut workspace = Workspace::new();
         let mut mean = |strength: f32| {
-            work.samples.clear();
-            work.samples.extend(
+            workspace.samples.clear();
+            workspace.samples.extend(
                 samples
                     .iter()
                     .zip(&reflections)
                     .map(|((_, sample), (_, sent))| sample.with_light(sample.light - *sent * strength)),
             );
-            robust_mean(&work.samples, &mut Vec::new())
+            robust_mean(&workspace.samples, &mut Vec::new())
         };
         let plain = mean(0.0);
         let mut constant = plain;
         if mirrored_strength > 0.0 {
             constant = constant.lerp(mean(strength).max(Vec3::ZERO), share);
         }
-        work.residuals.clear();
+        workspace.residuals.clear();
         for (index, ((_, sample), &(direction, sent))) in samples.iter().zip(&reflections).enumerate() {
             let value = sample.light - constant - sent * mirrored_strength;
-            work.residuals.push(ResidualSample {
+            workspace.residuals.push(ResidualSample {
                 index,
                 direction,
                 value,
@@ -137,9 +140,9 @@ impl Radiance for DirectPhotographs {
         let mut own = light.constant(point).lerp(constant, (evidence / FULL_EVIDENCE).min(1.0));
         let confidence = block_value(&residuals.cross_validation.confidence);
         if confidence > 0.0 {
-            work.retain_best();
-            work.solve_robustly(&residuals.kernel, block_value(&residuals.cross_validation.errors));
-            for (residual, alpha) in work.residuals.iter().zip(&work.alpha) {
+            workspace.retain_best();
+            workspace.solve_robustly(&residuals.kernel, block_value(&residuals.cross_validation.errors));
+            for (residual, alpha) in workspace.residuals.iter().zip(&workspace.alpha) {
                 own += *alpha * (confidence * residuals.kernel.at(residual.direction.distance(outgoing)));
             }
         }

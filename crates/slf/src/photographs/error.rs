@@ -1,24 +1,24 @@
-//! Why there is no light from photographs.
+//! Errors of making light from photographs.
 
 use progress::Cancelled;
 use scene::PictureError;
 
-/// Why there is no light from photographs.
+/// Why light could not be made from photographs.
 #[derive(Debug, thiserror::Error)]
 pub enum PhotographError {
-    /// A photograph or its mask cannot be had.
+    /// A photograph or its mask could not be read.
     #[error(transparent)]
     Picture(#[from] PictureError),
-    /// There are none.
+    /// There are no photographs.
     #[error("there are no photographs (give a capture with at least one)")]
     None,
-    /// More than can be told apart.
+    /// There are more photographs than can be numbered.
     #[error("there are {count} photographs, at most {} can be used (leave some out)", u16::MAX)]
     TooMany {
-        /// How many.
+        /// Number of photographs.
         count: usize,
     },
-    /// It was stopped.
+    /// The work was cancelled.
     #[error("cancelled")]
     Cancelled,
 }

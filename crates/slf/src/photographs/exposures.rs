@@ -1,4 +1,4 @@
-//! Exposure, white balance and vignetting of all photographs, from surface points that several of them see.
+//! Exposure, white balance and vignetting of all photographs, from surface points that several of them observe.
 //!
 //! ```text
 //! log₂ I(v, c, x) = log₂ D(c, x) + g(v, c) + k₁(l)·r² + k₂(l)·r⁴
@@ -7,44 +7,47 @@
 //! | symbol | meaning | unit |
 //! | --- | --- | --- |
 //! | I | light that photograph v shows of point x in channel c | its white |
-//! | D | light of the point, the same for all that see it | |
+//! | D | light of the point, the same for all that observe it | |
 //! | g | gain of photograph and channel; its mean over photographs is 0 | stops |
 //! | k₁, k₂ | vignetting of lens l | stops |
 //! | r | distance from the lens's axis, over half the picture's diagonal | |
 //!
-//! D falls out: of every point only differences from its weighted mean count (Goldman 2010, without his response curve). Points that gloss
-//! or occlusion differ at are left out by Cauchy's weights, their scale the median of what is left over.
+//! D is eliminated: for every point only differences from its weighted mean count (Goldman 2010, without his response
+//! curve). Points with gloss or occlusion are down-weighted by Cauchy weights whose scale is the median residual.
 
 mod equations;
 mod exposure;
-mod said;
+mod exposure_observations;
 
 pub use exposure::Exposure;
 
 use super::numbers::{median, solve_positive};
-use super::places::{DirectionGrid, Texels};
-use super::seeing::Observations;
+use super::observations::Observations;
+use super::texels::{DirectionGrid, Texels};
 use equations::NormalEquations;
+use exposure_observations::{background_points, surface_points};
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;
-use said::{background_points, surface_points};
 use scene::View;
 
-/// Rounds of reweighting; weights have settled by then.
+/// Rounds of reweighting, after which the weights have converged.
 const ROUNDS: usize = 16;
-/// Residuals are thought to be no smaller, stops.
+/// Lower bound of the residual scale, stops.
 const MIN_SCALE_STOPS: f64 = 0.03;
-/// What holds a gain that nothing else does (at its hint, or at 0): as much as half a point.
+/// Prior weight that keeps a gain at its hint, or at 0: as much as half a point.
 const PRIOR_WEIGHT: f64 = 0.5;
-/// What holds the channels of a photograph together, as points: its white balance is at first thought to be that of all others, so that
-/// a colour that is dark in some does not lead them astray.
+/// Prior weight, in points, that keeps the channels of a photograph together in the first rounds. Starting from a
+/// common white balance prevents colours that are dark in some photographs from leading them astray.
 const INITIAL_WHITE_WEIGHT: f64 = 1e5;
-/// And then on.
+/// The same in later rounds.
 const WHITE_WEIGHT: f64 = 100.0;
-/// What holds vignetting at 0: as much as so many points one stop off.
+/// Prior weight that keeps vignetting at 0: as much as this many points that are one stop off.
 const VIGNETTING_WEIGHT: f64 = 20.0;
 
-/// Finds the exposures of all views.
+/// Solves for the exposures of all views.
+///
+/// # Errors
+/// [`Cancelled`] if `progress` asks to stop.
 pub(crate) fn solve_exposures(
     texels: &Texels,
     observations: &Observations,
@@ -68,7 +71,7 @@ pub(crate) fn solve_exposures(
         progress.report(round as f32 / ROUNDS as f32);
         let system = NormalEquations { unknowns, views: views.len(), lens_of: &lens_of };
         let (mut matrix, mut right) = (vec![0.0; unknowns * unknowns], vec![0.0; unknowns]);
-        // What agrees better says more: by the square of its scale.
+        // Points that agree better count more: by the inverse square of their scale.
         let trust = scales.map(|scale: f64| (scales[0].min(scales[1]) / scale).powi(2));
         for ((points, scale), trust) in [&surface, &background].into_iter().zip(&mut scales).zip(trust) {
             let parts: Vec<(Vec<f64>, Vec<f64>, Vec<f64>)> =
@@ -80,7 +83,7 @@ pub(crate) fn solve_exposures(
                 residuals.extend(errors);
             }
             if let Some(median_residual) = median(&mut residuals, f64::total_cmp) {
-                // Of a normal distribution.
+                // Factor for a normal distribution.
                 *scale = (1.4826 * median_residual).max(MIN_SCALE_STOPS);
             }
         }
@@ -116,7 +119,7 @@ pub(crate) fn solve_exposures(
         .collect())
 }
 
-/// Views with the same lens have the same number.
+/// By view: the number of its lens; equal lenses share a number.
 fn lens_indices(views: &[View]) -> Vec<usize> {
     let mut unique_lenses: Vec<&View> = Vec::new();
     let mut numbers = Vec::with_capacity(views.len());
@@ -131,7 +134,7 @@ fn lens_indices(views: &[View]) -> Vec<usize> {
     numbers
 }
 
-/// What EXIF says of each view's gain, relative to the mean of those that say anything.
+/// EXIF gains of the views, stops, relative to the mean of those that have one.
 fn relative_hints(views: &[View]) -> Vec<Option<f64>> {
     let finite_hints: Vec<f64> =
         views.iter().filter_map(|view| view.exposure_hint).filter(|h| h.is_finite()).collect();

@@ -1,23 +1,23 @@
-//! How light is made from photographs.
+//! Options for making light from photographs.
 
 use scene::LoadOptions;
 
-/// How light is made from photographs.
+/// Options of [`PhotographLight::solve`](crate::PhotographLight::solve).
 #[derive(Clone, Debug, PartialEq)]
 pub struct PhotographOptions {
-    /// Limits for each picture.
+    /// Limits for reading each picture.
     pub load: LoadOptions,
-    /// What is told of a texel.
+    /// Which model is fitted to the photographs.
     pub model: PhotographModel,
-    /// How far poses are believed.
+    /// How far the given poses are trusted.
     pub poses: Poses,
-    /// Bytes that the work may hold at once, the scene, its hierarchy and the atlas not counted. Photographs and texels are made coarser
-    /// where they would not fit.
+    /// Memory limit of the work, bytes, not counting the scene, its hierarchy and the atlas. Photographs and texels are
+    /// made coarser if they would not fit.
     pub max_memory: u64,
 }
 
 impl Default for PhotographOptions {
-    /// 1.6 GiB.
+    /// The full model, aligned poses and 1.6 GiB of memory.
     fn default() -> Self {
         Self {
             load: LoadOptions::default(),
@@ -28,23 +28,23 @@ impl Default for PhotographOptions {
     }
 }
 
-/// What light from photographs tells of a texel.
+/// The model that is fitted to the photographs of a texel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PhotographModel {
-    /// All that the photographs carry.
+    /// All that the photographs contain: constant, mirrored and residual parts.
     #[default]
     Light,
-    /// The colour of the one photograph that sees it finest, toward all directions alike: what texturing tools make of a capture, to
-    /// compare with.
+    /// The colour of the one photograph with the finest resolution at each texel, the same toward all directions. This
+    /// is what texturing tools make of a capture; it serves as a baseline.
     OneView,
 }
 
-/// How far the poses of photographs, and the surface, are believed.
+/// How far the poses of photographs, and the surface, are trusted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Poses {
-    /// To a few pixels: photographs are aligned with each other where that has them agree better.
+    /// Up to a few pixels: photographs are aligned with each other where that improves their agreement.
     #[default]
     Aligned,
-    /// As they are given. What texturing tools are compared by, [`PhotographModel::OneView`], always believes that.
+    /// Exactly: photographs are used as calibrated. [`PhotographModel::OneView`] always does so.
     AsCalibrated,
 }

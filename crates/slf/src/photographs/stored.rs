@@ -1,11 +1,12 @@
-//! Light from photographs as bytes, for the program that made it: lists as they lie in memory, each behind its length (u64).
+//! Binary form of light from photographs, for the program that made it: lists as they lie in memory, each preceded by
+//! its length (u64).
 
 use super::PhotographLight;
 use super::alignment::Displacement;
 use super::exposures::Exposure;
-use super::odd::InlierMap;
-use super::places::{DirectionGrid, TexelBlocks, TexelGrid};
-use super::telling::{CrossValidation, Kernel, Mirrored, Residuals};
+use super::fitting::{CrossValidation, Kernel, Mirrored, Residuals};
+use super::texels::{DirectionGrid, TexelBlocks, TexelGrid};
+use super::transients::InlierMap;
 use atlas::NO_TEXEL;
 use bytemuck::{Pod, Zeroable, pod_collect_to_vec};
 use glam::{DVec3, Vec2, Vec3};
@@ -14,7 +15,7 @@ use trace::Tracer;
 
 const MAGIC: &[u8; 8] = b"FBPHOTO3";
 
-/// What is there once.
+/// Fixed-size header.
 #[derive(Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
 struct Head {
@@ -28,7 +29,7 @@ struct Head {
 }
 
 impl PhotographLight {
-    /// All of it, without the scene. Only a program that keeps it alike (the same build) can read it.
+    /// Serialises everything except the scene. Only the same build can read it.
     pub fn to_bytes(&self) -> Vec<u8> {
         let (grid, kernel) = (&self.grid, self.residuals.kernel);
         let head = Head {
@@ -62,7 +63,8 @@ impl PhotographLight {
         bytes
     }
 
-    /// The light of the scene in `tracer` from the bytes of [`Self::to_bytes`]; none if they are no such, or of another scene.
+    /// Restores the light of the scene in `tracer` from the bytes of [`Self::to_bytes`]; `None` if they are malformed
+    /// or of another scene.
     pub fn from_bytes(bytes: &[u8], tracer: &Arc<Tracer>) -> Option<Self> {
         let scene = tracer.scene();
         let rest = bytes.strip_prefix(MAGIC)?;
@@ -116,7 +118,7 @@ impl PhotographLight {
         (rest.is_empty() && light.is_consistent()).then_some(light)
     }
 
-    /// Whether no list leads beyond the end of another.
+    /// Whether the sizes and indices of all lists are consistent.
     fn is_consistent(&self) -> bool {
         let (texels, views) = (self.constant.len(), self.tracer.scene().views.len());
         let (grid, residuals) = (&self.grid, &self.residuals);

@@ -1,25 +1,26 @@
-//! The constant part of the light as a picture: what textures of other programs can hold of it.
+//! The constant part of the light as a picture, which is what textures of other programs can represent.
 
 use super::PhotographLight;
-use super::places::TexelGrid;
+use super::texels::TexelGrid;
 use atlas::Atlas;
 use glam::{DVec2, Vec3};
 use rayon::prelude::*;
 
-/// Light over an atlas.
+/// View-independent light over an atlas.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LightTexture {
     /// Columns and rows.
     pub size: [u32; 2],
-    /// Radiance, row by row, row 0 on top; black where no surface is near.
+    /// Radiance, row by row from the top; black far from any surface.
     pub pixels: Vec<Vec3>,
 }
 
-/// Charts go on for so many texels beyond their borders, so that who interpolates finds nothing else there.
+/// Charts are extended by this many texels beyond their borders, for filtering.
 const MARGIN_TEXELS: i64 = 4;
 
 impl PhotographLight {
-    /// What goes toward all directions alike, over `atlas`, which must be that which the light is kept at: as fine as it is kept.
+    /// View-independent radiance over `atlas`, which must be the one that the light was made with, at the resolution of
+    /// the light.
     pub fn texture(&self, atlas: &Atlas) -> LightTexture {
         let [width, height] = [self.grid.width, self.grid.height];
         let grid_of_picture = DVec2::new(
@@ -53,7 +54,7 @@ impl PhotographLight {
     }
 }
 
-/// The nearest texel, if one is near.
+/// The nearest texel within the margin.
 fn nearest(grid: &TexelGrid, place: DVec2) -> Option<usize> {
     let (x, y) = (place.x.floor() as i64, place.y.floor() as i64);
     let steps = (-MARGIN_TEXELS..=MARGIN_TEXELS)

@@ -7,8 +7,8 @@ use scene::{
 };
 use std::f64::consts::{FRAC_1_PI, PI};
 
+mod interpolation;
 mod mirrors;
-mod receiving;
 mod refining;
 mod rooms;
 
@@ -16,10 +16,10 @@ fn grey() -> Material {
     Material { base_color: Vec4::new(0.5, 0.25, 1.0, 1.0), ..Material::lambertian_white() }
 }
 
-/// A rectangle of two triangles, counter-clockwise seen from where side × other points.
+/// A rectangle of two triangles, counter-clockwise when viewed against side × other.
 struct Rectangle(DVec3, DVec3, DVec3, Material);
 
-/// The floor [−1, 1]² at y = 0, its normal up; its middle is the middle of its first triangle's long side.
+/// The floor [−1, 1]² at y = 0 with its normal up; its centre lies on the long side of its first triangle.
 fn floor(material: Material) -> Rectangle {
     Rectangle(DVec3::new(-1.0, 0.0, 1.0), DVec3::X * 2.0, DVec3::Z * -2.0, material)
 }
@@ -43,7 +43,7 @@ fn scene_of(rectangles: &[Rectangle], lights: &[Light]) -> Scene {
     scene
 }
 
-/// Direct light alone, before a backdrop that lights nothing.
+/// Direct light alone, with a backdrop that lights nothing.
 fn direct(scene: Scene) -> Transport {
     direct_by(scene, 1)
 }
@@ -84,7 +84,7 @@ fn a_point_light_over_a_plane() {
         "from below, where no light arrives"
     );
 
-    // Whatever the winding: the side that faces the eye counts.
+    // Winding does not matter: the side that faces the eye counts.
     let turned = Rectangle(DVec3::new(-1.0, 0.0, -1.0), DVec3::X * 2.0, DVec3::Z * 2.0, grey());
     assert_near(
         direct(scene_of(&[turned], std::slice::from_ref(&point))).total_outgoing(MIDDLE, ABOVE),
@@ -123,7 +123,7 @@ fn directional_light() {
 }
 
 #[test]
-fn of_many_lights_one_is_drawn_and_the_mean_is_right() {
+fn of_many_lights_one_is_sampled_and_the_mean_is_right() {
     let lights: Vec<_> = (0..9)
         .map(|k| {
             light(
@@ -212,7 +212,7 @@ fn an_emissive_rectangle_lights_by_its_form_factor() {
     let expected = 4.0 * corner_form_factor(0.5, 0.25, 0.75) * 2.0;
     let mean = |lamp: Rectangle, samples| {
         let direct = direct_by(scene_of(&[floor(grey()), lamp], &[]), samples);
-        // Points next to the middle draw other samples.
+        // Points next to the centre use other samples.
         let points = (0..64).map(|k| SurfacePoint {
             triangle: 0,
             barycentric: MIDDLE.barycentric + DVec2::new(1e-6, 2e-6) * f64::from(k),
@@ -235,7 +235,7 @@ fn an_emissive_rectangle_lights_by_its_form_factor() {
 
 #[test]
 fn an_emissive_box_is_not_its_own_shadow() {
-    // A lamp of six faces: its own triangles and edges must not stop its light.
+    // A lamp with six faces: its own triangles and edges must not block its light.
     let lamp = Material { emissive: Vec3::ONE, base_color: Vec4::ZERO, ..grey() };
     let (low, high) = (DVec3::new(-0.2, 0.6, -0.2), DVec3::new(0.2, 1.0, 0.2));
     let size = high - low;
@@ -244,7 +244,7 @@ fn an_emissive_box_is_not_its_own_shadow() {
     let mut rectangles = vec![floor(grey())];
     rectangles.extend(faces.map(|(corner, side, other)| Rectangle(corner, side, other, lamp.clone())));
     let actual = direct_by(scene_of(&rectangles, &[]), 20_000).total_outgoing(MIDDLE, ABOVE).z;
-    // From the middle only the lower face shows.
+    // From the centre only the lower face is visible.
     let expected = 4.0 * corner_form_factor(0.2, 0.2, 0.6) as f32;
     assert!((actual / expected - 1.0).abs() < 0.02, "{actual}, expected {expected}");
 }

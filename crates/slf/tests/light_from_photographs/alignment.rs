@@ -7,7 +7,7 @@ use slf::{DirectPhotographs, PhotographLight, PhotographOptions, Poses};
 use std::sync::Arc;
 use trace::{Radiance, Tracer};
 
-/// A floor with a pattern as fine as pixels can tell, beneath a plain box.
+/// A floor with a pattern as fine as pixels resolve, beneath a plain box.
 fn patterned(scene: &Scene, point: SurfacePoint, _eye: DVec3) -> Vec3 {
     let position = point.position(scene);
     if point.triangle < 2 { pattern(position.x, position.z) } else { Vec3::new(0.6, 0.08, 0.08) }
@@ -18,10 +18,10 @@ fn pattern(x: f64, z: f64) -> Vec3 {
     Vec3::new(0.25, 0.3, 0.2) * (1.0 + 0.5 * wave as f32)
 }
 
-/// The same photographs, thought to look some two pixels past where they do.
+/// The same photographs, with cameras turned by about two pixels.
 fn perturbed(views: &[View]) -> Vec<View> {
     let turned = |(number, view): (usize, &View)| {
-        // Angles of 0.013 rad and more are 1.4 px and more; they are 0 in the mean.
+        // Angles of 0.013 rad and more are 1.4 px and more; their mean is 0.
         let (up, aside) = (0.021 * (2.4 * number as f64).sin(), 0.021 * (2.4 * number as f64).cos());
         let turn = DMat3::from_quat(DQuat::from_euler(glam::EulerRot::XYZ, up, aside, 0.5 * up));
         let axes = DMat3::from_mat4(view.camera_to_world) * turn;
@@ -30,7 +30,7 @@ fn perturbed(views: &[View]) -> Vec<View> {
     views.iter().enumerate().map(turned).collect()
 }
 
-/// RMS of what the floor sends beside what it should.
+/// RMS error of the floor's radiance.
 fn error(radiance: &dyn Radiance) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
     for [x, z] in floor_places() {
@@ -46,7 +46,7 @@ fn solve(tracer: &Arc<Tracer>, views: &[View], poses: Poses) -> PhotographLight 
 }
 
 #[test]
-fn photographs_that_are_off_are_aligned() {
+fn photographs_with_pose_errors_are_aligned() {
     let plain = tracer();
     let photographs = Photographs::take("aligned", &plain, patterned, false);
     let views = perturbed(&photographs.views);
@@ -55,15 +55,15 @@ fn photographs_that_are_off_are_aligned() {
     let [unaligned, aligned] =
         [Poses::AsCalibrated, Poses::Aligned].map(|poses| solve(&tracer, &views, poses));
     let (before, after) = (error(&unaligned), error(&aligned));
-    // 0.066 and 0.012; it is 0.005 with exact poses.
+    // 0.066 and 0.012; 0.005 with exact poses.
     assert!(after < 0.3 * before, "{before} {after}");
     assert!(unaligned.max_displacements_px().iter().all(|&px| px == 0.0));
     let moved = aligned.max_displacements_px();
     assert!(moved.iter().filter(|&&px| (0.5..6.0).contains(&px)).count() > 15, "{moved:?}");
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     let by_one = pool.install(|| solve(&tracer, &views, Poses::Aligned));
-    assert!(by_one.to_bytes() == aligned.to_bytes(), "it does not depend on the number of threads");
-    // It is kept with the light, and looked up alike in the photographs themselves.
+    assert!(by_one.to_bytes() == aligned.to_bytes(), "the number of threads does not matter");
+    // It is stored with the light, and the photographs themselves are looked up the same way.
     let again = PhotographLight::from_bytes(&aligned.to_bytes(), &tracer).unwrap();
     assert_eq!(again.max_displacements_px(), moved);
     let options = PhotographOptions::default();
@@ -73,7 +73,7 @@ fn photographs_that_are_off_are_aligned() {
 }
 
 #[test]
-fn photographs_that_are_not_off_stay_as_they_are() {
+fn photographs_with_exact_poses_stay_unchanged() {
     let tracer = tracer();
     for (name, sends) in [("exact", patterned as crate::place::Sends), ("exact_gloss", crate::place::glossy)]
     {

@@ -1,4 +1,4 @@
-//! Light from photographs of a made-up place.
+//! Light from photographs of a synthetic place.
 
 mod alignment;
 mod place;
@@ -26,7 +26,7 @@ fn gains_are_recovered_and_occluders_leave_no_colour() {
             assert!((gain - (gain_stops(number) - mean)).abs() < 0.05, "{number}: {gain}");
         }
     }
-    // From many sides the red box stands before the floor; where that is not told, red rises from 0.1 to 0.2 and more.
+    // From many sides the red box occludes the floor; if that were missed, red would rise from 0.1 to 0.2 and more.
     for [x, z] in floor_places() {
         let actual = light.constant(floor(x, z)) / gauge();
         assert!(actual.distance(floor_color(x, z)) < 0.04, "{x} {z}: {actual}");
@@ -34,7 +34,7 @@ fn gains_are_recovered_and_occluders_leave_no_colour() {
 }
 
 #[test]
-fn a_card_in_a_fifth_of_the_pictures_is_left_out() {
+fn a_card_in_a_fifth_of_the_photographs_is_rejected() {
     let tracer = tracer();
     let [without, with] = [("no_card", false), ("card", true)].map(|(name, has_card)| {
         let photographs = Photographs::take(name, &tracer, matte, has_card);
@@ -47,7 +47,7 @@ fn a_card_in_a_fifth_of_the_pictures_is_left_out() {
         sum += without.distance_squared(with);
         count += 1.0;
     }
-    // A fifth of the card's difference (1.05 in length), where the card is seen, is what a mean would show.
+    // A mean would show a fifth of the card's difference (1.05 in length) where the card is visible.
     let off = (sum / count as f32).sqrt();
     assert!(off > 0.0 && off < 0.04, "{off}");
 }
@@ -81,7 +81,7 @@ fn unobserved_texels_are_filled_and_marked() {
         assert!(filled.is_finite() && filled.max_element() > 0.05, "{filled}");
     }
     assert_eq!(light.observed_share(floor(1.5, 0.3)), 1.0);
-    // Past the floor's edge, as camera 0 sees it.
+    // A direction past the floor's edge in the view of camera 0.
     let sky = light.environment(DVec3::new(0.25, -0.25, -1.0)) / gauge();
     assert!(sky.distance(SKY) < 0.03, "{sky}");
 }
@@ -100,7 +100,7 @@ fn gloss_is_reproduced_where_photographed_and_changes_smoothly() {
     assert!(actual.distance(truth) < 0.8 * flat.distance(truth), "{actual} {flat} for {truth}");
     let [actual, truth] = [light.total_outgoing(point, away) / gauge(), glossy(tracer.scene(), point, away)];
     assert!(actual.distance(truth) < 0.1, "{actual} for {truth}");
-    // Over an aperture between photographs nothing pops.
+    // Nothing pops over an aperture between photographs.
     let along = |k: u32| light.total_outgoing(point, to_lamp.lerp(away, f64::from(k) / 400.0));
     let steepest = (0..400).map(|k| along(k).distance(along(k + 1))).fold(0.0, f32::max);
     assert!(steepest < 0.02 && steepest > 0.0, "{steepest}");
@@ -111,7 +111,7 @@ fn a_mirror_shows_its_surroundings_where_the_scene_does_not_block_it() {
     let tracer = tracer();
     let photographs = Photographs::take("mirror", &tracer, lacquered, false);
     let light = solve(&tracer, &photographs.views);
-    // Between cameras 0 and 1, and lower and higher.
+    // Between cameras 0 and 1, at several elevations.
     let eyes = [0.45f64, 0.7, 0.9].map(|elevation| {
         let (sin, cos) = 0.26f64.sin_cos();
         5.0 * DVec3::new(elevation.cos() * sin, elevation.sin(), elevation.cos() * cos)
@@ -119,11 +119,11 @@ fn a_mirror_shows_its_surroundings_where_the_scene_does_not_block_it() {
     let mut sums = [[0.0; 3]; 2];
     for (eye, [x, z]) in eyes.into_iter().flat_map(|eye| floor_places().map(move |place| (eye, place))) {
         let (point, position) = (floor(x, z), DVec3::new(x, 0.0, z));
-        let leaving = light.outgoing(point, eye);
+        let outgoing = light.outgoing(point, eye);
         let is_blocked = box_occludes(position, eye);
-        assert!(!is_blocked || leaving.carried == Vec3::ZERO, "{x} {z}");
+        assert!(!is_blocked || outgoing.carried == Vec3::ZERO, "{x} {z}");
         let truth = lacquered(tracer.scene(), point, eye);
-        let [mirrored, flat] = [leaving.total(), light.constant(point)].map(|light| light / gauge());
+        let [mirrored, flat] = [outgoing.total(), light.constant(point)].map(|light| light / gauge());
         let sum = &mut sums[usize::from(is_blocked)];
         *sum =
             [sum[0] + mirrored.distance_squared(truth), sum[1] + flat.distance_squared(truth), sum[2] + 1.0];
@@ -150,7 +150,7 @@ fn light_does_not_depend_on_the_number_of_threads() {
 }
 
 #[test]
-fn nothing_comes_of_no_photographs_and_of_what_is_stopped() {
+fn no_photographs_and_cancellation_are_errors() {
     let tracer = tracer();
     let photographs = Photographs::take("stopped", &tracer, matte, false);
     let options = UnwrapOptions { density: Density::Side(64), ..UnwrapOptions::default() };
@@ -164,7 +164,7 @@ fn nothing_comes_of_no_photographs_and_of_what_is_stopped() {
 }
 
 #[test]
-fn light_comes_back_from_its_bytes_and_from_no_others() {
+fn light_is_restored_from_its_bytes_and_from_no_others() {
     let tracer = tracer();
     let photographs = Photographs::take("stored", &tracer, matte, false);
     let scene = Arc::new(Scene { views: photographs.views.clone(), ..Scene::clone(tracer.scene()) });
@@ -186,7 +186,7 @@ fn light_comes_back_from_its_bytes_and_from_no_others() {
     assert!(PhotographLight::from_bytes(&bytes, &Arc::new(Tracer::new(other))).is_none());
 }
 
-/// The parts that begun, and whether one of them is where to stop; the empty name stops at once.
+/// Records the parts that have begun; cancels in the part `stop_in`, or at once if that is empty.
 struct Parts {
     begun: Mutex<Vec<Part>>,
     stop_in: Option<&'static str>,
@@ -213,7 +213,7 @@ impl Progress for Parts {
 }
 
 #[test]
-fn every_part_has_a_name_and_a_share_and_can_be_stopped() {
+fn every_part_has_a_name_and_a_share_and_can_be_cancelled() {
     let tracer = tracer();
     let photographs = Photographs::take("parts", &tracer, glossy, false);
     let options = UnwrapOptions { density: Density::Side(64), ..UnwrapOptions::default() };
@@ -224,7 +224,7 @@ fn every_part_has_a_name_and_a_share_and_can_be_stopped() {
     };
     let parts = Parts { begun: Mutex::default(), stop_in: None };
     solve(&parts).unwrap();
-    let names = ["photographs", "exposures", "strangers", "alignment", "texels", "mirrors", "gloss"];
+    let names = ["photographs", "exposures", "transients", "alignment", "texels", "mirrors", "gloss"];
     assert_eq!(parts.names(), names);
     let begun = parts.begun.into_inner().unwrap();
     assert!(begun.windows(2).all(|two| (two[0].to - two[1].from).abs() < 1e-6), "{begun:?}");

@@ -1,4 +1,4 @@
-//! A made-up place: a patterned floor, a box that hovers over it, twenty cameras around.
+//! A synthetic place: a patterned floor, a box hovering over it, and twenty cameras around them.
 
 use atlas::{Atlas, Density, UnwrapOptions};
 use glam::{DMat3, DMat4, DVec2, DVec3, Vec3};
@@ -44,13 +44,13 @@ pub fn floor_color(x: f64, z: f64) -> Vec3 {
 
 pub type Sends = fn(&Scene, SurfacePoint, DVec3) -> Vec3;
 
-/// What a point of the place sends.
+/// Radiance of a point: matte surfaces.
 pub fn matte(scene: &Scene, point: SurfacePoint, _eye: DVec3) -> Vec3 {
     let position = point.position(scene);
     if point.triangle < 2 { floor_color(position.x, position.z) } else { Vec3::new(0.6, 0.08, 0.08) }
 }
 
-/// The same, the floor under clear lacquer, which mirrors rings of light in the sky where the box is not in the way.
+/// Matte surfaces, with a floor under clear lacquer that mirrors rings of light in the sky unless the box blocks them.
 pub fn lacquered(scene: &Scene, point: SurfacePoint, eye: DVec3) -> Vec3 {
     let position = point.position(scene);
     let mirrored = match point.triangle {
@@ -60,7 +60,7 @@ pub fn lacquered(scene: &Scene, point: SurfacePoint, eye: DVec3) -> Vec3 {
     matte(scene, point, eye) + mirrored
 }
 
-/// What the lacquered floor mirrors at a position.
+/// What the lacquered floor mirrors at a position toward an eye.
 pub fn mirrored_by_floor(position: DVec3, eye: DVec3) -> f32 {
     let outgoing = (eye - position).normalize();
     if box_occludes(position, eye) {
@@ -70,7 +70,7 @@ pub fn mirrored_by_floor(position: DVec3, eye: DVec3) -> f32 {
     (fresnel * (2.0 + 2.0 * (12.0 * outgoing.y).sin())) as f32
 }
 
-/// Whether the box is what the floor mirrors there.
+/// Whether the floor mirrors the box there.
 pub fn box_occludes(position: DVec3, eye: DVec3) -> bool {
     let outgoing = (eye - position).normalize();
     let mirrored = DVec3::new(-outgoing.x, outgoing.y, -outgoing.z);
@@ -80,9 +80,9 @@ pub fn box_occludes(position: DVec3, eye: DVec3) -> bool {
     enters < leaves && leaves > 0.0
 }
 
-/// The same, the eastern strip of the floor under a wide gloss of a lamp in the south.
+/// Matte surfaces, with a wide gloss from a lamp in the south on the eastern strip of the floor.
 ///
-/// Were all of the floor glossy in the same way, nobody could tell that from exposures.
+/// If all of the floor had the same gloss, it could not be distinguished from exposures.
 pub fn glossy(scene: &Scene, point: SurfacePoint, eye: DVec3) -> Vec3 {
     let position = point.position(scene);
     let is_glossy = point.triangle < 2 && position.x > 0.8;
@@ -91,7 +91,7 @@ pub fn glossy(scene: &Scene, point: SurfacePoint, eye: DVec3) -> Vec3 {
     matte(scene, point, eye) + if is_glossy { Vec3::splat(0.3 * gloss) } else { Vec3::ZERO }
 }
 
-/// A folder of photographs, removed in the end.
+/// A folder of photographs, removed when dropped.
 pub struct Photographs {
     folder: PathBuf,
     pub views: Vec<View>,
@@ -107,12 +107,12 @@ pub fn gain_stops(view: usize) -> f64 {
     0.6 * (2.3 * view as f64).sin()
 }
 
-/// 2 to the mean gain of all: solved gains are 0 in the mean, so light is this much brighter than it was.
+/// 2 to the power of the mean gain. Solved gains have mean 0, so solved light is brighter by this factor.
 pub fn gauge() -> f32 {
     ((0..20).map(gain_stops).sum::<f64>() / 20.0).exp2() as f32
 }
 
-/// Where camera `number` of twenty stands.
+/// Position of camera `number` of twenty.
 pub fn eye(number: usize) -> DVec3 {
     let (elevation, turn) = match number {
         0..12 => (0.6f64, number as f64 / 12.0),
@@ -182,7 +182,7 @@ pub fn solve_with(tracer: &Arc<Tracer>, views: &[View], options: &PhotographOpti
     PhotographLight::solve(tracer, &atlas, views, options, &Unwatched).unwrap()
 }
 
-/// The floor at a place. Its corners are (−2, 2), (2, 2), (2, −2) and (−2, −2).
+/// A point of the floor, whose corners are (−2, 2), (2, 2), (2, −2) and (−2, −2).
 pub fn floor(x: f64, z: f64) -> SurfacePoint {
     let (along, across) = ((x + 2.0) / 4.0, (2.0 - z) / 4.0);
     if along >= across {
@@ -192,7 +192,7 @@ pub fn floor(x: f64, z: f64) -> SurfacePoint {
     }
 }
 
-/// Places of the floor around the box.
+/// Positions on the floor around the box.
 pub fn floor_places() -> impl Iterator<Item = [f64; 2]> {
     let steps = || (0..33).map(|k| -1.6 + 0.1 * f64::from(k));
     steps().flat_map(move |x| steps().map(move |z| [x, z])).filter(|[x, z]| x.abs().max(z.abs()) > 0.7)

@@ -1,4 +1,4 @@
-//! How far each place of a photograph is off: a coarse lattice over it, interpolated between its nodes.
+//! The displacement of a photograph: a coarse lattice over it, interpolated between nodes.
 
 use glam::{DVec2, Vec2};
 use scene::View;
@@ -6,30 +6,30 @@ use scene::View;
 /// A lattice over a photograph.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Lattice {
-    /// Nodes.
+    /// Number of nodes.
     columns: usize,
     rows: usize,
-    /// Between nodes, px of the photograph.
+    /// Distance between nodes, px of the photograph.
     side_px: f64,
 }
 
-/// Cells along the longer side of a photograph: what poses are off by changes slowly over it.
+/// Cells along the longer side of a photograph; the effect of pose errors varies slowly over it.
 const CELLS: f64 = 8.0;
 
-/// A place in a lattice.
+/// A position within a cell of a lattice.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CellPosition {
-    /// Nodes at its corners: upper left and right, lower left and right.
+    /// Nodes at the cell's corners: upper left and right, lower left and right.
     pub nodes: [usize; 4],
-    /// Where in it, in [0, 1].
+    /// Position within the cell, in [0, 1].
     pub share: DVec2,
 }
 
-/// How far each place of a photograph is off.
+/// Displacement at every position of a photograph.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Displacement {
     lattice: Lattice,
-    /// By node, px of the photograph; none where it is as its camera says.
+    /// By node, px of the photograph; empty for a photograph left unchanged.
     nodes: Vec<Vec2>,
 }
 
@@ -49,7 +49,8 @@ impl Lattice {
         (self.columns - 1) * (self.rows - 1)
     }
 
-    /// The number of the cell that a pixel position is in, and where in it; beyond the border that beside it.
+    /// The index of the cell that contains a pixel position, and the position within it; positions beyond the border
+    /// are clamped.
     pub fn cell(&self, pixel: DVec2) -> (usize, CellPosition) {
         let place = pixel / self.side_px;
         let within = |at: f64, nodes: usize| (at.max(0.0) as usize).min(nodes - 2);
@@ -60,7 +61,7 @@ impl Lattice {
         (row * (self.columns - 1) + column, CellPosition { nodes, share })
     }
 
-    /// Nodes beside each other.
+    /// Pairs of neighbouring nodes.
     pub fn neighbours(&self) -> impl Iterator<Item = [usize; 2]> {
         let Self { columns, rows, .. } = *self;
         (0..columns * rows).flat_map(move |node| {
@@ -72,7 +73,7 @@ impl Lattice {
 }
 
 impl CellPosition {
-    /// How much each corner counts here.
+    /// Bilinear weights of the corners.
     pub fn shares(&self) -> [f64; 4] {
         let DVec2 { x, y } = self.share;
         [(1.0 - x) * (1.0 - y), x * (1.0 - y), (1.0 - x) * y, x * y]
@@ -80,12 +81,13 @@ impl CellPosition {
 }
 
 impl Displacement {
-    /// Of a photograph that is as its camera says.
+    /// No displacement.
     pub fn none(view: &View) -> Self {
         Self { lattice: Lattice::new(view), nodes: Vec::new() }
     }
 
-    /// Of nodes, row by row, px; none if they are too many or too few, or one is not a number. None at all are those of [`Self::none`].
+    /// From nodes, row by row, px; `None` if their number is wrong or one is not finite. An empty list equals
+    /// [`Self::none`].
     pub fn from_nodes(view: &View, nodes: Vec<Vec2>) -> Option<Self> {
         let lattice = Lattice::new(view);
         let has_valid_count = nodes.is_empty() || nodes.len() == lattice.nodes();
@@ -100,7 +102,7 @@ impl Displacement {
         self.nodes.is_empty()
     }
 
-    /// How far what the camera sees at a pixel position is found beside it, px.
+    /// Displacement at a pixel position of the camera's projection, px.
     pub fn at(&self, pixel: DVec2) -> DVec2 {
         if self.is_none() {
             return DVec2::ZERO;
@@ -110,12 +112,12 @@ impl Displacement {
         cell.nodes.into_iter().zip(cell.shares()).map(corner).sum()
     }
 
-    /// Where the photograph shows what its camera sees at a pixel position, px.
+    /// Where the photograph shows what its camera projects to a pixel position, px.
     pub fn moved(&self, pixel: DVec2) -> DVec2 {
         pixel + self.at(pixel)
     }
 
-    /// Its largest, px.
+    /// The largest displacement, px.
     pub fn max_px(&self) -> f64 {
         self.nodes.iter().map(|node| f64::from(node.length())).fold(0.0, f64::max)
     }
@@ -127,7 +129,7 @@ pub(super) mod tests {
     use glam::DMat4;
     use lens::CalibratedLens;
 
-    /// A photograph that was never taken.
+    /// A synthetic view.
     pub fn view(size: [u32; 2]) -> View {
         View {
             name: "a".into(),

@@ -1,54 +1,54 @@
-//! Surface points that photographs are compared at, and what each is expected to show there.
+//! Surface points at which photographs are compared, and the predicted value of each photograph there.
 
-use super::fitting::Comparison;
-use super::halves::{Fold, fold_of};
+use super::folds::{Fold, fold_of};
+use super::gauss_newton::Comparison;
 use super::lattice::Displacement;
 use crate::photographs::exposures::Exposure;
-use crate::photographs::odd::InlierMap;
-use crate::photographs::places::TexelBlocks;
-use crate::photographs::seeing::{Observation, PackedPicture};
-use crate::photographs::telling::{CalibratedObservations, Sample, robust_mean, roots};
+use crate::photographs::fitting::{CalibratedObservations, Sample, robust_mean, roots};
+use crate::photographs::observations::{Observation, PackedPicture};
+use crate::photographs::texels::TexelBlocks;
+use crate::photographs::transients::InlierMap;
 use glam::{DVec2, Vec3};
 use rayon::prelude::*;
 use scene::View;
 
-/// Points that a photograph is asked at, about.
+/// Approximate number of points compared per photograph.
 const POINTS_PER_VIEW: usize = 12_000;
-/// A point that fewer photographs see says nothing.
+/// Points observed by fewer photographs are skipped.
 const MIN_VIEWS: usize = 3;
-/// Others that tell a photograph what to expect count so much at least.
+/// Minimum total weight of the other photographs for a prediction.
 const MIN_OTHERS_WEIGHT: f32 = 0.3;
 
-/// A point as a photograph sees it.
+/// A point as observed by one photograph.
 struct PointView {
     view: u16,
     weight: f32,
-    /// Where its camera says that it is.
+    /// Projection of the point by the photograph's camera, px.
     pixel: DVec2,
-    /// What undoes its exposure there.
+    /// Factor from pixel values to radiance there.
     to_radiance: Vec3,
 }
 
-/// All points.
+/// The points of the comparison.
 pub(super) struct ComparisonPoints {
-    /// By point.
+    /// Observations by point.
     all: Vec<Vec<PointView>>,
-    /// By view: the points that it sees, and its place among those that do.
+    /// By view: the points it observes, and the index of its observation among those of the point.
     by_view: Vec<Vec<(u32, u16)>>,
 }
 
-/// By point and photograph that sees it: what others lead to expect, if they do.
+/// By point and observing photograph: the value predicted by the others, if it can be predicted.
 pub(super) type Predictions = Vec<Vec<Option<f32>>>;
 
 impl ComparisonPoints {
-    /// Texels that may be asked, not too many of them, where photographs belong.
+    /// Selects a limited number of texels of the fitting fold, without transient objects.
     pub fn new(
-        radiance: &CalibratedObservations<'_>,
+        calibrated: &CalibratedObservations<'_>,
         views: &[View],
         exposures: &[Exposure],
         inlier_maps: &[InlierMap],
     ) -> Self {
-        let (texels, observations) = (radiance.texels, radiance.observations);
+        let (texels, observations) = (calibrated.texels, calibrated.observations);
         let blocks = TexelBlocks::new(texels.size());
         let is_usable = |texel: &usize| {
             observations.range(*texel).len() >= MIN_VIEWS && fold_of(&blocks, texels, *texel) == Fold::Fitting
@@ -58,10 +58,10 @@ impl ComparisonPoints {
         let step = count.div_ceil(POINTS_PER_VIEW * views.len()).max(1);
         let texel_views = |&texel: &usize| -> Vec<PointView> {
             let point_view = |observation: &Observation| {
-                let number = usize::from(observation.view);
-                let pixel = views[number].project(texels.position(texel))?;
-                let weight = observation.weight() * inlier_maps[number].at(pixel);
-                let to_radiance = exposures[number].to_radiance(&views[number], pixel);
+                let view_index = usize::from(observation.view);
+                let pixel = views[view_index].project(texels.position(texel))?;
+                let weight = observation.weight() * inlier_maps[view_index].at(pixel);
+                let to_radiance = exposures[view_index].to_radiance(&views[view_index], pixel);
                 (weight > 0.0).then_some(PointView { view: observation.view, weight, pixel, to_radiance })
             };
             observations.of_texel(texel).iter().filter_map(point_view).collect()
@@ -76,15 +76,15 @@ impl ComparisonPoints {
         Self { all, by_view }
     }
 
-    /// What others lead to expect of each photograph at each point that it sees, all displaced.
+    /// What the others predict each photograph to show at each of its points, with all displacements applied.
     pub fn predict(&self, pictures: &[PackedPicture], displacements: &[Displacement]) -> Predictions {
         let predict_point = |(samples, inlier_weights): &mut (Vec<Sample>, Vec<f32>),
                              point_views: &Vec<PointView>| {
             samples.clear();
             samples.extend(point_views.iter().map(|point_view| {
-                let number = usize::from(point_view.view);
-                let picture = &pictures[number];
-                let shown = picture.at(picture.place(displacements[number].moved(point_view.pixel)));
+                let view_index = usize::from(point_view.view);
+                let picture = &pictures[view_index];
+                let shown = picture.at(picture.place(displacements[view_index].moved(point_view.pixel)));
                 let clipped = shown.clipped.clamp(0.0, 1.0);
                 Sample { light: shown.light * point_view.to_radiance, weight: point_view.weight, clipped }
             }));
@@ -95,7 +95,7 @@ impl ComparisonPoints {
             let predict_from_others = |(sample, inlier_weight): (&Sample, &f32)| {
                 let own = effective_weight((sample, inlier_weight));
                 let others = all - own;
-                // What was at its limit is not where it seems to be.
+                // The position of clipped pixels is unreliable.
                 let is_predictable = sample.clipped == 0.0 && others >= MIN_OTHERS_WEIGHT;
                 is_predictable.then(|| mean_root((mean * all - sample.light * own) / others))
             };
@@ -104,7 +104,7 @@ impl ComparisonPoints {
         self.all.par_iter().map_init(Default::default, predict_point).collect()
     }
 
-    /// A photograph, displaced, beside what others lead to expect.
+    /// Compares a displaced photograph with the predictions.
     pub fn compare(
         &self,
         view: usize,
@@ -135,7 +135,7 @@ impl ComparisonPoints {
     }
 }
 
-/// The mean root of its channels: noise is about the same for dark and bright.
+/// Mean square root over the channels; noise of roots is about the same for dark and bright.
 fn mean_root(light: Vec3) -> f32 {
     roots(light).element_sum() / 3.0
 }

@@ -1,9 +1,9 @@
-//! The normal equations of exposures.
+//! Normal equations of the exposures.
 
-use super::said::ExposureObservation;
+use super::exposure_observations::ExposureObservation;
 use crate::photographs::numbers::median;
 
-/// The normal equations.
+/// Layout of the unknowns of the normal equations.
 pub(super) struct NormalEquations<'a> {
     pub unknowns: usize,
     pub views: usize,
@@ -11,7 +11,7 @@ pub(super) struct NormalEquations<'a> {
 }
 
 impl NormalEquations<'_> {
-    /// Matrix, right side and absolute residuals of some points, weighted by how a solution explains them.
+    /// Matrix, right-hand side and absolute residuals of some points, weighted by their residuals under a solution.
     pub fn accumulate(
         &self,
         points: &[Vec<ExposureObservation>],
@@ -33,7 +33,7 @@ impl NormalEquations<'_> {
                         row(observation).iter().map(|&(at, factor)| factor * solution[at]).sum();
                     observation.stops[channel] - predicted
                 };
-                // The point's own light, as most say: a median holds out where half of them are wrong.
+                // The point's own light: a median tolerates outliers of up to half of the observations.
                 let mut all: Vec<f64> = point.iter().map(residual).collect();
                 if all.len() < 2 {
                     continue;

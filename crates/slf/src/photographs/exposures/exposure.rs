@@ -1,4 +1,4 @@
-//! How a photograph renders light: its gains and its lens's vignetting.
+//! Photometric model of a photograph: gains and vignetting.
 
 use glam::{DVec2, Vec3};
 use scene::View;
@@ -9,20 +9,20 @@ use scene::View;
 pub struct Exposure {
     /// Gain of red, green and blue, stops; the mean over all photographs is 0 in each channel.
     pub gain_stops: [f64; 3],
-    /// k₁ and k₂: what r² and r⁴ add, stops.
+    /// k₁ and k₂: falloff added by r² and r⁴, stops.
     pub vignetting_stops: [f64; 2],
 }
 
 impl Exposure {
-    /// What the photograph's numbers are to be multiplied with at a pixel position of the view.
+    /// Factor from the photograph's linear values to radiance at a pixel position of the view, by channel.
     pub fn to_radiance(&self, view: &View, pixel: DVec2) -> Vec3 {
         let falloff = self.falloff_stops(view, pixel);
         Vec3::from_array(self.gain_stops.map(|gain| (-(gain + falloff)).exp2() as f32))
     }
 
-    /// The most that [`Self::to_radiance`] can be in the picture, of any channel.
+    /// Upper bound of [`Self::to_radiance`] over the picture and its channels.
     pub(crate) fn max_to_radiance(&self, view: &View) -> f32 {
-        // k₁·r² + k₂·r⁴ over r² in [0, most] is least at an end or where its slope is 0.
+        // k₁·r² + k₂·r⁴ over r² in [0, max] is least at an end or where its slope is 0.
         let [k1, k2] = self.vignetting_stops;
         let size = DVec2::from(view.lens.size_px().map(f64::from));
         let corners = [DVec2::ZERO, size, DVec2::new(size.x, 0.0), DVec2::new(0.0, size.y)];
@@ -40,7 +40,7 @@ impl Exposure {
     }
 }
 
-/// r² of the module's head.
+/// r² as defined in the module documentation.
 pub(super) fn radius_squared(view: &View, pixel: DVec2) -> f64 {
     let intrinsics = view.lens.intrinsics();
     let half_diagonal = DVec2::from(intrinsics.size_px.map(f64::from)).length() / 2.0;

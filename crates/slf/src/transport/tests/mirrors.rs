@@ -1,4 +1,4 @@
-//! What a mirror shows is the ordinary lens's picture of the mirrored scene, whatever is painted on the mirror.
+//! A mirror shows the unpainted lens's picture of the mirrored scene, whatever is painted on the mirror.
 
 use super::*;
 use lens::{Camera, FocusOffset};
@@ -34,7 +34,7 @@ fn picture(scene: Scene, focus: FocusOffset) -> Vec<[f32; 3]> {
     truth::render(&tracer, &light, &Painted(focus), &camera, &options, &Unwatched).unwrap().picture.radiance
 }
 
-/// Cards that glow at some depths, each facing the camera; mirrored in the plane z = −4 where it is told to.
+/// Glowing cards at several depths that face the camera; mirrored in the plane z = −4 if `is_mirrored`.
 fn cards(is_mirrored: bool) -> Vec<Rectangle> {
     let place = |z: f64| if is_mirrored { -8.0 - z } else { z };
     [(-0.6, 0.1, 1.0, 1.0), (0.4, -0.9, 2.0, 0.5), (0.9, 0.6, 5.0, 2.0)]
@@ -78,7 +78,7 @@ fn a_mirror_shows_the_ordinary_picture_of_the_mirrored_scene() {
         let decibel = psnr(&in_mirror(focus), &straight);
         assert!(decibel > 40.0, "{focus:?}: {decibel} dB");
     }
-    // The control: paint on what is seen straight does change its picture.
+    // Control: paint on what is seen directly does change its picture.
     let painted = picture(scene_of(&cards(true), &[]), FocusOffset::new(1.2, 1.0));
     assert!(psnr(&painted, &straight) < 35.0);
 }

@@ -1,4 +1,4 @@
-//! Light that is refined: what is kept of it is checked by paths, and leaves no floor.
+//! Refined light: paths correct the cache, so the error has no floor.
 
 use super::rooms::{inside, outside};
 use super::*;
@@ -6,7 +6,7 @@ use crate::IrradianceOptions;
 
 const LAMP: f32 = 8.0;
 
-/// A room with a red wall and a lamp, and in it a matte box and one of metal, on a floor of glossy paint.
+/// A room with a red wall and a lamp, a matte and a metal box, and a floor of glossy paint.
 fn room() -> Scene {
     let matte = |color: Vec3| Material { base_color: color.extend(1.0), ..Material::lambertian_white() };
     let glossy = |color: Vec3, metallic: f32, roughness: f32| Material {
@@ -31,7 +31,7 @@ fn room() -> Scene {
 
 const EYE: DVec3 = DVec3::new(1.0, 0.9, 1.4);
 
-/// Points on the walls and boxes, some of them where one meets the other.
+/// Points on walls and boxes, some of them where two surfaces meet.
 fn points(scene: &Scene) -> Vec<SurfacePoint> {
     let all = (0..96u32).map(|k| {
         let u = (DVec2::new(0.754_877_666, 0.569_840_291) * f64::from(k) + 0.5).fract();
@@ -50,13 +50,13 @@ fn transport(tracer: &Arc<Tracer>, paths: u32) -> Transport {
     Transport::new(tracer.clone(), World::uniform(Vec3::ZERO), options)
 }
 
-/// Of few patches: it is off where surfaces meet.
+/// An irradiance with few patches, inaccurate where surfaces meet.
 fn coarse(tracer: &Arc<Tracer>) -> Arc<Irradiance> {
     let options = IrradianceOptions { patches: 24, rays: 64 };
     Arc::new(Irradiance::solve(&transport(tracer, 1), options, &Unwatched).unwrap())
 }
 
-/// What points send, in runs of numbers that have nothing to do with each other.
+/// Outgoing radiance of points, with independent random numbers for each run.
 fn sent(transport: &Transport, points: &[SurfacePoint], run: u64) -> Vec<Vec3> {
     let at = |(number, &point): (usize, &SurfacePoint)| {
         let seed = (number as u64) << 32 | run;
@@ -65,7 +65,7 @@ fn sent(transport: &Transport, points: &[SurfacePoint], run: u64) -> Vec<Vec3> {
     points.iter().enumerate().map(at).collect()
 }
 
-/// The root mean square of what some are off from others.
+/// Root mean square difference.
 fn off(actual: &[Vec3], truth: &[Vec3]) -> f64 {
     let squares = actual.iter().zip(truth).map(|(a, b)| f64::from((*a - *b).length_squared()) / 3.0);
     (squares.sum::<f64>() / actual.len() as f64).sqrt()
@@ -85,17 +85,17 @@ fn refined_light_has_no_error_floor_and_cached_light_has_one() {
     let errors = [16, 64, 256, 1024].map(refined);
     let trusted = transport(&tracer, 1024).with_irradiance(irradiance.clone());
     let floor = off(&sent(&trusted, &points, 1), &truth);
-    // Sixteen times the paths, a quarter of the error.
+    // Sixteen times the paths give a quarter of the error.
     for (few, many) in errors.iter().zip(&errors[2..]) {
         assert!((0.12..0.4).contains(&(many / few)), "{errors:?}");
     }
-    // The control: as many paths that trust what is kept are off by what that is.
+    // Control: as many paths that trust the cache have its error.
     assert!(floor > 3.0 * errors[3], "{floor} is the floor, refined {errors:?}");
 }
 
 #[test]
 fn refined_light_equals_full_path_tracing_whatever_the_cache_holds() {
-    // Light that is kept of another world altogether: three times as much of everything.
+    // A cache of another world altogether: three times as much light everywhere.
     let tracer = Arc::new(Tracer::new(Arc::new(room())));
     let points = &points(tracer.scene())[..24];
     let irradiance = coarse(&tracer);

@@ -1,9 +1,9 @@
-//! Light that goes to and fro, against what is known of it in closed form.
+//! Interreflection, compared with closed forms.
 
 use super::*;
 use crate::IrradianceOptions;
 
-/// The six walls of a box, seen from without.
+/// The six walls of a box, facing out.
 pub(super) fn outside(low: DVec3, high: DVec3, material: &Material) -> Vec<Rectangle> {
     let size = high - low;
     let [x, y, z] = [DVec3::X * size.x, DVec3::Y * size.y, DVec3::Z * size.z];
@@ -11,7 +11,7 @@ pub(super) fn outside(low: DVec3, high: DVec3, material: &Material) -> Vec<Recta
     faces.map(|(corner, side, other)| Rectangle(corner, side, other, material.clone())).into()
 }
 
-/// The same seen from within.
+/// The six walls of a box, facing in.
 pub(super) fn inside(low: DVec3, high: DVec3, material: &Material) -> Vec<Rectangle> {
     let turned = |Rectangle(corner, side, other, material)| Rectangle(corner, other, side, material);
     outside(low, high, material).into_iter().map(turned).collect()
@@ -32,7 +32,7 @@ fn dark() -> World {
     World::uniform(Vec3::ZERO)
 }
 
-/// The mean of what leaves points all over some triangles toward an eye.
+/// Mean radiance that points all over some triangles send toward an eye.
 fn mean(transport: &Transport, eye: DVec3, triangles: std::ops::Range<u32>) -> Vec3 {
     let points = triangles.flat_map(|triangle| {
         (0..64).map(move |k| {
@@ -47,7 +47,7 @@ fn mean(transport: &Transport, eye: DVec3, triangles: std::ops::Range<u32>) -> V
 
 #[test]
 fn a_closed_room_that_glows_has_its_series_sum() {
-    // L = Le/(1 − ρ), whatever the room: every wall sends what it gets and its own.
+    // L = Le/(1 − ρ) in any room: every wall sends its own light and reflects that of the others.
     for (albedo, glow) in [(0.5f32, 1.0f32), (0.8, 0.25)] {
         let color = Vec3::new(albedo, albedo / 2.0, 0.0);
         let wall = Material {
@@ -61,8 +61,8 @@ fn a_closed_room_that_glows_has_its_series_sum() {
         let by_paths = mean(&transport(room(), dark(), 64), eye, 0..12);
         assert!((by_paths / expected - 1.0).abs().max_element() < 0.01, "{by_paths}, not {expected}");
         let cached = mean(&with_cached_irradiance(transport(room(), dark(), 8)), eye, 0..12);
-        assert!((cached / expected - 1.0).abs().max_element() < 0.01, "known: {cached}, not {expected}");
-        // The control: after two bounces the rest of the series is missing.
+        assert!((cached / expected - 1.0).abs().max_element() < 0.01, "cached: {cached}, not {expected}");
+        // Control: after two bounces the rest of the series is missing.
         let cut = mean(&transport(room(), World { bounces: Some(1), ..dark() }, 64), eye, 0..12);
         assert!(cut.x < 0.95 * expected.x, "{cut}");
     }
@@ -84,7 +84,7 @@ fn a_closed_box_lit_from_without_stays_dark() {
         let without = mean(&transport, DVec3::new(9.0, 9.0, 9.0), 12..24).max_element();
         assert!(without > 0.1 && within <= 1e-3 * without, "{within} within, {without} without");
     }
-    // The control: a box without its floor.
+    // Control: a box without a floor.
     let open = scene_of(&walls[1..6], &[]);
     let open = with_cached_irradiance(transport(open, World::uniform(Vec3::ONE), 4));
     assert!(mean(&open, DVec3::ZERO, 0..10).max_element() > 0.05);
@@ -101,7 +101,7 @@ fn a_white_floor_under_an_even_sky_is_as_bright_as_the_sky() {
     }
 }
 
-/// A slab of glass, its upper face first, over a glowing floor.
+/// A slab of glass, upper face first, over a glowing floor.
 fn slab(ior: f32, volume: Option<Volume>, thickness: f64) -> Scene {
     let glass = Material {
         transmission: Scalar::constant(1.0),
@@ -120,7 +120,7 @@ fn slab(ior: f32, volume: Option<Volume>, thickness: f64) -> Scene {
     scene_of(&walls, &[])
 }
 
-/// A point in the middle of the slab's upper face, and an eye far above it.
+/// A point at the centre of the slab's upper face, and an eye far above it.
 const ON_SLAB: SurfacePoint = SurfacePoint { triangle: 0, barycentric: DVec2::new(0.0, 0.5) };
 const FAR_ABOVE: DVec3 = DVec3::new(0.0, 400.0, 0.0);
 
@@ -134,7 +134,7 @@ fn beers_law_holds_through_a_slab() {
         let expected = color.powf((thickness / distance) as f32);
         assert!((actual - expected).abs().max_element() < 1e-4, "{actual}, not {expected}");
     }
-    // The control: nothing is lost where nothing attenuates.
+    // Control: nothing is lost where nothing attenuates.
     let clear = Volume { attenuation_color: color, attenuation_distance: f64::INFINITY };
     assert_eq!(
         transport(slab(1.0, Some(clear), 0.5), dark(), 16).total_outgoing(ON_SLAB, FAR_ABOVE),
@@ -144,16 +144,16 @@ fn beers_law_holds_through_a_slab() {
 
 #[test]
 fn a_slab_of_glass_lets_through_what_its_faces_do() {
-    // Seen straight on: (1 − r)/(1 + r) of both faces with all that goes to and fro, r = 0.04.
+    // At normal incidence: (1 − r)/(1 + r) for both faces with all interreflections, r = 0.04.
     let clear = Volume { attenuation_color: Vec3::ONE, attenuation_distance: f64::INFINITY };
     let actual = transport(slab(1.5, Some(clear), 0.5), dark(), 1 << 14).total_outgoing(ON_SLAB, FAR_ABOVE);
     assert!((actual.y - 0.96 / 1.04).abs() < 4e-3, "{actual}");
-    // A wall that is thin lets 0.96 through, and so does the other.
+    // A thin wall transmits 0.96, and so does the other.
     let thin = transport(slab(1.5, None, 0.5), dark(), 1 << 14).total_outgoing(ON_SLAB, FAR_ABOVE);
     assert!((thin.y - 0.96 / 1.04).abs() < 4e-3, "{thin}");
 }
 
-/// What a dielectric in air mirrors (Fresnel).
+/// Fresnel reflectance of a dielectric in air.
 fn mirrored(cos: f64, ior: f64) -> f64 {
     let cos_within = (1.0 - (1.0 - cos * cos) / (ior * ior)).sqrt();
     let upright = (cos - ior * cos_within) / (cos + ior * cos_within);
@@ -163,7 +163,8 @@ fn mirrored(cos: f64, ior: f64) -> f64 {
 
 #[test]
 fn a_pane_without_thickness_mirrors_as_one_face_tints_and_bends_nothing() {
-    // glTF's thin wall is one interface, R, where a real pane's two faces mirror 2R/(1 + R). It is tinted by its base colour, once.
+    // glTF's thin wall is a single interface, R, where the two faces of a real pane reflect 2R/(1 + R). It is tinted by
+    // its base colour once.
     let tint = Vec3::new(0.9, 0.5, 0.2);
     let pane = |roughness: f32| Material {
         transmission: Scalar::constant(1.0),
@@ -175,7 +176,7 @@ fn a_pane_without_thickness_mirrors_as_one_face_tints_and_bends_nothing() {
         double_sided: true,
         ..Material::default()
     };
-    // A floor that glows to one side of x = 0 alone, far below the pane.
+    // A floor far below the pane that glows only on one side of x = 0.
     let glow = Material { emissive: Vec3::ONE, base_color: Vec4::ZERO, ..Material::lambertian_white() };
     let scene = |roughness: f32| {
         let floor =
@@ -189,7 +190,7 @@ fn a_pane_without_thickness_mirrors_as_one_face_tints_and_bends_nothing() {
             transport(scene(0.0), World::uniform(sky), 1 << 13).total_outgoing(MIDDLE, eye)
         };
         let share = mirrored(cos, 1.5) as f32;
-        // Seen from +x the ray goes on to −x, which is dark but for the sky; from −x straight on to the glow.
+        // Seen from +x the ray continues toward −x, which is dark except for the sky; from −x it continues to the glow.
         let through = actual(Vec3::ZERO, from * DVec3::new(-1.0, 1.0, 1.0) - DVec3::X * 1e-3);
         assert!((through - tint * (1.0 - share)).abs().max_element() < 0.012, "cos {cos}: {through}");
         if cos < 1.0 {
@@ -199,11 +200,11 @@ fn a_pane_without_thickness_mirrors_as_one_face_tints_and_bends_nothing() {
             let expected = sky * share + tint * (1.0 - share) * sky;
             assert!((mirror - expected).abs().max_element() < 0.012, "cos {cos}: {mirror}, not {expected}");
         }
-        // The control: two faces.
+        // Control: two faces.
         let slab = 2.0 * share / (1.0 + share);
         assert!((through - tint * (1.0 - slab)).max_element() > 0.02, "cos {cos}: it is as a real pane's");
     }
-    // A rough one blurs what is behind it: at the glow's edge half of it shows, and beside it what a smooth one does not.
+    // A rough pane blurs what is behind it: at the glow's edge half of it shows, and beside the edge some of it.
     let eye = DVec3::new(0.2, 50.0, 0.0);
     let blurred = transport(scene(0.5), dark(), 1 << 13).total_outgoing(MIDDLE, eye).x;
     let sharp = transport(scene(0.0), dark(), 1 << 13).total_outgoing(MIDDLE, eye).x;
@@ -212,7 +213,8 @@ fn a_pane_without_thickness_mirrors_as_one_face_tints_and_bends_nothing() {
 
 #[test]
 fn a_body_within_another_of_its_kind_is_invisible() {
-    // Between equal media nothing is mirrored: a block in a block lets through what one block does, but for its own colour.
+    // Between equal media nothing is reflected: a block in a block transmits what one block does, except for its own
+    // colour.
     let body = |color: Vec3| Material {
         transmission: Scalar::constant(1.0),
         workflow: Workflow::MetallicRoughness {
@@ -247,9 +249,9 @@ fn a_body_within_another_of_its_kind_is_invisible() {
     let through = |ior| transport(scene(ior), dark(), 1 << 14).total_outgoing(ON_SLAB, FAR_ABOVE);
     let alike = through(1.5);
     assert!((alike.y - 0.96 / 1.04).abs() < 4e-3, "{alike}");
-    // Red is lost in the inner body alone, over half a unit.
+    // Red is absorbed in the inner body alone, over half a unit.
     assert!((alike.x / alike.y - 0.5f32.sqrt()).abs() < 5e-3, "{alike}");
-    // The control: another medium mirrors where it begins and ends.
+    // Control: another medium reflects at its boundaries.
     let other = through(2.4);
     assert!(other.y < alike.y - 0.05, "{other}");
 }
@@ -281,6 +283,6 @@ fn cached_irradiance_agrees_with_full_path_tracing() {
     let cached = of_faces(with_cached_irradiance(transport(scene(), dark(), 64)));
     for (face, (a, b)) in paths.iter().zip(&cached).enumerate() {
         let near = (*a - *b).abs().max_element() < 0.03 * a.max_element() + 0.004;
-        assert!(near, "face {face}: {a} by paths, {b} known");
+        assert!(near, "face {face}: {a} by paths, {b} cached");
     }
 }

@@ -1,0 +1,181 @@
+//! Solution of the irradiance of all patches, bounce by bounce.
+//!
+//! Every patch sends cosine-distributed rays once. A ray ends at a light, which counts at once, or at a diffuse
+//! surface: a *link* to a patch, with the weight by which its diffuse lobes pass on what arrives there. Gloss and
+//! glass on the way are traced as usual. Light is then a linear system, E = D + I₀ + T·E, solved by passing light
+//! along the links; each pass is a bounce. Finally each patch's indirect light is averaged with its neighbours' as far
+//! as no near surface interferes (Ward 1988: the harmonic mean of the hit distances).
+
+use crate::irradiance::Irradiance;
+use crate::irradiance::patches::{Patch, Patches};
+use crate::irradiance::place::Place;
+use crate::transport::{PatchRay, Transport};
+use glam::Vec3;
+use progress::{Cancelled, Progress};
+use rayon::prelude::*;
+use scene::{Scene, World};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Maximum number of passes; by then light has died away whatever the albedo (0.9⁶⁴ is a thousandth).
+const MAX_BOUNCES: u32 = 64;
+/// Neighbours within this share of the harmonic mean distance are averaged.
+const SMOOTHING_RADIUS: f64 = 0.25;
+
+/// What the rays of a patch gathered, as irradiance/π.
+struct PatchLight {
+    direct: Vec3,
+    /// Light that did not come directly from a sampled light.
+    indirect: Vec3,
+    links: Vec<(u32, Vec3)>,
+    /// Harmonic mean of the hit distances, infinite in the open.
+    distance: f64,
+}
+
+/// Resolution of the solution.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct IrradianceOptions {
+    /// Approximate number of patches.
+    pub patches: u32,
+    /// Rays per patch.
+    pub rays: u32,
+}
+
+impl Default for IrradianceOptions {
+    fn default() -> Self {
+        Self { patches: 24_000, rays: 96 }
+    }
+}
+
+impl Irradiance {
+    /// Solves for the light of a scene. Deterministic: the same bits for any number of threads.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if `progress` asks to stop.
+    pub fn solve(
+        transport: &Transport,
+        options: IrradianceOptions,
+        progress: &dyn Progress,
+    ) -> Result<Self, Cancelled> {
+        let patches = Patches::new(transport.scene(), options.patches);
+        let values = solve_bounces(transport, &patches, options.rays.max(1), progress)?;
+        Ok(Self::new(patches, values, transport.world()))
+    }
+
+    /// Restores an irradiance from its stored [`values`](Irradiance::values), of the same scene, world and options;
+    /// `None` if their number does not match or one is not finite.
+    pub fn from_values(
+        scene: &Scene,
+        world: &World,
+        options: IrradianceOptions,
+        values: [Vec<Vec3>; 2],
+    ) -> Option<Self> {
+        let patches = Patches::new(scene, options.patches);
+        let fits = |values: &Vec<Vec3>| {
+            values.len() == patches.all().len() && values.iter().all(|value| value.is_finite())
+        };
+        values.iter().all(fits).then(|| Self::new(patches, values, world))
+    }
+}
+
+/// Direct and indirect irradiance/π of all patches.
+fn solve_bounces(
+    transport: &Transport,
+    patches: &Patches,
+    rays: u32,
+    progress: &dyn Progress,
+) -> Result<[Vec<Vec3>; 2], Cancelled> {
+    let done = AtomicUsize::new(0);
+    let all = patches.all();
+    let patch_light: Vec<PatchLight> = all
+        .par_iter()
+        .map(|patch| {
+            progress.check()?;
+            let light = trace_patch_rays(transport, patches, patch, rays);
+            progress.report((done.fetch_add(1, Ordering::Relaxed) + 1) as f32 / all.len() as f32);
+            Ok(light)
+        })
+        .collect::<Result<_, Cancelled>>()?;
+    let direct: Vec<Vec3> = patch_light.iter().map(|light| light.direct).collect();
+    let mut indirect: Vec<Vec3> = patch_light.iter().map(|light| light.indirect).collect();
+    let passes = transport.world().bounces.map_or(MAX_BOUNCES, |bounces| bounces.min(MAX_BOUNCES));
+    for _ in 0..passes {
+        progress.check()?;
+        let next: Vec<Vec3> = patch_light
+            .par_iter()
+            .map(|light| {
+                let sent = |&(patch, weight): &(u32, Vec3)| {
+                    weight * (direct[patch as usize] + indirect[patch as usize])
+                };
+                light.indirect + light.links.iter().map(sent).sum::<Vec3>()
+            })
+            .collect();
+        let change =
+            next.iter().zip(&indirect).map(|(a, b)| (*a - *b).abs().max_element()).fold(0.0, f32::max);
+        let brightest = next.iter().map(|light| light.max_element()).fold(0.0, f32::max);
+        indirect = next;
+        if change <= 1e-5 * brightest {
+            break;
+        }
+    }
+    let smooth = (0..all.len())
+        .into_par_iter()
+        .map(|at| smoothed_indirect(patches, &patch_light, &indirect, at))
+        .collect();
+    Ok([direct, smooth])
+}
+
+/// Traces the rays of a patch.
+fn trace_patch_rays(transport: &Transport, patches: &Patches, patch: &Patch, rays: u32) -> PatchLight {
+    let points = patches.points(patch);
+    let share = 1.0 / rays as f32;
+    let (mut direct, mut indirect, mut links) = (Vec3::ZERO, Vec3::ZERO, Vec::new());
+    let mut nearness = 0.0;
+    for ray in 0..rays {
+        let point = points[ray as usize % points.len()];
+        let PatchRay { direct: drawn, indirect: other, distance, link: onward } =
+            transport.trace_patch_ray(points[0].point, point, ray, patches);
+        direct += drawn * share;
+        indirect += other * share;
+        nearness += 1.0 / distance;
+        if let Some((place, weight, choice)) = onward
+            && let Some(target) = choose_patch(patches, &place, choice)
+        {
+            links.push((target, weight * share));
+        }
+    }
+    PatchLight { direct, indirect, links, distance: f64::from(rays) / nearness }
+}
+
+/// Samples a patch around a place by its interpolation weight.
+fn choose_patch(patches: &Patches, place: &Place, choice: f64) -> Option<u32> {
+    let mut sum = 0.0;
+    patches.visit_around(place, |_, weight| sum += weight);
+    let mut rest = choice as f32 * sum;
+    let mut chosen = None;
+    patches.visit_around(place, |patch, weight| {
+        if rest >= 0.0 {
+            chosen = Some(patch);
+        }
+        rest -= weight;
+    });
+    chosen
+}
+
+/// The indirect light of a patch, averaged with its neighbours'.
+fn smoothed_indirect(patches: &Patches, patch_light: &[PatchLight], indirect: &[Vec3], at: usize) -> Vec3 {
+    let patch = &patches.all()[at];
+    let (mut sum, mut weights) = (indirect[at] * patch.area as f32, patch.area as f32);
+    patches.visit_neighbors(patch, |other| {
+        let other = other as usize;
+        if other == at {
+            return;
+        }
+        let neighbor = &patches.all()[other];
+        let reach = SMOOTHING_RADIUS * patch_light[at].distance.min(patch_light[other].distance);
+        let near = (1.0 - patch.position.distance(neighbor.position) / reach).max(0.0);
+        let weight = (near * neighbor.area) as f32;
+        sum += indirect[other] * weight;
+        weights += weight;
+    });
+    sum / weights
+}

@@ -1,0 +1,83 @@
+//! Lookup of cached irradiance along paths.
+
+use crate::irradiance::Irradiance;
+use crate::irradiance::patches::Patches;
+use crate::irradiance::place::Place;
+use glam::Vec3;
+use scene::{Scene, SurfacePoint};
+use std::sync::Arc;
+
+/// How cached irradiance is used.
+pub(super) enum CacheMode {
+    Disabled,
+    /// It is taken for exact.
+    Trusted(Arc<Irradiance>),
+    /// It is a control variate: paths correct its error.
+    ControlVariate(Arc<Irradiance>),
+}
+
+impl CacheMode {
+    /// The cache, if it is trusted.
+    pub fn trusted(&self) -> Option<&Irradiance> {
+        if let Self::Trusted(irradiance) = self { Some(irradiance) } else { None }
+    }
+
+    /// The cache, if it is a control variate.
+    pub fn control_variate(&self) -> Option<&Irradiance> {
+        if let Self::ControlVariate(irradiance) = self { Some(irradiance) } else { None }
+    }
+}
+
+/// What a path can look up of the scene's light.
+#[derive(Clone, Copy)]
+pub(super) enum IrradianceLookup<'a> {
+    Unavailable,
+    /// Nothing yet, but the patches where irradiance will be solved.
+    Unsolved(&'a Patches),
+    Trusted(&'a Irradiance),
+    /// Indirect irradiance; direct light is sampled. Some paths go on to correct its error.
+    ControlVariate(&'a Irradiance),
+}
+
+/// A place that a path came to, whose irradiance is cached or will be.
+pub(super) struct CachedPlace {
+    pub place: Place,
+    /// Irradiance/π there; 0 while it is still being solved.
+    pub irradiance: Vec3,
+}
+
+/// Hits nearer than this many patch sizes are not looked up: patches are too coarse for them.
+const MIN_DISTANCE_PATCHES: f64 = 2.0;
+
+impl IrradianceLookup<'_> {
+    /// Whether some paths go on past cached irradiance.
+    pub fn is_control_variate(self) -> bool {
+        matches!(self, Self::ControlVariate(_))
+    }
+
+    /// The cached place at a hit, if there is one and the hit is far enough away.
+    pub fn cached_place(
+        self,
+        scene: &Scene,
+        point: SurfacePoint,
+        is_front: bool,
+        distance: f64,
+    ) -> Option<CachedPlace> {
+        let spacing = match self {
+            Self::Unavailable => return None,
+            Self::Unsolved(patches) => patches.spacing(),
+            Self::Trusted(irradiance) | Self::ControlVariate(irradiance) => irradiance.spacing(),
+        };
+        if distance < MIN_DISTANCE_PATCHES * spacing {
+            return None;
+        }
+        let place = Place::new(scene, point, is_front);
+        let irradiance = match self {
+            Self::Unavailable => None,
+            Self::Unsolved(patches) => patches.covers(&place).then_some(Vec3::ZERO),
+            Self::Trusted(irradiance) => irradiance.total(&place),
+            Self::ControlVariate(irradiance) => irradiance.indirect(&place),
+        };
+        irradiance.map(|irradiance| CachedPlace { place, irradiance })
+    }
+}
