@@ -1,4 +1,5 @@
-//! Which crate may depend on which: the layout of ARCHITECTURE.md as a table, checked against the manifests.
+//! Permitted dependencies between crates: the layers of ARCHITECTURE.md as a table, checked against the
+//! manifests.
 
 use crate::chore::{Failure, cargo, output_of};
 use serde_json::Value;
@@ -8,22 +9,36 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("lens", &[]),
     ("material", &[]),
     ("progress", &[]),
-    ("disparity", &["progress"]),
-    ("scene", &["lens", "progress"]),
+    ("numerics", &[]),
+    ("disparity", &["numerics", "progress"]),
+    ("scene", &["lens", "numerics", "progress"]),
     ("capture", &["scene", "lens", "progress"]),
-    ("relief", &["progress"]),
+    ("relief", &["numerics", "progress"]),
     ("atlas", &["scene", "progress"]),
-    ("trace", &["scene", "lens", "progress"]),
-    ("slf", &["material", "trace", "scene", "atlas", "progress"]),
+    ("trace", &["scene", "lens", "numerics", "progress"]),
+    ("slf", &["material", "trace", "scene", "atlas", "numerics", "progress"]),
     ("salf", &["slf", "trace", "scene", "lens", "progress"]),
-    ("focus", &["atlas", "scene", "lens"]),
+    ("focus", &["atlas", "scene", "lens", "numerics"]),
     ("splat", &["salf", "focus", "scene", "lens", "progress"]),
+    ("test-scenes", &["scene"]),
     (
         "hard-cases",
-        &["lens", "material", "scene", "atlas", "trace", "slf", "salf", "focus", "splat", "progress"],
+        &[
+            "lens",
+            "material",
+            "scene",
+            "atlas",
+            "trace",
+            "slf",
+            "salf",
+            "focus",
+            "splat",
+            "progress",
+            "test-scenes",
+        ],
     ),
     ("baselines", &["salf", "trace", "scene", "lens", "progress"]),
-    ("project", &["scene", "relief", "focus", "atlas", "lens"]),
+    ("project", &["scene", "relief", "focus", "atlas", "lens", "numerics"]),
     (
         "session",
         &[
@@ -47,6 +62,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
         "report",
         &[
             "lens",
+            "numerics",
             "progress",
             "scene",
             "atlas",
@@ -64,6 +80,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
         "focus-brush",
         &[
             "lens",
+            "numerics",
             "progress",
             "scene",
             "atlas",
@@ -81,7 +98,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("xtask", &[]),
 ];
 
-/// Crates from elsewhere, by how their names begin, and the only crates that may know them.
+/// External crates, by prefix of their names, and the only crates that may depend on them.
 const RESERVED: &[(&str, &[&str])] = &[
     ("eframe", &["focus-brush"]),
     ("egui", &["focus-brush"]),
@@ -92,7 +109,10 @@ const RESERVED: &[(&str, &[&str])] = &[
     ("xatlas", &["atlas"]),
 ];
 
-/// Checks the workspace as it is.
+/// Checks the workspace.
+///
+/// # Errors
+/// A forbidden dependency, or `cargo metadata` fails.
 pub fn check() -> Result<(), Failure> {
     let metadata = output_of(cargo("metadata").args(["--no-deps", "--format-version", "1"]))?;
     let metadata: Value =
@@ -104,7 +124,7 @@ pub fn check() -> Result<(), Failure> {
     Err(Failure::new(format!("crate directions (see ARCHITECTURE.md):\n  {}", wrong.join("\n  "))))
 }
 
-/// What the table forbids in the output of `cargo metadata --no-deps`, a sentence each.
+/// Violations of the table in the output of `cargo metadata --no-deps`, one sentence each.
 fn violations(metadata: &Value) -> Vec<String> {
     let mut wrong = Vec::new();
     for package in metadata["packages"].as_array().into_iter().flatten() {
@@ -116,7 +136,7 @@ fn violations(metadata: &Value) -> Vec<String> {
         for dependency in package["dependencies"].as_array().into_iter().flatten() {
             let on = dependency["name"].as_str().unwrap_or_default();
             let ours = ALLOWED.iter().any(|(of, _)| *of == on);
-            // A test may look at a crate from above.
+            // Tests may use crates of higher layers.
             let for_tests = dependency["kind"] == "dev";
             if ours && !for_tests && !allowed.contains(&on) {
                 wrong.push(format!("{name} may not depend on {on}"));
