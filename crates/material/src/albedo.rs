@@ -1,39 +1,40 @@
-//! What GGX's single scattering sends back in all, tabulated: over the eye's direction, the perceptual roughness and the
+//! The directional albedo of GGX's single scattering, tabulated over the outgoing direction, the perceptual roughness and the
 //! anisotropy.
 //!
-//! Of Schlick's reflectance it is F0·A + F90·B: A the share that does not rise with the angle, B that which does. What is left,
-//! 1 − A − B, is lost.
+//! With Schlick's reflectance it is F0·A + F90·B: A is the share that does not rise with the angle, B the share that does. The rest,
+//! 1 − A − B, is lost to multiple scattering.
 
+use crate::fibonacci_lattice::{LATTICE, lattice};
 use crate::fresnel::rise;
 use crate::ggx::Ggx;
-use crate::points::{LATTICE, lattice};
 use glam::{DVec2, DVec3};
 use std::f64::consts::FRAC_PI_2;
 use std::sync::OnceLock;
 
-/// Cosines, from 0 to 1.
+/// Number of cosines, from 0 to 1.
 const COSINES: usize = 48;
-/// Roughnesses, from 0 to 1, of isotropic surfaces, densely toward smooth ones, where grazing light tells them apart.
+/// Number of roughnesses, from 0 to 1, of isotropic surfaces; denser toward smooth ones, where grazing light
+/// distinguishes them.
 const ROUGHNESSES: usize = 48;
-/// Of anisotropic ones, whose table has two axes more.
+/// Number of roughnesses and of anisotropies of anisotropic surfaces, whose table has two more axes.
 const ANISOTROPIC_STEPS: usize = 12;
-/// Azimuths of the eye, from along the tangent to across.
+/// Azimuths of the outgoing direction, from along the tangent to across it.
 const AZIMUTHS: usize = 6;
 
-/// A and B of one roughness and anisotropy: over cosines, and over azimuths where that matters.
+/// A and B for one roughness and anisotropy: over cosines, and over azimuths if the surface is anisotropic.
 struct Row {
     entries: Vec<DVec2>,
     azimuths: usize,
-    /// Their mean over the cosine-weighted hemisphere.
+    /// The mean over the cosine-weighted hemisphere.
     mean: DVec2,
 }
 
-/// Cosines lie densely toward grazing, where what is sent back changes fast.
+/// Cosines are dense toward grazing angles, where the albedo changes fast.
 fn cosine_at(k: usize) -> f64 {
     (k as f64 / (COSINES - 1) as f64).powi(2).max(1e-4)
 }
 
-/// The entry below x in [0, 1] of `count`, and how far beyond it x is.
+/// The index of the table entry below `x` in [0, 1] among `count`, and the fraction of the way to the next entry.
 fn lerp_index(x: f64, count: usize) -> (usize, f64) {
     let position = x.clamp(0.0, 1.0) * (count - 1) as f64;
     let k = (position as usize).min(count.saturating_sub(2));
@@ -51,7 +52,7 @@ impl Row {
         row
     }
 
-    /// At the root of a cosine and an azimuth as a share of a right angle.
+    /// A and B at the square root of a cosine and an azimuth as a share of a right angle.
     fn at(&self, root: f64, azimuth: f64) -> DVec2 {
         let (c, fraction) = lerp_index(root, COSINES);
         let line = |a: usize| {
@@ -77,7 +78,7 @@ impl Row {
     }
 }
 
-/// A and B seen from one direction: over visible normals a direction's weight is G₂/G₁.
+/// A and B for one outgoing direction: when visible normals are sampled, a direction's weight is G₂/G₁.
 fn integrate(ggx: &Ggx, cos: f64, azimuth: f64) -> DVec2 {
     let flat = (1.0 - cos * cos).max(0.0).sqrt();
     let o = DVec3::new(flat * azimuth.cos(), flat * azimuth.sin(), cos);
@@ -106,7 +107,7 @@ fn isotropic() -> &'static [Row] {
     })
 }
 
-/// Those of anisotropic ones, by roughness within anisotropy.
+/// The rows of anisotropic surfaces, by roughness within anisotropy.
 fn anisotropic() -> &'static [Row] {
     static ROWS: OnceLock<Vec<Row>> = OnceLock::new();
     ROWS.get_or_init(|| {
@@ -121,7 +122,7 @@ fn anisotropic() -> &'static [Row] {
     })
 }
 
-/// What is asked of the tables.
+/// A gloss lobe whose albedo is looked up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gloss {
     /// Perceptual roughness.
@@ -138,7 +139,7 @@ impl Gloss {
         self.interpolated(|row| row.at(root, azimuth))
     }
 
-    /// Their means over the cosine-weighted hemisphere.
+    /// The means of A and B over the cosine-weighted hemisphere.
     pub fn mean_shares(self) -> DVec2 {
         self.interpolated(|row| row.mean)
     }

@@ -2,10 +2,10 @@
 
 mod coat;
 mod glass;
-mod odds;
-pub(crate) mod toward;
+mod lobe_probabilities;
+pub(crate) mod outgoing;
 
-use odds::{Lobe, LobeProbabilities};
+use lobe_probabilities::{Lobe, LobeProbabilities};
 
 use crate::albedo::Gloss;
 use crate::coat_axes::CoatAxes;
@@ -18,25 +18,25 @@ use std::f64::consts::{FRAC_1_PI, TAU};
 
 /// How a point scatters light.
 ///
-/// A coat lies over sheen, and that over a mixture of metal, of a dielectric over a diffuse ground, and of glass. What an upper
-/// lobe mirrors is missing beneath it, for the eye and for the light alike: the diffuse ground is coupled,
-/// (1 − E(o))(1 − E(i))/(1 − Ē), which keeps all energy; beneath coat and sheen the smaller of both shares is left, which
-/// loses some. Both are reciprocal, as clearcoat's mixing by the angle of one direction is not. [`Scattering::Single`] is glTF's
+/// A clearcoat lies over sheen, and sheen over a mixture of metal, of a dielectric over a diffuse ground, and of glass. What an upper
+/// lobe reflects is missing beneath it, on the way in and on the way out: the diffuse ground is coupled by
+/// (1 − E(o))(1 − E(i))/(1 − Ē), which conserves energy; beneath coat and sheen the smaller of both shares is transmitted, which
+/// loses a little. Both are reciprocal, unlike clearcoat mixing by the angle of one direction. [`Scattering::Single`] is glTF's
 /// appendix B to the letter instead.
 #[derive(Clone, Debug)]
 pub struct Bsdf<'a> {
     surface: Surface,
     frame: Frame,
     interface: &'a Interface,
-    /// Solid glass that is rough.
+    /// Rough solid glass.
     rough_glass: Option<Box<RoughGlass>>,
     ggx: Ggx,
     coat: Ggx,
-    /// F0 of the metal and of the dielectric; F90 of the latter is its specular factor.
+    /// F0 of the metal and of the dielectric; the F90 of the latter is its specular factor.
     f0: [DVec3; 2],
     /// Shares of metal, of the dielectric over its ground, and of glass.
     shares: [f64; 3],
-    /// Of the gloss; none where nothing is glossy.
+    /// Hemispherical means of the gloss; `None` where nothing is glossy.
     means: Option<Means>,
 }
 
@@ -45,13 +45,13 @@ pub struct Bsdf<'a> {
 struct Means {
     /// A and B over the cosine-weighted hemisphere.
     shares: DVec2,
-    /// What of the lost light comes back from metal and from the dielectric.
+    /// The share of the lost light that multiple scattering returns, for metal and for the dielectric.
     multiple: [DVec3; 2],
-    /// What the dielectric's surface leaves to its ground, over the cosine-weighted hemisphere.
+    /// The share that the dielectric's surface transmits to its ground, over the cosine-weighted hemisphere.
     beneath: DVec3,
 }
 
-/// A direction, and what the upper lobes send back toward it.
+/// A direction, and the reflectance of the upper lobes toward it.
 #[derive(Clone, Copy, Debug)]
 struct Side {
     w: DVec3,
@@ -59,47 +59,47 @@ struct Side {
     f0: [DVec3; 2],
     /// A and B of the gloss.
     shares: DVec2,
-    /// What the dielectric's surface leaves to its ground.
+    /// The share that the dielectric's surface transmits to its ground.
     beneath: DVec3,
     coat: f64,
     sheen: f64,
 }
 
-/// A direction that light was found to come from.
+/// A sampled incident direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scattered {
-    /// Toward where the light comes from.
+    /// The direction that the light comes from.
     pub incident: DVec3,
-    /// Value times cosine over density: what of the light from there is sent on, of both parts.
+    /// Value times cosine over density: the share of the light from there that is scattered, in both parts.
     pub weight: Split,
-    /// 1/sr; none of a mirror or clear glass, whose direction no other way of sampling finds.
+    /// 1/sr; `None` for a mirror or clear glass, whose direction no other sampling technique can produce.
     pub density: Option<f64>,
-    /// Whether it crossed the surface.
+    /// Whether the light crosses the surface.
     pub crosses: bool,
 }
 
-/// Seen from where: the frame that faces the eye, and the eye in it.
+/// The outgoing side: the frame that faces the eye, and the outgoing direction in it.
 struct OutgoingFrame {
     frame: Frame,
     o: DVec3,
     side: Side,
-    /// Those of the coat, in the frame.
+    /// The axes of the clearcoat, in the frame.
     coat: CoatAxes,
     from_front: bool,
 }
 
-/// Scattered light, 1/sr, by how it is found best.
+/// Scattered light, 1/sr, by how it is sampled best.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Parts {
-    /// Of lobes as wide as a hemisphere: diffuse on the eye's side, sheen, what multiple scattering on facets gives back. It is own.
+    /// Lobes as wide as a hemisphere: diffuse reflection, sheen, multiple scattering on facets. It is own light.
     pub spread: DVec3,
-    /// Of all others.
+    /// All others.
     pub sharp: Split,
 }
 
 impl<'a> Bsdf<'a> {
-    /// Of a point's material as it lies there. `interface` says what lies on either side: of the material's own index of
-    /// refraction, or of the media that meet.
+    /// The BSDF of a point's material in a frame. `interface` describes the media on either side: given by the material's own index of
+    /// refraction, or by the media that meet.
     pub fn new(surface: &Surface, frame: Frame, interface: &'a Interface) -> Self {
         let f0 = reflectance_of_ior(surface.ior) * surface.specular_color;
         let dielectric = (f0.min(DVec3::ONE)) * surface.specular;
@@ -144,21 +144,22 @@ impl<'a> Bsdf<'a> {
         is_needed.then(|| Box::new(interface.rough(surface.roughness)))
     }
 
-    /// F0 of the metal and of the dielectric, by the cosine where a film changes it.
+    /// F0 of the metal and of the dielectric; it depends on the cosine where there is a thin film.
     fn f0_at(&self, cos: f64) -> [DVec3; 2] {
         self.surface.film.map_or(self.f0, |film| self.f0.map(|f0| film.f0(f0, cos)))
     }
 
-    /// The same for all facets that are seen from a direction: rough ones show themselves less askew than the surface does.
+    /// F0 averaged over all facets that are visible from a direction: rough ones present themselves less askew than
+    /// the surface does.
     fn f0_toward(&self, w: DVec3) -> [DVec3; 2] {
         let alpha = if self.ggx.is_smooth() { 0.0 } else { self.ggx.mean_alpha() };
         self.f0_at((w.z.abs() + alpha) / (1.0 + alpha))
     }
 
-    /// The mean of what `of` says of cosines over the cosine-weighted hemisphere.
+    /// The mean of `value_at` over the cosine-weighted hemisphere.
     fn hemisphere_mean(value_at: impl Fn(f64) -> DVec3) -> DVec3 {
         const STEPS: usize = 12;
-        // cos² is even there.
+        // cos² is uniform there.
         (0..STEPS).map(|k| value_at(((k as f64 + 0.5) / STEPS as f64).sqrt())).sum::<DVec3>() / STEPS as f64
     }
 
@@ -193,20 +194,21 @@ impl<'a> Bsdf<'a> {
         Side { w, f0, shares, beneath, coat: self.coat_albedo(coat.local(w)), sheen: self.sheen_albedo(w) }
     }
 
-    /// Light sent toward `outgoing` for light from `incident`, 1/sr, without the cosine; mirrors and clear glass, which have
-    /// no finite value, are left out.
+    /// Light scattered toward `outgoing` of light from `incident`, 1/sr, without the cosine. Mirrors and clear glass, which have no
+    /// finite value, are left out.
     pub fn evaluate(&self, outgoing: DVec3, incident: DVec3) -> Split {
         let view = self.outgoing_frame(outgoing);
         self.value(&view, incident)
     }
 
-    /// The density, 1/sr, with which [`Self::sample`] finds `incident`.
+    /// The density, 1/sr, with which [`Self::sample`] generates `incident`.
     pub fn density(&self, outgoing: DVec3, incident: DVec3) -> f64 {
         let view = self.outgoing_frame(outgoing);
         self.density_of(&view, &self.lobe_probabilities(&view), incident)
     }
 
-    /// Draws where light comes from, by uniform numbers in [0, 1). `None` where the drawn way carries nothing.
+    /// Samples an incident direction from uniform numbers in [0, 1). `None` where the sampled direction carries no
+    /// light.
     pub fn sample(&self, outgoing: DVec3, u: [f64; 3]) -> Option<Scattered> {
         self.toward(outgoing).sample(u)
     }
@@ -251,7 +253,8 @@ impl<'a> Bsdf<'a> {
                 (i, crosses)
             }
         };
-        // A facet may send light into the surface: what meets others next is in what multiple scattering gives back.
+        // A facet may reflect light into the surface: light that meets further facets is part of the
+        // multiple-scattering lobe.
         if crosses != (i.z < 0.0) {
             return None;
         }
@@ -263,7 +266,8 @@ impl<'a> Bsdf<'a> {
         is_something.then_some(Scattered { incident, weight, density: Some(density), crosses: i.z < 0.0 })
     }
 
-    /// What is sent toward `outgoing` of light from everywhere, at most 1: in closed form, from tables. Of both parts.
+    /// The share of light from everywhere that is scattered toward `outgoing`, at most 1, in both parts: in closed
+    /// form, from tables.
     pub fn albedo(&self, outgoing: DVec3) -> Split {
         self.albedo_toward(&self.outgoing_frame(outgoing))
     }
@@ -300,8 +304,8 @@ impl<'a> Bsdf<'a> {
         all * under_coat + Split::mirrored(DVec3::splat(side.coat), self.coat.mean_alpha())
     }
 
-    /// How coverage is shared between what is own and what is carried: by what either sends back in all, the mean of its
-    /// channels. Sums to 1; all own where nothing is sent at all.
+    /// How coverage is shared between own and carried light: by the albedo of either, averaged over the channels. Sums to 1; all own where
+    /// nothing is scattered at all.
     pub fn coverage_shares(&self, outgoing: DVec3) -> [f64; 2] {
         self.shares_of(self.albedo(outgoing))
     }
@@ -312,7 +316,7 @@ impl<'a> Bsdf<'a> {
     }
 
     fn eta(&self, view: &OutgoingFrame) -> f64 {
-        // A pane has the same medium on either side of it.
+        // A pane has the same medium on either side.
         self.interface.eta(view.from_front || self.surface.is_thin)
     }
 
@@ -320,7 +324,7 @@ impl<'a> Bsdf<'a> {
         Gloss { roughness: self.surface.roughness, anisotropy: self.surface.anisotropy }
     }
 
-    /// Whether glass lets light through in one direction: it is smooth, or bends nothing, so that its facets make no
+    /// Whether glass transmits light in one direction only: it is smooth, or does not refract, so that its facets make no
     /// difference.
     fn is_clear(&self, eta: f64) -> bool {
         let bends = if self.surface.is_thin { 1.0 } else { (eta - 1.0).abs() };
@@ -339,13 +343,13 @@ impl<'a> Bsdf<'a> {
         self.means.map_or_else(|| self.gloss_table().mean_shares(), |means| means.shares)
     }
 
-    /// What single scattering loses of white light.
+    /// The share of white light that single scattering loses.
     fn lost(&self, shares: DVec2) -> f64 {
         let is_lossless = self.surface.scattering == Scattering::Single || self.ggx.is_smooth();
         if is_lossless { 0.0 } else { (1.0 - shares.element_sum()).max(0.0) }
     }
 
-    /// What of the lost light comes back from metal (0) or the dielectric (1).
+    /// The share of the lost light that multiple scattering returns, from metal (0) or the dielectric (1).
     fn multiple(&self, which: usize) -> DVec3 {
         self.means.map_or(DVec3::ZERO, |means| means.multiple[which])
     }
@@ -356,7 +360,7 @@ impl<'a> Bsdf<'a> {
             .map_or(0.0, |cloth| cloth.color.max_element() * sheen::albedo(w.z.abs(), cloth.roughness))
     }
 
-    /// What coat and sheen leave of what lies beneath, for both directions.
+    /// The share that coat and sheen transmit to the layers beneath, for both directions.
     fn beneath(&self, o: &Side, i: &Side) -> f64 {
         (1.0 - o.coat).min(1.0 - i.coat) * (1.0 - o.sheen).min(1.0 - i.sheen)
     }
@@ -369,7 +373,7 @@ impl<'a> Bsdf<'a> {
     fn parts(&self, view: &OutgoingFrame, incident: DVec3) -> Parts {
         let (o, i) = (view.o, view.frame.local(incident));
         let same_side = view.frame.geometric.dot(incident) > 0.0;
-        // No light from behind, whatever the shading normal says.
+        // No light from behind, whatever the shading normal is.
         if o.z <= 0.0 || i.z == 0.0 || same_side != (i.z > 0.0) {
             return Parts::default();
         }
@@ -390,7 +394,7 @@ impl<'a> Bsdf<'a> {
         Parts { spread: spread * share, sharp: sharp * share }
     }
 
-    /// Metal and the dielectric's surface.
+    /// Gloss of metal and of the dielectric's surface.
     fn gloss(&self, eye: &Side, light: &Side) -> Split {
         if self.means.is_none() || self.ggx.is_smooth() {
             return Split::default();
@@ -401,7 +405,7 @@ impl<'a> Bsdf<'a> {
         Split::mirrored(single, self.ggx.mean_alpha())
     }
 
-    /// What multiple scattering on their facets gives back.
+    /// The multiple-scattering lobe of their facets.
     fn multiple_value(&self, eye: &Side, light: &Side) -> DVec3 {
         let [metal, dielectric, _] = self.shares;
         let Some(means) = self.means.filter(|_| !self.ggx.is_smooth()) else { return DVec3::ZERO };
@@ -410,7 +414,7 @@ impl<'a> Bsdf<'a> {
         (means.multiple[0] * metal + means.multiple[1] * dielectric) * spread
     }
 
-    /// D·G₂/(4 cos cos): what facets that mirror all send on.
+    /// D·G₂/(4 cos cos): the microfacet lobe with a reflectance of 1.
     fn microfacets(&self, ggx: &Ggx, o: DVec3, i: DVec3, h: DVec3) -> f64 {
         let masking = match self.surface.scattering {
             Scattering::Multiple => ggx.correlated_masking_shadowing(o, i),
@@ -419,7 +423,7 @@ impl<'a> Bsdf<'a> {
         ggx.density_of_normals(h) * masking / (4.0 * o.z * i.z)
     }
 
-    /// What facets of metal and dielectric mirror at an angle.
+    /// The reflectance of metal and dielectric facets at an angle.
     fn mirrored_at(&self, cos: f64) -> DVec3 {
         let [metal, dielectric, _] = self.shares;
         let f90 = DVec3::splat(self.surface.specular);
@@ -429,11 +433,11 @@ impl<'a> Bsdf<'a> {
         mirrored.max(DVec3::ZERO)
     }
 
-    /// The coupling of a ground beneath the dielectric's surface.
+    /// The coupling of a diffuse ground beneath the dielectric's surface.
     fn coupled(&self, eye: &Side, light: &Side) -> DVec3 {
         let Some(means) = &self.means else { return DVec3::splat(FRAC_1_PI) };
         let both = eye.beneath * light.beneath / means.beneath;
-        // A surface that mirrors all leaves nothing to its ground.
+        // A surface that reflects all light leaves nothing to its ground.
         DVec3::select(means.beneath.cmpgt(DVec3::ZERO), both, DVec3::ZERO) * FRAC_1_PI
     }
 
@@ -449,8 +453,8 @@ impl<'a> Bsdf<'a> {
         self.surface.base_color * ground * share
     }
 
-    /// What the dielectric's facets leave to its ground as glTF's appendix B.3 mixes them: 1 − F, at the angle of the facet that would
-    /// mirror one direction to the other.
+    /// The share that the dielectric's facets transmit to the ground as glTF's appendix B.3 mixes them: 1 − F, at the angle of the facet that
+    /// would reflect one direction to the other.
     fn left_by_facets(&self, o: DVec3, i: DVec3) -> DVec3 {
         let Some(h) = half(o, i) else { return DVec3::ONE };
         let [_, f0] = self.f0_at(o.dot(h));
@@ -470,7 +474,7 @@ impl<'a> Bsdf<'a> {
         self.mirrored_at(view.o.z) * self.beneath(&view.side, &mirrored)
     }
 
-    /// A mirror's direction.
+    /// The direction of a mirror.
     fn mirrored(&self, view: &OutgoingFrame, weight: DVec3) -> Option<Scattered> {
         self.single(view, mirror(view.o, DVec3::Z), Split::carried(weight))
     }
@@ -544,7 +548,7 @@ impl<'a> Bsdf<'a> {
     }
 }
 
-/// Half way between two directions on one side; none where they are opposite.
+/// Halfway between two directions on one side; `None` where they are opposite.
 fn half(o: DVec3, i: DVec3) -> Option<DVec3> {
     (o + i).try_normalize().filter(|h| h.z > 0.0 && o.dot(*h) > 0.0)
 }
@@ -553,7 +557,7 @@ fn mirror(o: DVec3, h: DVec3) -> DVec3 {
     h * (2.0 * o.dot(h)) - o
 }
 
-/// On the other side.
+/// The direction on the other side of the surface.
 fn flipped(w: DVec3) -> DVec3 {
     DVec3::new(w.x, w.y, -w.z)
 }

@@ -1,15 +1,16 @@
 //! Iridescence: a thin film on the surface (Belcour and Barla 2017, *A practical extension to microfacet theory for the modeling of
-//! varying iridescence*), as KHR_materials_iridescence has it: two orders of interference, Schlick's reflectance at the inner interface
-//! (at the outer one Fresnel's, so that a film that vanishes changes nothing at any angle), and the sensitivities of the eye as Gaussians over the phase.
+//! varying iridescence*), as in KHR_materials_iridescence: two orders of interference, Schlick's reflectance at the inner interface
+//! (Fresnel's at the outer one, so that a film that vanishes changes nothing at any angle), and the eye's sensitivities as Gaussians
+//! over the phase.
 
 use crate::fresnel::{dielectric_reflectance, reflectance_of_ior, rise, schlick};
 use glam::{DMat3, DVec3};
 use std::f64::consts::{PI, TAU};
 
-/// A film.
+/// A thin film.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Film {
-    /// How much of the surface has it, in [0, 1].
+    /// The share of the surface that has it, in [0, 1].
     pub factor: f64,
     /// Index of refraction, ≥ 1.
     pub ior: f64,
@@ -23,9 +24,9 @@ const RGB_OF_XYZ: DMat3 = DMat3::from_cols_array(&[
 ]);
 
 impl Film {
-    /// What a surface of reflectance F0 mirrors beneath it, by the cosine outside; in [0, 1].
+    /// The reflectance with the film on a surface of reflectance F0, by the cosine outside; in [0, 1].
     pub fn reflectance(&self, f0: DVec3, cos: f64) -> DVec3 {
-        // A film that vanishes has the index of the air, so that nothing jumps where it ends.
+        // The index of a film that vanishes is that of air, so that nothing jumps where it ends.
         let x = (self.thickness / 0.03).clamp(0.0, 1.0);
         let ior = 1.0 + (self.ior - 1.0) * x * x * (3.0 - 2.0 * x);
         let cos2_within = 1.0 - (1.0 - cos * cos) / (ior * ior);
@@ -50,11 +51,11 @@ impl Film {
         sum.clamp(DVec3::ZERO, DVec3::ONE)
     }
 
-    /// The F0 that Schlick's reflectance would have to be what is mirrored at a cosine. A film may mirror less than any F0 would: then
-    /// it is below 0, and what comes of it is not.
+    /// The F0 with which Schlick's reflectance is the film's at this cosine. A film may reflect less than any F0 would: the result is then
+    /// negative, and the reflectance computed from it is not.
     pub fn f0(&self, f0: DVec3, cos: f64) -> DVec3 {
         let risen = rise(cos);
-        // At the very horizon all F0 are as good.
+        // At the very horizon the reflectance does not depend on F0.
         let rest = (1.0 - risen).max(1e-6);
         ((self.reflectance(f0, cos) - risen) / rest)
             .clamp(DVec3::NEG_ONE, DVec3::splat(2.0))
@@ -67,7 +68,7 @@ fn ior_of_reflectance(f0: f64) -> f64 {
     (1.0 + root) / (1.0 - root)
 }
 
-/// What of an order of interference the eye sees, linear sRGB: of a path difference, nm, and a shift of phase.
+/// The colour of an order of interference, linear RGB, for a path difference, nm, and a phase shift.
 fn sensitivity(path: f64, shift: DVec3) -> DVec3 {
     let phase = TAU * path * 1e-9;
     let gaussian = |height: f64, place: f64, width: f64, shift: f64| {

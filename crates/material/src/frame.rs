@@ -1,43 +1,45 @@
-//! How a surface lies at a point.
+//! The orientation of a surface at a point.
 
 use glam::DVec3;
 
-/// The normals of a point and the direction that anisotropy runs along. Unit vectors.
+/// The normals of a point and the direction of its anisotropy. Unit vectors.
 ///
-/// The geometric normal alone decides on which side a direction lies: no shading normal lets light through from behind.
+/// The geometric normal alone decides on which side a direction lies: no shading normal lets light through from
+/// behind.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
-    /// Of the triangle, on its front.
+    /// The triangle's normal, on its front.
     pub geometric: DVec3,
-    /// As it is shaded.
+    /// The shading normal.
     pub normal: DVec3,
-    /// Across the shading normal.
+    /// Perpendicular to the shading normal.
     pub tangent: DVec3,
-    /// Of a coat, which may have bumps of its own.
+    /// The normal of the clearcoat, which may have a normal map of its own.
     pub coat: DVec3,
 }
 
 impl Frame {
-    /// Of normals and a tangent, which is made upright to the shading normal; one along it, or 0, is replaced by any.
+    /// A frame of normals and a tangent, which is made perpendicular to the shading normal; one along it, or 0, is
+    /// replaced by any.
     pub fn new(geometric: DVec3, normal: DVec3, tangent: DVec3) -> Self {
         let upright = tangent - normal * normal.dot(tangent);
         let tangent = upright.try_normalize().unwrap_or_else(|| normal.any_orthonormal_vector());
         Self { geometric, normal, tangent, coat: normal }
     }
 
-    /// The same under a coat of this normal.
+    /// The same frame with a clearcoat of this normal.
     pub fn coated(self, coat: DVec3) -> Self {
         Self { coat, ..self }
     }
 
-    /// Of one normal.
+    /// A frame of one normal.
     pub fn flat(normal: DVec3) -> Self {
         Self::new(normal, normal, DVec3::ZERO)
     }
 
-    /// The frame as seen from `outgoing`: on its side, and with shading normals that do not turn away from it. One that does is
-    /// moved toward the geometric normal until it stands at a right angle, just so (as Keller et al. 2017 bend it): what is
-    /// seen is never shaded as if from behind.
+    /// The frame as seen from `outgoing`: on its side, with shading normals that do not face away from it. One that does is moved toward
+    /// the geometric normal until it is just perpendicular to the direction (as in Keller et al. 2017): visible surfaces are never shaded
+    /// as if from behind.
     pub(crate) fn facing(&self, outgoing: DVec3) -> Self {
         let side = if self.geometric.dot(outgoing) < 0.0 { -1.0 } else { 1.0 };
         let geometric = self.geometric * side;
@@ -45,7 +47,7 @@ impl Frame {
         let [normal, coat] = [self.normal, self.coat].map(|normal| {
             let normal = normal * side;
             let turned = normal.dot(outgoing);
-            // A direction in the geometric plane itself sees nothing, whichever normal is taken.
+            // A direction in the geometric plane itself sees nothing, whichever normal is used.
             const MIN_COSINE_RATIO: f64 = 1e-3;
             if turned >= MIN_COSINE_RATIO * toward || toward <= 0.0 {
                 return normal;
@@ -68,14 +70,13 @@ impl Frame {
         DVec3::new(self.tangent.dot(w), self.normal.cross(self.tangent).dot(w), self.normal.dot(w))
     }
 
-    /// And back.
+    /// The inverse of [`Self::local`].
     pub(crate) fn world(&self, w: DVec3) -> DVec3 {
         self.tangent * w.x + self.normal.cross(self.tangent) * w.y + self.normal * w.z
     }
 
-    /// How much of the light from `incident` counts where the shading normal leans away from the geometric one, in [0, 1]: it
-    /// falls smoothly to 0 where the triangle itself turns away, in place of a hard edge (Chiang, Li and Burley 2019, *Taming
-    /// the shadow terminator*).
+    /// The weight of light from `incident` where the shading normal leans away from the geometric one, in [0, 1]: it falls smoothly to 0
+    /// where the triangle itself faces away, in place of a hard edge (Chiang, Li and Burley 2019, *Taming the shadow terminator*).
     pub(crate) fn terminator(&self, incident: DVec3) -> f64 {
         let shaded = self.normal.dot(incident) * self.geometric.dot(self.normal);
         let lit = self.geometric.dot(incident).abs();

@@ -1,4 +1,4 @@
-//! What an interface mirrors.
+//! The reflectance of an interface.
 
 use glam::DVec3;
 
@@ -22,8 +22,8 @@ pub(crate) fn schlick_mean(f0: DVec3, f90: DVec3) -> DVec3 {
     f0 + (f90 - f0) / 21.0
 }
 
-/// What a dielectric mirrors of unpolarised light (Fresnel): `cos` in [0, 1] on the side that the light comes from, `eta` the
-/// index of refraction beyond over that before. 1 beyond the critical angle, 0 for equal media at any angle.
+/// The reflectance of a dielectric for unpolarised light (Fresnel): `cos` in [0, 1] on the side that the light comes from, `eta` the index
+/// of refraction on the far side over that on the near side. 1 beyond the critical angle, 0 for equal media at any angle.
 pub fn dielectric_reflectance(cos: f64, eta: f64) -> f64 {
     if eta == 1.0 {
         return 0.0;
@@ -52,10 +52,10 @@ mod tests {
         for cos in [0.0, 0.3, 1.0] {
             assert_eq!(dielectric_reflectance(cos, 1.0), 0.0, "nothing between equal media");
         }
-        // Brewster's angle: only half of the light, that polarised across, is mirrored at all.
+        // Brewster's angle: only half of the light, polarised across, is reflected at all.
         let brewster = 1.5f64.atan().cos();
         assert!((dielectric_reflectance(brewster, 1.5) - 0.0740).abs() < 1e-4);
-        // From either side the same, by the refracted angle.
+        // The same from either side, at the refracted angle.
         let cos_beyond = (1.0 - (1.0 - 0.36) / 2.25f64).sqrt();
         let [a, b] = [dielectric_reflectance(0.6, 1.5), dielectric_reflectance(cos_beyond, 1.0 / 1.5)];
         assert!((a - b).abs() < 1e-12);

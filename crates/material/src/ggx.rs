@@ -1,13 +1,13 @@
-//! Microfacets after Trowbridge and Reitz (GGX), perhaps stretched along the tangent. Directions in the surface's own axes: z is
+//! Microfacets after Trowbridge and Reitz (GGX), optionally stretched along the tangent. Directions are in the surface's own axes: z is
 //! its normal.
 
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 
-/// Surfaces smoother than this α are mirrors: a lobe narrower than a millionth of a rad is one.
+/// Surfaces smoother than this α are mirrors: a lobe narrower than a millionth of a radian is one.
 pub const SMOOTHEST: f64 = 1e-6;
 
-/// How rough the surface is along its tangent and across.
+/// The roughness along the tangent and across it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ggx {
     /// α along x and y.
@@ -15,8 +15,8 @@ pub struct Ggx {
 }
 
 impl Ggx {
-    /// Of a perceptual roughness and an anisotropy strength, both in [0, 1]: α = roughness², along the tangent mixed with 1 by the
-    /// strength's square (KHR_materials_anisotropy).
+    /// From a perceptual roughness and an anisotropy strength, both in [0, 1]: α = roughness²; along the tangent it is mixed with 1 by the
+    /// square of the strength (KHR_materials_anisotropy).
     pub fn new(roughness: f64, anisotropy: f64) -> Self {
         let across = roughness * roughness;
         let along = across + (1.0 - across) * anisotropy * anisotropy;
@@ -28,12 +28,12 @@ impl Ggx {
         self.alpha.min_element() < SMOOTHEST
     }
 
-    /// The α that lobes are as wide as, of both axes: their geometric mean.
+    /// The α that describes the width of lobes: the geometric mean of both axes.
     pub fn mean_alpha(&self) -> f64 {
         (self.alpha.x * self.alpha.y).sqrt()
     }
 
-    /// Area of microfacets of normal `h`, 1/sr, for each unit of surface.
+    /// The distribution of normals D: area of microfacets of normal `h`, 1/sr, per unit of surface.
     pub fn density_of_normals(&self, h: DVec3) -> f64 {
         if h.z <= 0.0 {
             return 0.0;
@@ -42,23 +42,23 @@ impl Ggx {
         1.0 / (PI * self.alpha.x * self.alpha.y * stretched * stretched)
     }
 
-    /// Smith's Λ: the area hidden over the area seen.
+    /// Smith's Λ: hidden area over visible area.
     fn lambda(&self, w: DVec3) -> f64 {
         let tan2 = (w.truncate() * self.alpha).length_squared() / (w.z * w.z);
         ((1.0 + tan2).sqrt() - 1.0) / 2.0
     }
 
-    /// The share of microfacets that is seen from `w`.
+    /// Smith's masking G₁: the share of microfacets that is visible from `w`.
     pub fn masking(&self, w: DVec3) -> f64 {
         1.0 / (1.0 + self.lambda(w))
     }
 
-    /// The share that is seen from `o` and from `i`, correlated by height, both on one side.
+    /// Smith's height-correlated G₂: the share that is visible from `o` and from `i`, both on one side.
     pub fn correlated_masking_shadowing(&self, o: DVec3, i: DVec3) -> f64 {
         1.0 / (1.0 + self.lambda(o) + self.lambda(i))
     }
 
-    /// The same, not correlated: for directions on opposite sides (Walter et al. 2007), and in glTF's appendix B.
+    /// G₁·G₁, uncorrelated: for directions on opposite sides (Walter et al. 2007), and in glTF's appendix B.
     pub fn uncorrelated_masking_shadowing(&self, o: DVec3, i: DVec3) -> f64 {
         self.masking(o) * self.masking(i)
     }
@@ -68,7 +68,8 @@ impl Ggx {
         self.masking(o) * o.dot(h).max(0.0) * self.density_of_normals(h) / o.z
     }
 
-    /// A normal that is seen from `o` (z > 0), by uniform numbers (Dupuy and Benyoub 2023: a cap of the sphere, uniformly).
+    /// Samples a normal that is visible from `o` (z > 0), from uniform numbers (Dupuy and Benyoub 2023: a spherical
+    /// cap, uniformly).
     pub fn visible_normal(&self, o: DVec3, u: DVec2) -> DVec3 {
         let from = DVec3::new(self.alpha.x * o.x, self.alpha.y * o.y, o.z).normalize();
         let z = 1.0 - u.y * (1.0 + from.z);

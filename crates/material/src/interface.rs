@@ -1,19 +1,19 @@
-//! The two sides of a refracting surface, and what rough glass mirrors and loses by single scattering on either.
+//! The two sides of a refracting surface, and what rough glass reflects and loses by single scattering on either.
 
+use crate::fibonacci_lattice::{LATTICE, lattice};
 use crate::fresnel::dielectric_reflectance;
 use crate::ggx::Ggx;
-use crate::points::{LATTICE, lattice};
 use glam::{DVec2, DVec3};
 use std::sync::OnceLock;
 
-/// Cosines of a row.
+/// Number of cosines of a row.
 const COSINES: usize = 48;
-/// Roughnesses in the table.
+/// Number of roughnesses in the table.
 const ROUGHNESSES: usize = 24;
-/// The table's smoothest row.
+/// The smoothest row of the table.
 const SMOOTHEST_ROUGHNESS: f64 = 2e-3;
 
-/// The media before (on the front) and behind a surface. Made once a material: rough glass needs tables.
+/// The media in front of and behind a surface. Made once per material: rough glass needs tables.
 #[derive(Debug)]
 pub struct Interface {
     /// Index of refraction on the front.
@@ -23,24 +23,24 @@ pub struct Interface {
     tables: OnceLock<[Vec<Entries>; 2]>,
 }
 
-/// Of every cosine of a row: what single scattering mirrors, and what it sends to neither side.
+/// For every cosine of a row: the share that single scattering reflects, and the share that it sends to neither side.
 type Entries = [DVec2; COSINES];
 
-/// Rough glass seen from one side: over the cosine.
+/// Rough glass as seen from one side, over the cosine.
 ///
-/// Lobes of all widths are alike where the cosine is measured by α, so rows have their cosines at α·s/(1 + α − s) for even
-/// steps of s in [0, 1], and rows of neighbouring roughness are joined at equal s. Between its cosines a row is linear.
+/// Lobes of all widths are alike if the cosine is measured in α, so the cosines of a row are α·s/(1 + α − s) for even steps of s in
+/// [0, 1], and rows of neighbouring roughness are interpolated at equal s. Between its cosines a row is linear.
 #[derive(Clone, Debug)]
 pub(crate) struct GlassRow {
     alpha: f64,
     entries: Entries,
-    /// ∫ of what is lost, 2∫₀ … cos dcos, up to every cosine.
+    /// ∫ of the lost share, 2∫₀ … cos dcos, up to every cosine.
     lost_below: [f64; COSINES],
-    /// The mean of what is mirrored over the cosine-weighted hemisphere.
+    /// The mean reflected share over the cosine-weighted hemisphere.
     pub mean_mirrored: f64,
 }
 
-/// Rough glass seen from its front and from its back.
+/// Rough glass as seen from its front and from its back.
 #[derive(Clone, Debug)]
 pub(crate) struct RoughGlass {
     rows: [GlassRow; 2],
@@ -58,12 +58,12 @@ impl Interface {
         Self { front, back, tables: OnceLock::new() }
     }
 
-    /// The index of refraction beyond over that before, seen from the front or the back.
+    /// The index of refraction on the far side over that on the near side, seen from the front or the back.
     pub fn eta(&self, from_front: bool) -> f64 {
         if from_front { self.back / self.front } else { self.front / self.back }
     }
 
-    /// Glass of a roughness between the media.
+    /// The tables for glass of a roughness between the media.
     pub(crate) fn rough(&self, roughness: f64) -> RoughGlass {
         let tables = self.tables.get_or_init(|| {
             let roughness_at = |k: usize| k as f64 / (ROUGHNESSES - 1) as f64;
@@ -82,12 +82,12 @@ impl Interface {
 }
 
 impl RoughGlass {
-    /// Seen from the front or the back.
+    /// As seen from the front or the back.
     pub fn side(&self, front: bool) -> &GlassRow {
         &self.rows[usize::from(!front)]
     }
 
-    /// The share of what is lost that comes back on the eye's side. What crosses is chosen so that crossing is reciprocal:
+    /// The share of the lost light that returns on the outgoing side. The transmitted share is chosen so that transmission is reciprocal:
     /// (1 − r)/((1 − Ē')n'²) is the same from both sides.
     pub fn returned_share(&self, from_front: bool) -> f64 {
         let side_terms = |front: bool| {
@@ -95,7 +95,7 @@ impl RoughGlass {
             (1.0 - self.side(front).mean_mirrored, beyond)
         };
         let ((own, beyond), (others, before)) = (side_terms(from_front), side_terms(!from_front));
-        // In units of n² before: what the other side sees beyond is in its own units.
+        // In units of n² of the near side: `beyond` of the other side is in its own units.
         let eta2 = self.eta[usize::from(!from_front)].powi(2);
         let ratio = |a: f64, b: f64| if b > 0.0 { a / b } else { 0.0 };
         let k = ratio(own, beyond).min(ratio(others, before * eta2));
@@ -118,9 +118,9 @@ fn entries(roughness: f64, eta: f64) -> Entries {
     let alpha = alpha_of(roughness);
     let ggx = Ggx::new(alpha.sqrt(), 0.0);
     std::array::from_fn(|k| {
-        // At the horizon itself nothing is seen; the first cosine is taken a little above.
+        // At the horizon itself nothing is visible; the first cosine is a little above it.
         let directional = integrate(&ggx, cosine_at(alpha, k).max(1e-3 * alpha), eta);
-        // Integration is not exact: what is kept may come out a little above 1.
+        // The integration is not exact: the sum may come out a little above 1.
         DVec2::new(directional.x, (1.0 - directional.element_sum()).max(0.0))
     })
 }
@@ -155,22 +155,22 @@ impl GlassRow {
         self.entries[k].lerp(self.entries[k + 1], ((cos - from) / (to - from)).clamp(0.0, 1.0))
     }
 
-    /// What single scattering mirrors of light from a cosine.
+    /// The share that single scattering reflects for a cosine.
     pub fn mirrored(&self, cos: f64) -> f64 {
         self.at(cos).x
     }
 
-    /// What it sends to neither side.
+    /// The share that single scattering sends to neither side.
     pub fn lost(&self, cos: f64) -> f64 {
         self.at(cos).y
     }
 
-    /// The mean of that over the cosine-weighted hemisphere.
+    /// The mean of [`Self::lost`] over the cosine-weighted hemisphere.
     pub fn mean_lost(&self) -> f64 {
         self.lost_below[COSINES - 1]
     }
 
-    /// A cosine whose density over the hemisphere is lost·cos/(π · mean lost): where what was lost comes back from.
+    /// Samples a cosine of the lost light: its density over the hemisphere is lost·cos/(π · mean lost).
     pub fn cosine_of_lost(&self, u: f64) -> f64 {
         let target = u.clamp(0.0, 1.0) * self.mean_lost();
         let k = self.lost_below.partition_point(|below| *below <= target).clamp(1, COSINES - 1);
@@ -189,7 +189,7 @@ impl GlassRow {
     }
 }
 
-/// What is mirrored, and what crosses, of light from a cosine.
+/// The reflected and the transmitted share for a cosine.
 fn integrate(ggx: &Ggx, cos: f64, eta: f64) -> DVec2 {
     let o = DVec3::new((1.0 - cos * cos).max(0.0).sqrt(), 0.0, cos);
     let sum: DVec2 = lattice()
@@ -210,7 +210,7 @@ fn integrate(ggx: &Ggx, cos: f64, eta: f64) -> DVec2 {
     sum / LATTICE as f64
 }
 
-/// Where light seen from `o` comes from through a facet of normal `h`; none beyond the critical angle.
+/// The direction that light toward `o` comes from through a facet of normal `h`; `None` beyond the critical angle.
 pub(crate) fn refracted(o: DVec3, h: DVec3, eta: f64) -> Option<DVec3> {
     let cos = o.dot(h);
     let cos2_beyond = 1.0 - (1.0 - cos * cos) / (eta * eta);

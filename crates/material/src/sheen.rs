@@ -1,15 +1,15 @@
-//! Cloth's fuzz: Charlie's microfibres (Estevez and Kulla 2017) with Ashikhmin and Premože's visibility, as KHR_materials_sheen
-//! has them.
+//! Cloth's fuzz: Charlie's microfibres (Estevez and Kulla 2017) with the visibility term of Ashikhmin and Premože, as in
+//! KHR_materials_sheen.
 
 use glam::DVec3;
 use std::f64::consts::PI;
 use std::sync::OnceLock;
 
-/// Cosines and roughnesses in the table of what is sent back.
+/// Number of cosines and of roughnesses in the albedo table.
 const SIDE: usize = 32;
-/// Steps of either angle that an entry is the sum of.
+/// Number of steps of either angle that are summed for an entry.
 const STEPS: usize = 96;
-/// Sheen smoother than this roughness is as smooth as it: the lobe would be a line along the horizon.
+/// The smallest roughness: below it the lobe would be a line along the horizon.
 const SMOOTHEST: f64 = 0.07;
 
 /// Value of the lobe for white, 1/sr. Directions in the surface's axes, z > 0.
@@ -21,7 +21,7 @@ pub fn value(o: DVec3, i: DVec3, roughness: f64) -> f64 {
     density / (4.0 * (o.z + i.z - o.z * i.z))
 }
 
-/// What white sheen sends back in all, seen from a cosine.
+/// The albedo of white sheen for a cosine.
 pub fn albedo(cos: f64, roughness: f64) -> f64 {
     static TABLE: OnceLock<Vec<f64>> = OnceLock::new();
     let table = TABLE.get_or_init(|| {
@@ -52,6 +52,6 @@ fn integrate(cos: f64, roughness: f64) -> f64 {
         value(o, DVec3::new(flat * cos, flat * sin, z), roughness) * PI
     };
     let sum: f64 = (0..STEPS * STEPS).map(step).sum();
-    // A sheen that made light would be a fault of the model at grazing: it sends back all at most.
+    // Sheen that creates light is a fault of the model at grazing angles: it reflects all light at most.
     (sum / (STEPS * STEPS) as f64).min(1.0)
 }

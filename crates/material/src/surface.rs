@@ -1,20 +1,20 @@
-//! What a material says at one point, textures looked up.
+//! The material at one point, after texture lookup.
 
 use crate::Film;
 use crate::ggx::Ggx;
-use crate::lobes::is_carried;
+use crate::split::is_carried;
 use glam::DVec3;
 
 /// Whether light that meets microfacets more than once counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Scattering {
-    /// It does: energy is conserved.
+    /// It counts: energy is conserved.
     #[default]
     Multiple,
-    /// It is lost, as in renderers that leave it out: rough metal and glass are too dark. Metal and dielectric are the formulas of
-    /// glTF 2.0's appendix B to the letter: Trowbridge and Reitz's facets, Smith's shadowing of either direction by itself,
-    /// Schlick's reflectance at the facet's angle, and beneath the dielectric 1 − F at that angle of a Lambertian ground. Any
-    /// renderer can be matched with that.
+    /// It is lost, as in renderers that leave it out: rough metal and glass are too dark. Metal and dielectric are the formulas of glTF
+    /// 2.0's appendix B to the letter: facets after Trowbridge and Reitz, Smith's shadowing of either direction by itself, Schlick's
+    /// reflectance at the facet's angle, and beneath the dielectric 1 − F at that angle of a Lambertian ground. Any renderer can be
+    /// matched with that.
     Single,
 }
 
@@ -36,7 +36,7 @@ pub struct Sheen {
     pub roughness: f64,
 }
 
-/// A point's material: glTF 2.0 and its KHR extensions, in their own terms and ranges.
+/// The material of a point: glTF 2.0 and its KHR extensions, in their own terms and ranges.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Surface {
     /// Linear RGB, each in [0, 1].
@@ -49,17 +49,18 @@ pub struct Surface {
     pub ior: f64,
     /// Strength of the dielectric reflection (KHR_materials_specular), in [0, 1].
     pub specular: f64,
-    /// Its colour facing the surface, linear RGB ≥ 0.
+    /// Colour of the dielectric reflection at normal incidence, linear RGB ≥ 0.
     pub specular_color: DVec3,
     /// Anisotropy strength along the frame's tangent (KHR_materials_anisotropy), in [0, 1].
     pub anisotropy: f64,
-    /// Share of light that is refracted and not scattered beneath the surface (KHR_materials_transmission), in [0, 1].
+    /// Share of light that is refracted and not scattered beneath the surface (KHR_materials_transmission), in [0,
+    /// 1].
     pub transmission: f64,
-    /// Whether what lies behind is the same medium: no volume, so nothing is bent (KHR_materials_volume's thickness is 0).
+    /// Whether the same medium lies behind: no volume, so no refraction (KHR_materials_volume's thickness is 0).
     pub is_thin: bool,
     /// Share of the diffuse light that leaves on the other side (KHR_materials_diffuse_transmission), in [0, 1].
     pub diffuse_transmission: f64,
-    /// Its colour, linear RGB.
+    /// Colour of the diffuse transmission, linear RGB.
     pub diffuse_transmission_color: DVec3,
     /// A thin film on metal and dielectric (KHR_materials_iridescence).
     pub film: Option<Film>,
@@ -95,8 +96,8 @@ impl Default for Surface {
 }
 
 impl Surface {
-    /// KHR_materials_pbrSpecularGlossiness: a diffuse colour under a reflection of `specular` (its F0). The largest of F0's
-    /// channels is taken from the diffuse colour, as the extension has it.
+    /// KHR_materials_pbrSpecularGlossiness: a diffuse colour under a reflection of `specular` (its F0). The largest channel of F0 is taken
+    /// from the diffuse colour, as the extension specifies.
     pub fn from_specular_glossiness(diffuse: DVec3, specular: DVec3, glossiness: f64) -> Self {
         // F90 is 1 there, so the ior is the one whose F0 is that largest channel, tinted to `specular`.
         let largest = specular.max_element().clamp(0.0, 0.999_999);
@@ -112,7 +113,8 @@ impl Surface {
         }
     }
 
-    /// The same as seen by a wide lobe: what it reflects no sharper than perceptual `roughness`. What lets light through stays.
+    /// The same as seen by a wide lobe: reflects no sharper than perceptual `roughness`. Transmissive surfaces are
+    /// unchanged.
     pub fn no_sharper_than(self, roughness: f64) -> Self {
         if self.transmission > 0.0 {
             return self;
@@ -121,8 +123,8 @@ impl Surface {
         Self { roughness: self.roughness.max(roughness), clearcoat: coat, ..self }
     }
 
-    /// The width of the narrowest lobe that carries light: how far apart two directions must be, rad, for what it mirrors or lets
-    /// through to differ; 0 of a mirror, `None` where all light is own. A reflected GGX lobe is 2.6 α wide, at half its height.
+    /// The width of the narrowest lobe that carries light: the angle between two directions, rad, from which mirrored or transmitted light
+    /// differs; 0 for a mirror, `None` where all light is own. A reflected GGX lobe is 2.6 α wide at half its height.
     pub fn carried_width(&self) -> Option<f64> {
         const WIDTH: f64 = 2.6;
         let is_glass = self.metallic < 1.0 && self.transmission > 0.0;
@@ -137,14 +139,14 @@ impl Surface {
     }
 }
 
-/// What is left of light after `length` in a medium that leaves `color` after `distance` (KHR_materials_volume; Beer's law):
-/// color^(length/distance). An infinite distance leaves all.
+/// The share of light left after `length` in a medium that transmits `color` over `distance` (KHR_materials_volume; Beer's law):
+/// color^(length/distance). An infinite distance transmits all.
 pub fn attenuation(color: DVec3, distance: f64, length: f64) -> DVec3 {
     if !distance.is_finite() {
         return DVec3::ONE;
     }
     let optical = length / distance;
-    // 0⁰ is 1: no way, no loss.
+    // 0⁰ is 1: no length, no loss.
     color.map(|channel| channel.powf(optical))
 }
 

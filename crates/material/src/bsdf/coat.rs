@@ -1,4 +1,5 @@
-//! The coat, which lies over all and may have bumps of its own (KHR_materials_clearcoat's normal texture).
+//! The clearcoat, which lies over all other layers and may have a normal map of its own (KHR_materials_clearcoat's
+//! normal texture).
 
 use super::{Bsdf, OutgoingFrame, Scattered, half, mirror};
 use crate::Split;
@@ -6,11 +7,11 @@ use crate::albedo::Gloss;
 use crate::fresnel::rise;
 use glam::{DVec2, DVec3};
 
-/// What a coat of index 1.5 mirrors of light that falls on it straight.
+/// The reflectance of a coat of index 1.5 at normal incidence.
 const COAT_F0: f64 = 0.04;
 
 impl Bsdf<'_> {
-    /// What it mirrors in all toward a direction of its own axes.
+    /// The coat's albedo toward a direction in its own axes.
     pub(super) fn coat_albedo(&self, w: DVec3) -> f64 {
         let Some(coat) = self.surface.clearcoat else { return 0.0 };
         let shares = if self.coat.is_smooth() {
@@ -21,7 +22,7 @@ impl Bsdf<'_> {
         coat.factor * (COAT_F0 * shares.x + shares.y)
     }
 
-    /// What a rough one mirrors, 1/sr: by its own cosine over that of the frame, which is counted elsewhere.
+    /// The value of a rough coat, 1/sr: its own cosine over that of the frame, which is applied elsewhere.
     pub(super) fn coated(&self, view: &OutgoingFrame, i: DVec3) -> Split {
         let Some(coat) = self.surface.clearcoat.filter(|_| !self.coat.is_smooth()) else {
             return Split::default();
@@ -36,13 +37,13 @@ impl Bsdf<'_> {
         Split::mirrored(DVec3::splat(coat.factor * mirrored * facets), self.coat.mean_alpha())
     }
 
-    /// A direction that a rough one mirrors toward the eye.
+    /// Samples an incident direction from a rough coat.
     pub(super) fn sample_coat(&self, view: &OutgoingFrame, u: DVec2) -> DVec3 {
         let of_eye = view.coat.local(view.o);
         view.coat.back(mirror(of_eye, self.coat.visible_normal(of_eye, u)))
     }
 
-    /// How likely that is, 1/sr; 0 of a smooth one.
+    /// The density of [`Self::sample_coat`], 1/sr; 0 for a smooth coat.
     pub(super) fn density_of_coat(&self, view: &OutgoingFrame, i: DVec3) -> f64 {
         if self.coat.is_smooth() {
             return 0.0;
@@ -52,12 +53,12 @@ impl Bsdf<'_> {
             .map_or(0.0, |h| self.coat.density_of_visible(of_eye, h) / (4.0 * of_eye.dot(h)))
     }
 
-    /// What a smooth one mirrors, drawn with these odds.
+    /// The mirror direction of a smooth coat, sampled with this probability.
     pub(super) fn mirrored_by_coat(&self, view: &OutgoingFrame, probability: f64) -> Option<Scattered> {
         let of_eye = view.coat.local(view.o);
         let weight = DVec3::splat(self.coat_albedo(of_eye) / probability);
         let i = view.coat.back(mirror(of_eye, DVec3::Z));
-        // Bumps may turn it into what lies beneath: it is lost.
+        // A normal map may turn it into the surface: that light is lost.
         if i.z > 0.0 { self.single(view, i, Split::carried(weight)) } else { None }
     }
 }

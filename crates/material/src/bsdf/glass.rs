@@ -1,4 +1,4 @@
-//! Glass: what it mirrors, what it lets through, and what multiple scattering on its facets gives back.
+//! Glass: reflection, transmission, and the multiple scattering on its facets.
 
 use super::{Bsdf, OutgoingFrame, Scattered, cosine_weighted, flipped, half};
 use crate::Split;
@@ -7,18 +7,18 @@ use crate::ggx::Ggx;
 use glam::{DVec2, DVec3};
 use std::f64::consts::{FRAC_1_PI, TAU};
 
-/// Multiple scattering on rough glass seen from one side: what is lost by single scattering, and the share of it that comes back on
-/// that side.
+/// Multiple scattering on rough glass as seen from one side: what single scattering loses, and the share of it that returns on that
+/// side.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct MultipleScattering {
-    /// What single scattering sends to neither side.
+    /// The share that single scattering sends to neither side.
     pub lost: f64,
-    /// The share of it that comes back on the eye's side.
+    /// The share of the lost light that returns on the outgoing side.
     pub stays: f64,
 }
 
 impl Bsdf<'_> {
-    /// What rough glass mirrors.
+    /// Reflection by rough glass.
     pub(super) fn glass(&self, view: &OutgoingFrame, o: DVec3, i: DVec3) -> Split {
         let (share, eta) = (self.shares[2], self.eta(view));
         if share == 0.0 || self.is_clear(eta) {
@@ -31,7 +31,7 @@ impl Bsdf<'_> {
             * share
     }
 
-    /// What rough glass lets through.
+    /// Transmission by rough glass.
     pub(super) fn across(&self, view: &OutgoingFrame, o: DVec3, i: DVec3) -> Split {
         let (share, eta) = (self.shares[2], self.eta(view));
         if share == 0.0 || self.is_clear(eta) {
@@ -47,7 +47,7 @@ impl Bsdf<'_> {
         Split::carried(self.surface.base_color * (single + crosses)) * share
     }
 
-    /// The density, 1/sr, with which light from beyond is found by single scattering.
+    /// The density, 1/sr, with which single scattering samples light from the other side.
     pub(super) fn density_across(&self, view: &OutgoingFrame, i: DVec3) -> f64 {
         let (o, eta) = (view.o, self.eta(view));
         if !self.surface.is_thin {
@@ -59,7 +59,7 @@ impl Bsdf<'_> {
         })
     }
 
-    /// What single scattering on glass loses toward the eye, and the share of that which stays on its side.
+    /// The share that single scattering loses toward the eye, and how much of that returns on its side.
     pub(super) fn glass_lost(&self, view: &OutgoingFrame) -> MultipleScattering {
         let eta = self.eta(view);
         if self.shares[2] == 0.0 || self.is_clear(eta) {
@@ -76,7 +76,7 @@ impl Bsdf<'_> {
         }
     }
 
-    /// How it is spread over where it comes back from, 1/sr: as (1 − E(i))/(π(1 − Ē)) on that side.
+    /// The distribution of the lost light over incident directions, 1/sr: (1 − E(i))/(π(1 − Ē)) on that side.
     fn spread_of_lost(&self, view: &OutgoingFrame, i: DVec3) -> f64 {
         let (lost, mean) = match &self.rough_glass {
             Some(glass) => {
@@ -88,13 +88,13 @@ impl Bsdf<'_> {
         if lost > 0.0 && mean > 0.0 { lost * FRAC_1_PI / mean } else { 0.0 }
     }
 
-    /// What of the light that single scattering on glass loses comes back on the eye's side, or from beyond.
+    /// The multiple-scattering lobe of glass, on the outgoing side or through the surface.
     fn glass_returned(&self, view: &OutgoingFrame, i: DVec3) -> f64 {
         let MultipleScattering { lost, stays } = self.glass_lost(view);
         if lost == 0.0 {
             return 0.0;
         }
-        // Radiance is n² as great beyond.
+        // Radiance is n² as large on the other side.
         let (share, scale) = match (i.z > 0.0, self.surface.is_thin) {
             (true, _) => (stays, 1.0),
             (false, true) => (1.0 - stays, 1.0),
@@ -103,7 +103,8 @@ impl Bsdf<'_> {
         share * lost * self.spread_of_lost(view, i) / scale
     }
 
-    /// A direction that lost light comes back from, and whether it crosses; `which` and `u` are uniform.
+    /// Samples an incident direction of the lost light, and whether it crosses the surface; `which` and `u` are
+    /// uniform.
     pub(super) fn sample_returned(&self, view: &OutgoingFrame, which: f64, u: DVec2) -> (DVec3, bool) {
         let crosses = which >= self.glass_lost(view).stays;
         let Some(glass) = &self.rough_glass else {
@@ -116,7 +117,7 @@ impl Bsdf<'_> {
         (DVec3::new(flat * around, flat * sin, if crosses { -cos } else { cos }), crosses)
     }
 
-    /// The density of [`Self::come_back`], 1/sr.
+    /// The density of [`Self::sample_returned`], 1/sr.
     pub(super) fn density_of_returned(&self, view: &OutgoingFrame, i: DVec3) -> f64 {
         let stays = self.glass_lost(view).stays;
         let share = if i.z > 0.0 { stays } else { 1.0 - stays };
@@ -124,7 +125,7 @@ impl Bsdf<'_> {
         share * spread * i.z.abs()
     }
 
-    /// What glass sends back to the eye's side in all.
+    /// The albedo of glass on the outgoing side.
     pub(super) fn glass_mirrors(&self, view: &OutgoingFrame) -> f64 {
         let eta = self.eta(view);
         if self.shares[2] == 0.0 || self.is_clear(eta) {
@@ -138,7 +139,7 @@ impl Bsdf<'_> {
         mirrored + lost * stays
     }
 
-    /// One of clear glass; `odds` of the glass.
+    /// A sample of clear glass, drawn with `probability`.
     pub(super) fn clear(
         &self,
         view: &OutgoingFrame,
@@ -163,14 +164,14 @@ fn refracting(o: DVec3, i: DVec3, eta: f64) -> Option<DVec3> {
     (o.dot(h) > 0.0 && i.dot(h) < 0.0).then_some(h)
 }
 
-/// What rough glass lets through by single scattering (Walter et al. 2007, equation 21), for radiance.
+/// Transmission through rough glass by single scattering (Walter et al. 2007, equation 21), for radiance.
 fn through_facets(ggx: &Ggx, o: DVec3, i: DVec3, eta: f64) -> f64 {
     let Some(h) = refracting(o, i, eta) else { return 0.0 };
     let (from, to) = (o.dot(h), i.dot(h));
     let crosses = 1.0 - dielectric_reflectance(from, eta);
     let facet_density = ggx.uncorrelated_masking_shadowing(o, flipped_up(i)) * ggx.density_of_normals(h);
     let value = (from * to / (o.z * i.z)).abs() * crosses * facet_density / (from + eta * to).powi(2);
-    // Equal media bend nothing: all normals refract alike, and the lobe is the direction itself.
+    // Equal media do not refract: all normals transmit alike, and the lobe is a single direction.
     if value.is_finite() { value } else { 0.0 }
 }
 
@@ -182,14 +183,14 @@ fn density_through(ggx: &Ggx, o: DVec3, i: DVec3, eta: f64) -> f64 {
     if density.is_finite() { density } else { 0.0 }
 }
 
-/// The mean that a smooth dielectric mirrors over the cosine-weighted hemisphere.
+/// The mean reflectance of a smooth dielectric over the cosine-weighted hemisphere.
 fn dielectric_mean(eta: f64) -> f64 {
     const STEPS: usize = 32;
     let step = |k: usize| dielectric_reflectance(((k as f64 + 0.5) / STEPS as f64).sqrt(), eta);
     (0..STEPS).map(step).sum::<f64>() / STEPS as f64
 }
 
-/// On the side that the normal points to.
+/// The direction on the side that the normal points to.
 fn flipped_up(w: DVec3) -> DVec3 {
     DVec3::new(w.x, w.y, w.z.abs())
 }

@@ -1,20 +1,20 @@
-//! How often a direction is drawn from which lobe.
+//! The probabilities with which the lobes are sampled.
 
-/// The lobes that directions are drawn from, and how often.
+/// The probability of sampling each lobe; they sum to 1.
 #[derive(Clone, Copy, Debug)]
 pub struct LobeProbabilities {
     pub coat: f64,
     pub gloss: f64,
     pub glass: f64,
-    /// Diffuse, sheen and what comes of multiple scattering, on this side.
+    /// Diffuse reflection, sheen and multiple scattering on the outgoing side.
     pub spread: f64,
-    /// Diffuse, on the other.
+    /// Diffuse transmission.
     pub through: f64,
-    /// What comes of multiple scattering on glass.
+    /// Multiple scattering on glass.
     pub returned: f64,
 }
 
-/// Which lobe a direction is drawn from.
+/// The lobe that a direction is sampled from.
 pub enum Lobe {
     Coat,
     Gloss,
@@ -25,7 +25,7 @@ pub enum Lobe {
 }
 
 impl LobeProbabilities {
-    /// In proportion, summing to 1; nothing at all is spread.
+    /// Scaled to sum to 1; if all are 0, the spread lobe gets all.
     pub fn normalized(self) -> Self {
         let all = [self.coat, self.gloss, self.glass, self.spread, self.through, self.returned];
         let all = all.map(|probability| probability.max(0.0));
@@ -35,13 +35,13 @@ impl LobeProbabilities {
         Self { coat, gloss, glass, spread, through, returned }
     }
 
-    /// Of all lobes but those that are spread; none where there are no others.
+    /// All lobes but the spread one; `None` where there are no others.
     pub fn without_spread(self) -> Option<Self> {
         let others = Self { spread: 0.0, ..self }.normalized();
         (others.spread == 0.0).then_some(others)
     }
 
-    /// The lobe that a uniform number falls to, and where in its share.
+    /// The lobe that a uniform number selects, and the number rescaled within that lobe's share.
     pub fn select(&self, u: f64) -> Option<(Lobe, f64)> {
         let mut rest = u;
         let all = [

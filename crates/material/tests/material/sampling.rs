@@ -1,10 +1,7 @@
-//! Directions are drawn as their density says, and dangerous inputs give numbers.
+//! Samples follow their density, and dangerous inputs give finite numbers.
 
-#[allow(dead_code, reason = "shared by several tests")]
-mod lobes;
-
+use crate::lobes::{Random, all, glass, interface, metal, plastic, toward};
 use glam::DVec3;
-use lobes::{Random, all, glass, interface, metal, plastic, toward};
 use material::{Bsdf, Clearcoat, Frame, Interface, Sheen, Surface};
 use std::f64::consts::{PI, TAU};
 
@@ -20,7 +17,7 @@ fn cell_of(w: DVec3) -> usize {
     band.min(BANDS - 1) * SECTORS + sector.min(SECTORS - 1)
 }
 
-/// The share of directions that a density says fall into each cell.
+/// The expected share of directions in each cell, from a density.
 fn expected(density: &dyn Fn(DVec3) -> f64) -> Vec<f64> {
     let solid_angle = 4.0 * PI / (BANDS * SECTORS) as f64;
     let mean = |index: usize, n: usize| {
@@ -45,13 +42,13 @@ fn deviations(counts: &[f64], expected: &[f64]) -> f64 {
     let (mut chi2, mut cells) = (0.0, 0.0);
     let (mut rest, mut rest_expected) = (0.0, 0.0);
     for (count, share) in counts.iter().zip(expected) {
-        let wanted = share * COUNT as f64;
-        if wanted < 10.0 {
+        let expected_value = share * COUNT as f64;
+        if expected_value < 10.0 {
             rest += count;
-            rest_expected += wanted;
+            rest_expected += expected_value;
         } else {
             // The cell's own integral is known to a percent of a percent only.
-            chi2 += (count - wanted).powi(2) / (wanted + (2e-3 * wanted).powi(2));
+            chi2 += (count - expected_value).powi(2) / (expected_value + (2e-3 * expected_value).powi(2));
             cells += 1.0;
         }
     }
@@ -90,7 +87,7 @@ fn drawn(name: &str, surface: &Surface, frame: Frame, cos: f64) -> (f64, Option<
 }
 
 #[test]
-fn directions_are_drawn_as_their_density_says() {
+fn samples_follow_their_density() {
     let test = |(name, surface): &(&str, Surface)| {
         for cos in COSINES {
             let (off, control) = drawn(name, surface, Frame::flat(DVec3::Z), cos);
@@ -112,7 +109,7 @@ fn bumped() -> Frame {
 }
 
 #[test]
-fn a_coat_with_bumps_of_its_own_mirrors_by_its_own_normal() {
+fn a_coat_with_its_own_normal_map_reflects_about_its_own_normal() {
     // Smooth, over black: it mirrors about its normal, and what lies beneath about the other one.
     let coat = Some(Clearcoat { factor: 1.0, roughness: 0.0 });
     let black = Surface { clearcoat: coat, base_color: DVec3::ZERO, ..metal(1.0) };
@@ -125,12 +122,14 @@ fn a_coat_with_bumps_of_its_own_mirrors_by_its_own_normal() {
         drawn.filter(|scattered| scattered.density.is_none()).collect::<Vec<_>>()
     };
     let about = |normal: DVec3| normal * (2.0 * normal.dot(outgoing)) - outgoing;
-    let found = mirrored(bumped());
-    assert!(!found.is_empty() && found.iter().all(|one| one.incident.distance(about(bumped().coat)) < 1e-12));
+    let samples = mirrored(bumped());
+    assert!(
+        !samples.is_empty() && samples.iter().all(|one| one.incident.distance(about(bumped().coat)) < 1e-12)
+    );
     // The control: bumps beneath it are none of its own.
     let beneath = Frame::new(DVec3::Z, bumped().coat, DVec3::X).coated(DVec3::Z);
-    let found = mirrored(beneath);
-    assert!(!found.is_empty() && found.iter().all(|one| one.incident.distance(about(DVec3::Z)) < 1e-12));
+    let samples = mirrored(beneath);
+    assert!(!samples.is_empty() && samples.iter().all(|one| one.incident.distance(about(DVec3::Z)) < 1e-12));
     assert!(about(DVec3::Z).distance(about(bumped().coat)) > 0.3, "the two are apart");
 
     // Rough, its directions are drawn as their density says, weighted as it is evaluated, and no light is made.
@@ -148,9 +147,12 @@ fn a_coat_with_bumps_of_its_own_mirrors_by_its_own_normal() {
                     let Some(scattered) = bsdf.sample(outgoing, random.three()) else { continue };
                     let density = bsdf.density(outgoing, scattered.incident);
                     let value = bsdf.evaluate(outgoing, scattered.incident).total();
-                    let wanted = value * scattered.incident.z.abs() / density;
-                    let off = (wanted - scattered.weight.total()).abs().max_element();
-                    assert!(off < 1e-9 * wanted.max_element().max(1.0), "roughness {roughness}: {off}");
+                    let expected_value = value * scattered.incident.z.abs() / density;
+                    let off = (expected_value - scattered.weight.total()).abs().max_element();
+                    assert!(
+                        off < 1e-9 * expected_value.max_element().max(1.0),
+                        "roughness {roughness}: {off}"
+                    );
                     sent += scattered.weight.total().x / 20_000.0;
                 }
                 assert!(sent < 1.02, "roughness {roughness}, cos {cos}: {sent}");
@@ -176,14 +178,17 @@ fn a_weight_is_value_times_cosine_over_density() {
             let outgoing = toward(random.next(), TAU * random.next());
             let Some(scattered) = bsdf.sample(outgoing, random.three()) else { continue };
             let Some(density) = scattered.density else { continue };
-            let told = bsdf.density(outgoing, scattered.incident);
-            assert!((told / density - 1.0).abs() < 1e-9, "{name}: {told} and {density}");
+            let evaluated_density = bsdf.density(outgoing, scattered.incident);
+            assert!(
+                (evaluated_density / density - 1.0).abs() < 1e-9,
+                "{name}: {evaluated_density} and {density}"
+            );
             let cos = frame.normal.dot(scattered.incident).abs();
-            let wanted = bsdf.evaluate(outgoing, scattered.incident).total() * cos / density;
-            let off = (wanted - scattered.weight.total()).abs().max_element();
+            let expected_value = bsdf.evaluate(outgoing, scattered.incident).total() * cos / density;
+            let off = (expected_value - scattered.weight.total()).abs().max_element();
             // The shading normal is bent for some directions; the cosine is the bent one's then.
             if frame.normal.dot(outgoing) > 0.1 {
-                assert!(off < 1e-6 * wanted.max_element().max(1.0), "{name}: {off}");
+                assert!(off < 1e-6 * expected_value.max_element().max(1.0), "{name}: {off}");
             }
         }
     }

@@ -1,4 +1,4 @@
-//! Lobes to be tested, directions to test them in, and numbers to draw with.
+//! Lobes to test, directions to test them in, and random numbers.
 
 use glam::DVec3;
 use material::{Clearcoat, Film, Interface, Sheen, Surface};
@@ -8,7 +8,7 @@ pub fn plastic(roughness: f64) -> Surface {
     Surface { metallic: 0.0, roughness, ..Surface::default() }
 }
 
-/// Metal that mirrors all.
+/// Metal that reflects all light.
 pub fn metal(roughness: f64) -> Surface {
     Surface { roughness, ..Surface::default() }
 }

@@ -1,17 +1,14 @@
-//! No lobe makes light or loses it, and light goes both ways alike. Each check is put to a wrong computation, too, which it
-//! must refuse.
+//! No lobe creates or loses light, and all are reciprocal. Each check is applied to a wrong computation, too, which it must
+//! refuse.
 
-#[allow(dead_code, reason = "shared by several tests")]
-mod lobes;
-
+use crate::lobes::{Random, all, glass, interface, metal, plastic, toward};
 use glam::DVec3;
-use lobes::{Random, all, glass, interface, metal, plastic, toward};
 use material::{Bsdf, Frame, Interface, Scattering, Surface};
 use std::f64::consts::TAU;
 
 const COSINES: [f64; 5] = [0.05, 0.2, 0.5, 0.8, 1.0];
 
-/// What is sent toward a cosine of light of radiance 1 from everywhere (n² of it beyond glass), and its standard error.
+/// The light scattered toward a cosine in a furnace of radiance 1 (n² of it beyond glass), and its standard error.
 fn furnace(surface: &Surface, interface: &Interface, cos: f64, count: u32) -> (DVec3, f64) {
     let bsdf = Bsdf::new(surface, Frame::flat(DVec3::Z), interface);
     let outgoing = toward(cos, 0.7);
@@ -92,7 +89,7 @@ fn glass_sends_all_on() {
 
 /// Light that runs along within a ball meets its inside at one grazing angle again and again: a percent too much would grow.
 #[test]
-fn glass_seen_from_within_at_grazing_angles_makes_no_light() {
+fn glass_seen_from_inside_at_grazing_angles_creates_no_light() {
     for roughness in [0.1, 0.3, 0.7] {
         let surface = glass(roughness);
         let interface = Interface::between(1.5, 1.0);
@@ -108,7 +105,7 @@ fn glass_seen_from_within_at_grazing_angles_makes_no_light() {
 
 /// A ball of rough glass in white light, up to 64 bounces within, is white.
 #[test]
-fn a_ball_of_rough_glass_is_as_bright_as_what_is_around_it() {
+fn a_ball_of_rough_glass_is_as_bright_as_its_surroundings() {
     for roughness in [0.1, 0.5, 1.0] {
         let surface = glass(roughness);
         let interface = interface(&surface);
@@ -153,12 +150,12 @@ fn nothing_sends_more_than_it_gets_and_the_closed_form_agrees() {
         for cos in COSINES {
             let (sent, error) = furnace(&surface, &interface, cos, 60_000);
             assert!(sent.max_element() < 1.005 + 4.0 * error, "{name}, cos {cos}: {sent} ± {error}");
-            let told = bsdf.albedo(toward(cos, 0.7)).total();
-            let off = (told - sent).abs().max_element();
+            let computed = bsdf.albedo(toward(cos, 0.7)).total();
+            let off = (computed - sent).abs().max_element();
             // Coat and sheen lose a little that the closed form does not know; rough glass mirrors by its mean angle, and so does a
             // film, whose colours change fast at grazing angles.
             let most = if surface.film.is_some() { 0.2 } else { 0.12 };
-            assert!(off < most, "{name}, cos {cos}: told {told}, sent {sent}");
+            assert!(off < most, "{name}, cos {cos}: computed {computed}, sent {sent}");
             let [own, carried] = bsdf.coverage_shares(toward(cos, 0.7));
             assert!((own + carried - 1.0).abs() < 1e-12 && own >= 0.0 && carried >= 0.0);
         }
@@ -184,7 +181,7 @@ fn one_way(value: &dyn Fn(DVec3, DVec3) -> DVec3, beyond: bool, eta2: f64) -> f6
 }
 
 #[test]
-fn light_goes_both_ways_alike() {
+fn bsdfs_are_reciprocal() {
     for (name, surface) in all() {
         let interface = interface(&surface);
         let bsdf = Bsdf::new(&surface, Frame::flat(DVec3::Z), &interface);

@@ -1,4 +1,4 @@
-//! What comes of a lobe: the part that obeys the paint, and the part that does not.
+//! Scattered light in two parts: the one that obeys the paint, and the one that does not.
 
 use glam::DVec3;
 use std::ops::{Add, AddAssign, Mul};
@@ -6,22 +6,22 @@ use std::ops::{Add, AddAssign, Mul};
 /// Scattered light in two parts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Split {
-    /// Scattered diffusely, and the share of rough gloss that looks as if it were: it obeys the paint.
+    /// Scattered diffusely, and the share of rough gloss that is about as wide: it obeys the paint.
     pub own: DVec3,
-    /// Mirrored and let through: it keeps the focus of the ordinary lens.
+    /// Mirrored and transmitted: it keeps the focus of the ordinary lens.
     pub carried: DVec3,
 }
 
-/// Gloss is all own from this α on.
+/// From this α on gloss is all own.
 const ROUGH: f64 = 0.25;
 
-/// Whether anything that a lobe of this α mirrors is carried.
+/// Whether any light that a lobe of this α reflects is carried.
 pub(crate) fn is_carried(alpha: f64) -> bool {
     alpha < ROUGH
 }
 
 impl Split {
-    /// All of it.
+    /// The sum of both parts.
     pub fn total(self) -> DVec3 {
         self.own + self.carried
     }
@@ -31,12 +31,12 @@ impl Split {
         Self { own, carried: DVec3::ZERO }
     }
 
-    /// Light that was let through.
+    /// Transmitted light.
     pub(crate) fn carried(carried: DVec3) -> Self {
         Self { own: DVec3::ZERO, carried }
     }
 
-    /// Mirrored light of a lobe of this α: its share that is own rises smoothly (3x² − 2x³) from a mirror's 0 to 1.
+    /// Reflected light of a lobe of this α: its own share rises smoothly (3x² − 2x³) from 0 for a mirror to 1.
     pub(crate) fn mirrored(light: DVec3, alpha: f64) -> Self {
         let x = (alpha / ROUGH).min(1.0);
         let own = x * x * (3.0 - 2.0 * x);

@@ -1,12 +1,12 @@
-//! How a point scatters light toward one direction.
+//! Scattering toward one outgoing direction.
 
-use super::odds::LobeProbabilities;
+use super::lobe_probabilities::LobeProbabilities;
 use super::{Bsdf, OutgoingFrame, Parts, Scattered, cosine_weighted};
 use crate::{Split, sheen};
 use glam::{DVec2, DVec3};
 use std::f64::consts::FRAC_1_PI;
 
-/// How a point scatters light toward one direction: what is the same for light from everywhere is worked out once.
+/// A [`Bsdf`] for one outgoing direction: what does not depend on the incident direction is computed once.
 pub struct OutgoingBsdf<'b, 'a> {
     bsdf: &'b Bsdf<'a>,
     view: OutgoingFrame,
@@ -14,7 +14,7 @@ pub struct OutgoingBsdf<'b, 'a> {
 }
 
 impl<'a> Bsdf<'a> {
-    /// For light toward one direction.
+    /// The BSDF for one outgoing direction.
     pub fn toward(&self, outgoing: DVec3) -> OutgoingBsdf<'_, 'a> {
         let view = self.outgoing_frame(outgoing);
         let probabilities = self.lobe_probabilities(&view);
@@ -38,12 +38,12 @@ impl OutgoingBsdf<'_, '_> {
         self.bsdf.sample_lobes(&self.view, &self.probabilities, u)
     }
 
-    /// What is sent of light that is the same from everywhere, in both parts.
+    /// The albedo in both parts: the share of uniform light from everywhere that is scattered.
     pub fn albedo(&self) -> Split {
         self.bsdf.albedo_toward(&self.view)
     }
 
-    /// What spread lobes ([`Parts`]) send of light that is the same from everywhere.
+    /// The albedo of the spread lobes ([`Parts`]).
     pub fn spread_albedo(&self) -> DVec3 {
         let (bsdf, side) = (self.bsdf, &self.view.side);
         if self.view.o.z <= 0.0 {
@@ -61,7 +61,7 @@ impl OutgoingBsdf<'_, '_> {
         all * (1.0 - side.coat)
     }
 
-    /// Value times cosine by parts, and the density, 1/sr, with which [`Self::sample_sharp`] finds `incident`.
+    /// Value times cosine by parts, and the density, 1/sr, with which [`Self::sample_sharp`] generates `incident`.
     pub fn scatter_parts(&self, incident: DVec3) -> (Parts, f64) {
         let Parts { spread, sharp } = self.bsdf.parts(&self.view, incident);
         let cosine = self.view.frame.local(incident).z.abs();
@@ -76,7 +76,8 @@ impl OutgoingBsdf<'_, '_> {
             .map_or(0.0, |probabilities| self.bsdf.density_of(&self.view, &probabilities, incident))
     }
 
-    /// Draws where light comes from that spread lobes ([`Parts`]) send on, and tells its density, 1/sr. `None` where nothing is spread.
+    /// Samples an incident direction of the spread lobes ([`Parts`]); returns it with its density, 1/sr. `None` where
+    /// nothing is spread.
     pub fn sample_spread(&self, u: [f64; 2]) -> Option<(DVec3, f64)> {
         if self.probabilities.spread == 0.0 || self.view.o.z <= 0.0 {
             return None;
@@ -85,7 +86,7 @@ impl OutgoingBsdf<'_, '_> {
         (i.z > 0.0).then(|| (self.view.frame.world(i), i.z * FRAC_1_PI))
     }
 
-    /// The density, 1/sr, with which [`Self::sample_spread`] finds `incident`.
+    /// The density, 1/sr, with which [`Self::sample_spread`] generates `incident`.
     pub fn spread_density(&self, incident: DVec3) -> f64 {
         if self.probabilities.spread == 0.0 {
             0.0
@@ -94,7 +95,7 @@ impl OutgoingBsdf<'_, '_> {
         }
     }
 
-    /// Draws where light comes from that sharp lobes ([`Parts`]) send on.
+    /// Samples an incident direction of the sharp lobes ([`Parts`]).
     pub fn sample_sharp(&self, u: [f64; 3]) -> Option<Scattered> {
         let probabilities = self.probabilities.without_spread()?;
         let scattered = self.bsdf.sample_lobes(&self.view, &probabilities, u)?;
@@ -109,7 +110,7 @@ impl OutgoingBsdf<'_, '_> {
         self.probabilities.without_spread().is_none()
     }
 
-    /// The normal as it is shaded, on the eye's side.
+    /// The shading normal, on the outgoing side.
     pub fn normal(&self) -> DVec3 {
         self.view.frame.normal
     }

@@ -2,10 +2,10 @@
 
 use glam::DVec2;
 
-/// How many points [`lattice`] has.
+/// The number of points of [`lattice`].
 pub const LATTICE: usize = 610;
 
-/// Fibonacci's lattice of 610 points: the most even that there is of so many for what is periodic along x (Niederreiter and
+/// Fibonacci's lattice of 610 points: the most even lattice of that size for functions that are periodic along x (Niederreiter and
 /// Sloan 1994).
 pub fn lattice() -> impl Iterator<Item = DVec2> {
     const STEP: usize = 377;

@@ -1,0 +1,5 @@
+//! Energy conservation and sampling of materials.
+
+mod energy;
+mod lobes;
+mod sampling;
