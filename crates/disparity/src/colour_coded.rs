@@ -1,12 +1,12 @@
-//! A disparity map that is coded by colour, as Lytro Desktop exports it, read back with the help of some disparities that are known.
+//! Decodes a disparity map that is coded by colour, as Lytro Desktop exports it, with the help of some known disparities.
 //!
-//! Nobody says which colours the program used, in which order, or how they follow the disparity; only that there is one curve
-//! through colour space along which disparity grows. So: known disparities in their order give a first idea of the curve (medians
-//! of their colours); the colours of the whole map draw it in (`principal_curve`); along it the known disparities give a function
-//! that only grows (`monotone`). Every pixel is then put at the nearest place of the curve (`palette`). Colours away from it are
-//! mixtures that compression made where the map jumps: they take the disparity of the nearest pixel that is not.
+//! The file does not specify which colours the program used, in which order, or how they follow the disparity; it is only known that there
+//! is one curve through colour space along which disparity grows. So: known disparities in their order give an initial curve (medians
+//! of their colours); the colours of the whole map refine it (`principal_curve`); along it the known disparities give a monotone
+//! function (`monotone`). Every pixel is then assigned to the nearest place of the curve (`palette`). Colours away from it are
+//! mixtures that compression made where the map jumps: they take the disparity of the nearest pixel that is no mixture.
 //!
-//! What fits nothing is refused: a photograph has no such curve, or its places tell nothing of disparities.
+//! What does not fit is refused: a photograph has no such curve, or places on its curve do not determine disparities.
 
 mod monotone;
 mod palette;
@@ -15,6 +15,7 @@ mod principal_curve;
 use crate::error::DisparityError;
 use crate::view::Picture;
 use monotone::MonotoneFunction;
+use numerics::upper_median;
 use palette::Palette;
 use progress::Progress;
 use rayon::prelude::*;
@@ -30,36 +31,37 @@ pub struct Sample {
     pub disparity: f32,
 }
 
-/// A map that was read.
+/// A decoded map.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Decoded {
     /// Row by row from the top, in the units of the samples.
     pub disparity: Vec<f32>,
-    /// The median of how far samples are from what was read, as a share of the range that was read.
+    /// The median distance between samples and the decoded map, as a share of the decoded range.
     pub residual: f32,
-    /// The share of the samples that are within three times that (a hundredth of the range at least).
+    /// The share of the samples that are within three times that (at least a hundredth of the range).
     pub agreeing: f32,
 }
 
-/// Samples that are needed.
+/// The number of samples that are needed.
 pub const MIN_SAMPLES: usize = 40;
 
-/// A median residual above this share of the range is no code. Colours that tell nothing leave 0.12 and more (the median distance
-/// from the median of most distributions), noise of the samples a few hundredths.
+/// A median residual above this share of the range means that the map is no code. Colours unrelated to disparity leave 0.12 and more (the
+/// median distance from the median of most distributions), noise of the samples a few hundredths.
 pub const MAX_RESIDUAL: f32 = 0.06;
 
-/// Half of the pixels have to be this near to the curve (of white, root of three squared channels). Compression leaves 0.01.
+/// Half of the pixels have to be this near to the curve (of white, root of three squared channels). Compression
+/// leaves 0.01.
 const NEAR: f32 = 0.05;
 
 /// A pixel this far from the curve is a mixture.
 const MIXTURE: f32 = 0.1;
 
-/// Reads the map.
+/// Decodes the map.
 ///
 /// # Errors
 /// [`DisparityError::TooFewSamples`], [`DisparityError::SampleOutside`], [`DisparityError::Size`] and [`DisparityError::NotFinite`]
-/// (of "view 0") for what cannot be used, [`DisparityError::NotColourCoded`] with the residual for a picture that is no such map,
-/// and when `progress` cancels.
+/// (of "view 0") for input that cannot be used, [`DisparityError::NotColourCoded`] with the residual for a picture that is no such map,
+/// and [`DisparityError::Cancelled`] if `progress` cancels.
 pub fn decode(
     map: &Picture<'_>,
     samples: &[Sample],
@@ -78,7 +80,7 @@ pub fn decode(
     progress.check()?;
     let places: Vec<(f32, f32)> = colours.iter().map(|(c, d)| (palette.nearest(*c).place, *d)).collect();
     let Some(growth) = MonotoneFunction::fit(&places) else {
-        return refused(1.0, "its colours tell one disparity only");
+        return refused(1.0, "its colours correspond to a single disparity");
     };
     let mut residuals: Vec<f32> = places.iter().map(|(place, d)| (growth.at(*place) - d).abs()).collect();
     let read: Vec<(f32, f32)> = map
@@ -92,12 +94,12 @@ pub fn decode(
     progress.report(0.8);
     progress.check()?;
     let range = growth.at(1.0) - growth.at(0.0);
-    let residual = median(&mut residuals) / range;
+    let residual = median_or_nan(&mut residuals) / range;
     if residual.is_nan() || residual > MAX_RESIDUAL {
-        return refused(residual, "its colours do not follow the disparities that are known");
+        return refused(residual, "its colours do not follow the known disparities");
     }
-    if median(&mut read.iter().map(|r| r.1).collect::<Vec<_>>()) > NEAR {
-        return refused(residual, "its colours lie on no curve");
+    if median_or_nan(&mut read.iter().map(|r| r.1).collect::<Vec<_>>()) > NEAR {
+        return refused(residual, "its colours do not lie on a curve");
     }
     let limit = (3.0 * residual).max(0.01) * range;
     let agreeing = residuals.iter().filter(|r| **r <= limit).count() as f32 / residuals.len() as f32;
@@ -125,7 +127,7 @@ fn check(map: &Picture<'_>, samples: &[Sample]) -> Result<(), DisparityError> {
     }
 }
 
-/// The colour of a sample: the median of nine pixels, each channel by itself.
+/// The colour of a sample: the median of nine pixels, for each channel by itself.
 fn steady_colour(map: &Picture<'_>, sample: &Sample) -> [f32; 3] {
     let rows = sample.y.saturating_sub(1)..(sample.y + 2).min(map.height);
     let columns = sample.x.saturating_sub(1)..(sample.x + 2).min(map.width);
@@ -153,10 +155,11 @@ fn initial_curve(colours: &[([f32; 3], f32)]) -> Vec<[f32; 3]> {
 
 /// The median of each channel.
 fn middle_colour(colours: &[[f32; 3]]) -> [f32; 3] {
-    std::array::from_fn(|c| median(&mut colours.iter().map(|colour| colour[c]).collect::<Vec<_>>()))
+    std::array::from_fn(|c| median_or_nan(&mut colours.iter().map(|colour| colour[c]).collect::<Vec<_>>()))
 }
 
-/// Disparities, mixtures replaced by the nearest pixel that is none (by two walks over the picture, as distances are spread).
+/// Disparities; mixtures are replaced by the nearest pixel that is none (by two passes over the picture, as in a
+/// distance transform).
 fn without_mixtures(read: &[(f32, f32)], width: usize) -> Vec<f32> {
     let mut disparity: Vec<f32> = read.iter().map(|r| r.0).collect();
     let mut away: Vec<u32> = read.iter().map(|r| if r.1 > MIXTURE { u32::MAX / 2 } else { 0 }).collect();
@@ -186,10 +189,7 @@ fn without_mixtures(read: &[(f32, f32)], width: usize) -> Vec<f32> {
     disparity
 }
 
-fn median(values: &mut [f32]) -> f32 {
-    if values.is_empty() {
-        return f32::NAN;
-    }
-    let middle = values.len() / 2;
-    *values.select_nth_unstable_by(middle, f32::total_cmp).1
+/// NaN for no values.
+fn median_or_nan(values: &mut [f32]) -> f32 {
+    upper_median(values).unwrap_or(f32::NAN)
 }

@@ -1,8 +1,8 @@
-//! What can keep disparities from being found.
+//! Why disparities cannot be computed.
 
 use progress::Cancelled;
 
-/// Why there are no disparities.
+/// Why there are no disparities. Displays as `view N: what is wrong (what to do)`.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum DisparityError {
     /// One view shows no parallax.
@@ -11,15 +11,15 @@ pub enum DisparityError {
         /// How many there are.
         views: usize,
     },
-    /// A view is asked for that is not there.
-    #[error("view {view} is asked for, but there are {views} (views are counted from 0)")]
+    /// A request for a view that does not exist.
+    #[error("view {view} was requested, but there are only {views} views (views are counted from 0)")]
     NoSuchView {
-        /// The view that is asked for.
+        /// The requested view.
         view: usize,
         /// How many there are.
         views: usize,
     },
-    /// A picture does not have the size that it says, or that the others have.
+    /// A picture does not have the size that is specified, or that the others have.
     #[error("view {view}: {what} (all views need one size, {smallest} pixels a side or more)", smallest = crate::view::MIN_SIDE_PX)]
     Size {
         /// The view.
@@ -28,7 +28,7 @@ pub enum DisparityError {
         what: String,
     },
     /// A pixel that is no number.
-    #[error("view {view}, pixel ({x}, {y}): not a finite number (replace it by the colour beside it)")]
+    #[error("view {view}, pixel ({x}, {y}): not a finite number (replace it with a neighbouring colour)")]
     NotFinite {
         /// The view.
         view: usize,
@@ -37,15 +37,15 @@ pub enum DisparityError {
         /// The pixel's row.
         y: usize,
     },
-    /// A position that is no number, or that two views share.
-    #[error("view {view}: {what} (every view needs a place of its own in the grid)")]
+    /// A position that is no finite number, or that two views share.
+    #[error("view {view}: {what} (every view needs a position of its own in the grid)")]
     Position {
         /// The view.
         view: usize,
         /// What is wrong.
         what: String,
     },
-    /// A range of disparities from which nothing can be chosen.
+    /// A range of disparities that is empty.
     #[error("disparities from {low} to {high}: {why}")]
     Range {
         /// The least, pixels a step of the grid.
@@ -55,21 +55,21 @@ pub enum DisparityError {
         /// What is wrong, and what to do.
         why: String,
     },
-    /// Too few disparities are known to read colours by.
-    #[error("{samples} known disparities are too few to read a map of colours by (give 40 or more)")]
+    /// Too few known disparities to decode colours.
+    #[error("{samples} known disparities are too few to decode a colour-coded map (give 40 or more)")]
     TooFewSamples {
         /// How many there are.
         samples: usize,
     },
-    /// A known disparity that is no number or lies outside of the map.
-    #[error("known disparity {sample}: outside of the map or not a finite number (leave it out)")]
+    /// A known disparity that is no number or lies outside the map.
+    #[error("known disparity {sample}: outside the map or not a finite number (leave it out)")]
     SampleOutside {
         /// Which, counted from 0.
         sample: usize,
     },
-    /// A picture whose colours are no code of the disparities that are known.
+    /// A picture whose colours are no code of the known disparities.
     #[error(
-        "the map of colours cannot be read: {why} (residual {percent:.1} % of the range; give the map that belongs to these views)"
+        "the colour-coded map cannot be decoded: {why} (residual {percent:.1} % of the range; give the map that belongs to these views)"
     )]
     NotColourCoded {
         /// The median residual, percent of the range that was fitted.
@@ -77,7 +77,7 @@ pub enum DisparityError {
         /// What is wrong.
         why: String,
     },
-    /// The watcher stopped it.
+    /// `progress` cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }

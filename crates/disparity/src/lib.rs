@@ -1,52 +1,62 @@
-//! Disparity of a light field's views, found from the pictures alone: no training, no files, only numbers.
+//! Disparity of a light field's views, computed from the pictures alone: no training, no files, only numbers.
 //!
-//! Views lie on a plane, at places of a grid: a full one, a cross, a row, a hexagon, three by three far apart. A point that the
-//! reference shows at (x, y) is at (x − d Δcolumn, y − d Δrow) in a view (Δcolumn, Δrow) steps away; d is its *disparity*, larger
-//! for what is nearer. [`find`] tells it for every pixel of the reference, and of other views as far as they are asked for, so
-//! that background which the reference does not see is known, too.
+//! Views lie on a plane, at positions of a grid: a full grid, a cross, a row, a hexagon, three by three far apart. A point that the
+//! reference shows at (x, y) is at (x − d Δcolumn, y − d Δrow) in a view (Δcolumn, Δrow) steps away; d is its *disparity*, larger for
+//! nearer points. [`estimate_disparities`] computes it for every pixel of the reference, and of other views on request, so that background
+//! which is hidden from the reference gets disparities, too.
 //!
-//! The road: `planes` (pictures as they are matched) → `vignetting` (outer views evened out) and `coarse` (a first look at small
-//! pictures: the range) → `sweep` (what every disparity costs, by the best half of the views: `halves`) → `semi_global` (costs of
-//! neighbours joined) → `choice` (a `label` a pixel; by strips: `matching`) → `refinement`: in rounds, what views that see a point
-//! say of its place (`hiding`, `evidence`), and least squares with its neighbours (`lines`) → `strays` (specks) → `other_view` (moved there, and what
-//! was hidden matched anew). Values are encoded as for display: there noise is even. The result does not depend on how many
-//! threads there are.
+//! The stages: `planes` (pictures as they are matched) → `vignetting` (outer views brightened) and `matching::coarse` (small pictures: the
+//! range) → `matching` (the cost of every disparity by plane sweep, over the best half of the views; costs of neighbours aggregated; a
+//! label per pixel) → `refinement` (in rounds, evidence of the views in which a point is visible, and least squares with its
+//! neighbours) → `specks` (isolated outliers) → `other_view` (maps warped to other views, and what was hidden matched anew). Values are
+//! encoded as for display: there noise is uniform. The result does not depend on the number of threads.
 //!
-//! [`colour_coded`] is the other way to disparities: a map that a program wrote as colours, read back with the help of a few
-//! disparities that are known.
+//! [`colour_coded`] is another source of disparities: it decodes a map that a program wrote as colours, with the help of a few known
+//! disparities.
 //!
-//! Not modelled: gloss that moves (views disagree: low confidence), glass, views that are turned or not evenly spaced otherwise than
-//! by their positions.
+//! Not modelled: gloss that moves (views disagree: low confidence), glass, views that are rotated or unevenly spaced other than by their
+//! positions.
+//!
+//! ```
+//! use disparity::{DisparityRequest, Picture, View, estimate_disparities};
+//! use progress::Unwatched;
+//!
+//! // A textured wall that moves by two pixels from view to view.
+//! let wall = |step: usize| -> Vec<[f32; 3]> {
+//!     (0..32 * 32).map(|i| [((i % 32 + 2 * step) * 7919 % 97 + i / 32 * 31 % 53) as f32 / 150.0; 3]).collect()
+//! };
+//! let pictures = [wall(0), wall(1), wall(2)];
+//! let views: Vec<View> = (0..3)
+//!     .map(|k| View {
+//!         picture: Picture { width: 32, height: 32, rgb: &pictures[k] },
+//!         position: [k as f64, 0.0],
+//!     })
+//!     .collect();
+//! let request = DisparityRequest { reference: 1, range: Some((0.0, 4.0)), ..DisparityRequest::default() };
+//! let map = &estimate_disparities(&views, &request, &Unwatched).unwrap()[0];
+//! assert!((map.disparity[16 * 32 + 16] - 2.0).abs() < 0.2);
+//! ```
 
-mod asked;
-mod checks;
-mod choice;
-mod coarse;
 pub mod colour_coded;
 mod error;
-mod evidence;
-mod find;
-mod halves;
-mod hiding;
-mod labels;
-mod lines;
+mod estimation;
 mod map;
 mod matching;
 mod noise;
 mod other_view;
 mod planes;
 mod refinement;
-mod semi_global;
-mod strays;
-mod sweep;
+mod request;
+mod specks;
+mod validation;
 mod view;
 mod vignetting;
 
-pub use asked::DisparityRequest;
 pub use error::DisparityError;
-pub use find::estimate_disparities;
+pub use estimation::estimate_disparities;
 pub use map::DisparityMap;
+pub use request::DisparityRequest;
 pub use view::{MIN_SIDE_PX, Picture, View};
 
-/// Changes whenever what is found does: of maps that are kept.
+/// The version of the results: changes whenever they do, so that cached maps are recomputed.
 pub const VERSION: u32 = 2;

@@ -1,20 +1,28 @@
-//! Labels for a picture: costs, joined, and the best chosen; in strips, so that memory stays bounded.
+//! Labels for a picture: costs by plane sweep, aggregated, and the best label chosen; in strips, so that memory stays
+//! bounded.
 
-use crate::choice::{Choice, choose};
-use crate::labels::Labels;
+pub mod choice;
+pub mod coarse;
+pub mod halves;
+pub mod labels;
+pub mod semi_global;
+pub mod sweep;
+
+use crate::matching::choice::{Choice, choose};
+use crate::matching::labels::Labels;
+use crate::matching::semi_global::{Penalties, aggregate};
+use crate::matching::sweep::{ShiftedView, plane_sweep};
 use crate::planes::Planes;
-use crate::semi_global::{Penalties, aggregate};
-use crate::sweep::{ShiftedView, plane_sweep};
 use progress::{Cancelled, Progress, Stage};
 use rayon::prelude::*;
 
-/// Costs that are held at once (three numbers of 16 bits each): 240 MB.
+/// Costs in memory at once (three numbers of 16 bits each): 240 MB.
 const COSTS: usize = 40_000_000;
 
-/// Rows that a strip overlaps the next by: paths of costs begin there and have settled where it counts.
+/// Rows by which strips overlap: paths of costs begin there and have converged where they count.
 const OVERLAP: usize = 32;
 
-/// The choice for every pixel of the reference.
+/// The label of every pixel of the reference.
 pub fn match_labels(
     reference: &Planes,
     others: &[ShiftedView<'_>],

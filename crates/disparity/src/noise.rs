@@ -1,9 +1,10 @@
-//! How noisy the views are: from how the nearest of them differ where they show the same.
+//! The noise level of the views: from the differences of the nearest of them where they show the same point.
 
+use crate::matching::sweep::ShiftedView;
 use crate::planes::Planes;
-use crate::sweep::ShiftedView;
+use numerics::{MAD_OF_NORMAL, upper_median};
 
-/// What 8 bits and a renderer without noise leave; certainties are counted in it.
+/// The noise of 8-bit values from a noise-free renderer; the unit of certainties.
 const MIN_NOISE: f32 = 0.003;
 
 /// The standard deviation of the noise of a value, from the median of the differences to the nearest views.
@@ -24,11 +25,7 @@ pub fn estimate_noise(reference: &Planes, others: &[ShiftedView<'_>], disparity:
             sizes.push(differences[1]);
         }
     }
-    if sizes.is_empty() {
-        return MIN_NOISE;
-    }
-    let middle = sizes.len() / 2;
-    let median = *sizes.select_nth_unstable_by(middle, f32::total_cmp).1;
+    let Some(median) = upper_median(&mut sizes) else { return MIN_NOISE };
     // A difference of two values, one of them a mean of up to four: √(1 + 4/9) = 1.2 standard deviations.
-    (median / 0.6745 / 1.2).max(MIN_NOISE)
+    (median / MAD_OF_NORMAL as f32 / 1.2).max(MIN_NOISE)
 }

@@ -1,23 +1,24 @@
-//! Disparities of another view: those of the reference, moved there, and the background that it sees besides.
+//! Disparities of another view: those of the reference, warped there, and the background that is visible only from it.
 //!
-//! A pixel of the reference with disparity d is at x − d b in the view at b, with the same d. Between neighbours that are one
-//! surface the map is continuous, so pairs of triangles are filled, the nearest first. What no triangle covers was hidden from the
-//! reference or is beyond its frame: there all views are matched anew, with the moved pixels held fast, so that both views have
-//! one surface.
+//! A pixel of the reference with disparity d is at x − d b in the view at b, with the same d. Between neighbours of one surface the map is
+//! continuous, so the parallelogram that each pixel covers is drawn, and the nearest wins. Pixels that stay uncovered were hidden from
+//! the reference or are beyond its frame: there all views are matched anew, with the warped pixels fixed, so that both views have one
+//! surface.
 
-use crate::choice::choose;
-use crate::evidence::Evidence;
-use crate::labels::Labels;
+use crate::matching::choice::choose;
+use crate::matching::labels::Labels;
+use crate::matching::semi_global::{Penalties, aggregate};
+use crate::matching::sweep::{CostVolume, FULL_COST, ShiftedView, plane_sweep};
 use crate::planes::Planes;
 use crate::refinement::Refinement;
-use crate::semi_global::{Penalties, aggregate};
-use crate::sweep::{CostVolume, FULL_COST, ShiftedView, plane_sweep};
+use crate::refinement::evidence::Evidence;
 use progress::{Cancelled, Progress, Stage};
 
-/// Neighbours whose disparities differ so that they part by more than this in the other view are two surfaces, pixels.
+/// Neighbours whose disparities differ so much that they separate by more than this in the other view are two
+/// surfaces, pixels.
 const PARTING_PX: f32 = 0.7;
 
-/// What moved from the reference: disparity and confidence; NaN where nothing did.
+/// The warped map: disparity and confidence; NaN where nothing was warped to.
 pub struct WarpedMap {
     /// Disparities.
     pub disparity: Vec<f32>,
@@ -25,7 +26,7 @@ pub struct WarpedMap {
     pub confidence: Vec<f32>,
 }
 
-/// Moves a map to the view at `offset` from its own.
+/// Warps a map to the view at `offset` from its own.
 pub fn warp(disparity: &[f32], confidence: &[f32], width: usize, offset: [f32; 2]) -> WarpedMap {
     let height = disparity.len() / width;
     let mut warped =
@@ -33,7 +34,7 @@ pub fn warp(disparity: &[f32], confidence: &[f32], width: usize, offset: [f32; 2
     let reach = offset[0].abs().max(offset[1].abs());
     for y in 0..height {
         for x in 0..width {
-            // The quad to the right and below; a corner that belongs to another surface is replaced by the pixel's own plane.
+            // The quad to the right and below; a corner of another surface is replaced by the pixel's own plane.
             let own = disparity[y * width + x];
             let corner = |x: usize, y: usize| {
                 let d = disparity[y.min(height - 1) * width + x.min(width - 1)];
@@ -54,7 +55,7 @@ pub fn warp(disparity: &[f32], confidence: &[f32], width: usize, offset: [f32; 2
     warped
 }
 
-/// Draws what one pixel covers in the other view: the half pixel around it, as a plane of disparities.
+/// Draws what one pixel covers in the other view: half a pixel to every side, as a plane of disparities.
 fn draw_pixel(
     warped: &mut WarpedMap,
     width: usize,
@@ -74,7 +75,7 @@ fn draw_pixel(
         return;
     }
     let half = [0.5 * (across[0].abs() + down[0].abs()), 0.5 * (across[1].abs() + down[1].abs())];
-    // A hair more than half a pixel, so that neighbours leave no seam.
+    // A little more than half a pixel, so that neighbours leave no seam.
     let edge = 0.5 + 1e-3;
     let columns = pixels(place[0], half[0], width);
     let rows = pixels(place[1], half[1], height);
@@ -101,7 +102,8 @@ fn pixels(place: f32, half: f32, length: usize) -> std::ops::Range<usize> {
     first..(end.max(0.0) as usize).min(length)
 }
 
-/// Fills what did not move by matching, in the view `picture` with its own `others`; returns the evidence there.
+/// Fills the uncovered pixels of the view by matching it with `chosen` views; returns the disparities and the
+/// evidence.
 pub fn fill_holes(
     refinement: &Refinement<'_>,
     warped: &[f32],
@@ -133,12 +135,12 @@ pub fn fill_holes(
     Ok((disparity, evidence))
 }
 
-/// Rows whose costs are held at once.
+/// The number of rows whose costs are in memory at once.
 fn strip_rows(picture: &Planes, labels: &Labels) -> usize {
     (40_000_000 / (picture.width() * labels.count)).clamp(96.min(picture.height()), picture.height())
 }
 
-/// Lets pixels whose disparity is known cost nothing there and everything elsewhere.
+/// Sets the cost of pixels whose disparity is fixed to nothing at their label and to the maximum elsewhere.
 fn pin_costs(volume: &mut CostVolume, labels: &Labels, warped: &[f32]) {
     for (costs, d) in volume.costs.chunks_mut(labels.count).zip(warped) {
         if !d.is_nan() {

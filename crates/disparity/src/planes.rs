@@ -1,16 +1,16 @@
-//! A picture as it is matched: a plane a channel, with a column and a row more than the picture has.
+//! A picture as it is matched: one plane per channel, with one more column and row than the picture.
 //!
-//! Shifting a whole picture by a part of a pixel is then four products a value over slices of one length, which the compiler turns
-//! into vector code; the last column and row are there twice, so that the neighbour to the right and below always exists.
+//! Shifting a whole picture by a fraction of a pixel is then four products per value over slices of one length, which the compiler
+//! vectorises; the last column and row are stored twice, so that the neighbour to the right and below always exists.
 
 use crate::view::Picture;
 
-/// Three planes of a picture.
+/// The three planes of a picture.
 #[derive(Clone, Debug)]
 pub struct Planes {
     width: usize,
     height: usize,
-    /// (width + 1) × (height + 1) values a channel.
+    /// (width + 1) × (height + 1) values per channel.
     channels: [Vec<f32>; 3],
 }
 
@@ -20,7 +20,7 @@ impl Planes {
         Self::from_fn(picture.width, picture.height, |x, y| picture.rgb[y * picture.width + x])
     }
 
-    /// The planes whose pixels `colour` tells.
+    /// The planes of the colours that `colour` returns for every pixel.
     pub fn from_fn(width: usize, height: usize, colour: impl Fn(usize, usize) -> [f32; 3]) -> Self {
         let stride = width + 1;
         let mut channels: [Vec<f32>; 3] = std::array::from_fn(|_| vec![0.0; stride * (height + 1)]);
@@ -35,7 +35,7 @@ impl Planes {
         Self { width, height, channels }
     }
 
-    /// Pixels a row.
+    /// Pixels per row.
     pub fn width(&self) -> usize {
         self.width
     }
@@ -57,7 +57,7 @@ impl Planes {
         &self.channels[channel][y * stride..(y + 1) * stride]
     }
 
-    /// The colour between pixels, bilinearly; `None` beyond the centres of the outermost ones.
+    /// The bilinearly interpolated colour; `None` beyond the centres of the outermost pixels.
     pub fn sample_bilinear(&self, x: f32, y: f32) -> Option<[f32; 3]> {
         let (right, bottom) = ((self.width - 1) as f32, (self.height - 1) as f32);
         if !(x >= 0.0 && y >= 0.0 && x <= right && y <= bottom) {
@@ -77,8 +77,8 @@ impl Planes {
         }))
     }
 
-    /// The picture at 1 / `factor` of its size, each pixel the mean of those it covers; what is left over at the right and below
-    /// is dropped.
+    /// The picture at 1 / `factor` of its size, each pixel the mean of those it covers; a remainder at the right and below is
+    /// dropped.
     pub fn shrunk(&self, factor: usize) -> Self {
         let share = 1.0 / (factor * factor) as f32;
         Self::from_fn(self.width / factor, self.height / factor, |x, y| {
@@ -93,7 +93,7 @@ impl Planes {
         })
     }
 
-    /// Multiplies every pixel by what `gain` says for it.
+    /// Multiplies every pixel by what `gain` returns for it.
     pub fn scale(&mut self, gain: impl Fn(usize, usize) -> [f32; 3]) {
         let stride = self.width + 1;
         for y in 0..=self.height {

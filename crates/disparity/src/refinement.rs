@@ -1,76 +1,82 @@
-//! From labels to disparities: what the pictures tell is kept, what they leave open follows its neighbours.
+//! From labels to disparities: where the pictures determine a disparity it stays, elsewhere it follows its neighbours.
 //!
-//! Rounds of (1) the `evidence` of every pixel at its present disparity and (2) weighted least squares (`lines`) between that and
-//! neighbours, whose bonds are weak over edges of the picture and over jumps of the disparity (Geman–McClure weights of the present
-//! differences). Before the first round plain surfaces, where a label says nothing, are filled from what is certain around them, from
-//! the farther of it: thin things before a plain wall do not draw it to them.
+//! Rounds of (1) the `evidence` of every pixel at its present disparity and (2) weighted least squares (`line_relaxation`) between that
+//! and neighbours, whose bonds are weak across edges of the picture and jumps of the disparity (Geman–McClure weights of the present
+//! differences). Before the first round plain surfaces, where labels are arbitrary, are filled from certain pixels around them, from
+//! the farther ones: thin objects before a plain wall do not pull it toward them.
 
-use crate::evidence::{Evidence, collect_evidence};
-use crate::labels::Labels;
-use crate::lines::Bonds;
+pub mod evidence;
+pub mod line_relaxation;
+pub mod occlusion;
+
+use crate::matching::labels::Labels;
+use crate::matching::sweep::ShiftedView;
 use crate::planes::Planes;
-use crate::sweep::ShiftedView;
+use crate::refinement::evidence::{Evidence, collect_evidence};
+use crate::refinement::line_relaxation::Bonds;
 use progress::{Cancelled, Progress, Stage};
 
 /// Rounds of evidence and smoothing.
 const ROUNDS: usize = 5;
 
-/// How much disparities of neighbours differ, pixels in the farthest view.
+/// Typical difference of neighbouring disparities, pixels in the farthest view.
 const SLOPE_PX: f32 = 0.1;
 
 /// The difference of colours (sum of three channels) that halves a bond.
 const EDGE: f32 = 0.03;
 
-/// What a bond over an edge is at least, of one without: plain surfaces that touch nothing certain still get a value.
+/// The least bond across an edge, relative to one without: plain surfaces that touch nothing certain still get a
+/// value.
 const LEAST_BOND: f32 = 1e-4;
 
-/// Labels that neighbours differ by where a surface ends.
+/// The difference of neighbours where a surface ends, labels.
 const JUMP_LABELS: f32 = 2.0;
 
-/// Rounds that a membrane settles in, on each size of picture.
+/// Rounds that a membrane takes to converge, on each size of picture.
 const SETTLING: usize = 8;
 
-/// How much a certain pixel that is nearer than the membrane counts at first: plain surfaces are settled by what is farthest at their
-/// edges, even where that is little and far away.
+/// The weight at first of a certain pixel that is nearer than the membrane: plain surfaces lie where the farthest of their edges do, even
+/// if those are few and far away.
 const LIFT: f32 = 0.003;
 
-/// Rounds in which it counts so little, and those after them, in which what is near the membrane counts in full.
+/// Rounds with that low weight, and the rounds after them, in which pixels near the membrane have full weight.
 const BEHIND: usize = 3;
 const ATTACHED: usize = 5;
 
-/// The power of likeness that bonds a membrane: edges stop it more than they stop the last rounds.
+/// The power of colour similarity in a membrane's bonds: edges stop it more than they stop the last rounds.
 const MEMBRANE_POWER: i32 = 3;
 
-/// What a membrane's bond over an edge is at least, of one without.
+/// The least bond of a membrane across an edge, relative to one without.
 const LEAST_MEMBRANE_BOND: f32 = 1e-8;
 
-/// The membrane is taken where so much of the views sees it,
+/// The membrane is used where at least this share of the views sees it,
 const MIN_VISIBILITY: f32 = 0.5;
 
-/// and where they agree no less than this below what they did.
+/// and where their agreement drops by no more than this.
 const MAX_AGREEMENT_LOSS: f32 = 0.1;
 
-/// Certainties below this share of the smoothness' own hold no membrane: noise alone hardly ever reaches it.
+/// Certainties below this share of the smoothness do not hold the membrane: noise alone hardly ever exceeds it.
 const MIN_MEMBRANE_CERTAINTY: f32 = 0.3;
 
-/// A pixel that counts less than this beside its neighbours takes the membrane whether views agree or not.
+/// A pixel whose weight relative to its neighbours is below this takes the membrane whether views agree or not.
 const OPEN: f32 = 0.05;
 
-/// The power of the views' agreement that certainty is multiplied by: what only half of the views that see it say is not said.
+/// The power of the views' agreement that multiplies certainty: what only half of the views confirm is hardly
+/// certain.
 const AGREEMENT_POWER: i32 = 6;
 
-/// The best that is believed: pixels in the farthest view.
+/// The best accuracy: pixels in the farthest view.
 const BEST_PX: f32 = 0.01;
 
-/// Disparities that are refined.
+/// The inputs of a refinement.
 pub struct Refinement<'a> {
-    /// The picture whose disparities they are.
+    /// The picture whose disparities are refined.
     pub reference: &'a Planes,
-    /// The others.
+    /// The other views.
     pub others: &'a [ShiftedView<'a>],
     /// A part of them, spread evenly: enough for all rounds but the last.
     pub subset: &'a [ShiftedView<'a>],
-    /// The labels they come from: their range is kept.
+    /// The labels: their range is not exceeded.
     pub labels: Labels,
     /// Standard deviation of the noise of a value.
     pub noise: f32,
@@ -79,7 +85,7 @@ pub struct Refinement<'a> {
 }
 
 impl Refinement<'_> {
-    /// Refines `disparity` where it is not `known`; returns the evidence for what came out.
+    /// Refines `disparity` except where `is_fixed`; returns the evidence for the result.
     pub fn run(
         &self,
         disparity: &mut Vec<f32>,
@@ -100,7 +106,7 @@ impl Refinement<'_> {
         Ok(evidence)
     }
 
-    /// How certain every pixel is of which disparity.
+    /// The certainty and the target disparity of every pixel.
     fn data_term(
         &self,
         disparity: &[f32],
@@ -115,7 +121,7 @@ impl Refinement<'_> {
                 if is_fixed(index) {
                     return (best, *d);
                 }
-                // A step is only right nearby: no more than a label at once.
+                // A step is only valid nearby: no more than a label at once.
                 let step = own.step.clamp(-self.labels.step, self.labels.step);
                 let certainty = own.certainty * own.agreement.powi(AGREEMENT_POWER);
                 (certainty.min(best), (d + step).clamp(low, high))
@@ -123,12 +129,12 @@ impl Refinement<'_> {
             .unzip()
     }
 
-    /// The certainty that stands against one neighbour's bond.
+    /// The certainty that balances one neighbour's bond.
     fn smoothness(&self) -> f32 {
         (self.reach / SLOPE_PX).powi(2)
     }
 
-    /// How much two pixels hang together by their colours.
+    /// The similarity of two pixels by their colours.
     fn likeness(&self, a: usize, b: usize) -> f32 {
         let width = self.reference.width();
         let colour = |index: usize| self.reference.pixel(index % width, index / width);
@@ -137,8 +143,8 @@ impl Refinement<'_> {
         1.0 / (1.0 + (difference / EDGE).powi(2))
     }
 
-    /// Takes what is not certain to a membrane over what is, and what is certain, too, where views agree as well with that: beside an
-    /// edge, a plain surface may stand where the edge does, or anywhere behind it.
+    /// Moves uncertain pixels to a membrane through the certain ones; also certain ones, if the views agree as well there: next to an edge, a
+    /// plain surface may lie where the edge does, or anywhere behind it.
     fn fill_open_areas(
         &self,
         disparity: &mut [f32],
@@ -171,9 +177,9 @@ impl Refinement<'_> {
         Ok(())
     }
 
-    /// A membrane that what is certain holds and that edges of the picture cut. An edge belongs to the nearer of its two sides: a
-    /// surface lies where the farthest of its edges are, and what is nearer stands before it. So what is nearer than the membrane counts
-    /// little at first (asymmetric least squares: Newey and Powell, 1987), then as much as it is close.
+    /// A membrane that is held by certain pixels and cut by edges of the picture. An edge belongs to the nearer of its two sides: a surface
+    /// lies where the farthest of its edges are, and what is nearer occludes it. So pixels nearer than the membrane have little weight at
+    /// first (asymmetric least squares: Newey and Powell, 1987), then as much as they are close to it.
     fn membrane(&self, certainty: &[f32], target: &[f32]) -> Vec<f32> {
         let (smoothness, jump) = (self.smoothness(), self.jump());
         let bonds = Bonds::new(self.reference.width(), self.reference.height(), |a, b| {

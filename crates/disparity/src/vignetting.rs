@@ -1,40 +1,41 @@
-//! Outer views are darker towards their corners, and of another exposure: evened out before anything is matched.
+//! Outer views are darker toward their corners, and exposed differently: compensated before anything is matched.
 //!
-//! A gain of encoded values is a gain of light (a power law keeps products), so a view is to the reference as a smooth factor: a
-//! polynomial of second degree of the place for the logarithm, a channel each, fitted to the quotients of small pictures. Parallax,
-//! gloss and hidden places are outliers: weights of Tukey, with a scale from the median (Holland and Welsch, *Robust Regression
-//! Using Iteratively Reweighted Least-Squares*, 1977). Once coarse disparities are known the quotients are of the same points.
+//! A gain of encoded values is a gain of light (a power law preserves products), so a view differs from the reference by a smooth factor:
+//! a polynomial of second degree of the position for the logarithm, for each channel, fitted to the quotients of small pictures. Parallax,
+//! gloss and hidden places are outliers: Tukey's weights, with a scale from the median (Holland and Welsch, *Robust Regression Using
+//! Iteratively Reweighted Least-Squares*, 1977). Once coarse disparities are known the quotients are of the same points.
 
 use crate::planes::Planes;
+use numerics::{MAD_OF_NORMAL, upper_median};
 
 /// Terms of the polynomial: 1, x, y, x², x y, y², with x and y in [−1, 1].
 const TERMS: usize = 6;
 
-/// Values below this are too dark to tell a quotient.
+/// Values below this are too dark for a quotient.
 const DARK: f32 = 0.03;
 
-/// Places that are compared, about: they tell a gain to a tenth of a percent.
+/// The approximate number of compared pixels: they determine a gain to a tenth of a percent.
 const PLACES: usize = 3000;
 
-/// Pixels that are needed for a fit.
+/// The least number of pixels for a fit.
 const MIN_QUOTIENTS: usize = 60;
 
-/// The natural logarithm below which a gain is none.
+/// A gain whose natural logarithm is below this is negligible.
 const NEGLIGIBLE_LOG_GAIN: f32 = 0.002;
 
-/// What a view has to be multiplied by to look as the reference does.
+/// The factor that makes a view as bright as the reference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gain {
     coefficients: [[f64; TERMS]; 3],
 }
 
 impl Gain {
-    /// The gain of the small picture `view`, where pixel (x, y) of the reference is at (x − d u, y − d v); `None` for its disparity
-    /// is the same place. No gain where too little can be compared.
+    /// The gain of the small picture `view`, where pixel (x, y) of the reference is at (x − d u, y − d v), or at the same place if there are no
+    /// disparities. A gain of 1 where too little can be compared.
     pub fn fit(reference: &Planes, view: &Planes, offset: [f32; 2], disparity: Option<&[f32]>) -> Self {
         let (width, height) = (reference.width(), reference.height());
         let mut quotients: [Vec<(f64, [f64; TERMS])>; 3] = Default::default();
-        // Places spread over the picture; an odd step follows no column.
+        // Pixels spread over the picture; an odd step follows no column.
         let step = (width * height / PLACES) | 1;
         for index in (0..width * height).step_by(step) {
             let (x, y) = ((index % width) as f32, (index / width) as f32);
@@ -53,23 +54,23 @@ impl Gain {
         Self { coefficients }
     }
 
-    /// The factor of each channel at a place of the view, shares of its width and height.
+    /// The factor of each channel at a place of the view, as shares of its width and height.
     pub fn at(&self, x: f32, y: f32) -> [f32; 3] {
         let terms = terms(x, y);
         self.coefficients.map(|own| {
             let logarithm: f64 = own.iter().zip(terms).map(|(a, b)| a * b).sum();
-            // A view that has to be brightened a hundredfold is noise; its weight says so.
+            // A view that has to be brightened a hundredfold is noise; its weight reflects that.
             logarithm.clamp(-4.6, 4.6).exp() as f32
         })
     }
 
-    /// Whether the gain is 1 within what can be told.
+    /// Whether the gain is 1 within the accuracy of the fit.
     pub fn is_negligible(&self) -> bool {
         let places = (0..25).map(|k| ((k % 5) as f32 / 4.0, (k / 5) as f32 / 4.0));
         places.flat_map(|(x, y)| self.at(x, y)).all(|gain| gain.ln().abs() < NEGLIGIBLE_LOG_GAIN)
     }
 
-    /// Brightens a view; returns how much it counts: 1 / mean gain², as its noise has grown, at most 1.
+    /// Brightens a view; returns its weight: 1 / mean gain², as its noise has grown, at most 1.
     pub fn apply(&self, view: &mut Planes) -> f32 {
         if !self.is_negligible() {
             let (width, height) = (view.width() as f32, view.height() as f32);
@@ -93,15 +94,15 @@ fn fit_robustly(quotients: &[(f64, [f64; TERMS])]) -> Option<[f64; TERMS]> {
         return None;
     }
     let mut all: Vec<f64> = quotients.iter().map(|q| q.0).collect();
-    let middle = median(&mut all);
+    let middle = upper_median(&mut all)?;
     let mut coefficients = [middle, 0.0, 0.0, 0.0, 0.0, 0.0];
     for _ in 0..8 {
         let residual = |(value, terms): &(f64, [f64; TERMS])| {
             value - coefficients.iter().zip(terms).map(|(a, b)| a * b).sum::<f64>()
         };
         let mut sizes: Vec<f64> = quotients.iter().map(|q| residual(q).abs()).collect();
-        // Tukey's 4.685 standard deviations; a median of 0 (equal pictures) leaves the values' own steps.
-        let cut = 4.685 * (median(&mut sizes) / 0.6745).max(1e-3);
+        // Tukey's 4.685 standard deviations; a median of 0 (equal pictures) is replaced by the step of 8-bit values.
+        let cut = 4.685 * (upper_median(&mut sizes)? / MAD_OF_NORMAL).max(1e-3);
         let mut system = [[0.0; TERMS + 1]; TERMS];
         for quotient in quotients {
             let share = residual(quotient) / cut;
@@ -121,7 +122,7 @@ fn fit_robustly(quotients: &[(f64, [f64; TERMS])]) -> Option<[f64; TERMS]> {
     Some(coefficients)
 }
 
-/// Gauss's elimination with pivots; `None` if the places of the quotients tell no polynomial.
+/// Gaussian elimination with pivots; `None` if the places of the quotients determine no polynomial.
 fn solve(mut system: [[f64; TERMS + 1]; TERMS]) -> Option<[f64; TERMS]> {
     let scale = (0..TERMS).map(|i| system[i][i]).fold(0.0, f64::max);
     for i in 0..TERMS {
@@ -139,11 +140,6 @@ fn solve(mut system: [[f64; TERMS + 1]; TERMS]) -> Option<[f64; TERMS]> {
         }
     }
     Some(std::array::from_fn(|i| system[i][TERMS] / system[i][i]))
-}
-
-fn median(values: &mut [f64]) -> f64 {
-    let middle = values.len() / 2;
-    *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
 #[cfg(test)]

@@ -1,29 +1,32 @@
-//! A function that only grows, through noisy samples of which some are wrong.
+//! A monotone function through noisy samples some of which are wrong.
 //!
-//! Medians of parts first, made to grow by pooling neighbours that do not (Ayer et al., *An Empirical Distribution Function for
-//! Sampling with Incomplete Information*, 1955); then means of what is not far from that. Straight between parts, and on beyond
-//! the outermost.
+//! First medians of parts, made monotone by pooling adjacent violators (Ayer et al., *An Empirical Distribution Function for Sampling with
+//! Incomplete Information*, 1955); then means of the samples that are not far from that. Linear between parts, and beyond the
+//! outermost.
 
-/// Samples of a part.
+use numerics::upper_median;
+
+/// Samples per part.
 const PART: usize = 9;
 
-/// Parts at most.
+/// The most parts.
 const PARTS: usize = 48;
 
-/// The function, as places and values.
+/// The function, as knots of (place, value).
 #[derive(Clone, Debug)]
 pub struct MonotoneFunction {
     knots: Vec<(f32, f32)>,
 }
 
 impl MonotoneFunction {
-    /// Through samples of (place, value); `None` if it does not grow.
+    /// Fits samples of (place, value); `None` if they do not grow.
     pub fn fit(samples: &[(f32, f32)]) -> Option<Self> {
         let mut sorted = samples.to_vec();
         sorted.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
-        let rough = Self::of_parts(&sorted, middle)?;
+        let median = |values: &mut [f32]| upper_median(values).expect("parts are never empty");
+        let rough = Self::of_parts(&sorted, median)?;
         let mut residuals: Vec<f32> = sorted.iter().map(|(place, v)| (rough.at(*place) - v).abs()).collect();
-        let cut = 4.0 * middle(&mut residuals);
+        let cut = 4.0 * upper_median(&mut residuals)?;
         let inliers: Vec<(f32, f32)> =
             sorted.into_iter().filter(|(place, v)| (rough.at(*place) - v).abs() <= cut).collect();
         let fine = Self::of_parts(&inliers, |values| values.iter().sum::<f32>() / values.len() as f32);
@@ -55,17 +58,12 @@ impl MonotoneFunction {
         Some(Self { knots: pools.into_iter().map(|(place, value, _)| (place, value)).collect() })
     }
 
-    /// The value at a place; beyond the samples the line of the two outermost goes on.
+    /// The value at a place; beyond the samples the line through the two outermost knots is extended.
     pub fn at(&self, place: f32) -> f32 {
         let after = self.knots.partition_point(|knot| knot.0 < place).clamp(1, self.knots.len() - 1);
         let (a, b) = (self.knots[after - 1], self.knots[after]);
         a.1 + (place - a.0) / (b.0 - a.0) * (b.1 - a.1)
     }
-}
-
-fn middle(values: &mut [f32]) -> f32 {
-    let middle = values.len() / 2;
-    *values.select_nth_unstable_by(middle, f32::total_cmp).1
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! A curve through colours: points at equal distances along it, straight between.
+//! A curve through colours: points at equal distances along it, linear between them.
 
 /// Points of a curve.
 const POINTS: usize = 64;
@@ -9,12 +9,12 @@ pub struct Palette {
     points: Vec<[f32; 3]>,
 }
 
-/// Where a colour is nearest to the curve.
+/// The nearest place of the curve to a colour.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Nearest {
     /// The place along the curve, in [0, 1].
     pub place: f32,
-    /// How far the colour is from there.
+    /// The distance of the colour from there.
     pub distance: f32,
 }
 
@@ -71,7 +71,7 @@ impl Palette {
     }
 }
 
-/// How far two colours are apart.
+/// The Euclidean distance of two colours.
 pub fn distance(a: [f32; 3], b: [f32; 3]) -> f32 {
     (0..3).map(|c| (a[c] - b[c]).powi(2)).sum::<f32>().sqrt()
 }

@@ -1,24 +1,24 @@
-//! A curve drawn into the middle of the colours it is to pass through.
+//! A curve fitted into the middle of the colours that it is to pass through.
 //!
-//! Colours are put to the nearest place of the curve, and each of its points moves to where a local line through its colours is
-//! (Hastie and Stuetzle, *Principal Curves*, JASA 1989), with a window that narrows. Colours that are rare are mixtures and noise.
+//! Colours are projected to the nearest place of the curve, and each of its points moves to where a local line through its colours is
+//! (Hastie and Stuetzle, *Principal Curves*, JASA 1989), with a window that narrows. Rare colours are mixtures and noise.
 
 use crate::colour_coded::palette::{Palette, distance};
 use std::collections::BTreeMap;
 
-/// Cells a channel that colours are counted in.
+/// Cells per channel in which colours are counted.
 const CELLS: f32 = 32.0;
 
-/// A cell counts from this share of the pixels on.
+/// The least share of the pixels for a cell to count.
 const RARE: f32 = 3e-4;
 
-/// Windows of the rounds, shares of the curve.
+/// Windows of the rounds, as shares of the curve.
 const WINDOWS: [f32; 8] = [0.08, 0.06, 0.05, 0.04, 0.03, 0.025, 0.02, 0.02];
 
 /// Colours farther than this from the curve do not move it.
 const FAR: f32 = 0.25;
 
-/// The curve that runs through the colours of a map, from a first idea of it.
+/// The curve that runs through the colours of a map, from an initial curve.
 pub fn fit_principal_curve(start: Palette, map: &[[f32; 3]]) -> Palette {
     let colours = frequent(map);
     let mut palette = start;
@@ -41,7 +41,7 @@ pub fn fit_principal_curve(start: Palette, map: &[[f32; 3]]) -> Palette {
     palette
 }
 
-/// Beyond its ends the curve goes on straight, so that colours there can pull it out.
+/// The place along the curve, extended straight beyond its ends, so that colours there can pull it outward.
 fn overshot(palette: &Palette, place: f32, colour: [f32; 3]) -> f32 {
     let points = palette.points();
     let step = 1.0 / (points.len() - 1) as f32;
@@ -59,7 +59,7 @@ fn overshot(palette: &Palette, place: f32, colour: [f32; 3]) -> f32 {
     }
 }
 
-/// Means of the colours that are not rare, each with the root of how often it is there.
+/// Means of the colours that are not rare, each weighted by the root of its count.
 fn frequent(map: &[[f32; 3]]) -> Vec<([f32; 3], f32)> {
     let mut cells: BTreeMap<[i32; 3], ([f64; 3], u32)> = BTreeMap::new();
     for colour in map {
@@ -72,7 +72,7 @@ fn frequent(map: &[[f32; 3]]) -> Vec<([f32; 3], f32)> {
     counted.map(|(sum, count)| (sum.map(|v| (v / f64::from(count)) as f32), (count as f32).sqrt())).collect()
 }
 
-/// The value at `place` of a line fitted to what is near it; `None` where nothing is.
+/// The value at `place` of a line fitted to nearby colours; `None` where there are none.
 fn local_line(placed: &[(f32, f32, [f32; 3])], place: f32, window: f32) -> Option<[f32; 3]> {
     let (mut sum, mut first, mut second) = (0.0, 0.0, 0.0);
     let (mut value, mut slope) = ([0.0; 3], [0.0; 3]);

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 fn data(name: &str) -> Option<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/lightfield").join(name);
     if !folder.is_dir() {
-        eprintln!("SKIPPED: {} is not there", folder.display());
+        eprintln!("SKIPPED: {} does not exist", folder.display());
         return None;
     }
     Some(folder)
@@ -57,13 +57,13 @@ fn show(name: &str, map: &DisparityMap, field: &Field) {
 }
 
 fn measure(name: &str, field: &Field, others: &[[f64; 2]]) -> Vec<DisparityMap> {
-    let asked = DisparityRequest {
+    let request = DisparityRequest {
         reference: field.at([0.0, 0.0]),
         others: others.iter().map(|p| field.at(*p)).collect(),
         range: None,
     };
     let start = std::time::Instant::now();
-    let maps = estimate_disparities(&field.views(), &asked, &Unwatched).expect("disparities");
+    let maps = estimate_disparities(&field.views(), &request, &Unwatched).expect("disparities");
     eprintln!("{name}: {:.2} s for {} maps", start.elapsed().as_secs_f32(), maps.len());
     for (k, map) in maps.iter().enumerate() {
         let mut sorted = map.disparity.clone();

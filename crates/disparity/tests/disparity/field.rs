@@ -11,7 +11,7 @@ pub struct Field {
 }
 
 impl Field {
-    /// The views, to be looked at.
+    /// The views, borrowed.
     pub fn views(&self) -> Vec<View<'_>> {
         let views = self.pictures.iter().zip(&self.positions);
         views

@@ -1,4 +1,4 @@
-//! Maps coded by colour: several palettes, compressed, read back by noisy samples; and pictures that are no such map.
+//! Colour-coded maps: several palettes, compressed, decoded with noisy samples; and pictures that are no such map.
 
 use crate::still_life::StillLife;
 use disparity::colour_coded::{Sample, decode};
@@ -7,7 +7,7 @@ use progress::Unwatched;
 
 const SIZE: usize = 160;
 
-/// Numbers that hang together with nothing, in [0, 1).
+/// Pseudo-random numbers in [0, 1).
 struct Dice(u64);
 
 impl Dice {
@@ -73,7 +73,7 @@ fn picture(rgb: &[[f32; 3]]) -> Picture<'_> {
 }
 
 #[test]
-fn palettes_of_unknown_order_and_scale_are_read() {
+fn palettes_of_unknown_order_and_scale_are_decoded() {
     let (truth, low, high) = truth();
     let samples = samples(&truth, low, high);
     type Code = fn(f32) -> [f32; 3];
@@ -129,14 +129,14 @@ fn a_photograph_noise_and_another_places_map_are_refused() {
 }
 
 #[test]
-fn what_cannot_be_used_is_told() {
+fn unusable_samples_are_refused() {
     let rgb = vec![[0.5; 3]; SIZE * SIZE];
     let sample = Sample { x: 3, y: 4, disparity: 0.5 };
-    let told = |samples: &[Sample]| decode(&picture(&rgb), samples, &Unwatched).unwrap_err();
-    assert_eq!(told(&[sample; 5]), DisparityError::TooFewSamples { samples: 5 });
+    let refusal = |samples: &[Sample]| decode(&picture(&rgb), samples, &Unwatched).unwrap_err();
+    assert_eq!(refusal(&[sample; 5]), DisparityError::TooFewSamples { samples: 5 });
     let mut samples = vec![sample; 50];
     samples[20].x = SIZE;
-    assert_eq!(told(&samples), DisparityError::SampleOutside { sample: 20 });
+    assert_eq!(refusal(&samples), DisparityError::SampleOutside { sample: 20 });
     samples[20] = Sample { disparity: f32::NAN, ..sample };
-    assert_eq!(told(&samples), DisparityError::SampleOutside { sample: 20 });
+    assert_eq!(refusal(&samples), DisparityError::SampleOutside { sample: 20 });
 }

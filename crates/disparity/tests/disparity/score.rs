@@ -24,9 +24,9 @@ impl std::fmt::Display for Score {
 }
 
 /// The score of the pixels that are `counted`.
-pub fn score_where(found: &[f32], truth: &[f32], counted: impl Fn(usize) -> bool) -> Score {
+pub fn score_where(estimate: &[f32], truth: &[f32], counted: impl Fn(usize) -> bool) -> Score {
     let errors: Vec<f32> =
-        (0..found.len()).filter(|i| counted(*i)).map(|i| (found[i] - truth[i]).abs()).collect();
+        (0..estimate.len()).filter(|i| counted(*i)).map(|i| (estimate[i] - truth[i]).abs()).collect();
     let count = errors.len() as f32;
     let bad = |limit: f32| 100.0 * errors.iter().filter(|e| **e > limit).count() as f32 / count;
     Score {
@@ -38,6 +38,6 @@ pub fn score_where(found: &[f32], truth: &[f32], counted: impl Fn(usize) -> bool
 }
 
 /// The score of all pixels.
-pub fn score(found: &[f32], truth: &[f32]) -> Score {
-    score_where(found, truth, |_| true)
+pub fn score(estimate: &[f32], truth: &[f32]) -> Score {
+    score_where(estimate, truth, |_| true)
 }

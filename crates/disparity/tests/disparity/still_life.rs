@@ -165,7 +165,7 @@ impl StillLife {
         let eye = [baseline * place[0], baseline * place[1], 0.0];
         let shift = focal * baseline / IN_FOCUS;
         let middle = 0.5 * (self.size as f32 - 1.0);
-        let look = |x: f32, y: f32| -> (f32, [f32; 3]) {
+        let trace = |x: f32, y: f32| -> (f32, [f32; 3]) {
             let to = [(x - middle - shift * place[0]) / focal, (y - middle - shift * place[1]) / focal, 1.0];
             // The wall closes the scene wherever the others leave it open.
             let (along, paint) = scene
@@ -180,7 +180,7 @@ impl StillLife {
             let mut sum = [0.0; 3];
             for k in 0..self.samples * self.samples {
                 let inside = |k: usize| (k as f32 + 0.5) / self.samples as f32 - 0.5;
-                let (_, colour) = look(x + inside(k % self.samples), y + inside(k / self.samples));
+                let (_, colour) = trace(x + inside(k % self.samples), y + inside(k / self.samples));
                 sum.iter_mut().zip(colour).for_each(|(sum, value)| *sum += value);
             }
             let share = 1.0 / (self.samples * self.samples) as f32;
@@ -193,7 +193,7 @@ impl StillLife {
                     - 6.0;
                 sum[c] * share + self.noise * normal
             });
-            let (depth, _) = look(x, y);
+            let (depth, _) = trace(x, y);
             (colour, focal * baseline * (1.0 / depth - 1.0 / IN_FOCUS))
         };
         let (rgb, disparity) = (0..self.size * self.size).into_par_iter().map(pixel).unzip();

@@ -16,9 +16,9 @@ fn photographed(positions: Vec<[f64; 2]>, parallax: f32, noise: f32) -> (Field, 
     (Field { width: SIZE, height: SIZE, pictures, positions }, truths)
 }
 
-fn found(field: &Field, others: Vec<usize>, range: Option<(f32, f32)>) -> Vec<DisparityMap> {
-    let asked = DisparityRequest { reference: field.at([0.0, 0.0]), others, range };
-    let maps = estimate_disparities(&field.views(), &asked, &Unwatched).expect("disparities");
+fn estimate(field: &Field, others: Vec<usize>, range: Option<(f32, f32)>) -> Vec<DisparityMap> {
+    let request = DisparityRequest { reference: field.at([0.0, 0.0]), others, range };
+    let maps = estimate_disparities(&field.views(), &request, &Unwatched).expect("disparities");
     for map in &maps {
         assert_eq!(map.disparity.len(), SIZE * SIZE);
         assert!(map.disparity.iter().all(|d| d.is_finite()));
@@ -28,7 +28,7 @@ fn found(field: &Field, others: Vec<usize>, range: Option<(f32, f32)>) -> Vec<Di
 }
 
 /// The score where limits are a parallax of 1 in the farthest view: maps of other baselines are scaled.
-fn told(name: &str, map: &DisparityMap, truth: &[f32], scale: f32) -> Score {
+fn printed_score(name: &str, map: &DisparityMap, truth: &[f32], scale: f32) -> Score {
     let scaled = |values: &[f32]| values.iter().map(|v| v * scale).collect::<Vec<_>>();
     let score = score(&scaled(&map.disparity), &scaled(truth));
     eprintln!("{name}: {score}");
@@ -39,11 +39,11 @@ fn told(name: &str, map: &DisparityMap, truth: &[f32], scale: f32) -> Score {
 fn five_by_five_views_and_the_same_mirrored() {
     let (mut field, truths) = photographed(grid(2, 2), 1.0, 0.005);
     let middle = field.at([0.0, 0.0]);
-    let score = told("grid", &found(&field, Vec::new(), None)[0], &truths[middle], 1.0);
+    let score = printed_score("grid", &estimate(&field, Vec::new(), None)[0], &truths[middle], 1.0);
     assert!(score.bad_007 < 25.0 && score.bad_03 < 10.0, "{score}");
-    // Positions the wrong way round: nothing of it can be right.
+    // Mirrored positions: no disparity can be right.
     field.positions.iter_mut().for_each(|p| *p = p.map(|v| -v));
-    let wrong = told("mirrored", &found(&field, Vec::new(), None)[0], &truths[middle], 1.0);
+    let wrong = printed_score("mirrored", &estimate(&field, Vec::new(), None)[0], &truths[middle], 1.0);
     assert!(wrong.bad_007 > 60.0, "{wrong}");
 }
 
@@ -56,7 +56,8 @@ fn a_row_a_cross_and_a_hexagon() {
         [("row", grid(4, 0), 0.7, 1.0), ("cross", cross, 0.8, 1.0), ("hexagon", hexagon, 2.0, 0.5)]
     {
         let (field, truths) = photographed(positions, parallax, 0.003);
-        let score = told(name, &found(&field, Vec::new(), None)[0], &truths[field.at([0.0, 0.0])], scale);
+        let score =
+            printed_score(name, &estimate(&field, Vec::new(), None)[0], &truths[field.at([0.0, 0.0])], scale);
         assert!(score.bad_007 < 30.0 && score.bad_03 < 12.0, "{name}: {score}");
     }
 }
@@ -64,10 +65,10 @@ fn a_row_a_cross_and_a_hexagon() {
 #[test]
 fn three_by_three_views_far_apart() {
     let (field, truths) = photographed(grid(1, 1), 4.0, 0.003);
-    let map = &found(&field, Vec::new(), None)[0];
-    let score = told("wide", map, &truths[4], 0.25);
+    let map = &estimate(&field, Vec::new(), None)[0];
+    let score = printed_score("wide", map, &truths[4], 0.25);
     assert!(score.bad_007 < 30.0 && score.bad_03 < 12.0, "{score}");
-    // The range that was found is about the true one; the ends are stray pixels within its margin.
+    // The estimated range is about the true one; the ends are outliers within its margin.
     let ends = |values: &[f32]| {
         values.iter().fold((f32::MAX, f32::MIN), |(low, high), v| (low.min(*v), high.max(*v)))
     };
@@ -79,7 +80,8 @@ fn three_by_three_views_far_apart() {
 fn dark_corners_of_outer_views_change_little() {
     let (mut field, truths) = photographed(grid(2, 2), 1.0, 0.003);
     let middle = field.at([0.0, 0.0]);
-    let even = told("even", &found(&field, Vec::new(), Some((-1.6, 1.5)))[0], &truths[middle], 1.0);
+    let even =
+        printed_score("even", &estimate(&field, Vec::new(), Some((-1.6, 1.5)))[0], &truths[middle], 1.0);
     for (rgb, position) in field.pictures.iter_mut().zip(&field.positions) {
         for (index, colour) in rgb.iter_mut().enumerate() {
             let at = |pixel: usize, place: f64| pixel as f64 / SIZE as f64 - 0.5 + 0.1 * place;
@@ -89,7 +91,8 @@ fn dark_corners_of_outer_views_change_little() {
             *colour = colour.map(|v| v * gain);
         }
     }
-    let dark = told("vignetted", &found(&field, Vec::new(), Some((-1.6, 1.5)))[0], &truths[middle], 1.0);
+    let dark =
+        printed_score("vignetted", &estimate(&field, Vec::new(), Some((-1.6, 1.5)))[0], &truths[middle], 1.0);
     assert!(dark.bad_007 < even.bad_007 + 3.0, "{dark} instead of {even}");
 }
 
@@ -97,13 +100,15 @@ fn dark_corners_of_outer_views_change_little() {
 fn outer_views_have_the_surface_of_the_middle_one_and_more() {
     let (field, truths) = photographed(grid(2, 2), 1.0, 0.003);
     let (middle, corner) = (field.at([0.0, 0.0]), field.at([-2.0, 2.0]));
-    let maps = found(&field, vec![corner, middle], None);
+    let maps = estimate(&field, vec![corner, middle], None);
     assert_eq!(maps.iter().map(|m| m.view).collect::<Vec<_>>(), [middle, corner, middle]);
     assert_eq!(maps[0], maps[2]);
-    let (own, there) =
-        (told("middle", &maps[0], &truths[middle], 1.0), told("corner", &maps[1], &truths[corner], 1.0));
+    let (own, there) = (
+        printed_score("middle", &maps[0], &truths[middle], 1.0),
+        printed_score("corner", &maps[1], &truths[corner], 1.0),
+    );
     assert!(there.bad_007 < own.bad_007 + 8.0, "{there}");
-    // What the middle does not see: points of the corner's view whose place there belongs to something nearer.
+    // Hidden from the middle: points of the corner's view whose place there is occluded by something nearer.
     let hidden = |index: usize| {
         let d = truths[corner][index];
         let (x, y) = ((index % SIZE) as f32 + 2.0 * -d, (index / SIZE) as f32 + 2.0 * d);
@@ -118,10 +123,10 @@ fn outer_views_have_the_surface_of_the_middle_one_and_more() {
 }
 
 #[test]
-fn confidence_tells_where_errors_are() {
+fn confidence_is_low_where_errors_are() {
     let (field, truths) = photographed(grid(2, 2), 1.0, 0.005);
     let middle = field.at([0.0, 0.0]);
-    let map = &found(&field, Vec::new(), None)[0];
+    let map = &estimate(&field, Vec::new(), None)[0];
     let mut order: Vec<usize> = (0..SIZE * SIZE).collect();
     order.sort_unstable_by(|a, b| map.confidence[*b].total_cmp(&map.confidence[*a]));
     let half = |indices: &[usize]| {

@@ -1,4 +1,4 @@
-//! What is no light field is told.
+//! Invalid light fields and requests are refused.
 
 use disparity::{DisparityError, DisparityRequest, Picture, View, estimate_disparities};
 use progress::{Progress, Unwatched};
@@ -8,28 +8,31 @@ fn view(rgb: &[[f32; 3]], position: [f64; 2]) -> View<'_> {
 }
 
 #[test]
-fn each_mistake_has_its_sentence() {
+fn each_mistake_has_its_error() {
     let rgb = vec![[0.5; 3]; 320];
     let mut broken = rgb.clone();
     broken[45][1] = f32::NAN;
     let two = [view(&rgb, [0.0, 0.0]), view(&rgb, [1.0, 0.0])];
-    let asked = |reference, range| DisparityRequest { reference, others: Vec::new(), range };
-    let told = |views: &[View<'_>], asked: &DisparityRequest| {
-        estimate_disparities(views, asked, &Unwatched).unwrap_err()
+    let request = |reference, range| DisparityRequest { reference, others: Vec::new(), range };
+    let refusal = |views: &[View<'_>], request: &DisparityRequest| {
+        estimate_disparities(views, request, &Unwatched).unwrap_err()
     };
-    assert_eq!(told(&two[..1], &asked(0, None)), DisparityError::TooFewViews { views: 1 });
-    assert_eq!(told(&two, &asked(2, None)), DisparityError::NoSuchView { view: 2, views: 2 });
+    assert_eq!(refusal(&two[..1], &request(0, None)), DisparityError::TooFewViews { views: 1 });
+    assert_eq!(refusal(&two, &request(2, None)), DisparityError::NoSuchView { view: 2, views: 2 });
     let others = DisparityRequest { others: vec![7], ..DisparityRequest::default() };
-    assert_eq!(told(&two, &others), DisparityError::NoSuchView { view: 7, views: 2 });
+    assert_eq!(refusal(&two, &others), DisparityError::NoSuchView { view: 7, views: 2 });
     let nan = [two[0], view(&broken, [1.0, 0.0])];
-    assert_eq!(told(&nan, &asked(0, None)), DisparityError::NotFinite { view: 1, x: 5, y: 2 });
-    assert!(matches!(told(&[two[0], two[0]], &asked(0, None)), DisparityError::Position { view: 1, .. }));
+    assert_eq!(refusal(&nan, &request(0, None)), DisparityError::NotFinite { view: 1, x: 5, y: 2 });
+    assert!(matches!(
+        refusal(&[two[0], two[0]], &request(0, None)),
+        DisparityError::Position { view: 1, .. }
+    ));
     let nowhere = [two[0], view(&rgb, [f64::INFINITY, 0.0])];
-    assert!(matches!(told(&nowhere, &asked(0, None)), DisparityError::Position { view: 1, .. }));
+    assert!(matches!(refusal(&nowhere, &request(0, None)), DisparityError::Position { view: 1, .. }));
     let short = [two[0], view(&rgb[1..], [1.0, 0.0])];
-    assert!(matches!(told(&short, &asked(0, None)), DisparityError::Size { view: 1, .. }));
+    assert!(matches!(refusal(&short, &request(0, None)), DisparityError::Size { view: 1, .. }));
     for range in [(1.0, 1.0), (f32::NAN, 1.0), (2.0, -2.0)] {
-        assert!(matches!(told(&two, &asked(0, Some(range))), DisparityError::Range { .. }));
+        assert!(matches!(refusal(&two, &request(0, Some(range))), DisparityError::Range { .. }));
     }
 }
 
@@ -52,7 +55,7 @@ fn a_picture_without_texture_has_finite_disparities_and_no_confidence() {
 }
 
 #[test]
-fn it_stops_when_nobody_wants_it() {
+fn it_stops_when_cancelled() {
     struct Stop;
     impl Progress for Stop {
         fn report(&self, _fraction: f32) {}

@@ -1,4 +1,4 @@
-//! Costs of neighbours joined: semi-global matching.
+//! Aggregation of costs: semi-global matching.
 //!
 //! Along eight directions through the picture the cost of a label is that of the best path that ends there, where a step to the
 //! next label costs `small` and a larger one `large`, less at edges of the picture (Hirschmüller, *Stereo Processing by Semiglobal
@@ -8,18 +8,18 @@
 //! L(p, l) = C(p, l) + min(L(q, l), L(q, l ± 1) + small, min L(q) + large) − min L(q)
 //! ```
 //!
-//! Four of the directions come from above or the left, four from below or the right: two passes that run side by side.
+//! Four of the directions come from above or the left, four from below or the right: two passes that run in parallel.
 
+use crate::matching::sweep::{CostVolume, FULL_COST};
 use crate::planes::Planes;
-use crate::sweep::{CostVolume, FULL_COST};
 use progress::{Cancelled, Progress};
 
-/// What steps between labels cost.
+/// The costs of steps between labels.
 #[derive(Clone, Copy, Debug)]
 pub struct Penalties {
-    /// To the next label, of [`FULL_COST`].
+    /// To the next label, as a share of [`FULL_COST`].
     pub small: f32,
-    /// To one farther away, of [`FULL_COST`], where the picture shows no edge.
+    /// To one farther away, as a share of [`FULL_COST`], where the picture has no edge.
     pub large: f32,
     /// The difference of colours (sum of three channels) that halves `large`.
     pub edge: f32,
@@ -31,7 +31,7 @@ impl Default for Penalties {
     }
 }
 
-/// The joint costs of a volume: the sum of eight directions, as `volume.costs` is laid out.
+/// The aggregated costs of a volume: the sum of eight directions, laid out as `volume.costs`.
 pub fn aggregate(
     volume: &CostVolume,
     guide: &Planes,
@@ -56,7 +56,7 @@ enum PassDirection {
 /// More than any path costs, and far from the largest i16.
 const WALL: i16 = 12_000;
 
-/// The sum of four directions: along the row, and from the row before straight and from both sides.
+/// The sum of four directions: along the row, and from the previous row straight and diagonally from both sides.
 fn pass(
     volume: &CostVolume,
     guide: &Planes,
@@ -71,7 +71,7 @@ fn pass(
     let mut before = [path(), path(), path()];
     let mut now = [path(), path(), path()];
     let mut along = [vec![WALL; stride], vec![WALL; stride]];
-    // The least of each path, beside it.
+    // The least cost of each path.
     let mut least_before = [vec![0i16; width], vec![0i16; width], vec![0i16; width]];
     let mut least_now = least_before.clone();
     let step: isize = if direction == PassDirection::Down { 1 } else { -1 };
@@ -118,7 +118,7 @@ fn pass(
     Ok(sums)
 }
 
-/// A path begins: it costs what its first pixel does.
+/// Begins a path: it costs what its first pixel does.
 fn begin(costs: &[i16], sums: &mut [i16], path: &mut [i16]) -> i16 {
     let path = &mut path[1..=costs.len()];
     path.copy_from_slice(costs);
@@ -126,7 +126,7 @@ fn begin(costs: &[i16], sums: &mut [i16], path: &mut [i16]) -> i16 {
     costs.iter().copied().fold(WALL, i16::min)
 }
 
-/// A path goes on by a pixel; returns its least cost.
+/// Extends a path by a pixel; returns its least cost.
 fn extend(
     costs: &[i16],
     sums: &mut [i16],

@@ -1,49 +1,49 @@
-//! What every disparity costs at every pixel: how far the views differ from the reference when they are shifted by it.
+//! The cost of every disparity at every pixel: how far the views differ from the reference when they are shifted by it.
 //!
-//! A plane sweep (Collins, *A Space-Sweep Approach to True Multi-Image Matching*, CVPR 1996): with the views on a plane, trying one
+//! A plane sweep (Collins, *A Space-Sweep Approach to True Multi-Image Matching*, CVPR 1996): with the views on a plane, testing one
 //! disparity d for the whole picture is a shift of the whole view by −d · offset. Differences are sums of the three channels'
-//! absolute ones, cut at [`TRUNCATION`], so that a few views that see something else do not count for more than that; of the
-//! halves of the views (`halves`) the one that agrees best is taken. Where a shifted view ends, it is not asked.
+//! absolute ones, truncated at [`TRUNCATION`], so that a few views that see something else do not dominate; of the halves of the views
+//! (`halves`) the one that agrees best counts. A view does not count beyond its shifted border.
 
-use crate::halves::Halves;
-use crate::labels::Labels;
+use crate::matching::halves::Halves;
+use crate::matching::labels::Labels;
 use crate::planes::Planes;
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Where a difference (sum of three channels, of white) counts as "sees something else".
+/// Where a difference (sum of three channels, of white) is truncated.
 pub const TRUNCATION: f32 = 0.25;
 
 /// A cost of [`TRUNCATION`] in units of the volume.
 pub const FULL_COST: f32 = 2000.0;
 
-/// What of the cost is that of the best half; the rest is that of all views. Beside an edge of a plain surface half of the views
-/// agree with *any* disparity, for in them the edge moves away: all views together tell which is right. Where something is hidden,
-/// all views together prefer the right one still, if less clearly.
+/// The share of the best half in the cost; the rest is that of all views. Next to an edge of a plain surface half of the views agree with
+/// *any* disparity, for in them the edge moves away: all views together decide which is right. Where something is hidden, all views
+/// together still prefer the right one, if less clearly.
 const BEST_HALF: f32 = 0.65;
 
-/// Rows that are matched at once: few enough that what is summed stays near the processor.
+/// Rows that are matched at once: few, so that the sums stay in the cache.
 const BAND: usize = 8;
 
-/// A view that is shifted.
+/// A shifted view.
 #[derive(Clone, Copy)]
 pub struct ShiftedView<'a> {
-    /// Its pixels, evened out.
+    /// Its pixels, after vignetting compensation.
     pub planes: &'a Planes,
-    /// Its place relative to the reference, steps of the grid.
+    /// Its position relative to the reference, steps of the grid.
     pub offset: [f32; 2],
-    /// How much it counts; 1 for a view that was not brightened.
+    /// Its weight; 1 for a view that was not brightened.
     pub weight: f32,
 }
 
 /// Costs of some rows of the reference: for each pixel, all labels.
 pub struct CostVolume {
-    /// Pixels a row.
+    /// Pixels per row.
     pub width: usize,
-    /// The rows of the picture that are told.
+    /// The rows of the picture.
     pub rows: Range<usize>,
-    /// Costs a pixel.
+    /// Costs per pixel.
     pub labels: usize,
     /// Row by row, pixel by pixel, label by label; up to [`FULL_COST`].
     pub costs: Vec<i16>,
@@ -75,7 +75,7 @@ pub fn plane_sweep(
     Ok(CostVolume { width, rows, labels: labels.count, costs })
 }
 
-/// Sums of differences of one label over a band of rows, a group of views each.
+/// Sums of differences of one label over a band of rows, for each group of views.
 struct Sums {
     width: usize,
     rows: usize,
@@ -83,7 +83,7 @@ struct Sums {
     differences: Vec<f32>,
     /// The same for weights; first as changes from pixel to pixel.
     weights: Vec<f32>,
-    /// The weight of all views of a half.
+    /// The weight of all views of a group.
     whole: Vec<f32>,
 }
 
@@ -162,7 +162,7 @@ impl Sums {
                 differences.iter_mut().zip(&self.differences[own.clone()]).for_each(|(sum, d)| *sum += d);
                 weights.iter_mut().zip(&self.weights[own]).for_each(|(sum, w)| *sum += w);
             }
-            // Less than half of a half tells little; it may only be compared where nothing else is left.
+            // Less than half of a half determines little; it only counts where nothing else is left.
             let min_weight = 0.45 * half.iter().map(|&g| self.whole[g]).sum::<f32>();
             for ((best, d), w) in best.iter_mut().zip(&differences).zip(&weights) {
                 let mean = if *w >= min_weight { d / w } else { TRUNCATION };
@@ -179,7 +179,7 @@ impl Sums {
     }
 }
 
-/// Adds how far a row of a view, shifted, differs from a row of the reference.
+/// Adds the difference of a shifted row of a view to a row of the reference.
 fn add_differences(
     sums: &mut [f32],
     reference: &Planes,

@@ -1,26 +1,26 @@
-//! A picture of values that hang together: weighted least squares on the grid of pixels, line by line.
+//! Weighted least squares on the grid of pixels with smoothness between neighbours, line by line.
 //!
-//! A row whose neighbours above and below are known is a tridiagonal system: solved exactly in one walk there and back. Rows and
-//! columns in turn carry what is known across plain surfaces in a few rounds (line relaxation; Min et al., *Fast Global Image
-//! Smoothing Based on Weighted Least Squares*, TIP 2014, section III for lines), across the whole picture if coarser ones are
-//! settled first. Columns are rows of the transposed picture.
+//! A row whose neighbours above and below are fixed is a tridiagonal system: solved exactly in one pass there and back. Rows and columns in
+//! turn propagate values across plain surfaces in a few rounds (line relaxation; Min et al., *Fast Global Image Smoothing Based on
+//! Weighted Least Squares*, TIP 2014, section III for lines), and across the whole picture if coarser grids are solved first. Columns
+//! are rows of the transposed picture.
 
 use rayon::prelude::*;
 
-/// Pixels a side that pictures are not made smaller than; there so many times as many rounds cost nothing.
+/// The shortest side of the coarsest grid, pixels; there so many times as many rounds cost nothing.
 const COARSEST: usize = 8;
 
-/// How much neighbours hang together.
+/// The smoothness weights between neighbours.
 pub struct Bonds {
     width: usize,
-    /// Of each pixel and the one to its right, row by row; 0 in the last column.
+    /// Between each pixel and the one to its right, row by row; 0 in the last column.
     along_rows: Vec<f32>,
-    /// Of each pixel and the one below, column by column; 0 in the last row.
+    /// Between each pixel and the one below, column by column; 0 in the last row.
     along_columns: Vec<f32>,
 }
 
 impl Bonds {
-    /// The bonds that `of` tells for pairs of indices.
+    /// The weights that `bond_between` returns for pairs of indices.
     pub fn new(width: usize, height: usize, bond_between: impl Fn(usize, usize) -> f32 + Sync) -> Self {
         let mut along_rows = vec![0.0; width * height];
         along_rows.par_chunks_mut(width).enumerate().for_each(|(y, bonds)| {
@@ -37,9 +37,9 @@ impl Bonds {
         Self { width, along_rows, along_columns }
     }
 
-    /// Finds values near the minimum that [`Bonds::relax`] goes to, wherever they start: first those of every second pixel of every
-    /// second line, and so on. What is left out counts as far as it hangs together with what stays, so that thin things and what lies
-    /// behind them are not taken for one.
+    /// Computes values near the minimum that [`Bonds::relax`] converges to, wherever they start: first on every second pixel of every second
+    /// line, and so on. Omitted pixels count as far as they are bonded to those that remain, so that thin objects and the surface behind
+    /// them are not merged.
     pub fn solve_coarse_to_fine(
         &self,
         values: &mut Vec<f32>,
@@ -68,7 +68,8 @@ impl Bonds {
         self.relax(values, certainty, target, rounds);
     }
 
-    /// What a pixel and those to the right, below and between know: the others through their bonds with it.
+    /// The weight and the target of a pixel pooled with those to the right, below and between: those count through
+    /// their bonds with it.
     fn pooled(&self, [x, y]: [usize; 2], height: usize, certainty: &[f32], target: &[f32]) -> (f32, f32) {
         let (mut sum, mut towards) = (0.0, 0.0);
         let mut add = |at: usize, bond: f32| {
@@ -103,7 +104,7 @@ impl Bonds {
         }
     }
 
-    /// Goes `rounds` rounds towards the minimum of Σ certainty (value − target)² + Σ bond (value − neighbour)².
+    /// Does `rounds` rounds toward the minimum of Σ certainty (value − target)² + Σ bond (value − neighbour)².
     pub fn relax(&self, values: &mut Vec<f32>, certainty: &[f32], target: &[f32], rounds: usize) {
         let (width, height) = (self.width, values.len() / self.width);
         let rows =
@@ -120,7 +121,7 @@ impl Bonds {
     }
 }
 
-/// Two bonds one after the other.
+/// Two bonds in series.
 fn series(a: f32, b: f32) -> f32 {
     if b.is_infinite() {
         a
@@ -131,7 +132,7 @@ fn series(a: f32, b: f32) -> f32 {
     }
 }
 
-/// Bonds along every second line of `length` between every second pixel; each stands for two lines.
+/// Bonds along every second line of `length` between every second pixel; each represents two lines.
 fn every_second(along: &[f32], length: usize) -> Vec<f32> {
     let lines = along.chunks(length).step_by(2);
     let bond = |pair: &[f32]| if let [a, b] = *pair { 2.0 * series(a, b) } else { 0.0 };
@@ -175,11 +176,11 @@ impl Side<'_> {
     }
 }
 
-/// What the walk there leaves behind: the value of `i` is `ahead` + `pull` · the value of the next.
+/// The forward pass: the value of `i` is `ahead[i]` + `pull[i]` · the next value.
 struct Walk {
     pull: Vec<f32>,
     ahead: Vec<f32>,
-    /// 1 − pull of the last, kept by itself: where almost nothing is known the difference would be lost.
+    /// 1 − pull of the last, stored by itself: where certainties are tiny the difference would cancel.
     slack: f32,
 }
 
@@ -188,19 +189,19 @@ impl Walk {
         Self { pull: Vec::with_capacity(length), ahead: Vec::with_capacity(length), slack: 0.0 }
     }
 
-    /// One step: eliminates what stands before.
+    /// One step: eliminates the previous value.
     fn step(&mut self, before: f32, after: f32, own: f32, towards: f32) {
         let last = self.ahead.last().copied().unwrap_or(0.0);
         let own = own + before * self.slack;
         let pivot = own + after;
-        // Nothing is known here or before, and nothing hangs together: any value will do.
+        // No certainty here or before, and no bond: any value will do.
         let inverse = if pivot > 0.0 { 1.0 / pivot } else { 0.0 };
         self.pull.push(after * inverse);
         self.ahead.push((towards + before * last) * inverse);
         self.slack = own * inverse;
     }
 
-    /// The walk back.
+    /// The backward pass.
     fn back(&self, values: &mut [f32]) {
         let mut next = 0.0;
         for (value, (pull, ahead)) in values.iter_mut().zip(self.pull.iter().zip(&self.ahead)).rev() {
@@ -241,7 +242,7 @@ mod tests {
 
     #[test]
     fn what_is_hardly_certain_is_still_a_number() {
-        // One pixel is known, bonds of all sizes: differences of nearly equal numbers would be divided by.
+        // One pixel is certain, bonds of all sizes: a cancelling difference would be divided by.
         let (width, height) = (40, 3);
         let bonds = Bonds::new(width, height, |a, b| if (a + b) % 3 == 0 { 1e-12 } else { 1e4 });
         let certainty: Vec<f32> = (0..width * height).map(|i| f32::from(i == 7)).collect();
@@ -252,7 +253,8 @@ mod tests {
 
     #[test]
     fn what_is_far_away_settles_a_plain_surface_and_a_line_before_it_stays() {
-        // A plain picture of which one side is known, and before it a line two pixels wide that is known to be nearer.
+        // A plain picture of which one side is certain, and before it a line two pixels wide that is certain to be
+        // nearer.
         let (width, height) = (150, 90);
         let line = |i: usize| (70..72).contains(&(i % width)) && i / width >= 60;
         let bonds = Bonds::new(width, height, |a, b| if line(a) == line(b) { 1.0 } else { 1e-6 });

@@ -1,6 +1,8 @@
-//! Single pixels on no surface: taken to those around them.
+//! Single pixels that belong to no surface: replaced by their surroundings.
 
-/// Pixels of the eight around that belong to the same surface, at least: even a line one pixel wide has two.
+use numerics::upper_median;
+
+/// The least number of the eight neighbours of the same surface: even a line one pixel wide has two.
 const MIN_COMPANIONS: usize = 2;
 
 /// Replaces every disparity that fewer than two neighbours share to within `same` by the median of its neighbours.
@@ -21,7 +23,7 @@ pub fn remove_specks(disparity: &[f32], width: usize, same: f32) -> Vec<f32> {
             }
             let values = &mut values[..count];
             if values.iter().filter(|value| (**value - own).abs() <= same).count() < MIN_COMPANIONS {
-                cleaned[y * width + x] = *values.select_nth_unstable_by(count / 2, f32::total_cmp).1;
+                cleaned[y * width + x] = upper_median(values).unwrap_or(own);
             }
         }
     }
@@ -33,7 +35,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_speck_goes_and_a_line_stays() {
+    fn a_speck_is_removed_and_a_line_stays() {
         let (width, height) = (9, 7);
         let line: Vec<f32> = (0..width * height).map(|i| if i % width == 6 { 2.0 } else { 0.0 }).collect();
         assert_eq!(remove_specks(&line, width, 0.1)[10..50], line[10..50]);

@@ -1,38 +1,38 @@
-//! The road from views to disparities.
+//! The stages from views to disparities.
 
-use crate::asked::DisparityRequest;
-use crate::checks::validate;
-use crate::coarse::{CoarseEstimate, estimate_coarse, select_spread_views, shrink_factor};
 use crate::error::DisparityError;
-use crate::evidence::Evidence;
-use crate::labels::Labels;
 use crate::map::DisparityMap;
+use crate::matching::coarse::{CoarseEstimate, estimate_coarse, select_spread_views, shrink_factor};
+use crate::matching::labels::Labels;
 use crate::matching::match_labels;
+use crate::matching::sweep::ShiftedView;
 use crate::noise::estimate_noise;
 use crate::other_view::{fill_holes, warp};
 use crate::planes::Planes;
 use crate::refinement::Refinement;
-use crate::strays::remove_specks;
-use crate::sweep::ShiftedView;
+use crate::refinement::evidence::Evidence;
+use crate::request::DisparityRequest;
+use crate::specks::remove_specks;
+use crate::validation::validate;
 use crate::view::View;
 use crate::vignetting::Gain;
 use progress::{Cancelled, Progress, Stage};
 use rayon::prelude::*;
 
-/// Labels from one to the next: pixels in the farthest view. Finer ones are found by refinement.
+/// Spacing of labels: pixels in the farthest view. Refinement resolves finer steps.
 const STEP_PX: f32 = 0.3;
 
-/// Labels that are tried at most: 0.3 pixels of a parallax of 75; wider ranges are tried in wider steps.
+/// The most labels: 0.3 pixels at a parallax of 75; wider ranges have wider steps.
 const MAX_LABELS: usize = 250;
 
-/// Standard deviation, in pixels of the farthest view, at which a pixel is told half.
+/// Standard deviation, in pixels of the farthest view, at which confidence is halved.
 const HALF_CONFIDENCE_PX: f32 = 0.15;
 
-/// The disparities of the reference, then of the other views that are asked for, in that order.
+/// The disparities of the reference, then of the other requested views, in that order.
 ///
 /// # Errors
-/// When the views are fewer than two, differ in size, share a place or hold what is no number; when a view or range that is asked
-/// for does not exist; when `progress` cancels.
+/// The views are fewer than two, differ in size, share a position or hold non-finite values; a requested view or range does not exist; or
+/// `progress` cancels.
 pub fn estimate_disparities(
     views: &[View<'_>],
     request: &DisparityRequest,
@@ -55,7 +55,7 @@ pub fn estimate_disparities(
     Ok(maps)
 }
 
-/// Views that are evened out, and the labels that are tried.
+/// Views after vignetting compensation, and the labels.
 struct PreparedField {
     planes: Vec<Planes>,
     places: Vec<[f64; 2]>,
@@ -66,7 +66,7 @@ struct PreparedField {
     noise: std::sync::OnceLock<f32>,
 }
 
-/// Evens the views out and finds the range of disparities, on small pictures.
+/// Compensates vignetting and estimates the range of disparities, on small pictures.
 fn prepare_field(
     views: &[View<'_>],
     request: &DisparityRequest,
@@ -83,7 +83,7 @@ fn prepare_field(
     progress.report(0.3);
     progress.check()?;
 
-    // Once without parallax, once with what the first look tells of it.
+    // Once without parallax, once with the coarse estimate of it.
     let coarse = |disparity: Option<&[f32]>, small: &[Planes]| -> Vec<Gain> {
         let gains = small.par_iter().zip(&offsets);
         gains.map(|(view, offset)| Gain::fit(&reference, view, *offset, disparity)).collect()
@@ -110,26 +110,26 @@ fn prepare_field(
         .collect();
     weights[request.reference] = 1.0;
 
-    // A range that is given is kept; one that is found ends where the first look does.
+    // A given range is used as it is; an estimated one ends where the coarse estimate does.
     let (low, high) = request.range.unwrap_or((estimated_range.0 / scale, estimated_range.1 / scale));
     let step = (STEP_PX / reach).max((high - low) / (MAX_LABELS - 1) as f32);
     let labels = Labels::covering(low, high, step);
     Ok(PreparedField { planes, places, weights, labels, reach, noise: std::sync::OnceLock::new() })
 }
 
-/// Some views of many, spread evenly.
+/// Some of the views, spread evenly.
 fn spread_views<'a>(views: &[ShiftedView<'a>]) -> Vec<ShiftedView<'a>> {
     let offsets: Vec<_> = views.iter().map(|view| view.offset).collect();
     select_spread_views(&offsets).into_iter().map(|k| views[k]).collect()
 }
 
-/// From one place to another.
+/// The offset from one position to another.
 fn offset(from: [f64; 2], to: [f64; 2]) -> [f32; 2] {
     std::array::from_fn(|k| (to[k] - from[k]) as f32)
 }
 
 impl PreparedField {
-    /// All other views as one sees them.
+    /// All other views as shifted relative to one.
     fn shifted(&self, reference: usize) -> Vec<ShiftedView<'_>> {
         (0..self.planes.len())
             .filter(|view| *view != reference)
@@ -146,7 +146,7 @@ impl PreparedField {
         let subset = spread_views(&others);
         let chosen = match_labels(picture, &others, &self.labels, &Stage::new(progress, 0.0, 0.5))?;
         let labelled: Vec<f32> = chosen.iter().map(|choice| choice.disparity).collect();
-        // What belongs to one surface differs by three labels at most.
+        // Disparities of one surface differ by three labels at most.
         let same = 3.0 * self.labels.step;
         let mut disparity = remove_specks(&labelled, picture.width(), same);
         let noise = *self.noise.get_or_init(|| estimate_noise(picture, &others, &disparity));
@@ -197,7 +197,8 @@ impl PreparedField {
         Ok(DisparityMap { view, width: picture.width(), height: picture.height(), disparity, confidence })
     }
 
-    /// Agreement of the views that see a point, how many they are, and how sharply they tell its place.
+    /// Agreement of the views in which a point is visible, how many they are, and how sharply they determine its
+    /// place.
     fn confidence(&self, evidence: &Evidence) -> f32 {
         let half = (self.reach / HALF_CONFIDENCE_PX).powi(2);
         let sharpness = evidence.certainty / (evidence.certainty + half);

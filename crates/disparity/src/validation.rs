@@ -1,14 +1,16 @@
-//! What a light field has to be, looked at before anything is computed.
+//! Validation of a light field and of a request, before anything is computed.
 
-use crate::asked::DisparityRequest;
 use crate::error::DisparityError;
+use crate::request::DisparityRequest;
 use crate::view::{MIN_SIDE_PX, View};
 
-/// Pixels that a view may have: what is computed for them stays below 4 GB.
+/// The most pixels of a view: the memory needed stays below 4 GB.
 const MAX_PIXELS: usize = 64_000_000;
 
+/// Checks the views and the request.
+///
 /// # Errors
-/// Whatever is wrong with the views, or with what is asked.
+/// What is wrong with the views, or with the request.
 pub fn validate(views: &[View<'_>], request: &DisparityRequest) -> Result<(), DisparityError> {
     if views.len() < 2 {
         return Err(DisparityError::TooFewViews { views: views.len() });
@@ -34,7 +36,7 @@ pub fn validate(views: &[View<'_>], request: &DisparityRequest) -> Result<(), Di
         validate_view(index, view, &views[0])?;
         if let Some(other) = views[..index].iter().position(|other| other.position == view.position) {
             let [column, row] = view.position;
-            let what = format!("it is at column {column}, row {row}, as view {other} is");
+            let what = format!("it is at column {column}, row {row}, like view {other}");
             return Err(DisparityError::Position { view: index, what });
         }
     }

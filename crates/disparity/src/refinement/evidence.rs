@@ -1,45 +1,46 @@
-//! What the views say about the disparity of a pixel beside the one it has: a Gauss–Newton step, and how certain it is.
+//! What the views contribute to the disparity of a pixel, given its present one: a Gauss–Newton step, and its certainty.
 //!
-//! With ∇I the reference's gradient, a view at offset b that sees the point shows I(x) + δ ∇I·b at the place that disparity d names
-//! if d + δ is right. So with r the differences there, over all channels and views that the point is not hidden from (`hiding`),
+//! With ∇I the reference's gradient, a view at offset b in which the point is visible shows I(x) + δ ∇I·b at the place for disparity d if
+//! d + δ is right. So with r the differences there, over all channels and all views from which the point is not hidden (`occlusion`),
 //!
 //! ```text
 //! δ = Σ w r (∇I·b) / Σ w (∇I·b)²,     1/var δ = Σ w (∇I·b)² / 3σ²
 //! ```
 //!
-//! (Lucas and Kanade, *An Iterative Image Registration Technique*, IJCAI 1981, for one offset; one unknown a pixel, for the offsets
-//! are known). The weights w are those of Geman and McClure. Noise has a gradient, too, that says nothing: it is taken off. An edge
-//! belongs to what is nearer: gradients do not reach across to what stands before the pixel.
+//! (Lucas and Kanade, *An Iterative Image Registration Technique*, IJCAI 1981, for one offset; one unknown per pixel, as the offsets are
+//! known). The weights w are those of Geman and McClure. Noise has a gradient, too, which is no evidence: it is subtracted. An edge
+//! belongs to the nearer surface: gradients do not extend across to what occludes the pixel.
 
-use crate::hiding::OcclusionTest;
+use crate::matching::sweep::ShiftedView;
 use crate::planes::Planes;
-use crate::sweep::ShiftedView;
+use crate::refinement::occlusion::OcclusionTest;
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;
 
-/// What is said about one pixel.
+/// The evidence for one pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Evidence {
-    /// What has to be added to the disparity.
+    /// The correction of the disparity.
     pub step: f32,
     /// The inverse variance of the disparity, 1 / px².
     pub certainty: f32,
-    /// The share of the views that see the point and show its colour, in [0, 1].
+    /// The share of the views in which the point is visible that show its colour, in [0, 1].
     pub agreement: f32,
-    /// The share of the views that show its place from which nothing nearer hides it, in [0, 1].
+    /// The share of the views that cover its place from which nothing nearer occludes it, in [0, 1].
     pub visibility: f32,
 }
 
-/// Where a squared residual counts as wrong: so many variances of noise,
+/// Where a squared residual counts as an outlier: so many variances of noise,
 const CUT: f32 = 9.0;
 
 /// and this part of the squared gradient, for interpolation errs more where the picture is steep.
 const STEEP: f32 = 0.02;
 
-/// How often what noise alone would make of the normal equation is taken off: three of its standard deviations or so.
+/// How many times the contribution of noise to the normal equation is subtracted: about three of its standard
+/// deviations.
 const NOISE_TAKEN_OFF: f32 = 3.0;
 
-/// The evidence for `asked` pixels of the reference at these disparities; for others none.
+/// The evidence for the requested pixels of the reference at these disparities; for others the default.
 pub fn collect_evidence(
     reference: &Planes,
     others: &[ShiftedView<'_>],
@@ -101,7 +102,8 @@ fn pixel_evidence(
         return Evidence::default();
     }
     let (agreement, visibility) = (agreeing / visible_weight, visible_weight / all);
-    // A central difference of noise has the variance σ²/2; three channels, half of the squared length along each axis.
+    // A central difference of noise has the variance σ²/2; three channels, half of the squared length along each
+    // axis.
     let by_noise = 0.75 * noise * noise * lengths;
     let signal = normal - NOISE_TAKEN_OFF * by_noise;
     if signal <= 0.0 {
@@ -110,7 +112,7 @@ fn pixel_evidence(
     Evidence { step: right_side / normal, certainty: signal / (3.0 * noise * noise), agreement, visibility }
 }
 
-/// Differences of the three channels from first to last pixel, a pixel, along a row and along a column.
+/// Differences of the three channels per pixel, from the first to the last pixel, along a row and along a column.
 fn gradient(
     picture: &Planes,
     [(left, right, y), (above, below, x)]: [(usize, usize, usize); 2],

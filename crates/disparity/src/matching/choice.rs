@@ -1,13 +1,13 @@
-//! The label that costs least, to a part of a step, and how much better it is than others.
+//! The label of least cost, with a fraction of a step, and its lead over others.
 
-use crate::labels::Labels;
+use crate::matching::labels::Labels;
 
-/// What is chosen for a pixel.
+/// The label chosen for a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Choice {
     /// The disparity: the vertex of a parabola through the least cost and its neighbours.
     pub disparity: f32,
-    /// How much more the best label that is no neighbour costs (two labels or more away).
+    /// How much more the best label costs that is no neighbour (two labels or more away).
     pub lead: i16,
 }
 

@@ -1,39 +1,40 @@
-//! A first look at small pictures: which disparities there are, and where.
+//! A coarse estimate on small pictures: which disparities there are, and where.
 
-use crate::labels::Labels;
+use crate::matching::labels::Labels;
 use crate::matching::match_labels;
+use crate::matching::sweep::{FULL_COST, ShiftedView};
 use crate::planes::Planes;
-use crate::sweep::{FULL_COST, ShiftedView};
 use progress::{Cancelled, Progress};
 
-/// Pixels a side that are plenty for a first look.
+/// Pixels of the longer side that are enough for a coarse estimate.
 const SIDE: usize = 176;
 
-/// Views that are plenty for it.
+/// Views that are enough for it.
 const VIEWS: usize = 24;
 
-/// The parallax that is looked for where no range is given: this share of a picture's width, between reference and farthest view.
+/// The parallax that is searched if no range is given: this share of a picture's width, between reference and
+/// farthest view.
 const SEARCH: f32 = 0.15;
 
-/// Labels from one to the next: pixels of the small picture in the farthest view.
+/// Spacing of labels: pixels of the small picture in the farthest view.
 const STEP_PX: f32 = 0.5;
 
-/// How much better than any other a label must be to count for the range, of eight paths' full costs.
+/// How much better than any other a label must be to count for the range, as a share of eight paths' full costs.
 const LEAD: f32 = 0.04;
 
-/// The share of the pixels that count which disparities of [`BIN`] labels must have to be in the range. Stray ones (gloss, what
-/// repeats) are scattered; even a thin rod is not.
+/// The share of the counted pixels that disparities of [`BIN`] labels must have to be in the range. Outliers (gloss, repetitive
+/// patterns) are scattered; even a thin rod is not.
 const POPULATED: f32 = 0.003;
 
 /// Labels that are counted together.
 const BIN: f32 = 2.0;
 
-/// By how much pictures are shrunk for a first look.
+/// The factor by which pictures are shrunk for a coarse estimate.
 pub fn shrink_factor(width: usize, height: usize) -> usize {
     (width.max(height) / SIDE).clamp(1, width.min(height) / crate::MIN_SIDE_PX)
 }
 
-/// Views spread evenly, the farthest first: enough for a first look, or all.
+/// Indices of evenly spread views, the farthest first: enough for a coarse estimate, or all.
 pub fn select_spread_views(offsets: &[[f32; 2]]) -> Vec<usize> {
     let mut chosen: Vec<usize> = Vec::new();
     let mut clearance: Vec<f32> = offsets.iter().map(|o| o[0].hypot(o[1])).collect();
@@ -50,15 +51,15 @@ pub fn select_spread_views(offsets: &[[f32; 2]]) -> Vec<usize> {
     chosen
 }
 
-/// The first look.
+/// The coarse estimate.
 pub struct CoarseEstimate {
     /// Disparities of the small picture, in its own pixels.
     pub disparity: Vec<f32>,
-    /// The range that holds all that is certain and a margin, in pixels of the small picture.
+    /// The range of all certain disparities with a margin, in pixels of the small picture.
     pub range: (f32, f32),
 }
 
-/// Looks at small pictures for disparities in `range`, or as far as parallax is looked for.
+/// Estimates the disparities of small pictures, in `range` or as far as parallax is searched.
 pub fn estimate_coarse(
     reference: &Planes,
     others: &[ShiftedView<'_>],
@@ -72,7 +73,7 @@ pub fn estimate_coarse(
     let chosen = match_labels(reference, others, &labels, progress)?;
     let lead = (LEAD * 8.0 * FULL_COST) as i16;
     let certain: Vec<f32> = chosen.iter().filter(|c| c.lead > lead).map(|c| c.disparity).collect();
-    // Nothing is certain: what was looked at stays possible.
+    // Nothing is certain: the whole range that was searched stays possible.
     let range = populated(&certain, &labels).unwrap_or((low, high));
     // Small pictures leave half a pixel open, and the ends of slanted surfaces.
     let margin = STEP_PX / reach + 0.06 * (range.1 - range.0);
@@ -80,7 +81,7 @@ pub fn estimate_coarse(
     Ok(CoarseEstimate { disparity: chosen.iter().map(|c| c.disparity).collect(), range })
 }
 
-/// From the least to the largest disparity that is no stray one.
+/// The least and the greatest disparity that is no outlier.
 fn populated(certain: &[f32], labels: &Labels) -> Option<(f32, f32)> {
     let width = BIN * labels.step;
     let bin = |d: &f32| (((d - labels.low) / width).max(0.0) as usize).min(labels.count);

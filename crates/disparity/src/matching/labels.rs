@@ -1,13 +1,13 @@
-//! The disparities that are tried, evenly spaced.
+//! The candidate disparities, evenly spaced.
 
 /// Disparities `low + label · step`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Labels {
-    /// The disparity of label 0, pixels a step of the grid.
+    /// The disparity of label 0, pixels per step of the grid.
     pub low: f32,
-    /// From one label to the next, pixels a step of the grid.
+    /// From one label to the next, pixels per step of the grid.
     pub step: f32,
-    /// How many there are, at least 3.
+    /// Number of labels, at least 3.
     pub count: usize,
 }
 

@@ -1,21 +1,21 @@
-//! Which views a point of the reference is hidden from, by the disparities of what is around it.
+//! Which views a point of the reference is hidden from, by the disparities around it.
 //!
-//! A point (x, d) and another (x′, d′) of the reference lie on one ray of the view at offset b where x′ = x + (d′ − d) b. So the
-//! point is hidden there if, walking from x along b, some pixel is nearer by just as much as has been walked: the ray that leaves
-//! the point then meets that pixel. What the ray passes behind or in front of hides nothing, so that views see past thin things.
+//! A point (x, d) and another (x′, d′) of the reference lie on one ray of the view at offset b if x′ = x + (d′ − d) b. So the point is
+//! occluded there if, walking from x along b, some pixel is nearer by just as much as has been walked: the ray that leaves the point
+//! then meets that pixel. Surfaces that the ray passes behind or in front of do not occlude, so that views see past thin objects.
 
-/// Pixels a side of the tiles that tell how near anything around is.
+/// Side of a tile, pixels; each stores the largest disparity around it.
 const TILE: usize = 8;
 
-/// The disparities of a picture, to ask what hides what.
+/// The disparities of a picture, for occlusion queries.
 pub struct OcclusionTest<'a> {
     disparity: &'a [f32],
     width: usize,
     height: usize,
-    /// For every tile, the largest disparity that is close enough to hide anything in it.
+    /// For every tile, the largest disparity that is close enough to occlude anything in it.
     nearest: Vec<f32>,
     tiles_across: usize,
-    /// What is not nearer than this hides nothing: half a pixel in the farthest view.
+    /// Surfaces that are not nearer than this do not occlude: half a pixel in the farthest view.
     margin: f32,
 }
 
@@ -50,20 +50,20 @@ impl<'a> OcclusionTest<'a> {
         }
     }
 
-    /// The largest disparity that could hide the pixel.
+    /// The largest disparity that could occlude the pixel.
     pub fn nearest_occluder(&self, x: usize, y: usize) -> f32 {
         self.nearest[y / TILE * self.tiles_across + x / TILE]
     }
 
-    /// Neighbours that do not stand before the pixel at this disparity, or the pixel itself: columns to the left and right and the row,
-    /// rows above and below and the column.
+    /// Neighbours that do not occlude the pixel at this disparity, or else the pixel itself: columns to the left and right and the row, rows
+    /// above and below and the column.
     pub fn unoccluded_neighbours(
         &self,
         (x, y): (usize, usize),
         disparity: f32,
     ) -> [(usize, usize, usize); 2] {
         let limit = disparity + self.margin;
-        // The next but one counts, too: an edge is blurred over two pixels.
+        // The second neighbour counts, too: an edge is blurred over two pixels.
         let side = |own: usize, last: usize, step: isize, at: &dyn Fn(usize) -> usize| {
             let next = |k: isize| (own as isize + k * step).clamp(0, last as isize) as usize;
             if [1, 2].iter().all(|k| self.disparity[at(next(*k))] <= limit) { next(1) } else { own }
@@ -77,7 +77,8 @@ impl<'a> OcclusionTest<'a> {
         ]
     }
 
-    /// Whether the pixel, at this disparity, is hidden from the view at `offset`; `nearest` is what [`Hiding::nearest`] says.
+    /// Whether the pixel, at this disparity, is hidden from the view at `offset`; `nearest` is that of
+    /// [`Self::nearest_occluder`].
     pub fn is_occluded(
         &self,
         (x, y): (usize, usize),
@@ -100,7 +101,7 @@ impl<'a> OcclusionTest<'a> {
                 return false;
             }
             let nearer = self.disparity[row as usize * self.width + column as usize] - disparity;
-            // Three quarters of a step to either side: two pixels beside one another leave no gap.
+            // Three quarters of a step to either side: two adjacent pixels leave no gap.
             if nearer > self.margin && (nearer - risen).abs() <= 0.75 * step {
                 return true;
             }
@@ -109,7 +110,7 @@ impl<'a> OcclusionTest<'a> {
     }
 }
 
-/// For every tile the largest of those that `around` names.
+/// For every tile the largest of those that `around` lists.
 fn largest_around<I: Iterator<Item = (usize, usize)>>(
     tiles: &[f32],
     across: usize,

@@ -1,8 +1,8 @@
-//! Halves of the views: where something nearer hides a point from one side, those on the other side still agree.
+//! Halves of the views: where something nearer occludes a point from one side, the views on the other side still agree.
 //!
-//! What hides a point of the reference lies on one side of it, and so do the views that it is hidden from. A point is therefore
-//! judged by the half plane of views that agrees best (Kang, Szeliski and Chai, *Handling Occlusions in Dense Multi-view Stereo*,
-//! CVPR 2001, have halves of a row; Strecke, Alperovich and Goldluecke, *Accurate Depth and Normal Maps from Occlusion-aware Focal
+//! What occludes a point of the reference lies on one side of it, and so do the views that it is hidden from. The cost of a point is
+//! therefore that of the half plane of views that agrees best (Kang, Szeliski and Chai, *Handling Occlusions in Dense Multi-view
+//! Stereo*, CVPR 2001, use halves of a row; Strecke, Alperovich and Goldluecke, *Accurate Depth and Normal Maps from Occlusion-aware Focal
 //! Stack Symmetry*, CVPR 2017, those of a cross). Views that lie in the same half planes are summed first: a *group*.
 
 /// Directions of half planes, evenly around: every edge in a picture is within 22.5° of the border of one.
@@ -20,7 +20,7 @@ pub struct Halves {
 }
 
 impl Halves {
-    /// The halves of views at these offsets from the reference (which is not among them).
+    /// The halves of views at these offsets from the reference (which is not one of them).
     pub fn from_offsets(offsets: &[[f32; 2]]) -> Self {
         let reach = offsets.iter().map(|o| o[0].hypot(o[1])).fold(0.0, f32::max);
         let signature = |offset: &[f32; 2]| -> Vec<bool> {
