@@ -1,4 +1,4 @@
-//! What can keep a surface from being made.
+//! Errors of making a surface.
 
 use progress::Cancelled;
 

@@ -1,6 +1,6 @@
-//! The picture, and a margin around it.
+//! The picture with a margin around it.
 
-use crate::cells::Grid;
+use crate::mesh::cells::Grid;
 
 /// A grid with the picture in its middle.
 pub(crate) struct Frame {
@@ -19,7 +19,7 @@ impl Frame {
         [self.grid.width - 2 * self.margin, self.grid.height - 2 * self.margin]
     }
 
-    /// The picture's pixels, and in the margin those at its border.
+    /// The picture's values, and in the margin those at its border.
     pub fn continued<T: Copy>(&self, values: &[T]) -> Vec<T> {
         (0..self.grid.count()).map(|cell| values[self.pixel(cell)]).collect()
     }

@@ -1,28 +1,28 @@
-//! What goes on behind what stands before it.
+//! Continuation of surfaces behind their occluders.
 //!
-//! Where depth jumps, the farther side is continued beneath the nearer one, as far as the rim of the aperture may look behind it: over a
-//! cell of disparity d, behind which d′ lies, by a parallax of d − d′.
+//! Where depth jumps, the farther side is continued behind the nearer one, as far as the rim of the aperture can see behind it: behind a
+//! cell of disparity d, a surface of disparity d′ by a parallax of d − d′.
 
-use crate::cells::{Grid, Links, Side};
+use crate::mesh::cells::{Grid, Links, Side};
 use std::collections::VecDeque;
 
-/// Cells beyond what the aperture may see, so that what is resampled there has neighbours.
+/// Cells beyond those that are visible through the aperture, so that resampling there has neighbours.
 const MARGIN: f32 = 2.0;
-/// Rounds in which what goes on is evened out.
+/// Rounds of smoothing of the continuation.
 const ROUNDS: usize = 24;
 
 /// The second layer.
 pub(crate) struct HiddenLayer {
-    /// Disparity of each cell; none where nothing is hidden that matters.
+    /// Disparity of each cell; NaN where nothing hidden is needed.
     pub disparity: Vec<f32>,
     pub links: Links,
-    /// For each cell, on which sides (left, right, above, below) it goes on from a cell of the first layer.
+    /// For each cell, on which sides (left, right, above, below) it continues a cell of the first layer.
     pub onward: Vec<[bool; 4]>,
     /// The cells, from the jumps inward.
     pub order: Vec<usize>,
 }
 
-/// Where in [`Hidden::onward`] a side stands.
+/// The index of a side in [`HiddenLayer::onward`].
 pub(crate) fn side_index(side: Side) -> usize {
     match side {
         Side::Left => 0,
@@ -33,7 +33,7 @@ pub(crate) fn side_index(side: Side) -> usize {
 }
 
 /// Continues what lies behind jumps. `reach` is the aperture's radius (disparity times it is a parallax, px), `jump` the least step of
-/// disparity that is a jump, `further` so many cells beyond.
+/// disparity that is a jump, `further` the number of additional cells.
 pub(crate) fn continue_hidden(
     grid: Grid,
     front: &[f32],
@@ -46,7 +46,7 @@ pub(crate) fn continue_hidden(
     let mut distance = vec![u32::MAX; grid.count()];
     let mut onward = vec![[false; 4]; grid.count()];
     let mut queue = VecDeque::new();
-    // A cell behind goes on beneath its neighbour in front.
+    // A cell behind continues beneath its neighbour in front.
     for cell in 0..grid.count() {
         for (side, other) in grid.around(cell) {
             let is_before = front[cell] - front[other] > jump;
@@ -59,7 +59,7 @@ pub(crate) fn continue_hidden(
                 queue.push_back(cell);
                 disparity[cell] = front[other];
             } else {
-                // Several go on here: the farthest is behind all.
+                // Several surfaces continue here: the farthest is behind all.
                 disparity[cell] = disparity[cell].min(front[other]);
             }
         }
@@ -89,7 +89,7 @@ pub(crate) fn continue_hidden(
                 own_links.set(cell, side, true);
             }
         }
-        // It goes on only from what it still lies beside.
+        // It continues only from what it still lies next to.
         for (side, other) in grid.around(cell) {
             let is_beside = onward[cell][side_index(side)] && (front[other] - disparity[cell]).abs() <= jump;
             onward[cell][side_index(side)] = is_beside;
@@ -98,7 +98,7 @@ pub(crate) fn continue_hidden(
     HiddenLayer { disparity, links: own_links, onward, order }
 }
 
-/// A membrane between the jumps that it goes on from.
+/// A membrane between the jumps from which it continues.
 fn even_out(
     grid: Grid,
     front: &[f32],
@@ -125,7 +125,7 @@ fn even_out(
             })
             .collect();
         for (&cell, next) in order.iter().zip(next) {
-            // It stays behind what hides it.
+            // It stays behind its occluder.
             disparity[cell] = next.min(front[cell] - jump);
         }
     }
@@ -134,7 +134,7 @@ fn even_out(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::jumps;
+    use crate::edges::jumps;
 
     #[test]
     fn a_wall_continues_behind_a_card_as_far_as_the_aperture_sees() {

@@ -1,52 +1,53 @@
 //! A picture and its disparities as a surface.
 //!
-//! All is thought in the picture's own space: columns, rows, and disparity, in which a plane of the world is linear and which no scale or
-//! offset of the disparities changes. Lengths are told as *parallax*: by how many pixels a disparity moves what the picture shows between
-//! the middle of the aperture and its rim.
+//! All computation is in the picture's own space: columns, rows, and disparity, in which planes of the world are linear and which does not
+//! depend on scale and offset of the disparities. Lengths are measured as *parallax*: the number of pixels by which a disparity moves a
+//! point of the picture between the middle of the aperture and its rim.
 //!
 //! ```text
 //! disparities ─▶ jumps ─▶ matte ─▶ hidden ─▶ corners ─▶ triangulation ─▶ Relief
-//!  (a pixel each)  │       │ ▲        │                                   ▲
-//!                  │       │ │        └──────▶ texture (from other_views, ┘
-//!                  │       │ └ snapping                 or invented)
-//!                  │       └ pixels that show both sides told apart (cut by an outline, or there in part)
-//!                  └ cut where depth jumps, pixels between put on one side
+//!  (per pixel)    │       │ ▲        │                                   ▲
+//!                 │       │ │        └──────▶ texture (resampled from    ┘
+//!                 │       │ └ snapping         other views, or invented)
+//!                 │       └ pixels that show both sides separated (cut by an outline, or translucent)
+//!                 └ cut where depth jumps, pixels between two depths assigned to one side
 //! ```
 //!
-//! A pixel is a cell between four corners; cells beside each other share corners unless depth jumps between them. Behind what stands before
-//! something, a second layer of cells goes on as far as the aperture may look. Triangles are joined while the surface stays within a
-//! tolerance (`triangulation`). What the picture shows and other views show otherwise is `gloss`. Every layer has the whole picture's place in the texture, one below the other: the texture is an atlas, and
-//! the picture is its upper part.
+//! A pixel is a cell between four corners; adjacent cells share corners unless depth jumps between them. Behind an occluder a second layer
+//! of cells continues as far as the aperture can see behind it. Triangles are merged while the surface stays within a tolerance
+//! (`mesh::triangulation`). Where other views show another colour than the picture, that is `gloss`. Every layer has the whole picture's
+//! area in the texture, one below the other: the texture is an atlas, and the picture is its upper part.
+//!
+//! ```
+//! use progress::Unwatched;
+//! use relief::{Relief, ReliefOptions};
+//! use std::convert::Infallible;
+//!
+//! // A flat picture is two triangles.
+//! let (disparity, picture) = (vec![0.0; 8 * 6], vec![[0.5; 3]; 8 * 6]);
+//! let options = ReliefOptions::default();
+//! let relief = Relief::build::<Infallible>([8, 6], &disparity, &picture, &[], &options, &Unwatched).unwrap();
+//! assert!(relief.triangles.len() < 2 * 8 * 6 && relief.hidden_triangles() == 0);
+//! ```
 
-mod cells;
-mod corners;
-mod covers;
+mod color_stats;
+mod depth_map;
+mod edges;
 mod error;
-mod fading;
-mod filling;
 mod frame;
 mod gloss;
 mod hidden;
-mod jumps;
-mod look;
-mod matte;
+mod mesh;
 mod other_view;
-mod other_views;
-mod outline;
 mod relief;
-mod repair;
-mod roughness;
-mod snapping;
-mod steps;
+mod resampling;
 mod texture;
-mod triangulation;
-mod upsampling;
 
+pub use depth_map::filling::fill_unknown_disparity;
+pub use depth_map::repair::{DepthRepair, DepthStroke, apply_depth_strokes};
+pub use depth_map::roughness::measure_roughness;
+pub use depth_map::upsampling::upsample;
 pub use error::ReliefError;
-pub use filling::fill_unknown_disparity;
 pub use gloss::{GLOSS_TERMS, Gloss};
 pub use other_view::OtherView;
 pub use relief::{Relief, ReliefOptions, ReliefVertex, TEXTURE_LAYERS};
-pub use repair::{DepthRepair, DepthStroke, apply_depth_strokes};
-pub use roughness::measure_roughness;
-pub use upsampling::upsample;

@@ -1,19 +1,20 @@
 //! The surface itself.
 
-use crate::cells::{Cells, Grid, Links};
-use crate::corners::Corner;
-use crate::covers::MattedLayer;
+use crate::depth_map::rounding;
+use crate::edges::covers::MattedLayer;
+use crate::edges::matte::{MixedPixel, unmix};
+use crate::edges::snapping::snap_edges;
+use crate::edges::{jumps, matte, outline};
 use crate::error::ReliefError;
 use crate::frame::Frame;
 use crate::gloss::{Gloss, fit_gloss};
 use crate::hidden::{HiddenLayer, continue_hidden};
-use crate::matte::{MixedPixel, unmix};
+use crate::mesh::cells::{Cells, Grid, Links};
+use crate::mesh::corners::Corner;
+use crate::mesh::triangulation::{Metric, Triangulation};
 use crate::other_view::OtherView;
-use crate::other_views::{FrontLayer, TexelQuery};
-use crate::snapping::snap_edges;
+use crate::resampling::{FrontLayer, TexelQuery};
 use crate::texture::{Texture, build_texture};
-use crate::triangulation::{Metric, Triangulation};
-use crate::{jumps, matte, outline, steps};
 use glam::Vec2;
 use progress::{Progress, Stage};
 use std::collections::HashMap;
@@ -21,18 +22,19 @@ use std::collections::HashMap;
 /// How a surface is made.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReliefOptions {
-    /// The radius of the aperture that the surface is for, in steps of the views: what a disparity times it is a parallax, px. > 0.
+    /// The radius of the aperture that the surface is for, in steps of the views: disparity times it is a parallax,
+    /// px. > 0.
     pub reach: f32,
-    /// How many times as far one may look behind what stands before something, ≥ 1: what lies there is made for that.
+    /// The factor by which one may look farther behind occluders, ≥ 1: the hidden layer is made for that.
     pub beyond: f32,
-    /// How far the surface may be off, as a parallax, and its texture, px.
+    /// The largest error of the surface, as a parallax, and of its texture, px.
     pub tolerance_px: f32,
-    /// What makes disparities proportional to inverse depth when it is added. Where it is infinite, or does not make all of them positive,
-    /// nothing is known of depth, and only parallax counts.
+    /// The offset that makes disparities proportional to inverse depth. Where it is infinite, or does not make all of them positive, depth is
+    /// unknown, and only parallax counts.
     pub offset: f32,
-    /// Steps of a larger parallax between pixels are where depth jumps, px.
+    /// Steps of a larger parallax between pixels are jumps of depth, px.
     pub jump_px: f32,
-    /// How far the surface goes on around the picture, px: what the aperture sees from beside it.
+    /// How far the surface extends beyond the picture, px: what the aperture sees from beside it.
     pub margin_px: usize,
 }
 
@@ -46,11 +48,11 @@ impl Default for ReliefOptions {
 /// A point of the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReliefVertex {
-    /// Where the picture shows it, pixels from its upper left corner.
+    /// Its position in the picture, pixels from the upper left corner.
     pub place: Vec2,
     /// Its disparity.
     pub disparity: f32,
-    /// Which layer of the texture it has its colour from: 0 the picture, 1 what is behind.
+    /// The layer of the texture from which it has its colour: 0 the picture, 1 the hidden layer.
     pub layer: u8,
 }
 
@@ -59,36 +61,36 @@ pub struct ReliefVertex {
 pub struct Relief {
     /// Columns and rows of each layer of the texture: of the picture and the margin around it.
     pub size: [usize; 2],
-    /// How far the surface goes on around the picture, px.
+    /// How far the surface extends beyond the picture, px.
     pub margin: usize,
-    /// Points; each is of one layer.
+    /// Points; each belongs to one layer.
     pub vertices: Vec<ReliefVertex>,
-    /// Corners, counter-clockwise as the picture shows them.
+    /// Corner indices, counter-clockwise as the picture shows them.
     pub triangles: Vec<[u32; 3]>,
-    /// The same of what is there in part.
+    /// The triangles of translucent cells.
     pub translucent: Vec<[u32; 3]>,
     /// Linear RGB of both layers, row by row, the picture first.
     pub texture: Vec<[f32; 3]>,
-    /// By texel of the first layer, how much of it is there, in (0, 1]: less than 1 beneath the triangles that say so.
+    /// By texel of the first layer, its opacity in (0, 1]: less than 1 beneath translucent triangles.
     pub opacity: Vec<f32>,
-    /// By texel of the first layer, whether the picture shows there what is behind it, too: its colour is not the picture's.
+    /// By texel of the first layer, whether the picture also shows the background there: its colour is not the
+    /// picture's.
     pub is_matted: Vec<bool>,
-    /// By texel of both layers, whether some picture shows it; what is not was invented.
+    /// By texel of both layers, whether some picture shows it; the others were invented.
     pub is_observed: Vec<bool>,
-    /// What the first layer sends otherwise through other parts of the aperture than through the middle; none where other views show nothing
-    /// of it.
+    /// How the first layer's colour changes over the aperture; `None` if other views show no gloss.
     pub gloss: Option<Gloss>,
 }
 
 /// Layers of the texture.
-pub const TEXTURE_LAYERS: usize = crate::cells::LAYERS;
+pub const TEXTURE_LAYERS: usize = crate::mesh::cells::LAYERS;
 
 impl Relief {
-    /// Makes the surface of a picture (linear RGB) by its disparities, larger ones nearer; pixels whose disparity is no number have none.
+    /// Makes the surface of a picture (linear RGB) from its disparities, larger ones nearer; pixels whose disparity is NaN have none.
     /// Deterministic.
     ///
     /// # Errors
-    /// A view cannot be read, or `progress` says to stop.
+    /// [`ReliefError::View`] if a view cannot be read, [`ReliefError::Cancelled`] if `progress` cancels.
     ///
     /// # Panics
     /// If picture or disparities are not of the size.
@@ -106,7 +108,7 @@ impl Relief {
         let jump = options.jump_px / options.reach;
         let (mut front, shown) = (frame.continued(disparity), frame.continued(picture));
         jumps::snap(grid, &mut front, &shown, jump);
-        steps::smooth_rounding(grid, &mut front, jump);
+        rounding::smooth_rounding(grid, &mut front, jump);
         let stage = Stage::new(progress, 0.0, 0.1);
         let (stays, links) = snap_edges(&frame, &mut front, &shown, views, jump, &stage)?;
         let reach = options.reach * options.beyond;
@@ -114,7 +116,8 @@ impl Relief {
         edges.retain(|edge| !stays[edge.cell]);
         progress.check().map_err(ReliefError::Cancelled)?;
 
-        // What else is to be shown: beside the picture, behind it, and what edges are told apart by. They may move by a cell.
+        // Which colours are needed from other views: beside the picture, behind it, and behind edges. They may move
+        // by a cell.
         let behind = continue_hidden(grid, &front, &links, reach, 1.0, jump);
         let margin_cells = (0..grid.count()).filter(|&cell| !frame.is_in_picture(cell));
         let margin_queries = margin_cells.map(|cell| (cell, TexelQuery { cell, disparity: front[cell] }));
@@ -189,13 +192,13 @@ impl Relief {
         })
     }
 
-    /// How many of its triangles lie behind others.
+    /// The number of triangles of the hidden layer.
     pub fn hidden_triangles(&self) -> usize {
         self.triangles.iter().filter(|corners| self.vertices[corners[0] as usize].layer > 0).count()
     }
 }
 
-/// The first layer as far as the picture alone tells its edges apart.
+/// The first layer with its edges matted from the picture alone.
 struct PictureMatte {
     disparity: Vec<f32>,
     opacity: Vec<f32>,
@@ -225,7 +228,7 @@ fn matte_from_picture(
     PictureMatte { disparity, opacity, colors }
 }
 
-/// Triangles as they are found, and the points that they share.
+/// Triangles and the points that they share.
 struct Mesh {
     vertices: Vec<ReliefVertex>,
     triangles: Vec<[u32; 3]>,
@@ -268,7 +271,7 @@ impl Mesh {
         *index
     }
 
-    /// A layer's triangles, but for cells that are not whole.
+    /// Adds a layer's triangles, except for cells that are not whole.
     fn add(
         &mut self,
         cells: &Cells,
@@ -283,7 +286,7 @@ impl Mesh {
             if !is_whole(cells.grid.at(least[0], least[1])) {
                 continue;
             }
-            // Of the points at a corner it has that of its own cell there: towards its middle.
+            // Of the points at a corner it uses that of its own cell there: toward its middle.
             let sum = [0, 1].map(|axis| triangle.corners.iter().map(|at| at[axis]).sum::<usize>());
             let corners = triangle
                 .corners
@@ -294,14 +297,14 @@ impl Mesh {
         }
     }
 
-    /// A cell of the first layer that is there in part.
+    /// Adds a translucent cell of the first layer.
     fn add_translucent(&mut self, cells: &Cells, cell: usize) {
         let corners = [[false, false], [false, true], [true, true], [true, false]];
         let [a, b, c, d] = corners.map(|at| self.vertex(0, cells.corner(0, cell, at)));
         self.translucent.extend([[a, b, c], [a, c, d]]);
     }
 
-    /// Part of a cell of the first layer: the outline, in it.
+    /// Adds a part of a cell of the first layer: the outline, in it.
     fn add_part(&mut self, cells: &Cells, cell: usize, outline: &[Vec2]) {
         let grid = cells.grid;
         let corner = Vec2::new((cell % grid.width) as f32, (cell / grid.width) as f32);
@@ -327,7 +330,7 @@ impl Mesh {
     }
 }
 
-/// Of cells of the first layer that are there in part, where in them, if a line tells.
+/// The translucent cells of the first layer, with the outline in each if its edge is a straight line.
 fn outlines<'a>(
     cells: &'a Cells,
     opacity: &'a [f32],
@@ -339,12 +342,12 @@ fn outlines<'a>(
         let mut shares = [[0.0; 3]; 3];
         for (dy, row) in shares.iter_mut().enumerate() {
             for (dx, share) in row.iter_mut().enumerate() {
-                // The border goes on.
+                // The border is extended.
                 let x = (x + dx).saturating_sub(1).min(grid.width - 1);
                 let y = (y + dy).saturating_sub(1).min(grid.height - 1);
                 let step = front[grid.at(x, y)] - front[cell];
                 *share = match step {
-                    // What stands before it hides what it would tell.
+                    // An occluder hides the coverage there.
                     step if step > jump => return None,
                     step if step >= -jump => opacity[grid.at(x, y)],
                     _ => 0.0,

@@ -1,27 +1,31 @@
-//! The colours of what goes on behind and beside the picture: as other views show it; where none does, from around, known as invented.
+//! The colours of the hidden layer and of the margin: from other views; where none shows them, from around, marked as
+//! invented.
 
-use crate::cells::Grid;
-use crate::fading::fade;
+mod fading;
+
+use crate::color_stats::ColorStats;
+use crate::edges::matte::{MixedPixel, unmix};
 use crate::hidden::{HiddenLayer, side_index};
-use crate::look::ColorStats;
-use crate::matte::{MixedPixel, unmix};
+use crate::mesh::cells::Grid;
+use crate::texture::fading::fade;
 use rayon::prelude::*;
 
-/// Texels around the second layer that are filled from it, so that interpolation finds something.
+/// Texels around the second layer that are filled from it, for interpolation.
 const RIM: usize = 2;
-/// Rounds in which what was invented is evened out.
+/// Rounds in which invented colours are smoothed.
 const ROUNDS: usize = 32;
 
 /// The colours of both layers.
 pub(crate) struct Texture {
     pub colors: [Vec<[f32; 3]>; 2],
-    /// By layer and cell, which some view shows.
+    /// By layer and cell, whether some view shows it.
     pub is_observed: Vec<bool>,
-    /// By cell, how much of the first layer is there.
+    /// By cell, the opacity of the first layer.
     pub opacity: Vec<f32>,
 }
 
-/// Completes the picture: `told` is what other views show by cell, of what is beside the picture and of what goes on behind it.
+/// Completes the picture: `observed_colors` are those of other views by cell, for the margin and for the hidden
+/// layer.
 pub(crate) fn build_texture(
     grid: Grid,
     mut shown: Vec<[f32; 3]>,
@@ -47,7 +51,7 @@ pub(crate) fn build_texture(
         let cell = mixed.cell;
         let (share, [before, behind]) = unmix(shown[cell], mixed);
         (opacity[cell], shown[cell], colors[cell]) = (share, before, behind);
-        // Most of what the picture shows there is what lies behind.
+        // Most of what the picture shows there is the background.
         is_observed[grid.count() + cell] |= share <= 0.5;
     }
     fade(grid, &mut shown, &is_observed[..grid.count()]);
@@ -56,7 +60,7 @@ pub(crate) fn build_texture(
     Texture { colors: [shown, colors], is_observed, opacity }
 }
 
-/// Fills what no view shows, from the farther side inward.
+/// Fills colours that no view shows, from the farther side inward.
 fn invent(grid: Grid, picture: &[[f32; 3]], hidden: &HiddenLayer, colors: &mut [[f32; 3]]) {
     let unseen: Vec<usize> = hidden.order.iter().copied().filter(|&cell| colors[cell][0].is_nan()).collect();
     let around = |colors: &[[f32; 3]], cell: usize| {
@@ -71,7 +75,7 @@ fn invent(grid: Grid, picture: &[[f32; 3]], hidden: &HiddenLayer, colors: &mut [
         }
         (count > 0.0).then(|| sum.map(|sum| sum / count))
     };
-    // Inward, then until nothing is left that has a neighbour.
+    // Inward, until no cell is left that has a neighbour.
     let mut left = unseen.clone();
     while !left.is_empty() {
         let before = left.len();
@@ -83,7 +87,7 @@ fn invent(grid: Grid, picture: &[[f32; 3]], hidden: &HiddenLayer, colors: &mut [
             None => true,
         });
         if left.len() == before {
-            // Nothing around is known: what stands before it is all there is.
+            // No colour around is known: the occluder's is all there is.
             left.drain(..).for_each(|cell| colors[cell] = picture[cell]);
         }
     }
@@ -94,7 +98,7 @@ fn invent(grid: Grid, picture: &[[f32; 3]], hidden: &HiddenLayer, colors: &mut [
     }
 }
 
-/// Gives texels beside the layer the colours of its border, and all others none.
+/// Gives texels next to the layer the colours of its border, and all others black.
 fn fill_rim(grid: Grid, order: &[usize], colors: &mut [[f32; 3]]) {
     let mut border: Vec<usize> = order.to_vec();
     for _ in 0..RIM {

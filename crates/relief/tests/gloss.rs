@@ -1,20 +1,20 @@
-//! Gloss that moves between views: kept where there is some, and nowhere else.
+//! Gloss that moves between views: fitted where there is some, and nowhere else.
 
 use progress::Unwatched;
 use relief::{Gloss, OtherView, Relief, ReliefOptions};
 use std::convert::Infallible;
 
 const SIZE: [usize; 2] = [48, 32];
-/// Of the whole surface, px a step.
+/// Disparity of the whole surface, px per step.
 const DISPARITY: f64 = 0.4;
 
-/// A highlight that is seen brightest at a place that moves with the view, and only on the left half.
+/// A highlight whose position moves with the view, only on the left half.
 fn gloss(x: f64, y: f64, [u, v]: [f64; 2]) -> f64 {
     let (x, y) = (x - 12.0 - 1.5 * u, y - 16.0 - 1.5 * v);
     if x < 14.0 { 0.4 * (-(x * x + y * y) / 50.0).exp() } else { 0.0 }
 }
 
-/// What a view shows, with noise of 8 bits, times `bright`.
+/// The picture of a view, with noise of 8 bits, times `bright`.
 fn view(at: [f64; 2], strength: f64, bright: f64) -> Vec<[f32; 3]> {
     let pixel = |cell: usize| {
         let (column, row) = ((cell % SIZE[0]) as f64 + 0.5, (cell / SIZE[0]) as f64 + 0.5);
@@ -28,7 +28,7 @@ fn view(at: [f64; 2], strength: f64, bright: f64) -> Vec<[f32; 3]> {
     (0..SIZE[0] * SIZE[1]).map(pixel).collect()
 }
 
-/// The surface from 5 × 5 views; those beside the middle one are times `bright`.
+/// The surface from 5 × 5 views; all but the middle one are multiplied by `bright`.
 fn made(strength: f64, bright: f64) -> Relief {
     let places = (0..25).map(|k| [f64::from(k % 5 - 2), f64::from(k / 5 - 2)]).filter(|at| *at != [0.0; 2]);
     let views: Vec<OtherView<'_, Infallible>> = places
@@ -42,25 +42,25 @@ fn made(strength: f64, bright: f64) -> Relief {
     Relief::build(SIZE, &disparity, &view([0.0; 2], strength, 1.0), &views, &options, &Unwatched).unwrap()
 }
 
-/// What is added in the middle of a block toward a place in the aperture, in [−1, 1].
+/// The gloss of a block at a position in the aperture, in [−1, 1].
 fn added(gloss: &Gloss, block: usize, [x, y]: [f64; 2]) -> f64 {
     let number = gloss.numbers[block];
     if number == Gloss::NONE {
         return 0.0;
     }
     let mut terms = (1..=4).flat_map(|degree| (0..=degree).map(move |k| x.powi(degree - k) * y.powi(k)));
-    let of = &gloss.polynomials[number as usize];
-    of.iter().map(|by| f64::from(by[0]) * terms.next().unwrap()).sum()
+    let coefficients = &gloss.polynomials[number as usize];
+    coefficients.iter().map(|coefficient| f64::from(coefficient[0]) * terms.next().unwrap()).sum()
 }
 
 #[test]
-fn a_highlight_that_moves_is_told_and_what_is_matte_is_not() {
+fn a_moving_highlight_is_fitted_and_matte_surfaces_are_not() {
     let relief = made(1.0, 1.0);
-    let gloss_found = relief.gloss.expect("the left half is glossy");
-    assert_eq!((gloss_found.blocks, gloss_found.reach), (SIZE, [2.0; 2]));
-    // Views at the rim, told in the middle of each block.
+    let fitted = relief.gloss.expect("the left half is glossy");
+    assert_eq!((fitted.blocks, fitted.reach), (SIZE, [2.0; 2]));
+    // Views at the rim, evaluated in the middle of each block.
     let (mut with, mut without) = (0.0, 0.0);
-    for (block, number) in gloss_found.numbers.iter().enumerate() {
+    for (block, number) in fitted.numbers.iter().enumerate() {
         let (x, y) = ((block % SIZE[0]) as f64 + 0.5, (block / SIZE[0]) as f64 + 0.5);
         if x > 30.0 {
             assert_eq!(*number, Gloss::NONE, "nothing at {x}, {y}");
@@ -69,7 +69,7 @@ fn a_highlight_that_moves_is_told_and_what_is_matte_is_not() {
         for at in [[1.0, 0.0], [-1.0, 1.0], [0.5, -0.5]] {
             let expected = gloss(x, y, at.map(|at| 2.0 * at)) - gloss(x, y, [0.0; 2]);
             without += expected * expected;
-            with += (expected - added(&gloss_found, block, at)).powi(2);
+            with += (expected - added(&fitted, block, at)).powi(2);
         }
     }
     assert!(with < 0.05 * without, "{with} of {without}");

@@ -1,4 +1,4 @@
-//! Surfaces of made-up disparities: whole, within tolerance, without skins.
+//! Surfaces of synthetic disparities: complete, within tolerance, without skins.
 
 use glam::Vec2;
 use progress::Unwatched;
@@ -28,14 +28,14 @@ fn card(x: f32, y: f32) -> f32 {
     if (20.0..50.0).contains(&x) && (12.0..33.0).contains(&y) { 2.0 } else { 0.3 + 0.004 * y }
 }
 
-/// The disparity of the first layer at a place, and how many triangles are there.
+/// The disparity of the first layer at a position, and the number of triangles there.
 fn first_layer(relief: &Relief, at: Vec2) -> (f32, usize) {
-    of_layer(relief, 0, at)
+    layer_at(relief, 0, at)
 }
 
-/// The disparity of a layer at a place, and how many triangles are there.
-fn of_layer(relief: &Relief, layer: u8, at: Vec2) -> (f32, usize) {
-    let mut found = (f32::NAN, 0);
+/// The disparity of a layer at a position, and the number of triangles there.
+fn layer_at(relief: &Relief, layer: u8, at: Vec2) -> (f32, usize) {
+    let mut result = (f32::NAN, 0);
     for corners in relief.triangles.iter().chain(&relief.translucent) {
         let [a, b, c] = corners.map(|v| relief.vertices[v as usize]);
         if a.layer != layer {
@@ -46,10 +46,10 @@ fn of_layer(relief: &Relief, layer: u8, at: Vec2) -> (f32, usize) {
         let of_b = (c.place - at).perp_dot(a.place - at) / area;
         let of_c = 1.0 - of_a - of_b;
         if of_a >= 0.0 && of_b >= 0.0 && of_c >= 0.0 {
-            found = (of_a * a.disparity + of_b * b.disparity + of_c * c.disparity, found.1 + 1);
+            result = (of_a * a.disparity + of_b * b.disparity + of_c * c.disparity, result.1 + 1);
         }
     }
-    found
+    result
 }
 
 #[test]
@@ -59,10 +59,10 @@ fn it_stays_within_its_tolerance_with_few_triangles() {
     // A place of a cell's middle that lies on no diagonal.
     for y in 0..SIZE[1] {
         for x in 0..SIZE[0] {
-            let (found, count) = first_layer(&relief, Vec2::new(x as f32 + 0.47, y as f32 + 0.56));
+            let (disparity, count) = first_layer(&relief, Vec2::new(x as f32 + 0.47, y as f32 + 0.56));
             assert_eq!(count, 1, "at {x} {y}");
-            let off = (found - hill(x as f32 + 0.47, y as f32 + 0.56)).abs() * options.reach;
-            // The tolerance, and what the mean of four cells is off a corner.
+            let off = (disparity - hill(x as f32 + 0.47, y as f32 + 0.56)).abs() * options.reach;
+            // The tolerance, and the error of the mean of four cells at a corner.
             assert!(off < options.tolerance_px + 0.03, "{off} px at {x} {y}");
         }
     }
@@ -121,9 +121,9 @@ fn what_is_behind_is_joined_and_lies_beneath_the_same_cells() {
         for x in 0..SIZE[0] {
             for (right, below) in [(0.47, 0.56), (0.1, 0.2), (0.9, 0.3), (0.2, 0.9), (0.8, 0.7)] {
                 let at = Vec2::new(x as f32 + right, y as f32 + below);
-                let (found, count) = of_layer(&relief, 1, at);
+                let (disparity, count) = layer_at(&relief, 1, at);
                 assert_eq!(count, usize::from(wall(at.x, at.y) == 2.0), "{at}");
-                assert!(count == 0 || (found - 0.3).abs() < 1e-5, "{found} at {at}");
+                assert!(count == 0 || (disparity - 0.3).abs() < 1e-5, "{disparity} at {at}");
             }
         }
     }
@@ -132,7 +132,7 @@ fn what_is_behind_is_joined_and_lies_beneath_the_same_cells() {
 }
 
 #[test]
-fn no_skin_spans_a_jump_and_the_wall_goes_on_behind_the_card() {
+fn no_skin_spans_a_jump_and_the_wall_continues_behind_the_card() {
     let options = ReliefOptions { reach: 2.0, ..ReliefOptions::default() };
     let relief = surface(&disparities(card), &options);
     for corners in &relief.triangles {
@@ -141,20 +141,20 @@ fn no_skin_spans_a_jump_and_the_wall_goes_on_behind_the_card() {
         assert!(high - low < 0.1, "{all:?}");
     }
     for (x, y) in [(19.2, 20.3), (20.8, 20.3), (49.7, 32.6), (50.3, 33.4)] {
-        let (found, count) = first_layer(&relief, Vec2::new(x, y));
+        let (disparity, count) = first_layer(&relief, Vec2::new(x, y));
         assert_eq!(count, 1);
-        assert!((found - card(x, y)).abs() < 0.02, "{found} at {x} {y}");
+        assert!((disparity - card(x, y)).abs() < 0.02, "{disparity} at {x} {y}");
     }
     assert!(relief.hidden_triangles() > 100);
-    // What is behind begins where the wall ends: at the same points.
+    // The hidden layer begins where the wall ends: at the same points.
     let points = |layer: u8| {
-        let of_layer = relief.vertices.iter().filter(move |vertex| vertex.layer == layer);
-        of_layer.map(|vertex| [vertex.place.x, vertex.place.y, vertex.disparity].map(f32::to_bits))
+        let layer_at = relief.vertices.iter().filter(move |vertex| vertex.layer == layer);
+        layer_at.map(|vertex| [vertex.place.x, vertex.place.y, vertex.disparity].map(f32::to_bits))
     };
     let first: Vec<_> = points(0).collect();
     let shared = points(1).filter(|point| first.contains(point)).count();
     assert!(shared >= 2 * (30 + 21), "{shared}");
-    // Nothing shows what is behind: it is invented, of the wall's colour.
+    // No view shows the hidden layer: it is invented, with the wall's colour.
     let second = SIZE[0] * SIZE[1];
     assert!(
         relief.is_observed[..second].iter().all(|seen| *seen)
@@ -164,7 +164,7 @@ fn no_skin_spans_a_jump_and_the_wall_goes_on_behind_the_card() {
 }
 
 #[test]
-fn what_is_behind_has_the_colours_of_the_views_that_see_it() {
+fn the_hidden_layer_has_the_colours_of_views_that_show_it() {
     // A striped wall; the view from the right sees behind the card's right side.
     let disparity = disparities(card);
     let wall = |x: f32| [0.5 + 0.4 * (0.7 * x).sin(); 3];
@@ -190,7 +190,7 @@ fn what_is_behind_has_the_colours_of_the_views_that_see_it() {
         let off = relief.texture[texel][0] - wall(x as f32 + 0.5)[0];
         assert!(off.abs() < 0.03, "{off} at {x} {y}");
     }
-    // Negative control: with the views exchanged it is something else.
+    // Negative control: with the views exchanged the result differs.
     let wrong = |offset: f32| OtherView::<Infallible> { offset: [-offset, 0.0], ..view(offset) };
     let relief =
         Relief::build(SIZE, &disparity, &picture, &[wrong(2.0), wrong(-2.0)], &options, &Unwatched).unwrap();
@@ -238,7 +238,7 @@ fn soft_card(left: f32, right: f32, card: [f32; 3], wall: impl Fn(f32) -> [f32; 
     (0..SIZE[0] * SIZE[1]).map(at).collect()
 }
 
-/// How much of a pixel what stands before covers.
+/// The coverage of a pixel by the foreground.
 fn share_of_card(relief: &Relief, x: usize, y: usize) -> f32 {
     let places = (0..400).map(|k| Vec2::new((k % 20) as f32, (k / 20) as f32) / 20.0 + 0.0251);
     let at = |place: Vec2| first_layer(relief, place + Vec2::new(x as f32, y as f32));
@@ -247,7 +247,7 @@ fn share_of_card(relief: &Relief, x: usize, y: usize) -> f32 {
 }
 
 #[test]
-fn pixels_that_show_both_sides_of_a_jump_are_there_in_part() {
+fn pixels_that_show_both_sides_of_a_jump_are_translucent() {
     // 0.7 of the last pixel on the left, 0.3 of one beyond the last on the right.
     let (card, wall) = ([0.8, 0.1, 0.05], [0.05, 0.2, 0.6]);
     let picture = soft_card(20.3, 50.3, card, |_| wall);
@@ -283,16 +283,16 @@ fn whole_pixels_and_textures_are_there_as_a_whole() {
     };
     let sharp = relief(&soft_card(20.0, 50.0, [0.8, 0.1, 0.05], |_| [0.05, 0.2, 0.6]));
     assert!(!sharp.is_matted.contains(&true));
-    // Colours that are alike tell nothing.
+    // Similar colours determine nothing.
     let alike = relief(&soft_card(20.5, 50.5, [0.3, 0.3, 0.3], |_| [0.3, 0.301, 0.3]));
     assert!(!alike.is_matted.contains(&true));
-    // Neither do those that vary as much as they differ.
+    // Neither do colours that vary as much as they differ.
     let grain = |x: usize, y: usize| ((x * 7919 + y * 104_729) % 101) as f32 / 101.0;
     let grain: Vec<[f32; 3]> =
         (0..SIZE[0] * SIZE[1]).map(|cell| [grain(cell % SIZE[0], cell / SIZE[0]); 3]).collect();
     let grainy = relief(&grain);
-    let told_apart = grainy.is_matted.iter().filter(|is_told_apart| **is_told_apart).count();
-    assert!(told_apart <= 4, "{told_apart}");
+    let matted = grainy.is_matted.iter().filter(|is_matted| **is_matted).count();
+    assert!(matted <= 4, "{matted}");
 }
 
 /// [`card`], but for a wall that is upright.
@@ -301,7 +301,7 @@ fn card_at(x: f32, y: f32) -> f32 {
 }
 
 #[test]
-fn what_other_views_show_behind_an_edge_tells_how_much_of_it_is_there() {
+fn the_background_in_other_views_determines_the_opacity_of_an_edge() {
     // The wall is bright only where the card hides it, but for its last pixel: from the picture alone one cannot know.
     let wall = |x: f32| if (25.0..50.0).contains(&x) { [0.1, 0.7, 0.2] } else { [0.05, 0.2, 0.6] };
     let card = [0.8, 0.1, 0.05];
@@ -327,7 +327,7 @@ fn what_other_views_show_behind_an_edge_tells_how_much_of_it_is_there() {
 }
 
 #[test]
-fn what_lies_behind_is_told_up_to_the_edge_that_hides_it() {
+fn the_background_is_resampled_up_to_the_edge_that_hides_it() {
     let wall = |x: f32| [0.05, 0.4 + 0.3 * (0.4 * x).sin(), 0.6];
     let shown = |offset: f32| {
         let (near, far) = (2.0 * offset, 0.3 * offset);
@@ -344,14 +344,14 @@ fn what_lies_behind_is_told_up_to_the_edge_that_hides_it() {
     // The last view looks 6.8 px behind it: where it shows the wall last, half of a pixel is the card's.
     for x in 43..50 {
         let behind = SIZE[0] * SIZE[1] + 20 * SIZE[0] + x;
-        let (told, expected) = (relief.texture[behind], wall(x as f32 + 0.5));
-        assert!((0..3).all(|c| (told[c] - expected[c]).abs() < 0.02), "{told:?}, not {expected:?} at {x}");
+        let (color, expected) = (relief.texture[behind], wall(x as f32 + 0.5));
+        assert!((0..3).all(|c| (color[c] - expected[c]).abs() < 0.02), "{color:?}, not {expected:?} at {x}");
         assert!(relief.is_observed[behind], "{x}");
     }
 }
 
 #[test]
-fn what_looks_like_the_other_side_stays_where_views_show_it() {
+fn pixels_that_look_like_the_other_side_stay_where_views_show_them() {
     // The wall has a stripe of the card's colour right beside the card.
     let card = [0.8, 0.1, 0.05];
     let wall = |x: f32| if (50.0..51.0).contains(&x) { card } else { [0.05, 0.2, 0.6] };
@@ -364,27 +364,27 @@ fn what_looks_like_the_other_side_stays_where_views_show_it() {
         read: Box::new(move || Ok(shown(offset))),
     };
     let options = ReliefOptions { reach: 4.0, ..ReliefOptions::default() };
-    let found = |views: &[OtherView<'_, Infallible>]| {
+    let disparity_with = |views: &[OtherView<'_, Infallible>]| {
         let disparity = disparities(|x, y| if self::card(x, y) == 2.0 { 2.0 } else { 0.5 });
         let relief = Relief::build(SIZE, &disparity, &shown(0.0), views, &options, &Unwatched).unwrap();
         first_layer(&relief, Vec2::new(50.4, 20.4)).0
     };
-    assert!((found(&[]) - 2.0).abs() < 0.05, "the picture alone cannot tell");
-    let found = found(&[-4.0, -2.0, 2.0, 4.0].map(view));
-    assert!((found - 0.5).abs() < 0.05, "{found}");
+    assert!((disparity_with(&[]) - 2.0).abs() < 0.05, "the picture alone cannot decide");
+    let disparity = disparity_with(&[-4.0, -2.0, 2.0, 4.0].map(view));
+    assert!((disparity - 0.5).abs() < 0.05, "{disparity}");
 }
 
 #[test]
-fn edges_of_depth_go_where_the_picture_has_them() {
+fn edges_of_depth_are_aligned_with_the_picture() {
     let options = ReliefOptions { reach: 4.0, ..ReliefOptions::default() };
     let picture = soft_card(20.0, 50.0, [0.8, 0.1, 0.05], |_| [0.05, 0.2, 0.6]);
     // A pixel too far right on the left, and on the right.
     let moved = disparities(|x, y| if (21.0..51.0).contains(&x) { card_at(30.0, y) } else { 0.3 });
     let relief = Relief::build::<Infallible>(SIZE, &moved, &picture, &[], &options, &Unwatched).unwrap();
     for y in [15.3, 20.4, 29.6] {
-        for (x, wanted) in [(19.6, 0.3), (20.4, 2.0), (49.6, 2.0), (50.4, 0.3)] {
-            let (found, _) = first_layer(&relief, Vec2::new(x, y));
-            assert!((found - wanted).abs() < 0.05, "{found} at {x} {y}");
+        for (x, expected) in [(19.6, 0.3), (20.4, 2.0), (49.6, 2.0), (50.4, 0.3)] {
+            let (disparity, _) = first_layer(&relief, Vec2::new(x, y));
+            assert!((disparity - expected).abs() < 0.05, "{disparity} at {x} {y}");
         }
     }
 }

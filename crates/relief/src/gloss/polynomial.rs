@@ -1,48 +1,50 @@
-//! Polynomials of the place in the aperture, by least squares, and how well they tell what is left out.
+//! Polynomials of the position in the aperture, by least squares, and their leave-one-out cross-validation.
 //!
-//! With aᵢ the terms at the place of view i and N = Σ wᵢ aᵢ aᵢᵀ + ridge = L Lᵀ, qᵢ = L⁻¹ aᵢ and z = L⁻¹ Σ wᵢ aᵢ yᵢ: the polynomial of the first
-//! n terms is Σ_{t<n} qᵢₜ zₜ at view i, and leaving view i out changes it there by hᵢ = Σ_{t<n} qᵢₜ² times wᵢ eᵢ / (1 − wᵢ hᵢ), eᵢ what is left
-//! of yᵢ. As L is a triangle and terms are in order of degree, polynomials of all degrees are told at once.
+//! With aᵢ the terms at the position of view i and N = Σ wᵢ aᵢ aᵢᵀ + ridge = L Lᵀ, qᵢ = L⁻¹ aᵢ and z = L⁻¹ Σ wᵢ aᵢ yᵢ: the polynomial of the
+//! first n terms is Σ_{t<n} qᵢₜ zₜ at view i, and leaving view i out changes it there by hᵢ = Σ_{t<n} qᵢₜ² times wᵢ eᵢ / (1 − wᵢ hᵢ), eᵢ the
+//! residual of yᵢ. As L is triangular and terms are in order of degree, polynomials of all degrees are solved at once.
 //!
-//! The picture is shown as it is: its own place, the middle, has the terms of the constant alone, so that what is told of a view is the
-//! polynomial there less that in the middle.
+//! The picture is exact: its own position, the middle, has only the constant term, so that the prediction for a view is the polynomial
+//! there minus that in the middle.
 
-use super::sightings::Observation;
+use super::observations::Observation;
+use numerics::{back_substitute, decompose_positive, forward_substitute, upper_median};
 use std::borrow::Cow;
 
-/// Degrees that are tried, 0 among them.
+/// Number of degrees, including 0.
 pub(super) const DEGREES: usize = 5;
-/// Terms of the highest.
+/// Number of terms of the highest.
 pub(super) const TERMS: usize = DEGREES * (DEGREES + 1) / 2;
 
-/// A polynomial has at most so many terms for each view that tells of it.
+/// The most terms of a polynomial for each view.
 const TERMS_A_VIEW: f64 = 0.5;
-/// Added to the squares of each term, of their number: what views do not tell apart (a row, a cross) is told by as little as may be.
+/// Added to the squares of each term, times the number of views: directions that views do not determine (a row, a
+/// cross) get small coefficients.
 const RIDGE: f64 = 1e-3;
-/// Views that are farther off than so many times as the middle one of them count less (Huber 1964).
+/// Views with more than so many times the median residual have less weight (Huber 1964).
 const OUTLIER_FACTOR: f64 = 3.0;
-/// Noise is never called far off: linear light, all channels together.
+/// Residuals below the noise are never outliers: linear light, all channels together.
 const NOISE: f64 = 0.02;
-/// By a polynomial of this degree, over so many rounds.
+/// The degree of the polynomial that detects outliers, and the number of rounds.
 const OUTLIER_DEGREE: usize = 2;
 const ROUNDS: usize = 3;
-/// Where no degree leaves less than this of the squared error, no view that is far off is looked for.
+/// If no degree reduces the squared error below this share, outliers are not looked for.
 const MAX_ERROR_RATIO: f32 = 0.85;
 
-/// Terms of a degree and all below.
+/// Number of terms of a degree and all below.
 const fn terms_of(degree: usize) -> usize {
     (degree + 1) * (degree + 2) / 2
 }
 
-/// The terms at places in the aperture.
+/// The terms at positions in the aperture.
 pub(super) struct Regression {
     /// By view; the last is the picture.
     terms: Vec<[f64; TERMS]>,
-    /// What most places have: all views count alike.
+    /// The factor for equal weights of all views, which most blocks have.
     alike: Factor,
 }
 
-/// What follows from places and weights alone.
+/// What depends on positions and weights only.
 #[derive(Clone)]
 struct Factor {
     /// L, row by row.
@@ -51,7 +53,7 @@ struct Factor {
     q: Vec<[f64; TERMS]>,
 }
 
-/// A polynomial that is not solved for yet.
+/// A weighted least-squares problem in triangular form.
 struct NormalEquations<'a> {
     factor: Cow<'a, Factor>,
     z: [[f64; 3]; TERMS],
@@ -60,7 +62,7 @@ struct NormalEquations<'a> {
 }
 
 impl Regression {
-    /// Of views from these places, in [−1, 1], in the middle of which the picture is.
+    /// For views at these positions, in [−1, 1], with the picture in the middle.
     pub fn new(places: &[[f32; 2]]) -> Self {
         let terms = |place: &[f32; 2]| {
             let [x, y] = place.map(f64::from);
@@ -78,103 +80,96 @@ impl Regression {
         Self { terms, alike }
     }
 
-    /// By degree, the mean squared error of views that are left out (all channels); of 0 that of the picture alone. None where that is
-    /// at most `least`, and where no view tells of the block; infinite where too few do for a degree.
-    pub fn errors(&self, sightings: &[Observation], least: f32) -> Option<[f32; DEGREES]> {
-        let square = |sighting: &Observation| sighting.difference.iter().map(|more| more * more).sum::<f32>();
-        let total_error: f32 = sightings.iter().map(|sighting| sighting.weight * square(sighting)).sum();
-        let total_weight: f32 = sightings.iter().map(|sighting| sighting.weight).sum();
+    /// By degree, the mean squared error of predicting views that are left out (all channels); for degree 0 that of the picture alone. `None`
+    /// where that is at most `least`, and where no view shows the block; infinite for degrees with too few views.
+    pub fn errors(&self, observations: &[Observation], least: f32) -> Option<[f32; DEGREES]> {
+        let square =
+            |observation: &Observation| observation.difference.iter().map(|more| more * more).sum::<f32>();
+        let total_error: f32 =
+            observations.iter().map(|observation| observation.weight * square(observation)).sum();
+        let total_weight: f32 = observations.iter().map(|observation| observation.weight).sum();
         if total_error <= least * total_weight {
             return None;
         }
-        let first = self.weighted(sightings, self.counts(sightings)?);
-        let errors = first.errors(sightings);
+        let first = self.weighted(observations, self.counts(observations)?);
+        let errors = first.errors(observations);
         if errors[1..].iter().all(|error| *error > MAX_ERROR_RATIO * errors[0]) {
             return Some(errors);
         }
-        Some(self.reweight_outliers(sightings, first).errors(sightings))
+        Some(self.reweight_outliers(observations, first).errors(observations))
     }
 
-    /// The coefficients of the polynomial of a degree, but for the constant.
-    pub fn fit_coefficients(&self, sightings: &[Observation], degree: usize) -> [[f32; 3]; TERMS - 1] {
-        let mut coefficients = [[0.0; 3]; TERMS];
-        let Some(counts) = self.counts(sightings) else { return [[0.0; 3]; TERMS - 1] };
-        let NormalEquations { factor, z, .. } =
-            self.reweight_outliers(sightings, self.weighted(sightings, counts));
-        let triangle = &factor.triangle;
-        let count = terms_of(degree);
-        for t in (0..count).rev() {
-            for c in 0..3 {
-                let after: f64 = (t + 1..count).map(|k| triangle[k][t] * coefficients[k][c]).sum();
-                coefficients[t][c] = (z[t][c] - after) / triangle[t][t];
-            }
-        }
+    /// The coefficients of the polynomial of a degree, except the constant.
+    pub fn fit_coefficients(&self, observations: &[Observation], degree: usize) -> [[f32; 3]; TERMS - 1] {
+        let Some(counts) = self.counts(observations) else { return [[0.0; 3]; TERMS - 1] };
+        let NormalEquations { factor, z: mut coefficients, .. } =
+            self.reweight_outliers(observations, self.weighted(observations, counts));
+        let (of_degree, beyond) = coefficients.split_at_mut(terms_of(degree));
+        back_substitute(&factor.triangle, of_degree);
+        beyond.fill([0.0; 3]);
         std::array::from_fn(|t| coefficients[t + 1].map(|value| value as f32))
     }
 
-    /// How much each view counts, and the picture; none where no view does: the picture alone tells nothing.
-    fn counts(&self, sightings: &[Observation]) -> Option<Vec<f64>> {
-        let counts = sightings.iter().map(|sighting| f64::from(sighting.weight)).chain([1.0]);
-        sightings.iter().any(|sighting| sighting.weight > 0.0).then(|| counts.collect())
+    /// The weight of each view, and of the picture; `None` where no view has any: the picture alone determines
+    /// nothing.
+    fn counts(&self, observations: &[Observation]) -> Option<Vec<f64>> {
+        let counts = observations.iter().map(|observation| f64::from(observation.weight)).chain([1.0]);
+        observations.iter().any(|observation| observation.weight > 0.0).then(|| counts.collect())
     }
 
-    /// In rounds: views count less that are far off what was told in the round before.
+    /// Reweights in rounds: views with large residuals in the previous round have less weight.
     fn reweight_outliers<'a>(
         &'a self,
-        sightings: &[Observation],
+        observations: &[Observation],
         first: NormalEquations<'a>,
     ) -> NormalEquations<'a> {
         let counts = first.weights.clone();
         let mut solved = first;
         for _ in 0..ROUNDS {
-            let residuals: Vec<f64> =
-                (0..counts.len()).map(|view| solved.residual(view, difference_of(sightings, view))).collect();
+            let residuals: Vec<f64> = (0..counts.len())
+                .map(|view| solved.residual(view, difference_of(observations, view)))
+                .collect();
             let mut sorted: Vec<f64> = residuals
                 .iter()
                 .zip(&counts)
                 .filter(|(_, count)| **count > 0.0)
                 .map(|(residual, _)| *residual)
                 .collect();
-            let middle = sorted.len() / 2;
-            let far = OUTLIER_FACTOR * *sorted.select_nth_unstable_by(middle, f64::total_cmp).1;
-            let far = far.max(NOISE);
+            let Some(median) = upper_median(&mut sorted) else { break };
+            let far = (OUTLIER_FACTOR * median).max(NOISE);
             if residuals.iter().zip(&counts).all(|(&residual, &count)| residual <= far || count == 0.0) {
                 break;
             }
             let weight = |(&count, &residual): (&f64, &f64)| {
                 if residual > far { count * far / residual } else { count }
             };
-            solved = self.weighted(sightings, counts.iter().zip(&residuals).map(weight).collect());
+            solved = self.weighted(observations, counts.iter().zip(&residuals).map(weight).collect());
         }
         solved
     }
 
-    fn weighted(&self, sightings: &[Observation], weights: Vec<f64>) -> NormalEquations<'_> {
+    fn weighted(&self, observations: &[Observation], weights: Vec<f64>) -> NormalEquations<'_> {
         let factor = match weights.iter().all(|weight| *weight == 1.0) {
             true => Cow::Borrowed(&self.alike),
             false => Cow::Owned(Factor::new(&self.terms, &weights)),
         };
         let mut z = [[0.0; 3]; TERMS];
-        // The picture shows no more than itself.
-        for ((sighting, terms), weight) in sightings.iter().zip(&self.terms).zip(&weights) {
-            let difference = sighting.difference.map(|more| weight * f64::from(more));
+        // The picture does not differ from itself.
+        for ((observation, terms), weight) in observations.iter().zip(&self.terms).zip(&weights) {
+            let difference = observation.difference.map(|more| weight * f64::from(more));
             for (z, term) in z.iter_mut().zip(terms) {
                 (0..3).for_each(|c| z[c] += term * difference[c]);
             }
         }
-        for i in 0..TERMS {
-            let row = &factor.triangle[i];
-            let before = |c: usize| -> f64 { (0..i).map(|k| row[k] * z[k][c]).sum() };
-            z[i] = std::array::from_fn(|c| (z[i][c] - before(c)) / row[i]);
-        }
+        forward_substitute(&factor.triangle, &mut z);
         let all = weights.iter().sum();
         NormalEquations { factor, z, weights, all }
     }
 }
 
-/// How much more than the picture a view shows; the last is the picture.
-fn difference_of(sightings: &[Observation], view: usize) -> [f32; 3] {
-    sightings.get(view).map_or([0.0; 3], |sighting| sighting.difference)
+/// The difference between a view and the picture; the last is the picture.
+fn difference_of(observations: &[Observation], view: usize) -> [f32; 3] {
+    observations.get(view).map_or([0.0; 3], |observation| observation.difference)
 }
 
 impl Factor {
@@ -187,21 +182,12 @@ impl Factor {
             }
         }
         let all: f64 = weights.iter().sum();
-        // The constant is always told: the picture is one of them.
+        // The constant is always determined: the picture is one of the views.
         (1..TERMS).for_each(|t| triangle[t][t] += RIDGE * all);
-        for i in 0..TERMS {
-            for j in 0..=i {
-                let sum: f64 = (0..j).map(|k| triangle[i][k] * triangle[j][k]).sum();
-                let rest = triangle[i][j] - sum;
-                triangle[i][j] = if i == j { rest.sqrt() } else { rest / triangle[j][j] };
-            }
-        }
+        decompose_positive(&mut triangle);
         let forward = |terms: &[f64; TERMS]| {
             let mut q = *terms;
-            for i in 0..TERMS {
-                let before: f64 = (0..i).map(|k| triangle[i][k] * q[k]).sum();
-                q[i] = (q[i] - before) / triangle[i][i];
-            }
+            forward_substitute(&triangle, q.as_chunks_mut::<1>().0);
             q
         };
         let q = terms.iter().map(forward).collect();
@@ -211,19 +197,19 @@ impl Factor {
 
 impl NormalEquations<'_> {
     /// See [`Regression::errors`].
-    fn errors(&self, sightings: &[Observation]) -> [f32; DEGREES] {
+    fn errors(&self, observations: &[Observation]) -> [f32; DEGREES] {
         let mut errors = [0.0; DEGREES];
         let mut all = 0.0;
         let Factor { q: of_views, .. } = &*self.factor;
-        let middle = &of_views[sightings.len()];
-        for ((sighting, q), weight) in sightings.iter().zip(of_views).zip(&self.weights) {
-            let counts = f64::from(sighting.weight);
+        let middle = &of_views[observations.len()];
+        for ((observation, q), weight) in observations.iter().zip(of_views).zip(&self.weights) {
+            let counts = f64::from(observation.weight);
             if counts == 0.0 {
                 continue;
             }
             all += counts;
-            let difference = sighting.difference.map(f64::from);
-            // Here, and here less in the middle; what this view does to either.
+            let difference = observation.difference.map(f64::from);
+            // Here, and here minus the middle; the influence of this view on either.
             let (mut here, mut beyond, mut own, mut own_beyond) = ([0.0; 3], [0.0; 3], 0.0, 0.0);
             for (degree, error) in errors.iter_mut().enumerate() {
                 for t in terms_of(degree) - degree - 1..terms_of(degree) {
@@ -235,7 +221,7 @@ impl NormalEquations<'_> {
                     own_beyond += (q[t] - middle[t]) * q[t];
                 }
                 let left_out = weight / (1.0 - weight * own).max(f64::EPSILON);
-                // Of degree 0 that is the picture itself.
+                // Degree 0 is the picture itself.
                 let prediction = |c: usize| match degree {
                     0 => 0.0,
                     _ => beyond[c] - own_beyond * left_out * (difference[c] - here[c]),
@@ -249,7 +235,7 @@ impl NormalEquations<'_> {
         )
     }
 
-    /// How far off a view is that shows so much more, told by the others: what it does to the polynomial itself would hide that.
+    /// The residual of a view as predicted by the others: its own influence on the polynomial would hide it.
     fn residual(&self, view: usize, difference: [f32; 3]) -> f64 {
         let degree = (1..=OUTLIER_DEGREE).rev().find(|&degree| self.supports(degree)).unwrap_or(0);
         let q = &self.factor.q[view][..terms_of(degree)];
@@ -259,7 +245,7 @@ impl NormalEquations<'_> {
         (0..3).map(square).sum::<f64>().sqrt() / (1.0 - own).max(f64::EPSILON)
     }
 
-    /// Whether views are enough for a degree.
+    /// Whether there are enough views for a degree.
     fn supports(&self, degree: usize) -> bool {
         terms_of(degree) as f64 <= TERMS_A_VIEW * self.all
     }
@@ -274,7 +260,7 @@ mod tests {
         all.filter(|place| *place != [0.0; 2]).collect()
     }
 
-    fn sightings(value_at: impl Fn([f32; 2]) -> f32) -> Vec<Observation> {
+    fn observations(value_at: impl Fn([f32; 2]) -> f32) -> Vec<Observation> {
         places()
             .into_iter()
             .map(|place| Observation { difference: [value_at(place); 3], weight: 1.0 })
@@ -284,7 +270,7 @@ mod tests {
     #[test]
     fn a_polynomial_is_fitted_by_its_own_degree() {
         let regression = Regression::new(&places());
-        let all = sightings(|[x, y]| 0.2 * x - 0.1 * y + 0.3 * x * y);
+        let all = observations(|[x, y]| 0.2 * x - 0.1 * y + 0.3 * x * y);
         let errors = regression.errors(&all, 0.0).unwrap();
         assert!(errors[2] < 1e-3 * errors[1] && errors[1] < errors[0], "{errors:?}");
         assert_eq!(errors[4], f32::INFINITY, "25 views do not tell 15 terms");
@@ -298,12 +284,12 @@ mod tests {
     #[test]
     fn what_is_left_out_is_predicted_by_the_others() {
         let regression = Regression::new(&places());
-        let noisy = sightings(|[x, y]| 0.2 * x + 0.05 * (7.0 * x + 11.0 * y).sin());
+        let noisy = observations(|[x, y]| 0.2 * x + 0.05 * (7.0 * x + 11.0 * y).sin());
         let (mut by_hand, degree) = (0.0, 1);
         for out in 0..noisy.len() {
             let mut others = noisy.clone();
             others[out].weight = 0.0;
-            // All count alike here: none is far off.
+            // All have equal weight here: none is an outlier.
             let coefficients = regression.fit_coefficients(&others, degree);
             let [x, y] = places()[out];
             let square = (0..3).map(|c| {
@@ -319,10 +305,10 @@ mod tests {
     fn noise_is_predicted_by_nothing() {
         let regression = Regression::new(&places());
         let mut state = 1u32;
-        let mut noise = sightings(|_| 0.0);
-        for sighting in &mut noise {
+        let mut noise = observations(|_| 0.0);
+        for observation in &mut noise {
             state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            sighting.difference = [(state >> 8) as f32 / (1 << 24) as f32 * 0.1 - 0.05; 3];
+            observation.difference = [(state >> 8) as f32 / (1 << 24) as f32 * 0.1 - 0.05; 3];
         }
         let errors = regression.errors(&noise, 0.0).unwrap();
         assert!((1..4).all(|degree| errors[degree] > 0.9 * errors[0]), "{errors:?}");
@@ -333,7 +319,7 @@ mod tests {
     #[test]
     fn one_view_that_is_far_off_moves_little() {
         let regression = Regression::new(&places());
-        let mut all = sightings(|[x, y]| 0.2 * x + 0.004 * (37.0 * y).sin());
+        let mut all = observations(|[x, y]| 0.2 * x + 0.004 * (37.0 * y).sin());
         all[0].difference = [3.0; 3];
         let coefficients = regression.fit_coefficients(&all, 1);
         assert!((coefficients[0][0] - 0.2).abs() < 0.05, "{coefficients:?}");

@@ -1,22 +1,22 @@
-//! What stands before in the pixels of another view, as far as the first layer tells: how much of each, and in which light.
+//! The occluders in the pixels of another view, projected from the first layer: their coverage of each pixel, and their light.
 //!
-//! A hidden cell is seen by the views that look farthest behind what hides it, and there it lies right beside its edge: most of the pixels that
-//! show it show some of what stands before, too. A cell covers of a view's pixel what the two have in common, and an edge's cell so much of that
-//! as is there of it (`matte`): what is left of the pixel's light is that of what lies behind.
+//! A hidden cell is visible in the views that see farthest behind its occluder, and there it lies next to the occluder's edge: most of the
+//! pixels that show it show part of the occluder, too. A cell covers the area of a view's pixel that overlaps with it, times its opacity
+//! if it lies on an edge (`matte`): the remaining light of the pixel is that of the cell behind.
 
-use crate::cells::Grid;
+use crate::mesh::cells::Grid;
 use rayon::prelude::*;
 
-/// Less of a pixel than this is not covered: what is left of rounding.
+/// Less coverage of a pixel than this is rounding error.
 const TOUCHED: f32 = 1e-3;
 
 /// Rows of a view that are covered at a time.
 const BAND: usize = 64;
 
-/// The first layer, told apart at its edges.
+/// The first layer with the opacity of its edges.
 #[derive(Clone, Copy)]
 pub(crate) struct MattedLayer<'a> {
-    /// By cell: disparity, how much of it is there, in [0, 1], and its colour.
+    /// By cell: disparity, opacity in [0, 1], and colour.
     pub disparity: &'a [f32],
     pub opacity: &'a [f32],
     pub colors: &'a [[f32; 3]],
@@ -25,13 +25,13 @@ pub(crate) struct MattedLayer<'a> {
 /// What covers a pixel of a view.
 #[derive(Clone, Copy)]
 pub(crate) struct PixelCover {
-    /// The disparity of what is nearest in it; −∞ where nothing is.
+    /// The disparity of the nearest surface in it; −∞ where there is none.
     pub nearest: f32,
-    /// That of what else is in it, behind a jump.
+    /// That of the next surface in it, behind a jump.
     pub next: f32,
-    /// What is nearest covers so much of it …
+    /// The share of the pixel that the nearest surface covers …
     pub share: f32,
-    /// … and sends so much of its light.
+    /// … and its light.
     pub light: [f32; 3],
 }
 
@@ -39,12 +39,13 @@ impl PixelCover {
     const NONE: Self =
         Self { nearest: f32::NEG_INFINITY, next: f32::NEG_INFINITY, share: 0.0, light: [0.0; 3] };
 
-    /// How much of the pixel is left for what is no nearer than `most`, and of its light.
+    /// The share of the pixel that is left for surfaces of a disparity of at most `max_disparity`, and their share of
+    /// its light.
     pub fn remaining(&self, color: [f32; 3], max_disparity: f32) -> (f32, [f32; 3]) {
         if self.nearest <= max_disparity {
             return (1.0, color);
         }
-        // Of two edges in one pixel nothing can be told.
+        // Two edges in one pixel cannot be separated.
         if self.next > max_disparity || self.share >= 1.0 {
             return (0.0, [0.0; 3]);
         }
@@ -61,7 +62,7 @@ pub(crate) fn covers(grid: Grid, layer: MattedLayer, offset: [f32; 2], jump: f32
     let bands = project_covers.par_chunks_mut(BAND * grid.width).enumerate();
     bands.for_each(|(band, covers)| {
         let (first, rows) = (band * BAND, covers.len() / grid.width);
-        // What a band shows comes from rows about it.
+        // The pixels of a band come from rows around it.
         let rows = first.saturating_sub(far)..(first + rows).saturating_add(far).min(grid.height);
         let cells = || {
             let cells = rows.start * grid.width..rows.end * grid.width;
@@ -96,13 +97,13 @@ pub(crate) fn covers(grid: Grid, layer: MattedLayer, offset: [f32; 2], jump: f32
     project_covers
 }
 
-/// Where a view shows a cell's middle, pixels from its upper left corner.
+/// Where a view shows a cell's centre, pixels from its upper left corner.
 pub(crate) fn project_cell(grid: Grid, cell: usize, disparity: f32, [dx, dy]: [f32; 2]) -> [f32; 2] {
     let (x, y) = ((cell % grid.width) as f32 + 0.5, (cell / grid.width) as f32 + 0.5);
     [x - disparity * dx, y - disparity * dy]
 }
 
-/// The pixels that a cell around this place has something in common with, and how much of each.
+/// The pixels that a cell around this position overlaps, and the overlap with each.
 pub(crate) fn overlapped_pixels(grid: Grid, [x, y]: [f32; 2]) -> impl Iterator<Item = (usize, f32)> {
     let (left, above) = ((x - 0.5).floor(), (y - 0.5).floor());
     let (right, below) = (x - 0.5 - left, y - 0.5 - above);
@@ -122,7 +123,7 @@ mod tests {
 
     #[test]
     fn what_lies_behind_is_left_at_an_edge() {
-        // A card's last column is there to 0.4; the view shows it half a pixel further left.
+        // A card's last column has an opacity of 0.4; the view shows it half a pixel further left.
         let grid = Grid { width: 6, height: 1 };
         let layer = MattedLayer {
             disparity: &[0.5, 0.5, 0.5, 0.0, 0.0, 0.0],

@@ -1,8 +1,9 @@
-//! Depth repaired by hand: strokes over a picture that change its disparities before they become a surface.
+//! Repair of depth by hand: strokes over a picture that change its disparities before they become a surface.
 
+use numerics::{smooth_fraction, upper_median};
 use serde::{Deserialize, Serialize};
 
-/// What a stroke does to the depth beneath it.
+/// The effect of a stroke on the depth beneath it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum DepthRepair {
@@ -10,40 +11,41 @@ pub enum DepthRepair {
     Nearer,
     /// Pushes away from it.
     Farther,
-    /// Evens out among pixels of like colour: what the picture separates stays apart.
+    /// Smooths among pixels of similar colour: regions that differ in the picture stay separate.
     Smooth,
-    /// Spreads the depth where the stroke begins over all of it, with a hard edge: what lies between two depths would be a skin.
+    /// Spreads the depth at the stroke's beginning over all of it, with a hard edge: values between two depths would
+    /// make a skin.
     Spread,
 }
 
 /// A stroke over a picture.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DepthStroke {
-    /// What it does.
+    /// Its effect.
     pub repair: DepthRepair,
-    /// Where it goes, pixels from the picture's upper left corner.
+    /// The stroke's points, pixels from the picture's upper left corner.
     #[serde(rename = "way")]
     pub path: Vec<[f32; 2]>,
-    /// How far it reaches to either side, px, > 0.
+    /// Its radius, px, > 0.
     pub radius_px: f32,
     /// The share of the radius with full strength, in [0, 1].
     pub hardness: f32,
-    /// How far it goes, in [0, 1]: of what one full stroke pulls or pushes, or of the way to the mean.
+    /// Its strength, in [0, 1]: of the largest shift, or of the step to the mean.
     pub strength: f32,
 }
 
-/// How far one full stroke pulls or pushes, of the range of the picture's disparities.
+/// The shift of one full stroke, as a share of the range of the picture's disparities.
 const MAX_SHIFT_SHARE: f32 = 0.1;
-/// Places and radii beyond this are none of a picture, px.
+/// The largest coordinate or radius, px: beyond it no stroke lies on a picture.
 const MAX_COORDINATE_PX: f32 = 1e6;
-/// Pixels to either side that are evened out among, as a share of the radius, and at most.
+/// The radius of smoothing, as a share of the stroke's radius, and at most.
 const SMOOTHING_RADIUS_SHARE: f32 = 0.5;
 const MAX_SMOOTHING_RADIUS_PX: f32 = 24.0;
-/// Of them, so many to either side are looked at.
+/// Samples to either side within that radius.
 const SAMPLES_PER_SIDE: isize = 4;
-/// Colours so far apart, in square roots of linear light, are hardly alike.
+/// The difference at which colours are no longer similar, in square roots of linear light.
 const COLOR_SIGMA: f32 = 0.06;
-/// From this share of a stroke on a pixel belongs to one that spreads.
+/// The least weight with which a pixel takes the depth that is spread.
 const MIN_SPREAD_WEIGHT: f32 = 0.5;
 
 impl DepthStroke {
@@ -57,13 +59,13 @@ impl DepthStroke {
             && self.path.iter().flatten().all(|at| at.abs() <= MAX_COORDINATE_PX)
     }
 
-    /// The same on a picture whose pixels are `by` of this one's wide.
+    /// The same on a picture whose pixels are `pixel_scale` of this one's wide.
     fn scaled_down(&self, pixel_scale: f32) -> Self {
         let path = self.path.iter().map(|place| place.map(|at| at / pixel_scale)).collect();
         Self { path, radius_px: self.radius_px / pixel_scale, ..self.clone() }
     }
 
-    /// The pixels that it covers, row by row, and by how much, in (0, 1].
+    /// The pixels that it covers, row by row, with their weights in (0, 1].
     fn covered(&self, [width, height]: [usize; 2]) -> Vec<(usize, f32)> {
         let radius = self.radius_px;
         let mut nearest = std::collections::BTreeMap::<usize, f32>::new();
@@ -94,16 +96,15 @@ impl DepthStroke {
             if share <= self.hardness {
                 return 1.0;
             }
-            let inside = (1.0 - share) / (1.0 - self.hardness);
-            inside * inside * (3.0 - 2.0 * inside)
+            smooth_fraction((1.0 - share) / (1.0 - self.hardness))
         };
         let covered = nearest.into_iter().map(|(pixel, distance)| (pixel, weight(distance)));
         covered.filter(|(_, weight)| *weight > 0.0).collect()
     }
 }
 
-/// Disparities of a picture (linear RGB, row by row), a number each, after strokes in their order. They stay within the range that they had.
-/// `by`: pixels of the strokes' picture that one of this is wide.
+/// Applies strokes in order to the disparities of a picture (linear RGB, row by row; no NaNs). Disparities stay within their original
+/// range. `pixel_scale`: the width of one of these pixels in pixels of the strokes' picture.
 pub fn apply_depth_strokes(
     size: [usize; 2],
     mut disparity: Vec<f32>,
@@ -148,7 +149,7 @@ pub fn apply_depth_strokes(
     disparity
 }
 
-/// The mean disparity around a pixel, of pixels that are like it.
+/// The mean disparity around a pixel, over pixels of similar colour.
 fn mean_of_similar(
     [width, height]: [usize; 2],
     disparity: &[f32],
@@ -174,7 +175,7 @@ fn mean_of_similar(
             weights += weight;
         }
     }
-    // The pixel itself is like itself: the weights are at least 1.
+    // The pixel itself has weight 1: the weights are never 0.
     sum / weights
 }
 
@@ -182,14 +183,14 @@ fn encoded(linear: f32) -> f32 {
     linear.clamp(0.0, 1.0).sqrt()
 }
 
-/// The disparity where a stroke begins: the median of a small disc; of a stroke that begins beside the picture none.
+/// The disparity where a stroke begins: the median of a small disc; `None` for a stroke that begins outside the
+/// picture.
 fn start_disparity(size: [usize; 2], disparity: &[f32], stroke: &DepthStroke) -> Option<f32> {
     let start = *stroke.path.first()?;
     let disc =
         DepthStroke { path: vec![start], radius_px: (stroke.radius_px * 0.25).max(1.0), ..stroke.clone() };
     let mut values: Vec<f32> = disc.covered(size).into_iter().map(|(at, _)| disparity[at]).collect();
-    let middle = values.len() / 2;
-    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f32::total_cmp).1)
+    upper_median(&mut values)
 }
 
 #[cfg(test)]

@@ -1,14 +1,15 @@
-//! Coarse depth maps at the size of their picture, led by its colours.
+//! Coarse depth maps at the size of their picture, guided by its colours.
 //!
-//! Between four numbers of the map those count that lie where the picture has the pixel's colour (Kopf et al., *Joint bilateral upsampling*,
+//! Among four numbers of the map those count most where the picture has the pixel's colour (Kopf et al., *Joint bilateral upsampling*,
 //! 2007), so that edges of depth lie on edges of the picture and not on the map's pixels.
 
 use rayon::prelude::*;
 
-/// Colours (roots of light) that differ by this much count as e⁻¹.
+/// Difference of colours (square roots of light) with a weight of e⁻¹.
 const COLOR: f32 = 0.08;
 
-/// The map at the size of its picture (linear RGB). Numbers that are none count for nothing; where all four are none, none is told.
+/// The map at the size of its picture (linear RGB). NaNs do not count; where all four numbers are NaN, so is the
+/// result.
 pub fn upsample(
     [columns, rows]: [usize; 2],
     values: &[f32],
@@ -20,7 +21,7 @@ pub fn upsample(
     }
     let scale = [columns as f32 / width as f32, rows as f32 / height as f32];
     let root = |color: [f32; 3]| color.map(|c| c.max(0.0).sqrt());
-    // The picture's colour in the middle of each number's place.
+    // The picture's colour at the centre of each number of the map.
     let guide: Vec<[f32; 3]> = (0..columns * rows)
         .into_par_iter()
         .map(|place| {
@@ -50,7 +51,7 @@ pub fn upsample(
                 let far: f32 = (0..3).map(|c| (guide[y * columns + x][c] - own[c]).powi(2)).sum();
                 let across = if dx == 0 { 1.0 - right } else { right };
                 let down = if dy == 0 { 1.0 - below } else { below };
-                // What lies as near as it gets has a say in any colour.
+                // The nearest numbers have a minimum weight in any colour.
                 let weight = (across * down).max(1e-3) * (-far / (COLOR * COLOR)).exp().max(1e-6);
                 sum += value * weight;
                 weights += weight;

@@ -1,19 +1,19 @@
-//! What other views show of places that the picture does not.
+//! Colours of places that are hidden in the picture, resampled from other views.
 
-use crate::cells::Grid;
-use crate::covers::{MattedLayer, PixelCover, covers, overlapped_pixels, project_cell};
+use crate::color_stats::{ColorAccumulator, ColorStats};
+use crate::edges::covers::{MattedLayer, PixelCover, covers, overlapped_pixels, project_cell};
 use crate::error::ReliefError;
 use crate::frame::Frame;
-use crate::look::{ColorAccumulator, ColorStats};
+use crate::mesh::cells::Grid;
 use crate::other_view::OtherView;
 use progress::Progress;
 use rayon::prelude::*;
 
-/// A pixel covers those beside it if it reaches into them by so much.
+/// The least overlap with which a pixel covers its neighbour.
 const RIM_SHARE: f32 = 0.25;
-/// What is told of pixels at the edges of what stands before counts so little beside what others show by itself: edges are off a little.
+/// The weight of colours from pixels at edges of occluders, relative to others: edges are slightly misplaced.
 const BESIDE_EDGES: f32 = 0.2;
-/// Where less than this of it is left, a view tells nothing.
+/// A view where less than this share of the pixel is left does not count.
 const LEAST_LEFT: f32 = 0.05;
 
 /// A place that the picture does not show.
@@ -23,7 +23,7 @@ pub(crate) struct TexelQuery {
     pub disparity: f32,
 }
 
-/// What views look at: the first layer.
+/// The first layer, which other views observe.
 pub(crate) struct FrontLayer<'a> {
     pub frame: &'a Frame,
     pub front: &'a [f32],
@@ -32,8 +32,8 @@ pub(crate) struct FrontLayer<'a> {
 }
 
 impl FrontLayer<'_> {
-    /// What other views show of places, where one does; in pixels that they share with what stands before, what is left of their
-    /// light.
+    /// The colours of places in other views, where one shows them; in pixels that they share with an occluder, from
+    /// the remaining light.
     pub fn collect_color_stats<E: Send>(
         &self,
         queries: &[TexelQuery],
@@ -52,7 +52,7 @@ impl FrontLayer<'_> {
             progress.check().map_err(ReliefError::Cancelled)?;
             progress.report(done as f32 / views.len() as f32);
             let shown = (view.read)().map_err(ReliefError::View)?;
-            // A picture of another size shows nothing that could be found in it.
+            // A picture of another size cannot be sampled.
             if shown.len() != picture.count() {
                 continue;
             }
@@ -65,7 +65,7 @@ impl FrontLayer<'_> {
                 }
                 let (mut left, mut light) = (0.0, [0.0; 3]);
                 for (pixel, share) in overlapped_pixels(grid, place) {
-                    // The border goes on.
+                    // The border is extended.
                     let color = shown[self.frame.pixel(pixel)];
                     let (open, of_pixel) = covers[pixel].remaining(color, max_disparity);
                     left += share * open;
@@ -82,11 +82,12 @@ impl FrontLayer<'_> {
     }
 }
 
-/// The disparity of what is nearest in each pixel of a view, as far as the first layer tells.
+/// The disparity of the nearest surface in each pixel of a view, projected from the first layer.
 pub(crate) fn nearest_disparity(grid: Grid, front: &[f32], offset: [f32; 2]) -> Vec<f32> {
     let mut nearest = vec![f32::NEG_INFINITY; grid.count()];
     for (cell, &disparity) in front.iter().enumerate().filter(|(_, disparity)| !disparity.is_nan()) {
-        // It covers the pixels whose middles are nearer to its own than they are wide, but for a rim that is less than noise.
+        // It covers the pixels whose centres are nearer to its own than a pixel's width, except for a rim that is
+        // less than noise.
         let [columns, rows] = project_cell(grid, cell, disparity, offset).map(|at| {
             let first = (at - 0.5).floor();
             let share = at - 0.5 - first;
@@ -105,7 +106,7 @@ pub(crate) fn nearest_disparity(grid: Grid, front: &[f32], offset: [f32; 2]) -> 
     nearest
 }
 
-/// Whether nothing of more disparity than `most` is at a place or beside it.
+/// Whether nothing of more disparity than `max_disparity` is at a position or next to it.
 fn is_clear(grid: Grid, covers: &[PixelCover], [x, y]: [f32; 2], max_disparity: f32) -> bool {
     let (x, y) = (x.floor() as isize, y.floor() as isize);
     (y - 1..=y + 1).all(|y| {
@@ -116,12 +117,12 @@ fn is_clear(grid: Grid, covers: &[PixelCover], [x, y]: [f32; 2], max_disparity: 
     })
 }
 
-/// Whether a place is in a picture.
+/// Whether a position is in a picture.
 fn is_inside(picture: Grid, [x, y]: [f32; 2]) -> bool {
     x >= 0.0 && y >= 0.0 && x <= picture.width as f32 && y <= picture.height as f32
 }
 
-/// What a picture shows at a place in it.
+/// The bilinearly interpolated colour at a position; `None` outside the picture.
 pub(crate) fn interpolate(grid: Grid, picture: &[[f32; 3]], [x, y]: [f32; 2]) -> Option<[f32; 3]> {
     if !is_inside(grid, [x, y]) {
         return None;

@@ -1,28 +1,28 @@
-//! Edges within pixels: where a straight line parts what stands before from what lies behind.
+//! Edges within pixels: a straight line that separates foreground and background.
 //!
-//! How much of a pixel is before, and of those around it, tells a line (Youngs, *Time-dependent multi-material flow*, 1982): upright to how
-//! shares rise around the pixel, and where it leaves the share on its side. If that line leaves about the shares of those around, too, the edge
-//! is straight there. Else, at hair, corners and gaps, there is no line.
+//! The coverage of a pixel, and of those around it, determines a line (Youngs, *Time-dependent multi-material flow*, 1982): perpendicular to
+//! the gradient of coverage, and placed so that it leaves the pixel's coverage on its side. If that line also reproduces the coverage of
+//! the pixels around, the edge is straight there. Otherwise, at hair, corners and gaps, there is no line.
 
 use glam::Vec2;
 
-/// Shares of the pixels around may be so far off what the line leaves them, in the mean.
+/// The largest mean error of the coverage of the pixels around.
 const MAX_MEAN_ERROR: f32 = 0.12;
-/// Halvings until a line is where it leaves the share: finer than shares are told.
+/// Bisections until a line has the right coverage: finer than coverage is quantised.
 const HALVINGS: usize = 24;
 
 /// The corners of a pixel, counter-clockwise as the picture shows them.
 const PIXEL: [Vec2; 4] = [Vec2::new(0.0, 0.0), Vec2::new(0.0, 1.0), Vec2::new(1.0, 1.0), Vec2::new(1.0, 0.0)];
 
-/// What of a pixel stands before, by the shares of it and of those around, row by row: corners in it, x right, y down, counter-clockwise as
-/// the picture shows them.
+/// The foreground part of a pixel, by its coverage and that of the pixels around, row by row: corners in it, x right, y down,
+/// counter-clockwise as the picture shows them.
 pub(crate) fn fit_outline(shares: &[[f32; 3]; 3]) -> Option<Vec<Vec2>> {
     let rise = |at: &dyn Fn(usize, usize) -> f32| {
         (0..3).map(|k| [1.0, 2.0, 1.0][k] * (at(k, 2) - at(k, 0))).sum::<f32>()
     };
     let rise = Vec2::new(rise(&|k, end| shares[k][end]), rise(&|k, end| shares[end][k]));
     let normal = rise.try_normalize()?;
-    // The places of a pixel lie within so much along the normal.
+    // The extent of a pixel along the normal.
     let [mut low, mut high] = [-1.5, 1.5];
     let corner = Vec2::splat(0.5);
     for _ in 0..HALVINGS {
@@ -43,7 +43,7 @@ pub(crate) fn fit_outline(shares: &[[f32; 3]; 3]) -> Option<Vec<Vec2>> {
     (mean_error <= MAX_MEAN_ERROR && outline.len() >= 3).then_some(outline)
 }
 
-/// What of a pixel with this upper left corner lies at least so far from `from` along a normal.
+/// The part of a pixel with this upper left corner whose distance from `from` along a normal is at least `far`.
 fn clip(pixel: Vec2, normal: Vec2, from: Vec2, far: f32) -> Vec<Vec2> {
     let height = |place: Vec2| (place - from).dot(normal) - far;
     let mut left = Vec::with_capacity(5);
@@ -55,7 +55,7 @@ fn clip(pixel: Vec2, normal: Vec2, from: Vec2, far: f32) -> Vec<Vec2> {
         }
         if (of_a >= 0.0) != (of_b >= 0.0) {
             let crossing = a + (b - a) * (of_a / (of_a - of_b));
-            // A line through a corner leaves it once.
+            // A line through a corner adds it once.
             if left.last() != Some(&crossing) && crossing != b {
                 left.push(crossing);
             }
@@ -74,7 +74,7 @@ fn area(corners: &[Vec2]) -> f32 {
 mod tests {
     use super::*;
 
-    /// Shares that a line leaves, upright to an angle, so far from the middle.
+    /// The coverage of a line perpendicular to an angle, at this distance from the middle.
     fn shares(angle: f32, far: f32) -> [[f32; 3]; 3] {
         let share_at = |x: usize, y: usize| {
             let pixel = Vec2::new(x as f32 - 1.0, y as f32 - 1.0);
@@ -90,7 +90,7 @@ mod tests {
             let shares = shares(angle, far);
             let outline = fit_outline(&shares).expect("it is straight");
             assert!((area(&outline) - shares[1][1]).abs() < 1e-4, "{} {}", area(&outline), shares[1][1]);
-            // Between the true line and the one that was found lies little.
+            // Between the true line and the fitted one lies little.
             let normal = Vec2::from_angle(angle);
             let error = outline.iter().map(|place| far - (*place - 0.5).dot(normal)).fold(0.0, f32::max);
             assert!(error < 0.12, "{error} at {angle} {far}");

@@ -1,18 +1,18 @@
-//! Where depth jumps, and pixels that lie between two depths.
+//! Jumps of depth, and pixels that lie between two depths.
 //!
-//! A step of disparity is a jump if it is more than a parallax of [`ReliefOptions::jump_px`](crate::ReliefOptions) and no slope: in a slope the steps beside it are
-//! about as large. Pixels that lie alone between two depths (a depth map's blurred edge) are no surface: each is put on the side whose colour
-//! it has.
+//! A step of disparity is a jump if it is more than a parallax of [`ReliefOptions::jump_px`](crate::ReliefOptions) and not part of a slope,
+//! where the adjacent steps are about as large. Single pixels between two depths (the blurred edge of a depth map) are no surface: each is
+//! assigned to the side whose colour it has.
 
-use crate::cells::{Grid, Links, Side};
+use crate::mesh::cells::{Grid, Links, Side};
 use rayon::prelude::*;
 
-/// Steps beside a step that are at least this share of it explain it as a slope.
+/// Adjacent steps of at least this share of a step make it a slope.
 const SLOPE: f32 = 0.5;
-/// Edges of depth maps are blurred over so many pixels at most.
+/// The most pixels over which edges of depth maps are blurred.
 const BLURRED: usize = 2;
 
-/// Puts pixels that lie between two depths on one side. `jump` is the least step of disparity that is one.
+/// Assigns pixels that lie between two depths to one side. `jump` is the least step of disparity that is a jump.
 pub(crate) fn snap(grid: Grid, disparity: &mut Vec<f32>, colors: &[[f32; 3]], jump: f32) {
     for _ in 0..BLURRED {
         let before = disparity.clone();
@@ -24,14 +24,14 @@ pub(crate) fn snap(grid: Grid, disparity: &mut Vec<f32>, colors: &[[f32; 3]], ju
     }
 }
 
-/// The neighbour whose depth a pixel belongs to, if it lies between two depths.
+/// The neighbour to whose depth a pixel belongs, if it lies between two depths.
 fn side_of(grid: Grid, disparity: &[f32], colors: &[[f32; 3]], jump: f32, cell: usize) -> Option<usize> {
     let (x, y) = (cell % grid.width, cell / grid.width);
     let across = (x > 0 && x + 1 < grid.width).then(|| [cell - 1, cell + 1]);
     let down = (y > 0 && y + 1 < grid.height).then(|| [cell - grid.width, cell + grid.width]);
     let between = |[first, second]: &[usize; 2]| {
         let (a, b) = (disparity[cell] - disparity[*first], disparity[*second] - disparity[cell]);
-        // Both of one sign, together a jump, and neither side goes on like that.
+        // Both of one sign, together a jump, and neither side continues like that.
         let is_alone = |from: usize, to: usize, step: f32| {
             let beyond = to as isize + to as isize - from as isize;
             let is_in = beyond >= 0 && (beyond as usize) < grid.count();
@@ -47,7 +47,7 @@ fn side_of(grid: Grid, disparity: &[f32], colors: &[[f32; 3]], jump: f32, cell: 
     Some(if far(ends[0]) <= far(ends[1]) { ends[0] } else { ends[1] })
 }
 
-/// What hangs together: neighbours between which depth does not jump.
+/// Connections: between neighbours whose depth does not jump.
 pub(crate) fn links(grid: Grid, disparity: &[f32], jump: f32) -> Links {
     let mut links = Links::none(grid);
     for cell in 0..grid.count() {
@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pixel_between_goes_to_the_side_whose_colour_it_has() {
+    fn a_pixel_between_is_assigned_to_the_side_of_its_colour() {
         let (grid, mut disparity) = row(&[0.0, 0.0, 0.6, 1.0, 1.0]);
         let colors = [0.1, 0.1, 0.15, 0.9, 0.9].map(|v| [v; 3]);
         snap(grid, &mut disparity, &colors, 0.2);

@@ -1,10 +1,10 @@
-//! Corners of cells, shared by the cells that hang together around them.
+//! Corners of cells, shared by the connected cells around them.
 //!
-//! Around a corner of the grid lie up to four cells a layer. Those that hang together, within a layer or from one to the other, share one
-//! point there; its disparity is the mean of what they lead to expect, each by its own slope.
+//! Around a corner of the grid lie up to four cells per layer. Those that are connected, within a layer or between layers, share one
+//! point there; its disparity is the mean of their extrapolations, each by its own slope.
 
-use crate::cells::{Cells, LAYERS, Side};
 use crate::hidden::side_index;
+use crate::mesh::cells::{Cells, LAYERS, Side};
 
 /// The cells around a corner of the grid: upper left, upper right, lower left, lower right; first those of the first layer.
 const AROUND: usize = 4 * LAYERS;
@@ -14,36 +14,36 @@ const AROUND: usize = 4 * LAYERS;
 pub(crate) struct Corner {
     /// Column and row in the grid of corners.
     pub at: [usize; 2],
-    /// Which of the points there: the least of the cells that share it.
+    /// Which of the points there: the smallest number of the cells that share it.
     pub point: u8,
     pub disparity: f32,
 }
 
-/// What a corner of the grid is for a layer.
+/// The state of a corner of the grid for a layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Joint {
-    /// All four cells are there and each hangs together with those beside it, none with the other layer; its disparity.
+    /// All four cells exist and are connected to each other, none to the other layer; the disparity.
     Whole(f32),
-    /// It is otherwise.
+    /// Some cells are missing or not connected.
     Cut,
     /// There are no cells.
     Absent,
 }
 
 impl Cells {
-    /// The corner of a cell: `right` and `below` say which.
+    /// The corner of a cell: `right` and `below` select which.
     pub(crate) fn corner(&self, layer: usize, cell: usize, [right, below]: [bool; 2]) -> Corner {
         let (x, y) = (cell % self.grid.width, cell / self.grid.width);
         let at = [x + usize::from(right), y + usize::from(below)];
         let around = self.around(at);
-        // Seen from the corner, the cell lies on the other side.
+        // As seen from the corner, the cell lies on the other side.
         let quadrant = usize::from(!right) + 2 * usize::from(!below);
         let shared = self.shared(&around);
         let point = shared[4 * layer + quadrant];
         Corner { at, point, disparity: self.disparity_at(&around, &shared, point) }
     }
 
-    /// A corner of the grid as one of the cells there has it, if it is there: that left of it and above it where `is_after` says so, else
+    /// A corner of the grid as one of the cells there has it, if that exists: the cell left of it and above it where `is_after` is true, else
     /// right and below.
     pub(crate) fn corner_at(&self, layer: usize, at: [usize; 2], is_after: [bool; 2]) -> Option<Corner> {
         let [x, y] = [0, 1].map(|axis| at[axis].wrapping_sub(usize::from(is_after[axis])));
@@ -52,7 +52,7 @@ impl Cells {
         is_there.then(|| self.corner(layer, self.grid.at(x, y), is_after))
     }
 
-    /// What a corner of the grid is for a layer.
+    /// The state of a corner of the grid for a layer.
     pub(crate) fn joint(&self, layer: usize, at: [usize; 2]) -> Joint {
         let around = self.around(at);
         let own = 4 * layer..4 * layer + 4;
@@ -89,7 +89,7 @@ impl Cells {
         around
     }
 
-    /// For each cell around a corner, the least of those that it shares the corner with.
+    /// For each cell around a corner, the smallest number of the cells that it shares the corner with.
     fn shared(&self, around: &[Option<usize>; AROUND]) -> [u8; AROUND] {
         let mut shared: [u8; AROUND] = std::array::from_fn(|place| place as u8);
         let mut join = |a: usize, b: usize| {

@@ -1,24 +1,25 @@
-//! A layer's triangles: as few as keep the surface within a tolerance.
+//! The triangles of a layer: as few as keep the surface within a tolerance.
 //!
-//! Right triangles are halved where the middle of their longest side is off (Evans, Kirkpatrick and Townsend 2001, right-triangulated
-//! irregular networks; Lindstrom and Pascucci 2002). A corner counts as far off as what is halved beneath it, so that neighbours are halved
-//! alike and nothing gapes. Corners at jumps are always there: all cells beneath a triangle hang together, and with those along its sides.
+//! Right triangles are halved where the middle of their longest side has too large an error (Evans, Kirkpatrick and Townsend 2001,
+//! right-triangulated irregular networks; Lindstrom and Pascucci 2002). The error of a corner is at least that of the corners of its
+//! halves, so that neighbours are halved alike and there are no cracks. Corners at jumps are always used: all cells beneath a triangle
+//! are connected, and to those along its sides.
 //!
-//! A texture is laid on a triangle evenly in space, not as the picture shows it. Between ends a and b of inverse depths q the middle in
-//! space is seen beside that in the picture, and that counts as off, too:
+//! A texture is interpolated on a triangle linearly in space, not in the picture. Between ends a and b of inverse depths q the middle in
+//! space is not that in the picture, which is an error, too:
 //!
 //! ```text
 //! |a − b|/2 · |q_a − q_b|/(q_a + q_b)
 //! ```
 
-use crate::cells::{Cells, Grid};
-use crate::corners::Joint;
+use crate::mesh::cells::{Cells, Grid};
+use crate::mesh::corners::Joint;
 use rayon::prelude::*;
 
-/// Corners of the picture's cells, in a square whose side is a power of two, and how far off each would be if it were not there.
+/// Corners of the picture's cells, in a square whose side is a power of two, and the error of omitting each.
 pub(crate) struct Triangulation {
     grid: Grid,
-    /// Cells of the square along a side.
+    /// Number of cells along a side of the square.
     side: usize,
     errors: Vec<f32>,
 }
@@ -29,7 +30,7 @@ pub(crate) struct LayerTriangle {
 }
 
 impl Triangulation {
-    /// How far off the corners of a layer's cells are. Cells that are not whole have triangles of their own.
+    /// The errors of the corners of a layer's cells. Cells that are not whole have triangles of their own.
     pub fn new(
         cells: &Cells,
         layer: usize,
@@ -51,13 +52,13 @@ impl Triangulation {
             true => joints[y * row + x],
             false => 0.0,
         };
-        // What a middle, and all up to it, hangs together with there.
+        // The disparity at the end of a side, of the point that its middle is connected to there.
         let end = |x: usize, y: usize, middle: [usize; 2]| {
             let joint = at(x, y);
             let of_cell = || cells.corner_at(layer, [x, y], [x > middle[0], y > middle[1]]);
             if joint.is_nan() { of_cell().map_or(joint, |corner| corner.disparity) } else { joint }
         };
-        // Whether the cells around a corner are.
+        // Whether the cells around a corner are whole.
         let are_whole = |x: usize, y: usize| {
             let columns = x.saturating_sub(1)..(x + 1).min(grid.width);
             let mut rows = y.saturating_sub(1)..(y + 1).min(grid.height);
@@ -73,7 +74,7 @@ impl Triangulation {
         let mut step = 2;
         while step <= side {
             let half = step / 2;
-            // Middles of sides of squares: what is beneath are the four squares of half the side around.
+            // Middles of sides of squares: beneath are the four squares of half the side around.
             let beneath = |errors: &[f32], x: usize, y: usize| {
                 let quarter = half / 2;
                 if quarter == 0 {
@@ -108,7 +109,7 @@ impl Triangulation {
                 })
                 .collect();
             raise(&mut errors, sides);
-            // Middles of squares: what is beneath are the middles of their four sides.
+            // Middles of squares: beneath are the middles of their four sides.
             let before = &errors;
             let middles: Vec<Vec<(usize, f32)>> = (0..side / step)
                 .into_par_iter()
@@ -137,7 +138,7 @@ impl Triangulation {
         Self { grid, side, errors }
     }
 
-    /// The triangles that stay within a tolerance, in the picture. All cells beneath one are there, or none.
+    /// The triangles within a tolerance, in the picture. All cells beneath one exist, or none.
     pub fn triangles(&self, tolerance: f32) -> Vec<LayerTriangle> {
         let side = self.side;
         let mut triangles = Vec::new();
@@ -162,18 +163,18 @@ impl Triangulation {
     }
 }
 
-/// What counts as off, in pixels.
+/// The error measure, in pixels.
 #[derive(Clone, Copy)]
 pub(crate) struct Metric {
     /// Parallax of a disparity of 1, px.
     pub reach: f32,
-    /// What makes disparities proportional to inverse depth when it is added.
+    /// The offset that makes disparities proportional to inverse depth.
     pub offset: f32,
 }
 
 impl Metric {
-    /// How far a middle is from what its ends lead to expect, which are so many pixels apart; nothing where one of them is cut, which is
-    /// seen to elsewhere.
+    /// The deviation of a middle from the interpolation of its ends, which are `length` pixels apart; 0 where one of them is cut, which is
+    /// handled elsewhere.
     fn deviation(self, middle: f32, [a, b]: [f32; 2], length: f32) -> f32 {
         let depth = (0.5 * (a + b) - middle).abs() * self.reach;
         let nearness = a + b + 2.0 * self.offset;

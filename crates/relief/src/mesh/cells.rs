@@ -1,6 +1,6 @@
-//! Pixels of layers, and which of them hang together.
+//! Pixels of layers, and which of them are connected.
 
-/// The layers: what the picture shows, and what goes on behind.
+/// The layers: what the picture shows, and the continuation behind it.
 pub(crate) const LAYERS: usize = 2;
 
 /// A grid of cells.
@@ -41,7 +41,7 @@ pub(crate) enum Side {
     Below,
 }
 
-/// What lies beside what: whether a cell hangs together with the one right of it, and with the one below.
+/// Connectivity: whether a cell is connected to the one right of it, and to the one below.
 #[derive(Clone, Debug)]
 pub(crate) struct Links {
     grid: Grid,
@@ -50,12 +50,12 @@ pub(crate) struct Links {
 }
 
 impl Links {
-    /// None hangs together with any.
+    /// No cell is connected to another.
     pub fn none(grid: Grid) -> Self {
         Self { grid, right: vec![false; grid.count()], below: vec![false; grid.count()] }
     }
 
-    /// Whether a cell hangs together with the one on that side, which must be there.
+    /// Whether a cell is connected to the one on that side, which must exist.
     pub fn has(&self, cell: usize, side: Side) -> bool {
         match side {
             Side::Left => self.right[cell - 1],
@@ -75,13 +75,13 @@ impl Links {
     }
 }
 
-/// Cells of both layers: disparities (none: no cell), and what hangs together within and between layers.
+/// Cells of both layers: disparities (NaN: no cell), and connections within and between layers.
 pub(crate) struct Cells {
     pub grid: Grid,
     /// By layer.
     pub disparity: [Vec<f32>; LAYERS],
     pub links: [Links; LAYERS],
-    /// Cells of the second layer that go on from a cell of the first on that side of them.
+    /// For each cell of the second layer, on which sides it continues a cell of the first.
     pub onward: Vec<[bool; 4]>,
 }
 
@@ -90,7 +90,7 @@ impl Cells {
         !self.disparity[layer][cell].is_nan()
     }
 
-    /// How disparity changes from cell to cell, to the right and downward, as the neighbours that hang together with it tell.
+    /// The change of disparity from cell to cell, to the right and downward, averaged over the connected neighbours.
     pub fn slope(&self, layer: usize, cell: usize) -> [f32; 2] {
         let disparity = &self.disparity[layer];
         let (mut sums, mut counts) = ([0.0; 2], [0.0f32; 2]);

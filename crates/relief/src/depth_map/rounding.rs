@@ -1,23 +1,25 @@
-//! Depth maps of few levels: the stairs that rounding made of slopes, taken away.
+//! Depth maps of few levels: removes the stairs that rounding made of slopes.
 //!
-//! Where most neighbours have the very same number, numbers were rounded. They are then evened out as far as rounding left open, half a level
-//! either way, from far neighbours to near ones, so that wide stairs become slopes, too.
+//! Where many neighbours have exactly the same number, numbers were rounded. They are then smoothed within the rounding interval, half a
+//! level either way, from far neighbours to near ones, so that wide stairs become slopes, too.
 
-use crate::cells::Grid;
+use crate::mesh::cells::Grid;
+use numerics::upper_median;
 use rayon::prelude::*;
 
-/// From so many neighbours of the same number on, numbers were rounded.
+/// The least share of equal neighbours of a rounded map.
 const SAME: f64 = 0.4;
-/// How far neighbours are that a number is evened out with, and how often with each.
+/// The distances of the neighbours that are averaged, and the number of rounds with each.
 const STRIDES: [usize; 6] = [32, 16, 8, 4, 2, 1];
 const ROUNDS: usize = 6;
 
-/// Evens out what rounding left open. Steps of more than `jump` are none of its.
+/// Smooths a rounded map. Steps of more than `jump` are not caused by rounding.
 pub(crate) fn smooth_rounding(grid: Grid, disparity: &mut Vec<f32>, jump: f32) {
     let Some(level) = level(grid, disparity, jump) else { return };
     let rounded = disparity.clone();
     for (stride, _) in STRIDES.iter().flat_map(|stride| (0..ROUNDS).map(move |round| (*stride, round))) {
-        // A slope of several levels from neighbour to neighbour is told finely enough; what is more is another thing.
+        // Slopes of several levels from neighbour to neighbour are fine enough; larger steps belong to something
+        // else.
         let max_step = jump.min(3.0 * level * stride as f32);
         let before = &*disparity;
         let next = (0..grid.count()).into_par_iter().map(|cell| {
@@ -41,7 +43,7 @@ pub(crate) fn smooth_rounding(grid: Grid, disparity: &mut Vec<f32>, jump: f32) {
     }
 }
 
-/// The distance between two levels, if numbers were rounded to some: the median step between neighbours that differ.
+/// The distance between two levels, if numbers were rounded: the median step between neighbours that differ.
 fn level(grid: Grid, disparity: &[f32], jump: f32) -> Option<f32> {
     let (mut same, mut steps) = (0usize, Vec::new());
     for cell in 0..grid.count() {
@@ -59,9 +61,7 @@ fn level(grid: Grid, disparity: &[f32], jump: f32) -> Option<f32> {
     if steps.is_empty() || (same as f64) < SAME * all as f64 {
         return None;
     }
-    let middle = steps.len() / 2;
-    let (_, median, _) = steps.select_nth_unstable_by(middle, f32::total_cmp);
-    Some(*median)
+    upper_median(&mut steps)
 }
 
 #[cfg(test)]

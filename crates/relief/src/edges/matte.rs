@@ -1,42 +1,42 @@
-//! Pixels at jumps of depth that show both sides: how much of each, and in which colours.
+//! Matting: pixels at jumps of depth that show both sides, the share of each, and the colours of each.
 //!
-//! A pixel that an edge passes through shows I = α·F + (1 − α)·B: so much of what stands before and so much of what lies behind. Out of focus
-//! the two go apart, and a surface of the colour I would have a fringe. F is expected to be as a few pixels further inside, B as other views
-//! show it or as a few pixels further outside; α is the most likely one, given how much both vary there, and that depth puts the edge between
-//! two pixels (0 or 1, give or take what rounding leaves open). Where F and B are too much alike to tell, or vary too much, that is what it
-//! stays. What is left of I is shared out as either side varies (Chuang et al., *A Bayesian approach to digital matting*, 2001), so that the
-//! picture stays what it is.
+//! A pixel that an edge passes through shows I = α·F + (1 − α)·B: a share of the foreground and a share of the background. Out of focus
+//! the two separate, and a surface of the colour I would have a fringe. F is expected to be as a few pixels further inside, B as other
+//! views show it or as a few pixels further outside; α is the most likely one, given the variance of both, and that depth puts the edge
+//! between two pixels (0 or 1, give or take rounding). Where F and B are too similar or vary too much, α stays at that. The residual of I
+//! is distributed in proportion to the variances (Chuang et al., *A Bayesian approach to digital matting*, 2001), so that the composite
+//! is the picture.
 
-use crate::cells::{Grid, Links};
-use crate::look::{ColorAccumulator, ColorStats, noise_variance, squared_distance};
+use crate::color_stats::{ColorAccumulator, ColorStats, noise_variance, squared_distance};
+use crate::mesh::cells::{Grid, Links};
 use rayon::prelude::*;
 
 /// From this share on a pixel shows one side only.
 const WHOLE: f32 = 0.9;
-/// How far around a pixel what its two sides look like is looked for.
+/// Radius around a pixel in which the colours of its two sides are sampled.
 const AROUND: isize = 3;
-/// The same where nothing is there.
+/// The same where there are none.
 const FAR_AROUND: isize = 12;
-/// The standard deviation of a share where only depth tells it: an edge anywhere within a pixel.
+/// The standard deviation of a share that only depth determines: an edge anywhere within a pixel.
 const BY_DEPTH: f32 = 0.3;
-/// So many standard deviations off 0 or 1 it is a mixture.
+/// The number of standard deviations from 0 or 1 that makes a mixture.
 const MIN_DEVIATIONS: f32 = 2.0;
-/// Of how far a pixel is off the colour of its side, squared, a mixture explains at least so much.
+/// The least share of the squared distance from the side's colour that a mixture must explain.
 const EXPLAINED: f32 = 0.5;
 
 /// A pixel that shows both sides of a jump.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct MixedPixel {
     pub cell: usize,
-    /// What stands before is this much of it, in (0, 1).
+    /// The share of the foreground, in (0, 1).
     pub share: f32,
-    /// Whether it would be taken for what lies behind.
+    /// Whether its depth is that of the background.
     pub is_beyond: bool,
     pub before: ColorStats,
     pub behind: ColorStats,
 }
 
-/// Pixels beside jumps, which may show both sides.
+/// Pixels next to jumps, which may show both sides.
 pub(crate) fn find_edges(
     grid: Grid,
     disparity: &[f32],
@@ -58,8 +58,8 @@ pub(crate) fn find_edges(
     (0..grid.count()).into_par_iter().filter_map(edge_at).collect()
 }
 
-/// Those of the edges that do show both sides. Those of the farther side are then taken for the nearer one's, which they are part of: the
-/// disparities with that, too.
+/// The edge pixels that do show both sides. Those with the depth of the farther side get that of the nearer one, which they are part of:
+/// returns the changed disparities, too.
 pub(crate) fn find_mixtures(
     grid: Grid,
     disparity: &[f32],
@@ -75,7 +75,7 @@ pub(crate) fn find_mixtures(
     (across, mixtures)
 }
 
-/// Pixels beside jumps that show only what is on the other side.
+/// Pixels next to jumps that show only the other side.
 pub(crate) fn find_misplaced(
     grid: Grid,
     disparity: &[f32],
@@ -92,7 +92,7 @@ pub(crate) fn find_misplaced(
     mixtures.filter(is_misplaced).collect()
 }
 
-/// The disparities where pixels beside jumps have that of what is on the other side.
+/// The disparities where pixels next to jumps have that of the other side.
 pub(crate) fn disparity_across<'a>(
     grid: Grid,
     disparity: &[f32],
@@ -117,7 +117,8 @@ pub(crate) fn disparity_across<'a>(
     across
 }
 
-/// A mixture, told anew: once it is known what lies behind. The colours of both sides, of which it is made exactly.
+/// Separates a mixture, now that the background is known: its share, and the colours of both sides, which compose
+/// exactly to it.
 pub(crate) fn unmix(color: [f32; 3], mixed: &MixedPixel) -> (f32, [[f32; 3]; 2]) {
     let share = estimate_share(color, mixed).0.clamp(MIN_SHARE, 1.0 - MIN_SHARE);
     let (a, b) = (share, 1.0 - share);
@@ -134,14 +135,14 @@ pub(crate) fn unmix(color: [f32; 3], mixed: &MixedPixel) -> (f32, [[f32; 3]; 2])
     (share, sides)
 }
 
-/// Shares are told in steps of an eighth bit; less than one is none.
+/// Shares are quantised to 8 bits; less than one step is none.
 const MIN_SHARE: f32 = 1.0 / 256.0;
 
-/// Where depth jumps: by cell, what lies on the other side.
+/// Jumps of depth: by cell, the disparity on the other side.
 struct Jumps {
-    /// Disparity of what lies behind the cell's own side.
+    /// Disparity behind the cell's own side.
     behind: Vec<Option<f32>>,
-    /// Disparity of what stands before it.
+    /// Disparity in front of it.
     before: Vec<Option<f32>>,
 }
 
@@ -166,13 +167,13 @@ impl Jumps {
         jumps
     }
 
-    /// Whether a cell lies at no jump.
+    /// Whether a cell is not next to a jump.
     fn is_plain(&self, cell: usize) -> bool {
         self.behind[cell].is_none() && self.before[cell].is_none()
     }
 }
 
-/// What the two sides of a cell's jump, of these disparities, look like around it.
+/// The colours around a cell of the two sides of its jump, which have these disparities.
 fn sides(
     grid: Grid,
     disparity: &[f32],
@@ -183,7 +184,7 @@ fn sides(
     [before, behind]: [f32; 2],
 ) -> Option<[ColorStats; 2]> {
     let [x, y] = [cell % grid.width, cell / grid.width].map(|at| at as isize);
-    // Of what lies in one depth around it, so far: the whole pixels, or all.
+    // The colours of one depth within a radius: of whole pixels, or of all.
     let around = |level: f32, reach: isize, of_all: bool| {
         let mut accumulator = ColorAccumulator::default();
         for (dy, dx) in (-reach..=reach).flat_map(|dy| (-reach..=reach).map(move |dx| (dy, dx))) {
@@ -193,21 +194,21 @@ fn sides(
             }
             let other = grid.at(x as usize, y as usize);
             if (disparity[other] - level).abs() <= jump && (of_all || jumps.is_plain(other)) {
-                // Nearer ones tell more.
+                // Nearer ones have more weight.
                 accumulator.add(colors[other], 1.0 / (1.0 + (dx * dx + dy * dy) as f32));
             }
         }
         accumulator.stats()
     };
     let behind = around(behind, AROUND, false)?;
-    // What is too thin to have an inside goes on elsewhere, as hair on a head; or it is told by what there is of it.
+    // What is too thin to have an inside continues elsewhere, as hair on a head; otherwise all of its pixels count.
     let before = around(before, AROUND, false)
         .or_else(|| around(before, FAR_AROUND, false))
         .or_else(|| around(before, AROUND, true))?;
     Some([before, behind])
 }
 
-/// The share of what stands before, and its standard deviation.
+/// The share of the foreground, and its standard deviation.
 fn estimate_share(color: [f32; 3], mixed: &MixedPixel) -> (f32, f32) {
     let expected = if mixed.is_beyond { 0.0 } else { 1.0 };
     let between = squared_distance(mixed.before.color, mixed.behind.color);
@@ -217,7 +218,7 @@ fn estimate_share(color: [f32; 3], mixed: &MixedPixel) -> (f32, f32) {
     let by_depth = 1.0 / (BY_DEPTH * BY_DEPTH);
     let mut share: f32 = 0.5;
     let mut precision = by_depth;
-    // How much either side varies counts as much as there is of it.
+    // The variances of both sides are weighted by their shares.
     for _ in 0..3 {
         let noise = noise_variance(color);
         let variance = share * share * mixed.before.variance + (1.0 - share).powi(2) * mixed.behind.variance;
@@ -228,7 +229,7 @@ fn estimate_share(color: [f32; 3], mixed: &MixedPixel) -> (f32, f32) {
     (share, precision.sqrt().recip())
 }
 
-/// Whether a pixel is a mixture, and of how much.
+/// Whether a pixel is a mixture, and its share.
 fn detect_mixture(color: [f32; 3], mixed: MixedPixel) -> Option<MixedPixel> {
     let (share, deviation) = estimate_share(color, &mixed);
     let (pure, mixed_share) =

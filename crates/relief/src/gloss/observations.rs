@@ -1,24 +1,25 @@
-//! What views show of blocks of pixels, beside what the picture does.
+//! Differences between other views and the picture, by blocks of pixels.
 
-use crate::cells::Grid;
-use crate::covers::project_cell;
+use crate::color_stats::squared_distance;
+use crate::edges::covers::project_cell;
 use crate::error::ReliefError;
-use crate::look::squared_distance;
+use crate::mesh::cells::Grid;
 use crate::other_view::OtherView;
-use crate::other_views::{FrontLayer, interpolate, nearest_disparity};
+use crate::resampling::{FrontLayer, interpolate, nearest_disparity};
+use numerics::upper_median;
 use progress::Progress;
 use rayon::prelude::*;
 
-/// What one view shows of a block.
+/// The observation of a block in one view.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Observation {
-    /// How much more than the picture, linear RGB; the mean of the pixels that the view shows.
+    /// View minus picture, linear RGB; the mean over the pixels that the view shows.
     pub difference: [f32; 3],
-    /// The share of the block's pixels that it shows, in [0, 1].
+    /// The share of the block's pixels that the view shows, in [0, 1].
     pub weight: f32,
 }
 
-/// The same as it is kept.
+/// An observation as it is stored.
 #[derive(Clone, Copy, Debug, Default)]
 struct QuantizedObservation {
     /// In steps of [`STEP`].
@@ -28,10 +29,10 @@ struct QuantizedObservation {
 }
 
 impl QuantizedObservation {
-    fn quantize(sighting: &Observation) -> Self {
+    fn quantize(observation: &Observation) -> Self {
         Self {
-            difference: sighting.difference.map(|more| (more / STEP + 0.5f32.copysign(more)) as i16),
-            weight: (sighting.weight * f32::from(u16::MAX) + 0.5) as u16,
+            difference: observation.difference.map(|more| (more / STEP + 0.5f32.copysign(more)) as i16),
+            weight: (observation.weight * f32::from(u16::MAX) + 0.5) as u16,
         }
     }
 
@@ -43,33 +44,33 @@ impl QuantizedObservation {
     }
 }
 
-/// What all views show.
+/// The observations of all views.
 pub(super) struct Observations {
-    /// Pixels that a block is wide and high.
+    /// Width and height of a block, pixels.
     pub side: usize,
     pub blocks: Grid,
-    /// By block, what the picture shows in the mean.
+    /// By block, the mean colour of the picture.
     pub picture: Vec<[f32; 3]>,
-    /// By block, the largest step between pixels in it and beside it, squared, all channels together.
+    /// By block, the largest squared difference of adjacent pixels in it and next to it, all channels together.
     pub steepest: Vec<f32>,
     views: usize,
     /// By block, then by view.
     all: Vec<QuantizedObservation>,
 }
 
-/// Steps of light: 8 bits tell several of them apart in the dark, and an i16 holds eight times white.
+/// Quantisation of light: 8 bits distinguish several steps in the dark, and an i16 holds eight times white.
 const STEP: f32 = 1.0 / 4096.0;
-/// Bytes that sightings take at most: blocks are of several pixels where they would not fit.
+/// The most bytes for observations: blocks are of several pixels where they would not fit.
 const MAX_BYTES: usize = 192 << 20;
-/// Views in which something nearer is as near as this are left out, px: their edges are mixed.
+/// Pixels of views within this distance of something nearer are left out, px: those of edges are mixed.
 const BESIDE: usize = 1;
-/// Blocks darker than this tell nothing of how bright a view is as a whole.
+/// Blocks darker than this do not count for the brightness of a view.
 const DARK: f32 = 0.02;
-/// How bright a view is as a whole is told by about so many blocks.
+/// The brightness of a view is measured on about so many blocks.
 const RATIOS: usize = 20_000;
 
 impl Observations {
-    /// Looks at the whole pixels in each view.
+    /// Observes the whole pixels in each view.
     pub fn collect<E: Send>(
         layer: &FrontLayer<'_>,
         shown: &[[f32; 3]],
@@ -87,7 +88,7 @@ impl Observations {
         let blocks = Grid { width: width.div_ceil(side), height: height.div_ceil(side) };
         let (frame, grid) = (layer.frame, layer.frame.grid);
         let margin = frame.margin;
-        // The pixels of a block that are told of, in the grid of cells.
+        // The observed pixels of a block, in the grid of cells.
         let pixels = |block: usize| {
             let (x, y) = (block % blocks.width * side, block / blocks.width * side);
             let rows = y..(y + side).min(height);
@@ -101,7 +102,7 @@ impl Observations {
                 (0..3).for_each(|c| sum[c] += shown[cell][c]);
                 count += 1.0;
             }
-            // Of a block that lies on an edge nothing is told.
+            // A block that lies on an edge is not observed.
             if 2.0 * count >= (side * side) as f32 { sum.map(|sum| sum / count) } else { [f32::NAN; 3] }
         };
         let step = |cell: usize| -> f32 {
@@ -117,12 +118,12 @@ impl Observations {
             progress.check().map_err(ReliefError::Cancelled)?;
             progress.report(number as f32 / views.len() as f32);
             let view_pixels = (view.read)().map_err(ReliefError::View)?;
-            // A picture of another size shows nothing that could be found in it.
+            // A picture of another size cannot be compared.
             if view_pixels.len() != picture.count() {
                 continue;
             }
             let nearest = largest_around(grid, &nearest_disparity(grid, layer.front, view.offset), BESIDE);
-            let sighting = |block: usize| {
+            let observation = |block: usize| {
                 let (mut total, mut count) = ([0.0; 3], 0.0f32);
                 for cell in pixels(block) {
                     let disparity = layer.front[cell];
@@ -144,17 +145,18 @@ impl Observations {
             };
             let of_block = |block: usize| match means[block][0].is_nan() {
                 true => Observation::default(),
-                false => sighting(block),
+                false => observation(block),
             };
             let mut of_view: Vec<Observation> = (0..blocks.count()).into_par_iter().map(of_block).collect();
             even_out(&means, &mut of_view);
             let of_blocks = all.par_chunks_mut(views.len()).zip(&of_view);
-            of_blocks.for_each(|(row, sighting)| row[number] = QuantizedObservation::quantize(sighting));
+            of_blocks
+                .for_each(|(row, observation)| row[number] = QuantizedObservation::quantize(observation));
         }
         Ok(Self { side, blocks, picture: means, steepest, views: views.len(), all })
     }
 
-    /// What views show of a block, in their order.
+    /// The observations of a block, in the order of the views.
     pub fn of_block(&self, block: usize) -> Vec<Observation> {
         self.all[block * self.views..(block + 1) * self.views]
             .iter()
@@ -163,34 +165,31 @@ impl Observations {
     }
 }
 
-/// A view that is darker as a whole, as outer ones of a plenoptic camera are, is made as bright as the picture.
+/// Brightens a view that is darker as a whole, like the outer ones of a plenoptic camera.
 fn even_out(picture: &[[f32; 3]], observations: &mut [Observation]) {
     for channel in 0..3 {
-        // The median of some that are spread evenly tells enough.
+        // The median of evenly spread blocks is accurate enough.
         let stride = picture.len().div_ceil(RATIOS);
-        let ratio = |(picture, sighting): (&[f32; 3], &Observation)| {
-            let is_usable = picture[channel] > DARK && sighting.weight > 0.0;
-            is_usable.then(|| 1.0 + sighting.difference[channel] / picture[channel])
+        let ratio = |(picture, observation): (&[f32; 3], &Observation)| {
+            let is_usable = picture[channel] > DARK && observation.weight > 0.0;
+            is_usable.then(|| 1.0 + observation.difference[channel] / picture[channel])
         };
         let mut ratios: Vec<f32> =
             picture.iter().zip(&*observations).filter_map(ratio).step_by(stride).collect();
-        if ratios.is_empty() {
+        let Some(ratio) = upper_median(&mut ratios) else { continue };
+        if ratio <= 0.0 {
             continue;
         }
-        let middle = ratios.len() / 2;
-        let (_, ratio, _) = ratios.select_nth_unstable_by(middle, f32::total_cmp);
-        if *ratio <= 0.0 {
-            continue;
-        }
-        let gain = 1.0 / *ratio;
-        for (picture, sighting) in picture.iter().zip(&mut *observations).filter(|(_, s)| s.weight > 0.0) {
-            let all = picture[channel] + sighting.difference[channel];
-            sighting.difference[channel] = all * gain - picture[channel];
+        let gain = 1.0 / ratio;
+        for (picture, observation) in picture.iter().zip(&mut *observations).filter(|(_, s)| s.weight > 0.0) {
+            let all = picture[channel] + observation.difference[channel];
+            observation.difference[channel] = all * gain - picture[channel];
         }
     }
 }
 
-/// Whether nothing of more disparity than `most` is where `nearest` has the largest around.
+/// Whether nothing of more disparity than `max_disparity` is at a position, where `nearest` has the largest disparity
+/// around.
 fn open_at(grid: Grid, nearest: &[f32], at: [f32; 2], max_disparity: f32) -> bool {
     let [x, y] = at.map(|at| at.floor() as isize);
     let is_in = (0..grid.width as isize).contains(&x) && (0..grid.height as isize).contains(&y);

@@ -1,8 +1,8 @@
-//! Disparities where none are known: of what lies around, the farther.
+//! Filling of unknown disparities: with the farther of the surroundings.
 
-use crate::cells::Grid;
+use crate::mesh::cells::Grid;
 
-/// The same with a number everywhere, if there is one at all: inward from what is known, always the least of the neighbours.
+/// Fills all NaNs, if there is a number at all: inward from known disparities, with the least of the neighbours.
 pub fn fill_unknown_disparity([width, height]: [usize; 2], mut disparity: Vec<f32>) -> Vec<f32> {
     let grid = Grid { width, height };
     let mut border: Vec<usize> = (0..grid.count())

@@ -1,14 +1,14 @@
-//! Colours that are alike: their mean, and how much they vary.
+//! Statistics of colours: their mean and variance.
 
-/// Noise of square roots of light: somewhat more than eight bits leave.
+/// Noise of square roots of light: somewhat more than that of eight bits.
 const NOISE: f32 = 0.006;
 
-/// What some colours have in common.
+/// Statistics of some colours.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ColorStats {
     /// Their mean.
     pub color: [f32; 3],
-    /// Mean square deviation from it, all channels together, noise included.
+    /// Mean square deviation from the mean, all channels together, noise included.
     pub variance: f32,
 }
 
@@ -28,7 +28,7 @@ impl ColorAccumulator {
         self.square += weight * color.iter().map(|c| c * c).sum::<f32>();
     }
 
-    /// What they have in common, if there are any.
+    /// The statistics, if there are any colours.
     pub fn stats(&self) -> Option<ColorStats> {
         if self.weight <= 0.0 {
             return None;
@@ -39,12 +39,12 @@ impl ColorAccumulator {
     }
 }
 
-/// Variance by noise, all channels together.
+/// The variance of noise, all channels together.
 pub(crate) fn noise_variance(color: [f32; 3]) -> f32 {
     4.0 * NOISE * NOISE * color.iter().map(|c| c.max(0.0)).sum::<f32>() + 3.0 * NOISE.powi(4)
 }
 
-/// How far two colours are apart, squared.
+/// The squared distance of two colours.
 pub(crate) fn squared_distance(a: [f32; 3], b: [f32; 3]) -> f32 {
     (0..3).map(|c| (a[c] - b[c]).powi(2)).sum()
 }

@@ -1,29 +1,29 @@
-//! Edges of depth put where the picture has them.
+//! Alignment of edges of depth with those of the picture.
 //!
-//! Pixels that show only what is on the other side of their jump belong there, by their colour (`matte`). Where there are other views, they
-//! have a say: one that goes on being what it is where its own depth puts it, rather than where the other side's does, stays.
+//! Pixels whose colour is only that of the other side of their jump belong there (`matte`). Other views can veto: a pixel that keeps its
+//! colour where its own depth puts it, rather than where the other side's depth would, stays.
 
-use crate::cells::Links;
-use crate::covers::MattedLayer;
+use crate::color_stats::{ColorStats, squared_distance};
+use crate::edges::covers::MattedLayer;
+use crate::edges::jumps;
+use crate::edges::matte::{self, MixedPixel};
 use crate::error::ReliefError;
 use crate::frame::Frame;
-use crate::jumps;
-use crate::look::{ColorStats, squared_distance};
-use crate::matte::{self, MixedPixel};
+use crate::mesh::cells::Links;
 use crate::other_view::OtherView;
-use crate::other_views::{FrontLayer, TexelQuery};
+use crate::resampling::{FrontLayer, TexelQuery};
 use progress::Progress;
 
-/// Edges of depth are off the picture's by so many pixels at most.
+/// The most pixels by which edges of depth differ from the picture's.
 const ROUNDS: usize = 2;
-/// Views that are asked at most: those farthest from each other in their order.
+/// The most views that are compared: the farthest from each other in their order.
 const MAX_VIEWS: usize = 8;
 
-/// A pixel stays if views are so many times as far off, squared, where the other side is.
+/// A pixel stays if the squared error of views is so many times as large at the other side's depth.
 const MIN_ERROR_RATIO: f32 = 4.0;
 
-/// Puts edges of depth where the picture and the views have them, in so many rounds at most. Tells by cell which look like the other side of
-/// their jump and stay, and what hangs together then.
+/// Moves edges of depth to where the picture and the views have them, in rounds. Returns by cell which pixels look like the other side of
+/// their jump and stay, and the resulting connections.
 pub(crate) fn snap_edges<E: Send>(
     frame: &Frame,
     disparity: &mut [f32],
@@ -55,7 +55,7 @@ pub(crate) fn snap_edges<E: Send>(
     Ok((stays, links))
 }
 
-/// By pixel, whether views show it where it is rather than where it would be `across` its jump.
+/// By pixel, whether views show it where it is rather than `across` its jump.
 fn find_contradicted<E: Send>(
     frame: &Frame,
     [here, across]: [&[f32]; 2],

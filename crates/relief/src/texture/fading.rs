@@ -1,22 +1,22 @@
-//! Colours beside what is known: near it those of its border, farther away only about as bright.
+//! Extrapolation of colours: near the known area those of its border, farther away only their blurred mean.
 //!
-//! What is beside a picture is like its border for a few pixels; of what is farther away only a mean can be told, over about the distance.
-//! Of continuing the border, mirroring the picture, a pyramid's smooth filling and this, this errs least where the frame of pictures was
-//! made smaller and what was cut off compared.
+//! The surroundings of a picture are like its border for a few pixels; farther away only a mean can be predicted, over about the distance.
+//! Compared with extending the border, mirroring the picture and a pyramid's smooth filling, this has the least error where the frame of
+//! pictures was reduced and the result compared with what was cut off.
 
-use crate::cells::Grid;
+use crate::mesh::cells::Grid;
 use rayon::prelude::*;
 
-/// Boxes that make a bell.
+/// The number of box filters that approximate a Gaussian.
 const BOXES: usize = 3;
 
-/// Gives cells that are not known the colour of the nearest that is, blurred by a bell as wide as it is far away.
+/// Gives cells without a colour that of the nearest cell that has one, blurred by a Gaussian as wide as the distance.
 pub(crate) fn fade(grid: Grid, colors: &mut [[f32; 3]], has_color: &[bool]) {
     let distance = extend_colors(grid, colors, has_color);
     let farthest = distance.iter().copied().max().unwrap_or(0) as f32;
     let mut blurred = colors.to_vec();
     let mut sigma = 0.0f32;
-    // Blurs of σ = 1, 2, 4 …, each from the last; what is as far away as between two of them has a share of both.
+    // Blurs of σ = 1, 2, 4 …, each from the last; distances between two of them interpolate both.
     while sigma < farthest {
         let wider = if sigma > 0.0 { 2.0 * sigma } else { 1.0 };
         let narrow = blurred.clone();
@@ -32,7 +32,8 @@ pub(crate) fn fade(grid: Grid, colors: &mut [[f32; 3]], has_color: &[bool]) {
     }
 }
 
-/// Carries colours from what is known outward; tells by how many cells. Where nothing is known nothing changes.
+/// Extends colours outward from the cells that have one; returns the distance in cells. Without any such cell nothing
+/// changes.
 fn extend_colors(grid: Grid, colors: &mut [[f32; 3]], has_color: &[bool]) -> Vec<u32> {
     let mut distance: Vec<u32> =
         has_color.iter().map(|has_color| if *has_color { 0 } else { u32::MAX }).collect();
@@ -55,7 +56,7 @@ fn extend_colors(grid: Grid, colors: &mut [[f32; 3]], has_color: &[bool]) -> Vec
     distance
 }
 
-/// Three boxes along rows and columns: a bell of about this standard deviation.
+/// Three box filters along rows and columns: a Gaussian of about this standard deviation.
 fn blur(grid: Grid, colors: &mut Vec<[f32; 3]>, sigma: f32) {
     // A box of 2 r + 1 cells has the variance (r² + r) / 3.
     let radius = ((0.25 + sigma * sigma).sqrt() - 0.5).round().max(1.0) as usize;
@@ -65,7 +66,7 @@ fn blur(grid: Grid, colors: &mut Vec<[f32; 3]>, sigma: f32) {
     }
 }
 
-/// Means over 2 `radius` + 1 cells along lines of `length`, whose ends go on beyond them; the lines come out as columns.
+/// Means over 2 `radius` + 1 cells along lines of `length`, clamped at their ends; the lines come out as columns.
 fn boxed(colors: &[[f32; 3]], length: usize, radius: usize) -> Vec<[f32; 3]> {
     let lines: Vec<Vec<[f32; 3]>> =
         colors.par_chunks(length).map(|line| means(line, radius as isize)).collect();

@@ -1,12 +1,13 @@
-//! How evenly disparities go on from pixel to pixel.
+//! The roughness of a disparity map.
 
-use crate::cells::Grid;
+use crate::mesh::cells::Grid;
+use numerics::order_statistic;
 
-/// All but this share of the pixels count: edges do not.
+/// The share of the pixels that is ignored: edges.
 const EDGES: f64 = 0.1;
 
-/// How far disparities are off the middle of those beside them, left and right, above and below: as far at most, but for a tenth of them. Nearly 0
-/// of a map that was rendered, as planes are linear in it; more where it was found, and the noise of that shows.
+/// The deviation of disparities from the middle of their neighbours, left and right, above and below: the 90th percentile. Nearly 0 for a
+/// rendered map, in which planes are linear; larger for an estimated one, whose noise it measures.
 pub fn measure_roughness([width, height]: [usize; 2], disparity: &[f32]) -> f32 {
     let grid = Grid { width, height };
     let deviation_at = |a: usize, middle: usize, b: usize| {
@@ -26,10 +27,7 @@ pub fn measure_roughness([width, height]: [usize; 2], disparity: &[f32]) -> f32 
         }
     }
     let rank = ((1.0 - EDGES) * all.len() as f64) as usize;
-    match rank < all.len() {
-        true => *all.select_nth_unstable_by(rank, f32::total_cmp).1,
-        false => 0.0,
-    }
+    order_statistic(&mut all, rank).unwrap_or(0.0)
 }
 
 #[cfg(test)]
