@@ -1,13 +1,14 @@
-//! What kind of capture a path is.
+//! Detection of the kind of capture that a path is.
 
+use crate::CaptureError;
+use crate::cameras::layout;
 use crate::depth_picture::{InFolder, has_depth, in_folder};
-use crate::folder::{EntryKind, Folder, extension};
-use crate::foreign::unsupported_format_error;
+use crate::files::folder::{EntryKind, Folder, extension};
 use crate::light_field::find_views;
 use crate::mosaic::detect_pitch;
-use crate::picture_header::read_header;
-use crate::picture_names::EXTENSIONS;
-use crate::{CaptureError, layout};
+use crate::pictures::picture_header::read_header;
+use crate::pictures::picture_names::EXTENSIONS;
+use crate::unsupported_format::unsupported_format_error;
 use scene::LoadOptions;
 use std::path::Path;
 
@@ -23,33 +24,35 @@ pub enum CaptureKind {
 }
 
 impl CaptureKind {
-    /// All, with the names they are chosen by.
+    /// All kinds, with the names by which they are selected.
     pub const ALL: [(&str, Self); 3] =
         [("photographs", Self::Photographs), ("lightfield", Self::LightField), ("depth", Self::Depth)];
 
-    /// The one with this name.
+    /// The kind with this name.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.iter().find(|(candidate, _)| *candidate == name).map(|(_, kind)| *kind)
     }
 }
 
-/// Whether a file's name says that it is a picture, or holds some: one that [`capture_kind`] can say something about.
+/// Whether a file's extension is that of a picture, or of a container of pictures: one for which
+/// [`detect_capture_kind`] has an answer.
 pub fn may_be_picture(path: &Path) -> bool {
     const OTHERS: [&str; 5] = ["heif", "avif", "lfp", "lfr", "lfx"];
     let extension = extension(path);
     EXTENSIONS.contains(&extension.as_str()) || OTHERS.contains(&extension.as_str())
 }
 
-/// The kind of capture that a folder or file is.
+/// Detects the kind of capture that a folder or file is.
 ///
-/// A folder is asked for cameras of photographs first, then for views, then for a picture with depth; a picture for depth in it or
-/// beside it, then for the period of micro-images. That is quick, but for pictures with neither, whose pixels are looked at.
+/// A folder is searched for cameras of photographs first, then for views, then for a picture with depth; a picture for depth in it or
+/// next to it, then for the period of micro-images. That is quick, except for pictures with neither, whose pixels are analysed.
 ///
 /// # Errors
-/// It is none: a sentence that says what there is to give. [`CaptureError::Foreign`] of files that another program has to export first.
+/// [`CaptureError::NoCapture`] if it is none, with the kinds of input that can be opened. [`CaptureError::UnsupportedFormat`] for files that
+/// another program has to export first.
 pub fn detect_capture_kind(path: &Path) -> Result<CaptureKind, CaptureError> {
     let options = LoadOptions::default();
-    let none = |detail: &str| Err(CaptureError::NoCapture { path: path.into(), found: detail.into() });
+    let none = |detail: &str| Err(CaptureError::NoCapture { path: path.into(), detail: detail.into() });
     if !path.is_dir() {
         if let Some(error) = unsupported_format_error(path) {
             return Err(error);
@@ -58,7 +61,7 @@ pub fn detect_capture_kind(path: &Path) -> Result<CaptureKind, CaptureError> {
             return Ok(CaptureKind::Depth);
         }
         if extension(path) == "exr" {
-            return none(": an EXR without a channel of depth");
+            return none(": an EXR without a depth channel");
         }
         if let Err(why) = read_header(path) {
             return Err(match std::fs::metadata(path) {

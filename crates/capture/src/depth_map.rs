@@ -1,7 +1,7 @@
-//! Depth and disparity maps: how far what a picture shows is, a number a pixel.
+//! Depth and disparity maps: a number per pixel for the distance of what a picture shows.
 //!
-//! The road of a map: `pfm`, `exr_depth`, `levels`, `raw_floats` (the numbers as they are stored) → `meaning` (what they mean, by who gives
-//! them, by the file's name, by [`NearEnd`]; never by guessing) → [`DepthMap`].
+//! The stages for a map: `pfm`, `exr_depth`, `levels`, `raw_floats` (the numbers as they are stored) → `meaning` (what they mean: by the
+//! caller, by the file's name, by [`NearEnd`]; never by guessing) → [`DepthMap`].
 
 mod depth_file;
 mod exr_depth;

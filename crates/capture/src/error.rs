@@ -1,4 +1,4 @@
-//! What can be wrong with a capture.
+//! Errors of opening a capture.
 
 use progress::Cancelled;
 use scene::{PictureError, SceneError};
@@ -15,7 +15,7 @@ pub enum CaptureError {
         /// Why.
         source: std::io::Error,
     },
-    /// There are no cameras of any kind that is known.
+    /// No cameras of a supported format.
     #[error(
         "{}: no cameras of photographs (give the folder that holds COLMAP's cameras and images, transforms.json, bundle.out, an .nvm \
          or Metashape's cameras as .xml)",
@@ -25,7 +25,7 @@ pub enum CaptureError {
         /// The folder.
         folder: PathBuf,
     },
-    /// A file does not say what its kind has to.
+    /// The content of a file is invalid.
     #[error("{}: {place}: {what} (correct the file or export it again)", file.display())]
     Malformed {
         /// The file.
@@ -43,7 +43,7 @@ pub enum CaptureError {
         /// What to do.
         cure: &'static str,
     },
-    /// Of all the pictures that have cameras none can be used.
+    /// None of the pictures that have cameras can be used.
     #[error("{}: none of the pictures of its {cameras} cameras can be used: {why} (put them into the folder images, or name their folder)", file.display())]
     NoPictures {
         /// The file with the cameras.
@@ -63,10 +63,10 @@ pub enum CaptureError {
     NoMesh {
         /// The capture's folder.
         folder: PathBuf,
-        /// What there is instead, as a continuation of the sentence.
+        /// What exists instead, as a continuation of the sentence.
         also: String,
     },
-    /// A file is beyond the limits.
+    /// A file exceeds the limits.
     #[error("{}: {what} (make it smaller, or raise the limit)", file.display())]
     TooBig {
         /// The file.
@@ -74,65 +74,65 @@ pub enum CaptureError {
         /// What is too big, and the limit.
         what: String,
     },
-    /// It is a capture of no kind.
+    /// The path is no capture of any kind.
     #[error(
-        "{}: is neither photographs with cameras nor a light field nor a picture with depth{found} (give a folder of COLMAP's, nerfstudio's, \
-         Bundler's, VisualSFM's or Metashape's; a folder of views named by row and column; a mosaic of micro-images; or a picture whose \
-         depth is in it or beside it, as NAME_depth.png)",
+        "{}: contains neither photographs with cameras nor a light field nor a picture with depth{detail} (open a folder of COLMAP, nerfstudio, \
+         Bundler, VisualSFM or Metashape; a folder of views named by row and column; a mosaic of micro-images; or a picture with its \
+         depth inside or next to it, as NAME_depth.png)",
         path.display()
     )]
     NoCapture {
-        /// What was looked at.
+        /// The folder or file.
         path: PathBuf,
-        /// What there is instead, as a continuation of the sentence.
-        found: String,
+        /// What exists instead, as a continuation of the sentence.
+        detail: String,
     },
     /// There are no views of a light field.
-    #[error("{}: no views of a light field{found} (name them by row and column, as 03_04.png, or tell of them in views.json)", path.display())]
+    #[error("{}: no views of a light field{detail} (name them by row and column, as 03_04.png, or list them in views.json)", path.display())]
     NoViews {
         /// The folder or picture.
         path: PathBuf,
-        /// What is odd, as a continuation of the sentence.
-        found: String,
+        /// What is wrong, as a continuation of the sentence.
+        detail: String,
     },
     /// There is no depth of a picture.
     #[error(
-        "{}: no depth{found} (put it beside as NAME_depth.png, .pfm or .exr, or name its file)",
+        "{}: no depth{detail} (put it next to the picture as NAME_depth.png, .pfm or .exr, or name its file)",
         path.display()
     )]
     NoDepth {
         /// The picture.
         path: PathBuf,
-        /// What is odd, as a continuation of the sentence.
-        found: String,
+        /// What is wrong, as a continuation of the sentence.
+        detail: String,
     },
-    /// Several files could be meant.
+    /// Several files match.
     #[error("{}: has {what}: {names} (give one of them)", path.display())]
     Ambiguous {
         /// The folder.
         path: PathBuf,
         /// What there are several of.
         what: &'static str,
-        /// Which.
+        /// Their names.
         names: String,
     },
-    /// A depth map is relative, and does not say which end is near.
+    /// A depth map is relative, and its near end is unknown.
     #[error(
-        "{}: does not say which end is near (say --near white or --near black, or the distances of black and of white in metres, as --near 0.5,20)",
+        "{}: does not specify which end is near (pass --near white, --near black, or the distances of black and white in metres, such as --near 0.5,20)",
         file.display()
     )]
     NearUnknown {
         /// The depth map.
         file: PathBuf,
     },
-    /// Another program has to be asked first.
+    /// Another program has to export the file first.
     #[error("{}: is {what} ({cure})", file.display())]
     UnsupportedFormat {
         /// The file.
         file: PathBuf,
         /// What it is.
         what: String,
-        /// Which program makes what of it.
+        /// The program to use, and how.
         cure: &'static str,
     },
     /// Something is wrong with a picture.
@@ -141,7 +141,7 @@ pub enum CaptureError {
     /// Something is wrong with the mesh as a scene.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// Opening was called off.
+    /// `progress` cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
@@ -151,7 +151,7 @@ impl CaptureError {
         Self::Unreadable { file: file.into(), source }
     }
 
-    /// Beyond a limit of bytes.
+    /// A limit in bytes is exceeded.
     pub(crate) fn too_big(file: &Path, what: impl std::fmt::Display, bytes: u64, limit: u64) -> Self {
         let what = format!("{what} {} MiB, the limit is {} MiB", bytes >> 20, limit >> 20);
         Self::TooBig { file: file.into(), what }

@@ -1,34 +1,35 @@
 //! Opening a capture: the story from top to bottom.
 
-use crate::folder::Folder;
-use crate::layout::Cameras;
-use crate::picture_place::PictureSearch;
-use crate::upright::estimate_upright;
-use crate::{CameraFormat, CaptureError, Remark, mesh_file, pictures};
+use crate::cameras::layout::Cameras;
+use crate::cameras::upright::estimate_upright;
+use crate::files::folder::Folder;
+use crate::pictures::picture_folder::PictureSearch;
+use crate::{CameraFormat, CaptureError, Remark, mesh, pictures};
 use glam::{DQuat, DVec2};
 use progress::{Progress, Stage};
 use scene::{LoadOptions, Scene, SurfacePoint, View};
 use std::path::{Path, PathBuf};
 
-/// How a capture is read.
+/// Options for reading a capture.
 #[derive(Clone, Debug, Default)]
 pub struct CaptureOptions {
-    /// Whose cameras to read where there are several; none: the first in the order of [`Kind`] whose pictures are there.
+    /// Which cameras to read if there are several; `None`: the first in the order of [`CameraFormat`] whose pictures
+    /// exist.
     pub camera_format: Option<CameraFormat>,
-    /// The folder of the pictures, wherever that is; none: looked for in the capture's folder.
+    /// The folder of the pictures; `None`: looked for in the capture's folder.
     pub pictures: Option<PathBuf>,
-    /// The mesh, wherever that is; none: looked for in the capture's folder.
+    /// The mesh; `None`: looked for in the capture's folder.
     pub mesh: Option<PathBuf>,
-    /// What the mesh may use of the machine.
+    /// Limits on memory and size of the mesh.
     pub load: LoadOptions,
 }
 
 /// A place: photographs with their cameras, and its surface, in one world.
 ///
-/// That world is the capture's own, unturned and unscaled: what is measured in it, or exported from it, fits other files of the capture.
+/// That world is the capture's own, neither rotated nor scaled: measurements and exports match other files of the capture.
 #[derive(Clone, Debug)]
 pub struct Capture {
-    /// Whose cameras they are.
+    /// The format of the cameras.
     pub camera_format: CameraFormat,
     /// The file that the cameras were read from.
     pub cameras: PathBuf,
@@ -36,10 +37,10 @@ pub struct Capture {
     pub mesh: PathBuf,
     /// The photographs, by name; at least one.
     pub views: Vec<View>,
-    /// The surface; what was odd about it is in [`Scene::warnings`].
+    /// The surface; irregularities of it are in [`Scene::warnings`].
     pub scene: Scene,
-    /// The rotation that would turn the world so that +y is up, by how the cameras were held: most programs' worlds have no up, or another
-    /// one. It is for who looks at the scene; neither surface nor cameras are turned by it.
+    /// The rotation that would make +y up, estimated from how the cameras were held: the worlds of most programs have no up direction, or
+    /// another one. It is for viewing the scene; neither surface nor cameras are rotated by it.
     pub upright: DQuat,
     /// What was incomplete, or is good to know.
     pub remarks: Vec<Remark>,
@@ -48,13 +49,13 @@ pub struct Capture {
 /// Opens the capture in a folder: its cameras, the headers of its pictures, its mesh.
 ///
 /// # Errors
-/// It is no capture, a file of it is malformed or beyond the limits, none of its pictures is there, or there is no mesh.
-/// [`CaptureError::Cancelled`] if `progress` says so.
+/// It is no capture, a file of it is malformed or exceeds the limits, none of its pictures exists, or there is no mesh.
+/// [`CaptureError::Cancelled`] if `progress` cancels.
 pub fn open(path: &Path, options: &CaptureOptions, progress: &dyn Progress) -> Result<Capture, CaptureError> {
     let (folder, within) = capture_folder(path)?;
     let mut candidates = Cameras::find(&folder);
     candidates.retain(|cameras| options.camera_format.is_none_or(|kind| kind == cameras.format()));
-    // Who names a model's folder means that model.
+    // A caller that names a model's folder wants that model.
     candidates.sort_by_key(|cameras| !cameras.file().starts_with(&within));
     let mut remarks = Vec::new();
     let (cameras, views) = first_usable_views(
@@ -68,14 +69,14 @@ pub fn open(path: &Path, options: &CaptureOptions, progress: &dyn Progress) -> R
     let others = candidates.iter().map(Cameras::file).filter(|file| *file != used);
     remarks.extend(Remark::about(others.map(|file| file.display().to_string()).collect(), false, |names| {
         let used = used.display();
-        format!("{used}: is taken for the cameras; there are also {names} (name a kind if those are meant)")
+        format!("{used}: is used for the cameras; there are also {names} (specify a kind to use those)")
     }));
     let mesh = match &options.mesh {
         Some(mesh) => mesh.clone(),
-        None => mesh_file::find_mesh(&folder, &mut remarks)?,
+        None => mesh::find_mesh(&folder, &mut remarks)?,
     };
     let reading = Stage::named(progress, "surface", 0.5, 1.0);
-    let mut scene = mesh_file::read_mesh(&mesh, &options.load, &reading, &mut remarks)?;
+    let mut scene = mesh::read_mesh(&mesh, &options.load, &reading, &mut remarks)?;
     let upright = estimate_upright(&views);
     scene.set_upright(upright);
     remarks.extend(remark_if_invisible(&scene, &views, &mesh));
@@ -91,7 +92,8 @@ pub fn open(path: &Path, options: &CaptureOptions, progress: &dyn Progress) -> R
     })
 }
 
-/// The folder of the whole capture, where `path` may be that of a model within it (`sparse/0`), and the folder that was meant.
+/// The folder of the whole capture, where `path` may be that of a model within it (`sparse/0`), and the folder that
+/// was requested.
 fn capture_folder(path: &Path) -> Result<(Folder, PathBuf), CaptureError> {
     let is_model = |path: &Path| {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
@@ -101,7 +103,8 @@ fn capture_folder(path: &Path) -> Result<(Folder, PathBuf), CaptureError> {
         return Ok((Folder::open(path)?, path.into()));
     }
     let within = path.canonicalize().map_err(|source| CaptureError::unreadable(path, source))?;
-    // The nearest folder above that is no model's; a folder of photographs may be called 2024, too, and has no model of its own.
+    // The nearest folder above that is no model's; a folder of photographs may be called 2024, too, and has no model
+    // of its own.
     let above = within.ancestors().skip(1).find(|above| !is_model(above)).map(Folder::open).transpose()?;
     let has_it =
         |folder: &Folder| Cameras::find(folder).iter().any(|cameras| cameras.file().starts_with(&within));
@@ -111,7 +114,7 @@ fn capture_folder(path: &Path) -> Result<(Folder, PathBuf), CaptureError> {
     }
 }
 
-/// The views of the first cameras whose pictures are there.
+/// The views of the first cameras whose pictures exist.
 fn first_usable_views<'a>(
     folder: &Folder,
     candidates: &'a [Cameras],
@@ -136,9 +139,9 @@ fn first_usable_views<'a>(
     Err(failed.unwrap_or_else(|| CaptureError::NoCameras { folder: folder.shown.clone() }))
 }
 
-/// A remark if no picture shows anything of the mesh: it is in another world than the cameras.
+/// A remark if no picture shows anything of the mesh: its world is not that of the cameras.
 fn remark_if_invisible(scene: &Scene, views: &[View], mesh: &Path) -> Option<Remark> {
-    /// As many points of it tell, spread over its triangles.
+    /// The number of points that are tested, spread over its triangles.
     const SAMPLES: usize = 500;
     let triangles = scene.triangles.len();
     let (step, each) = (triangles.div_ceil(SAMPLES).max(1), SAMPLES.div_ceil(triangles.max(1)));

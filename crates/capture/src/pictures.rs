@@ -1,14 +1,21 @@
-//! From what a program says of photographs to views, and remarks on what was incomplete.
+//! From the photographs in a file of cameras to views, with remarks on what is incomplete.
 
-use crate::picture_header::{fit_lens, read_header};
-use crate::picture_place::{PictureFolder, PictureSearch, masks};
-use crate::shot::{Shot, Shots};
+pub(crate) mod exif;
+pub(crate) mod exr_channels;
+pub(crate) mod picture_folder;
+pub(crate) mod picture_header;
+pub(crate) mod picture_names;
+pub(crate) mod picture_source;
+
+use crate::cameras::shot::{Shot, Shots};
+use crate::pictures::picture_folder::{PictureFolder, PictureSearch, masks};
+use crate::pictures::picture_header::{fit_lens, read_header};
 use crate::{CaptureError, Remark};
 use progress::Progress;
 use scene::View;
 use std::path::PathBuf;
 
-/// The views of the shots that a file tells of, by name, and remarks on what is incomplete.
+/// The views of the shots in a file, by name, with remarks on what is incomplete.
 pub(crate) fn views(
     source: &PictureSearch<'_>,
     shots: Shots,
@@ -19,7 +26,7 @@ pub(crate) fn views(
     let Shots { shots, notes, without_camera } = shots;
     remarks.extend(notes.into_iter().map(|note| Remark::note(format!("{file}: {note}"))));
     remarks.extend(Remark::about(without_camera, false, |names| {
-        format!("{file}: no camera was found for {names} (they are left out)")
+        format!("{file}: no camera for {names} (they are ignored)")
     }));
     let names: Vec<String> = shots.iter().map(|shot| shot.name.clone()).collect();
     let place = PictureFolder::find(source, &names)?;
@@ -50,7 +57,7 @@ pub(crate) fn views(
         (0..names.len()).filter(is_missing).map(|index| names[index].clone()).collect();
     if views.is_empty() {
         let why = wrong.into_iter().next().unwrap_or_else(|| match missing.first() {
-            Some(name) => format!("{} is not in {}", crate::text::quoted(name), place.base.display()),
+            Some(name) => format!("{} is not in {}", crate::files::text::quoted(name), place.base.display()),
             None => "the file has no picture".into(),
         });
         return Err(CaptureError::NoPictures { file: source.cameras.into(), cameras: shots.len(), why });
@@ -65,13 +72,13 @@ pub(crate) fn views(
     remarks
         .extend(Remark::about(wrong, true, |names| format!("{file}: pictures that cannot be used: {names}")));
     remarks.extend(Remark::about(turned, false, |names| {
-        format!("{file}: turned as their EXIF data say, for their cameras have width and height the other way round: {names}")
+        format!("{file}: rotated by their EXIF orientation, because their cameras have width and height swapped: {names}")
     }));
     remarks.extend(Remark::about(resized, false, |names| {
-        format!("{file}: not of their cameras' size, which is scaled to theirs: {names}")
+        format!("{file}: their size differs from that of their cameras, which are scaled to it: {names}")
     }));
     remarks.extend(Remark::about(place.unused(), false, |names| {
-        format!("{}: pictures without a camera: {names} (they are left out)", place.base.display())
+        format!("{}: pictures without a camera: {names} (they are ignored)", place.base.display())
     }));
     views.sort_by(|a, b| a.name.cmp(&b.name));
     Ok(views)

@@ -1,26 +1,26 @@
-//! What was odd about a capture that opened nevertheless.
+//! Remarks on a capture that opened with irregularities.
 
 /// A remark on a capture. Displays as one line, `FILE: what (what to do)`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Remark {
     /// The sentence.
     pub text: String,
-    /// The pictures or files that it is about, all of them.
+    /// All pictures or files that it is about.
     pub names: Vec<String>,
-    /// Whether something is missing that the capture speaks of; else it is good to know.
+    /// Whether something is missing that the capture refers to; otherwise it is only information.
     pub is_incomplete: bool,
 }
 
-/// So many names are told in the sentence.
+/// The most names that are listed in the sentence.
 const MAX_NAMES: usize = 5;
 
 impl Remark {
-    /// Something that is good to know.
+    /// Information.
     pub(crate) fn note(text: impl Into<String>) -> Self {
         Self { text: text.into(), names: Vec::new(), is_incomplete: false }
     }
 
-    /// A sentence about some names, none if there is none: `{}` stands for how many and which.
+    /// A sentence about some names, `None` if there are none; `text` gets their list.
     pub(crate) fn about(
         names: Vec<String>,
         is_incomplete: bool,

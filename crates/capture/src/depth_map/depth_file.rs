@@ -1,4 +1,4 @@
-//! A depth map's file, whichever form it has.
+//! Reading a depth map, in any of its file formats.
 
 use super::exr_depth::read_exr_depth;
 use super::levels::levels_of;
@@ -7,19 +7,19 @@ use super::meaning::{DepthHint, DepthQuantity};
 use super::near_end::NearEnd;
 use super::pfm::read_pfm;
 use crate::CaptureError;
-use crate::whole_file::whole_file;
+use crate::files::whole_file::whole_file;
 use scene::LoadOptions;
 use std::path::Path;
 
 /// Reads a depth or disparity map: PFM, EXR, or a grey picture (PNG of 8 or 16 bits, JPEG, WebP).
 ///
-/// What its numbers are is told by `as_what`, else by its name (`…disp…`, `…depth…`) or its channel's. Levels of grey are relative, and so
-/// are floats where `near` is given: then the end is told by `near`, or by their being disparities.
-/// Distances that are 0, negative or NaN are unknown, infinite ones and those from 10¹⁰ on the background; disparities that are not finite are
-/// unknown.
+/// `quantity` determines what its numbers are, else its file name (`…disp…`, `…depth…`) or its channel's name. Levels of grey are relative,
+/// and so are floats if `near` is given: then `near` determines the near end, or that they are disparities.
+/// Distances that are 0, negative or NaN are unknown, infinite ones and those from 10¹⁰ on are background; disparities that are not finite
+/// are unknown.
 ///
 /// # Errors
-/// The file cannot be read, is malformed or beyond the limits, or is relative and nobody says which end is near.
+/// The file cannot be read, is malformed or exceeds the limits, or is relative and its near end is unknown.
 pub fn read_depth_map(
     file: &Path,
     quantity: Option<DepthQuantity>,

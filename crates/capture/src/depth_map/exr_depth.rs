@@ -1,12 +1,12 @@
-//! Depth in an EXR: the channel of depth, or the only one that there is.
+//! Depth in an EXR: the depth channel, or the only channel.
 
 use super::stored::{Numbers, Stored};
 use crate::CaptureError;
-use crate::exr_channels::{depth_channel, exr_names, read_exr};
+use crate::pictures::exr_channels::{depth_channel, exr_names, read_exr};
 use scene::LoadOptions;
 use std::path::Path;
 
-/// The numbers of an EXR that is a depth map, and whether its channel is named as one.
+/// Reads the numbers of an EXR that is a depth map, and whether its channel's name denotes depth.
 pub(crate) fn read_exr_depth(file: &Path, options: &LoadOptions) -> Result<(Stored, bool), CaptureError> {
     let names = exr_names(file, options)?;
     let named = depth_channel(&names);
@@ -18,7 +18,7 @@ pub(crate) fn read_exr_depth(file: &Path, options: &LoadOptions) -> Result<(Stor
     };
     let Some(name) = named.or_else(only) else {
         let what = format!(
-            "has no channel of depth (Z, depth.Z, ViewLayer.Depth.Z, Depth.V), but {}",
+            "has no depth channel (Z, depth.Z, ViewLayer.Depth.Z, Depth.V), only {}",
             names.join(", ")
         );
         return Err(CaptureError::malformed(file, "EXR", what.chars().take(300).collect::<String>()));

@@ -1,24 +1,26 @@
-//! Grey levels of pictures of 8 and 16 bits as numbers from 0 to 1: not turned into linear light, for they are none.
+//! Grey levels of pictures of 8 and 16 bits as numbers from 0 to 1, without conversion to linear light.
 
 use super::stored::{Numbers, Stored};
-use crate::folder::extension;
-use crate::whole_file::whole_file;
+use crate::files::folder::extension;
+use crate::files::whole_file::whole_file;
 use image::{ColorType, DynamicImage, ImageDecoder, ImageReader, Limits};
 use scene::LoadOptions;
 use std::io::Cursor;
 use std::path::Path;
 
-/// What is said of maps whose numbers are colours.
+/// The error for maps whose numbers are colours.
 const CODED: &str = "is coded by colour, not by grey";
 
-/// Whether a file is a picture whose colours are not grey: a map that is coded by them. What cannot be read is told when it is.
+/// Whether a file is a picture that is not grey: a map coded by colour. Files that cannot be read are reported when
+/// they are decoded.
 pub(crate) fn is_coded_by_color(file: &Path, options: &LoadOptions) -> bool {
     let is_picture = ["png", "jpg", "jpeg", "webp"].contains(&extension(file).as_str());
     let bytes = is_picture.then(|| whole_file(file, options.max_memory / 4).ok()).flatten();
     bytes.is_some_and(|bytes| levels_of(&bytes, options).is_err_and(|why| why == CODED))
 }
 
-/// The levels of a picture's bytes; of colours the mean of the channels, if they differ that is said: such a map is coded by colour.
+/// Decodes the levels of a picture's bytes: the mean of the channels. If they differ, the map is coded by colour,
+/// which is an error.
 pub(crate) fn levels_of(bytes: &[u8], options: &LoadOptions) -> Result<Stored, String> {
     let text = |error: image::ImageError| format!("cannot be decoded: {error}");
     let mut reader = ImageReader::new(Cursor::new(bytes))
@@ -32,7 +34,7 @@ pub(crate) fn levels_of(bytes: &[u8], options: &LoadOptions) -> Result<Stored, S
     let (pixels, limit) =
         (u64::from(width) * u64::from(height), options.max_texels.min(options.max_memory / 16));
     if pixels > limit {
-        return Err(format!("is of {width} × {height} px, beyond the limit of {limit} px"));
+        return Err(format!("has {width} × {height} px, more than the limit of {limit} px"));
     }
     let picture = DynamicImage::from_decoder(decoder).map_err(text)?;
     if is_colored(&picture) {
@@ -46,7 +48,7 @@ pub(crate) fn levels_of(bytes: &[u8], options: &LoadOptions) -> Result<Stored, S
         DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_) => {
             picture.into_rgb32f().pixels().map(|pixel| pixel.0[0]).collect()
         }
-        // Luma is a weighted mean; of equal channels it is each of them.
+        // Luma is a weighted mean; for equal channels it is each of them.
         picture if picture.color().bytes_per_pixel() / picture.color().channel_count() == 2 => {
             picture.into_luma16().into_raw().into_iter().map(|level| f32::from(level) / 65535.0).collect()
         }
@@ -57,7 +59,7 @@ pub(crate) fn levels_of(bytes: &[u8], options: &LoadOptions) -> Result<Stored, S
     Ok(Stored { width, height, values, numbers })
 }
 
-/// Whether a tenth of the pixels are of a colour; JPEG leaves traces of some.
+/// Whether a tenth of the pixels are coloured; JPEG leaves traces of colour.
 fn is_colored(picture: &DynamicImage) -> bool {
     let spread =
         |channels: [u16; 3]| channels.iter().max().unwrap_or(&0) - channels.iter().min().unwrap_or(&0);

@@ -1,36 +1,36 @@
-//! What a depth map is.
+//! The type of depth maps.
 
 use image::metadata::Orientation;
 use std::fmt;
 
-/// What the numbers of a depth map are.
+/// The meaning of the numbers of a depth map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DepthMeaning {
     /// Distances along the camera's axis, > 0, in metres or in the unit of the file; `+∞`: the background.
     Distance,
-    /// Pixels by which a point moves between views one step apart, of a light field: where the view at (x, y) shows what the middle one shows
-    /// at p, is p − d·(x, y), x right, y down. Linear in the inverse of the distance, of unknown scale and offset; larger is nearer.
+    /// Pixels by which a point moves between views one step apart, of a light field: the view at (x, y) shows at p − d·(x, y), x right, y down,
+    /// what the middle one shows at p. Linear in the inverse of the distance, of unknown scale and offset; larger is nearer.
     Disparity,
-    /// Relative inverse depth: 1 what may be nearest, 0 what may be farthest. Linear in the inverse of the distance, of unknown scale
-    /// and offset.
+    /// Relative inverse depth: 1 for the nearest possible, 0 for the farthest possible point. Linear in the inverse of the distance, of
+    /// unknown scale and offset.
     Relative,
 }
 
 /// A depth or disparity map.
 #[derive(Clone, PartialEq)]
 pub struct DepthMap {
-    /// Columns; maps may be coarser than the picture, whose whole they cover.
+    /// Columns; a map may be coarser than the picture, which it covers as a whole.
     pub width: u32,
     /// Rows.
     pub height: u32,
-    /// A number a pixel, row 0 on top; NaN: nothing is known there.
+    /// A number per pixel, row 0 on top; NaN where it is unknown.
     pub values: Vec<f32>,
     /// What the numbers are.
     pub meaning: DepthMeaning,
 }
 
 impl DepthMap {
-    /// The least and the greatest of the finite numbers, of which there is one at least in maps that were read.
+    /// The least and the greatest of the finite numbers; maps that were read have at least one.
     pub fn range(&self) -> Option<[f32; 2]> {
         let finite = self.values.iter().copied().filter(|value| value.is_finite());
         finite.fold(None, |range, value| match range {
@@ -39,8 +39,8 @@ impl DepthMap {
         })
     }
 
-    /// A number a pixel that is linear in the inverse of the distance and larger where it is nearer: 1/distance (0 where it is infinite), the
-    /// disparity, or the relative inverse depth. NaN where nothing is known.
+    /// A number per pixel that is linear in the inverse of the distance and larger where it is nearer: 1/distance (0 where it is infinite), the
+    /// disparity, or the relative inverse depth. NaN where it is unknown.
     pub fn inverse_depth(&self) -> Vec<f32> {
         match self.meaning {
             DepthMeaning::Distance => self.values.iter().map(|value| value.recip()).collect(),
@@ -48,20 +48,20 @@ impl DepthMap {
         }
     }
 
-    /// The share of pixels of which nothing is known, 0 to 1.
+    /// The share of unknown pixels, 0 to 1.
     pub fn unknown_share(&self) -> f64 {
         let unknown = self.values.iter().filter(|value| value.is_nan()).count();
         unknown as f64 / self.values.len().max(1) as f64
     }
 
-    /// Turned by an EXIF orientation (1: not).
+    /// Rotated and flipped by an EXIF orientation (1: unchanged).
     pub(crate) fn turned(self, orientation: u8) -> Self {
         let turn = Orientation::from_exif(orientation).unwrap_or(Orientation::NoTransforms);
         if turn == Orientation::NoTransforms {
             return self;
         }
         let [width, height] = [self.width, self.height];
-        // From 5 on width and height change places.
+        // From 5 on width and height are swapped.
         let [new_width, new_height] = if orientation >= 5 { [height, width] } else { [width, height] };
         let [right, bottom] = [width - 1, height - 1];
         let from = |x: u32, y: u32| match turn {

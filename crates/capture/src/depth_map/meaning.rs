@@ -1,7 +1,8 @@
-//! From stored numbers to a depth map: who says what they mean.
+//! From stored numbers to a depth map: what the numbers mean.
 //!
-//! Programs do not agree on which end is near: MiDaS and its kin write relative *inverse* depth (white is near), Marigold relative depth
-//! (black is near), renderers distances. So it is taken from who gives the file, from a name that says *disparity* or *depth*, or asked for.
+//! Programs do not agree on which end is near: MiDaS and similar ones write relative *inverse* depth (white is near), Marigold relative
+//! depth (black is near), renderers distances. So it is specified by the caller or by a file name with *disparity* or *depth*, or it is an
+//! error.
 
 use super::map::{DepthMap, DepthMeaning};
 use super::near_end::NearEnd;
@@ -9,25 +10,25 @@ use super::stored::{Numbers, Stored};
 use crate::CaptureError;
 use std::path::Path;
 
-/// What a file is given as.
+/// The quantity that a file holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DepthQuantity {
-    /// Distances, or relative depth of which [`NearEnd`] tells the end.
+    /// Distances, or relative depth whose end is given by [`NearEnd`].
     Depth,
-    /// Disparities: what is greater, or white, is near.
+    /// Disparities: greater, or white, is nearer.
     Disparity,
 }
 
-/// What is known about a file.
+/// What the caller specifies about a file.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct DepthHint {
-    /// What it is given as.
+    /// The quantity that it holds.
     pub quantity: Option<DepthQuantity>,
     /// Which end is near.
     pub near: Option<NearEnd>,
 }
 
-/// What the name of a file says it is.
+/// The quantity that the name of a file denotes.
 pub(crate) fn quantity_from_name(file: &Path) -> Option<DepthQuantity> {
     let name = file.file_stem().unwrap_or_default().to_string_lossy().to_lowercase();
     match () {
@@ -37,11 +38,11 @@ pub(crate) fn quantity_from_name(file: &Path) -> Option<DepthQuantity> {
     }
 }
 
-/// Distances from here on are the background: Blender writes 10¹⁰ where there is nothing.
+/// Distances from here on are background: Blender writes 10¹⁰ where there is nothing.
 const BACKGROUND: f32 = 1e10;
 
 impl Stored {
-    /// The map that these numbers are.
+    /// Interprets the numbers as a map.
     pub fn into_depth_map(self, file: &Path, hint: DepthHint) -> Result<DepthMap, CaptureError> {
         let quantity = hint.quantity.or_else(|| quantity_from_name(file));
         let finite_or_nan = |value: f32| if value.is_finite() { value } else { f32::NAN };
@@ -84,14 +85,14 @@ impl Stored {
             return Err(CaptureError::malformed(
                 file,
                 "all pixels",
-                "nothing is known of any (0, NaN or infinite)",
+                "none has a value (all are 0, NaN or infinite)",
             ));
         }
         Ok(map)
     }
 }
 
-/// A distance as it is stored: infinite where there is nothing, NaN where none is known.
+/// A stored distance: infinite where there is nothing, NaN where it is unknown.
 fn distance(value: f32) -> f32 {
     match value {
         value if value >= BACKGROUND => f32::INFINITY,
@@ -100,7 +101,7 @@ fn distance(value: f32) -> f32 {
     }
 }
 
-/// The range of what is finite, of some width.
+/// The range of the finite numbers, of some width.
 fn finite_range(values: &[f32]) -> [f32; 2] {
     let finite = values.iter().copied().filter(|value| value.is_finite());
     let [low, high] = finite
@@ -125,7 +126,7 @@ mod tests {
             [(Numbers::Levels, "a_depth.png"), (Numbers::Levels, "a.png"), (Numbers::Floats, "a.pfm")]
         {
             let error = read(numbers, &LEVELS, name, DepthHint::default()).unwrap_err().to_string();
-            assert!(error.contains("does not say which end is near (say --near white"), "{error}");
+            assert!(error.contains("does not specify which end is near (pass --near white"), "{error}");
         }
         let near = |near| DepthHint { near: Some(near), ..DepthHint::default() };
         assert_eq!(read(Numbers::Levels, &LEVELS, "a.png", near(NearEnd::White)).unwrap().values, LEVELS);
@@ -139,7 +140,7 @@ mod tests {
             (map.meaning, &map.values[..]),
             (DepthMeaning::Distance, &[0.5, 2.0 / 3.0, f32::INFINITY][..])
         );
-        // MiDaS's floats, which are of no scale.
+        // MiDaS's floats, which have no scale.
         let map = read(Numbers::Floats, &[100.0, 200.0, 500.0], "a.pfm", near(NearEnd::White)).unwrap();
         assert_eq!((map.meaning, &map.values[..]), (DepthMeaning::Relative, &LEVELS[..]));
     }
@@ -163,6 +164,6 @@ mod tests {
             DepthMeaning::Relative
         );
         let nothing = read(Numbers::Floats, &[0.0, f32::NAN], "depth.pfm", DepthHint::default()).unwrap_err();
-        assert!(nothing.to_string().contains("nothing is known of any"), "{nothing}");
+        assert!(nothing.to_string().contains("none has a value"), "{nothing}");
     }
 }

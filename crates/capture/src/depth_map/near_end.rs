@@ -1,15 +1,15 @@
-//! Which end of a relative depth map is near, as it is said by who knows.
+//! The near end of a relative depth map, as the user specifies it.
 
 use std::str::FromStr;
 
 /// Which end of a relative depth map is near.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NearEnd {
-    /// What is bright, or greater, is near: MiDaS, Depth Anything and their kin, disparities.
+    /// What is bright, or greater, is near: MiDaS, Depth Anything and similar programs, disparities.
     White,
     /// What is dark, or less, is near: Marigold, distances.
     Black,
-    /// Distances are known, in metres: of black, the least number, and of white, the greatest; one of them may be infinite. Between them the
+    /// Distances in metres: of black, the least number, and of white, the greatest; one of them may be infinite. Between them the
     /// inverse of the distance is linear.
     Distances {
         /// Of what is black, > 0.
@@ -22,7 +22,8 @@ pub enum NearEnd {
 impl FromStr for NearEnd {
     type Err = String;
 
-    /// Of `white`, `black`, or two distances, `LOW,HIGH`: of the lowest and of the highest number, in metres; `inf` is one.
+    /// Parses `white`, `black`, or two distances, `LOW,HIGH`: of the lowest and of the highest number, in metres,
+    /// where `inf` is allowed.
     fn from_str(text: &str) -> Result<Self, String> {
         match text.trim().to_lowercase().as_str() {
             "white" => Ok(Self::White),
@@ -32,7 +33,7 @@ impl FromStr for NearEnd {
                 let (low, high) = distances.split_once(',').unwrap_or_default();
                 match (number(low), number(high)) {
                     (Some(black), Some(white)) if black != white => Ok(Self::Distances { black, white }),
-                    _ => Err("is neither white nor black nor two distances in metres, of black and of white, as 0.5,20".into()),
+                    _ => Err("is neither white nor black nor two distances in metres, of black and of white, such as 0.5,20".into()),
                 }
             }
         }

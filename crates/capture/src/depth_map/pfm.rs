@@ -1,12 +1,12 @@
 //! Portable float maps: `Pf` or `PF`, width and height, a scale whose sign is the byte order (negative: little endian), then
-//! rows of floats from the bottom up. Of `PF`'s three channels the first is read.
+//! rows of floats from the bottom up. Of the three channels of `PF` the first is read.
 
 use super::stored::{Numbers, Stored};
 use crate::CaptureError;
-use crate::text::quoted;
+use crate::files::text::quoted;
 use std::path::Path;
 
-/// The numbers of a PFM of at most `most` pixels.
+/// Reads the numbers of a PFM of at most `max_pixels` pixels.
 pub(crate) fn read_pfm(file: &Path, bytes: &[u8], max_pixels: u64) -> Result<Stored, CaptureError> {
     let malformed = |at: usize, what: String| CaptureError::malformed(file, format!("byte {at}"), what);
     let mut at = 0;
@@ -24,20 +24,25 @@ pub(crate) fn read_pfm(file: &Path, bytes: &[u8], max_pixels: u64) -> Result<Sto
     let channels = match magic.as_str() {
         "Pf" => 1,
         "PF" => 3,
-        _ => return Err(malformed(0, format!("it begins with {}, a PFM with Pf or PF", quoted(&magic)))),
+        _ => {
+            return Err(malformed(
+                0,
+                format!("it begins with {}, but a PFM begins with Pf or PF", quoted(&magic)),
+            ));
+        }
     };
     let mut side = |name: &str| {
         let (start, text, _) = word();
         let side = text.parse::<u32>().ok().filter(|side| *side > 0);
-        side.ok_or_else(|| malformed(start, format!("{} is no {name}", quoted(&text))))
+        side.ok_or_else(|| malformed(start, format!("{} is not a {name}", quoted(&text))))
     };
     let (width, height) = (side("width")?, side("height")?);
     let (start, text, end) = word();
     let scale = text.parse::<f32>().ok().filter(|scale| scale.is_finite() && *scale != 0.0);
-    let scale = scale.ok_or_else(|| malformed(start, format!("{} is no scale", quoted(&text))))?;
+    let scale = scale.ok_or_else(|| malformed(start, format!("{} is not a scale", quoted(&text))))?;
     let pixels = u64::from(width) * u64::from(height);
     if pixels > max_pixels {
-        let what = format!("is of {width} × {height} px, beyond the limit of {max_pixels} px");
+        let what = format!("has {width} × {height} px, more than the limit of {max_pixels} px");
         return Err(CaptureError::TooBig { file: file.into(), what });
     }
     // One white space, then numbers.
@@ -86,11 +91,11 @@ mod tests {
     fn what_is_malformed_names_its_byte() {
         for (bytes, message) in [
             (&b"P5 1 1 255 "[..], "byte 0: it begins with \"P5\""),
-            (b"Pf 0 1 -1\n....", "byte 3: \"0\" is no width"),
-            (b"Pf 1 x -1\n....", "byte 5: \"x\" is no height"),
-            (b"Pf 1 1 0\n....", "byte 7: \"0\" is no scale"),
+            (b"Pf 0 1 -1\n....", "byte 3: \"0\" is not a width"),
+            (b"Pf 1 x -1\n....", "byte 5: \"x\" is not a height"),
+            (b"Pf 1 1 0\n....", "byte 7: \"0\" is not a scale"),
             (b"Pf 2 1 -1\n....", "byte 9: 2 × 1 px take 8 bytes, 4 are left"),
-            (b"Pf 4000000000 4000000000 -1\n", "beyond the limit of 100 px"),
+            (b"Pf 4000000000 4000000000 -1\n", "more than the limit of 100 px"),
             (b"", "byte 0"),
         ] {
             let text = read(bytes).unwrap_err();

@@ -1,10 +1,10 @@
-//! Floats without a header, whose size another file tells: `depth.bin` of the older HCI light fields.
+//! Floats without a header, whose size another file specifies: `depth.bin` of the older HCI light fields.
 
 use crate::CaptureError;
-use crate::whole_file::whole_file;
+use crate::files::whole_file::whole_file;
 use std::path::Path;
 
-/// The little-endian floats of a file, which must be of `size`, row 0 on top.
+/// Reads the little-endian floats of a file, which must be of `size`, row 0 on top.
 pub(crate) fn raw_floats(file: &Path, size: [u32; 2], limit: u64) -> Result<Vec<f32>, CaptureError> {
     let bytes = whole_file(file, limit)?;
     let expected = u64::from(size[0]) * u64::from(size[1]) * 4;

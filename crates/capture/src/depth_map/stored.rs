@@ -1,4 +1,4 @@
-//! Numbers of a depth map as a file stores them, before anybody says what they mean.
+//! Numbers of a depth map as a file stores them, before they are interpreted.
 
 /// The numbers of a file.
 pub(crate) struct Stored {
@@ -9,10 +9,10 @@ pub(crate) struct Stored {
     pub numbers: Numbers,
 }
 
-/// What kind of numbers they are.
+/// The encoding of the numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Numbers {
-    /// Floats: they may be quantities.
+    /// Floats: they may be physical quantities.
     Floats,
     /// Grey levels of a picture, 0 black to 1 white: without a scale of their own.
     Levels,

@@ -1,10 +1,10 @@
-//! Pictures that are written into XMP as base64.
+//! Pictures that are embedded in XMP as base64.
 
 use base64::Engine;
 use base64::alphabet::STANDARD;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 
-/// Padding is left out by some.
+/// Some writers leave out the padding.
 const ENGINE: GeneralPurpose = GeneralPurpose::new(
     &STANDARD,
     GeneralPurposeConfig::new()
@@ -12,7 +12,7 @@ const ENGINE: GeneralPurpose = GeneralPurpose::new(
         .with_decode_allow_trailing_bits(true),
 );
 
-/// The bytes of a text of base64, whose white space is left out.
+/// Decodes base64 text, ignoring white space.
 pub(super) fn decoded(text: &str) -> Result<Vec<u8>, String> {
     let packed: Vec<u8> = text.bytes().filter(|byte| !byte.is_ascii_whitespace()).collect();
     ENGINE.decode(packed).map_err(|error| format!("its base64 is broken: {error}"))

@@ -1,4 +1,4 @@
-//! From the levels of a phone's depth map to distances.
+//! Distances from the levels of a phone's depth map.
 //!
 //! ```text
 //! RangeLinear     z = near + d·(far − near)
@@ -13,7 +13,7 @@
 //!
 //! (Depthmap Metadata, Google 2014; Dynamic Depth 1.0, Google 2019.)
 
-/// How levels mean distances.
+/// The mapping from levels to distances.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct DepthRange {
     pub is_inverse: bool,
@@ -30,7 +30,7 @@ impl DepthRange {
         if is_inverse { ((1.0 - level) / near + level / far).recip() } else { near + level * (far - near) }
     }
 
-    /// The range that a file says, in words; `Err` says what is wrong. `None` if it says none: the map is relative then.
+    /// Parses the range in a file. `None` if it has none: the map is relative then. `Err` describes what is wrong.
     pub fn parse(
         format: Option<&str>,
         near: Option<&str>,
@@ -43,13 +43,13 @@ impl DepthRange {
             Some(other) => {
                 return Err(format!(
                     "its format {} is neither RangeInverse nor RangeLinear",
-                    crate::text::quoted(other)
+                    crate::files::text::quoted(other)
                 ));
             }
         };
         let number = |what: &str, text: &str| {
             let value = text.trim().parse::<f64>().ok().filter(|value| *value > 0.0);
-            value.ok_or_else(|| format!("{what} is {}, no distance", crate::text::quoted(text)))
+            value.ok_or_else(|| format!("{what} is {}, not a distance", crate::files::text::quoted(text)))
         };
         let (Some(near), Some(far)) = (near, far) else { return Ok(None) };
         let (near, far) = (number("Near", near)?, number("Far", far)?);
@@ -58,7 +58,7 @@ impl DepthRange {
             Unit::Millimetres => (near * 1e-3, far * 1e-3),
             // Dioptres are the greater the nearer.
             Unit::Dioptres if near > far => (near.recip(), far.recip()),
-            // Pixels write distances of no scale and call them dioptres.
+            // Pixel phones write distances without a scale and call them dioptres.
             Unit::Dioptres => (near, far),
         };
         if near.is_infinite() || (far.is_infinite() && !is_inverse) || near == far {
@@ -68,7 +68,7 @@ impl DepthRange {
     }
 }
 
-/// What near and far are told in.
+/// The unit of near and far.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Unit {
     Metres,
@@ -117,7 +117,7 @@ mod tests {
         assert_eq!(range("RangeInverse", "29.3", "878.7", "mm").near, 0.0293);
         let dioptres = range("RangeInverse", "2", "0.125", "Diopters");
         assert_eq!((dioptres.near, dioptres.far), (0.5, 8.0));
-        // As Pixel 4 writes it: the other way round, so no dioptres.
+        // As Pixel 4 writes it: the other way round, so not dioptres.
         let pixel = range("RangeInverse", "0.086360", "0.129485", "Diopters");
         assert_eq!((pixel.near, pixel.far), (0.08636, 0.129485));
     }

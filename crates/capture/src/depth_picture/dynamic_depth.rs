@@ -1,9 +1,9 @@
-//! Dynamic Depth: a directory in the XMP of a JPEG, and the things that it lists behind the picture, one after the other.
+//! Dynamic Depth: a directory in the XMP of a JPEG, and the items that it lists behind the picture, one after the other.
 //! (Dynamic Depth 1.0, Google 2019: <https://developer.android.com/training/camera2/Dynamic-depth-v1.0.pdf>.)
 //!
-//! Things lie where the lengths say, counted from the end of the picture; some writers put more between, or behind, or nest
-//! trailers in trailers. So what lies there must begin as a picture does; else it is counted from the end of the file, and else the
-//! pictures behind the first are gone through in order.
+//! Items lie where the lengths say, counted from the end of the picture; some writers insert data between or after them, or nest trailers
+//! in trailers. So an item must begin like a picture; otherwise its position is counted from the end of the file, and failing that the
+//! pictures behind the first are enumerated in order.
 
 use super::depth_range::{DepthRange, Unit};
 use super::embedded::Embedded;
@@ -12,21 +12,21 @@ use super::xmp::{find_property, property};
 use roxmltree::{Document, Node};
 use scene::LoadOptions;
 
-/// A thing of the directory.
+/// An item of the directory.
 #[derive(Debug)]
 struct Item<'a> {
-    /// Bytes; 0 of the picture itself, and of things that share another's.
+    /// Bytes; 0 for the picture itself, and for items that share another's.
     length: usize,
-    /// Bytes that follow it and are nobody's.
+    /// Padding bytes that follow it.
     padding: usize,
     uri: Option<&'a str>,
     semantic: Option<&'a str>,
 }
 
-/// More are no directory.
+/// A longer directory is invalid.
 const MAX_ITEMS: usize = 1000;
 
-/// What a JPEG holds as Dynamic Depth; none if it has none. `bytes` are those of the file.
+/// Reads the Dynamic Depth of a JPEG; `None` if it has none. `bytes` are those of the file.
 pub(super) fn read_dynamic_depth(
     documents: &[Document<'_>],
     bytes: &[u8],
@@ -43,8 +43,8 @@ pub(super) fn read_dynamic_depth(
             .is_some_and(|semantic| ["depth", "depthmap"].contains(&semantic.to_lowercase().as_str())),
     };
     let Some(index) = items.iter().position(is_depth) else {
-        let uri = crate::text::quoted(uri?);
-        return Some(Err(format!("its depth map {uri} is not in its directory of {} things", items.len())));
+        let uri = crate::files::text::quoted(uri?);
+        return Some(Err(format!("its depth map {uri} is not in its directory of {} items", items.len())));
     };
     let read = || {
         let property_value = |name: &str| match depth {
@@ -56,7 +56,7 @@ pub(super) fn read_dynamic_depth(
             DepthRange::parse(property_value("Format"), property_value("Near"), property_value("Far"), unit)?;
         let depth_bytes = located(&items, index, bytes).ok_or_else(|| {
             let behind = bytes.len() - end_of_jpeg(bytes).unwrap_or(bytes.len());
-            format!("its depth map is not there: {behind} bytes follow the picture (the file was shortened, or saved by a program that drops them)")
+            format!("its depth map is missing: only {behind} bytes follow the picture (the file was truncated, or saved by a program that drops them)")
         })?;
         let mut embedded = Embedded::decode(depth_bytes, range, options)?;
         if unit == Unit::Dioptres
@@ -65,10 +65,10 @@ pub(super) fn read_dynamic_depth(
         {
             embedded
                 .notes
-                .push("calls its distances dioptres, which they are not: they are of no scale".into());
+                .push("labels its distances as dioptres, which they are not: they have no scale".into());
         }
         if property_value("MeasureType").is_some_and(|kind| kind.trim() == "OpticRay") {
-            embedded.notes.push("measures depth along rays, which is taken as along the axis".into());
+            embedded.notes.push("measures depth along rays; it is treated as depth along the axis".into());
         }
         // The picture before the camera blurred it.
         let original = nodes().find_map(|node| {
@@ -92,7 +92,7 @@ fn number(text: &str) -> Option<f64> {
     text.trim().parse().ok().filter(|number: &f64| number.is_finite())
 }
 
-/// The thing that a node tells of: it has a kind, and a length or a name.
+/// The item that a node describes: it has a MIME type, and a length, a URI or a semantic.
 fn item<'a>(node: Node<'a, '_>) -> Option<Item<'a>> {
     property(node, "Mime")?;
     let [length, uri, semantic] = ["Length", "DataURI", "Semantic"].map(|name| property(node, name));
@@ -103,7 +103,7 @@ fn item<'a>(node: Node<'a, '_>) -> Option<Item<'a>> {
     Some(Item { length: count(length), padding: count(property(node, "Padding")), uri, semantic })
 }
 
-/// The bytes of a thing of the directory, whose first is the picture.
+/// The bytes of an item of the directory, whose first is the picture.
 fn located<'a>(items: &[Item<'_>], index: usize, bytes: &'a [u8]) -> Option<&'a [u8]> {
     let Item { length, .. } = items[index];
     let between = |items: &[Item<'_>]| {
@@ -134,7 +134,7 @@ fn located<'a>(items: &[Item<'_>], index: usize, bytes: &'a [u8]) -> Option<&'a 
     at(from_picture()).or_else(|| at(from_end())).or_else(|| if index > 0 { in_order() } else { None })
 }
 
-/// Where the first picture begins.
+/// The position of the first picture.
 fn first_picture(bytes: &[u8]) -> Option<usize> {
     let starts = |at: &usize| is_picture(&bytes[*at..]) && bytes.get(at + 2) != Some(&0);
     (0..bytes.len()).find(starts)

@@ -1,24 +1,26 @@
-//! What a JPEG holds besides its picture: a depth map, perhaps the picture before it was blurred, perhaps a focal length.
+//! The content of a JPEG besides its picture: a depth map, perhaps the picture before it was blurred, perhaps a focal
+//! length.
 
 use super::depth_range::DepthRange;
 use crate::depth_map::{DepthMap, DepthMeaning, levels_of};
 use scene::LoadOptions;
 
-/// A depth map that was found in a picture's file.
+/// A depth map embedded in a picture's file.
 pub(super) struct Embedded {
     pub map: DepthMap,
-    /// Distances of black and of white, m, if they are told.
+    /// Distances of black and of white, m, if they are specified.
     pub near_far: Option<[f64; 2]>,
-    /// The bytes of the sharp picture, where the one that is shown has been blurred.
+    /// The bytes of the sharp picture, if the displayed one has been blurred.
     pub original: Option<Vec<u8>>,
     /// Focal length over the width of the picture.
     pub focal_share: Option<f64>,
-    /// Sentences about what is odd, without the file.
+    /// Sentences about irregularities, without the file.
     pub notes: Vec<String>,
 }
 
 impl Embedded {
-    /// Of the bytes of a picture of levels, and what they mean. Without a range levels are relative, black is near.
+    /// Decodes a picture of levels and interprets it with a range. Without a range levels are relative, black is
+    /// near.
     pub fn decode(bytes: &[u8], range: Option<DepthRange>, options: &LoadOptions) -> Result<Self, String> {
         let stored = levels_of(bytes, options).map_err(|why| format!("its depth map {why}"))?;
         let (mut values, mut notes) = (stored.values, Vec::new());
@@ -29,7 +31,9 @@ impl Embedded {
             }
             None => {
                 values.iter_mut().for_each(|level| *level = 1.0 - *level);
-                notes.push("says no range of its depth map, which is taken as relative, black near".into());
+                notes.push(
+                    "has no range for its depth map, which is treated as relative, with black near".into(),
+                );
                 DepthMeaning::Relative
             }
         };

@@ -1,4 +1,4 @@
-//! GDepth: a depth map in the XMP of a JPEG, as base64; with it, in GImage, often the sharp original of a picture that was blurred.
+//! GDepth: a depth map in the XMP of a JPEG, as base64; with it, in GImage, often the sharp original of a blurred picture.
 //! (Depthmap Metadata, Google 2014: <https://developers.google.com/depthmap-metadata/reference>.)
 
 use super::base64_text::decoded;
@@ -12,7 +12,7 @@ use scene::LoadOptions;
 const DEPTH: &str = "photos/1.0/depthmap";
 const IMAGE: &str = "photos/1.0/image";
 
-/// What a picture's XMP holds as GDepth; none if it has none.
+/// Reads the GDepth of a picture's XMP; `None` if it has none.
 pub(super) fn read_gdepth(
     documents: &[Document<'_>],
     options: &LoadOptions,
@@ -30,13 +30,17 @@ fn read(documents: &[Document<'_>], data: &str, options: &LoadOptions) -> Result
     let mut embedded =
         Embedded::decode(&bytes, range, options).map_err(|why| format!("GDepth:Data: {why}"))?;
     if depth("MeasureType").is_some_and(|kind| kind.trim() == "OpticRay") {
-        embedded.notes.push("measures depth along rays, which is taken as along the axis".into());
+        embedded.notes.push("measures depth along rays; it is treated as depth along the axis".into());
     }
     if let Some(data) = find_property(documents, IMAGE, "Data") {
         match decoded(data) {
             Ok(bytes) if is_picture(&bytes) => embedded.original = Some(bytes),
-            Ok(_) => embedded.notes.push("holds something in GImage:Data that is no picture; the picture that is shown is taken".into()),
-            Err(why) => embedded.notes.push(format!("holds something in GImage:Data that cannot be read ({why}); the picture that is shown is taken")),
+            Ok(_) => embedded
+                .notes
+                .push("has GImage:Data that is not a picture; the displayed picture is used".into()),
+            Err(why) => embedded
+                .notes
+                .push(format!("has GImage:Data that cannot be read ({why}); the displayed picture is used")),
         }
     }
     Ok(embedded)

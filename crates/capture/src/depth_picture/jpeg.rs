@@ -1,4 +1,4 @@
-//! The segments of a JPEG that tell of more than the picture: EXIF and XMP, also where XMP goes on in further segments; and where it ends.
+//! The metadata segments of a JPEG: EXIF and XMP, including extended XMP in further segments; and the end of a JPEG.
 //!
 //! ```text
 //! segment         0xFF, marker, length as u16 (itself included), data
@@ -8,10 +8,10 @@
 //!
 //! (ITU T.81, annex B; XMP Specification Part 3, 1.1.3.) Numbers are big endian.
 
-/// An error and its byte.
+/// A result whose error has its byte position.
 pub(super) type At<T> = Result<T, (usize, String)>;
 
-/// What a JPEG's segments hold.
+/// The metadata of a JPEG's segments.
 #[derive(Default)]
 pub(super) struct Segments<'a> {
     /// A TIFF structure.
@@ -40,7 +40,7 @@ pub(super) fn is_jpeg(bytes: &[u8]) -> bool {
     bytes.starts_with(&START)
 }
 
-/// Whether bytes are those of a picture that is put into others.
+/// Whether bytes are those of a picture format that is embedded in others.
 pub(super) fn is_picture(bytes: &[u8]) -> bool {
     is_jpeg(bytes)
         || bytes.starts_with(b"\x89PNG\r\n\x1a\n")
@@ -48,7 +48,7 @@ pub(super) fn is_picture(bytes: &[u8]) -> bool {
 }
 
 impl<'a> Segments<'a> {
-    /// The segments before the picture's pixels.
+    /// Parses the segments before the picture's pixels.
     pub fn parse(bytes: &'a [u8]) -> At<Self> {
         let mut segments = Self::default();
         let mut at = START.len();
@@ -81,13 +81,13 @@ impl<'a> Segments<'a> {
         }
     }
 
-    /// The extended XMP of this GUID, put together.
+    /// Assembles the extended XMP of this GUID.
     pub fn extended(&self, guid: &str) -> At<Vec<u8>> {
         let mut pieces: Vec<&Piece> =
             self.pieces.iter().filter(|piece| piece.guid.eq_ignore_ascii_case(guid.as_bytes())).collect();
         pieces.sort_by_key(|piece| piece.offset);
         let Some(first) = pieces.first() else {
-            return Err((0, "its XMP goes on in segments that are not there (the file was shortened or saved by a program that drops them)".into()));
+            return Err((0, "its XMP continues in segments that are missing (the file was truncated, or saved by a program that drops them)".into()));
         };
         let length = first.length as usize;
         let mut text = Vec::new();
@@ -108,13 +108,16 @@ impl<'a> Segments<'a> {
             }
         }
         if text.len() < length {
-            return Err((0, format!("of its extended XMP {} of {length} bytes are there", text.len())));
+            return Err((
+                0,
+                format!("only {} of {length} bytes of its extended XMP are present", text.len()),
+            ));
         }
         Ok(text)
     }
 }
 
-/// The segment that begins at a byte: its marker, its data, its end; none at the end of the picture.
+/// The segment that begins at a byte: its marker, its data, its end; `None` at the end of the picture.
 fn segment(bytes: &[u8], at: usize) -> At<Option<(u8, &[u8], usize)>> {
     let mut at = at;
     // Any number of fill bytes.
@@ -137,7 +140,7 @@ fn segment(bytes: &[u8], at: usize) -> At<Option<(u8, &[u8], usize)>> {
     }
 }
 
-/// The byte after the end of the JPEG that begins the bytes; none if it does not end.
+/// The byte after the end of the JPEG that begins the bytes; `None` if it does not end.
 pub(super) fn end_of_jpeg(bytes: &[u8]) -> Option<usize> {
     if !is_jpeg(bytes) {
         return None;
@@ -160,13 +163,13 @@ pub(super) fn end_of_jpeg(bytes: &[u8]) -> Option<usize> {
     }
 }
 
-/// The byte after the end marker, which stands at `at` or after fill bytes.
+/// The byte after the end marker, which is at `at` or after fill bytes.
 fn end_marker(bytes: &[u8], at: usize) -> usize {
     let fill = bytes[at..].iter().take_while(|byte| **byte == 0xFF).count();
     (at + fill + 1).min(bytes.len())
 }
 
-/// The byte after the end of the PNG that begins the bytes; none if it does not end.
+/// The byte after the end of the PNG that begins the bytes; `None` if it does not end.
 pub(super) fn end_of_png(bytes: &[u8]) -> Option<usize> {
     let mut at = 8;
     loop {
@@ -214,9 +217,9 @@ mod tests {
             assert_eq!(extended(&order.map(Clone::clone)).unwrap(), b"abcdef");
         }
         assert!(extended(&[a.clone(), c.clone()]).unwrap_err().contains("bytes 4 to 6 of 6, after 2 of 6"));
-        assert!(extended(&[a.clone(), b.clone()]).unwrap_err().contains("4 of 6 bytes are there"));
+        assert!(extended(&[a.clone(), b.clone()]).unwrap_err().contains("only 4 of 6 bytes"));
         assert!(extended(&[a, piece(4_000_000_000, 2, b"x")]).is_err());
-        assert!(extended(&[]).unwrap_err().contains("are not there"));
+        assert!(extended(&[]).unwrap_err().contains("are missing"));
     }
 
     #[test]

@@ -1,32 +1,32 @@
 //! Opening a picture with depth.
 
-use super::beside::{depth_files, pictures};
 use super::dynamic_depth::read_dynamic_depth;
 use super::embedded::Embedded;
 use super::gdepth::read_gdepth;
 use super::jpeg::{Segments, is_jpeg};
+use super::sibling_depth::{depth_files, pictures};
 use super::xmp::XmpTexts;
 use crate::depth_map::{DepthMap, DepthMeaning, DepthQuantity, NearEnd, quantity_from_name, read_depth_map};
-use crate::exif::Exif;
-use crate::exr_channels::{color_channels, depth_channel, exr_names};
-use crate::folder::extension;
-use crate::foreign::unsupported_format_error;
-use crate::picture_header::read_header;
-use crate::picture_source::PictureSource;
-use crate::whole_file::{head, whole_file};
+use crate::files::folder::extension;
+use crate::files::whole_file::{head, whole_file};
+use crate::pictures::exif::Exif;
+use crate::pictures::exr_channels::{color_channels, depth_channel, exr_names};
+use crate::pictures::picture_header::read_header;
+use crate::pictures::picture_source::PictureSource;
+use crate::unsupported_format::unsupported_format_error;
 use crate::{CaptureError, Remark};
 use scene::LoadOptions;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// How a picture with depth is read.
+/// Options for reading a picture with depth.
 #[derive(Clone, Debug, Default)]
 pub struct DepthPictureOptions {
-    /// The file of its depth, wherever that is, and what it is given as; none: looked for in the picture and beside it.
+    /// The file of its depth, and the quantity that it holds; `None`: looked for in the picture and next to it.
     pub depth: Option<(PathBuf, DepthQuantity)>,
-    /// Which end of a relative map is near.
+    /// The near end of a relative map.
     pub near: Option<NearEnd>,
-    /// What reading may use of the machine.
+    /// Limits on memory and size.
     pub load: LoadOptions,
 }
 
@@ -43,34 +43,34 @@ pub enum DepthContainer {
     DynamicDepth,
 }
 
-/// One picture, and how far what it shows is.
+/// One picture, and the distance of what it shows.
 #[derive(Clone, Debug)]
 pub struct DepthPicture {
-    /// What it is called: its file's name.
+    /// Its file's name.
     pub name: String,
-    /// The picture, the sharp one where the file has it beside a blurred one.
+    /// The picture; the sharp one if the file has it in addition to a blurred one.
     pub picture: PictureSource,
-    /// Columns and rows of the picture as it wants to be seen.
+    /// Columns and rows of the upright picture.
     pub size: [u32; 2],
-    /// Its depth, turned as the picture is; it may be coarser, and covers the whole picture.
+    /// Its depth, oriented like the picture; it may be coarser, and covers the whole picture.
     pub depth: DepthMap,
     /// The file of the depth.
     pub depth_file: PathBuf,
     /// Where the depth was.
     pub container: DepthContainer,
-    /// The distances of the least and the greatest level that the file itself says, m.
+    /// The distances of the least and the greatest level according to the file itself, m.
     pub near_far_m: Option<[f64; 2]>,
-    /// The focal length, in pixels of the picture, if the file says it.
+    /// The focal length, in pixels of the picture, if the file has it.
     pub focal_px: Option<f64>,
-    /// What is good to know.
+    /// What was incomplete, or is good to know.
     pub remarks: Vec<Remark>,
 }
 
-/// Opens a picture with its depth: a file that holds both, a picture with a file beside it, or a folder of one such picture.
+/// Opens a picture with its depth: a file that holds both, a picture with a file next to it, or a folder of one such picture.
 ///
 /// # Errors
-/// There is no depth, or the picture or the depth cannot be read, are malformed or beyond the limits; or the depth is relative and nobody
-/// says which end is near.
+/// There is no depth; the picture or the depth cannot be read, are malformed or exceed the limits; or the depth is relative and its near
+/// end is unknown.
 pub fn open_depth_picture(path: &Path, options: &DepthPictureOptions) -> Result<DepthPicture, CaptureError> {
     if path.is_dir() {
         return match in_folder(path) {
@@ -82,7 +82,7 @@ pub fn open_depth_picture(path: &Path, options: &DepthPictureOptions) -> Result<
                 open_depth_picture(&pictures(path)[0], options)
             }
             InFolder::None => {
-                Err(CaptureError::NoDepth { path: path.into(), found: " of a picture in it".into() })
+                Err(CaptureError::NoDepth { path: path.into(), detail: " of a picture in it".into() })
             }
         };
     }
@@ -101,14 +101,14 @@ pub fn open_depth_picture(path: &Path, options: &DepthPictureOptions) -> Result<
     }
     let depth_maps = depth_files(path);
     let Some(depth) = depth_maps.first() else {
-        // A file that cannot be read is told as such.
+        // A file that cannot be read is reported as such.
         read_header(path).map_err(|why| CaptureError::malformed(path, "picture", why))?;
-        return Err(CaptureError::NoDepth { path: path.into(), found: " in it or beside it".into() });
+        return Err(CaptureError::NoDepth { path: path.into(), detail: " in it or beside it".into() });
     };
     let others = depth_maps[1..].iter().map(|file| file.display().to_string()).collect();
     let remark = Remark::about(others, false, |names| {
         format!(
-            "{}: is taken for the depth; there are also {names} (name a file if one of those is meant)",
+            "{}: is used as the depth; there are also {names} (name one of those to use it instead)",
             depth.display()
         )
     });
@@ -129,7 +129,7 @@ pub(crate) fn has_depth(file: &Path, options: &LoadOptions) -> bool {
     is_jpeg(&bytes) && whole_file(file, options.max_memory / 4).is_ok_and(|bytes| mentions_depth(&bytes))
 }
 
-/// Whether a JPEG's XMP has depth of a kind that is known; of a broken one, whether it seems so.
+/// Whether a JPEG's XMP has depth of a supported kind; for a broken one, whether it seems so.
 fn mentions_depth(bytes: &[u8]) -> bool {
     let Ok(segments) = Segments::parse(bytes) else { return false };
     let Some(xmp) = segments.xmp else { return false };
@@ -149,9 +149,9 @@ pub(crate) enum InFolder {
     Several(String),
 }
 
-/// Looks for pictures with depth in a folder; by names alone, but for JPEGs of a few.
+/// Looks for pictures with depth in a folder; by names alone, except for JPEGs if there are few.
 pub(crate) fn in_folder(folder: &Path) -> InFolder {
-    /// A folder of more pictures is one of something else.
+    /// A folder of more pictures is something else.
     const MAX_PICTURES: usize = 50;
     let mut all = pictures(folder);
     if let Ok(entries) = std::fs::read_dir(folder) {
@@ -183,7 +183,7 @@ struct Opening<'a> {
     options: &'a DepthPictureOptions,
 }
 
-/// What a picture's header says.
+/// The content of a picture's header.
 struct Shown {
     stored: [u32; 2],
     exif: Exif,
@@ -203,7 +203,7 @@ impl Opening<'_> {
         Ok(Shown { stored, exif })
     }
 
-    /// An EXR with a channel of depth, or with a file of it beside.
+    /// An EXR with a depth channel, or with a depth file next to it.
     fn exr(&self) -> Result<DepthPicture, CaptureError> {
         let load = &self.options.load;
         let names = exr_names(self.file, load)?;
@@ -212,17 +212,16 @@ impl Opening<'_> {
                 Some(depth) => self.with_file(depth, None, Vec::new()),
                 None => Err(CaptureError::NoDepth {
                     path: self.file.into(),
-                    found: " among its channels (Z, depth.Z, ViewLayer.Depth.Z, Depth.V) or beside it".into(),
+                    detail: " among its channels (Z, depth.Z, ViewLayer.Depth.Z, Depth.V) or beside it"
+                        .into(),
                 }),
             };
         }
-        // Depth in the picture's own file means distances, unless an end is said to be near.
+        // Depth in the picture's own file means distances, unless the near end is specified.
         let depth = read_depth_map(self.file, Some(DepthQuantity::Depth), self.options.near, load)?;
         let Some(channels) = color_channels(&names) else {
-            return Err(self.malformed(
-                "EXR",
-                "has a channel of depth, but no picture (R, G, B; ViewLayer.Combined.R …)",
-            ));
+            return Err(self
+                .malformed("EXR", "has a depth channel, but no picture (R, G, B; ViewLayer.Combined.R …)"));
         };
         Ok(DepthPicture {
             name: self.name(),
@@ -237,7 +236,7 @@ impl Opening<'_> {
         })
     }
 
-    /// A picture whose depth is in a file.
+    /// A picture whose depth is in another file.
     fn with_file(
         &self,
         depth_file: &Path,
@@ -252,7 +251,7 @@ impl Opening<'_> {
             && quantity_from_name(depth_file) == Some(DepthQuantity::Disparity)
         {
             remarks.push(Remark::note(format!(
-                "{}: is called a disparity, so white is near (else say --near black)",
+                "{}: is named a disparity, so white is near (pass --near black otherwise)",
                 depth_file.display()
             )));
         }
@@ -260,7 +259,7 @@ impl Opening<'_> {
             let names = exr_names(file, &options.load)?;
             let channels = color_channels(&names)
                 .ok_or_else(|| self.malformed("EXR", "has no picture (R, G, B; ViewLayer.Combined.R …)"))?;
-            let size = crate::exr_channels::read_exr(file, &[&channels[0]], &options.load)?.size;
+            let size = crate::pictures::exr_channels::read_exr(file, &[&channels[0]], &options.load)?.size;
             (PictureSource::Exr { file: file.into(), channels }, size, depth, None)
         } else {
             let shown = self.header()?;
@@ -284,7 +283,7 @@ impl Opening<'_> {
         })
     }
 
-    /// A JPEG that holds its depth; none if it does not.
+    /// A JPEG with embedded depth; `None` if it has none.
     fn embedded(&self) -> Result<Option<DepthPicture>, CaptureError> {
         let Self { file, options } = *self;
         if !is_jpeg(&head(file, 2)) {
@@ -308,7 +307,7 @@ impl Opening<'_> {
             if texts.mention("GDepth:Near") || texts.mention("GDepth:Format") {
                 return Err(self.malformed(
                     "XMP",
-                    "tells of a depth map (GDepth) that is not there (GDepth:Data is missing)",
+                    "refers to a depth map (GDepth) that is missing (there is no GDepth:Data)",
                 ));
             }
             return Ok(None);
@@ -330,9 +329,9 @@ impl Opening<'_> {
         let mut remarks: Vec<Remark> = notes.into_iter().map(note).collect();
         let (picture, stored, picture_orientation) = match original {
             Some(bytes) => {
-                let (stored, own) = crate::picture_header::header_of_bytes(&bytes)
+                let (stored, own) = crate::pictures::picture_header::header_of_bytes(&bytes)
                     .map_err(|why| self.malformed("original picture", why))?;
-                remarks.push(note("holds the picture before it was blurred, which is taken".into()));
+                remarks.push(note("contains the picture before it was blurred, which is used".into()));
                 // It is stored as the picture is, or upright.
                 let is_alike = (stored[0] > stored[1]) == (shown.stored[0] > shown.stored[1]);
                 let orientation =
@@ -366,30 +365,30 @@ impl Opening<'_> {
     }
 }
 
-/// The size of a picture once it is turned.
+/// The size of a picture after its orientation is applied.
 fn upright_size([width, height]: [u32; 2], orientation: u8) -> [u32; 2] {
     if orientation >= 5 { [height, width] } else { [width, height] }
 }
 
-/// Whether a depth map is turned as the picture wants to be seen, though the picture is stored otherwise: by which of the two shapes it has.
+/// Whether a depth map is already upright, though the picture is stored otherwise: by which of the two shapes it has.
 fn is_turned_already(stored: [u32; 2], orientation: u8, depth: [u32; 2]) -> bool {
     orientation >= 5 && mismatch(upright_size(stored, orientation), depth) < mismatch(stored, depth)
 }
 
-/// How far two shapes differ: the logarithm of the ratio of their ratios of width to height.
+/// The mismatch of two shapes: the logarithm of the ratio of their aspect ratios.
 fn mismatch(a: [u32; 2], b: [u32; 2]) -> f64 {
     let ratio = |[width, height]: [u32; 2]| f64::from(width) / f64::from(height);
     (ratio(a) / ratio(b)).ln().abs()
 }
 
-/// A remark if a depth map is of another shape than its picture, by more than rounding.
+/// A remark if a depth map has another shape than its picture, by more than rounding.
 fn other_shape(file: &Path, size: [u32; 2], depth: &DepthMap) -> Option<Remark> {
     let rounding = 1.0 / f64::from(depth.width.min(depth.height).max(1));
     let differs = mismatch(size, [depth.width, depth.height]) > 0.02 + 2.0 * rounding;
     differs.then(|| {
         let (width, height) = (depth.width, depth.height);
         Remark::note(format!(
-            "{}: the depth map of {width} × {height} px is of another shape than the picture of {} × {} px, and is stretched over it",
+            "{}: the depth map of {width} × {height} px has another shape than the picture of {} × {} px, and is stretched over it",
             file.display(),
             size[0],
             size[1]
@@ -397,7 +396,7 @@ fn other_shape(file: &Path, size: [u32; 2], depth: &DepthMap) -> Option<Remark> 
     })
 }
 
-/// The focal length in pixels, by that of a film of 36 × 24 mm with the same diagonal (CIPA DCG-001).
+/// The focal length in pixels, from that on a film of 36 × 24 mm with the same diagonal (CIPA DCG-001).
 fn focal_px(shown: &Shown) -> Option<f64> {
     let film = f64::hypot(36.0, 24.0);
     let [width, height] = shown.stored.map(f64::from);
@@ -409,7 +408,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn depth_maps_lie_as_their_shape_says() {
+    fn the_shape_of_a_depth_map_determines_its_orientation() {
         assert!(!is_turned_already([40, 30], 6, [20, 15]));
         assert!(is_turned_already([40, 30], 6, [15, 20]));
         assert!(!is_turned_already([40, 30], 3, [15, 20]));

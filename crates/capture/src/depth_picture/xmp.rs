@@ -1,4 +1,4 @@
-//! XMP: what a picture says of itself in XML, as attributes or as elements.
+//! XMP: the metadata of a picture in XML, as attributes or as elements.
 
 use super::jpeg::{At, Segments};
 use roxmltree::{Document, Node, ParsingOptions};
@@ -7,13 +7,13 @@ use roxmltree::{Document, Node, ParsingOptions};
 const MAX_NODES: u32 = 100_000;
 const MAX_ATTRIBUTES: usize = 1000;
 
-/// The texts of XMP of a file, and of its extended one.
+/// The XMP texts of a file: the main one and the extended one.
 pub(super) struct XmpTexts {
     texts: Vec<String>,
 }
 
 impl XmpTexts {
-    /// Of a JPEG's segments; none if there is no XMP.
+    /// The texts of a JPEG's segments; empty if there is no XMP.
     pub fn from_segments(segments: &Segments<'_>) -> At<Self> {
         let text = |bytes: &[u8]| {
             let text = String::from_utf8_lossy(bytes);
@@ -29,7 +29,7 @@ impl XmpTexts {
         if let Some(guid) = guid {
             match segments.extended(&guid) {
                 Ok(extended) => texts.push(text(&extended)),
-                // What it has may be of no concern: the directory of Dynamic Depth is in the first.
+                // The extension may not be needed: the directory of Dynamic Depth is in the main text.
                 Err(_) if texts[0].contains("DepthURI") => {}
                 Err(error) => return Err(error),
             }
@@ -42,7 +42,7 @@ impl XmpTexts {
         self.texts.iter().map(|text| parsed(text)).collect()
     }
 
-    /// Whether the texts speak of something.
+    /// Whether the texts mention something.
     pub fn mention(&self, what: &str) -> bool {
         self.texts.iter().any(|text| text.contains(what))
     }
@@ -57,18 +57,18 @@ fn parsed(text: &str) -> Result<Document<'_>, String> {
     Document::parse_with_options(text, options).map_err(|error| {
         // What it quotes may be long.
         let what: String = error.to_string().chars().take(120).collect();
-        format!("is no XML: {what}")
+        format!("is not XML: {what}")
     })
 }
 
-/// A property of a node: its attribute, or the text of its child, of this name, whatever prefix and namespace.
+/// A property of a node: its attribute, or the text of its child, of this name, with any prefix and namespace.
 pub(super) fn property<'a>(node: Node<'a, '_>, name: &str) -> Option<&'a str> {
     let attribute = node.attributes().find(|attribute| attribute.name() == name);
     let child = || node.children().find(|child| child.tag_name().name() == name);
     attribute.map(|attribute| attribute.value()).or_else(|| child()?.text())
 }
 
-/// A property of any node, of a namespace that ends so (with or without its last slash).
+/// A property of any node, in a namespace that ends so (with or without its last slash).
 pub(super) fn find_property<'a>(
     documents: &'a [Document<'_>],
     namespace: &str,

@@ -1,31 +1,31 @@
-//! Which files are views, and where in the aperture each is.
+//! Which files are views, and the position of each in the aperture.
 
 use glam::DVec2;
 use std::path::PathBuf;
 
-/// How the views of a light field are arranged, and how their files say so.
+/// How the views of a light field are arranged, and how their files encode that.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ViewLayout {
     /// A grid, numbered row by row: `input_Cam000.png` … of the 4D Light Field Benchmark.
     Numbered,
-    /// A grid, row and column in the names: PlenoptiCam, old HCI, many others.
+    /// A grid, numbered row by row: `input_Cam000.png` … of the 4D Light Field Benchmark.
     RowColumn,
     /// A grid, whose names have positions, too: `out_RR_CC_Y_X.png` of the Stanford archive.
     Positions,
-    /// A middle and six about it.
+    /// A centre view and six around it.
     Hexagon,
-    /// Wherever `views.json` says.
+    /// Positions from `views.json`.
     Listed,
     /// The pixels of micro-images in one picture.
     MicroImages,
 }
 
-/// A view, before its file was looked into.
+/// A view, before its file was opened.
 #[derive(Clone, Debug)]
 pub(crate) struct Placed {
     pub file: PathBuf,
     pub name: String,
-    /// Column and row as it is named, of a grid.
+    /// Column and row according to its name, for a grid.
     pub cell: Option<[u32; 2]>,
     /// x right, y down; a step between neighbours is 1.
     pub position: DVec2,
@@ -35,18 +35,18 @@ pub(crate) struct Placed {
 #[derive(Clone, Debug)]
 pub(crate) struct Arrangement {
     pub layout: ViewLayout,
-    /// Where they lie.
+    /// The folder of the views.
     pub folder: PathBuf,
     pub views: Vec<Placed>,
     /// Columns and rows of the grid.
     pub grid: Option<[u32; 2]>,
-    /// The view that a list says is the middle one.
+    /// The view that a list declares as the middle one.
     pub reference: Option<usize>,
     /// The disparity map that a list names.
     pub disparity: Option<PathBuf>,
     /// Whether other pictures hardly ever have such names.
     pub is_certain: bool,
-    /// Sentences about what is odd, without the folder, and the names they are about.
+    /// Sentences about irregularities, without the folder, and the names they are about.
     pub notes: Vec<(String, Vec<String>)>,
 }
 

@@ -13,11 +13,11 @@
 
 use crate::CaptureError;
 use crate::depth_map::{DepthMap, DepthMeaning, raw_floats};
-use crate::text::{Lines, number, quoted};
+use crate::files::text::{Lines, number, quoted};
 use scene::LoadOptions;
 use std::path::Path;
 
-/// What `attributes.dat` says.
+/// The content of `attributes.dat`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Attributes {
     /// Columns and rows of each picture.
@@ -38,11 +38,12 @@ pub(super) fn read_attributes(file: &Path) -> Result<Attributes, CaptureError> {
         let Some((text, name)) = line.split_once("//") else { continue };
         let (text, name) = (text.trim(), name.trim());
         let name = name.split(|c: char| c.is_whitespace() || c == '=').next().unwrap_or_default();
-        let value =
-            || number(text).ok_or_else(|| lines.malformed(format!("{name} is {}, no number", quoted(text))));
+        let value = || {
+            number(text).ok_or_else(|| lines.malformed(format!("{name} is {}, not a number", quoted(text))))
+        };
         let side = || {
             let side = text.parse().ok().filter(|side| (1..=32768).contains(side));
-            side.ok_or_else(|| lines.malformed(format!("{name} is {}, no side of a picture", quoted(text))))
+            side.ok_or_else(|| lines.malformed(format!("{name} is {}, not a width or height", quoted(text))))
         };
         match name {
             "xRes" => size[0] = Some(side()?),
@@ -61,7 +62,7 @@ pub(super) fn read_attributes(file: &Path) -> Result<Attributes, CaptureError> {
 }
 
 impl Attributes {
-    /// The disparity map that `depth.bin` holds, of pictures of `size` where `attributes.dat` does not say.
+    /// The disparity map in `depth.bin`, for pictures of `size` if `attributes.dat` does not specify one.
     pub fn disparity(
         &self,
         file: &Path,
@@ -72,7 +73,7 @@ impl Attributes {
         let pixels = u64::from(width) * u64::from(height);
         let limit = options.max_texels.min(options.max_memory / 16);
         if pixels > limit {
-            let what = format!("is of {width} × {height} px, beyond the limit of {limit} px");
+            let what = format!("has {width} × {height} px, more than the limit of {limit} px");
             return Err(CaptureError::TooBig { file: file.into(), what });
         }
         let mut values = raw_floats(file, [width, height], options.max_memory / 2)?;
@@ -90,7 +91,7 @@ impl Attributes {
             None => Err(CaptureError::malformed(
                 file,
                 "all pixels",
-                "nothing is known of any (0, NaN or infinite)",
+                "none has a value (all are 0, NaN or infinite)",
             )),
         }
     }
@@ -123,6 +124,8 @@ mod tests {
         let text = attributes.disparity(&file, [2, 1], &LoadOptions::default()).unwrap_err().to_string();
         assert!(text.contains("2 × 1 px take 8 bytes"), "{text}");
         write("\n0 //xRes\n");
-        assert!(read_attributes(&file).unwrap_err().to_string().contains("line 2: xRes is \"0\", no side"));
+        assert!(
+            read_attributes(&file).unwrap_err().to_string().contains("line 2: xRes is \"0\", not a width")
+        );
     }
 }

@@ -1,17 +1,17 @@
-//! The disparity map that lies with the views.
+//! The disparity map in the folder of the views.
 
 use super::attributes::read_attributes;
 use super::optics::Optics;
 use crate::CaptureError;
 use crate::depth_map::{DepthMap, DepthMeaning, DepthQuantity, NearEnd, is_coded_by_color, read_depth_map};
-use crate::folder::{EntryKind, Folder, extension};
+use crate::files::folder::{EntryKind, Folder, extension};
 use scene::LoadOptions;
 use std::path::{Path, PathBuf};
 
-/// Where disparities are looked for, and for which pictures.
+/// Where to search for disparities, and for which pictures.
 pub(super) struct DisparitySearch<'a> {
     pub folder: &'a Folder,
-    /// Where the views lie, and what is above.
+    /// The folder of the views, and the one above.
     pub places: &'a [&'a Path],
     pub size: [u32; 2],
     pub optics: &'a Optics,
@@ -19,16 +19,16 @@ pub(super) struct DisparitySearch<'a> {
     pub load: &'a LoadOptions,
 }
 
-/// A disparity map that was found.
+/// The disparities of a light field.
 pub(super) enum DisparitySource {
-    /// Its numbers, and its file.
+    /// The map, and its file.
     Map(DepthMap, PathBuf),
     /// A file whose colours are a code.
     Coded(PathBuf),
 }
 
 impl DisparitySource {
-    /// What a file holds that is given as disparities.
+    /// Reads a file that is given as disparities.
     pub fn from_file(file: &Path, near: Option<NearEnd>, load: &LoadOptions) -> Result<Self, CaptureError> {
         if is_coded_by_color(file, load) {
             return Ok(Self::Coded(file.into()));
@@ -37,8 +37,8 @@ impl DisparitySource {
     }
 }
 
-/// The disparity map of these places and its file, if there is one: `depth.bin` with `attributes.dat`; a file called after disparity as PFM, EXR or
-/// picture; distances with parameters that turn them into disparities.
+/// Finds the disparity map of these places and its file, if there is one: `depth.bin` with `attributes.dat`; a file named after disparity as
+/// PFM, EXR or picture; distances with parameters that convert them to disparities.
 pub(super) fn find_disparity(search: &DisparitySearch<'_>) -> Result<Option<DisparitySource>, CaptureError> {
     let inside = |path: &PathBuf| search.folder.has_file(path);
     for place in search.places {
@@ -72,7 +72,8 @@ pub(super) fn find_disparity(search: &DisparitySearch<'_>) -> Result<Option<Disp
     Ok(Some(DisparitySource::Map(map, file)))
 }
 
-/// The likeliest file whose name has this word: floats before levels, of the size of the views before finer ones.
+/// The likeliest file whose name contains this word: floats before levels, of the size of the views before finer
+/// ones.
 fn named(search: &DisparitySearch<'_>, word: &str) -> Option<PathBuf> {
     const FORMS: [&str; 6] = ["pfm", "exr", "png", "webp", "jpg", "jpeg"];
     let rank = |file: &Path| {

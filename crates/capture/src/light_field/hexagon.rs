@@ -1,18 +1,18 @@
-//! Seven views: a middle and six on a ring about it.
+//! Seven views: a centre and six on a ring around it.
 //!
-//! `center.png` (`centre`, `central`, `middle`) with `0.png` to `5.png` (or `1` to `6`, or `ring_0` …), or `view_0.png` (`hex_0`), which is the
-//! middle, to `view_6.png`. The ring has the radius 1; its first view is right of the middle, and each further one is 60° on, counter-clockwise
-//! as the picture is seen: the second is right above.
+//! `center.png` (`centre`, `central`, `middle`) with `0.png` to `5.png` (or `1` to `6`, or `ring_0` …), or `view_0.png` (`hex_0`), which is
+//! the centre, to `view_6.png`. The ring has the radius 1; its first view is right of the centre, and each further one is 60° on,
+//! counter-clockwise in the picture: the second is right above.
 
 use super::arrangement::{Arrangement, Placed, ViewLayout};
 use super::numbered_name::NumberedName;
 use glam::DVec2;
 use std::path::{Path, PathBuf};
 
-/// What the middle is called.
+/// Names of the centre.
 const MIDDLES: [&str; 5] = ["center", "centre", "central", "middle", "mid"];
 
-/// Where the view of a number on the ring is, from 0: x right, y down.
+/// The position of a view on the ring, numbered from 0: x right, y down.
 fn on_ring(number: usize) -> DVec2 {
     let angle = std::f64::consts::FRAC_PI_3 * number as f64;
     DVec2::new(angle.cos(), -angle.sin())

@@ -1,21 +1,21 @@
-//! What a light field is.
+//! The type of light fields.
 
 use super::arrangement::ViewLayout;
 use super::optics::Optics;
 use crate::Remark;
 use crate::depth_map::DepthMap;
-use crate::picture_source::PictureSource;
+use crate::pictures::picture_source::PictureSource;
 use glam::DVec2;
 use std::path::PathBuf;
 
 /// One view of a light field: the picture through one point of the aperture.
 #[derive(Clone, Debug)]
 pub struct SubAperture {
-    /// What it is called: its file's name, or `row_column` of a mosaic.
+    /// Its file's name, or `row_column` in a mosaic.
     pub name: String,
-    /// Column and row as it is named, from 0, of a grid.
+    /// Column and row according to its name, from 0, for a grid.
     pub cell: Option<[u32; 2]>,
-    /// Where in the aperture it was taken from, relative to the reference view: x right, y down, in steps between neighbouring views. The
+    /// The position in the aperture relative to the reference view: x right, y down, in steps between neighbouring views. The
     /// point that the reference shows at pixel p with disparity d is at p − d·position here.
     pub position: DVec2,
     /// Its pixels.
@@ -27,41 +27,41 @@ pub struct SubAperture {
 pub struct ViewDisparity {
     /// The map.
     pub map: DepthMap,
-    /// The view whose pixels it is of, an index of [`LightField::views`].
+    /// The view that it belongs to, an index of [`LightField::views`].
     pub view: usize,
     /// Its file.
     pub file: PathBuf,
 }
 
-/// Pictures of one place from points of one plane, all looking the same way.
+/// Pictures of one place from points of one plane, all looking in the same direction.
 #[derive(Clone, Debug)]
 pub struct LightField {
-    /// What it is called: its folder's or file's name.
+    /// The name of its folder or file.
     pub name: String,
     /// The folder of the views, or the mosaic.
     pub path: PathBuf,
-    /// How they are arranged.
+    /// The arrangement of the views.
     pub layout: ViewLayout,
-    /// The views, row by row as they are named; at least two.
+    /// The views, row by row according to their names; at least two.
     pub views: Vec<SubAperture>,
     /// Columns and rows of each picture.
     pub size: [u32; 2],
-    /// Columns and rows of the grid, with what is missing; none of a hexagon or a list.
+    /// Columns and rows of the grid, including missing views; `None` for a hexagon or a list.
     pub grid: Option<[u32; 2]>,
     /// The middle view, an index of [`Self::views`]; its position is 0.
     pub reference: usize,
-    /// The disparity map that came with them.
+    /// The disparity map that came with the views.
     pub disparity: Option<ViewDisparity>,
-    /// A map of the reference's disparities that is coded by colour, and what the code is has to be found out from the views.
+    /// A map of the reference's disparities that is coded by colour; the code has to be inferred from the views.
     pub coded_disparity: Option<PictureSource>,
-    /// What the files say of the camera.
+    /// The camera parameters in the files.
     pub optics: Optics,
     /// What is incomplete, or good to know.
     pub remarks: Vec<Remark>,
 }
 
 impl LightField {
-    /// The view of a name.
+    /// The index of the view with a name.
     pub fn view(&self, name: &str) -> Option<usize> {
         self.views.iter().position(|view| view.name == name)
     }

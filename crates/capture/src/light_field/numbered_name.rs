@@ -1,16 +1,16 @@
 //! Names with numbers in them: `lf_03_11`, `r1c2`, `out_00_10_-383.248_1017.39_`.
 
-/// A name, taken apart at its numbers.
+/// A name, split at its numbers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct NumberedName {
-    /// What stands before each number, lower case, and what stands after the last.
+    /// The text before each number, lower case, and the text after the last.
     pub texts: Vec<String>,
     /// In order.
     pub numbers: Vec<u32>,
 }
 
 impl NumberedName {
-    /// Of a file's name without its ending; none if it has no number, or one that counts nothing.
+    /// Parses a file's name without its extension; `None` if it has no number, or one that is too large.
     pub fn parse(stem: &str) -> Option<Self> {
         let (mut texts, mut numbers) = (vec![String::new()], Vec::new());
         let mut digits = String::new();
@@ -51,7 +51,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_and_what_stands_between() {
+    fn numbers_and_the_text_between_them() {
         let name = NumberedName::parse("LF_03_11b").unwrap();
         assert_eq!((name.texts, name.numbers), (["lf_", "_", "b"].map(String::from).to_vec(), vec![3, 11]));
         assert_eq!(NumberedName::parse("7").unwrap().numbers, [7]);

@@ -1,11 +1,11 @@
-//! What the files of a light field say of the camera: `parameters.cfg` of the 4D Light Field Benchmark.
+//! The camera parameters of a light field: `parameters.cfg` of the 4D Light Field Benchmark.
 //! (Honauer et al., *A Dataset and Evaluation Methodology for Depth Estimation on 4D Light Fields*, 2016.)
 
 use crate::CaptureError;
-use crate::text::{Lines, number, quoted};
+use crate::files::text::{Lines, number, quoted};
 use std::path::Path;
 
-/// What is known of the camera of a light field; what is not said is none.
+/// The camera parameters of a light field; unknown ones are `None`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Optics {
     /// Focal length of each view's lens, mm.
@@ -14,7 +14,7 @@ pub struct Optics {
     pub sensor_size_mm: Option<f64>,
     /// Distance between neighbouring views, mm.
     pub baseline_mm: Option<f64>,
-    /// Distance of what has the disparity 0, m.
+    /// Distance of disparity 0, m.
     pub focus_distance_m: Option<f64>,
     /// The least and the greatest disparity, px.
     pub disparity_range: Option<[f64; 2]>,
@@ -23,8 +23,8 @@ pub struct Optics {
 }
 
 impl Optics {
-    /// The disparity of a distance along the axis, in pixels of pictures whose longer side has `longer_side` of them; none if the files do not say
-    /// enough.
+    /// The disparity of a distance along the axis, in pixels of pictures whose longer side is `longer_side` pixels; `None` if parameters are
+    /// missing.
     ///
     /// ```text
     /// d = b·f·n/s · (1/z − 1/z₀)
@@ -42,7 +42,7 @@ impl Optics {
     }
 }
 
-/// Reads `parameters.cfg`: `key = value`, in sections whose names do not matter.
+/// Reads `parameters.cfg`: `key = value`, in sections whose names are ignored.
 pub(super) fn read_parameters(file: &Path) -> Result<Optics, CaptureError> {
     let mut optics = Optics::default();
     let (mut low, mut high) = (None, None);
@@ -51,8 +51,9 @@ pub(super) fn read_parameters(file: &Path) -> Result<Optics, CaptureError> {
     while let Some(line) = lines.next_filled()? {
         let Some((key, text)) = line.split_once(['=', ':']) else { continue };
         let (key, text) = (key.trim(), text.trim());
-        let value =
-            || number(text).ok_or_else(|| lines.malformed(format!("{key} is {}, no number", quoted(text))));
+        let value = || {
+            number(text).ok_or_else(|| lines.malformed(format!("{key} is {}, not a number", quoted(text))))
+        };
         let positive = || {
             let value = value()?;
             if value > 0.0 {
@@ -63,7 +64,7 @@ pub(super) fn read_parameters(file: &Path) -> Result<Optics, CaptureError> {
         };
         let count = || {
             let count = text.parse().ok().filter(|count| (1..=super::row_column::MAX_SIDE).contains(count));
-            count.ok_or_else(|| lines.malformed(format!("{key} is {}, no count of views", quoted(text))))
+            count.ok_or_else(|| lines.malformed(format!("{key} is {}, not a number of views", quoted(text))))
         };
         match key {
             "focal_length_mm" => optics.focal_length_mm = Some(positive()?),
@@ -95,13 +96,13 @@ mod tests {
         std::fs::write(&file, text).unwrap();
         let optics = read_parameters(&file).unwrap();
         assert_eq!((optics.grid, optics.disparity_range), (Some([9, 9]), Some([-1.6, 1.8])));
-        // What is focused has none; what is infinitely far the file's `offset`, 6.996…
+        // The focus distance has none; infinity has the file's `offset`, 6.996…
         assert!(optics.disparity(2.3, 512).unwrap().abs() < 1e-12);
         assert!((optics.disparity(f64::INFINITY, 512).unwrap() + 6.9963).abs() < 1e-3);
         for (wrong, message) in [
             ("baseline_mm = 0", "line 1: baseline_mm is 0, and has to be above 0"),
-            ("\nnum_cams_x = 1000000", "line 2: num_cams_x is \"1000000\", no count of views"),
-            ("focal_length_mm = x", "line 1: focal_length_mm is \"x\", no number"),
+            ("\nnum_cams_x = 1000000", "line 2: num_cams_x is \"1000000\", not a number of views"),
+            ("focal_length_mm = x", "line 1: focal_length_mm is \"x\", not a number"),
         ] {
             std::fs::write(&file, wrong).unwrap();
             let text = read_parameters(&file).unwrap_err().to_string();

@@ -1,24 +1,25 @@
-//! Whether rows and columns of views run as their names say: seen in the pictures.
+//! Whether rows and columns of views run as their names say, measured from the pictures.
 //!
-//! Programs count rows from the top or from the bottom, and columns from the left or the right. For each way in which a grid can lie it is asked
-//! how well one disparity a block of pixels explains the neighbours of the middle view on both axes at once:
+//! Programs count rows from the top or from the bottom, and columns from the left or the right. For each possible orientation of the grid,
+//! the test is how well one disparity per block of pixels explains the neighbours of the middle view on both axes at once:
 //!
 //! ```text
-//! E(block, way) = min over d of  Σ over views, pixels |R(p) − V(p − d·way(position))|
+//! E(block, turn) = min over d of  Σ over views, pixels |R(p) − V(p − d·turn(position))|
 //! ```
 //!
-//! A wrong way explains a block only where it has no detail along one of the axes, or no parallax. Each block whose best way is clearly
-//! better than the others has a vote. Without a disparity map nothing tells a grid from the same turned by 180°, which has all disparities
-//! with the other sign: columns are believed then. With one, all eight ways are told apart, d being the map's.
+//! A wrong orientation explains a block only where it has no detail along one of the axes, or no parallax. Each block whose best
+//! orientation is clearly better than the others has a vote. Without a disparity map a grid cannot be distinguished from the same rotated
+//! by 180°, whose disparities all have the other sign: columns are then assumed to be right. With one, all eight orientations are
+//! distinguished, d being the map's.
 
 use crate::depth_map::DepthMap;
 use glam::{DVec2, Vec2Swizzles};
 use scene::Photograph;
 
-/// How views lie, other than their names say.
+/// The orientation of a grid of views, relative to their names.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct GridTurn {
-    /// Rows are columns: what is named first is the column.
+    /// Rows are columns: the first number in a name is the column.
     pub is_transposed: bool,
     /// Columns, after that, run from right to left.
     pub columns_reversed: bool,
@@ -27,7 +28,7 @@ pub struct GridTurn {
 }
 
 impl GridTurn {
-    /// A position as it is, of one as it is named.
+    /// The true position of a position according to its name.
     pub fn apply(&self, position: DVec2) -> DVec2 {
         let DVec2 { x, y } = if self.is_transposed { position.yx() } else { position };
         let sign = |is_reversed| if is_reversed { -1.0 } else { 1.0 };
@@ -35,28 +36,28 @@ impl GridTurn {
     }
 }
 
-/// What the pictures tell.
+/// The orientation according to the pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GridTurnEstimate {
-    /// The views lie so.
+    /// The orientation was detected.
     Turned(GridTurn),
-    /// All views stand in one line, which is as it is named: nothing tells on which side of it is up.
+    /// All views lie in one line, which is as their names say: on which side of it is up cannot be detected.
     OneLine,
-    /// There is too little parallax or detail, or no way explains the pictures.
+    /// There is too little parallax or detail, or no orientation explains the pictures.
     Unclear,
 }
 
 /// Side of a block, px.
 const BLOCK: usize = 8;
-/// So many pixels a side are looked at, about the middle.
+/// The most pixels per side that are compared, around the middle.
 const WINDOW: usize = 384;
-/// The largest movement between the views that is looked for, px of the reduced pictures.
+/// The largest movement between the views that is tested, px of the reduced pictures.
 const REACH: f64 = 16.0;
-/// Pictures are looked at in these reductions: large movements are small in small ones.
+/// Pictures are compared at these reductions: large movements are small in small pictures.
 const REDUCTIONS: [u32; 2] = [1, 4];
 
-/// How views lie, by the pixels of a reference view and of some about it with their positions as they are named, relative to it; two on each axis
-/// are enough. `disparity` is the map of the reference, if there is one.
+/// Estimates the orientation of the grid, from the pixels of a reference view and of some views around it with their positions according to
+/// their names, relative to it; two on each axis are enough. `disparity` is the map of the reference, if there is one.
 ///
 /// Brightness may differ between views by a factor.
 pub fn estimate_grid_turn(
@@ -100,7 +101,7 @@ pub fn estimate_grid_turn(
     }
 }
 
-/// The ways that views can lie, those together that nothing tells apart.
+/// The possible orientations, grouped by those that cannot be distinguished.
 fn groups(others: &[(DVec2, Luma)], has_map: bool) -> Vec<Vec<GridTurn>> {
     let bools = [false, true];
     let mut turns = Vec::new();
@@ -135,7 +136,7 @@ fn count_votes(
     map: Option<(&DepthMap, f64)>,
     votes: &mut [usize],
 ) {
-    /// A block's best way is better than any other by this factor.
+    /// The factor by which a block's best orientation must be better than any other.
     const CLEARLY: f64 = 1.3;
     /// Differences of this much, of the square root of light, are noise.
     const NOISE: f64 = 0.004;
@@ -149,7 +150,7 @@ fn count_votes(
         ((side - blocks * BLOCK) / 2, blocks)
     };
     let ((left, across), (top, down)) = (window(view.width), window(view.height));
-    // Every other block: as on a draughtboard.
+    // Every other block, as on a chessboard.
     let blocks = (0..down).flat_map(|y| (0..across).map(move |x| (x, y))).filter(|(x, y)| (x + y) % 2 == 0);
     for (x, y) in blocks {
         let corner = [left + x * BLOCK, top + y * BLOCK];
@@ -185,7 +186,7 @@ fn count_votes(
     }
 }
 
-/// Movements between two views that are tried, px: fine ones finely.
+/// Movements between two views that are tested, px: small ones finely.
 fn movements() -> Vec<f64> {
     let mut all = vec![0.0];
     let mut at = 0.0;
@@ -211,7 +212,7 @@ fn map_at(map: &DepthMap, [x, y]: [usize; 2], size: [usize; 2]) -> f64 {
     f64::from(map.values[y * map.width as usize + x])
 }
 
-/// The square root of a picture's brightness: noise is alike in light and shade.
+/// The square root of a picture's brightness: noise is uniform in light and shade.
 struct Luma {
     width: usize,
     height: usize,
@@ -253,7 +254,7 @@ impl Luma {
         Self { width, height, values }
     }
 
-    /// Whether a block differs within itself by more than noise.
+    /// Whether the contrast of a block exceeds noise.
     fn has_detail(&self, [left, top]: [usize; 2]) -> bool {
         const MIN_CONTRAST: f32 = 0.03;
         let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
@@ -290,7 +291,7 @@ impl Luma {
         sum
     }
 
-    /// The value at a place between pixels, 0 the middle of the first.
+    /// The value at a position between pixels, 0 the centre of the first.
     fn at(&self, x: f64, y: f64) -> f32 {
         let clamped = |at: f64, side: usize| {
             let at = at.clamp(0.0, (side - 1) as f64);
@@ -311,7 +312,7 @@ mod tests {
 
     const SIZE: u32 = 96;
 
-    /// A picture of waves, moved: the left half stands at disparity 1.2, the right at −0.7.
+    /// A picture of waves, moved: the left half has disparity 1.2, the right −0.7.
     fn view(position: DVec2, gain: f32) -> Photograph {
         let wave = |x: f64, y: f64| {
             0.5 + 0.12 * (x * 0.9 + 1.7 * (y * 0.31).sin()).sin()
@@ -375,7 +376,7 @@ mod tests {
             let turn = GridTurn { rows_reversed, ..GridTurn::default() };
             assert_eq!(estimate(&CROSS[..2], turn, None), GridTurnEstimate::OneLine);
         }
-        // But that it stands upright.
+        // But that it is vertical.
         let upright = GridTurn { is_transposed: true, ..GridTurn::default() };
         assert_eq!(estimate(&CROSS[..2], upright, None), GridTurnEstimate::Turned(upright));
     }

@@ -3,16 +3,16 @@
 use super::arrangement::{Arrangement, Placed, ViewLayout};
 use super::attributes::read_attributes;
 use super::disparity::{DisparitySearch, DisparitySource, find_disparity};
-use super::finding::find_views;
 use super::light_field_type::{LightField, SubAperture, ViewDisparity};
 use super::optics::{Optics, read_parameters};
 use super::parallax::{GridTurn, GridTurnEstimate, estimate_grid_turn};
+use super::view_discovery::find_views;
 use crate::depth_map::{DepthMap, DepthMeaning, NearEnd};
-use crate::folder::Folder;
-use crate::foreign::unsupported_format_error;
+use crate::files::folder::Folder;
 use crate::mosaic::{Mosaic, detect_pitch};
-use crate::picture_header::read_header;
-use crate::picture_source::PictureSource;
+use crate::pictures::picture_header::read_header;
+use crate::pictures::picture_source::PictureSource;
+use crate::unsupported_format::unsupported_format_error;
 use crate::{CaptureError, Remark};
 use glam::DVec2;
 use progress::{Progress, Stage};
@@ -20,26 +20,26 @@ use scene::{LoadOptions, Photograph};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-/// How a light field is read.
+/// Options for reading a light field.
 #[derive(Clone, Debug, Default)]
 pub struct LightFieldOptions {
-    /// Columns and rows of pixels of a mosaic's micro-images; none: found out from its pixels.
+    /// Columns and rows of pixels of a mosaic's micro-images; `None`: detected from its pixels.
     pub pitch: Option<[u32; 2]>,
-    /// The disparity map of the middle view, wherever that is; none: looked for beside the views.
+    /// The disparity map of the middle view; `None`: looked for next to the views.
     pub disparity: Option<PathBuf>,
-    /// Which end of a relative map is near.
+    /// The near end of a relative map.
     pub near: Option<NearEnd>,
-    /// What reading may use of the machine.
+    /// Limits on memory and size.
     pub load: LoadOptions,
 }
 
 /// Opens a light field: a folder of views, or a mosaic of micro-images.
 ///
-/// Pixels are read of the middle view and of its neighbours only, to see which way rows and columns run.
+/// Only the pixels of the middle view and of its neighbours are read, to detect which way rows and columns run.
 ///
 /// # Errors
-/// There are no views, or a file that tells of them is malformed or beyond the limits. [`CaptureError::Cancelled`] if `progress`
-/// says so.
+/// There are no views, or a file that describes them is malformed or exceeds the limits. [`CaptureError::Cancelled`] if `progress`
+/// cancels.
 pub fn open_light_field(
     path: &Path,
     options: &LightFieldOptions,
@@ -61,16 +61,16 @@ fn name_of(path: &Path) -> String {
     whole.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// The light field in a folder, positions as they are named.
+/// The light field in a folder, with positions according to the names.
 fn open_folder(
     path: &Path,
     options: &LightFieldOptions,
     progress: &dyn Progress,
 ) -> Result<LightField, CaptureError> {
     let folder = Folder::open(path)?;
-    let none = |detail: &str| CaptureError::NoViews { path: path.into(), found: detail.into() };
+    let none = |detail: &str| CaptureError::NoViews { path: path.into(), detail: detail.into() };
     let Some((arrangement, others)) = find_views(&folder)? else {
-        // Lytro's files alone get their sentence.
+        // Lytro's files alone get their own message.
         let entries = folder.entries(&folder.shown);
         return Err(entries
             .iter()
@@ -85,7 +85,7 @@ fn open_folder(
         false,
         |names| {
             format!(
-                "{shown}: is taken for the views; there are also {names} (give that folder if it is meant)"
+                "{shown}: is used for the views; there are also {names} (open that folder to use it instead)"
             )
         },
     ));
@@ -96,10 +96,10 @@ fn open_folder(
     }
     let (placed, size) = views_of_one_size(&arrangement, &mut remarks, progress)?;
     if placed.len() < 2 {
-        return Err(none(": less than two pictures of one size can be read"));
+        return Err(none(": fewer than two pictures of one size can be read"));
     }
     remarks.extend(missing(&arrangement, &placed));
-    // What lies with the views, or above them.
+    // Files in the folder of the views, or above it.
     let places: Vec<&Path> = if base == folder.shown { vec![&base] } else { vec![&base, &folder.shown] };
     let optics = optics(&folder, &places)?;
     let reference = reference(&arrangement, &placed);
@@ -143,7 +143,7 @@ fn open_folder(
     Ok(field)
 }
 
-/// The light field that a picture is a mosaic of.
+/// The light field in a picture that is a mosaic.
 fn open_mosaic(path: &Path, options: &LightFieldOptions) -> Result<LightField, CaptureError> {
     if let Some(error) = unsupported_format_error(path) {
         return Err(error);
@@ -152,8 +152,9 @@ fn open_mosaic(path: &Path, options: &LightFieldOptions) -> Result<LightField, C
     let pitch = options.pitch.or_else(|| detect_pitch(path, &options.load));
     let Some(pitch) = pitch else {
         let detail =
-            ": it is no mosaic of micro-images, or one whose pitch cannot be seen and has to be said".into();
-        return Err(CaptureError::NoViews { path: path.into(), found: detail });
+            ": it is not a mosaic of micro-images, or its pitch cannot be detected and has to be specified"
+                .into();
+        return Err(CaptureError::NoViews { path: path.into(), detail });
     };
     let mosaic = Mosaic::open(path, pitch)?;
     let [columns, rows] = pitch;
@@ -164,11 +165,11 @@ fn open_mosaic(path: &Path, options: &LightFieldOptions) -> Result<LightField, C
         "{shown}: micro-images of {columns} × {rows} px, so as many views of {} × {} px{}",
         size[0],
         size[1],
-        if options.pitch.is_none() { ", as its pixels say" } else { "" }
+        if options.pitch.is_none() { ", as detected from its pixels" } else { "" }
     )));
     if mosaic.left_over() != [0, 0] {
         let [right, bottom] = mosaic.left_over();
-        remarks.push(Remark::note(format!("{shown}: {right} columns at the right and {bottom} rows at the bottom are no whole micro-image, and are left out")));
+        remarks.push(Remark::note(format!("{shown}: {right} columns at the right and {bottom} rows at the bottom do not form a whole micro-image and are ignored")));
     }
     let middle = [(columns - 1) / 2, (rows - 1) / 2];
     let views =
@@ -200,7 +201,7 @@ fn open_mosaic(path: &Path, options: &LightFieldOptions) -> Result<LightField, C
     Ok(field)
 }
 
-/// The views that can be read and are of the size that most are of.
+/// The views that can be read and have the size that most of them have.
 fn views_of_one_size(
     arrangement: &Arrangement,
     remarks: &mut Vec<Remark>,
@@ -229,14 +230,14 @@ fn views_of_one_size(
         .extend(Remark::about(wrong, true, |names| format!("{shown}: views that cannot be used: {names}")));
     remarks.extend(Remark::about(other.collect(), true, |names| {
         format!(
-            "{shown}: views that are not of {} × {} px as the others, and are left out: {names}",
+            "{shown}: views that do not have the {} × {} px of the others and are ignored: {names}",
             size[0], size[1]
         )
     }));
     Ok((fit.into_iter().map(|(placed, _)| placed).collect(), size))
 }
 
-/// A remark on what of the grid is not there.
+/// A remark on missing views of the grid.
 fn missing(arrangement: &Arrangement, placed: &[Placed]) -> Option<Remark> {
     let [columns, rows] = arrangement.grid?;
     let shown = arrangement.folder.display();
@@ -262,7 +263,7 @@ fn missing(arrangement: &Arrangement, placed: &[Placed]) -> Option<Remark> {
     })
 }
 
-/// What the files beside the views say of the camera.
+/// The camera parameters in the files next to the views.
 fn optics(folder: &Folder, places: &[&Path]) -> Result<Optics, CaptureError> {
     let file = |name: &str| places.iter().map(|place| place.join(name)).find(|file| folder.has_file(file));
     if let Some(file) = file("parameters.cfg") {
@@ -275,7 +276,7 @@ fn optics(folder: &Folder, places: &[&Path]) -> Result<Optics, CaptureError> {
     Ok(Optics { disparity_range, ..Optics::default() })
 }
 
-/// The view that is the list's middle one, or the one nearest the middle of the aperture.
+/// The view that a list declares as the middle one, or the one nearest the middle of the aperture.
 fn reference(arrangement: &Arrangement, placed: &[Placed]) -> usize {
     let listed = arrangement.reference.map(|index| &arrangement.views[index].file);
     if let Some(index) = placed.iter().position(|placed| Some(&placed.file) == listed) {
@@ -287,13 +288,13 @@ fn reference(arrangement: &Arrangement, placed: &[Placed]) -> usize {
     (0..placed.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)).then(a.cmp(b))).unwrap_or(0)
 }
 
-/// Keeps what was found of disparities.
+/// Stores the disparities in the light field.
 fn set_disparity_source(field: &mut LightField, source: DisparitySource) {
     match source {
         DisparitySource::Map(map, file) => set_disparity(field, map, file),
         DisparitySource::Coded(file) => {
             field.remarks.push(Remark::note(format!(
-                "{}: is coded by colour; what its colours mean is found out from the views",
+                "{}: is coded by colour; the code is inferred from the views",
                 file.display()
             )));
             field.coded_disparity = Some(PictureSource::stored(&file));
@@ -301,7 +302,7 @@ fn set_disparity_source(field: &mut LightField, source: DisparitySource) {
     }
 }
 
-/// Keeps a disparity map: of the view that its file is named after, else of the middle one.
+/// Stores a disparity map: for the view that its file is named after, else for the middle one.
 fn set_disparity(field: &mut LightField, map: DepthMap, file: PathBuf) {
     let stem = file.file_stem().unwrap_or_default().to_string_lossy().to_lowercase();
     let is_named = |view: &SubAperture| view.name.len() >= 3 && stem.contains(&view.name.to_lowercase());
@@ -325,14 +326,14 @@ fn set_disparity(field: &mut LightField, map: DepthMap, file: PathBuf) {
     field.disparity = Some(ViewDisparity { map, view, file });
 }
 
-/// The views about the reference that tell which way rows and columns run: two on each axis, else the nearest.
+/// The views around the reference that determine which way rows and columns run: two on each axis, else the nearest.
 fn neighbours(field: &LightField) -> Vec<usize> {
     let position = |index: usize| field.views[index].position;
     let mut nearest: Vec<usize> =
         (0..field.views.len()).filter(|index| position(*index).length() > 0.0).collect();
     nearest.sort_by(|a, b| position(*a).length().total_cmp(&position(*b).length()));
     let sides = [DVec2::X, DVec2::NEG_X, DVec2::Y, DVec2::NEG_Y];
-    // Within 20° of the axis: places of gantries are not exact.
+    // Within 20° of the axis: positions of gantries are not exact.
     let on_side = |side: DVec2| {
         nearest.iter().copied().find(|index| position(*index).normalize_or_zero().dot(side) > 0.94)
     };
@@ -346,7 +347,7 @@ fn neighbours(field: &LightField) -> Vec<usize> {
     chosen
 }
 
-/// Turns the positions as the pictures say, and says so.
+/// Turns the positions as parallax shows, and adds a remark.
 fn orient_by_parallax(
     field: &mut LightField,
     options: &LightFieldOptions,
@@ -370,7 +371,7 @@ fn orient_by_parallax(
     });
     let shown = field.path.display();
     let estimate = estimate_grid_turn(reference, &others, map.as_ref());
-    // A map that fits nothing, or is of another sign, still leaves what the pictures alone say.
+    // A map that fits nothing, or has the other sign, is ignored: the pictures alone decide.
     let estimate = match estimate {
         GridTurnEstimate::Unclear if map.is_some() => estimate_grid_turn(reference, &others, None),
         estimate => estimate,
@@ -381,23 +382,20 @@ fn orient_by_parallax(
             for view in &mut field.views {
                 view.position = turn.apply(view.position);
             }
-            format!(
-                "{shown}: {}, as parallax shows; views are placed as the pictures say",
-                describe_turn(turn)
-            )
+            format!("{shown}: {}, as parallax shows; views are placed accordingly", describe_turn(turn))
         }
         GridTurnEstimate::OneLine => {
-            format!("{shown}: all views stand in one line; which way other rows would run cannot be told")
+            format!("{shown}: all views lie in one line; which way other rows would run cannot be determined")
         }
         GridTurnEstimate::Unclear => format!(
-            "{shown}: parallax does not show which way rows and columns run; they are taken as they are named"
+            "{shown}: parallax does not show which way rows and columns run; the names of the views are trusted"
         ),
     };
     field.remarks.push(Remark::note(remark));
     Ok(())
 }
 
-/// What is otherwise than named.
+/// Describes how a grid differs from its names.
 fn describe_turn(turn: GridTurn) -> &'static str {
     match (turn.is_transposed, turn.columns_reversed, turn.rows_reversed) {
         (false, false, _) => "rows run from the bottom up",
@@ -412,7 +410,8 @@ fn describe_turn(turn: GridTurn) -> &'static str {
     }
 }
 
-/// Pictures of some views, no wider than is needed, with how much they are reduced by; none if one cannot be read, which is told.
+/// Pictures of some views, no wider than needed, with their reduction factor; `None` with a remark if one cannot be
+/// read.
 fn small_pictures(
     field: &mut LightField,
     indices: &[usize],
@@ -444,10 +443,10 @@ fn small_pictures(
     match read() {
         Ok(pictures) => Ok(Some(pictures)),
         Err(error @ CaptureError::Cancelled(_)) => Err(error),
-        // A picture that breaks off behind its header: who reads it will be told again.
+        // A picture that is truncated after its header: the error is reported again when it is read.
         Err(error) => {
             let names = vec![error.to_string()];
-            let text = format!("{error}; which way rows and columns run was not looked at");
+            let text = format!("{error}; which way rows and columns run was not checked");
             field.remarks.push(Remark { text, names, is_incomplete: true });
             Ok(None)
         }

@@ -1,7 +1,7 @@
-//! Grids whose files are named by row and column, or by a number row by row.
+//! Grids whose files are named by row and column, or numbered row by row.
 //!
-//! Names of a folder that differ in their numbers alone belong together. The last two numbers are row and column; where one of the others
-//! varies, too, the two that do. They may be counted from anywhere and be padded or not. `c03_r01` and `x3_y1` are read as they say.
+//! Files of a folder whose names differ only in their numbers belong together. The last two numbers are row and column; if one of the
+//! others varies, too, the two that vary. They may start anywhere and be padded or not. `c03_r01` and `x3_y1` are recognised.
 
 use super::arrangement::{Arrangement, Placed, ViewLayout};
 use super::numbered_name::{NumberedName, parse_positions};
@@ -16,7 +16,7 @@ fn stem(file: &Path) -> String {
     file.file_stem().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// What a view's file says: its row and column, and perhaps its place.
+/// The row and column in a view's file name, and possibly its position.
 struct Named {
     file: PathBuf,
     /// Row and column, counted from anywhere.
@@ -25,7 +25,7 @@ struct Named {
     place: Option<[f64; 2]>,
 }
 
-/// The grid numbered row by row (`input_Cam000`), of so many columns and rows, if there is one.
+/// The grid numbered row by row (`input_Cam000`), with these columns and rows, if there is one.
 pub(super) fn arrange_numbered(
     folder: &Path,
     files: &[PathBuf],
@@ -53,7 +53,7 @@ pub(super) fn arrange_numbered(
     let mut arrangement = arrange_grid(folder, named.collect(), ViewLayout::Numbered, Some([columns, rows]))?;
     let beyond: Vec<String> = beyond.into_iter().map(|(_, file)| stem(&file)).collect();
     if !beyond.is_empty() {
-        let what = format!("numbers beyond a grid of {columns} × {rows}, which are left out");
+        let what = format!("numbers beyond a grid of {columns} × {rows}, which are ignored");
         arrangement.notes.push((what, beyond));
     }
     Some(arrangement)
@@ -94,7 +94,7 @@ pub(super) fn arrange_by_row_column(folder: &Path, files: &[PathBuf]) -> Option<
         [first, second] => (first, second),
         _ => return None,
     };
-    // What the letters before the numbers say.
+    // The letters before the numbers.
     let letters = |at: usize| -> String { texts[at].chars().filter(|c| c.is_ascii_alphabetic()).collect() };
     let names_axis = |at: usize, words: [&str; 4]| {
         words.iter().any(|word| letters(at).ends_with(word) && (word.len() > 1 || letters(at).len() == 1))
@@ -110,7 +110,8 @@ pub(super) fn arrange_by_row_column(folder: &Path, files: &[PathBuf]) -> Option<
         .collect();
     let mut arrangement = arrange_grid(folder, named, ViewLayout::RowColumn, None)?;
     let [columns, rows] = arrangement.grid?;
-    // Photographs may be numbered by day and number: a grid is filled well, or a line of it is named by little else than numbers.
+    // Photographs may be named by date and number: a grid must be well filled, or a line of it named by little else
+    // than numbers.
     let filled = arrangement.views.len() as f64 / f64::from(columns * rows);
     let is_cross = arrangement.views.len() as u32 + 1 >= columns + rows;
     let is_bare = texts.iter().all(|text| text.chars().filter(|c| c.is_alphabetic()).count() <= 4);
@@ -124,7 +125,7 @@ pub(super) fn arrange_by_row_column(folder: &Path, files: &[PathBuf]) -> Option<
     Some(arrangement)
 }
 
-/// The grid of named files; none if it has less than two views, or more columns or rows than any.
+/// The grid of named files; `None` if it has fewer than two views, or too many columns or rows.
 fn arrange_grid(
     folder: &Path,
     named: Vec<Named>,
@@ -157,7 +158,7 @@ fn arrange_grid(
     let views = by_cell.into_values().map(|named| {
         let [row, column] = named.cell;
         let position = match (named.place, steps) {
-            // Rows and columns grow as they are named; whether that is right is seen from the pictures.
+            // Rows and columns grow as their numbers do; whether that is right is detected from the pictures.
             (Some([y, x]), [Some(down), Some(right)]) => DVec2::new(x / right, y / down),
             _ => DVec2::new(f64::from(column), f64::from(row)),
         };
@@ -166,7 +167,7 @@ fn arrange_grid(
     let notes = if twice.is_empty() {
         Vec::new()
     } else {
-        vec![("several files of one row and column, of which one is taken; left out".to_owned(), twice)]
+        vec![("several files with the same row and column, of which one is used; ignored".to_owned(), twice)]
     };
     Some(Arrangement {
         layout,
@@ -180,7 +181,8 @@ fn arrange_grid(
     })
 }
 
-/// By how much the places of views differ from one row (0) or column (1) to the next, in the mean: least squares. None if it is nothing.
+/// The mean step of the views' positions from one row (0) or column (1) to the next: least squares. `None` if it is
+/// 0.
 fn mean_step<'a>(views: impl Iterator<Item = &'a Named> + Clone, axis: usize) -> Option<f64> {
     let pairs = views.filter_map(|named| Some((f64::from(named.cell[axis]), named.place?[axis])));
     let count = pairs.clone().count() as f64;

@@ -1,4 +1,4 @@
-//! `views.json`: a list of views and where each was taken from, for arrangements that no name tells.
+//! `views.json`: a list of views and their positions, for arrangements that no naming scheme covers.
 //!
 //! ```json
 //! {
@@ -8,25 +8,25 @@
 //! }
 //! ```
 //!
-//! Positions are x right, y down, in the unit that disparities count by: the point that the reference shows at p with disparity d is at
-//! p − d·position, positions taken relative to the reference's. Files are named relative to the list, and lie below its folder.
+//! Positions are x right, y down, in the unit of disparities: the point that the reference shows at p with disparity d is at
+//! p − d·position, relative to the reference's position. Files are named relative to the list, and lie below its folder.
 
 use super::arrangement::{Arrangement, Placed, ViewLayout};
 use crate::CaptureError;
-use crate::folder::Folder;
-use crate::text::quoted;
-use crate::whole_file::whole_file;
+use crate::files::folder::Folder;
+use crate::files::text::quoted;
+use crate::files::whole_file::whole_file;
 use glam::DVec2;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
 /// The list's name.
 pub(super) const NAME: &str = "views.json";
-/// The largest list, and the most views.
+/// The largest list in bytes, and the most views.
 const MAX_BYTES: u64 = 4 << 20;
 const MAX_VIEWS: usize = 20_000;
 
-/// The views that a list tells of.
+/// Reads the views of a list.
 pub(super) fn read_view_list(folder: &Folder, file: &Path) -> Result<Arrangement, CaptureError> {
     let malformed = |place: String, what: String| CaptureError::malformed(file, place, what);
     let bytes = whole_file(file, MAX_BYTES)?;
@@ -47,7 +47,7 @@ pub(super) fn read_view_list(folder: &Folder, file: &Path) -> Result<Arrangement
     for (index, entry) in all.iter().enumerate() {
         let place = || format!("views[{index}]");
         let name = entry.get("file").and_then(Value::as_str);
-        let name = name.ok_or_else(|| malformed(place(), "its file is no text".into()))?;
+        let name = name.ok_or_else(|| malformed(place(), "its file is not a text".into()))?;
         let numbers: Option<Vec<f64>> = entry
             .get("position")
             .and_then(Value::as_array)
@@ -76,16 +76,19 @@ pub(super) fn read_view_list(folder: &Folder, file: &Path) -> Result<Arrangement
     if let (Some(name), None) = (list.get("reference").and_then(Value::as_str), reference) {
         return Err(malformed(
             "reference".into(),
-            format!("{} is none of the views that are there", quoted(name)),
+            format!("{} is not one of the existing views", quoted(name)),
         ));
     }
-    let disparity = match list.get("disparity").and_then(Value::as_str) {
-        Some(name) => {
-            let path = named(name);
-            Some(path.ok_or_else(|| malformed("disparity".into(), format!("{} is not there", quoted(name))))?)
-        }
-        None => None,
-    };
+    let disparity =
+        match list.get("disparity").and_then(Value::as_str) {
+            Some(name) => {
+                let path = named(name);
+                Some(path.ok_or_else(|| {
+                    malformed("disparity".into(), format!("{} does not exist", quoted(name)))
+                })?)
+            }
+            None => None,
+        };
     let notes = if missing.is_empty() {
         Vec::new()
     } else {

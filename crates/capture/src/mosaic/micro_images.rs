@@ -1,12 +1,12 @@
 //! From views to the mosaic of their micro-images: the inverse of reading one.
 
-/// The mosaic of the pixels of views: pixel (x, y) of the view of column u and row v comes to (x·columns + u, y·rows + v).
+/// The mosaic of the pixels of views: pixel (x, y) of the view of column u and row v is at (x·columns + u, y·rows + v).
 ///
-/// `views` are `columns` × `rows` of them, row by row, each of `size[0]` × `size[1]` pixels, row by row; the mosaic has `size[0]`·columns ×
-/// `size[1]`·rows.
+/// `views` are `columns` × `rows` views, row by row, each of `size[0]` × `size[1]` pixels, row by row; the mosaic has `size[0]`·columns ×
+/// `size[1]`·rows pixels.
 ///
 /// # Panics
-/// There are not as many views, or not as many pixels in each.
+/// If the number of views, or the number of pixels in one, is different.
 pub fn micro_images<P: Copy>([columns, rows]: [u32; 2], size: [u32; 2], views: &[&[P]]) -> Vec<P> {
     let [columns, rows, width, height] = [columns, rows, size[0], size[1]].map(|side| side as usize);
     assert_eq!(views.len(), columns * rows, "a view a column and row");
@@ -26,7 +26,7 @@ mod tests {
 
     #[test]
     fn neighbours_are_the_same_place_of_other_views() {
-        // Three columns and two rows of views of 2 × 1 pixels: a pixel tells x, u and v.
+        // Three columns and two rows of views of 2 × 1 pixels: a pixel holds x, u and v.
         let views: Vec<Vec<[u32; 3]>> =
             (0..2).flat_map(|v| (0..3).map(move |u| (0..2).map(|x| [x, u, v]).collect())).collect();
         let views: Vec<&[[u32; 3]]> = views.iter().map(Vec::as_slice).collect();

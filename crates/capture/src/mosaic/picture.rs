@@ -2,13 +2,13 @@
 
 use super::png_rows::PngRows;
 use crate::CaptureError;
-use crate::picture_header::read_header;
+use crate::pictures::picture_header::read_header;
 use image::{DynamicImage, ImageBuffer};
 use scene::{LoadOptions, Photograph, PictureError};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-/// A picture of micro-images that stand side by side without gaps.
+/// A picture of adjacent micro-images without gaps.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Mosaic {
     file: PathBuf,
@@ -17,8 +17,7 @@ pub struct Mosaic {
 }
 
 impl Mosaic {
-    /// The mosaic in a file whose micro-images are of `pitch` pixels across and down, which is how many columns and rows of views
-    /// there are.
+    /// Opens a mosaic whose micro-images are of `pitch` pixels across and down, which is the number of columns and rows of views.
     ///
     /// # Errors
     /// The file is no picture, or holds less than two micro-images a side.
@@ -55,14 +54,14 @@ impl Mosaic {
         [0, 1].map(|axis| self.size[axis] % self.pitch[axis])
     }
 
-    /// Reads the views of these cells (column and row in the micro-image) at once, in linear light: 12 bytes a pixel of a view, and, while
-    /// it runs, at most 6 more, and a row of the mosaic if it is a PNG, else what the decoded file takes.
+    /// Reads the views of these cells (column and row in the micro-image) at once, in linear light. Takes 12 bytes per pixel of a view, and
+    /// temporarily at most 6 more, and one row of the mosaic if it is a PNG, else the decoded file.
     ///
     /// # Errors
-    /// The file cannot be read or decoded, is not as it was when it was opened, or all of it is beyond the limits of `options`.
+    /// The file cannot be read or decoded, has changed since it was opened, or exceeds the limits of `options`.
     ///
     /// # Panics
-    /// A cell is not below the pitch.
+    /// If a cell is not below the pitch.
     pub fn views(&self, cells: &[[u32; 2]], options: &LoadOptions) -> Result<Vec<Photograph>, CaptureError> {
         assert!(cells.iter().all(|cell| cell[0] < self.pitch[0] && cell[1] < self.pitch[1]));
         let [width, height] = self.view_size().map(u64::from);
@@ -118,7 +117,7 @@ impl Mosaic {
         self.check_size(rows.size)?;
         let [width, height] = self.view_size();
         let (channels, is_deep, pixel_bytes) = (rows.channels, rows.is_deep, rows.pixel_bytes());
-        // Three channels a pixel, of one byte or two.
+        // Three channels per pixel, of one byte or two.
         let sample_bytes = if is_deep { 2 } else { 1 };
         let mut stored = vec![Vec::<u8>::new(); cells.len()];
         for bytes in &mut stored {

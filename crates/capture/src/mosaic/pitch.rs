@@ -1,27 +1,27 @@
-//! How wide the micro-images of a mosaic are, by its pixels.
+//! The width of a mosaic's micro-images, detected from its pixels.
 //!
-//! Within a micro-image neighbours show nearly the same spot, from one micro-image to the next they do not; where lenses darken toward their
-//! borders, brightness rises and falls once a micro-image. Either way the mean difference of neighbouring columns
+//! Within a micro-image neighbouring pixels show nearly the same spot, from one micro-image to the next they do not; where lenses darken
+//! toward their borders, brightness rises and falls once per micro-image. Either way the mean difference of neighbouring columns
 //!
 //! ```text
 //! D(x) = mean over y of |I(x + 1, y) − I(x, y)|
 //! ```
 //!
-//! repeats with the pitch. For each pitch p it is asked how much of D's variance (what varies slowly taken out) the mean over each x mod p explains;
-//! the least p that explains nearly as much as the best is it, if it explains much and the period is a strong one: JPEG's blocks of 8
-//! are no micro-images. The same for rows.
+//! repeats with the pitch. For each pitch p the test is how much of D's variance (with slow variation removed) the mean over each x mod p
+//! explains; the pitch is the least p that explains nearly as much as the best, if it explains much and the period is strong: JPEG's
+//! blocks of 8 are not micro-images. The same for rows.
 
 use super::png_rows::PngRows;
 use image::{ImageReader, Limits};
 use scene::LoadOptions;
 use std::path::Path;
 
-/// Pitches that are looked for, px: Lytro has 10, 14 and 15; renderers what they like.
+/// Candidate pitches, px: Lytro has 10, 14 and 15; renderers choose freely.
 const PITCHES: std::ops::RangeInclusive<usize> = 3..=40;
-/// So many rows, from the middle, are looked at.
+/// The most rows, from the middle, that are analysed.
 const ROWS: usize = 480;
 
-/// The pitch of a picture that is a mosaic, across and down; `None` if it is none.
+/// Detects the pitch of a mosaic, across and down; `None` if the picture is none.
 pub(crate) fn detect_pitch(file: &Path, options: &LoadOptions) -> Option<[u32; 2]> {
     let (levels, width) = band(file, options)?;
     let rows = levels.len() / width;
@@ -31,11 +31,11 @@ pub(crate) fn detect_pitch(file: &Path, options: &LoadOptions) -> Option<[u32; 2
     let down =
         (0..rows - 1).map(|y| (0..width).map(|x| difference(y * width + x, (y + 1) * width + x)).sum());
     let across = period(&across.collect::<Vec<f64>>())?;
-    // The band of rows begins at a multiple of nothing; only the period counts.
+    // The band of rows begins anywhere; only the period counts.
     let down = period(&down.collect::<Vec<f64>>())?;
-    // Blocks of a JPEG that lost much are as strong.
+    // Blocks of a strongly compressed JPEG are as strong.
     let is_blocks = |period: usize| period.is_multiple_of(8);
-    let is_jpeg = crate::whole_file::head(file, 2) == [0xFF, 0xD8];
+    let is_jpeg = crate::files::whole_file::head(file, 2) == [0xFF, 0xD8];
     (!(is_jpeg && is_blocks(across) && is_blocks(down))).then_some([across as u32, down as u32])
 }
 
@@ -89,10 +89,11 @@ fn band(file: &Path, options: &LoadOptions) -> Option<(Vec<f32>, usize)> {
 
 /// The period of a sequence, if it has a strong one.
 fn period(values: &[f64]) -> Option<usize> {
-    /// Of the variance the period explains at least as much, and a shorter one that explains this share of the best is the true one.
+    /// The least share of the variance that the period explains; a shorter one that explains this share of the best
+    /// is the true one.
     const EXPLAINED: f64 = 0.35;
     const NEARLY: f64 = 0.85;
-    /// The greatest mean of a class is at least so many times those that are low: of blocks of JPEG it is less than 1.3.
+    /// The least ratio of the greatest mean of a class to the low ones: for blocks of JPEG it is less than 1.3.
     const STRONG: f64 = 1.6;
     let high = without_trend(values);
     let total: f64 = high.iter().map(|value| value * value).sum();
@@ -103,7 +104,7 @@ fn period(values: &[f64]) -> Option<usize> {
         let means = class_means(&high, period);
         let within: f64 =
             high.iter().enumerate().map(|(at, value)| (value - means[at % period]).powi(2)).sum();
-        // Adjusted for as many free means.
+        // Adjusted for the number of free means.
         let (count, free) = (high.len() as f64, period as f64);
         1.0 - within / total * (count - 1.0) / (count - free)
     };
@@ -116,7 +117,7 @@ fn period(values: &[f64]) -> Option<usize> {
     (best >= EXPLAINED && means[period - 1] >= STRONG * means[period / 4]).then_some(period)
 }
 
-/// The mean of the values at each place of a period.
+/// The mean of the values at each phase of a period.
 fn class_means(values: &[f64], period: usize) -> Vec<f64> {
     let (mut sums, mut counts) = (vec![0.0; period], vec![0.0f64; period]);
     for (at, value) in values.iter().enumerate() {
@@ -126,7 +127,7 @@ fn class_means(values: &[f64], period: usize) -> Vec<f64> {
     sums.iter().zip(counts).map(|(sum, count)| sum / count.max(1.0)).collect()
 }
 
-/// The values less their mean over a window about each, relative to it.
+/// The values relative to their mean over a window around each.
 fn without_trend(values: &[f64]) -> Vec<f64> {
     /// Twice the widest pitch, on either side.
     const REACH: usize = 80;

@@ -1,16 +1,16 @@
-//! A PNG row by row: of a mosaic of forty megapixels no more than a row is kept.
+//! A PNG row by row: for a mosaic of forty megapixels only one row is kept.
 
-use crate::whole_file::head;
+use crate::files::whole_file::head;
 use png::{BitDepth, ColorType, Decoder, Limits, Transformations};
 use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 
-/// What a PNG's header says.
+/// A PNG's header, and its rows.
 pub(super) struct PngRows {
     reader: png::Reader<BufReader<File>>,
     pub size: [u32; 2],
-    /// Of a pixel: 1 grey, 2 with alpha, 3 colours, 4 with alpha.
+    /// Channels of a pixel: 1 grey, 2 with alpha, 3 colours, 4 with alpha.
     pub channels: usize,
     /// Whether channels have two bytes.
     pub is_deep: bool,
@@ -18,7 +18,7 @@ pub(super) struct PngRows {
 }
 
 impl PngRows {
-    /// The rows of a file; `None` if it is no PNG whose rows follow each other.
+    /// The rows of a file; `None` if it is no PNG, or interlaced.
     pub fn open(file: &Path, max_memory: u64) -> Option<Result<Self, String>> {
         if !head(file, 8).starts_with(b"\x89PNG\r\n\x1a\n") {
             return None;
@@ -56,7 +56,7 @@ impl PngRows {
         }
     }
 
-    /// Bytes a pixel.
+    /// Bytes per pixel.
     pub fn pixel_bytes(&self) -> usize {
         self.channels * if self.is_deep { 2 } else { 1 }
     }

@@ -1,8 +1,8 @@
 //! Pictures with depth as people have them: one file or two, what is near, which way they lie; and what is missing.
 
 use crate::made_light::{
-    dynamic_depth_jpeg, dynamic_said, encoded, exr, gdepth_jpeg, jpeg, levels_png, levels8, pfm, put, said,
-    turned_jpeg,
+    dynamic_depth_jpeg, dynamic_depth_xmp, encoded, exr, gdepth_jpeg, gdepth_xmp, jpeg, levels_png, levels8,
+    pfm, put, turned_jpeg,
 };
 use capture::{
     CaptureError, CaptureKind, DepthContainer, DepthMeaning, DepthPicture, DepthPictureOptions,
@@ -85,31 +85,31 @@ fn exrs_without_depth_or_without_a_picture() {
     let one = |_: usize, _: usize| 1.0;
     exr(&file, 4, 4, &[("R", &one), ("G", &one), ("B", &one), ("N.X", &one), ("N.Z", &one)]);
     assert!(refused(&file).contains("no depth among its channels (Z, depth.Z"));
-    assert!(
-        detect_capture_kind(&file).unwrap_err().to_string().contains("an EXR without a channel of depth")
-    );
+    assert!(detect_capture_kind(&file).unwrap_err().to_string().contains("an EXR without a depth channel"));
     // Depth beside it.
     let depth = folder.path().join("a_depth.exr");
     exr(&depth, 4, 4, &[("V", &|x, _| 2.0 + x as f32)]);
     assert_eq!(opened(&file).depth.range(), Some([2.0, 5.0]));
     exr(&depth, 4, 4, &[("Z", &one)]);
-    assert!(refused(&depth).contains("has a channel of depth, but no picture"));
+    assert!(refused(&depth).contains("has a depth channel, but no picture"));
     let bytes = std::fs::read(&file).unwrap();
     put(&file, &bytes[..bytes.len() / 2]);
     assert!(refused(&file).contains("a.exr: EXR: "));
 }
 
 #[test]
-fn relative_depth_asks_which_end_is_near() {
+fn relative_depth_requires_the_near_end() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("cat.jpg");
     put(&file, jpeg(60, 40, 90));
-    assert!(refused(&file).contains("no depth in it or beside it (put it beside as NAME_depth.png"));
+    assert!(
+        refused(&file).contains("no depth in it or beside it (put it next to the picture as NAME_depth.png")
+    );
     put(&folder.path().join("cat_depth.png"), levels_png(30, 20));
     assert_eq!(detect_capture_kind(&file).unwrap(), CaptureKind::Depth);
     assert!(
         refused(&file)
-            .contains("cat_depth.png: does not say which end is near (say --near white or --near black")
+            .contains("cat_depth.png: does not specify which end is near (pass --near white, --near black")
     );
     let first_last =
         |picture: DepthPicture| (picture.depth.meaning, picture.depth.values[0], picture.depth.values[29]);
@@ -138,7 +138,7 @@ fn floats_beside_a_picture_and_files_that_are_named() {
     put(&file, jpeg(60, 40, 90));
     put(&folder.path().join("cat.pfm"), pfm(60, 40, |x, _| x as f32));
     // Floats of no name that tells.
-    assert!(refused(&file).contains("cat.pfm: does not say which end is near"));
+    assert!(refused(&file).contains("cat.pfm: does not specify which end is near"));
     assert_eq!(near(&file, NearEnd::White).unwrap().depth.range(), Some([0.0, 1.0]));
     put(&folder.path().join("cat_disp.pfm"), pfm(60, 40, |x, _| x as f32 - 3.0));
     let picture = opened(&file);
@@ -196,7 +196,7 @@ fn pictures_that_lie_on_their_side() {
     assert!(
         near(&file, NearEnd::White).unwrap().remarks[0]
             .text
-            .contains("is of another shape than the picture of 40 × 60 px")
+            .contains("has another shape than the picture of 40 × 60 px")
     );
 }
 
@@ -211,7 +211,7 @@ fn gdepth_opens_with_its_near_and_far() {
     {
         // In one segment, in many, with the picture as it was before.
         for (original, piece) in [(None, None), (None, Some(300)), (Some(&sharp[..]), Some(1000))] {
-            put(&file, gdepth_jpeg(&said(format, "0.5", "8"), depth, original, piece));
+            put(&file, gdepth_jpeg(&gdepth_xmp(format, "0.5", "8"), depth, original, piece));
             let picture = opened(&file);
             assert_eq!((picture.container, picture.near_far_m), (DepthContainer::GDepth, Some([0.5, 8.0])));
             let at = |x: usize| f64::from(picture.depth.values[15 * 40 + x]);
@@ -228,7 +228,8 @@ fn gdepth_opens_with_its_near_and_far() {
     put(
         &file,
         gdepth_jpeg(
-            &said("RangeInverse", "500", "8000").replace("GDepth:Mime", "GDepth:Units=\"mm\" GDepth:Mime"),
+            &gdepth_xmp("RangeInverse", "500", "8000")
+                .replace("GDepth:Mime", "GDepth:Units=\"mm\" GDepth:Mime"),
             &depths[0],
             None,
             None,
@@ -242,7 +243,7 @@ fn gdepth_that_is_broken_names_its_place() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("a.jpg");
     let depth = levels_png(40, 30);
-    let whole = gdepth_jpeg(&said("RangeInverse", "0.5", "8"), &depth, None, Some(400));
+    let whole = gdepth_jpeg(&gdepth_xmp("RangeInverse", "0.5", "8"), &depth, None, Some(400));
     let refused_of = |bytes: &[u8]| {
         put(&file, bytes);
         refused(&file)
@@ -261,14 +262,14 @@ fn gdepth_that_is_broken_names_its_place() {
         bytes[last] = b'0';
         bytes
     });
-    assert!(text.contains("a.jpg: byte 0: of its extended XMP"), "{text}");
+    assert!(text.contains("a.jpg: byte 0: only"), "{text}");
     assert!(
         refused_of(&replaced("HasExtendedXMP=\"36BE", "HasExtendedXMP=\"46BE"))
-            .contains("its XMP goes on in segments that are not there")
+            .contains("its XMP continues in segments that are missing")
     );
     assert!(
         refused_of(&replaced("Near=\"0.5\"", "Near=\"-.5\""))
-            .contains("XMP: GDepth: Near is \"-.5\", no distance")
+            .contains("XMP: GDepth: Near is \"-.5\", not a distance")
     );
     assert!(
         refused_of(&replaced("GDepth:Data=\"iVBOR", "GDepth:Data=\"iVBO*"))
@@ -278,7 +279,7 @@ fn gdepth_that_is_broken_names_its_place() {
         refused_of(&replaced("GDepth:Data=\"iVBOR", "GDepth:Data=\"AAAAA"))
             .contains("XMP: GDepth:Data: its depth map cannot be decoded")
     );
-    assert!(refused_of(&replaced("GDepth:Data=\"", "GDepth:DatA=\"")).contains("(GDepth:Data is missing)"));
+    assert!(refused_of(&replaced("GDepth:Data=\"", "GDepth:DatA=\"")).contains("(there is no GDepth:Data)"));
 }
 
 #[test]
@@ -304,8 +305,8 @@ fn dynamic_depth_opens_with_its_near_and_far() {
         for (units, near, far, range) in
             [("Meters", "0.5", "8", [0.5, 8.0]), ("Diopters", "2", "0.125", [0.5, 8.0])]
         {
-            let said = dynamic_said("RangeInverse", near, far, units);
-            put(&file, dynamic_depth_jpeg(&said, things, between, behind));
+            let gdepth_xmp = dynamic_depth_xmp("RangeInverse", near, far, units);
+            put(&file, dynamic_depth_jpeg(&gdepth_xmp, things, between, behind));
             let picture = opened(&file);
             assert_eq!((picture.container, picture.near_far_m), (DepthContainer::DynamicDepth, Some(range)));
             let at = |x: usize| f64::from(picture.depth.values[15 * 40 + x]);
@@ -316,12 +317,17 @@ fn dynamic_depth_opens_with_its_near_and_far() {
     // As Pixels write them.
     put(
         &file,
-        dynamic_depth_jpeg(&dynamic_said("RangeInverse", "0.086", "0.129", "Diopters"), &nested, b"", b""),
+        dynamic_depth_jpeg(
+            &dynamic_depth_xmp("RangeInverse", "0.086", "0.129", "Diopters"),
+            &nested,
+            b"",
+            b"",
+        ),
     );
     let picture = opened(&file);
     assert_eq!(picture.near_far_m, Some([0.086, 0.129]));
     assert!(
-        picture.remarks.iter().any(|remark| remark.text.contains("calls its distances dioptres")),
+        picture.remarks.iter().any(|remark| remark.text.contains("labels its distances as dioptres")),
         "{:?}",
         picture.remarks
     );
@@ -333,17 +339,18 @@ fn dynamic_depth_whose_trailer_was_dropped() {
     let file = folder.path().join("PXL.jpg");
     let depth = encoded(levels8(40, 30), ImageFormat::Jpeg);
     let whole = dynamic_depth_jpeg(
-        &dynamic_said("RangeInverse", "0.5", "8", "Meters"),
+        &dynamic_depth_xmp("RangeInverse", "0.5", "8", "Meters"),
         &[("android/depthmap", &depth)],
         b"",
         b"",
     );
     put(&file, &whole[..whole.len() - depth.len()]);
     assert!(
-        refused(&file).contains("XMP: Dynamic Depth: its depth map is not there: 0 bytes follow the picture")
+        refused(&file)
+            .contains("XMP: Dynamic Depth: its depth map is missing: only 0 bytes follow the picture")
     );
     let other = dynamic_depth_jpeg(
-        &dynamic_said("RangeInverse", "0.5", "8", "Meters"),
+        &dynamic_depth_xmp("RangeInverse", "0.5", "8", "Meters"),
         &[("android/other", &depth)],
         b"",
         b"",
@@ -359,7 +366,7 @@ fn an_heic_gets_the_command_that_keeps_its_depth() {
         let file = folder.path().join(name);
         put(&file, bytes);
         for text in [refused(&file), detect_capture_kind(&file).unwrap_err().to_string()] {
-            assert!(text.contains("is an HEIC picture, which cannot be read (bring out picture and depth with libheif: heif-convert --with-aux"), "{text}");
+            assert!(text.contains("is an HEIC picture, which cannot be read (extract picture and depth with libheif: heif-convert --with-aux"), "{text}");
             assert!(text.contains("a conversion to JPEG alone drops the depth"));
         }
     }

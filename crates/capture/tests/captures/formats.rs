@@ -1,4 +1,4 @@
-//! The cameras of every program: the same ones, written as each has them, are the same views.
+//! The cameras of every program: the same cameras in every format give the same views.
 
 use crate::made::{Camera, FOCAL, SIZE, cameras, names, open, pictures_and_mesh, refused};
 use capture::{CameraFormat, CaptureOptions, recognise};
@@ -9,7 +9,7 @@ use std::path::Path;
 
 const NAMES: [&str; 3] = ["a.jpg", "sub/b.jpg", "sub/c.jpg"];
 
-/// Opens what `write` makes of the cameras in a folder with pictures and mesh; the views must be theirs, and see what they see.
+/// Opens the cameras that `write` writes into a folder with pictures and mesh; the views must be the same cameras.
 fn same_cameras(kind: CameraFormat, write: impl Fn(&Path, &[Camera])) -> capture::Capture {
     let folder = tempfile::tempdir().unwrap();
     let cameras = cameras(&NAMES);
@@ -41,7 +41,7 @@ fn colmap_text_and_binary() {
     same_cameras(CameraFormat::Colmap, |folder, cameras| colmap_binary(&folder.join("sparse"), cameras));
 }
 
-/// COLMAP's binary model; with a rigs.bin of nonsense, which nobody asks for.
+/// COLMAP's binary model; with an invalid rigs.bin, which is not read.
 fn colmap_binary(folder: &Path, cameras: &[Camera]) {
     create_dir_all(folder).unwrap();
     let mut bytes = 1u64.to_le_bytes().to_vec();
@@ -73,7 +73,7 @@ fn binary_wins_over_text() {
 }
 
 #[test]
-fn of_models_that_do_not_hang_together_the_one_with_the_most_pictures() {
+fn of_disconnected_models_the_one_with_the_most_pictures() {
     let folder = crate::made::colmap(&NAMES[..1]);
     let all = cameras(&NAMES);
     pictures_and_mesh(folder.path(), &all);
@@ -285,8 +285,8 @@ fn a_kind_may_be_chosen() {
 }
 
 #[test]
-fn what_is_malformed_is_told_with_its_place() {
-    let said = |file: &str, text: &str, what: &str| {
+fn malformed_files_are_reported_with_the_place() {
+    let assert_refused = |file: &str, text: &str, what: &str| {
         let folder = tempfile::tempdir().unwrap();
         pictures_and_mesh(folder.path(), &cameras(&NAMES));
         write(folder.path().join("list.txt"), "a.jpg\n").unwrap();
@@ -294,30 +294,54 @@ fn what_is_malformed_is_told_with_its_place() {
         let sentence = refused(folder.path());
         assert!(sentence.contains(file) && sentence.contains(what), "{sentence}");
     };
-    said("transforms.json", "{\"frames\": [\n{\"file_path\" 1}]}", "line 2: its JSON is invalid");
-    said("transforms.json", "{\"frames\": 3}", "/frames: is not a list");
-    said("transforms.json", r#"{"frames": [{"file_path": "a.jpg"}]}"#, "/frames/0/transform_matrix");
+    assert_refused("transforms.json", "{\"frames\": [\n{\"file_path\" 1}]}", "line 2: its JSON is invalid");
+    assert_refused("transforms.json", "{\"frames\": 3}", "/frames: is not a list");
+    assert_refused(
+        "transforms.json",
+        r#"{"frames": [{"file_path": "a.jpg"}]}"#,
+        "/frames/0/transform_matrix",
+    );
     let pose = "[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]";
     let frame = format!(r#""frames": [{{"file_path": "a.jpg", "transform_matrix": {pose}}}]"#);
-    said("transforms.json", &format!("{{{frame}}}"), "picture \"a.jpg\": neither fl_x nor camera_angle_x");
-    said(
+    assert_refused(
+        "transforms.json",
+        &format!("{{{frame}}}"),
+        "picture \"a.jpg\": neither fl_x nor camera_angle_x",
+    );
+    assert_refused(
         "transforms.json",
         &format!("{{\"fl_x\": -2, \"w\": 60, \"h\": 40, {frame}}}"),
         "focal length must be above 0",
     );
-    said(
+    assert_refused(
         "transforms.json",
         &format!("{{\"camera_model\": \"X\", {frame}}}"),
-        "the camera_model \"X\" is not known",
+        "the camera_model \"X\" is not supported",
     );
-    said("bundle.out", "# Bundle file v0.3\n2 0\n", "line 2: says 2 cameras, but list.txt has 1");
-    said("bundle.out", "1 0\n50 0 0\n1 0 0\n0 1\n", "line 4: picture \"a.jpg\": is not the 3 numbers of R");
-    said("m.nvm", "NVM_V3\n2\na.jpg 50 1 0 0 0 0 0 0 0 0\n", "line 4: the file ends within 2 cameras");
-    said("m.nvm", "NVM_V3\n1\na.jpg 50 1 0 0 0 0 0 x 0 0\n", "line 3: is not name, focal length");
-    said("c.xml", "<document><chunk>\n</document>", "its XML is invalid");
+    assert_refused(
+        "bundle.out",
+        "# Bundle file v0.3\n2 0\n",
+        "line 2: declares 2 cameras, but list.txt has 1",
+    );
+    assert_refused(
+        "bundle.out",
+        "1 0\n50 0 0\n1 0 0\n0 1\n",
+        "line 4: picture \"a.jpg\": does not have the 3 numbers of R",
+    );
+    assert_refused(
+        "m.nvm",
+        "NVM_V3\n2\na.jpg 50 1 0 0 0 0 0 0 0 0\n",
+        "line 4: the file ends within 2 cameras",
+    );
+    assert_refused(
+        "m.nvm",
+        "NVM_V3\n1\na.jpg 50 1 0 0 0 0 0 x 0 0\n",
+        "line 3: does not have the name, focal length",
+    );
+    assert_refused("c.xml", "<document><chunk>\n</document>", "its XML is invalid");
     let camera =
         "<cameras><camera label=\"a\" sensor_id=\"0\">\n<transform>1 2</transform></camera></cameras>";
-    said(
+    assert_refused(
         "c.xml",
         &format!("<document><chunk>\n{camera}</chunk></document>"),
         "line 2: camera \"a\": its sensor is not in the file",

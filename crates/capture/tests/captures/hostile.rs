@@ -6,7 +6,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 #[test]
-fn names_that_lead_outside_are_names_of_nothing() {
+fn names_that_lead_outside_match_nothing() {
     let outside = tempfile::tempdir().unwrap();
     picture(&outside.path().join("secret.jpg"), SIZE);
     let folder = tempfile::tempdir_in(outside.path()).unwrap();
@@ -57,8 +57,8 @@ fn links_that_lead_outside_are_not_followed() {
     assert_eq!(names(&open(folder.path()).unwrap()), ["a.jpg"]);
 }
 
-/// What is said of a capture whose file is this, within the time.
-fn said(file: &str, bytes: &[u8]) -> String {
+/// The error of a capture with this file, within the time limit.
+fn refusal(file: &str, bytes: &[u8]) -> String {
     let folder = tempfile::tempdir().unwrap();
     crate::made::pictures_and_mesh(folder.path(), &cameras(&["a.jpg"]));
     create_dir_all(folder.path().join("sparse")).unwrap();
@@ -76,21 +76,23 @@ fn said(file: &str, bytes: &[u8]) -> String {
 fn counts_are_checked_against_the_size_of_the_file() {
     let counted = |count: u64, rest: &[u8]| [&count.to_le_bytes(), rest].concat();
     for count in [u64::MAX, 1 << 60, 2] {
-        let text = said("sparse/cameras.bin", &counted(count, &[0; 50]));
+        let text = refusal("sparse/cameras.bin", &counted(count, &[0; 50]));
         assert!(
             text.contains(&format!("cameras.bin: byte 0: says {count} cameras, but 50 bytes are left")),
             "{text}"
         );
-        let text = said("sparse/images.bin", &counted(count, &[0; 100]));
+        let text = refusal("sparse/images.bin", &counted(count, &[0; 100]));
         assert!(text.contains(&format!("says {count} pictures, but 100 bytes are left")), "{text}");
     }
     // The points of a picture.
     let head =
         [&3u32.to_le_bytes()[..], &1f64.to_le_bytes(), &[0; 48], &7u32.to_le_bytes(), b"a.jpg\0"].concat();
-    let text = said("sparse/images.bin", &counted(1, &[&head[..], &(u64::MAX / 24).to_le_bytes()].concat()));
-    assert!(text.contains("points in a picture, but 0 bytes are left"), "{text}");
+    let text =
+        refusal("sparse/images.bin", &counted(1, &[&head[..], &(u64::MAX / 24).to_le_bytes()].concat()));
+    assert!(text.contains("points in a picture, but only 0 bytes are left"), "{text}");
     // A name without an end.
-    let text = said("sparse/images.bin", &counted(1, &[&head[..head.len() - 1], &[b'x'; 200_000]].concat()));
+    let text =
+        refusal("sparse/images.bin", &counted(1, &[&head[..head.len() - 1], &[b'x'; 200_000]].concat()));
     assert!(text.contains("the name of picture 3 does not end"), "{text}");
 }
 

@@ -39,7 +39,7 @@ fn assert_grid(field: &LightField, columns: u32, rows: u32) {
     assert_eq!(field.views[field.reference].position, DVec2::ZERO);
 }
 
-fn said(field: &LightField) -> String {
+fn remarks_text(field: &LightField) -> String {
     field.remarks.iter().map(|remark| format!("{remark}\n")).collect()
 }
 
@@ -90,55 +90,59 @@ fn layouts_with_row_and_column_in_the_names() {
         } else {
             assert_grid(&field, 3, 3);
         }
-        assert!(field.remarks.iter().all(|remark| !remark.is_incomplete), "{}", said(&field));
+        assert!(field.remarks.iter().all(|remark| !remark.is_incomplete), "{}", remarks_text(&field));
         assert_eq!(field.optics.baseline_mm, Some(11.0));
     }
 }
 
 #[test]
-fn rows_from_the_bottom_up_are_found_out_and_said() {
+fn rows_from_the_bottom_up_are_detected_and_reported() {
     for rows_reversed in [false, true] {
         let folder = tempfile::tempdir().unwrap();
         grid(folder.path(), 3, 3, |x, y| format!("{}_{x}.png", if rows_reversed { 2 - y } else { y }));
         let field = opened(folder.path());
         assert_grid(&field, 3, 3);
         assert_eq!(
-            said(&field).contains("rows run from the bottom up, as parallax shows"),
+            remarks_text(&field).contains("rows run from the bottom up, as parallax shows"),
             rows_reversed,
             "{}",
-            said(&field)
+            remarks_text(&field)
         );
     }
 }
 
 #[test]
-fn a_column_named_before_its_row_is_found_out_and_said() {
+fn a_column_named_before_its_row_is_detected_and_reported() {
     let folder = tempfile::tempdir().unwrap();
     grid(folder.path(), 3, 3, |x, y| format!("{x}_{y}.png"));
     let field = opened(folder.path());
     assert_grid(&field, 3, 3);
-    assert!(said(&field).contains("the column is named before the row"), "{}", said(&field));
+    assert!(remarks_text(&field).contains("the column is named before the row"), "{}", remarks_text(&field));
 }
 
 #[test]
-fn columns_from_right_to_left_are_found_out_by_the_disparity_map() {
+fn columns_from_right_to_left_are_detected_by_the_disparity_map() {
     let folder = tempfile::tempdir().unwrap();
     grid(folder.path(), 3, 3, |x, y| format!("{y}_{}.png", 2 - x));
     put(&folder.path().join("gt_disp_lowres.pfm"), disparity_pfm());
     let field = opened(folder.path());
     assert_grid(&field, 3, 3);
-    assert!(said(&field).contains("columns run from right to left"), "{}", said(&field));
+    assert!(remarks_text(&field).contains("columns run from right to left"), "{}", remarks_text(&field));
 }
 
 #[test]
-fn of_one_row_nothing_is_told_of_others() {
+fn one_row_determines_nothing_about_others() {
     let folder = tempfile::tempdir().unwrap();
     grid(folder.path(), 3, 1, |x, _| format!("input_Cam{:03}.png", 3 + x));
     put(&folder.path().join("parameters.cfg"), PARAMETERS);
     let field = opened(folder.path());
     assert_grid(&field, 3, 3);
-    assert!(said(&field).contains("all views stand in one line"), "{}", said(&field));
-    assert!(said(&field).contains("6 of 3 × 3 views are missing: number 0, number 1"), "{}", said(&field));
+    assert!(remarks_text(&field).contains("all views lie in one line"), "{}", remarks_text(&field));
+    assert!(
+        remarks_text(&field).contains("6 of 3 × 3 views are missing: number 0, number 1"),
+        "{}",
+        remarks_text(&field)
+    );
     assert!(field.remarks.iter().any(|remark| remark.is_incomplete && remark.names.len() == 6));
 }
 
@@ -150,7 +154,11 @@ fn crosses_and_gaps() {
     remove(0, 1);
     let field = opened(folder.path());
     assert_grid(&field, 5, 5);
-    assert!(said(&field).contains("1 of 5 × 5 views are missing: row 1 column 0"), "{}", said(&field));
+    assert!(
+        remarks_text(&field).contains("1 of 5 × 5 views are missing: row 1 column 0"),
+        "{}",
+        remarks_text(&field)
+    );
     (0..5)
         .flat_map(|y| (0..5).map(move |x| (x, y)))
         .filter(|(x, y)| *x != 2 && *y != 2 && (*x, *y) != (0, 1))
@@ -159,13 +167,13 @@ fn crosses_and_gaps() {
     assert_grid(&field, 5, 5);
     assert_eq!(field.views.len(), 9);
     assert!(
-        said(&field).contains("a cross of 5 and 5 views")
+        remarks_text(&field).contains("a cross of 5 and 5 views")
             && field.remarks.iter().all(|remark| !remark.is_incomplete)
     );
 }
 
 #[test]
-fn views_that_cannot_be_used_are_told_and_the_rest_goes_on() {
+fn unusable_views_are_reported_and_the_others_used() {
     let folder = tempfile::tempdir().unwrap();
     grid(folder.path(), 3, 3, |x, y| format!("{y}_{x}.png"));
     put(&folder.path().join("0_0.png"), "no picture");
@@ -173,14 +181,14 @@ fn views_that_cannot_be_used_are_told_and_the_rest_goes_on() {
     std::fs::copy(folder.path().join("1_1.png"), folder.path().join("01_01.png")).unwrap();
     let field = opened(folder.path());
     assert_eq!(field.views.len(), 7);
-    let said = said(&field);
-    for wanted in [
+    let text = remarks_text(&field);
+    for expected in [
         "views that cannot be used: 0_0 (cannot be decoded",
-        "are left out: 0_2 (10 × 10 px)",
-        "of which one is taken; left out: 1_1",
+        "are ignored: 0_2 (10 × 10 px)",
+        "of which one is used; ignored: 1_1",
         "2 of 3 × 3 views are missing",
     ] {
-        assert!(said.contains(wanted), "{wanted}: {said}");
+        assert!(text.contains(expected), "{expected}: {text}");
     }
     // A picture that breaks off behind its header.
     let file = folder.path().join("2_1.png");
@@ -219,12 +227,12 @@ fn a_hexagon_with_the_disparity_of_its_middle() {
         for (k, subaperture) in field.views.iter().enumerate().skip(1) {
             assert!(subaperture.position.abs_diff_eq(ring(k - 1), 1e-12));
         }
-        let given = field.disparity.as_ref().unwrap();
+        let disparity = field.disparity.as_ref().unwrap();
         assert_eq!(
-            (given.view, given.map.meaning, given.map.range()),
+            (disparity.view, disparity.map.meaning, disparity.map.range()),
             (0, DepthMeaning::Disparity, Some([-1.0, 1.5]))
         );
-        assert_eq!(field.remarks, [], "{}", said(&field));
+        assert_eq!(field.remarks, [], "{}", remarks_text(&field));
     }
 }
 
@@ -247,21 +255,21 @@ fn a_list_of_views() {
         assert!(subaperture.name == name && subaperture.position.abs_diff_eq(DVec2::new(x, y), 1e-12));
     }
     assert_eq!(field.reference, 0);
-    assert!(said(&field).contains("1 of 4 views are missing: gone.png"), "{}", said(&field));
-    for (text, wanted) in [
-        (list(", \"reference\": \"x.png\""), "reference: \"x.png\" is none of the views"),
-        (list(", \"disparity\": \"../x.pfm\""), "disparity: \"../x.pfm\" is not there"),
+    assert!(remarks_text(&field).contains("1 of 4 views are missing: gone.png"), "{}", remarks_text(&field));
+    for (text, expected) in [
+        (list(", \"reference\": \"x.png\""), "reference: \"x.png\" is not one of the existing views"),
+        (list(", \"disparity\": \"../x.pfm\""), "disparity: \"../x.pfm\" does not exist"),
         (
             "{\"views\": [{\"file\": \"m.png\", \"position\": [1]}]}".into(),
             "views[0]: the position of \"m.png\" is not two numbers",
         ),
-        ("{\"views\": [{\"position\": [1, 2]}]}".into(), "views[0]: its file is no text"),
+        ("{\"views\": [{\"position\": [1, 2]}]}".into(), "views[0]: its file is not a text"),
         ("{\n\"views\": 3,}".into(), "line 2: its JSON is invalid"),
         ("{}".into(), "views: there is no such list"),
     ] {
         put(&file, &text);
         let text = refused(folder.path());
-        assert!(text.contains(wanted), "{text}");
+        assert!(text.contains(expected), "{text}");
     }
     // Files outside are nobody's views.
     let outside = tempfile::tempdir().unwrap();
@@ -283,8 +291,8 @@ fn disparities_of_the_files_that_lie_with_the_views() {
     let path = |name: &str| folder.path().join(name);
     let range = || {
         let field = open(folder.path()).unwrap();
-        let given = field.disparity.unwrap();
-        (given.map.meaning, given.map.range().unwrap())
+        let disparity = field.disparity.unwrap();
+        (disparity.map.meaning, disparity.map.range().unwrap())
     };
     assert!(open(folder.path()).unwrap().disparity.is_none());
     // Colours that are a code, as JPEG and as PNG.
@@ -294,7 +302,7 @@ fn disparities_of_the_files_that_lie_with_the_views() {
         let field = open(folder.path()).unwrap();
         assert!(field.disparity.is_none());
         assert_eq!(field.coded_disparity.as_ref().map(PictureSource::file), Some(&*path(name)));
-        assert!(said(&field).contains("is coded by colour"), "{}", said(&field));
+        assert!(remarks_text(&field).contains("is coded by colour"), "{}", remarks_text(&field));
         std::fs::remove_file(path(name)).unwrap();
     }
     // Levels, which are relative.
@@ -330,13 +338,13 @@ fn disparities_of_the_files_that_lie_with_the_views() {
 }
 
 #[test]
-fn folders_of_nothing_get_their_sentence() {
+fn folders_of_nothing_get_their_error() {
     let folder = tempfile::tempdir().unwrap();
     assert!(refused(folder.path()).contains("no views of a light field (name them by row and column"));
     let text = detect_capture_kind(folder.path()).unwrap_err().to_string();
     assert!(
         text.contains(
-            "is neither photographs with cameras nor a light field nor a picture with depth (give a folder"
+            "contains neither photographs with cameras nor a light field nor a picture with depth (open a folder"
         ),
         "{text}"
     );
@@ -345,7 +353,7 @@ fn folders_of_nothing_get_their_sentence() {
     for k in 0..9 {
         save(&view(f64::from(k), 0.0), &folder.path().join(format!("IMG_2023_{k:04}.jpg")));
     }
-    assert!(detect_capture_kind(folder.path()).unwrap_err().to_string().contains("is neither"));
+    assert!(detect_capture_kind(folder.path()).unwrap_err().to_string().contains("contains neither"));
     for (name, kind) in CaptureKind::ALL {
         assert_eq!(CaptureKind::from_name(name), Some(kind));
     }
@@ -395,25 +403,28 @@ fn the_real_ones_open() {
         let Some(folder) = shared(name) else { continue };
         let start = std::time::Instant::now();
         let field = opened(&folder);
-        println!("{name}: {:?}\n{}", start.elapsed(), said(&field));
+        println!("{name}: {:?}\n{}", start.elapsed(), remarks_text(&field));
         assert_eq!((field.views.len(), field.grid), (views, Some(grid)));
         assert_eq!(field.views[field.reference].name, reference);
-        let found = field.disparity.as_ref().and_then(|given| given.map.range());
-        assert_eq!(found.is_some(), range.is_some());
-        if let (Some(found), Some(range)) = (found, range) {
-            assert!((found[0] - range[0]).abs() < 0.01 && (found[1] - range[1]).abs() < 0.01, "{found:?}");
+        let range_found = field.disparity.as_ref().and_then(|disparity| disparity.map.range());
+        assert_eq!(range_found.is_some(), range.is_some());
+        if let (Some(range_found), Some(range)) = (range_found, range) {
+            assert!(
+                (range_found[0] - range[0]).abs() < 0.01 && (range_found[1] - range[1]).abs() < 0.01,
+                "{range_found:?}"
+            );
             let [right, wrong] = misfit(&field);
             println!("{name}: {right:.0} with the map, {wrong:.0} with its negative");
             assert!(right < 0.7 * wrong);
         }
-        let is_turned = said(&field).contains("as parallax shows");
-        assert!(!is_turned, "{}", said(&field));
+        let is_turned = remarks_text(&field).contains("as parallax shows");
+        assert!(!is_turned, "{}", remarks_text(&field));
         assert!(matches!(field.views[0].picture, PictureSource::File { orientation: 1, .. }));
     }
 }
 
 #[test]
-fn the_real_ones_turned_are_found_out() {
+fn turned_copies_of_real_ones_are_detected() {
     for name in ["synthetic_helmet_cake_9x9", "hci_stillLife_3x3"] {
         let Some(folder) = shared(name) else { continue };
         let field = opened(&folder);
@@ -425,7 +436,11 @@ fn the_real_ones_turned_are_found_out() {
                 .unwrap();
         }
         let turned = opened(copy.path());
-        assert!(said(&turned).contains("rows run from the bottom up"), "{name}: {}", said(&turned));
+        assert!(
+            remarks_text(&turned).contains("rows run from the bottom up"),
+            "{name}: {}",
+            remarks_text(&turned)
+        );
     }
 }
 

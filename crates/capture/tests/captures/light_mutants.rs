@@ -4,8 +4,8 @@
 //! kind, by default it is a hundredth of that.
 
 use crate::made_light::{
-    PARAMETERS, SIDE, attributes, disparity_pfm, dynamic_depth_jpeg, dynamic_said, encoded, exr, gdepth_jpeg,
-    jpeg, levels_png, levels8, pfm, put, said, save, view,
+    PARAMETERS, SIDE, attributes, disparity_pfm, dynamic_depth_jpeg, dynamic_depth_xmp, encoded, exr,
+    gdepth_jpeg, gdepth_xmp, jpeg, levels_png, levels8, pfm, put, save, view,
 };
 use crate::mutants::{peak_memory, restructure};
 use crate::mutation::{Random, damage};
@@ -80,10 +80,10 @@ fn light_field(folder: &Path) -> Result<(), CaptureError> {
     let options = LightFieldOptions { pitch, ..LightFieldOptions::default() };
     let field = open_light_field(path, &options, &Unwatched)?;
     assert!(field.views.len() >= 2 && field.views.iter().all(|view| view.position.is_finite()));
-    if let Some(given) = &field.disparity {
+    if let Some(disparity) = &field.disparity {
         assert!(
-            given.map.values.len() == (given.map.width * given.map.height) as usize
-                && given.map.range().is_some()
+            disparity.map.values.len() == (disparity.map.width * disparity.map.height) as usize
+                && disparity.map.range().is_some()
         );
     }
     field.views[0].picture.photograph(&LoadOptions::default()).map(drop)
@@ -166,7 +166,7 @@ fn gdepth() {
             let original = jpeg(40, 30, 99);
             let original = (index % 4 == 0).then_some(&original[..]);
             let piece = (index % 5 > 1 || original.is_some()).then_some(200 * index + 150);
-            put(&file, gdepth_jpeg(&said(format, "0.5", "8"), &depth, original, piece));
+            put(&file, gdepth_jpeg(&gdepth_xmp(format, "0.5", "8"), &depth, original, piece));
             vec![file]
         },
         depth_picture,
@@ -185,8 +185,8 @@ fn dynamic_depth() {
                 [("android/original_image", &original), ("android/depthmap", &depth)];
             let units = ["Meters", "Diopters"][index % 2];
             let between: &[u8] = if index % 4 == 1 { b"between" } else { b"" };
-            let said = dynamic_said("RangeInverse", "0.5", "8", units);
-            put(&file, dynamic_depth_jpeg(&said, &things[usize::from(index > 4)..], between, b""));
+            let gdepth_xmp = dynamic_depth_xmp("RangeInverse", "0.5", "8", units);
+            put(&file, dynamic_depth_jpeg(&gdepth_xmp, &things[usize::from(index > 4)..], between, b""));
             vec![file]
         },
         depth_picture,

@@ -143,7 +143,7 @@ fn described(attributes: &str) -> String {
 
 /// A JPEG with GDepth: what its XMP says of the range, the depth map, perhaps the sharp picture; in extended XMP of pieces of `piece`
 /// bytes, or in one.
-pub fn gdepth_jpeg(said: &str, depth: &[u8], original: Option<&[u8]>, piece: Option<usize>) -> Vec<u8> {
+pub fn gdepth_jpeg(xmp: &str, depth: &[u8], original: Option<&[u8]>, piece: Option<usize>) -> Vec<u8> {
     let text = |bytes: &[u8]| base64::engine::general_purpose::STANDARD.encode(bytes);
     let original = original.map_or_else(String::new, |bytes| {
         format!("\nGImage:Mime=\"image/jpeg\" GImage:Data=\"{}\"", text(bytes))
@@ -151,11 +151,11 @@ pub fn gdepth_jpeg(said: &str, depth: &[u8], original: Option<&[u8]>, piece: Opt
     let data = format!("GDepth:Data=\"{}\"{original}", text(depth));
     let mut segments = exif(1);
     match piece {
-        None => segments.extend(segment(XMP, described(&format!("{said}\n{data}")).as_bytes())),
+        None => segments.extend(segment(XMP, described(&format!("{xmp}\n{data}")).as_bytes())),
         Some(piece) => {
             segments.extend(segment(
                 XMP,
-                described(&format!("{said}\nxmpNote:HasExtendedXMP=\"{GUID}\"")).as_bytes(),
+                described(&format!("{xmp}\nxmpNote:HasExtendedXMP=\"{GUID}\"")).as_bytes(),
             ));
             let whole = described(&data).into_bytes();
             for (index, part) in whole.chunks(piece).enumerate() {
@@ -169,14 +169,14 @@ pub fn gdepth_jpeg(said: &str, depth: &[u8], original: Option<&[u8]>, piece: Opt
 }
 
 /// A range as GDepth says it.
-pub fn said(format: &str, near: &str, far: &str) -> String {
+pub fn gdepth_xmp(format: &str, near: &str, far: &str) -> String {
     format!(
         "GDepth:Format=\"{format}\" GDepth:Near=\"{near}\"\nGDepth:Far=\"{far}\" GDepth:Mime=\"image/png\""
     )
 }
 
 /// A JPEG with Dynamic Depth: what follows its picture, by name and length; what says the range.
-pub fn dynamic_depth_jpeg(said: &str, things: &[(&str, &[u8])], between: &[u8], behind: &[u8]) -> Vec<u8> {
+pub fn dynamic_depth_jpeg(xmp: &str, things: &[(&str, &[u8])], between: &[u8], behind: &[u8]) -> Vec<u8> {
     let items: String = things
         .iter()
         .map(|(uri, bytes)| {
@@ -196,7 +196,7 @@ pub fn dynamic_depth_jpeg(said: &str, things: &[(&str, &[u8])], between: &[u8], 
          {items}</rdf:Seq></Container:Directory></Device:Container>\n\
          <Device:Cameras><rdf:Seq><rdf:li rdf:parseType=\"Resource\"><Device:Camera rdf:parseType=\"Resource\">\n\
          <Camera:Image><rdf:Description Image:ItemSemantic=\"Original\" Image:ItemURI=\"android/original_image\"/></Camera:Image>\n\
-         <Camera:DepthMap rdf:parseType=\"Resource\">{said}<DepthMap:DepthURI>android/depthmap</DepthMap:DepthURI></Camera:DepthMap>\n\
+         <Camera:DepthMap rdf:parseType=\"Resource\">{xmp}<DepthMap:DepthURI>android/depthmap</DepthMap:DepthURI></Camera:DepthMap>\n\
          </Device:Camera></rdf:li></rdf:Seq></Device:Cameras></rdf:Description></rdf:RDF></x:xmpmeta>"
     );
     let mut bytes = with_segments(&jpeg(80, 60, 90), &[exif(1), segment(XMP, xmp.as_bytes())].concat());
@@ -207,7 +207,7 @@ pub fn dynamic_depth_jpeg(said: &str, things: &[(&str, &[u8])], between: &[u8], 
 }
 
 /// A range as Dynamic Depth says it.
-pub fn dynamic_said(format: &str, near: &str, far: &str, units: &str) -> String {
+pub fn dynamic_depth_xmp(format: &str, near: &str, far: &str, units: &str) -> String {
     format!(
         "<DepthMap:Format>{format}</DepthMap:Format>\n<DepthMap:Near>{near}</DepthMap:Near>\n<DepthMap:Far>{far}</DepthMap:Far>\n\
          <DepthMap:Units>{units}</DepthMap:Units>"

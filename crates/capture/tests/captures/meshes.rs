@@ -18,7 +18,7 @@ fn scene_of(name: &str, bytes: impl AsRef<[u8]>) -> Scene {
     capture.scene
 }
 
-/// What is said of a capture whose mesh is this file.
+/// The error of a capture whose mesh is this file.
 fn refusal_of(name: &str, bytes: impl AsRef<[u8]>) -> String {
     let folder = colmap(&["a.jpg"]);
     remove_file(folder.path().join("mesh.ply")).unwrap();
@@ -125,11 +125,11 @@ fn ply_faces_of_many_corners_are_fans() {
 #[test]
 fn ply_that_is_malformed_names_its_place() {
     for (from, to, what) in [
-        ("ascii", "text", "line 2: the format \"text\" is not known"),
-        ("float z", "number z", "line 7: is no property of a known type"),
-        ("vertex 4", "vertex many", "line 4: \"many\" is no count"),
+        ("ascii", "text", "line 2: the format \"text\" is not supported"),
+        ("float z", "number z", "line 7: is not a property of a known type"),
+        ("vertex 4", "vertex many", "line 4: \"many\" is not a count"),
         ("property float z\n", "", "its vertices have no x, y and z"),
-        ("0 1 0", "0 one 0", "line 14: \"one\" is no number"),
+        ("0 1 0", "0 one 0", "line 14: \"one\" is not a number"),
         ("3 2 3 0\n", "", "the file ends too early"),
         ("vertex 4", "vertex 4000000000000", "rows of \"vertex\" do not fit the"),
         ("3 0 3 1", "1e9 0 3 1", "line 16: a list of 1000000000 does not fit the file"),
@@ -160,7 +160,7 @@ fn obj_with_negative_indices_colours_normals_and_materials() {
     write(folder.path().join("model.obj"), obj).unwrap();
     let remarks = open(folder.path()).unwrap().remarks;
     assert!(
-        remarks.len() == 1 && remarks[0].text.contains("materials and textures are left out"),
+        remarks.len() == 1 && remarks[0].text.contains("materials and textures are ignored"),
         "{remarks:?}"
     );
 }
@@ -177,7 +177,7 @@ fn obj_faces_of_many_corners_are_fans_and_lone_colours_are_none() {
 fn obj_that_is_malformed_names_its_place() {
     for (obj, what) in [
         ("v 0 0\n", "line 1: a vertex has fewer than 3 numbers"),
-        ("v 0 0 a\n", "line 1: \"a\" is no number"),
+        ("v 0 0 a\n", "line 1: \"a\" is not a number"),
         ("v 0 0 0\n\nf 0 1 1\n", "line 3: \"0\" is none of the 1 vertices so far"),
         ("v 0 0 0\nf 1 1 -2\n", "line 2: \"-2\" is none of the 1 vertices"),
         ("v 0 0 0\n", "no triangle"),
@@ -232,7 +232,7 @@ fn the_surface_is_the_mesh_of_the_likeliest_name_and_never_points() {
 }
 
 #[test]
-fn without_a_mesh_the_sentence_says_how_to_make_one() {
+fn without_a_mesh_the_error_explains_how_to_make_one() {
     let folder = colmap(&["a.jpg"]);
     remove_file(folder.path().join("mesh.ply")).unwrap();
     let text = refused(folder.path());
@@ -261,20 +261,20 @@ fn a_mesh_and_pictures_may_be_named_wherever_they_are() {
     let no_mesh = named(&elsewhere.path().join("images"), &elsewhere.path().join("images/a.jpg"))
         .unwrap_err()
         .to_string();
-    assert!(no_mesh.contains("meshes of kind \"jpg\" cannot be read"), "{no_mesh}");
+    assert!(no_mesh.contains("meshes in \"jpg\" files cannot be read"), "{no_mesh}");
 }
 
 #[test]
 fn meshes_beyond_the_limits_are_refused() {
     let folder = colmap(&["a.jpg"]);
     let options = |load| CaptureOptions { load, ..CaptureOptions::default() };
-    let said = |load| capture::open(folder.path(), &options(load), &Unwatched).unwrap_err().to_string();
+    let refusal = |load| capture::open(folder.path(), &options(load), &Unwatched).unwrap_err().to_string();
     let few = LoadOptions { max_triangles: 3, ..LoadOptions::default() };
-    assert!(said(few.clone()).contains("has more than 3 triangles"));
+    assert!(refusal(few.clone()).contains("has more than 3 triangles"));
     let small = LoadOptions { max_memory: 90, ..LoadOptions::default() };
-    assert!(said(small.clone()).contains("4 vertices take"));
+    assert!(refusal(small.clone()).contains("4 vertices take"));
     remove_file(folder.path().join("mesh.ply")).unwrap();
     write(folder.path().join("a.obj"), "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4 1 2\n").unwrap();
-    assert!(said(few).contains("has more than 3 triangles"));
-    assert!(said(small).contains("its vertices take more than 0 MiB"));
+    assert!(refusal(few).contains("has more than 3 triangles"));
+    assert!(refusal(small).contains("its vertices take more than 0 MiB"));
 }

@@ -47,19 +47,14 @@ fn there_and_back() {
             "{:?}",
             field.remarks
         );
-        for (index, (found, expected)) in field.views.iter().zip(&views).enumerate() {
-            assert_eq!(found.cell, Some([index as u32 % columns, index as u32 / columns]));
+        for (index, (view, expected)) in field.views.iter().zip(&views).enumerate() {
+            assert_eq!(view.cell, Some([index as u32 % columns, index as u32 / columns]));
             let alone = folder.path().join("alone.png");
             expected.save(&alone).unwrap();
             let expected = PictureSource::File { file: alone, orientation: 1 }
                 .photograph(&LoadOptions::default())
                 .unwrap();
-            assert_eq!(
-                found.picture.photograph(&LoadOptions::default()).unwrap(),
-                expected,
-                "{}",
-                found.name
-            );
+            assert_eq!(view.picture.photograph(&LoadOptions::default()).unwrap(), expected, "{}", view.name);
         }
         // The control: views differ.
         assert_ne!(views[0], views[1]);
@@ -112,7 +107,7 @@ fn pictures_that_are_no_mosaic() {
         let file = folder.path().join("picture");
         put(&file, encoded(big.clone(), form));
         let text = open(&file, None).unwrap_err();
-        assert!(text.contains("it is no mosaic of micro-images"), "{text}");
+        assert!(text.contains("it is not a mosaic of micro-images"), "{text}");
         let text = detect_capture_kind(&file).unwrap_err().to_string();
         assert!(text.contains("a picture alone"), "{text}");
     }

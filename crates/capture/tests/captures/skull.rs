@@ -17,7 +17,7 @@ fn skull() -> Option<PathBuf> {
 }
 
 #[test]
-fn it_opens_without_a_word_of_help() {
+fn it_opens_without_options() {
     let Some(folder) = skull() else { return };
     assert_eq!(recognise(&folder), Some(CameraFormat::Colmap));
     let start = Instant::now();
@@ -63,12 +63,12 @@ fn text_and_binary_are_the_same_cameras() {
 fn its_mesh_lies_inside_its_pictures() {
     let Some(folder) = skull() else { return };
     let capture = open(&folder).unwrap();
-    let is_seen =
+    let is_visible =
         |view: &View, point| view.project(point).is_some_and(|pixel| view.lens.is_in_picture(pixel));
     let vertices: Vec<_> = capture.scene.positions.iter().step_by(50).copied().collect();
     for view in &capture.views {
-        let seen = vertices.iter().filter(|vertex| is_seen(view, **vertex)).count();
-        let share = seen as f64 / vertices.len() as f64;
+        let visible = vertices.iter().filter(|vertex| is_visible(view, **vertex)).count();
+        let share = visible as f64 / vertices.len() as f64;
         assert!(share > 0.5, "{}: {share}", view.name);
         // There and back.
         let pixel = view.project(vertices[0]).unwrap();

@@ -31,7 +31,7 @@ fn trap_1_the_second_line_of_a_picture_is_left_out() {
     assert_poses(folder.path());
     let remarks = open(folder.path()).unwrap().remarks;
     assert!(
-        remarks[0].text.contains("left out after 2 of 3 pictures") && !remarks[0].is_incomplete,
+        remarks[0].text.contains("is missing after 2 of 3 pictures") && !remarks[0].is_incomplete,
         "{remarks:?}"
     );
 }
@@ -117,12 +117,12 @@ fn trap_3_the_default_model_and_a_principal_point_aside() {
 }
 
 #[test]
-fn trap_3_a_model_that_nobody_knows() {
+fn trap_3_an_unsupported_camera_model() {
     let folder = colmap(&NAMES);
     change(&folder.path().join("sparse/0/cameras.txt"), |text| text.replace("PINHOLE", "PINHOLE_2"));
     let text = refused(folder.path());
     assert!(
-        text.contains("cameras.txt: line 2: camera 7: the camera model \"PINHOLE_2\" is not known"),
+        text.contains("cameras.txt: line 2: camera 7: the camera model \"PINHOLE_2\" is not supported"),
         "{text}"
     );
 }
@@ -169,7 +169,7 @@ fn trap_4_a_picture_that_lies_on_its_side_without_saying_so_is_left_out() {
 }
 
 #[test]
-fn trap_5_missing_pictures_are_named_and_the_rest_goes_on() {
+fn trap_5_missing_pictures_are_named_and_the_others_used() {
     let folder = colmap(&NAMES);
     std::fs::remove_file(folder.path().join("images/b.jpg")).unwrap();
     picture(&folder.path().join("images/z.jpg"), SIZE);

@@ -1,6 +1,0 @@
-//! Faces of any number of corners.
-
-/// The triangles of a face of any number of corners, convex and flat as it is hoped: a fan about the first.
-pub(crate) fn triangulate_fan(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> {
-    corners.windows(2).skip(1).map(|pair| [corners[0], pair[0], pair[1]])
-}
