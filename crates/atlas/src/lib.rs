@@ -12,6 +12,21 @@
 //! From there, both ways: [`Atlas::position_of`] (surface → texel) and [`TexelMap`] (texel → surface, with exact
 //! covered areas and the gutter's sources). [`child::run_if_child`] must be the first line of every program
 //! that passes its own path as [`UnwrapOptions::child`].
+//!
+//! # Example
+//!
+//! ```
+//! use atlas::{Atlas, UnwrapOptions};
+//! use glam::DVec3;
+//! use scene::{LoadOptions, Scene, SurfaceMesh};
+//!
+//! let positions = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
+//! let mesh = SurfaceMesh { positions, triangles: vec![[0, 1, 2]], ..SurfaceMesh::default() };
+//! let scene = Scene::from_mesh(mesh, &LoadOptions::default()).unwrap();
+//! let atlas = Atlas::unwrap(&scene, &UnwrapOptions::default(), &progress::Unwatched).unwrap();
+//! let area: f64 = atlas.texels(&scene).iter().map(|texel| texel.area).sum();
+//! assert!((area - 0.5).abs() < 1e-6); // the texels cover exactly the triangle
+//! ```
 
 mod atlas;
 mod bytes;

@@ -81,7 +81,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn goes_through_its_points_and_stays_between_them() {
+    fn passes_through_its_points_and_stays_between_them() {
         let points = [[0.0, 1.0], [1.0, 1.0], [2.0, 5.0], [2.5, 5.2], [4.0, -1.0]];
         let curve = Curve::new(points).unwrap();
         for [x, y] in points {

@@ -12,6 +12,19 @@
 //! * [`fill`]: one value over a node, part, material or chart. [`Gradient`]: a value that changes along a line.
 //! * [`Selection`]: which texels may be painted. [`Symmetry`]: where else everything is painted.
 //! * [`Edit`]: an undoable change. [`EditThumbnail`]: a small picture of a change. ⏎
+//!
+//! # Example
+//!
+//! ```
+//! use focus::FocusMap;
+//! use lens::FocusOffset;
+//!
+//! let mut map = FocusMap::new(64, 64, FocusOffset::STANDARD);
+//! let before = map.clone(); // a snapshot: tiles are copied only when written
+//! map.set(3, 4, [0.5, 1.0]);
+//! assert_eq!(map.at(3, 4), FocusOffset::new(0.5, 1.0));
+//! assert_eq!(before.at(3, 4), FocusOffset::STANDARD);
+//! ```
 
 mod canvas;
 mod curve;

@@ -73,7 +73,7 @@ mod tests {
     use glam::DQuat;
 
     #[test]
-    fn a_point_on_a_ray_appears_where_the_ray_goes_through() {
+    fn a_point_on_a_ray_appears_at_the_rays_position() {
         let pose = DMat4::from_rotation_translation(DQuat::from_rotation_y(0.7), DVec3::new(1.0, 2.0, 3.0));
         let shift = DVec2::new(0.4, -0.3);
         let camera = Camera {

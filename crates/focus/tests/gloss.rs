@@ -155,7 +155,7 @@ fn layers_join_it() {
 }
 
 #[test]
-fn a_recipe_concerns_carried_light_where_it_says_so() {
+fn a_recipe_with_gloss_affects_carried_light() {
     let scene = Arc::new(scene::Scene::default());
     let concerns = |gloss: f64| {
         let recipe =
@@ -169,7 +169,7 @@ fn a_recipe_concerns_carried_light_where_it_says_so() {
 }
 
 #[test]
-fn brushes_that_say_nothing_of_it_are_written_as_before() {
+fn brushes_without_gloss_are_written_as_before() {
     let text = serde_json::to_string(&Brush::default()).unwrap();
     assert!(!text.contains("gloss") && text.contains("\"channels\":\"both\""), "{text}");
     for brush in [

@@ -19,7 +19,7 @@ fn draw(map: &mut FocusMap, canvas: &Arc<Canvas>, brush: &Brush, path: &[[f64; 2
 }
 
 #[test]
-fn a_dab_knows_the_world_only() {
+fn a_dab_depends_on_world_positions_only() {
     let canvas = strip();
     let brush = Brush { strength: 0.8, ..brush(BrushMode::Set) };
     let mut map = blank();

@@ -81,7 +81,7 @@ fn a_map_lies_in_the_first_uv_set() {
 }
 
 #[test]
-fn unknown_names_are_told_with_near_ones() {
+fn unknown_names_are_reported_with_similar_ones() {
     let recipe =
         |name: &str| FocusRecipe { materials: vec![(name.into(), value(2.0))], ..FocusRecipe::default() };
     let message = |name: &str| offsets(&recipe(name)).unwrap_err().to_string();
@@ -92,7 +92,7 @@ fn unknown_names_are_told_with_near_ones() {
 }
 
 #[test]
-fn numbers_that_cannot_be_used_are_told_with_their_entry() {
+fn invalid_numbers_are_reported_with_their_entry() {
     let bad = RecipeEntry::Value(FocusOffset::new(f64::NAN, 0.0));
     let recipe = FocusRecipe { nodes: vec![("left".into(), bad.clone())], ..FocusRecipe::default() };
     assert!(offsets(&recipe).unwrap_err().to_string().starts_with("nodes \"left\""));

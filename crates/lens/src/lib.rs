@@ -12,6 +12,17 @@
 //!
 //! Camera space: aperture centre at the origin, x right, y up, z forward (depth, > 0 in front). f64
 //! throughout, lengths in scene units (metres in glTF).
+//!
+//! # Example
+//!
+//! ```
+//! use lens::{Camera, FocusOffset};
+//!
+//! let optics = Camera { focus_distance: 2.0, ..Camera::default() }.optics();
+//! assert_eq!(optics.kappa(1.0 / 2.0, FocusOffset::STANDARD), 0.0); // in the plane of focus
+//! assert!(optics.kappa(1.0 / 8.0, FocusOffset::STANDARD) > 0.0); // far defocus
+//! assert_eq!(optics.kappa(1.0 / 8.0, FocusOffset::SHARP), 0.0); // painted sharp
+//! ```
 
 mod aperture;
 mod calibrated_lens;

@@ -3,6 +3,21 @@
 //! Long work (unwrapping, baking, rendering) takes a `&dyn Progress`. It calls [`Progress::report`] from time to time
 //! and stops with [`Cancelled`] once [`Progress::cancelled`] is true. The trait depends on no clock and no thread;
 //! the observer decides what to show.
+//!
+//! # Example
+//!
+//! ```
+//! use progress::{Cancelled, Progress, Stage, Unwatched};
+//!
+//! fn work(progress: &dyn Progress) -> Result<(), Cancelled> {
+//!     for step in 0..10 {
+//!         progress.check()?;
+//!         progress.report(step as f32 / 10.0);
+//!     }
+//!     Ok(())
+//! }
+//! work(&Stage::new(&Unwatched, 0.0, 0.5)).unwrap();
+//! ```
 
 /// Receives the progress of long work and can cancel it.
 pub trait Progress: Sync {

@@ -13,6 +13,18 @@
 //! * [`ProjectFile`]: the saved document; [`Thumbnail`]: the small picture in it.
 //!
 //! All files are written atomically: the old file stays until the new one is complete.
+//!
+//! # Example
+//!
+//! ```
+//! use lens::Camera;
+//! use project::{camera_from_json, camera_to_json};
+//!
+//! let camera = Camera { focus_distance: 2.0, ..Camera::default() };
+//! let text = camera_to_json(&camera).to_string();
+//! let no_mask = |_: &str| unreachable!("the aperture is a disc");
+//! assert_eq!(camera_from_json("camera.json".as_ref(), &text, &Camera::default(), &no_mask).unwrap(), camera);
+//! ```
 
 mod camera;
 mod disk;

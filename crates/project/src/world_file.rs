@@ -300,7 +300,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_scene_brings_is_told_as_such() {
+    fn an_embedded_environment_is_named_as_such() {
         let map = EnvironmentMap { name: "light".into(), width: 2, height: 1, texels: vec![[2.0; 3]; 2] };
         let own = World { environment: Environment::Map(Arc::new(map)), ..World::uniform(Vec3::ZERO) };
         let scene = Scene { embedded_world: Some(own.clone()), path: "lit.glb".into(), ..Scene::default() };

@@ -19,7 +19,7 @@ fn write(folder: &TempDir, name: &str, text: &str) -> PathBuf {
     file
 }
 
-fn odd_camera() -> Camera {
+fn unusual_camera() -> Camera {
     let turn = DQuat::from_rotation_y(0.1) * DQuat::from_rotation_x(1.0 / 3.0);
     Camera {
         width: 321,
@@ -42,9 +42,9 @@ fn odd_camera() -> Camera {
 fn cameras_come_back_to_the_bit() {
     let folder = TempDir::new().unwrap();
     let file = folder.path().join("camera.json");
-    let shapes = [ApertureShape::Disc, ApertureShape::Square, odd_camera().aperture.shape];
+    let shapes = [ApertureShape::Disc, ApertureShape::Square, unusual_camera().aperture.shape];
     for shape in shapes {
-        let camera = Camera { aperture: Aperture { shape, ratio: 0.7 }, ..odd_camera() };
+        let camera = Camera { aperture: Aperture { shape, ratio: 0.7 }, ..unusual_camera() };
         write_camera(&file, &camera).unwrap();
         assert_eq!(read_camera(&file, &Camera::default()).unwrap(), camera);
     }
@@ -55,11 +55,11 @@ fn cameras_come_back_to_the_bit() {
 fn missing_fields_keep_the_defaults() {
     let folder = TempDir::new().unwrap();
     let file = write(&folder, "camera.json", r#"{"yfov": 0.5, "focus_distance": 2}"#);
-    let read = read_camera(&file, &odd_camera()).unwrap();
-    assert_eq!(read, Camera { yfov: 0.5, focus_distance: 2.0, ..odd_camera() });
+    let read = read_camera(&file, &unusual_camera()).unwrap();
+    assert_eq!(read, Camera { yfov: 0.5, focus_distance: 2.0, ..unusual_camera() });
     let file = write(&folder, "camera.json", r#"{"aperture": {"shape": "polygon"}}"#);
     let shape = ApertureShape::Polygon { blades: 6, rotation: 0.0, roundness: 0.0 };
-    assert_eq!(read_camera(&file, &odd_camera()).unwrap().aperture, Aperture::from(shape));
+    assert_eq!(read_camera(&file, &unusual_camera()).unwrap().aperture, Aperture::from(shape));
 }
 
 #[test]
@@ -89,7 +89,7 @@ fn masks_lie_beside_the_camera_and_are_not_decoded() {
 }
 
 #[test]
-fn bad_cameras_are_told_with_file_and_field() {
+fn bad_cameras_are_reported_with_file_and_field() {
     let folder = TempDir::new().unwrap();
     let cases = [
         (r#"{"width": 0}"#, "width"),
@@ -141,7 +141,7 @@ fn recipes_keep_order_and_repetition() {
 }
 
 #[test]
-fn bad_recipes_are_told_with_their_key() {
+fn bad_recipes_are_reported_with_their_key() {
     let folder = TempDir::new().unwrap();
     write_rgb(&folder.path().join("colour.exr"), 1, 1, &[[0.0; 3]]).unwrap();
     let cases = [
@@ -174,9 +174,9 @@ fn bad_recipes_are_told_with_their_key() {
 #[test]
 fn the_reference_scenes_are_read_as_they_are() {
     let Some(scenes) = shared("peers/scenes") else { return };
-    let camera = read_camera(&scenes.join("hard.camera.json"), &odd_camera()).unwrap();
+    let camera = read_camera(&scenes.join("hard.camera.json"), &unusual_camera()).unwrap();
     assert_eq!((camera.width, camera.height, camera.sensor_height), (640, 360, 0.1));
-    assert_eq!(camera.camera_to_world, odd_camera().camera_to_world);
+    assert_eq!(camera.camera_to_world, unusual_camera().camera_to_world);
 
     let recipe = read_recipe(&scenes.join("hard.focus.json")).unwrap();
     let names: Vec<_> = recipe.materials.iter().map(|(name, _)| name.as_str()).collect();

@@ -24,7 +24,7 @@ fn meta(file: &Path) -> exr::meta::header::Header {
 }
 
 #[test]
-fn windows_types_and_compression_are_as_asked_for() {
+fn windows_types_and_compression_are_as_requested() {
     let folder = TempDir::new().unwrap();
     let file = folder.path().join("x.exr");
     let (picture, layers) = picture();
@@ -70,7 +70,7 @@ fn windows_types_and_compression_are_as_asked_for() {
 }
 
 #[test]
-fn colours_say_whose_they_are() {
+fn colours_declare_their_space() {
     let folder = TempDir::new().unwrap();
     let file = folder.path().join("x.exr");
     let (mut picture, _) = picture();

@@ -143,7 +143,7 @@ fn png_focus_maps_keep_the_standard_exactly() {
 }
 
 #[test]
-fn gloss_comes_back_from_an_exr_and_is_said_to_be_lost_in_a_png() {
+fn gloss_survives_an_exr_and_its_loss_in_a_png_is_reported() {
     let folder = TempDir::new().unwrap();
     let [exr, png] = ["focus.exr", "focus.png"].map(|name| folder.path().join(name));
     let mut glossy = map();
@@ -174,7 +174,7 @@ fn gloss_comes_back_from_an_exr_and_is_said_to_be_lost_in_a_png() {
 }
 
 #[test]
-fn focus_maps_that_cannot_be_used_are_told() {
+fn unusable_focus_maps_are_errors() {
     let folder = TempDir::new().unwrap();
     let eight_bit = folder.path().join("eight.png");
     image::RgbImage::new(2, 2).save(&eight_bit).unwrap();
@@ -191,7 +191,7 @@ fn focus_maps_that_cannot_be_used_are_told() {
 }
 
 #[test]
-fn a_map_goes_back_only_onto_its_own_atlas() {
+fn a_map_is_accepted_only_for_its_own_atlas() {
     let atlas = |hash: &str, width| atlas::Atlas {
         hash: hash.to_string(),
         ..atlas::Atlas::new([width, 21], Vec::new(), Vec::new(), &[], 1.0)

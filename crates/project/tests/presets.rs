@@ -20,7 +20,7 @@ fn brush() -> Brush {
 }
 
 #[test]
-fn a_preset_is_saved_found_renamed_and_deleted_but_never_lost() {
+fn a_preset_is_saved_listed_renamed_and_deleted_but_never_lost() {
     let folder = tempfile::tempdir().unwrap();
     let mut shelf = PresetLibrary::open(Some(folder.path().join("presets")));
     let shipped = shelf.entries_of_kind(PresetKind::Brush).count();

@@ -55,7 +55,7 @@ fn document(folder: &Path) -> ProjectFile {
 }
 
 #[test]
-fn the_selection_comes_back_and_a_brush_mirrored_by_objects_is_told_by_the_version() {
+fn the_selection_is_restored_and_a_brush_mirrored_by_objects_raises_the_version() {
     let folder = TempDir::new().unwrap();
     let file = folder.path().join("selected.fbrush");
     let texels =
@@ -78,7 +78,7 @@ fn the_selection_comes_back_and_a_brush_mirrored_by_objects_is_told_by_the_versi
 }
 
 #[test]
-fn layers_come_back_the_same_and_a_plain_document_stays_as_older_programs_know_it() {
+fn layers_are_restored_and_a_plain_document_keeps_its_old_version() {
     let folder = TempDir::new().unwrap();
     let file = folder.path().join("layers.fbrush");
     let plain = document(folder.path());
@@ -279,7 +279,7 @@ fn repack(file: &Path, change: Change<'_>) -> PathBuf {
 }
 
 #[test]
-fn repaired_depth_is_kept_and_needs_a_program_that_knows_it() {
+fn repaired_depth_is_saved_and_raises_the_version() {
     let folder = TempDir::new().unwrap();
     let file = folder.path().join("work.fbrush");
     let stroke = DepthStroke {
@@ -303,7 +303,7 @@ fn repaired_depth_is_kept_and_needs_a_program_that_knows_it() {
 }
 
 #[test]
-fn wrong_content_is_told_with_its_entry() {
+fn wrong_content_is_reported_with_its_entry() {
     let folder = TempDir::new().unwrap();
     let file = folder.path().join("work.fbrush");
     document(folder.path()).save(&file).unwrap();
@@ -359,7 +359,7 @@ fn the_old_file_survives_a_save_that_fails() {
 }
 
 #[test]
-fn recovery_is_found_while_it_is_newer() {
+fn recovery_is_offered_while_it_is_newer() {
     let folder = TempDir::new().unwrap();
     let file = folder.path().join("work.fbrush");
     let saved = document(folder.path());

@@ -30,7 +30,7 @@ fn stroke() -> RecordedStroke {
 }
 
 #[test]
-fn what_is_written_is_read_to_the_bit_and_what_is_wrong_is_told() {
+fn strokes_round_trip_to_the_bit_and_errors_are_reported() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("strokes.json");
     let layer = String::from("far \"lamp\"");
@@ -89,7 +89,7 @@ fn what_is_written_is_read_to_the_bit_and_what_is_wrong_is_told() {
 }
 
 #[test]
-fn what_says_something_of_gloss_is_of_a_newer_version() {
+fn gloss_raises_the_version() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("strokes.json");
     let written = |step: RecordedStep| {
@@ -141,7 +141,7 @@ fn files_of_the_first_version_are_read() {
 }
 
 #[test]
-fn a_view_looks_where_its_pose_says() {
+fn a_view_has_the_direction_of_its_pose() {
     let view = ViewFrame {
         camera_to_world: DMat4::IDENTITY,
         yfov: std::f64::consts::FRAC_PI_2,

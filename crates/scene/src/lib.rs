@@ -26,6 +26,18 @@
 //! `punctual_light`, `image_based_light`. An animated scene is read in the same way with the values of an `animation`
 //! (`pose`:
 //! which of its triangles is which at rest). `lint` warns authors about other defects.
+//!
+//! # Example
+//!
+//! ```
+//! use glam::DVec3;
+//! use scene::{LoadOptions, Scene, SurfaceMesh};
+//!
+//! let positions = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
+//! let mesh = SurfaceMesh { positions, triangles: vec![[0, 1, 2]], ..SurfaceMesh::default() };
+//! let scene = Scene::from_mesh(mesh, &LoadOptions::default()).unwrap();
+//! assert_eq!(scene.area_normal(0), DVec3::Z); // its length is twice the area
+//! ```
 
 mod error;
 mod gltf;
@@ -46,6 +58,6 @@ pub use model::{
     Material, MeshHealth, Node, NormalMap, Part, Scalar, Scene, SceneCamera, Sheen, SurfaceField,
     SurfaceMesh, SurfacePoint, Tint, Triangle, Volume, Workflow,
 };
-pub use photographs::{Mask, PhotoLookup, Photograph, PictureError, PictureGloss, PictureTexture, View};
+pub use photographs::{Mask, Photograph, PictureError, PictureGloss, PictureTexture, View};
 pub use texture::{Image, ImageLevel, TextureRef, Wrap, linear_from_srgb, srgb_from_linear};
 pub use world::{Backdrop, Environment, EnvironmentMap, World};

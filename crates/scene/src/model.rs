@@ -17,7 +17,7 @@ pub use mesh_health::MeshHealth;
 pub use surface_mesh::SurfaceMesh;
 pub use surface_point::{SurfaceField, SurfacePoint};
 
-use crate::{CameraLens, Image, PhotoLookup, PictureTexture, View, World};
+use crate::{CameraLens, Image, PictureTexture, View, World};
 use glam::{DMat4, DVec3, Vec2, Vec3, Vec4};
 use std::ops::Range;
 use std::path::PathBuf;
@@ -72,12 +72,8 @@ pub struct Scene {
     pub embedded_world: Option<World>,
     /// The chosen world; if `None`, [`World::from_scene`] derives one.
     pub world: Option<World>,
-    /// Whether light that meets microfacets more than once is ignored, as many renderers do.
-    pub single_scattering: bool,
     /// The photographs that light it.
     pub views: Vec<View>,
-    /// Where the light of photographs is sampled.
-    pub photo_lookup: PhotoLookup,
     /// Photographs that are viewed and compared with but do not light it: excluded ones, and the views of a light
     /// field, whose light is in the texture.
     pub excluded_views: Vec<View>,

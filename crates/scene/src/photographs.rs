@@ -13,4 +13,4 @@ pub use mask::Mask;
 pub use photograph::{Photograph, PictureError};
 pub use picture_gloss::PictureGloss;
 pub use picture_texture::PictureTexture;
-pub use view::{PhotoLookup, View};
+pub use view::View;

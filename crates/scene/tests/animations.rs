@@ -51,7 +51,7 @@ impl Glb {
 const NODE: fn(&str) -> Value = |path| json!({"node": 0, "path": path});
 
 #[test]
-fn keys_are_gone_through_in_each_way() {
+fn each_interpolation_passes_through_its_keys() {
     let positions = |interpolation: &str, values: &[f32], seconds: f64| {
         let mut glb = Glb::triangle();
         glb.animate(NODE("translation"), &[1.0, 3.0], values, "VEC3", interpolation);
@@ -186,7 +186,7 @@ fn cameras_move_and_zoom() {
 }
 
 #[test]
-fn materials_change_where_a_pointer_says_so() {
+fn pointers_animate_materials() {
     let mut glb = Glb::triangle();
     glb.paint(json!({"emissiveFactor": [0, 0, 0]}));
     glb.animate_pointer("/materials/0/emissiveFactor", &[0.0, 1.0], &[0.0, 0.0, 0.0, 0.5, 0.25, 1.0], "VEC3");

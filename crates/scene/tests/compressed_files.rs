@@ -49,7 +49,7 @@ fn compressed_meshes_are_what_they_were() {
 }
 
 #[test]
-fn basis_textures_look_like_the_picture() {
+fn basis_textures_match_the_picture() {
     let texels = |name: &str| {
         let scene = load(&path(name)).unwrap();
         assert_eq!((scene.images[0].width, scene.images[0].height), (32, 32), "{name}");
@@ -90,7 +90,7 @@ fn mutilated(bytes: &[u8], round: u64) -> Vec<u8> {
 }
 
 #[test]
-fn broken_ones_are_told_in_one_sentence() {
+fn broken_ones_give_an_error_of_one_line() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("broken.glb");
     let (mut refused, mut tried) = (0, 0);

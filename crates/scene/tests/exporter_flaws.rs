@@ -87,7 +87,7 @@ const NAMES: &[(&str, &str, bool)] = &[
 ];
 
 #[test]
-fn buffers_are_found_by_the_names_that_exporters_write() {
+fn buffers_resolve_by_the_names_that_exporters_write() {
     for &(uri, name, is_proper) in NAMES {
         let folder = TempDir::new().unwrap();
         let file = folder.path().join(name);
@@ -105,7 +105,7 @@ fn buffers_are_found_by_the_names_that_exporters_write() {
 
 #[test]
 #[cfg(target_os = "linux")]
-fn names_in_other_encodings_are_found() {
+fn names_in_other_encodings_resolve() {
     use std::os::unix::ffi::OsStrExt;
     for (uri, name) in [("caf%e9.bin", &b"caf\xe9.bin"[..]), ("data\\a.bin", b"data\\a.bin")] {
         let folder = TempDir::new().unwrap();
@@ -126,7 +126,7 @@ fn the_proper_reading_wins() {
 }
 
 #[test]
-fn images_are_found_as_buffers_are() {
+fn images_resolve_like_buffers() {
     let mut glb = Glb::triangle();
     let uv = glb.accessor(&[0.0; 6], "VEC2");
     let primitive = &mut glb.json["meshes"][0]["primitives"][0];

@@ -309,7 +309,7 @@ fn required_extensions() {
 }
 
 #[test]
-fn points_are_not_enough_but_can_be_inspected() {
+fn a_file_of_points_can_only_be_inspected() {
     let folder = TempDir::new().unwrap();
     let file = folder.path().join("points.glb");
     let mut glb = Glb::triangle();

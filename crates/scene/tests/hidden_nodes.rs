@@ -42,7 +42,7 @@ fn hidden_nodes_are_not_there_nor_what_hangs_on_them() {
 }
 
 #[test]
-fn hidden_lights_do_not_shine_and_hidden_cameras_see() {
+fn hidden_lights_are_off_and_hidden_cameras_stay() {
     let mut glb = two_nodes(json!({
         "translation": [0, 0, 5], "camera": 0,
         "extensions": {HIDDEN: {"visible": false}, "KHR_lights_punctual": {"light": 0}}
@@ -71,7 +71,7 @@ fn hidden_joints_carry_their_mesh() {
 }
 
 #[test]
-fn a_file_of_hidden_meshes_says_so() {
+fn a_file_of_hidden_meshes_reports_that() {
     let mut glb = Glb::triangle();
     glb.json["nodes"][0]["extensions"] = visible(json!(false));
     assert!(glb.error().contains("no triangle: 1 of its nodes are hidden"), "{}", glb.error());

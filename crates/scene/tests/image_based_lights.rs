@@ -96,7 +96,7 @@ fn octant(direction: DVec3) -> Vec3 {
 }
 
 #[test]
-fn faces_look_where_the_extension_says() {
+fn faces_have_the_directions_of_the_extension() {
     let scene = octants().clean();
     let world = world(&scene);
     assert_eq!((world.backdrop, world.rotation, world.strength), (Backdrop::Environment, 0.0, 1.0));
@@ -114,7 +114,7 @@ fn faces_look_where_the_extension_says() {
 }
 
 #[test]
-fn a_rotation_turns_what_is_seen() {
+fn a_rotation_rotates_the_radiance() {
     let rotation = DQuat::from_rotation_y(0.7) * DQuat::from_rotation_x(-0.4);
     let mut glb = octants();
     // Of any length but 0.

@@ -88,7 +88,7 @@ fn without_thickness_there_is_no_volume_and_without_distance_no_attenuation() {
 }
 
 #[test]
-fn what_is_wrong_is_told_and_left_out() {
+fn faulty_properties_are_reported_and_left_out() {
     for (extension, wrong) in [
         ("KHR_materials_ior", json!({"ior": "glass"})),
         ("KHR_materials_sheen", json!({"sheenColorFactor": [1, 1]})),
@@ -129,7 +129,7 @@ fn normal_maps_lean_along_the_texture() {
 }
 
 #[test]
-fn mirrored_textures_and_mirrored_nodes_lean_the_other_way() {
+fn mirrored_textures_and_nodes_mirror_the_normal() {
     let map = json!({"normalTexture": {"index": 0}});
     let half = 0.5f64.sqrt();
     for texel in [TOWARD_U, TOWARD_V] {
@@ -151,7 +151,7 @@ fn mirrored_textures_and_mirrored_nodes_lean_the_other_way() {
 }
 
 #[test]
-fn tangents_of_the_file_are_kept_and_others_follow_the_transform() {
+fn stored_tangents_are_used_and_others_follow_the_transform() {
     let half = 0.5f64.sqrt();
     let mut glb = triangle(json!({"normalTexture": {"index": 0}}), &[TOWARD_U]);
     let tangents = glb.accessor(&[0.0, 1.0, 0.0, 1.0].repeat(3), "VEC4");
@@ -166,7 +166,7 @@ fn tangents_of_the_file_are_kept_and_others_follow_the_transform() {
 }
 
 #[test]
-fn nothing_is_kept_where_nothing_needs_it() {
+fn unused_tangents_are_not_stored() {
     let scene = triangle(json!({}), &[[0; 4]]).clean();
     assert!(scene.tangents.is_empty() && scene.images.is_empty());
     // Without texture coordinates there are no tangents, and bumps do nothing.

@@ -18,7 +18,7 @@ fn with_lens(lens: Value) -> Scene {
 }
 
 #[test]
-fn a_lens_is_read_and_what_it_does_not_say_is_as_elsewhere() {
+fn a_lens_is_read_and_missing_fields_have_defaults() {
     let scene = with_lens(json!({
         "version": 1, "width": 300, "height": 200, "focus_distance": "inf", "aperture_radius": 0.01, "sensor_height": 0.016,
         "shift": [0.25, -0.1], "aperture": {"shape": "polygon", "blades": 5, "rotation": 0.2, "ratio": 1.5}
@@ -41,7 +41,7 @@ fn a_lens_is_read_and_what_it_does_not_say_is_as_elsewhere() {
 }
 
 #[test]
-fn what_is_wrong_with_a_lens_is_told_and_left_out() {
+fn a_faulty_lens_is_reported_and_left_out() {
     for (lens, place) in [
         (json!(7), "extras/focus_brush"),
         (json!({"aperture_radius": 0.1}), "version: is missing"),

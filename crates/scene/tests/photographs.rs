@@ -76,7 +76,7 @@ fn profiles_of_curves_and_a_matrix_are_followed() {
 }
 
 #[test]
-fn a_profile_that_is_not_understood_is_said() {
+fn an_unsupported_profile_is_an_error() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("a.png");
     let mut encoder = PngEncoder::new(std::fs::File::create(&file).unwrap());
@@ -90,7 +90,7 @@ fn a_profile_that_is_not_understood_is_said() {
 }
 
 #[test]
-fn pictures_are_turned_as_the_view_says_not_as_the_file_says() {
+fn the_view_decides_the_orientation_and_not_the_file() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("a.jpg");
     // White on the left, black on the right, 32 × 16; the file says that it wants to be turned by 90° clockwise.
@@ -130,7 +130,7 @@ fn what_is_wrong_with_a_picture_is_one_sentence() {
 }
 
 #[test]
-fn masks_are_told_by_brightness_at_any_size() {
+fn masks_are_thresholded_at_any_size() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("mask.png");
     image::GrayImage::from_raw(2, 1, vec![0, 255]).unwrap().save(&file).unwrap();

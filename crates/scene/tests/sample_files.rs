@@ -86,7 +86,7 @@ fn quantised_geometry_is_the_plain_one() {
 }
 
 #[test]
-fn the_fox_stands_as_it_is_bound() {
+fn the_fox_is_in_its_bind_pose() {
     // 154.7 units long and 78.9 high in its bind pose, which the default pose of its joints nearly is.
     let Some(fox) = sample("Fox.glb") else { return };
     let size = fox.bounds().1 - fox.bounds().0;
@@ -107,7 +107,7 @@ fn texture_rotation_points_at_the_green_marker() {
 }
 
 #[test]
-fn framing_sees_everything() {
+fn the_framing_camera_sees_everything() {
     for name in ["FlightHelmet/FlightHelmet.gltf", "terrain.glb", "MorphStressTest/MorphStressTest.gltf"] {
         let Some(scene) = sample(name) else { return };
         assert!(scene.has_default_camera);

@@ -28,7 +28,7 @@ fn green(glb: &mut Glb, set: u32) {
 }
 
 #[test]
-fn a_texture_lies_in_the_set_that_it_asks_for() {
+fn a_texture_uses_the_set_that_it_names() {
     for set in [0, 1, 2, 3, 7, 12] {
         for asks in [
             json!({"texCoord": set}),
@@ -50,7 +50,7 @@ fn a_texture_lies_in_the_set_that_it_asks_for() {
 }
 
 #[test]
-fn what_nothing_asks_for_is_not_kept() {
+fn unused_sets_are_not_stored() {
     let mut glb = striped(9, json!({}));
     let scene = glb.clean();
     assert_eq!((scene.further_uv.len(), scene.uv.clone().map(|uv| uv.len())), (0, [3, 3]));
@@ -110,7 +110,7 @@ fn every_material_has_its_own_sets() {
 }
 
 #[test]
-fn a_set_that_is_missing_is_zero_and_told() {
+fn a_missing_set_is_zero_with_a_warning() {
     for set in [0, 1, 2, 4_000_000_000u32] {
         let mut glb = striped(0, json!({"texCoord": set}));
         if set != 0 {

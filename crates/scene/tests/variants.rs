@@ -43,7 +43,7 @@ fn mappings(glb: &mut Glb) -> &mut Value {
 }
 
 #[test]
-fn a_variant_chooses_among_the_materials_and_changes_nothing_else() {
+fn a_variant_selects_materials_and_changes_nothing_else() {
     let glb = varied();
     let own = glb.clean();
     assert_eq!(own.variants, ["Red", "Green", "As it was"]);

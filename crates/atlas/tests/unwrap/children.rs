@@ -23,7 +23,7 @@ pub const TESTS: &[Test] = &[
 const MISBEHAVE: &str = "ATLAS_TEST_MISBEHAVE";
 
 /// Does what the parent test wants of its child.
-pub fn misbehave_if_asked() {
+pub fn misbehave_if_requested() {
     let Ok(how) = std::env::var(MISBEHAVE) else { return };
     let arguments: Vec<String> = std::env::args().collect();
     let is_child = arguments.get(1).is_some_and(|a| a == "--unwrap-child");
@@ -42,6 +42,7 @@ pub fn misbehave_if_asked() {
 }
 
 /// Runs with children that misbehave. Tests run one after the other, and nothing else reads the environment.
+#[allow(unsafe_code, reason = "changing the environment is unsafe in edition 2024")]
 fn misbehaving<T>(how: &str, run: impl FnOnce() -> T) -> T {
     // SAFETY: no other thread of this program reads or writes the environment meanwhile.
     unsafe { std::env::set_var(MISBEHAVE, how) };

@@ -9,11 +9,11 @@ use scene::Scene;
 
 pub const TESTS: &[Test] = &[
     ("layout::no_texel_centre_lies_in_two_triangles", no_texel_centre_lies_in_two_triangles),
-    ("layout::the_overlap_check_sees_overlaps", the_overlap_check_sees_overlaps),
+    ("layout::the_overlap_check_detects_overlaps", the_overlap_check_detects_overlaps),
     ("layout::mirrored_instances_have_places_of_their_own", mirrored_instances_have_places_of_their_own),
-    ("layout::sound_coordinates_are_kept", sound_coordinates_are_kept),
+    ("layout::sound_coordinates_are_reused", sound_coordinates_are_reused),
     ("layout::unsound_coordinates_are_not", unsound_coordinates_are_not),
-    ("layout::density_is_uniform_and_as_asked", density_is_uniform_and_as_asked),
+    ("layout::density_is_uniform_and_as_requested", density_is_uniform_and_as_requested),
     ("layout::too_fine_a_density_is_reduced", too_fine_a_density_is_reduced),
     ("layout::many_small_charts_fit", many_small_charts_fit),
 ];
@@ -106,7 +106,7 @@ fn no_texel_centre_lies_in_two_triangles() {
     }
 }
 
-fn the_overlap_check_sees_overlaps() {
+fn the_overlap_check_detects_overlaps() {
     let scene = mixed_scene();
     let mut atlas = unwrap(&scene, &UnwrapOptions::default());
     // The first chart, moved onto the second one.
@@ -137,7 +137,7 @@ fn mirrored_instances_have_places_of_their_own() {
     assert!((0..atlas.corners.len()).all(clockwise), "mirrored coordinates are turned over");
 }
 
-fn sound_coordinates_are_kept() {
+fn sound_coordinates_are_reused() {
     let scene = scene(vec![grid(8, 1.0, |x, _| 0.1 * (6.0 * x).sin())]);
     let atlas = unwrap(&scene, &UnwrapOptions::default());
     assert_eq!(atlas.charts.len(), 1);
@@ -182,7 +182,7 @@ fn unsound_coordinates_are_not() {
     }
 }
 
-fn density_is_uniform_and_as_asked() {
+fn density_is_uniform_and_as_requested() {
     let scene = mixed_scene();
     let options = UnwrapOptions { density: Density::TexelsPerUnit(100.0), ..UnwrapOptions::default() };
     let atlas = unwrap(&scene, &options);

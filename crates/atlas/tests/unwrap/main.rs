@@ -20,7 +20,7 @@ use std::process::ExitCode;
 type Test = (&'static str, fn());
 
 fn main() -> ExitCode {
-    children::misbehave_if_asked();
+    children::misbehave_if_requested();
     atlas::child::run_if_child();
     let filters: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with('-')).collect();
     let groups: [&[Test]; 7] = [

@@ -9,9 +9,9 @@ use scene::Scene;
 use std::time::Instant;
 
 pub const TESTS: &[Test] = &[
-    ("surface::a_square_covers_what_geometry_says", a_square_covers_what_geometry_says),
+    ("surface::a_square_covers_its_exact_area", a_square_covers_its_exact_area),
     ("surface::texels_sum_to_the_mesh", texels_sum_to_the_mesh),
-    ("surface::a_texel_is_found_again_from_its_surface_point", a_texel_is_found_again_from_its_surface_point),
+    ("surface::a_texel_is_recovered_from_its_surface_point", a_texel_is_recovered_from_its_surface_point),
     ("surface::collapsed_places_keep_their_area", collapsed_places_keep_their_area),
     ("surface::gutters_take_the_nearest_covered_texel", gutters_take_the_nearest_covered_texel),
     ("surface::a_sphere_of_80k_triangles_is_timed", a_sphere_of_80k_triangles_is_timed),
@@ -41,7 +41,7 @@ pub fn check_surface(scene: &Scene, atlas: &Atlas) {
     }
 }
 
-fn a_square_covers_what_geometry_says() {
+fn a_square_covers_its_exact_area() {
     let scene = scene(vec![bare(grid(1, 2.0, |_, _| 0.0))]);
     let place = |x: f32, y: f32| Vec2::new(1.25 + x, 2.5 + y);
     // 4 × 3 texels for a square of 2 × 2: a texel is 1/3 of a unit of area.
@@ -80,7 +80,7 @@ fn texels_sum_to_the_mesh() {
     }
 }
 
-fn a_texel_is_found_again_from_its_surface_point() {
+fn a_texel_is_recovered_from_its_surface_point() {
     let scene = scene(vec![sphere(20, 1.0, DVec3::ZERO)]);
     let atlas = unwrap(&scene, &UnwrapOptions::default());
     let map = atlas.texel_map(&scene);

@@ -171,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn what_no_key_can_be_is_told() {
+    fn invalid_keys_are_detected() {
         let usable = |keys: &str| serde_json::from_str::<Keys<f64>>(keys).unwrap().is_valid(|v| *v > 0.0);
         assert!(usable(r#"[{"seconds": 0, "value": 1}, {"seconds": 1, "value": 2, "ease": "hold"}]"#));
         assert!(!usable(r#"[{"seconds": 1, "value": 1}, {"seconds": 1, "value": 2}]"#));

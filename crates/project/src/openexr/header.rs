@@ -158,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn a_text_is_put_in_and_found_and_chunks_move_along() {
+    fn an_inserted_text_is_read_back_and_chunks_move() {
         let [a, b] = [attribute("a", b"\0\0"), attribute("b", b"12")];
         for (flags, parts) in
             [(0, vec![&[a.clone(), b.clone()][..]]), (MULTIPART_FLAG, vec![from_ref(&a), from_ref(&b)])]
@@ -197,7 +197,7 @@ mod tests {
     }
 
     #[test]
-    fn a_window_without_a_pixel_is_told_from_one_of_a_pixel() {
+    fn a_window_without_pixels_differs_from_one_of_a_pixel() {
         let [data, display] = ["dataWindow", "displayWindow"];
         let empty = |data, display| empty_window(&file(0, &[&[data, display]]));
         assert_eq!(empty(window(data, [-3, 5, -3, 5]), window(display, [0, 0, 0, 0])), None);

@@ -124,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn the_academys_matrix_is_found() {
+    fn the_academys_matrix_is_reproduced() {
         // ACES 1.3, `Rec709_to_AP1` of its utility transforms, by rows.
         let published =
             [[0.613097, 0.339523, 0.047379], [0.070194, 0.916354, 0.013452], [0.020616, 0.109570, 0.869815]];
@@ -146,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_colour_space_is_told() {
+    fn invalid_primaries_are_detected() {
         let rec709 = ColorSpace::Rec709.chromaticities();
         let flat = Chromaticities { green: rec709.red, ..rec709 };
         let empty = Chromaticities { red: DVec2::ZERO, ..rec709 };

@@ -189,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn chance_agrees_as_often_as_the_textbook_says_and_a_shift_does_not() {
+    fn random_errors_agree_as_often_as_expected_and_a_shift_does_not() {
         let found = z_test(&normal(1, 5.0), &normal(2, 5.0)).unwrap();
         assert!((found.values - 0.9973).abs() < 1e-3, "{found:?}");
         assert!((found.luminance - 0.9973).abs() < 1.5e-3, "{found:?}");

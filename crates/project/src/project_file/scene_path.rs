@@ -102,7 +102,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn a_path_that_is_not_utf8_is_kept_byte_for_byte() {
+    fn a_path_that_is_not_utf8_is_preserved_byte_for_byte() {
         use std::ffi::OsStr;
         use std::os::unix::ffi::OsStrExt;
         let scene = Path::new(OsStr::from_bytes(b"/a/caf\xe9/sc\xe8ne \xff.glb"));

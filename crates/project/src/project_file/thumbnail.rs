@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_picture_is_told() {
+    fn a_broken_picture_is_an_error() {
         assert!(Thumbnail(b"no picture".to_vec()).reduced_to(64).is_err());
     }
 }

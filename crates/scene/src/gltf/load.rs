@@ -184,7 +184,6 @@ impl AnimatedScene {
         scene.embedded_world = rest.embedded_world.clone();
         scene.world = rest.world.clone();
         scene.back_faces = rest.back_faces;
-        scene.single_scattering = rest.single_scattering;
         if rest.has_default_camera {
             (scene.cameras, scene.has_default_camera) = (rest.cameras.clone(), true);
         } else if scene.cameras.len() == rest.cameras.len() {

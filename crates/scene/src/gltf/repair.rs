@@ -330,7 +330,7 @@ mod tests {
     }
 
     #[test]
-    fn stand_ins_are_paid_for() {
+    fn placeholders_are_counted_in_the_budget() {
         let nodes = |count| json!({"asset": {"version": "2.0"}, "nodes": vec![0; count]});
         assert_eq!(typed(&nodes(300)).unwrap().0.nodes().count(), 300);
         assert!(typed(&nodes(400)).is_err_and(|fault| fault.to_string().contains("raise the limit")));

@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn only_what_is_sound_is_kept() {
+    fn only_valid_triangles_remain() {
         let scene = Scene::from_mesh(mesh(), &LoadOptions::default()).unwrap();
         assert_eq!(scene.positions, [DVec3::ZERO, DVec3::X, DVec3::Y]);
         assert_eq!(scene.triangles.iter().map(|t| t.vertices).collect::<Vec<_>>(), [[0, 1, 2], [2, 1, 0]]);

@@ -6,26 +6,6 @@ use glam::{DMat4, DVec2, DVec3};
 use lens::CalibratedLens;
 use std::path::PathBuf;
 
-/// Where the light of photographs is sampled.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum PhotoLookup {
-    /// At the texels of an atlas, to which the photographs were resampled.
-    #[default]
-    Texels,
-    /// In the photographs themselves, for each point.
-    Direct,
-}
-
-impl PhotoLookup {
-    /// All, with their names.
-    pub const ALL: [(&str, Self); 2] = [("texels", Self::Texels), ("direct", Self::Direct)];
-
-    /// The one of this name.
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.iter().find(|(candidate, _)| *candidate == name).map(|(_, lookup)| *lookup)
-    }
-}
-
 /// A photograph and its camera.
 ///
 /// Spaces are those of [`lens::Camera`]: the world's axes are the scene's; the camera's own are glTF's in

@@ -116,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn faces_are_seen_from_within() {
+    fn faces_are_oriented_as_seen_from_inside() {
         for [forward, right, down] in AXES {
             // Whoever looks forward with down below has forward × up at the right.
             assert_eq!(forward.cross(-down), right);
@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn a_rotation_takes_what_is_seen_along() {
+    fn a_rotation_moves_the_radiance_with_it() {
         let turn = DQuat::from_rotation_y(FRAC_PI_2) * DQuat::from_rotation_x(0.3);
         let map = directions(64).to_equirectangular("turned".into(), turn);
         for from in [DVec3::X, DVec3::NEG_Y, DVec3::new(0.5, 0.7, -0.2).normalize()] {

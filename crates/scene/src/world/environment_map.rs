@@ -95,7 +95,7 @@ mod tests {
     }
 
     #[test]
-    fn it_goes_round_and_ends_at_the_poles() {
+    fn columns_wrap_and_rows_end_at_the_poles() {
         let map = map();
         let radiance = |x: f64, y: f64| map.radiance(map.direction_at(DVec2::new(x, y))).x;
         assert!((radiance(3.5, 1.5) - 11.0).abs() < 1e-5);

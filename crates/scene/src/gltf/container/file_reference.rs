@@ -96,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn odd_names_have_more_readings() {
+    fn unusual_names_have_several_interpretations() {
         for (uri, expected) in [
             ("example 10%.bin", &["example 10%.bin"][..]),
             ("100%/a%20b.bin", &["100%/a b.bin", "100%/a%20b.bin"]),

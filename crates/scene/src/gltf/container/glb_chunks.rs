@@ -104,7 +104,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_cut_chunk_is_kept_with_a_warning() {
+    fn a_truncated_chunk_is_read_with_a_warning() {
         let mut bytes = b"glTF\x02\0\0\0\x00\x01\0\0\x02\0\0\0JSON{}".to_vec();
         bytes.extend(b"\xFF\xFF\xFF\xFFBIN\0abc");
         let mut warnings = Vec::new();
@@ -175,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn other_chunks_are_ignored_wherever_they_stand() {
+    fn other_chunks_are_ignored_at_any_position() {
         let (json, bin, other) = (
             (4, &b"JSON"[..], &b"{}  "[..]),
             (4, &b"BIN\0"[..], &b"abcd"[..]),

@@ -194,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn what_stands_in_front() {
+    fn leading_bytes_are_skipped() {
         assert_eq!(read(b" \n{}", false), Ok((json!({}), vec![])));
         for head in [&b"\xEF\xBB\xBF"[..], b"\0\0", b"\xEF\xBB\xBF \0"] {
             let (value, warnings) = read(&[head, b"{}"].concat(), false).unwrap();
@@ -204,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_json_is_told_apart() {
+    fn text_that_is_not_json_is_rejected() {
         for text in [&b"{"[..], b"{\"a\" 1}", b"{\"a\": nonsense}", b"{\"a\": NaN"] {
             assert!(read(text, false).unwrap_err().contains("invalid"), "{text:?}");
         }
@@ -215,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_that_json_does_not_know_are_missing() {
+    fn numbers_that_json_lacks_become_null() {
         for number in
             ["NaN", "-NaN", "Infinity", "-Infinity", "inf", "nan", "-nan(ind)", "1.#QNAN", "-1.#INF"]
         {

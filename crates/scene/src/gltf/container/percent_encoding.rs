@@ -31,7 +31,7 @@ mod tests {
     use super::percent_decoded;
 
     #[test]
-    fn malformed_escapes_stand_for_themselves() {
+    fn malformed_escapes_stay_as_they_are() {
         for (text, decoded, is_sound) in [
             ("a b", &b"a b"[..], true),
             ("a%20b", b"a b", true),

@@ -29,7 +29,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_mode_winds_the_same_way() {
+    fn every_mode_has_the_same_winding() {
         // A zigzag of points for the strip, a half circle for the fan: all triangles counter-clockwise.
         let zigzag = |k: usize| [(k / 2) as f64, (k % 2) as f64];
         let circle =

@@ -56,6 +56,7 @@ fn is_fallback(document: &Document<'_>, buffer: Option<usize>) -> bool {
 }
 
 /// Decodes a compressed view.
+#[allow(unsafe_code, reason = "meshoptimizer's decoders are C++; sizes are checked before each call")]
 fn decode_view(document: &Document<'_>, view: &Map<String, Value>, place: &str) -> Result<Vec<u8>, Fault> {
     let malformed = |key: &str, what: String| Fault::Malformed { place: format!("{place}/{key}"), what };
     let text = |key: &str, default: &'static str| view.get(key).map_or(Some(default), Value::as_str);
