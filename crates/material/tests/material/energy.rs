@@ -87,7 +87,7 @@ fn glass_sends_all_on() {
     }
 }
 
-/// Light that runs along within a ball meets its inside at one grazing angle again and again: a percent too much would grow.
+/// Light inside a ball meets its surface at one grazing angle again and again: an excess of a percent would grow.
 #[test]
 fn glass_seen_from_inside_at_grazing_angles_creates_no_light() {
     for roughness in [0.1, 0.3, 0.7] {
@@ -103,7 +103,7 @@ fn glass_seen_from_inside_at_grazing_angles_creates_no_light() {
     }
 }
 
-/// A ball of rough glass in white light, up to 64 bounces within, is white.
+/// A ball of rough glass in white light, with up to 64 internal bounces, is white.
 #[test]
 fn a_ball_of_rough_glass_is_as_bright_as_its_surroundings() {
     for roughness in [0.1, 0.5, 1.0] {
@@ -113,7 +113,7 @@ fn a_ball_of_rough_glass_is_as_bright_as_its_surroundings() {
         let (mut sum, mut squares) = (0.0, 0.0);
         const COUNT: u32 = 100_000;
         for _ in 0..COUNT {
-            // A unit ball; the eye looks along −x at a place of its disc.
+            // A unit ball; the eye looks along −x at a point of its disc.
             let [a, b, _] = random.three();
             let (r, angle) = (a.sqrt() * 0.99, b * TAU);
             let (y, z) = (r * angle.cos(), r * angle.sin());
@@ -152,7 +152,7 @@ fn nothing_sends_more_than_it_gets_and_the_closed_form_agrees() {
             assert!(sent.max_element() < 1.005 + 4.0 * error, "{name}, cos {cos}: {sent} ± {error}");
             let computed = bsdf.albedo(toward(cos, 0.7)).total();
             let off = (computed - sent).abs().max_element();
-            // Coat and sheen lose a little that the closed form does not know; rough glass mirrors by its mean angle, and so does a
+            // Coat and sheen lose a little that the closed form neglects; it evaluates rough glass at its mean angle, and so a
             // film, whose colours change fast at grazing angles.
             let most = if surface.film.is_some() { 0.2 } else { 0.12 };
             assert!(off < most, "{name}, cos {cos}: computed {computed}, sent {sent}");
@@ -162,7 +162,7 @@ fn nothing_sends_more_than_it_gets_and_the_closed_form_agrees() {
     }
 }
 
-/// The largest relative difference between both ways.
+/// The largest relative difference between both directions.
 fn one_way(value: &dyn Fn(DVec3, DVec3) -> DVec3, beyond: bool, eta2: f64) -> f64 {
     let mut random = Random(3);
     let mut worst = 0.0f64;
@@ -187,7 +187,7 @@ fn bsdfs_are_reciprocal() {
         let bsdf = Bsdf::new(&surface, Frame::flat(DVec3::Z), &interface);
         let value = |o: DVec3, i: DVec3| bsdf.evaluate(o, i).total();
         assert!(one_way(&value, false, 1.0) < 1e-4, "{name}: {}", one_way(&value, false, 1.0));
-        // f/n² is the same from beyond, where the medium is another.
+        // f/n² is the same from the other side, where the medium is different.
         let eta2 = if surface.is_thin { 1.0 } else { interface.eta(true).powi(2) };
         let tinted = surface.metallic < 1.0 && surface.transmission > 0.0 && !surface.is_thin;
         if !tinted || surface.transmission == 1.0 {
@@ -195,7 +195,7 @@ fn bsdfs_are_reciprocal() {
             assert!(across < 1e-4, "{name}, across: {across}");
         }
     }
-    // glTF's own mixing of a ground beneath a reflection, by the eye's angle alone, is refused.
+    // glTF's own mixing of a ground beneath a reflection, by the outgoing angle alone, fails.
     let plastic = plastic(0.4);
     let interface = interface(&plastic);
     let bsdf = Bsdf::new(&plastic, Frame::flat(DVec3::Z), &interface);

@@ -29,7 +29,7 @@ fn expected(density: &dyn Fn(DVec3) -> f64) -> Vec<f64> {
         };
         (0..n * n).map(place).sum::<f64>() / (n * n) as f64 * solid_angle
     };
-    // Where much falls, it is looked at closely.
+    // Cells with many samples are integrated finely.
     let cell = |index: usize| match mean(index, 12) {
         share if share > 2e-3 => mean(index, 56),
         share => share,
@@ -47,7 +47,7 @@ fn deviations(counts: &[f64], expected: &[f64]) -> f64 {
             rest += count;
             rest_expected += expected_value;
         } else {
-            // The cell's own integral is known to a percent of a percent only.
+            // The integral of a cell is accurate to 0.2 % only.
             chi2 += (count - expected_value).powi(2) / (expected_value + (2e-3 * expected_value).powi(2));
             cells += 1.0;
         }
@@ -60,8 +60,8 @@ fn deviations(counts: &[f64], expected: &[f64]) -> f64 {
     (chi2 - freedom) / (2.0 * freedom.max(1.0)).sqrt()
 }
 
-/// How far the drawn directions are from their density, in standard deviations: of the density as it is, and of one that is off
-/// by a cosine, where the lobe is wide enough to tell.
+/// The deviation of the samples from their density, in standard deviations: for the density as it is, and for one that is wrong
+/// by a cosine, where the lobe is wide enough to show it.
 fn drawn(name: &str, surface: &Surface, frame: Frame, cos: f64) -> (f64, Option<f64>) {
     let interface = interface(surface);
     let bsdf = Bsdf::new(surface, frame, &interface);
@@ -110,7 +110,7 @@ fn bumped() -> Frame {
 
 #[test]
 fn a_coat_with_its_own_normal_map_reflects_about_its_own_normal() {
-    // Smooth, over black: it mirrors about its normal, and what lies beneath about the other one.
+    // Smooth, over black: it reflects about its own normal, and the surface beneath about the other one.
     let coat = Some(Clearcoat { factor: 1.0, roughness: 0.0 });
     let black = Surface { clearcoat: coat, base_color: DVec3::ZERO, ..metal(1.0) };
     let interface = interface(&black);
@@ -126,13 +126,13 @@ fn a_coat_with_its_own_normal_map_reflects_about_its_own_normal() {
     assert!(
         !samples.is_empty() && samples.iter().all(|one| one.incident.distance(about(bumped().coat)) < 1e-12)
     );
-    // The control: bumps beneath it are none of its own.
+    // The control: a normal map of the surface beneath is not the coat's.
     let beneath = Frame::new(DVec3::Z, bumped().coat, DVec3::X).coated(DVec3::Z);
     let samples = mirrored(beneath);
     assert!(!samples.is_empty() && samples.iter().all(|one| one.incident.distance(about(DVec3::Z)) < 1e-12));
     assert!(about(DVec3::Z).distance(about(bumped().coat)) > 0.3, "the two are apart");
 
-    // Rough, its directions are drawn as their density says, weighted as it is evaluated, and no light is made.
+    // A rough coat: samples follow the density, weights the evaluation, and no light is created.
     for roughness in [0.3, 0.6] {
         let coat = Some(Clearcoat { factor: 1.0, roughness });
         for surface in [Surface { clearcoat: coat, ..black }, Surface { clearcoat: coat, ..plastic(0.5) }] {
@@ -157,7 +157,7 @@ fn a_coat_with_its_own_normal_map_reflects_about_its_own_normal() {
                 }
                 assert!(sent < 1.02, "roughness {roughness}, cos {cos}: {sent}");
             }
-            // The control: the density of a coat without bumps.
+            // The control: the density of a coat without a normal map.
             let flat = Bsdf::new(&surface, Frame::flat(DVec3::Z), &interface);
             let outgoing = toward(0.75, 0.3);
             let at = about(bumped().coat);
@@ -221,7 +221,7 @@ fn mirrors_and_clear_glass_have_no_density() {
         assert_eq!(has_crossed, crosses);
         assert_eq!(bsdf.evaluate(outgoing, DVec3::new(-0.8, 0.0, 0.6)).total(), DVec3::ZERO);
     }
-    // From within, beyond the critical angle, all is mirrored.
+    // From inside, beyond the critical angle, reflection is total.
     let surface = glass(0.0);
     let interface = interface(&surface);
     let bsdf = Bsdf::new(&surface, Frame::flat(DVec3::Z), &interface);
@@ -233,7 +233,7 @@ fn mirrors_and_clear_glass_have_no_density() {
     }
 }
 
-/// No light comes from behind, whatever the shading normal says, and what is seen is never black for its sake.
+/// No light comes from behind, whatever the shading normal is, and visible surfaces are never black because of it.
 #[test]
 fn shading_normals_let_nothing_through_and_darken_nothing() {
     for bend in [0.3, 1.0, 3.0] {
