@@ -1,8 +1,8 @@
-//! A light field that a test owns.
+//! A light field with owned pictures.
 
 use disparity::{Picture, View};
 
-/// Pictures and their places.
+/// Pictures and their positions.
 pub struct Field {
     pub width: usize,
     pub height: usize,
@@ -22,13 +22,13 @@ impl Field {
             .collect()
     }
 
-    /// The index of the view at a place.
+    /// The index of the view at a position.
     pub fn at(&self, position: [f64; 2]) -> usize {
         self.positions.iter().position(|p| *p == position).expect("a view is there")
     }
 }
 
-/// A grid of places around the middle, row by row.
+/// A grid of positions around the middle, row by row.
 pub fn grid(columns: i32, rows: i32) -> Vec<[f64; 2]> {
     (-rows..=rows).flat_map(|y| (-columns..=columns).map(move |x| [f64::from(x), f64::from(y)])).collect()
 }

@@ -55,7 +55,7 @@ fn truth() -> (Vec<f32>, f32, f32) {
     (disparity, low, high)
 }
 
-/// 600 samples with noise of 2 % of the range, 15 % of them anything.
+/// 600 samples with noise of 2 % of the range, 15 % of them random.
 fn samples(truth: &[f32], low: f32, high: f32) -> Vec<Sample> {
     let mut dice = Dice(7);
     (0..600)

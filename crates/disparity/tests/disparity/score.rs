@@ -1,4 +1,4 @@
-//! How far disparities are from the truth, as the 4D Light Field Benchmark counts it (Honauer et al., ACCV 2016).
+//! Errors of disparities, as the 4D Light Field Benchmark measures them (Honauer et al., ACCV 2016).
 
 /// The figures of a map.
 #[derive(Clone, Copy, Debug)]
@@ -9,7 +9,7 @@ pub struct Score {
     pub bad_003: f32,
     /// Percent off by more than 0.3: another surface.
     pub bad_03: f32,
-    /// A hundred times the mean squared error; not a number if any disparity is none.
+    /// A hundred times the mean squared error; NaN if any disparity is.
     pub mse_100: f32,
 }
 

@@ -8,16 +8,16 @@ use rayon::prelude::*;
 /// Depth without parallax.
 const IN_FOCUS: f32 = 4.0;
 
-/// What is to be photographed, and how.
+/// The parameters of the photographs.
 #[derive(Clone, Copy, Debug)]
 pub struct StillLife {
-    /// Pixels a side.
+    /// Width and height, pixels.
     pub size: usize,
     /// Parallax of the whole scene: the disparities run from about −0.5 to 0.9 times this.
     pub parallax: f32,
     /// Standard deviation of the noise of every value.
     pub noise: f32,
-    /// Rays a pixel a side.
+    /// Rays per pixel, along each side.
     pub samples: usize,
 }
 
@@ -41,9 +41,9 @@ enum Shape {
 }
 
 enum Paint {
-    /// Noise of this many waves a unit.
+    /// Noise of this many waves per unit.
     Mottled { waves: f32, base: [f32; 3], contrast: f32 },
-    /// Stripes of this many waves a unit.
+    /// Stripes of this many waves per unit.
     Striped { waves: f32 },
     /// One colour.
     Flat([f32; 3]),
@@ -81,7 +81,7 @@ fn scene() -> Vec<(Shape, Paint)> {
     ]
 }
 
-/// A value in [0, 1] that hangs together with nothing.
+/// A hash in [0, 1].
 fn hash(x: i32, y: i32, z: i32) -> f32 {
     let mut h = (x as u32).wrapping_mul(0x9E37_79B1)
         ^ (y as u32).wrapping_mul(0x85EB_CA77)
@@ -91,7 +91,7 @@ fn hash(x: i32, y: i32, z: i32) -> f32 {
     (h ^ (h >> 15)) as f32 / u32::MAX as f32
 }
 
-/// Value noise: hashes of the corners, smoothly between.
+/// Value noise: hashes of the corners, smoothly interpolated.
 fn mottle(p: [f32; 3]) -> f32 {
     let base = p.map(f32::floor);
     let part: [f32; 3] = std::array::from_fn(|k| {
@@ -106,7 +106,7 @@ fn mottle(p: [f32; 3]) -> f32 {
 }
 
 impl Shape {
-    /// How far along the ray (direction with z = 1: the depth gained) it is met.
+    /// The distance along the ray (direction with z = 1: the depth) of the intersection.
     fn meets(&self, eye: [f32; 3], to: [f32; 3]) -> Option<f32> {
         let dot = |a: [f32; 3], b: [f32; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
         match *self {
@@ -155,7 +155,7 @@ impl Paint {
 }
 
 impl StillLife {
-    /// What is seen from `position`, steps of the grid.
+    /// The photograph from `position`, steps of the grid.
     pub fn photograph(&self, position: [f64; 2]) -> Photograph {
         let scene = scene();
         let focal = 1.3 * self.size as f32;

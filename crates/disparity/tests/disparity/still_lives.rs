@@ -6,7 +6,7 @@ use crate::still_life::StillLife;
 use disparity::{DisparityMap, DisparityRequest, estimate_disparities};
 use progress::Unwatched;
 
-/// Pixels a side: seconds, not minutes.
+/// Width and height, pixels: seconds, not minutes.
 const SIZE: usize = 112;
 
 fn photographed(positions: Vec<[f64; 2]>, parallax: f32, noise: f32) -> (Field, Vec<Vec<f32>>) {
