@@ -56,7 +56,7 @@ fn layer_at(relief: &Relief, layer: u8, at: Vec2) -> (f32, usize) {
 fn it_stays_within_its_tolerance_with_few_triangles() {
     let options = ReliefOptions { reach: 4.0, ..ReliefOptions::default() };
     let relief = surface(&disparities(hill), &options);
-    // A place of a cell's middle that lies on no diagonal.
+    // Positions near the centres of cells, but on no diagonal.
     for y in 0..SIZE[1] {
         for x in 0..SIZE[0] {
             let (disparity, count) = first_layer(&relief, Vec2::new(x as f32 + 0.47, y as f32 + 0.56));
@@ -226,7 +226,7 @@ fn where_there_is_no_disparity_there_is_no_surface() {
     assert!(nothing.triangles.is_empty());
 }
 
-/// A card of one colour before a wall, whose sides lie within pixels: left and right so far.
+/// A card of one colour before a wall, whose left and right sides lie within pixels.
 fn soft_card(left: f32, right: f32, card: [f32; 3], wall: impl Fn(f32) -> [f32; 3]) -> Vec<[f32; 3]> {
     let at = |cell: usize| {
         let (x, y) = ((cell % SIZE[0]) as f32, cell / SIZE[0]);
@@ -295,18 +295,18 @@ fn whole_pixels_and_textures_are_there_as_a_whole() {
     assert!(matted <= 4, "{matted}");
 }
 
-/// [`card`], but for a wall that is upright.
+/// [`card`], with a wall of constant disparity.
 fn card_at(x: f32, y: f32) -> f32 {
     if card(x, y) == 2.0 { 2.0 } else { 0.3 }
 }
 
 #[test]
 fn the_background_in_other_views_determines_the_opacity_of_an_edge() {
-    // The wall is bright only where the card hides it, but for its last pixel: from the picture alone one cannot know.
+    // The wall is bright only where the card hides it, except for its last pixel: the picture alone does not show that.
     let wall = |x: f32| if (25.0..50.0).contains(&x) { [0.1, 0.7, 0.2] } else { [0.05, 0.2, 0.6] };
     let card = [0.8, 0.1, 0.05];
     let shown = |offset: f32| {
-        // By the disparity of the card it lies further left, the wall by its own.
+        // The card is shifted by its disparity, the wall by its own.
         let (near, far) = (2.0 * offset, 0.3 * offset);
         soft_card(20.0 - near, 49.4 - near, card, |x| wall(x + far))
     };
@@ -341,7 +341,7 @@ fn the_background_is_resampled_up_to_the_edge_that_hides_it() {
     let views = [1.0, 2.0, 3.0, 4.0].map(view);
     let relief =
         Relief::build(SIZE, &disparities(card_at), &shown(0.0), &views, &options, &Unwatched).unwrap();
-    // The last view looks 6.8 px behind it: where it shows the wall last, half of a pixel is the card's.
+    // The last view sees 6.8 px behind the card: in the last pixel that shows the wall, half is covered by the card.
     for x in 43..50 {
         let behind = SIZE[0] * SIZE[1] + 20 * SIZE[0] + x;
         let (color, expected) = (relief.texture[behind], wall(x as f32 + 0.5));
@@ -352,7 +352,7 @@ fn the_background_is_resampled_up_to_the_edge_that_hides_it() {
 
 #[test]
 fn pixels_that_look_like_the_other_side_stay_where_views_show_them() {
-    // The wall has a stripe of the card's colour right beside the card.
+    // The wall has a stripe of the card's colour next to the card.
     let card = [0.8, 0.1, 0.05];
     let wall = |x: f32| if (50.0..51.0).contains(&x) { card } else { [0.05, 0.2, 0.6] };
     let shown = |offset: f32| {
@@ -378,7 +378,7 @@ fn pixels_that_look_like_the_other_side_stay_where_views_show_them() {
 fn edges_of_depth_are_aligned_with_the_picture() {
     let options = ReliefOptions { reach: 4.0, ..ReliefOptions::default() };
     let picture = soft_card(20.0, 50.0, [0.8, 0.1, 0.05], |_| [0.05, 0.2, 0.6]);
-    // A pixel too far right on the left, and on the right.
+    // One pixel too far right, on the left and on the right side.
     let moved = disparities(|x, y| if (21.0..51.0).contains(&x) { card_at(30.0, y) } else { 0.3 });
     let relief = Relief::build::<Infallible>(SIZE, &moved, &picture, &[], &options, &Unwatched).unwrap();
     for y in [15.3, 20.4, 29.6] {
@@ -395,7 +395,7 @@ fn a_hair_lets_through_what_is_behind_it() {
     let wall = |x: f32| [0.05, 0.2 + 0.001 * x, 0.6];
     let picture = soft_card(30.3, 30.65, [0.9, 0.8, 0.1], wall);
     let whole = soft_card(20.0, 26.0, [0.9, 0.8, 0.1], wall);
-    // The same stands whole beside it, at the same depth.
+    // The same colour is next to it as a whole surface, at the same depth.
     let is_hair = |cell: usize| cell % SIZE[0] == 30;
     let picture: Vec<[f32; 3]> =
         (0..picture.len()).map(|cell| if is_hair(cell) { picture[cell] } else { whole[cell] }).collect();
