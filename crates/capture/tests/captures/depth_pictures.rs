@@ -1,4 +1,4 @@
-//! Pictures with depth as people have them: one file or two, what is near, which way they lie; and what is missing.
+//! Common pictures with depth: one file or two, which end is near, which way they are oriented; and what may be missing.
 
 use crate::made_light::{
     dynamic_depth_jpeg, dynamic_depth_xmp, encoded, exr, gdepth_jpeg, gdepth_xmp, jpeg, levels_png, levels8,
@@ -20,7 +20,7 @@ fn near(path: &Path, near: NearEnd) -> Result<DepthPicture, CaptureError> {
     open_depth_picture(path, &DepthPictureOptions { near: Some(near), ..DepthPictureOptions::default() })
 }
 
-/// The one sentence of what does not open.
+/// The error of a path that does not open.
 fn refused(path: &Path) -> String {
     let text = open(path).unwrap_err().to_string();
     assert!(text.contains(": ") && text.ends_with(')') && !text.contains('\n'), "{text}");
@@ -50,7 +50,7 @@ fn an_exr_with_the_names_of_blender_and_of_nuke() {
         let file = folder.path().join(format!("{index}.exr"));
         let names = ["R", "G", "B"].map(|channel| format!("{layer}{channel}"));
         let color = |x: usize, y: usize| (x + 10 * y) as f32;
-        // Nothing behind, and nothing known.
+        // Background, and unknown depth.
         let distance = |x: usize, y: usize| match (x, y) {
             (0, 0) => 1e10,
             (1, 0) => 0.0,
@@ -86,7 +86,7 @@ fn exrs_without_depth_or_without_a_picture() {
     exr(&file, 4, 4, &[("R", &one), ("G", &one), ("B", &one), ("N.X", &one), ("N.Z", &one)]);
     assert!(refused(&file).contains("no depth among its channels (Z, depth.Z"));
     assert!(detect_capture_kind(&file).unwrap_err().to_string().contains("an EXR without a depth channel"));
-    // Depth beside it.
+    // Depth next to it.
     let depth = folder.path().join("a_depth.exr");
     exr(&depth, 4, 4, &[("V", &|x, _| 2.0 + x as f32)]);
     assert_eq!(opened(&file).depth.range(), Some([2.0, 5.0]));
@@ -137,7 +137,7 @@ fn floats_beside_a_picture_and_files_that_are_named() {
     let file = folder.path().join("cat.jpg");
     put(&file, jpeg(60, 40, 90));
     put(&folder.path().join("cat.pfm"), pfm(60, 40, |x, _| x as f32));
-    // Floats of no name that tells.
+    // Floats whose name denotes no quantity.
     assert!(refused(&file).contains("cat.pfm: does not specify which end is near"));
     assert_eq!(near(&file, NearEnd::White).unwrap().depth.range(), Some([0.0, 1.0]));
     put(&folder.path().join("cat_disp.pfm"), pfm(60, 40, |x, _| x as f32 - 3.0));
@@ -157,7 +157,7 @@ fn floats_beside_a_picture_and_files_that_are_named() {
         (DepthMeaning::Disparity, DepthMeaning::Distance)
     );
     assert_eq!(named(DepthQuantity::Depth).range(), Some([1.0, 59.0]));
-    // A grey disparity is near where it is white, and that is told.
+    // A grey disparity is near where it is white, and that is reported.
     std::fs::remove_file(folder.path().join("cat_disp.pfm")).unwrap();
     levels8(60, 40).save(folder.path().join("cat_disp.png")).unwrap();
     let picture = open(&file).unwrap();
@@ -179,7 +179,7 @@ fn pictures_that_lie_on_their_side() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("cat.jpg");
     put(&file, turned_jpeg(60, 40, 6));
-    // As the picture is stored; as it is seen.
+    // As the picture is stored; as it is displayed.
     for (size, first) in [([30, 20], "a column"), ([20, 30], "a row")] {
         put(&folder.path().join("cat_depth.png"), levels_png(size[0], size[1]));
         let picture = near(&file, NearEnd::White).unwrap();
@@ -215,7 +215,7 @@ fn gdepth_opens_with_its_near_and_far() {
             let picture = opened(&file);
             assert_eq!((picture.container, picture.near_far_m), (DepthContainer::GDepth, Some([0.5, 8.0])));
             let at = |x: usize| f64::from(picture.depth.values[15 * 40 + x]);
-            // JPEG's levels are off by some.
+            // JPEG changes the levels a little.
             assert!((at(0) - 0.5).abs() < 0.15 && (at(39) - 8.0).abs() < 1.6, "{} {}", at(0), at(39));
             let d = 20.0 / 39.0;
             let middle = if format == "RangeInverse" { 8.0 * 0.5 / (8.0 - d * 7.5) } else { 0.5 + d * 7.5 };
@@ -254,7 +254,7 @@ fn gdepth_that_is_broken_names_its_place() {
         bytes[at..at + to.len()].copy_from_slice(to.as_bytes());
         bytes
     };
-    // A piece of the extended XMP is of another.
+    // A piece of the extended XMP belongs to another.
     let text = refused_of(&{
         let mut bytes = whole.clone();
         let guid = b"36BE52D449F3E6B9760D7602FF75168D";
@@ -294,7 +294,7 @@ fn dynamic_depth_opens_with_its_near_and_far() {
         ("android/depthmap", &depth),
         ("android/confidencemap", &confidence),
     ];
-    // Things between and behind that no length tells of.
+    // Data between and behind the items that no length accounts for.
     for (things, between, behind) in [
         (&alone[..], &b""[..], &b""[..]),
         (&nested, b"", b""),
@@ -314,7 +314,7 @@ fn dynamic_depth_opens_with_its_near_and_far() {
             assert_eq!(pixels(&picture).pixels[0][1] > 0.4, things.len() > 1);
         }
     }
-    // As Pixels write them.
+    // As Pixel phones write them.
     put(
         &file,
         dynamic_depth_jpeg(

@@ -85,7 +85,7 @@ fn of_disconnected_models_the_one_with_the_most_pictures() {
         "{:?}",
         capture.remarks
     );
-    // Who names the other one gets it.
+    // Naming the other one selects it.
     assert_eq!(open(&folder.path().join("sparse/0")).unwrap().views.len(), 1);
 }
 
@@ -184,7 +184,7 @@ fn visual_sfm() {
         write(folder.join("model.nvm"), text).unwrap();
     };
     same_cameras(CameraFormat::Nvm, |folder, cameras| written(folder, cameras, 0.0));
-    // What is measured at m is ideally at m(1 + r·m²).
+    // A point measured at m is ideally at m(1 + r·m²).
     let folder = tempfile::tempdir().unwrap();
     pictures_and_mesh(folder.path(), &cameras(&NAMES));
     written(folder.path(), &cameras(&NAMES), -0.2);
@@ -193,7 +193,7 @@ fn visual_sfm() {
     assert!((direction.x / direction.z - 0.5 * (1.0 - 0.2 * 0.25)).abs() < 1e-12, "{direction}");
 }
 
-/// A camera of a chunk that is half the size of the world, and turned in it.
+/// A camera of a chunk that is scaled by a half relative to the world, and rotated.
 fn metashape(folder: &Path, cameras: &[Camera], calibration: &str) {
     let turn = DMat3::from_rotation_y(0.7);
     let rows = |matrix: DMat3| matrix.transpose().to_cols_array().map(|entry| entry.to_string()).join(" ");

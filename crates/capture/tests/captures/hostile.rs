@@ -1,4 +1,4 @@
-//! Captures that were made to do harm: nothing outside the folder is read, nothing is believed that a file counts, nothing takes long.
+//! Malicious captures: nothing outside the folder is read, counts in files are not trusted, nothing takes long.
 
 use crate::made::{PLY, SIZE, cameras, change, colmap, names, open, picture, refused};
 use std::fs::{create_dir_all, remove_dir_all, remove_file, write};
@@ -110,7 +110,7 @@ fn deep_nesting_is_refused() {
     let json = folder("transforms.json", format!("{{\"frames\": {}}}", deep("[", "]")));
     assert!(json.contains("recursion limit"), "{json}");
     folder("cameras.xml", format!("<document><chunk>{}</chunk></document>", deep("<a>", "</a>")));
-    // What takes a parser much more than its text.
+    // Content that takes a parser much more memory than its text.
     let objects = folder("transforms.json", format!("{{\"frames\": [{}0]}}", "{\"\":0},".repeat(4_000_000)));
     assert!(objects.contains("more than 200000 objects"), "{objects}");
     let attributes: String = (0..200_000).map(|k| format!(" a{k}=\">\"")).collect();

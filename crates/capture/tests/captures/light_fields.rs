@@ -1,4 +1,4 @@
-//! Light fields in the layouts that people have: which views, where each was taken from, what is missing, which way rows run.
+//! Light fields in common layouts: which views there are, their positions, what is missing, which way rows run.
 
 use crate::made_light::{PARAMETERS, SIDE, attributes, disparity_pfm, grid, pfm, put, save, view};
 use capture::{
@@ -14,7 +14,7 @@ fn open(path: &Path) -> Result<LightField, CaptureError> {
     open_light_field(path, &LightFieldOptions::default(), &Unwatched)
 }
 
-/// The one sentence of what does not open.
+/// The error of a path that does not open.
 fn refused(path: &Path) -> String {
     let text = open(path).unwrap_err().to_string();
     assert!(text.contains(": ") && text.ends_with(')') && !text.contains('\n'), "{text}");
@@ -27,7 +27,7 @@ fn opened(folder: &Path) -> LightField {
     open(folder).unwrap()
 }
 
-/// Whether each view stands where its picture was made: that of (column, row) of a grid of `columns` × `rows`.
+/// Whether each view has the position of its picture: that of (column, row) of a grid of `columns` × `rows`.
 fn assert_grid(field: &LightField, columns: u32, rows: u32) {
     assert_eq!(field.grid, Some([columns, rows]));
     assert_eq!(field.size, [SIDE; 2]);
@@ -70,12 +70,12 @@ fn layouts_with_row_and_column_in_the_names() {
         let folder = tempfile::tempdir().unwrap();
         grid(folder.path(), 3, 3, name);
         put(&folder.path().join("parameters.cfg"), PARAMETERS);
-        // What is none of the views.
+        // Files that are not views.
         put(&folder.path().join("mask_00_07.png"), "no picture");
         let field = opened(folder.path());
         assert_eq!((field.layout, field.views.len(), field.reference), (layout, 9, 4), "{}", name(0, 0));
         if layout == ViewLayout::Positions {
-            // Columns run to the left by their places, which the pictures do not say.
+            // The names say that columns run to the left, the pictures do not.
             for (subaperture, expected) in field
                 .views
                 .iter()
@@ -190,7 +190,7 @@ fn unusable_views_are_reported_and_the_others_used() {
     ] {
         assert!(text.contains(expected), "{expected}: {text}");
     }
-    // A picture that breaks off behind its header.
+    // A picture that is truncated after its header.
     let file = folder.path().join("2_1.png");
     let bytes = std::fs::read(&file).unwrap();
     put(&file, &bytes[..bytes.len() / 2]);
@@ -271,7 +271,7 @@ fn a_list_of_views() {
         let text = refused(folder.path());
         assert!(text.contains(expected), "{text}");
     }
-    // Files outside are nobody's views.
+    // Files outside are not views.
     let outside = tempfile::tempdir().unwrap();
     save(&view(0.0, 0.0), &outside.path().join("secret.png"));
     put(
@@ -295,7 +295,7 @@ fn disparities_of_the_files_that_lie_with_the_views() {
         (disparity.map.meaning, disparity.map.range().unwrap())
     };
     assert!(open(folder.path()).unwrap().disparity.is_none());
-    // Colours that are a code, as JPEG and as PNG.
+    // Colour-coded maps, as JPEG and as PNG.
     for name in ["disparity.jpg", "disparity.png"] {
         let code = |x: u32, _| image::Rgb([4 * x as u8, 255 - 4 * x as u8, 40]);
         image::RgbImage::from_fn(SIDE, SIDE, code).save(path(name)).unwrap();
@@ -349,7 +349,7 @@ fn folders_of_nothing_get_their_error() {
         "{text}"
     );
     assert!(detect_capture_kind(&folder.path().join("gone")).is_err());
-    // Photographs without cameras are no light field.
+    // Photographs without cameras are not a light field.
     for k in 0..9 {
         save(&view(f64::from(k), 0.0), &folder.path().join(format!("IMG_2023_{k:04}.jpg")));
     }
@@ -359,7 +359,7 @@ fn folders_of_nothing_get_their_error() {
     }
 }
 
-/// A folder of the shared reference data; says so loudly if it is absent.
+/// A folder of the shared reference data; prints a line if it is absent.
 fn shared(name: &str) -> Option<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/lightfield").join(name);
     if folder.exists() {

@@ -1,4 +1,4 @@
-//! Damaged light fields and pictures with depth: never a panic, never long, never much memory.
+//! Damaged light fields and pictures with depth: no panic, no long run, no excessive memory.
 //!
 //! Ten seeds a kind, half of the mutants with changed bytes, half with a changed structure; `CAPTURE_MUTANTS=10000` makes as many of *each*
 //! kind, by default it is a hundredth of that.
@@ -19,10 +19,10 @@ use scene::LoadOptions;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// Seeds a kind.
+/// Seeds per kind.
 const SEEDS: usize = 10;
 
-/// How many mutants a seed has.
+/// The number of mutants of a seed.
 fn mutants() -> usize {
     let all = std::env::var("CAPTURE_MUTANTS").ok().and_then(|all| all.parse().ok()).unwrap_or(100);
     usize::div_ceil(all, SEEDS)

@@ -1,4 +1,4 @@
-//! Captures made in the test: small pictures around a tetrahedron.
+//! Synthetic captures: small pictures around a tetrahedron.
 
 use capture::{Capture, CaptureError, CaptureOptions};
 use glam::{DMat3, DQuat, DVec3};
@@ -53,7 +53,7 @@ pub fn pictures_and_mesh(folder: &Path, cameras: &[Camera]) {
     write(folder.join("mesh.ply"), PLY).unwrap();
 }
 
-/// A tetrahedron about the origin.
+/// A tetrahedron around the origin.
 pub const PLY: &str = "ply\nformat ascii 1.0\ncomment made by hand\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
     element face 4\nproperty list uchar int vertex_indices\nend_header\n\
     -1 -0.5 -0.5\n1 -0.5 -0.5\n0 -0.5 1\n0 1 0\n3 0 1 2\n3 0 3 1\n3 1 3 2\n3 2 3 0\n";
@@ -90,7 +90,7 @@ pub fn names(capture: &Capture) -> Vec<&str> {
     capture.views.iter().map(|view| view.name.as_str()).collect()
 }
 
-/// Opens a capture that cannot be opened: the one sentence, `FILE: what (what to do)`.
+/// The error of a capture that cannot be opened: one sentence, `FILE: what (what to do)`.
 pub fn refused(folder: &Path) -> String {
     let text = open(folder).unwrap_err().to_string();
     assert!(

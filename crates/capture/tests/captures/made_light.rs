@@ -1,4 +1,4 @@
-//! Light fields and pictures with depth made in the test: waves before waves, and the containers that others write.
+//! Synthetic light fields and pictures with depth: waves before waves, and the containers that other programs write.
 
 use base64::Engine;
 use exr::prelude as ox;
@@ -11,12 +11,12 @@ use std::path::Path;
 /// Width and height of views.
 pub const SIDE: u32 = 64;
 
-/// Disparities of the left and the right half, px a step.
+/// Disparities of the left and the right half, px per step.
 pub fn disparity(x: u32) -> f64 {
     if x < SIDE / 2 { 1.5 } else { -1.0 }
 }
 
-/// What the view at (x, y) shows: x right, y down.
+/// The picture of the view at (x, y): x right, y down.
 pub fn view(x: f64, y: f64) -> RgbImage {
     let wave = |x: f64, y: f64| {
         0.5 + 0.12 * (x * 0.9 + 1.7 * (y * 0.31).sin()).sin()
@@ -29,13 +29,13 @@ pub fn view(x: f64, y: f64) -> RgbImage {
     })
 }
 
-/// Saves a picture below folders that may not be there yet.
+/// Saves a picture, creating its folders.
 pub fn save(picture: &RgbImage, file: &Path) {
     create_dir_all(file.parent().unwrap()).unwrap();
     picture.save(file).unwrap();
 }
 
-/// A grid of views, whose names `name` tells of column and row.
+/// A grid of views; `name` returns their names from column and row.
 pub fn grid(folder: &Path, columns: u32, rows: u32, name: impl Fn(u32, u32) -> String) {
     for (column, row) in (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row))) {
         let at = |index: u32, count: u32| f64::from(index) - f64::from((count - 1) / 2);
@@ -77,7 +77,7 @@ pub fn exr(file: &Path, width: usize, height: usize, channels: &[Channel<'_>]) {
     ox::Image::from_layer(layer).write().to_file(file).unwrap();
 }
 
-/// The bytes of a picture in a form.
+/// The bytes of a picture in a format.
 pub fn encoded(picture: impl Into<image::DynamicImage>, form: ImageFormat) -> Vec<u8> {
     let mut bytes = Cursor::new(Vec::new());
     picture.into().write_to(&mut bytes, form).unwrap();
@@ -124,7 +124,7 @@ pub fn jpeg(width: u32, height: u32, grey: u8) -> Vec<u8> {
     encoded(RgbImage::from_pixel(width, height, Rgb([grey; 3])), ImageFormat::Jpeg)
 }
 
-/// A JPEG that wants to be turned.
+/// A JPEG with an EXIF orientation.
 pub fn turned_jpeg(width: u32, height: u32, orientation: u8) -> Vec<u8> {
     with_segments(&jpeg(width, height, 90), &exif(orientation))
 }
@@ -168,14 +168,14 @@ pub fn gdepth_jpeg(xmp: &str, depth: &[u8], original: Option<&[u8]>, piece: Opti
     with_segments(&jpeg(80, 60, 90), &segments)
 }
 
-/// A range as GDepth says it.
+/// A range in GDepth's properties.
 pub fn gdepth_xmp(format: &str, near: &str, far: &str) -> String {
     format!(
         "GDepth:Format=\"{format}\" GDepth:Near=\"{near}\"\nGDepth:Far=\"{far}\" GDepth:Mime=\"image/png\""
     )
 }
 
-/// A JPEG with Dynamic Depth: what follows its picture, by name and length; what says the range.
+/// A JPEG with Dynamic Depth: the items that follow its picture, by name and length, and the properties of the range.
 pub fn dynamic_depth_jpeg(xmp: &str, things: &[(&str, &[u8])], between: &[u8], behind: &[u8]) -> Vec<u8> {
     let items: String = things
         .iter()
@@ -206,7 +206,7 @@ pub fn dynamic_depth_jpeg(xmp: &str, things: &[(&str, &[u8])], between: &[u8], b
     bytes
 }
 
-/// A range as Dynamic Depth says it.
+/// A range in Dynamic Depth's properties.
 pub fn dynamic_depth_xmp(format: &str, near: &str, far: &str, units: &str) -> String {
     format!(
         "<DepthMap:Format>{format}</DepthMap:Format>\n<DepthMap:Near>{near}</DepthMap:Near>\n<DepthMap:Far>{far}</DepthMap:Far>\n\
@@ -218,14 +218,14 @@ pub fn dynamic_depth_xmp(format: &str, near: &str, far: &str, units: &str) -> St
 pub const PARAMETERS: &str = "[intrinsics]\nfocal_length_mm = 100.0\nsensor_size_mm = 35.0\n\n[extrinsics]\nnum_cams_x = 3\nnum_cams_y = 3\n\
     baseline_mm = 11.0\nfocus_distance_m = 2.3\n[meta]\ndisp_min = -1.0\ndisp_max = 1.5\n";
 
-/// Attributes as HCI wrote them before.
+/// Attributes as HCI wrote them earlier.
 pub fn attributes(side: u32) -> String {
     format!(
         "{side} //xRes\n{side} //yRes\n3 //hRes\n3 //vRes\n6.144e+002 //dH\n288 //shift\n9.375 //focalLength\n-10.8 //min_disp\n16.2 //max_disp\n"
     )
 }
 
-/// Writes a file below folders that may not be there yet.
+/// Writes a file, creating its folders.
 pub fn put(file: &Path, bytes: impl AsRef<[u8]>) {
     create_dir_all(file.parent().unwrap()).unwrap();
     write(file, bytes).unwrap();

@@ -1,4 +1,4 @@
-//! Captures as people have them, and as nobody should: opened by what the crate shows of itself.
+//! Captures as people have them, and malicious ones, opened through the public interface of the crate.
 
 mod depth_pictures;
 mod formats;

@@ -1,4 +1,4 @@
-//! Meshes of PLY, OBJ and glTF: the same tetrahedron however it is written, and which of several files is the surface.
+//! Meshes in PLY, OBJ and glTF: the same tetrahedron in every encoding, and the choice among several files.
 
 use crate::made::{PLY, cameras, colmap, open, pictures_and_mesh, refused};
 use capture::CaptureOptions;
@@ -42,7 +42,7 @@ fn ply_as_text_with_nothing_but_positions() {
     assert_tetrahedron(&scene_of("odd name.PLY", PLY.replace('\n', " \r\n")));
 }
 
-/// A binary PLY with properties in an odd order, of odd types, and more of them than wanted.
+/// A binary PLY with properties in an unusual order, of unusual types, and superfluous ones.
 fn binary_ply(is_big: bool) -> Vec<u8> {
     let name = if is_big { "binary_big_endian" } else { "binary_little_endian" };
     let mut ply = format!(
@@ -188,7 +188,7 @@ fn obj_that_is_malformed_names_its_place() {
     }
 }
 
-/// A glTF of the tetrahedron, its data in it.
+/// A glTF of the tetrahedron with embedded data.
 fn gltf() -> String {
     let positions = [[-1.0f32, -0.5, -0.5], [1.0, -0.5, -0.5], [0.0, -0.5, 1.0], [0.0, 1.0, 0.0]];
     let mut bytes: Vec<u8> = positions.as_flattened().iter().flat_map(|value| value.to_le_bytes()).collect();

@@ -1,4 +1,4 @@
-//! Mosaics of micro-images: views to a mosaic and back, in bounded memory; what is none.
+//! Mosaics of micro-images: views to a mosaic and back, in bounded memory; pictures that are not mosaics.
 
 use crate::made_light::{SIDE, encoded, put, view};
 use capture::{
@@ -115,7 +115,7 @@ fn pictures_that_are_no_mosaic() {
     let text = open(&file, Some([400, 400])).unwrap_err();
     assert!(text.contains("pitch: 640 × 480 px hold no micro-images of 400 × 400 px"), "{text}");
     assert!(open(&file, Some([0, 3])).is_err() && open(&file, Some([1, 1])).is_err());
-    // What is left over at the border is told.
+    // The remainder at the border is reported.
     let field = open(&file, Some([9, 9])).unwrap();
     assert_eq!(field.size, [71, 53]);
     assert!(
@@ -134,7 +134,7 @@ fn mosaics_beyond_the_limits() {
     let mosaic = Mosaic::open(&file, [5, 5]).unwrap();
     let small = LoadOptions { max_memory: 40_000, ..LoadOptions::default() };
     assert!(mosaic.views(&[[0, 0]], &small).unwrap_err().to_string().contains("beyond the limit"));
-    // The file is another by now.
+    // The file has changed.
     RgbImage::new(90, 90).save(&file).unwrap();
     let text = mosaic.views(&[[0, 0]], &LoadOptions::default()).unwrap_err().to_string();
     assert!(text.contains("is 90 × 90 px"), "{text}");

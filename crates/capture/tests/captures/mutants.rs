@@ -1,4 +1,4 @@
-//! Damaged files of every kind: never a panic, never long, never much memory, and never a picture from outside the folder.
+//! Damaged files of every kind: no panic, no long run, no excessive memory, and never a picture from outside the folder.
 //!
 //! Ten seeds a kind, each opened in some hundred forms: half of them with changed bytes, half with a changed structure (counts, indices,
 //! units, fields and lines that are missing or twice). `CAPTURE_MUTANTS=10000` makes as many in all, in ten seconds of a processor's
@@ -12,16 +12,16 @@ use std::time::{Duration, Instant};
 
 /// The kinds of files.
 const KINDS: usize = 6;
-/// Seeds a kind.
+/// Seeds per kind.
 const SEEDS: usize = 10;
 
-/// How many mutants a seed has.
+/// The number of mutants of a seed.
 fn mutants() -> usize {
     let all = std::env::var("CAPTURE_MUTANTS").ok().and_then(|all| all.parse().ok()).unwrap_or(1000);
     usize::div_ceil(all, KINDS * SEEDS)
 }
 
-/// Opens mutants of the files that `seed` writes into a folder with pictures and a mesh; it gives them back.
+/// Opens mutants of the files that `seed` writes into a folder with pictures and a mesh, and returns.
 fn survive(seed: impl Fn(&Path, &[Camera], usize) -> Vec<PathBuf>) {
     let (mut opened, mut refused) = (0, 0);
     for index in 0..SEEDS {
@@ -75,19 +75,19 @@ fn survive(seed: impl Fn(&Path, &[Camera], usize) -> Vec<PathBuf>) {
     }
 }
 
-/// The most memory that this process ever had, where the system tells, bytes.
+/// The peak memory of this process, bytes, if the system reports it.
 pub fn peak_memory() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
     Some(line.trim().trim_end_matches(" kB").parse::<u64>().ok()? << 10)
 }
 
-/// One of these.
+/// A random element.
 fn pick<'a, T: ?Sized>(random: &mut Random, of: &[&'a T]) -> &'a T {
     of[random.below(of.len())]
 }
 
-/// Changes what a file says and leaves its form: a number, a field, a line; of binary files a count.
+/// Changes the content of a file but not its form: a number, a field, a line; in binary files a count.
 pub fn restructure(bytes: &mut Vec<u8>, random: &mut Random) {
     const NUMBERS: [&str; 14] = [
         "0",
@@ -135,7 +135,7 @@ pub fn restructure(bytes: &mut Vec<u8>, random: &mut Random) {
             let other = random.below(lines.len());
             lines.swap(at, other);
         }
-        // A field: what stands between spaces, commas, quotes, brackets.
+        // A field: the text between spaces, commas, quotes, brackets.
         change => {
             let line = &mut lines[at];
             let is_part = |c: char| c.is_whitespace() || ",\"[]{}<>:".contains(c);

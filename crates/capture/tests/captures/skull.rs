@@ -6,7 +6,7 @@ use scene::{LoadOptions, View};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// The folder of the capture; says so loudly if it is absent.
+/// The folder of the capture; prints a line if it is absent.
 fn skull() -> Option<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/photogrammetry/skull");
     if folder.is_dir() {
@@ -33,7 +33,7 @@ fn it_opens_without_options() {
     assert!(capture.cameras.ends_with("sparse_bin/images.bin") && capture.mesh.ends_with("mesh.ply"));
     assert!(capture.remarks.iter().all(|remark| !remark.is_incomplete), "{:?}", capture.remarks);
     assert!(capture.scene.materials[0].unlit && capture.scene.materials[0].double_sided);
-    // The camera was moved about a skull that stood upright: its world's up is none of the axes.
+    // The camera was moved around an upright skull: the up direction of its world is none of the axes.
     let up = capture.upright.inverse() * glam::DVec3::Y;
     let tilts: Vec<f64> = capture.views.iter().map(|view| view.up().dot(up)).collect();
     assert!(tilts.iter().sum::<f64>() / 66.0 > 0.7, "{tilts:?}");
@@ -79,7 +79,7 @@ fn its_mesh_lies_inside_its_pictures() {
 
 #[test]
 fn the_skull_is_where_its_mesh_is() {
-    // It is bright before a dark background: what the mesh covers and what is bright overlap; with mirrored or turned poses they
+    // It is bright before a dark background: the mesh and the bright pixels overlap; with mirrored or rotated poses they
     // would do so less.
     let Some(folder) = skull() else { return };
     let capture = open(&folder).unwrap();
@@ -91,7 +91,7 @@ fn the_skull_is_where_its_mesh_is() {
             let Some(pixel) = view.project(*position).filter(|pixel| view.lens.is_in_picture(*pixel)) else {
                 continue;
             };
-            // A few pixels about each vertex.
+            // A few pixels around each vertex.
             for (x, y) in (-5..=5).flat_map(|y| (-5..=5).map(move |x| (x, y))) {
                 let (x, y) = (pixel.x as i64 + x, pixel.y as i64 + y);
                 if (0..width).contains(&x) && (0..height).contains(&y) {

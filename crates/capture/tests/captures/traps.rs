@@ -1,4 +1,4 @@
-//! What people trip over with captures of photographs, each by files that have it: they open right, or say the one right sentence.
+//! Common pitfalls of captures of photographs, each with files that have it: they open correctly, or give the right error.
 
 use crate::made::{SIZE, cameras, change, colmap, names, open, picture, refused};
 use scene::LoadOptions;
@@ -49,7 +49,7 @@ fn trap_1_double_spaces_tabs_and_windows_line_ends() {
 #[test]
 fn trap_1_decimal_commas() {
     let folder = colmap(&NAMES);
-    // Names keep their points.
+    // Names keep their dots.
     change(&folder.path().join("sparse/0/images.txt"), |text| text.replace('.', ",").replace(",jpg", ".jpg"));
     change(&folder.path().join("sparse/0/cameras.txt"), |text| text.replace("50 50", "50,0 50,0"));
     assert_poses(folder.path());
@@ -127,7 +127,7 @@ fn trap_3_an_unsupported_camera_model() {
     );
 }
 
-/// Writes a JPEG of 60 × 40 whose EXIF data say that it wants to be turned by 90°.
+/// Writes a JPEG of 60 × 40 px whose EXIF orientation is a rotation by 90°.
 fn turned_picture(file: &Path, [width, height]: [u32; 2]) {
     let exif = b"II*\0\x08\0\0\0\x01\0\x12\x01\x03\0\x01\0\0\0\x06\0\0\0\0\0\0\0";
     let mut encoder = image::codecs::jpeg::JpegEncoder::new(std::fs::File::create(file).unwrap());
@@ -138,9 +138,9 @@ fn turned_picture(file: &Path, [width, height]: [u32; 2]) {
 #[test]
 fn trap_4_exif_rotation_is_followed_only_where_the_camera_was_turned_too() {
     let folder = colmap(&NAMES);
-    // As COLMAP since 3.7 has it: the camera is that of the picture as it is stored.
+    // As in COLMAP since 3.7: the camera is that of the picture as it is stored.
     turned_picture(&folder.path().join("images/a.jpg"), SIZE);
-    // As programs have it that turn pictures first.
+    // As in programs that rotate pictures first.
     turned_picture(&folder.path().join("images/b.jpg"), [SIZE[1], SIZE[0]]);
     let capture = open(folder.path()).unwrap();
     let orientations: Vec<_> =
