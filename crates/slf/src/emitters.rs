@@ -2,6 +2,7 @@
 
 use crate::light_tree::{LightBounds, LightTree};
 use glam::{DVec2, DVec3, Vec3};
+use numerics::luminance;
 use scene::{Scene, SurfacePoint};
 use std::collections::HashMap;
 
@@ -109,7 +110,7 @@ impl Emitter {
 /// merely because the few texels examined here are dark.
 fn mean_emission(scene: &Scene, triangle: u32) -> f64 {
     const SIDE: u32 = 8;
-    let luminance = |rgb: Vec3| f64::from(rgb.dot(Vec3::new(0.2126, 0.7152, 0.0722)));
+    let luminance = |rgb: Vec3| f64::from(luminance(rgb.to_array()));
     let peak = luminance(scene.material_of(triangle).emissive);
     if scene.material_of(triangle).emissive_texture.is_none() {
         return peak;

@@ -7,7 +7,8 @@
 //! cells: nowhere does the radiance exceed four times the value its cell was chosen for, so the sun neither vanishes
 //! nor causes fireflies. Everything that emits light has a density above 0.
 
-use glam::{DVec2, DVec3, Vec3};
+use glam::{DVec2, DVec3};
+use numerics::luminance;
 use scene::{Environment, EnvironmentMap, World};
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -36,8 +37,7 @@ impl EnvironmentLight {
         // centre.
         let edge = |row: i64| map.row_latitude((row as f64 - 0.5).clamp(0.0, height as f64)).sin();
         let sines: Vec<[f64; 2]> = (0..=height).map(|row| [edge(row), edge(row + 1)]).collect();
-        let luminance =
-            |column, row| f64::from(map.texel(column, row).dot(Vec3::new(0.2126, 0.7152, 0.0722)));
+        let luminance = |column, row| f64::from(luminance(map.texel(column, row).to_array()));
         let (mut rows, mut cells) = (Vec::new(), Vec::new());
         for (row, [top, bottom]) in (0i64..).zip(&sines) {
             let cell_weight = |column: i64| {
@@ -113,6 +113,7 @@ fn invert_cumulative(steps: &[f64], u: f64) -> (usize, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::Vec3;
 
     /// A dim sky with a sun of one texel.
     fn sunny(sun: f32) -> World {

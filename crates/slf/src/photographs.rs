@@ -19,7 +19,6 @@ mod direct;
 mod error;
 mod exposures;
 mod fitting;
-mod numbers;
 mod observations;
 mod options;
 mod solver;

@@ -21,11 +21,11 @@ mod exposure_observations;
 
 pub use exposure::Exposure;
 
-use super::numbers::{median, solve_positive};
 use super::observations::Observations;
 use super::texels::{DirectionGrid, Texels};
 use equations::NormalEquations;
 use exposure_observations::{background_points, surface_points};
+use numerics::{scaled_mad, solve_positive};
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;
 use scene::View;
@@ -82,9 +82,9 @@ pub(crate) fn solve_exposures(
                 right.iter_mut().zip(part_right).for_each(|(sum, value)| *sum += trust * value);
                 residuals.extend(errors);
             }
-            if let Some(median_residual) = median(&mut residuals, f64::total_cmp) {
+            if let Some(deviation) = scaled_mad(&mut residuals) {
                 // Factor for a normal distribution.
-                *scale = (1.4826 * median_residual).max(MIN_SCALE_STOPS);
+                *scale = deviation.max(MIN_SCALE_STOPS);
             }
         }
         let white_weight = if round < ROUNDS / 2 { INITIAL_WHITE_WEIGHT } else { WHITE_WEIGHT };

@@ -23,10 +23,10 @@ pub(crate) use inlier_map::InlierMap;
 use super::fitting::{
     CalibratedObservations, Kernel, MIN_ERROR, ResidualSample, Workspace, direction_to_eye, robust_mean,
 };
-use super::numbers::median;
 use super::texels::TexelBlocks;
 use glam::DVec2;
 use inlier_map::TileGrid;
+use numerics::upper_median;
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;
 use scene::View;
@@ -77,7 +77,7 @@ pub(crate) fn detect_transients(
         for (texel, errors) in &errors_by_texel {
             all[blocks.block_of(texels, *texel)].extend(errors.iter().map(component));
         }
-        all.iter_mut().map(|all| median(all, f32::total_cmp).unwrap_or(0.0).max(MIN_ERROR)).collect()
+        all.iter_mut().map(|all| upper_median(all).unwrap_or(0.0).max(MIN_ERROR)).collect()
     };
     let (constant_scales, prediction_scales) =
         (block_scales(|errors| errors.constant_error), block_scales(|errors| errors.prediction_error));

@@ -18,8 +18,8 @@
 //! weighted mean count.
 
 use super::lattice::{CellPosition, Displacement, Lattice};
-use crate::photographs::numbers::{median, solve_positive};
 use glam::{DVec2, Vec2};
+use numerics::{scaled_mad, solve_positive};
 use scene::View;
 
 /// A point where a photograph is compared with the prediction.
@@ -116,7 +116,7 @@ pub(crate) fn refine_displacement(
         })
         .collect();
     // Factor for a normal distribution.
-    let scale = (1.4826 * median(&mut deviations.clone(), f64::total_cmp)?).max(MIN_SCALE);
+    let scale = scaled_mad(&mut deviations.clone())?.max(MIN_SCALE);
     let mut sums = vec![TileSums::default(); means.len()];
     for ((comparison, place), deviation) in comparisons.iter().zip(&places).zip(deviations) {
         let inlier_weight = 1.0 / (1.0 + (deviation / (OUTLIER_SCALES * scale)).powi(2)).powi(2);

@@ -1,7 +1,7 @@
 //! Normal equations of the exposures.
 
 use super::exposure_observations::ExposureObservation;
-use crate::photographs::numbers::median;
+use numerics::upper_median;
 
 /// Layout of the unknowns of the normal equations.
 pub(super) struct NormalEquations<'a> {
@@ -38,7 +38,7 @@ impl NormalEquations<'_> {
                 if all.len() < 2 {
                     continue;
                 }
-                let middle = median(&mut all, f64::total_cmp).unwrap_or(0.0);
+                let middle = upper_median(&mut all).unwrap_or(0.0);
                 let (mut weights, mut mean) = (0.0, 0.0);
                 let mut touched = Vec::with_capacity(point.len() * 3);
                 for observation in point {

@@ -6,10 +6,10 @@
 
 use super::robust_averaging::{Sample, robust_mean, roots};
 use crate::photographs::exposures::Exposure;
-use crate::photographs::numbers::ramp;
 use crate::photographs::observations::PackedPicture;
 use crate::photographs::texels::DirectionGrid;
 use glam::Vec3;
+use numerics::smoothstep;
 use rayon::prelude::*;
 use scene::View;
 
@@ -72,7 +72,7 @@ pub(crate) fn fit_background(
         sphere.smoothed(&cells.iter().map(agreement_term).collect::<Vec<_>>(), PRIOR_WEIGHT);
     let light_term = |(cell, agreement_around): (&DirectionStats, &Vec3)| {
         let agreement = if cell.views >= 2 { cell.agreement } else { agreement_around.x };
-        let weight = cell.weight * ramp(agreement, TRUSTED_AGREEMENT);
+        let weight = cell.weight * smoothstep(agreement, TRUSTED_AGREEMENT);
         (cell.light * weight, weight)
     };
     sphere.smoothed(&cells.iter().zip(&smoothed_agreement).map(light_term).collect::<Vec<_>>(), PRIOR_WEIGHT)

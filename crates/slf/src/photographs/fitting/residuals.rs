@@ -8,10 +8,10 @@ use super::calibrated::CalibratedObservations;
 use super::directional_regression::{Kernel, MAX_PHOTOGRAPHS, Regression, ResidualSample, direction_to_eye};
 use super::mirrored::Mirrored;
 use super::robust_averaging::Sample;
-use crate::photographs::numbers::median;
 use crate::photographs::texels::TexelBlocks;
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
+use numerics::upper_median;
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;
 
@@ -257,8 +257,7 @@ impl CandidateModels<'_> {
             (block, sums)
         });
         let confidence = blocks.quotients(&block_sums(blocks, sums), [0.0, 1.0]);
-        let block_median =
-            |errors: &mut Vec<f32>| median(errors, f32::total_cmp).unwrap_or(0.0).max(MIN_ERROR);
+        let block_median = |errors: &mut Vec<f32>| upper_median(errors).unwrap_or(0.0).max(MIN_ERROR);
         (confidence, errors.iter_mut().map(block_median).collect())
     }
 

@@ -8,9 +8,9 @@ use super::depth_map::MAX_EDGE_DISTANCE;
 use super::loading::{LoadedView, ViewLoader};
 use super::packed_picture::PackedPicture;
 use crate::photographs::error::PhotographError;
-use crate::photographs::numbers::ramp;
 use crate::photographs::texels::{DirectionGrid, Texels};
 use glam::{DVec2, DVec3, Vec3};
+use numerics::smoothstep;
 use progress::{Progress, Stage};
 use rayon::prelude::*;
 use scene::{Scene, View};
@@ -230,7 +230,7 @@ fn encode_light(light: Vec3, brightest: f32) -> [u16; 3] {
 /// Weight of a position at this distance from a depth edge.
 fn edge_weight(pixels: u8, ramp_px: [f32; 2]) -> f32 {
     // Distances are measured no farther.
-    if pixels >= MAX_EDGE_DISTANCE { 1.0 } else { ramp(f32::from(pixels), ramp_px) }
+    if pixels >= MAX_EDGE_DISTANCE { 1.0 } else { smoothstep(f32::from(pixels), ramp_px) }
 }
 
 /// A loaded photograph, to determine what it observes.
@@ -249,7 +249,7 @@ impl ViewVisibility<'_> {
     /// Weight of a surface position with this normal, in [0, 1]; 0 if not observed.
     pub fn surface_weight(&self, position: DVec3, normal: Vec3) -> f32 {
         let cosine = normal.dot((self.view.position() - position).as_vec3().normalize_or_zero()).abs();
-        let angle_weight = ramp(cosine, GRAZING_COSINES);
+        let angle_weight = smoothstep(cosine, GRAZING_COSINES);
         if angle_weight == 0.0 {
             return 0.0;
         }
@@ -303,7 +303,7 @@ impl ViewVisibility<'_> {
 /// Weight of a position by its distance from the picture's border.
 pub(crate) fn border_weight(picture: &PackedPicture, place: DVec2) -> f32 {
     let size = DVec2::new(f64::from(picture.width), f64::from(picture.height));
-    ramp(place.min(size - place).min_element() as f32, BORDER_RAMP_PX)
+    smoothstep(place.min(size - place).min_element() as f32, BORDER_RAMP_PX)
 }
 
 fn quantize_255(share: f32) -> u8 {

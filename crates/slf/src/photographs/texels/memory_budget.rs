@@ -1,8 +1,8 @@
 //! Resolutions of photographs and texels that fit the available memory.
 
-use crate::photographs::numbers::median;
 use atlas::Atlas;
 use glam::DVec3;
+use numerics::upper_median;
 use scene::{Scene, View};
 
 /// Chosen resolutions and concurrency.
@@ -99,5 +99,5 @@ fn finest_pixel(scene: &Scene, views: &[View]) -> Option<f64> {
         views.iter().filter_map(pixel).min_by(f64::total_cmp)
     };
     let mut pixels: Vec<f64> = (0..scene.triangles.len()).step_by(step).filter_map(pixel_at).collect();
-    median(&mut pixels, f64::total_cmp)
+    upper_median(&mut pixels)
 }
