@@ -2,7 +2,6 @@
 //! forms; the blurs fail, as documented.
 
 use crate::test_light::*;
-use crate::test_scene::scene_of;
 use crate::{LayeredOptions, gather_blur, layered_blur};
 use glam::DVec2;
 use lens::{Camera, Picture};
@@ -10,6 +9,7 @@ use progress::Unwatched;
 use scene::Scene;
 use std::f64::consts::PI;
 use std::sync::Arc;
+use test_scenes::{scene_of, unlit};
 
 /// The share of a unit disc on one side of a chord at signed distance `c` from its centre.
 fn segment(c: f64) -> f64 {
@@ -33,10 +33,10 @@ fn cut_to_layers(scene: &Arc<Scene>, camera: &Camera) -> Picture {
 
 /// A spot at depth 9 in the middle of the picture, and a black card at depth 1.5 that is open to the right of x = `edge`.
 fn half_hidden(camera: &Camera, edge: Option<f64>) -> Arc<Scene> {
-    let spot = (spot(camera, DVec2::splat(48.0), 2.0, 9.0), paint([1.0; 3]));
+    let spot = (spot(camera, DVec2::splat(48.0), 2.0, 9.0), unlit([1.0; 3]));
     match edge {
-        None => scene_of(&[spot]),
-        Some(edge) => scene_of(&[spot, (card([-3.0, -3.0], [edge, 3.0], 1.5), paint([0.0; 3]))]),
+        None => scene_of([spot]),
+        Some(edge) => scene_of([spot, (card([-3.0, -3.0], [edge, 3.0], 1.5), unlit([0.0; 3]))]),
     }
 }
 
@@ -80,7 +80,7 @@ fn a_light_outside_the_frame_shows_within_its_circle_of_confusion() {
     let optics = camera.optics();
     let radius = optics.splat_radius_px(optics.standard_kappa(1.0 / 9.0));
     for outside in [2.5, 5.0, radius - 4.0] {
-        let scene = scene_of(&[(spot(&camera, DVec2::new(-outside, 48.0), 2.0, 9.0), paint([8.0; 3]))]);
+        let scene = scene_of([(spot(&camera, DVec2::new(-outside, 48.0), 2.0, 9.0), unlit([8.0; 3]))]);
         let measured = energy(&splatted(&scene, &camera, &unpainted(&scene)));
         // Of the spot's 4 px² of radiance 8, the part of the circles of its points that reaches in.
         let reaching = |k: u32| segment((outside - 1.0 + (f64::from(k) + 0.5) / 8.0) / radius);
@@ -93,7 +93,7 @@ fn a_light_outside_the_frame_shows_within_its_circle_of_confusion() {
         assert_eq!(energy(&cut_to_layers(&scene, &camera)), 0.0);
     }
     // Farther outside than its circle reaches, it does not show.
-    let scene = scene_of(&[(spot(&camera, DVec2::new(-radius - 3.0, 48.0), 2.0, 9.0), paint([8.0; 3]))]);
+    let scene = scene_of([(spot(&camera, DVec2::new(-radius - 3.0, 48.0), 2.0, 9.0), unlit([8.0; 3]))]);
     assert_eq!(energy(&splatted(&scene, &camera, &unpainted(&scene))), 0.0);
 }
 
@@ -103,14 +103,14 @@ const FENCE: (f64, f64, f64) = (0.6, 0.03, 0.012);
 /// A white wall in focus with a green stripe, seen through a fence of upright slats.
 fn fenced(camera: &Camera) -> Arc<Scene> {
     let (depth, period, slat) = FENCE;
-    let (black, white, green) = (paint([0.0; 3]), paint([1.0; 3]), paint([0.0, 1.0, 0.0]));
+    let (black, white, green) = (unlit([0.0; 3]), unlit([1.0; 3]), unlit([0.0, 1.0, 0.0]));
     let z = camera.focus_distance;
     let mut parts = vec![(wall(z), white), (card([0.2, -9.0], [0.3, 9.0], z * 0.9999), green)];
     parts.extend((-30..30).map(|k| {
         let left = f64::from(k) * period;
         (card([left, -2.0], [left + slat, 2.0], depth), black.clone())
     }));
-    scene_of(&parts)
+    scene_of(parts)
 }
 
 /// The share of the aperture that a wall point at `x` sees between the slats: a disc less its strips.

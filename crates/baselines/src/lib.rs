@@ -23,10 +23,6 @@ mod layered;
 mod scatter;
 #[cfg(test)]
 mod test_light;
-#[cfg(test)]
-#[path = "../../trace/src/test_scene.rs"]
-#[allow(dead_code, reason = "shared with the tests of another crate, which use all of it")]
-mod test_scene;
 mod views;
 
 pub use error::BaselineError;

@@ -1,13 +1,13 @@
 //! Light, focus, a camera and simple surfaces for the tests, and what is measured on their pictures.
 
 use crate::FirstHits;
-use crate::test_scene::{Mesh, rectangle, white};
 use glam::{DVec2, DVec3, Vec3};
 use lens::{Camera, FocusOffset, Picture};
 use progress::{Progress, Unwatched};
 use salf::{BakeOptions, Salf};
-use scene::{Material, Scene, SurfaceField, SurfacePoint};
+use scene::{Scene, SurfaceField, SurfacePoint};
 use std::sync::Arc;
+use test_scenes::Mesh;
 use trace::{OutgoingRadiance, Radiance, Tracer};
 
 /// Every surface sends its material's base colour; the background is black.
@@ -57,7 +57,7 @@ pub fn pixel_at(camera: &Camera, z: f64) -> f64 {
 pub fn card(low: [f64; 2], high: [f64; 2], z: f64) -> Mesh {
     let side = DVec3::X * (high[0] - low[0]);
     let other = DVec3::Y * (high[1] - low[1]);
-    rectangle(DVec3::new(low[0], low[1], -z), side, other)
+    Mesh::rectangle(DVec3::new(low[0], low[1], -z), side, other)
 }
 
 /// A square around the pixel position `center` of `camera`'s picture, `side` px wide when seen sharp, at depth z.
@@ -72,11 +72,6 @@ pub fn spot(camera: &Camera, center: DVec2, side: f64, z: f64) -> Mesh {
 /// A wall of depth z that fills the picture and all that may shine into it.
 pub fn wall(z: f64) -> Mesh {
     card([-9.0 * z, -9.0 * z], [9.0 * z, 9.0 * z], z)
-}
-
-/// A material of this colour.
-pub fn paint(rgb: [f32; 3]) -> Material {
-    Material { base_color: glam::Vec4::new(rgb[0], rgb[1], rgb[2], 1.0), ..white() }
 }
 
 /// What the pinhole of `camera` sees.

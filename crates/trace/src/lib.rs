@@ -12,8 +12,6 @@ mod local_space;
 mod radiance;
 mod random;
 mod ray;
-#[cfg(test)]
-mod test_scene;
 mod tracer;
 mod transparency;
 pub mod truth;

@@ -1,10 +1,10 @@
 use super::*;
 use crate::test_light::*;
-use crate::test_scene::scene_of;
 use crate::{ViewsOptions, shift_and_add};
 use glam::DVec2;
 use lens::Picture;
 use progress::Unwatched;
+use test_scenes::{scene_of, unlit};
 use trace::{Ray, Tracer};
 
 /// Views a side of the aperture.
@@ -125,7 +125,7 @@ fn line(camera: &Camera, apart_px: f64) -> std::sync::Arc<scene::Scene> {
     let kappa = apart_px / copies_apart_px(camera, 1.0, VIEWS);
     let z = 1.0 / (1.0 / camera.focus_distance - kappa);
     let pixel = pixel_at(camera, z);
-    scene_of(&[(card([0.0, -2.0 * z], [pixel, 2.0 * z], z), paint([1.0; 3]))])
+    scene_of([(card([0.0, -2.0 * z], [pixel, 2.0 * z], z), unlit([1.0; 3]))])
 }
 
 /// Local maxima along the middle row that stand out from what lies between them by a tenth of the brightest.
@@ -205,10 +205,8 @@ fn views_of_line(z: f64, focus_distance: f64) -> (Camera, Picture) {
         ..camera(320)
     };
     let pixel = pixel_at(&camera, z);
-    let scene = scene_of(&[(
-        card([0.137 * pixel, -40.0 * pixel], [1.137 * pixel, 40.0 * pixel], z),
-        paint([1.0; 3]),
-    )]);
+    let scene =
+        scene_of([(card([0.137 * pixel, -40.0 * pixel], [1.137 * pixel, 40.0 * pixel], z), unlit([1.0; 3]))]);
     let options = ViewsOptions { views_a_side: VIEWS, rays_a_pixel: 64 };
     let tracer = Tracer::new(scene.clone());
     let focus = unpainted(&scene);

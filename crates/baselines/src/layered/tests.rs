@@ -1,9 +1,9 @@
 use super::*;
 use crate::test_light::*;
-use crate::test_scene::scene_of;
 use glam::DVec2;
 use lens::FocusOffset;
 use progress::Unwatched;
+use test_scenes::{scene_of, unlit};
 
 fn picture(scene: &std::sync::Arc<scene::Scene>, camera: &Camera, layers: u32) -> Picture {
     let hits = first_hits(scene, camera, &unpainted(scene));
@@ -12,7 +12,7 @@ fn picture(scene: &std::sync::Arc<scene::Scene>, camera: &Camera, layers: u32) -
 
 #[test]
 fn a_defocused_wall_stays_uniform() {
-    let scene = scene_of(&[(wall(8.0), paint([0.5, 0.25, 2.0]))]);
+    let scene = scene_of([(wall(8.0), unlit([0.5, 0.25, 2.0]))]);
     let found = picture(&scene, &camera(40), 8);
     for (rgb, coverage) in found.radiance.iter().zip(&found.coverage) {
         let expected = [0.5, 0.25, 2.0];
@@ -29,7 +29,7 @@ fn a_point_becomes_its_circle_and_keeps_its_energy() {
         let focus = FocusOffset::new(focus.0, focus.1);
         // Before a black wall of the same focus.
         let spot = spot(&camera, DVec2::splat(48.5), 3.0, z);
-        let scene = scene_of(&[(spot, paint([1.0; 3])), (wall(z * 1.0001), paint([0.0; 3]))]);
+        let scene = scene_of([(spot, unlit([1.0; 3])), (wall(z * 1.0001), unlit([0.0; 3]))]);
         let hits = first_hits(&scene, &camera, &ByPart(scene.clone(), vec![focus]));
         let found = layered_blur(&hits, &camera, &LayeredOptions { layers: 1 }, &Unwatched).unwrap();
         assert!((energy(&found) / energy(&hits.picture()) - 1.0).abs() < 1e-4);
@@ -45,7 +45,7 @@ fn a_point_becomes_its_circle_and_keeps_its_energy() {
 fn a_sharp_card_keeps_its_edge() {
     let camera = camera(64);
     let card = card([-2.0, -2.0], [0.0, 2.0], 3.0);
-    let scene = scene_of(&[(card, paint([0.0; 3])), (wall(30.0), paint([1.0; 3]))]);
+    let scene = scene_of([(card, unlit([0.0; 3])), (wall(30.0), unlit([1.0; 3]))]);
     let found = picture(&scene, &camera, 16);
     let row = |x: usize| found.radiance[32 * 64 + x][0] / found.coverage[32 * 64 + x];
     assert!(row(31) == 0.0 && row(32) > 0.9, "{} beside {}", row(31), row(32));
@@ -56,8 +56,8 @@ fn layers_of_paint_are_cut_apart() {
     let camera = camera(128);
     // Two cards of one depth, the left one painted sharp although the lens focuses elsewhere.
     let [left, right] = [48.5, 80.5].map(|x| spot(&camera, DVec2::new(x, 64.5), 3.0, 8.0));
-    let black = paint([0.0; 3]);
-    let scene = scene_of(&[(left, paint([1.0; 3])), (right, paint([1.0; 3])), (wall(8.01), black)]);
+    let black = unlit([0.0; 3]);
+    let scene = scene_of([(left, unlit([1.0; 3])), (right, unlit([1.0; 3])), (wall(8.01), black)]);
     let focus = ByPart(scene.clone(), vec![FocusOffset::SHARP, FocusOffset::STANDARD]);
     let hits = first_hits(&scene, &camera, &focus);
     let found = layered_blur(&hits, &camera, &LayeredOptions { layers: 4 }, &Unwatched).unwrap();

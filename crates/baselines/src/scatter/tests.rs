@@ -1,8 +1,8 @@
 use super::*;
 use crate::test_light::*;
-use crate::test_scene::scene_of;
 use progress::Unwatched;
 use std::sync::Arc;
+use test_scenes::{scene_of, unlit};
 
 fn picture(scene: &Arc<scene::Scene>, focus: &ByPart, camera: &Camera, rays_a_sample: u32) -> Picture {
     let salf = light_field(scene, camera, focus);
@@ -17,7 +17,7 @@ fn rmse(a: &Picture, b: &Picture) -> f64 {
 
 #[test]
 fn a_sharp_wall_is_exact_and_a_defocused_one_uniform_up_to_noise() {
-    let scene = scene_of(&[(wall(3.0), paint([0.5, 0.25, 2.0]))]);
+    let scene = scene_of([(wall(3.0), unlit([0.5, 0.25, 2.0]))]);
     let sharp = picture(&scene, &unpainted(&scene), &camera(40), 16);
     for (rgb, coverage) in sharp.radiance.iter().zip(&sharp.coverage) {
         assert_eq!((*rgb, *coverage), ([0.5, 0.25, 2.0], 1.0), "every ray stays in its pixel");
@@ -37,7 +37,7 @@ fn a_point_becomes_its_circle_and_keeps_its_energy() {
     let optics = camera.optics();
     for (z, (t, anchor)) in [(8.0, (1.0, 0.0)), (1.5, (1.0, 0.0)), (3.0, (1.1, 1.0)), (6.0, (0.9, 0.3))] {
         let offset = FocusOffset::new(t, anchor);
-        let scene = scene_of(&[(spot(&camera, DVec2::splat(64.0), 8.0, z), paint([1.0; 3]))]);
+        let scene = scene_of([(spot(&camera, DVec2::splat(64.0), 8.0, z), unlit([1.0; 3]))]);
         let found = picture(&scene, &ByPart(scene.clone(), vec![offset]), &camera, 256);
         assert!((energy(&found) / 64.0 - 1.0).abs() < 1e-3, "at {z}: {}", energy(&found));
         let disc = optics.splat_radius_px(optics.kappa(1.0 / z, offset));
@@ -47,12 +47,12 @@ fn a_point_becomes_its_circle_and_keeps_its_energy() {
     }
 }
 
-/// Occlusion, paint, a smaller stop and a shaped aperture: more rays come ever closer to the splat.
+/// Occlusion, a smaller stop and a shaped aperture: more rays come ever closer to the splat.
 #[test]
 fn it_converges_to_the_splat() {
     let baked = Camera { aperture: lens::ApertureShape::Square.into(), ..camera(64) };
     let near = card([-0.3, -0.5], [0.02, 0.2], 1.7);
-    let scene = scene_of(&[(near, paint([0.9, 0.2, 0.1])), (wall(6.0), paint([0.1, 0.3, 0.7]))]);
+    let scene = scene_of([(near, unlit([0.9, 0.2, 0.1])), (wall(6.0), unlit([0.1, 0.3, 0.7]))]);
     let focus = ByPart(scene.clone(), vec![FocusOffset::new(0.95, 0.5), FocusOffset::STANDARD]);
     let salf = light_field(&scene, &baked, &focus);
     let polygon = lens::ApertureShape::Polygon { blades: 5, rotation: 0.2, roundness: 0.3 };
@@ -75,7 +75,7 @@ fn it_converges_to_the_splat() {
 fn threads_leave_no_trace_and_seeds_differ() {
     let camera = camera(70);
     let near = card([-0.1, -2.0], [0.02, 2.0], 1.5);
-    let scene = scene_of(&[(near, paint([0.9, 0.2, 0.1])), (wall(7.0), paint([0.1, 0.3, 0.7]))]);
+    let scene = scene_of([(near, unlit([0.9, 0.2, 0.1])), (wall(7.0), unlit([0.1, 0.3, 0.7]))]);
     let focus = unpainted(&scene);
     let salf = light_field(&scene, &camera, &focus);
     let with = |seed| {
@@ -90,7 +90,7 @@ fn threads_leave_no_trace_and_seeds_differ() {
 #[test]
 fn what_cannot_be_is_refused_and_what_is_unwanted_stops() {
     let camera = camera(16);
-    let scene = scene_of(&[(wall(5.0), paint([1.0; 3]))]);
+    let scene = scene_of([(wall(5.0), unlit([1.0; 3]))]);
     let focus = unpainted(&scene);
     let salf = light_field(&scene, &camera, &focus);
     let options = ScatterOptions::default();

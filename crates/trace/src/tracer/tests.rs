@@ -1,9 +1,9 @@
 use super::*;
 use crate::Beam;
-use crate::test_scene::*;
 use crate::{Square, TargetPoints, Viewpoint};
 use glam::DVec2;
 use scene::{AlphaMode, Material};
+use test_scenes::{Mesh, Random, one_sided, scene_of, white};
 
 const OFFSETS: [DVec3; 2] = [DVec3::ZERO, DVec3::new(1e5, -1e5, 1e5)];
 
@@ -18,7 +18,7 @@ fn random_triangles(random: &mut Random, count: u32, size: f64) -> Mesh {
             [0; 3].map(|_| center + size * random.in_cube())
         })
         .collect();
-    (positions, (0..count).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect())
+    Mesh { positions, triangles: (0..count).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect() }
 }
 
 /// First hit by testing every triangle.
@@ -40,10 +40,10 @@ fn agrees_with_testing_every_triangle() {
     let mut random = Random(1);
     for (count, size) in [(1, 1.0), (3, 0.5), (400, 0.3), (2000, 0.02)] {
         for offset in OFFSETS {
-            let (mut positions, triangles) = random_triangles(&mut random, count, size);
+            let Mesh { mut positions, triangles } = random_triangles(&mut random, count, size);
             positions.iter_mut().for_each(|p| *p += offset);
             let material = if count % 2 == 0 { one_sided() } else { white() };
-            let scene = scene_of(&[((positions, triangles), material)]);
+            let scene = scene_of([(Mesh { positions, triangles }, material)]);
             let tracer = Tracer::new(scene.clone());
             let mut hits = 0;
             for k in 0..3000 {
@@ -91,9 +91,9 @@ fn the_rays_of_a_beam_meet_what_they_meet_alone() {
         Material { alpha: AlphaMode::Blend, base_color: glam::Vec4::new(1.0, 1.0, 1.0, 0.6), ..white() };
     for (count, size, material) in [(1, 1.0, white()), (400, 0.3, glass), (2000, 0.02, white())] {
         for offset in OFFSETS {
-            let (mut positions, triangles) = random_triangles(&mut random, count, size);
+            let Mesh { mut positions, triangles } = random_triangles(&mut random, count, size);
             positions.iter_mut().for_each(|p| *p += offset);
-            let tracer = Tracer::new(scene_of(&[((positions, triangles), material.clone())]));
+            let tracer = Tracer::new(scene_of([(Mesh { positions, triangles }, material.clone())]));
             let (mut hits, mut together) = (0, 0);
             for k in 0..600 {
                 let distance = [0.5, 3.0, 1e3, 1e6][k % 4];
@@ -128,7 +128,7 @@ fn the_rays_of_a_beam_meet_what_they_meet_alone() {
             assert!(hits > 50 && together > 5, "{hits} hits, {together} of beams");
         }
     }
-    let tracer = Tracer::new(scene_of(&[(sphere(DVec3::ZERO, 1.0, 24), white())]));
+    let tracer = Tracer::new(scene_of([(Mesh::sphere(DVec3::ZERO, 1.0, 24), white())]));
     let (around, mut rays) = beam(&mut random, DVec3::ZERO, DVec3::ONE, 3.0, 16);
     assert!(tracer.first_hits(&around, &rays).iter().all(Option::is_some), "along different axes");
     rays[3].direction = DVec3::NAN;
@@ -140,7 +140,7 @@ fn the_rays_of_a_beam_meet_what_they_meet_alone() {
 fn no_ray_leaves_a_closed_mesh() {
     let mut random = Random(2);
     for offset in OFFSETS {
-        let scene = scene_of(&[(sphere(offset, 1.0, 24), white())]);
+        let scene = scene_of([(Mesh::sphere(offset, 1.0, 24), white())]);
         let tracer = Tracer::new(scene.clone());
         let mut leaks = 0;
         for _ in 0..500_000 {
@@ -158,7 +158,7 @@ fn a_convex_mesh_does_not_occlude_itself() {
     let mut random = Random(3);
     for offset in OFFSETS {
         for rings in [8, 200] {
-            let scene = scene_of(&[(sphere(offset, 1.0, rings), white())]);
+            let scene = scene_of([(Mesh::sphere(offset, 1.0, rings), white())]);
             let tracer = Tracer::new(scene.clone());
             let (mut seen, mut hidden) = (0, 0);
             while seen < 50_000 {
@@ -187,7 +187,7 @@ fn a_convex_mesh_does_not_occlude_itself() {
 #[test]
 fn the_far_side_of_a_closed_mesh_is_occluded() {
     let mut random = Random(4);
-    let scene = scene_of(&[(sphere(DVec3::ZERO, 1.0, 32), white())]);
+    let scene = scene_of([(Mesh::sphere(DVec3::ZERO, 1.0, 32), white())]);
     let tracer = Tracer::new(scene.clone());
     for _ in 0..20_000 {
         let triangle = (random.unit() * scene.triangles.len() as f64) as u32;
@@ -201,10 +201,10 @@ fn the_far_side_of_a_closed_mesh_is_occluded() {
 fn shells_occlude_each_other() {
     let mut random = Random(5);
     for offset in OFFSETS {
-        let inner = sphere(offset, 1.0, 16);
-        let outer = sphere(offset, 1.0 + 4e-5, 16);
-        let shells = inner.1.len() as f64;
-        let scene = scene_of(&[(inner, white()), (outer, white())]);
+        let inner = Mesh::sphere(offset, 1.0, 16);
+        let outer = Mesh::sphere(offset, 1.0 + 4e-5, 16);
+        let shells = inner.triangles.len() as f64;
+        let scene = scene_of([(inner, white()), (outer, white())]);
         let tracer = Tracer::new(scene.clone());
         for _ in 0..20_000 {
             let triangle = (random.unit() * shells) as u32;
@@ -217,9 +217,9 @@ fn shells_occlude_each_other() {
 
 #[test]
 fn neither_end_occludes() {
-    let floor = rectangle(DVec3::ZERO, DVec3::X, DVec3::Z);
-    let wall = rectangle(DVec3::ZERO, DVec3::Y, DVec3::Z);
-    let tracer = Tracer::new(scene_of(&[(floor, white()), (wall, white())]));
+    let floor = Mesh::rectangle(DVec3::ZERO, DVec3::X, DVec3::Z);
+    let wall = Mesh::rectangle(DVec3::ZERO, DVec3::Y, DVec3::Z);
+    let tracer = Tracer::new(scene_of([(floor, white()), (wall, white())]));
     let on = |triangle, b1, b2| SurfacePoint { triangle, barycentric: DVec2::new(b1, b2) };
     let on_wall = on(2, 0.5, 0.25).position(tracer.scene());
     assert!(!tracer.is_occluded(on(0, 0.5, 0.25), on_wall));
@@ -229,9 +229,9 @@ fn neither_end_occludes() {
 
 #[test]
 fn the_lowest_of_coincident_triangles_is_hit() {
-    let quad = rectangle(DVec3::ZERO, DVec3::X, DVec3::Y);
+    let quad = Mesh::rectangle(DVec3::ZERO, DVec3::X, DVec3::Y);
     let copies: Vec<_> = (0..9).map(|_| (quad.clone(), white())).collect();
-    let tracer = Tracer::new(scene_of(&copies));
+    let tracer = Tracer::new(scene_of(copies));
     let mut ray = ray(DVec3::new(0.5, 0.25, 1.0), -DVec3::Z);
     assert_eq!(tracer.first_hit(&ray).unwrap().point.triangle, 0);
     ray.skip = Some(0);
@@ -240,7 +240,7 @@ fn the_lowest_of_coincident_triangles_is_hit() {
 
 #[test]
 fn the_interval_is_open() {
-    let tracer = Tracer::new(scene_of(&[(rectangle(DVec3::ZERO, DVec3::X, DVec3::Y), white())]));
+    let tracer = Tracer::new(scene_of([(Mesh::rectangle(DVec3::ZERO, DVec3::X, DVec3::Y), white())]));
     let within = |t_min, t_max| {
         let ray = Ray { t_min, t_max, ..ray(DVec3::new(0.5, 0.25, 1.0), DVec3::new(0.0, 0.0, -0.25)) };
         assert_eq!(tracer.first_hit(&ray).is_some(), tracer.any_hit(&ray));
@@ -252,19 +252,20 @@ fn the_interval_is_open() {
 
 #[test]
 fn what_is_no_ray_or_no_triangle_is_not_hit() {
-    let tracer = Tracer::new(scene_of(&[(rectangle(-DVec3::ONE, DVec3::X * 2.0, DVec3::Y * 2.0), white())]));
+    let tracer =
+        Tracer::new(scene_of([(Mesh::rectangle(-DVec3::ONE, DVec3::X * 2.0, DVec3::Y * 2.0), white())]));
     for direction in [DVec3::ZERO, DVec3::splat(f64::NAN), DVec3::new(0.0, 0.0, f64::INFINITY)] {
         assert!(tracer.first_hit(&ray(-3.0 * DVec3::Z, direction)).is_none());
     }
     assert!(tracer.first_hit(&ray(DVec3::splat(f64::NAN), DVec3::Z)).is_none());
     assert!(tracer.first_hit(&ray(-3.0 * DVec3::Z, 1e-300 * DVec3::Z)).is_some());
 
-    assert!(!Tracer::new(scene_of(&[])).any_hit(&ray(DVec3::ZERO, DVec3::Z)));
+    assert!(!Tracer::new(Arc::new(scene::Scene::default())).any_hit(&ray(DVec3::ZERO, DVec3::Z)));
     let needle = vec![DVec3::ZERO, DVec3::splat(0.1), DVec3::splat(0.3)];
     let broken = vec![DVec3::ZERO, DVec3::X, DVec3::new(0.0, f64::NAN, 0.0)];
     let endless = vec![DVec3::ZERO, DVec3::X, DVec3::new(0.0, f64::INFINITY, 0.0)];
     for positions in [needle, broken, endless] {
-        let tracer = Tracer::new(scene_of(&[((positions, vec![[0, 1, 2]]), white())]));
+        let tracer = Tracer::new(scene_of([(Mesh { positions, triangles: vec![[0, 1, 2]] }, white())]));
         assert!(!tracer.any_hit(&ray(DVec3::new(0.1, 0.1, 3.0), -DVec3::new(0.0, 0.0, 1.0))));
     }
 }
@@ -276,8 +277,9 @@ fn a_deep_tree_is_walked_whole() {
         let size = 0.98f64.powi(k);
         [DVec3::new(size, 0.0, 0.0), DVec3::new(size, 0.5 * size, 0.0), DVec3::new(size, 0.0, 0.5 * size)]
     });
-    let mesh = (positions.collect(), (0..3000).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect());
-    let scene = scene_of(&[(mesh, white())]);
+    let triangles = (0..3000).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+    let mesh = Mesh { positions: positions.collect(), triangles };
+    let scene = scene_of([(mesh, white())]);
     let tracer = Tracer::new(scene.clone());
     let mut random = Random(6);
     for _ in 0..2000 {
@@ -290,9 +292,9 @@ fn a_deep_tree_is_walked_whole() {
 
 fn window(alpha: AlphaMode, opacity: f32) -> Tracer {
     let material = Material { alpha, base_color: glam::Vec4::new(1.0, 1.0, 1.0, opacity), ..white() };
-    let behind = rectangle(DVec3::new(-1.0, -1.0, -2.0), DVec3::X * 2.0, DVec3::Y * 2.0);
-    let pane = |z| rectangle(DVec3::new(-1.0, -1.0, z), DVec3::X * 2.0, DVec3::Y * 2.0);
-    Tracer::new(scene_of(&[(pane(0.0), material.clone()), (pane(-1.0), material), (behind, white())]))
+    let behind = Mesh::rectangle(DVec3::new(-1.0, -1.0, -2.0), DVec3::X * 2.0, DVec3::Y * 2.0);
+    let pane = |z| Mesh::rectangle(DVec3::new(-1.0, -1.0, z), DVec3::X * 2.0, DVec3::Y * 2.0);
+    Tracer::new(scene_of([(pane(0.0), material.clone()), (pane(-1.0), material), (behind, white())]))
 }
 
 #[test]
@@ -329,12 +331,15 @@ fn rays_a_second() {
     for (spheres, rings) in [(40, 50), (100, 71)] {
         let mut meshes: Vec<_> = (0..spheres)
             .map(|_| {
-                (sphere(random.in_cube() * 3.0 - DVec3::Z * 6.0, 0.2 + 0.5 * random.unit(), rings), white())
+                (
+                    Mesh::sphere(random.in_cube() * 3.0 - DVec3::Z * 6.0, 0.2 + 0.5 * random.unit(), rings),
+                    white(),
+                )
             })
             .collect();
-        let ground = rectangle(DVec3::new(-50.0, -3.0, 50.0), DVec3::X * 100.0, DVec3::Z * -100.0);
+        let ground = Mesh::rectangle(DVec3::new(-50.0, -3.0, 50.0), DVec3::X * 100.0, DVec3::Z * -100.0);
         meshes.push((ground, white()));
-        let scene = scene_of(&meshes);
+        let scene = scene_of(meshes);
         let start = std::time::Instant::now();
         let tracer = Tracer::new(scene.clone());
         println!("{} triangles, built in {:?}", scene.triangles.len(), start.elapsed());
@@ -393,9 +398,9 @@ fn sight_is_what_single_rays_see() {
     let (mut asked, mut hidden, mut wrong) = (0, 0, 0);
     for (round, offset) in OFFSETS.into_iter().cycle().take(300).enumerate() {
         let mut mesh = random_triangles(&mut random, 60, if round % 2 == 0 { 0.2 } else { 1.0 });
-        mesh.0.iter_mut().for_each(|p| *p += offset);
+        mesh.positions.iter_mut().for_each(|p| *p += offset);
         let material = if round % 3 == 0 { one_sided() } else { white() };
-        let tracer = Tracer::new(scene_of(&[(mesh, material)]));
+        let tracer = Tracer::new(scene_of([(mesh, material)]));
         let right = random.direction();
         let up = right.cross(random.direction()).normalize();
         let square = Square { center: offset + 1.5 * random.in_cube(), right: 0.3 * right, up: 0.3 * up };
@@ -425,9 +430,9 @@ fn sight_is_what_single_rays_see() {
 #[test]
 fn no_place_shows_between_triangles() {
     let mut random = Random(6);
-    let tracer = Tracer::new(scene_of(&[
-        (sphere(DVec3::ZERO, 1.0, 12), white()),
-        (rectangle(DVec3::new(-0.1, -0.1, 0.0), 0.2 * DVec3::X, 0.2 * DVec3::Y), white()),
+    let tracer = Tracer::new(scene_of([
+        (Mesh::sphere(DVec3::ZERO, 1.0, 12), white()),
+        (Mesh::rectangle(DVec3::new(-0.1, -0.1, 0.0), 0.2 * DVec3::X, 0.2 * DVec3::Y), white()),
     ]));
     let inner = tracer.scene().triangles.len() as u32 - 1;
     for _ in 0..2000 {
@@ -464,11 +469,11 @@ fn panes_let_their_shares_through() {
             base_color: glam::Vec4::new(1.0, 1.0, 1.0, opacity),
             ..white()
         };
-        (rectangle(DVec3::new(left, -9.0, z), 9.0 * DVec3::X, 18.0 * DVec3::Y), glass)
+        (Mesh::rectangle(DVec3::new(left, -9.0, z), 9.0 * DVec3::X, 18.0 * DVec3::Y), glass)
     };
-    let card = (rectangle(DVec3::new(-1.0, -1.0, 0.0), 2.0 * DVec3::X, 2.0 * DVec3::Y), white());
+    let card = (Mesh::rectangle(DVec3::new(-1.0, -1.0, 0.0), 2.0 * DVec3::X, 2.0 * DVec3::Y), white());
     let tracer =
-        Tracer::new(scene_of(&[card, pane(0.25, 1.0, -4.5), pane(0.5, 2.0, -4.5), pane(0.9, 3.0, 0.0)]));
+        Tracer::new(scene_of([card, pane(0.25, 1.0, -4.5), pane(0.5, 2.0, -4.5), pane(0.9, 3.0, 0.0)]));
     let square = Square { center: DVec3::new(0.0, 0.0, 5.0), right: DVec3::X, up: DVec3::Y };
     let places = TargetPoints::new(&[DVec2::new(-0.7, 0.3), DVec2::new(0.8, -0.4)]);
     let from = Viewpoint::Surface(SurfacePoint { triangle: 0, barycentric: DVec2::splat(0.3) });
@@ -488,9 +493,9 @@ fn panes_let_their_shares_through() {
 #[test]
 fn an_eye_passes_backs_and_light_does_not() {
     // A card that faces +z, over a floor that faces the same way.
-    let card = rectangle(DVec3::new(-1.0, -1.0, 0.0), 2.0 * DVec3::X, 2.0 * DVec3::Y);
-    let floor = rectangle(DVec3::new(-2.0, -2.0, -1.0), 4.0 * DVec3::X, 4.0 * DVec3::Y);
-    let scene = scene_of(&[(card, one_sided()), (floor, one_sided())]);
+    let card = Mesh::rectangle(DVec3::new(-1.0, -1.0, 0.0), 2.0 * DVec3::X, 2.0 * DVec3::Y);
+    let floor = Mesh::rectangle(DVec3::new(-2.0, -2.0, -1.0), 4.0 * DVec3::X, 4.0 * DVec3::Y);
+    let scene = scene_of([(card, one_sided()), (floor, one_sided())]);
     let shown = Arc::new(Scene { back_faces: scene::BackFaces::Show, ..(*scene).clone() });
     let (tracer, showing) = (Tracer::new(scene), Tracer::new(shown));
     let (above, below) = (DVec3::new(0.3, 0.2, 2.0), DVec3::new(0.3, 0.2, -3.0));
@@ -510,9 +515,9 @@ fn an_eye_passes_backs_and_light_does_not() {
     // From beneath, light that comes up to the card is stopped by the floor; an eye would see through it.
     assert!(tracer.is_occluded(on_card, below));
     // Turned round, the card no longer hides the floor, but still shades it.
-    let turned = rectangle(DVec3::new(-1.0, -1.0, 0.0), 2.0 * DVec3::Y, 2.0 * DVec3::X);
-    let floor = rectangle(DVec3::new(-2.0, -2.0, -1.0), 4.0 * DVec3::X, 4.0 * DVec3::Y);
-    let tracer = Tracer::new(scene_of(&[(turned, one_sided()), (floor, one_sided())]));
+    let turned = Mesh::rectangle(DVec3::new(-1.0, -1.0, 0.0), 2.0 * DVec3::Y, 2.0 * DVec3::X);
+    let floor = Mesh::rectangle(DVec3::new(-2.0, -2.0, -1.0), 4.0 * DVec3::X, 4.0 * DVec3::Y);
+    let tracer = Tracer::new(scene_of([(turned, one_sided()), (floor, one_sided())]));
     assert!(!tracer.is_hidden_from(on_floor, above) && tracer.is_occluded(on_floor, above));
     assert_eq!(first(&tracer, above), Some(1));
 }

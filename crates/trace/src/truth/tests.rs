@@ -1,11 +1,11 @@
 use super::*;
 use crate::OutgoingRadiance;
-use crate::test_scene::*;
 use glam::{DVec2, DVec3, Vec3};
 use lens::{ApertureMask, ApertureShape, Picture};
 use progress::Unwatched;
 use scene::SurfacePoint;
 use std::sync::Arc;
+use test_scenes::{Mesh, scene_of, white};
 
 mod agreement;
 mod convergence;
@@ -54,8 +54,8 @@ const SPOT_PX: f64 = 8.0;
 /// A square facing the camera at depth z, SPOT_PX wide when seen sharp.
 fn spot(camera: &Camera, z: f64) -> Arc<scene::Scene> {
     let half = SPOT_PX / 2.0 * z * camera.optics().tan_half_yfov / camera.optics().half_height_px;
-    let square = rectangle(DVec3::new(-half, -half, -z), DVec3::X * 2.0 * half, DVec3::Y * 2.0 * half);
-    scene_of(&[(square, white())])
+    let square = Mesh::rectangle(DVec3::new(-half, -half, -z), DVec3::X * 2.0 * half, DVec3::Y * 2.0 * half);
+    scene_of([(square, white())])
 }
 
 fn picture(scene: Arc<scene::Scene>, camera: &Camera, focus: FocusOffset, spp: u32) -> Picture {
@@ -83,7 +83,7 @@ fn moments(picture: &Picture) -> (f64, DVec2, f64) {
 
 #[test]
 fn a_white_furnace_is_exactly_white() {
-    let room = scene_of(&[(sphere(DVec3::new(0.1, 0.2, -0.3), 5.0, 16), white())]);
+    let room = scene_of([(Mesh::sphere(DVec3::new(0.1, 0.2, -0.3), 5.0, 16), white())]);
     for focus_distance in [3.0, f64::INFINITY] {
         let camera = Camera { focus_distance, width: 40, height: 30, ..camera() };
         for samples in [1, 5, 64] {
@@ -96,8 +96,8 @@ fn a_white_furnace_is_exactly_white() {
 
 #[test]
 fn an_evenly_painted_wall_is_white() {
-    let wall = rectangle(DVec3::new(-9.0, -9.0, -5.0), DVec3::X * 18.0, DVec3::Y * 18.0);
-    let wall = scene_of(&[(wall, white())]);
+    let wall = Mesh::rectangle(DVec3::new(-9.0, -9.0, -5.0), DVec3::X * 18.0, DVec3::Y * 18.0);
+    let wall = scene_of([(wall, white())]);
     for focus in [FocusOffset::new(0.9, 0.0), FocusOffset::new(1.05, 1.0), FocusOffset::new(1.1, 0.5)] {
         let picture = picture(wall.clone(), &Camera { width: 40, height: 30, ..camera() }, focus, 256);
         // Where κ is even, every pixel gives and takes the same number of samples.
@@ -157,10 +157,11 @@ fn a_tiny_bright_lamp_is_a_smooth_disc() {
     let z = 3.0;
     let half = 0.25 * z * optics.tan_half_yfov / optics.half_height_px;
     for (t, anchor) in [(0.8, 1.0), (1.2, 1.0)] {
-        let lamp = rectangle(DVec3::new(-half, -half, -z), DVec3::X * 2.0 * half, DVec3::Y * 2.0 * half);
+        let lamp =
+            Mesh::rectangle(DVec3::new(-half, -half, -z), DVec3::X * 2.0 * half, DVec3::Y * 2.0 * half);
         let glow = scene::Material { base_color: glam::vec4(3e3, 3e3, 3e3, 1.0), ..white() };
         let focus = FocusOffset::new(t, anchor);
-        let picture = picture(scene_of(&[(lamp, glow)]), &camera, focus, 64);
+        let picture = picture(scene_of([(lamp, glow)]), &camera, focus, 64);
         let radius = optics.splat_radius_px(optics.kappa(1.0 / z, focus)).abs();
         let (energy, _, _) = moments(&picture);
         let expected = 3e3 * 0.25;
@@ -182,11 +183,11 @@ fn bright_surfaces_brighten_nothing() {
     // A half hidden bright wall, larger than its circle of confusion, partly outside of the frame: where it
     // is found by both kinds of rays the sum is right, pixel by pixel.
     let camera = Camera { width: 48, height: 32, ..camera() };
-    let wall = rectangle(DVec3::new(-0.1, -3.0, -4.0), DVec3::X * 5.0, DVec3::Y * 6.0);
-    let fence = rectangle(DVec3::new(0.1, -3.0, -2.0), DVec3::X * 0.1, DVec3::Y * 6.0);
+    let wall = Mesh::rectangle(DVec3::new(-0.1, -3.0, -4.0), DVec3::X * 5.0, DVec3::Y * 6.0);
+    let fence = Mesh::rectangle(DVec3::new(0.1, -3.0, -2.0), DVec3::X * 0.1, DVec3::Y * 6.0);
     let scene_with = |level: f32| {
         let glow = scene::Material { base_color: glam::vec4(level, level, level, 1.0), ..white() };
-        scene_of(&[(wall.clone(), glow.clone()), (fence.clone(), glow)])
+        scene_of([(wall.clone(), glow.clone()), (fence.clone(), glow)])
     };
     for focus in [FocusOffset::STANDARD, FocusOffset::new(0.95, 1.0), FocusOffset::new(1.03, 0.0)] {
         // Of so few rays that samples are not chosen by light.
@@ -212,19 +213,19 @@ fn light_outside_of_the_frame_comes_in_by_its_circle_of_confusion() {
     let px = z * (camera.yfov / 2.0).tan() / 64.0;
     for (outside, seen) in [(0.8 * radius, true), (1.2 * radius, false)] {
         let corner = DVec3::new((64.0 + outside - 1.0) * px, -px, -z);
-        let scene = scene_of(&[(rectangle(corner, DVec3::X * 2.0 * px, DVec3::Y * 2.0 * px), white())]);
+        let scene = scene_of([(Mesh::rectangle(corner, DVec3::X * 2.0 * px, DVec3::Y * 2.0 * px), white())]);
         assert_eq!(moments(&picture(scene, &camera, focus, 64)).0 > 0.0, seen, "{outside} px of {radius}");
     }
 }
 
 #[test]
 fn threads_do_not_matter() {
-    let scene = scene_of(&[
+    let scene = scene_of([
         (
-            sphere(DVec3::new(0.0, 0.0, -4.0), 1.0, 12),
+            Mesh::sphere(DVec3::new(0.0, 0.0, -4.0), 1.0, 12),
             scene::Material { base_color: glam::vec4(0.3, 0.7, 0.1, 1.0), ..white() },
         ),
-        (rectangle(DVec3::new(-9.0, -9.0, -9.0), DVec3::X * 18.0, DVec3::Y * 18.0), white()),
+        (Mesh::rectangle(DVec3::new(-9.0, -9.0, -9.0), DVec3::X * 18.0, DVec3::Y * 18.0), white()),
     ]);
     let render_with = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -250,7 +251,7 @@ fn the_brightest_light_does_not_overflow() {
         }
     }
     let camera = Camera { width: 8, height: 8, ..camera() };
-    let tracer = Tracer::new(scene_of(&[]));
+    let tracer = Tracer::new(Arc::new(scene::Scene::default()));
     for radiance in [1e-3, 1.0, 1e9, 1e30, f32::MAX] {
         let options = TruthOptions { samples_per_pixel: 64, ..TruthOptions::default() };
         let focus = Uniform(FocusOffset::STANDARD);
@@ -274,7 +275,7 @@ fn it_stops_when_cancelled() {
             true
         }
     }
-    let tracer = Tracer::new(scene_of(&[]));
+    let tracer = Tracer::new(Arc::new(scene::Scene::default()));
     let radiance = BaseColor(tracer.scene().clone());
     let options = TruthOptions { samples_per_pixel: 1 << 20, ..TruthOptions::default() };
     let focus = Uniform(FocusOffset::STANDARD);

@@ -55,17 +55,18 @@ fn colored(color: Vec4) -> Material {
 /// A floor from behind the camera to far away, a wall with a hole in front of a sky, a ball, a fence near the lens
 /// with see-through bars, a card edge-on to the lens and a bright lamp outside the frame.
 fn stage() -> Arc<scene::Scene> {
-    let floor = rectangle(DVec3::new(-20.0, -0.8, 5.0), DVec3::X * 40.0, DVec3::new(0.0, 0.0, -60.0));
-    let wall = rectangle(DVec3::new(-2.0, -0.8, -6.0), DVec3::X * 2.5, DVec3::Y * 2.0);
+    let floor = Mesh::rectangle(DVec3::new(-20.0, -0.8, 5.0), DVec3::X * 40.0, DVec3::new(0.0, 0.0, -60.0));
+    let wall = Mesh::rectangle(DVec3::new(-2.0, -0.8, -6.0), DVec3::X * 2.5, DVec3::Y * 2.0);
     let glass = Material { alpha: AlphaMode::Blend, ..colored(vec4(0.3, 0.9, 0.4, 0.6)) };
-    let bars =
-        |x: f64| rectangle(DVec3::new(x, -1.0, -1.2), DVec3::new(0.06, 0.0, 0.02), DVec3::new(0.1, 2.0, 0.0));
-    let card = rectangle(DVec3::new(0.05, -0.4, -2.0), DVec3::new(0.0, 0.0, -1.5), DVec3::Y * 0.9);
-    let lamp = rectangle(DVec3::new(1.1, 0.3, -2.9), DVec3::X * 0.2, DVec3::Y * 0.2);
-    scene_of(&[
+    let bars = |x: f64| {
+        Mesh::rectangle(DVec3::new(x, -1.0, -1.2), DVec3::new(0.06, 0.0, 0.02), DVec3::new(0.1, 2.0, 0.0))
+    };
+    let card = Mesh::rectangle(DVec3::new(0.05, -0.4, -2.0), DVec3::new(0.0, 0.0, -1.5), DVec3::Y * 0.9);
+    let lamp = Mesh::rectangle(DVec3::new(1.1, 0.3, -2.9), DVec3::X * 0.2, DVec3::Y * 0.2);
+    scene_of([
         (floor, colored(vec4(0.5, 0.45, 0.4, 1.0))),
         (wall, colored(vec4(0.8, 0.3, 0.2, 1.0))),
-        (sphere(DVec3::new(0.5, 0.0, -3.5), 0.5, 10), colored(vec4(0.2, 0.4, 0.9, 1.0))),
+        (Mesh::sphere(DVec3::new(0.5, 0.0, -3.5), 0.5, 10), colored(vec4(0.2, 0.4, 0.9, 1.0))),
         (bars(-0.3), glass.clone()),
         (bars(0.15), colored(vec4(0.9, 0.8, 0.1, 1.0))),
         (card, colored(vec4(0.9, 0.9, 0.9, 1.0))),
@@ -229,8 +230,8 @@ fn carried_light_obeys_the_paint_as_far_as_gloss_does() {
 
 /// A bright square, whose level says how wide it is blurred.
 fn square() -> Arc<scene::Scene> {
-    let square = rectangle(DVec3::new(-0.25, -0.25, -3.0), DVec3::X * 0.5, DVec3::Y * 0.5);
-    scene_of(&[(square, colored(Vec4::splat(4.0)))])
+    let square = Mesh::rectangle(DVec3::new(-0.25, -0.25, -3.0), DVec3::X * 0.5, DVec3::Y * 0.5);
+    scene_of([(square, colored(Vec4::splat(4.0)))])
 }
 
 /// Both estimators of the square: they agree, and do not where one of them has κ off by a factor.

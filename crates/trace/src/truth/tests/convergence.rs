@@ -13,7 +13,7 @@ fn edge(angle: f64, z: f64) -> Arc<scene::Scene> {
     let across = DVec3::new(angle.cos(), angle.sin(), 0.0);
     let along = DVec3::new(-angle.sin(), angle.cos(), 0.0);
     let corner = DVec3::new(0.0, 0.0, -z) + 0.013 * across - 40.0 * along;
-    scene_of(&[(rectangle(corner, 80.0 * across, 80.0 * along), white())])
+    scene_of([(Mesh::rectangle(corner, 80.0 * across, 80.0 * along), white())])
 }
 
 /// Directions of edges, none of them in line with anything.
