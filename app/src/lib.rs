@@ -1,4 +1,4 @@
-//! Focus Brush: the window and the command line, both thin over the `session` crate.
+//! Focus Brush: the window and the command line, both thin layers over the `session` crate.
 
 pub mod cli;
 pub mod window;

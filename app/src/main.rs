@@ -1,12 +1,12 @@
 //! `focus-brush`: the window and the command line.
 
-mod bare_session;
+mod headless;
 
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    // Unwrapping runs its engines in children of this very program.
+    // Unwrapping runs its engines in child processes of this program.
     atlas::child::run_if_child();
-    bare_session::restart_if_headless();
+    headless::restart_if_headless();
     focus_brush::cli::run()
 }

@@ -1,12 +1,12 @@
-//! The add-on for Blender, tried in a bpy without a display, where there is one.
+//! The Blender add-on, tested in a headless bpy if one is available.
 //!
-//! A Python that has bpy (`pip install bpy` in a virtual environment of Python 3.11) is named by `FOCUS_BRUSH_BPY`, or is the `python3`
-//! of the search path. Where neither has it nothing is tried, and that is said.
+//! `FOCUS_BRUSH_BPY` names a Python that has bpy (`pip install bpy` in a virtual environment of Python 3.11);
+//! the default is `python3` on the search path. If neither has bpy, the test is skipped with a message.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// The Python that has bpy.
+/// A Python with bpy.
 fn python() -> Option<PathBuf> {
     let named = std::env::var_os("FOCUS_BRUSH_BPY").map(PathBuf::from);
     let known = ["python3", "python3.11"].map(PathBuf::from);
@@ -25,7 +25,8 @@ fn passes(script: &str) {
         eprintln!();
         eprintln!("*** NOT TRIED: {script}. No Python here has bpy. To try the add-on for Blender:");
         eprintln!(
-            "***     python3.11 -m venv bpy && bpy/bin/pip install bpy==4.5.15 && export FOCUS_BRUSH_BPY=$PWD/bpy/bin/python"
+            "***     python3.11 -m venv bpy && bpy/bin/pip install bpy==4.5.15 && export \
+             FOCUS_BRUSH_BPY=$PWD/bpy/bin/python"
         );
         eprintln!();
         return;

@@ -1,4 +1,4 @@
-//! Captures from end to end: photographs of a wall that the test takes itself.
+//! Captures, end to end: synthetic photographs of a wall.
 
 mod card_light_field;
 mod program;
@@ -20,7 +20,7 @@ fn a_photograph_left_out_is_what_the_others_tell() {
     assert_eq!(info["capture"]["left_out"][0]["name"], "2.png");
     assert_eq!(info["project"]["scene_state"], "same");
 
-    // Through the camera of one that is there, and of the one that is not.
+    // Through the camera of a present photograph and of the missing one.
     for name in ["3.png", "2.png"] {
         done(folder, &format!("export wall.fbrush --photo {name}=photo.exr"));
         let photo = read_picture(&folder.join("photo.exr")).unwrap();
@@ -32,7 +32,7 @@ fn a_photograph_left_out_is_what_the_others_tell() {
         assert_eq!([shown.width, shown.height], wall_capture::SIZE);
         let squares = photo.rgb.iter().zip(&shown.rgb);
         let squares = squares.flat_map(|(a, b)| (0..3).map(move |c| f64::from(a[c] - b[c]).powi(2)));
-        // All that it shows is seen by others, but for its very rim.
+        // Everything it shows, except for its rim, is visible in others.
         let psnr = -10.0 * (squares.sum::<f64>() / (3 * photo.rgb.len()) as f64).log10();
         assert!(psnr > 40.0, "{name}: {psnr} dB");
     }
@@ -67,7 +67,7 @@ fn what_is_missing_is_told_and_the_rest_goes_on() {
     assert!(String::from_utf8_lossy(&output.stderr).contains("delaunay_mesher"));
     let output = run(folder, "info .");
     assert_eq!(output.status.code(), Some(3), "a folder that is none");
-    // Changed since: told, not refused.
+    // Changed since: reported, not rejected.
     wall_capture::write(&folder.join("wall"));
     let wider = std::fs::read_to_string(folder.join("wall/mesh.ply")).unwrap().replace("3 2 0", "3.5 2 0");
     std::fs::write(folder.join("wall/mesh.ply"), wider).unwrap();

@@ -1,4 +1,5 @@
-//! What compositors get: alpha, Cryptomatte, overscan, circles of confusion, colour spaces, the pinhole's picture.
+//! Output for compositing: alpha, Cryptomatte, overscan, circles of confusion, colour spaces, the pinhole
+//! picture.
 
 mod program;
 #[path = "../../crates/session/tests/tiny_glb/mod.rs"]
@@ -12,7 +13,7 @@ use std::path::Path;
 use tempfile::TempDir;
 use tiny_glb::Quad;
 
-/// A wall that leaves the background at the sides, with a card and a dot before it.
+/// A wall with background at its sides, and a card and a dot in front of it.
 const QUADS: [Quad; 3] = [
     Quad { name: "wall", center: [0.0, -0.3], half: [1.2, 0.8], depth: 4.0, color: [0.3, 0.35, 0.4] },
     Quad { name: "card", center: [-0.45, 0.1], half: [0.2, 0.3], depth: 1.5, color: [0.8, 0.1, 0.1] },
@@ -32,7 +33,7 @@ fn workplace() -> TempDir {
     folder
 }
 
-/// Renders the scene with some options more.
+/// Renders the scene with additional options.
 fn rendered(folder: &Path, options: &str) -> LinearPicture {
     done(folder, &format!("render scene.glb --camera camera.json -o out.exr --backend cpu {options}"));
     read_picture(&folder.join("out.exr")).unwrap()
@@ -50,7 +51,7 @@ fn psnr(a: &[[f32; 3]], b: &[[f32; 3]]) -> f64 {
     -10.0 * (squares.sum::<f64>() / (3 * a.len()) as f64).log10()
 }
 
-/// The shares of each thing, by the bits of its id.
+/// The coverage of each object, by the bits of its id.
 fn shares(picture: &LinearPicture, kind: &str) -> BTreeMap<u32, Vec<f32>> {
     let mut things: BTreeMap<u32, Vec<f32>> = BTreeMap::new();
     for pair in 0.. {
@@ -117,7 +118,7 @@ fn cryptomatte_sums_to_alpha_and_is_the_truths() {
                 assert!(error <= 0.01, "{kind} {focus}: {error}");
             }
         }
-        // Objects and materials are the same things here, under other names.
+        // Objects and materials coincide here, under different names.
         let [objects, materials] = ["Object", "Material"].map(|kind| shares(&splat, kind));
         let sums = |things: &BTreeMap<u32, Vec<f32>>| {
             let mut sums: Vec<f32> = things.values().map(|shares| shares.iter().sum()).collect();
@@ -133,7 +134,7 @@ fn cryptomatte_sums_to_alpha_and_is_the_truths() {
 fn overscan_shows_what_lies_around_the_same_picture() {
     let folder = workplace();
     let frame = rendered(folder.path(), "--aov depth,coc --coc-convention flame");
-    // Read by its display window, it is the frame again.
+    // Cropped to its display window, it equals the frame.
     let larger = rendered(folder.path(), "--overscan 16 --aov depth,coc --coc-convention flame");
     assert_eq!((larger.width, larger.height), (60, 40));
     assert!(psnr(&frame.rgb, &larger.rgb) > 45.0, "{}", psnr(&frame.rgb, &larger.rgb));
@@ -161,7 +162,7 @@ fn the_pinholes_picture_is_sharp_and_comes_along() {
     assert!(psnr(&both.rgb, &pinhole) < 30.0, "the picture itself is not sharp");
 }
 
-/// One golden picture for each convention of circles of confusion: `cargo test` with `UPDATE_GOLDEN=1` writes them anew.
+/// One golden picture per convention of circles of confusion; `UPDATE_GOLDEN=1 cargo test` updates them.
 #[test]
 fn circles_of_confusion_are_told_in_four_conventions() {
     let folder = workplace();

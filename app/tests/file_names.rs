@@ -1,4 +1,4 @@
-//! Files whose names are no text: on Unix a name is bytes.
+//! File names that are not UTF-8: on Unix a name is bytes.
 #![cfg(unix)]
 
 #[path = "../../crates/session/tests/tiny_glb/mod.rs"]
@@ -9,10 +9,10 @@ use std::os::unix::ffi::OsStrExt;
 use std::path::PathBuf;
 use std::process::{Command, Output};
 
-/// A folder, called in Latin-1, with a scene and what belongs to it.
+/// A folder with a Latin-1 name, containing a scene and its files.
 struct Place {
     parent: tempfile::TempDir,
-    /// What marks a name: bytes that are not UTF-8.
+    /// The part of every name that is not UTF-8.
     mark: &'static [u8],
 }
 
@@ -30,7 +30,7 @@ impl Place {
         std::fs::write(place.path("camera.json"), CAMERA).unwrap();
         std::fs::write(place.path("recipe.json"), RECIPE).unwrap();
         std::fs::write(place.path("strokes.json"), STROKES).unwrap();
-        // What files name inside the folder is text.
+        // File names inside files are text.
         let mask = image::GrayImage::from_fn(8, 8, |x, y| image::Luma([(100 + 10 * x + y) as u8]));
         mask.save(place.folder().join("mask.png")).unwrap();
         let map = image::ImageBuffer::from_fn(4, 4, |x, _| image::Rgb([32768u16 + 900 * x as u16, 9000, 0]));
@@ -50,7 +50,7 @@ impl Place {
         self.folder().join(self.named(name))
     }
 
-    /// Runs the program; a word with a `/` is a file of the folder.
+    /// Runs the program; an argument with a `/` is a file of the folder.
     fn run(&self, arguments: &str) -> Output {
         let words = arguments.split_whitespace();
         let words = words.map(|word| match word.strip_prefix('/') {
@@ -71,7 +71,7 @@ impl Place {
         String::from_utf8(output.stdout).unwrap()
     }
 
-    /// Runs the program, which writes JSON, and a file.
+    /// Runs the program, which prints JSON and writes a file.
     fn told(&self, arguments: &str, file: &str) -> Vec<u8> {
         let told = self.done(&format!("{arguments} --json"));
         serde_json::from_str::<serde_json::Value>(&told).unwrap();
@@ -83,7 +83,7 @@ impl Place {
     }
 }
 
-/// Everything that the command line reads and writes, by name.
+/// All files that the command line reads and writes by name.
 fn everything(place: &Place) -> Vec<Vec<u8>> {
     let shot = "--camera /camera.json --focus /recipe.json";
     let mut made =

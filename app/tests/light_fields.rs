@@ -1,4 +1,4 @@
-//! Light fields and pictures with depth from end to end: a card before a wall that the test photographs itself.
+//! Light fields and pictures with depth, end to end: synthetic views of a card in front of a wall.
 
 mod card_light_field;
 mod program;
@@ -42,7 +42,7 @@ fn psnr(file: &Path, truth: &[[f64; 3]]) -> f64 {
     -10.0 * (picture.rgb.iter().zip(truth).map(off).sum::<f64>() / (3 * truth.len()) as f64).log10()
 }
 
-/// The distance at which something has a disparity, as the project's camera and disparities of two known distances tell.
+/// The distance of a disparity, derived from the project's camera and the disparities of two known distances.
 fn distance(disparity: f64) -> f64 {
     // The nearest is one unit away, the farthest five.
     let share = (disparity - WALL) / (CARD - WALL);
@@ -57,7 +57,7 @@ fn a_light_field_is_refocused_as_a_lens_would() {
     done(folder, "import card -o card.fbrush");
     let info: Value = serde_json::from_str(&done(folder, "info card.fbrush --json")).unwrap();
     assert_eq!(info["project"]["scene_state"], "same");
-    // The aperture reaches to the outermost views, in the corners.
+    // The aperture extends to the outermost views, in the corners.
     let reach = f64::from(STEPS) * 2f64.sqrt();
     for disparity in [CARD, 0.4, WALL] {
         let camera = format!("{{\"focus_distance\": {}}}", distance(disparity));
@@ -65,11 +65,11 @@ fn a_light_field_is_refocused_as_a_lens_would() {
         done(folder, "render card.fbrush --camera camera.json -o lens.exr --backend cpu");
         let found = psnr(&folder.join("lens.exr"), &truth(reach, disparity));
         assert!(found > 36.0, "focused on {disparity}: {found} dB");
-        // Negative control: focused elsewhere it is something else.
+        // Negative control: with another focus the picture differs.
         let other = psnr(&folder.join("lens.exr"), &truth(reach, disparity + 0.5));
         assert!(other < found - 3.0, "{other} of {found} dB");
     }
-    // The middle view is the picture through a pinhole, nothing of it invented.
+    // The middle view is the picture through a pinhole, without invented parts.
     done(folder, "render card.fbrush --aperture-radius 0 -o pinhole.exr --aov seen --backend cpu");
     let middle: Vec<_> = (0..SIZE[0] * SIZE[1]).map(|n| pixel(n % SIZE[0], n / SIZE[0], [0.0; 2])).collect();
     let found = psnr(&folder.join("pinhole.exr"), &middle);
@@ -92,11 +92,11 @@ fn a_picture_and_its_depth_are_refocused() {
             format!("{{\"focus_distance\": {}, \"aperture_radius\": {radius}}}", distance(disparity));
         std::fs::write(folder.join("camera.json"), camera).unwrap();
         done(folder, "render card.fbrush --camera camera.json -o lens.exr --backend cpu");
-        // What is hidden is invented, so it is farther off than with views.
+        // Hidden surfaces are invented, so the error is larger than with views.
         let found = psnr(&folder.join("lens.exr"), &truth(2.0, disparity));
         assert!(found > 30.0, "focused on {disparity}: {found} dB");
     }
-    // A relative map says nothing of its ends.
+    // A relative map has no metric range.
     let gray = image::GrayImage::from_fn(SIZE[0], SIZE[1], |x, y| {
         let (_, disparity) = shown(f64::from(x) + 0.5, f64::from(y) + 0.5, [0.0; 2]);
         image::Luma([if disparity == CARD { 255 } else { 30 }])
@@ -114,7 +114,7 @@ fn no_scale_or_offset_of_disparities_changes_the_picture() {
     let place = tempfile::tempdir().unwrap();
     let folder = place.path();
     std::fs::write(folder.join("painted.json"), r#"{"default": {"t": 0.7, "anchor": 0.3}}"#).unwrap();
-    // Unless it is told, views are focused on what has disparity 0.
+    // By default, views are focused on disparity 0.
     std::fs::write(folder.join("camera.json"), r#"{"focus_distance": 1.6, "aperture_radius": 0.05}"#)
         .unwrap();
     view([0.0; 2]).save(folder.join("card.png")).unwrap();
@@ -128,7 +128,7 @@ fn no_scale_or_offset_of_disparities_changes_the_picture() {
             |(a, b): (&[f32; 3], &[f32; 3])| (0..3).map(|c| f64::from(a[c] - b[c]).powi(2)).sum::<f64>();
         (a.iter().zip(b).map(off).sum::<f64>() / (3 * a.len()) as f64).sqrt()
     };
-    // Of views: the pictures are moved, too, by a few pixels at most.
+    // With views: the pictures are displaced, too, by a few pixels at most.
     let moves = [(1.0, 0.0), (0.1, 0.3), (10.0, -3.0), (1.0, 3.0), (3.0, -3.0)];
     for options in ["--camera camera.json", "--camera camera.json --focus painted.json"] {
         let mut plain = Vec::new();
@@ -142,7 +142,7 @@ fn no_scale_or_offset_of_disparities_changes_the_picture() {
             let off = rmse(&plain, &found);
             assert!(off < 0.005, "{off} for {scale} {offset} {options}");
         }
-        // Of a picture and its disparities alone.
+        // With only one picture and its disparities.
         let mut plain = Vec::new();
         for (scale, offset) in [(1.0, 0.0), (0.1, 3.0), (10.0, -3.0), (0.1, -3.0), (10.0, 3.0)] {
             pfm(&folder.join("disparity.pfm"), |disparity| scale * disparity + offset);
@@ -154,7 +154,7 @@ fn no_scale_or_offset_of_disparities_changes_the_picture() {
             let off = rmse(&plain, &found);
             assert!(off < 0.005, "{off} of one picture for {scale} {offset} {options}");
         }
-        // Negative control: other disparities are another picture.
+        // Negative control: other disparities give another picture.
         pfm(&folder.join("disparity.pfm"), |disparity| -disparity);
         assert!(rmse(&plain, &rendered("card.png --disparity disparity.pfm", options)) > 0.005);
     }
@@ -166,15 +166,15 @@ fn disparities_found_in_views_are_compared_with_those_that_came_along() {
     let folder = place.path().join("card");
     card_light_field::write(&folder);
     let error = |folder: &Path| {
-        let input = session::Input::open(folder, &progress::Unwatched).unwrap();
+        let input = document::Input::open(folder, &Default::default(), &progress::Unwatched).unwrap();
         input.disparity_error(&progress::Unwatched).unwrap()
     };
     let told = error(&folder).expect("they came along");
     assert!(told.bad_007 < 0.12 && told.bad_003 >= told.bad_007, "{told:?}");
-    // Negative control: a map that is off everywhere.
+    // Negative control: a map that is wrong everywhere.
     pfm(&folder.join("disparity.pfm"), |disparity| disparity + 0.1);
     assert!(error(&folder).unwrap().bad_007 > 0.8);
-    // None came.
+    // Without views.
     std::fs::remove_file(folder.join("disparity.pfm")).unwrap();
     assert_eq!(error(&folder), None);
 }
@@ -193,7 +193,7 @@ fn two_eyes_see_what_they_fixate_at_one_place() {
         done(folder, &format!("render card.fbrush {stereo} -o pair.exr --backend cpu"));
         let pair = read_picture(&folder.join("pair.exr")).unwrap();
         assert_eq!([pair.width, pair.height], [2 * SIZE[0], SIZE[1]]);
-        // Each eye's picture is the view from its place, moved so that what is fixated stays where it is.
+        // Each eye's picture is the view from its position, shifted so that the fixated point stays in place.
         for (eye, side) in [(0, -1.0), (1, 1.0)] {
             let from = side * eyes * reach;
             let mut squares = 0.0;
@@ -216,7 +216,7 @@ fn two_eyes_see_what_they_fixate_at_one_place() {
     assert_eq!(output.status.code(), Some(3), "{}", String::from_utf8_lossy(&output.stderr));
 }
 
-/// Real light fields that lie beside the checkout.
+/// Real light fields in the folder beside the checkout.
 const DATA: &str =
     concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/data/lightfield/synthetic_helmet_cake_9x9");
 
@@ -236,7 +236,7 @@ fn a_map_that_is_coded_by_colour_is_decoded_by_the_views() {
             std::fs::copy(&file, folder.join("views").join(file.file_name().unwrap())).unwrap();
         }
     }
-    // Its disparities, rows from below, as hues of a mapping that is not linear, compressed.
+    // Its disparities, rows from the bottom, as hues of a non-linear mapping, compressed.
     let pfm = std::fs::read(data.join("gt_disp_lowres.pfm")).unwrap();
     let numbers = &pfm[pfm.len() - 4 * 256 * 256..];
     let disparity = |x: u32, y: u32| {
@@ -264,7 +264,7 @@ fn a_map_that_is_coded_by_colour_is_decoded_by_the_views() {
     let squares: f64 = told.rgb.iter().zip(&coded.rgb).map(off).sum();
     let psnr = -10.0 * (squares / (3 * told.rgb.len()) as f64).log10();
     assert!(psnr > 35.0, "{psnr} dB");
-    // Negative control: one of the views is no map of their disparities.
+    // Negative control: a view is not a disparity map.
     let output = run(folder, "import views --disparity views/input_Cam000.png -o wrong.fbrush");
     let errors = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(3), "{errors}");
@@ -277,7 +277,7 @@ fn views_are_looked_through_and_compared_with() {
     let folder = place.path();
     card_light_field::write(&folder.join("card"));
     done(folder, "import card -o card.fbrush");
-    // The middle one, and those at an end of a row and in a corner.
+    // The middle view, one at the end of a row, and one in a corner.
     for (name, [u, v]) in [("02_02", [0, 0]), ("02_04", [2, 0]), ("00_00", [-2, -2])] {
         let taken: Vec<[f64; 3]> =
             (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| pixel(x, y, [u.into(), v.into()]))).collect();
@@ -286,7 +286,7 @@ fn views_are_looked_through_and_compared_with() {
         done(folder, &format!("render card.fbrush --camera photo:{name} -o seen.exr"));
         let seen = psnr(&folder.join("seen.exr"), &taken);
         assert!(seen > 30.0, "{name}: {seen}");
-        // Not by the camera of the middle.
+        // Not with the camera of the middle view.
         done(folder, "render card.fbrush --aperture-radius 0 -o middle.exr");
         let middle = psnr(&folder.join("middle.exr"), &taken);
         assert!([u, v] == [0, 0] || middle < seen - 6.0, "{name}: {middle} {seen}");
@@ -320,7 +320,8 @@ fn gloss_moves_with_the_aperture() {
         }
         -10.0 * f64::log10(sum / count)
     };
-    // Looked through views: the middle one as it was taken, others as they were, too. By rays it is the same light.
+    // Through the pinholes of views: the middle one and others equal the input. Ray tracing gives the same
+    // light.
     for (name, at, least) in
         [("02_02", [0.0; 2], 45.0), ("02_04", [2.0, 0.0], 35.0), ("00_00", [-2.0; 2], 33.0)]
     {
@@ -337,12 +338,12 @@ fn gloss_moves_with_the_aperture() {
         let off = moved.zip(&truth).map(|(a, b)| (a[0] - b[0]).powi(2)).sum::<f64>();
         assert!(at == [0.0; 2] || off > 1.0, "{off}");
     }
-    // In focus the card is as bright as the aperture sees it in the mean, painted sharp, too.
+    // In focus, the card has its mean brightness over the aperture; also if it is painted sharp.
     let reach = f64::from(STEPS);
     let (radius, lens) = (truth_of(glossy, reach, CARD), distance(CARD));
     let info: Value = serde_json::from_str(&done(folder, "info card.fbrush --json")).unwrap();
     let widest = info["camera"]["aperture_radius"].as_f64().unwrap();
-    // The usual aperture reaches to the corners; this one to the ends of rows.
+    // The default aperture extends to the corners; this one to the ends of rows.
     let aperture = widest / 2f64.sqrt();
     let camera = |focus: f64| format!("{{\"focus_distance\": {focus}, \"aperture_radius\": {aperture}}}");
     std::fs::write(folder.join("near.json"), camera(lens)).unwrap();

@@ -1,5 +1,5 @@
-//! What is written follows from what is read: the same commands give the same bytes, in another process, at another time,
-//! with any number of threads.
+//! Reproducibility: the same commands give the same bytes in another process, at another time, with any number
+//! of threads.
 
 #[path = "../../crates/session/tests/tiny_glb/mod.rs"]
 mod tiny_glb;
@@ -18,7 +18,8 @@ const STROKES: &str = r#"{"format": "focus-brush strokes", "version": 3, "steps"
 const COMMANDS: [&str; 13] = [
     "render scene.glb --camera camera.json --focus recipe.json -o picture.exr --aov coverage,coc,depth,t",
     "render scene.glb --camera camera.json --focus recipe.json -o picture.png --aov coc",
-    "render scene.glb --camera camera.json --focus recipe.json -o layers.exr --aov alpha,crypto,pinhole --overscan 3 --half",
+    "render scene.glb --camera camera.json --focus recipe.json -o layers.exr --aov alpha,crypto,pinhole \
+     --overscan 3 --half",
     "render scene.glb --camera camera.json -o truth.exr --renderer truth --spp 32 --aov stderr,coverage,depth",
     "render scene.glb --camera camera.json -o scatter.exr --renderer scatter",
     "new scene.glb --camera camera.json --focus recipe.json -o project.fbrush",
@@ -31,7 +32,7 @@ const COMMANDS: [&str; 13] = [
     "compare picture.exr truth.exr --error-map errors.png",
 ];
 
-/// Every file that the commands write, in a folder of this name.
+/// Every file written by the commands in a folder of this name.
 fn written(name: &str, threads: usize) -> BTreeMap<String, Vec<u8>> {
     let parent = tempfile::tempdir().unwrap();
     let folder = parent.path().join(name);
@@ -67,7 +68,7 @@ fn names(folder: &Path) -> Vec<String> {
 fn the_same_commands_write_the_same_bytes() {
     let first = written("one", 1);
     assert_eq!(first.len(), 16, "{:?}", first.keys());
-    // More than once: what is in no order is in the same by chance now and then.
+    // Repeatedly: an undefined order may be the same by chance.
     for threads in [1, 2, 5] {
         let again = written("another", threads);
         assert_eq!(first.keys().collect::<Vec<_>>(), again.keys().collect::<Vec<_>>());

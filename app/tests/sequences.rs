@@ -1,5 +1,5 @@
-//! Frames of a scene in motion: each is the same whichever others are rendered, finished ones are not rendered again, shares make a
-//! whole, and paint stays on its surface.
+//! Frames of an animated scene: each is independent of which others are rendered, finished ones are not
+//! repeated, shards add up to the whole, and paint stays on its surface.
 
 mod program;
 #[allow(dead_code, reason = "shared by several tests")]
@@ -14,12 +14,12 @@ use tempfile::TempDir;
 
 const CAMERA: &str =
     r#"{"width": 48, "height": 32, "focus_distance": 2.0, "aperture_radius": 0.05, "sensor_height": 0.1}"#;
-/// Red of the picture shows where paint is: only the card is sharp whatever the lens does.
+/// The painted part is red in the picture: only the card stays sharp, whatever the lens does.
 const RECIPE: &str = r#"{"nodes": {"card": {"t": 1.0, "anchor": 1}}}"#;
 const KEYS: &str = r#"{"focus": [{"seconds": 0, "value": {"distance": 1.5}},
     {"seconds": 0.125, "value": {"point": {"triangle": 0, "barycentric": [0.5, 0.5]}}}],
     "f_number": [{"seconds": 0, "value": 4.0, "ease": "linear"}, {"seconds": 0.25, "value": 2.0}]}"#;
-/// Seven frames of the second that the scene moves.
+/// Seven frames of the scene's one second of motion.
 const SHOT: &str = "scene.glb --camera camera.json --focus recipe.json --fps 6";
 
 fn folder() -> TempDir {
@@ -62,7 +62,7 @@ fn a_frame_alone_is_that_of_the_sequence_and_finished_ones_stay() {
         assert!(frames[&name] == bytes, "{name}");
     }
 
-    // One is cut, one is another picture, one was made by another plan: these are done again, and nothing else.
+    // One is truncated, one is another picture, one belongs to another plan: exactly these are rendered again.
     let file = |frame: u32| all.path().join(format!("f.{frame:02}.exr"));
     let whole = std::fs::read(file(2)).unwrap();
     std::fs::write(file(2), &whole[..whole.len() - 9]).unwrap();
@@ -97,7 +97,7 @@ fn shares_make_the_whole_in_any_order() {
     let frames = pictures(whole.path());
     assert_eq!(frames.len(), 10, "{:?}", frames.keys());
     assert!(pictures(shared.path()) == frames);
-    // A layer that is gone is made again.
+    // A missing layer is written again.
     std::fs::remove_file(shared.path().join("f.6.depth.exr")).unwrap();
     let again = done(shared.path(), &format!("render {SHOT} --frames 1-7x2,6 -o f.#.png --aov depth --json"));
     assert_eq!(report(&again)["written"], 1);
@@ -120,7 +120,7 @@ fn what_stands_still_is_baked_once() {
     assert_eq!(report(&moved)["light_fields"]["baked"], 2);
 }
 
-/// The middle of the red of a picture, px.
+/// Centroid of the red part of a picture, px.
 fn middle_of_red(file: &Path) -> f64 {
     let picture = project::read_picture(file).unwrap();
     let (mut sum, mut all) = (0.0, 0.0);
@@ -145,7 +145,7 @@ fn paint_and_card_move_together() {
         let red = middle_of_red(&file);
         assert!(red > last + 2.0, "the card goes right: {last} {red}");
         last = red;
-        // Where the anchor is painted 1 is the card: its texels and no other's.
+        // Exactly the texels of the card have a painted anchor of 1.
         let layers = project::read_picture(&file).unwrap();
         let (anchor, rgb) = (&layers.layers["anchor"], &layers.rgb);
         let (mut painted, mut both) = (0, 0);
@@ -209,7 +209,7 @@ fn keys_are_set_on_a_project_and_followed() {
     assert_ne!(shown("keyed", 1), shown("still", 1), "another stop");
     for (wrong, said) in [
         ("--distance 0@1", "above 0"),
-        ("--point 900,900@0", "nothing is seen"),
+        ("--point 900,900@0", "no surface is visible"),
         ("--opacity Sky=0.5@0", "single layer"),
         ("--set camera.json", "no keys"),
     ] {

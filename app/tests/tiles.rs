@@ -1,4 +1,5 @@
-//! Pictures in tiles: the same bytes as the whole, whoever draws which tile; and what is missing, cut or of another picture is named.
+//! Pictures in tiles: the same bytes as the whole, however the tiles are distributed; missing, truncated and
+//! foreign tiles are named.
 
 mod program;
 #[allow(dead_code, reason = "shared by several tests")]
@@ -15,7 +16,7 @@ use tempfile::TempDir;
 /// Circles of confusion are wider than tiles.
 const CAMERA: &str =
     r#"{"width": 150, "height": 100, "focus_distance": 2.0, "aperture_radius": 0.25, "sensor_height": 0.1}"#;
-/// Only the card is painted: tiles far from it do not know.
+/// Only the card is painted: tiles far from it are unaffected.
 const RECIPE: &str = r#"{"nodes": {"card": {"t": 1.02, "anchor": 0.5}}}"#;
 
 fn folder() -> TempDir {
@@ -40,7 +41,7 @@ fn parts(folder: &Path) -> Vec<String> {
     parts
 }
 
-/// What it says on stderr when it refuses, and its exit code.
+/// Its error message on stderr, and its exit code.
 fn refused(folder: &TempDir, arguments: &str) -> (String, Option<i32>) {
     let output = run(folder.path(), arguments);
     let said = String::from_utf8(output.stderr).unwrap();
@@ -72,7 +73,7 @@ fn tiles_are_the_whole_whatever_is_asked_for() {
     }
 }
 
-/// A wall that is lit, and glossy: light depends on nothing but the scene, refined or not.
+/// A lit, glossy wall: light depends on the scene alone, refined or not.
 #[test]
 fn tiles_of_a_lit_scene_are_the_whole() {
     let folder = folder();
@@ -132,7 +133,7 @@ fn shares_in_any_order_merge_to_the_whole_and_what_is_wrong_is_named() {
     assert!(error.starts_with("error: shot.tile4-of-8.part: is cut short"), "{error}");
     assert_eq!(code, Some(3));
     assert!(!folder.path().join("bad.exr").exists(), "nothing is written");
-    // What is cut is drawn again, and nothing else.
+    // Exactly the truncated tile is rendered again.
     let again = done(folder.path(), &format!("render {shot} --tiles 4x2 --shard 1/1 -o shot.exr --json"));
     let again: Value = serde_json::from_str(&again).unwrap();
     assert_eq!((&again["written"], &again["skipped"]), (&1.into(), &7.into()));
@@ -157,7 +158,7 @@ fn a_farm_tells_the_share() {
 #[test]
 fn what_is_stopped_goes_on() {
     let folder = folder();
-    // As many tiles as take long enough.
+    // Enough tiles to take sufficient time.
     let shot = "render scene.glb --camera camera.json --aperture-radius 0.1 --aov crypto --tiles 5x4 --progress json -o a.exr";
     let mut program = Command::new(env!("CARGO_BIN_EXE_focus-brush"))
         .args(shot.split_whitespace())

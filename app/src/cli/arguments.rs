@@ -1,62 +1,70 @@
-//! What can be typed.
+//! Arguments of the command line.
 
 mod names;
+mod parsers;
+mod sequence;
 
 pub use names::{BackendName, EstimatorName, ExposureName, KindName, ProgressName, SamplerName, StereoName};
 
-use super::parsers::{
-    aov, camera_parser, integers, name_parser, named, not_negative, photograph_output, place, positive, size,
+use parsers::{
+    camera_parser, choice_parser, name_parser, parse_aov, parse_integers, parse_non_negative,
+    parse_photograph_output, parse_position, parse_positive, parse_size,
 };
-use super::sequence_arguments::{KeysArguments, SequenceArguments};
+pub use sequence::{KeysArguments, SequenceArguments};
+
 use clap::{Args, Parser};
 use project::{ColorSpace, Compression};
-use scene::{BackFaces, PhotoLookup};
-use session::{Aov, CameraChoice, CocConvention, LightQuality, Renderer, TileGrid, VariantChoice};
+use light::{LightOptions, PhotoLookup, Scattering};
+use scene::BackFaces;
+use document::{CameraChoice, VariantChoice};
+use light::LightQuality;
+use render::{Aov, CocConvention, Renderer, TileGrid};
 use splat::Integers;
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-/// Paint onto a 3D scene how it is focused.
+/// Paint the focus of a 3D scene.
 #[derive(Debug, Parser)]
 #[command(
     name = "focus-brush",
     version,
     args_conflicts_with_subcommands = true,
-    after_help = "Exit codes: 0 done, 2 wrong usage, 3 bad input, 4 partly done, 5 asked-for GPU absent, 75 try again."
+    after_help = "Exit codes: 0 done, 2 wrong usage, 3 bad input, 4 partly done, 5 requested GPU not \
+                  available, 75 try again."
 )]
 pub struct Arguments {
-    /// Opens the window with this scene (.glb, .gltf) or project (.fbrush); without one, with the demo.
+    /// Opens the window with this scene (.glb, .gltf) or project (.fbrush); without a file, with the demo.
     pub file: Option<PathBuf>,
-    /// Plays what was recorded (`Export strokes…`) in the window
+    /// Plays a recording (`Export strokes…`) in the window
     #[arg(long, value_name = "STROKES.json")]
     pub replay: Option<PathBuf>,
-    /// Writes how long every point of the played strokes took to be seen, as JSON, and closes the window
+    /// Writes the latency of every point of the played strokes as JSON, then closes the window
     #[arg(long, value_name = "FILE.json", requires = "replay")]
     pub trace: Option<PathBuf>,
     /// Longest side of the live picture in pixels, instead of the setting
     #[arg(long, value_name = "PX", value_parser = clap::value_parser!(u32).range(16..=8192))]
     pub preview_size: Option<u32>,
-    /// Where the live picture is summed; it is the same. auto: on the window's graphics card, and on the processor rather
-    /// than on a card that is one in software
+    /// Device that sums the live picture; the result is the same. auto: the window's graphics card, or the
+    /// processor if the adapter is a software one
     #[arg(long, value_enum, default_value_t = BackendName::Auto)]
     pub backend: BackendName,
-    /// What to do without a window.
+    /// Commands that run without a window.
     #[command(subcommand)]
     pub command: Option<Subcommand>,
 }
 
-/// What to do without a window.
+/// Commands that run without a window.
 #[derive(Debug, clap::Subcommand)]
 pub enum Subcommand {
-    /// What is in a file, the health of its mesh, what would be baked
+    /// Show what a file contains, the health of its mesh, and what would be baked
     Info(InfoArguments),
-    /// Make a project of a scene, with a camera and a focus to begin with
+    /// Make a project from a scene, with an initial camera and focus
     New(NewArguments),
-    /// Make a project of a capture: photographs with their cameras, and a mesh
+    /// Make a project from a capture: photographs with their cameras, and a mesh
     Import(ImportArguments),
-    /// Paint what was recorded (`Export strokes…` in the window writes it) on a project or a scene
+    /// Apply recorded strokes (`Export strokes…` in the window) to a project or a scene
     Replay(ReplayArguments),
-    /// Set keys of a project's lens and layers, or list them
+    /// Set keyframes of a project's lens and layers, or list them
     Keys(KeysArguments),
     /// Write a scene with the atlas as its second UV set (TEXCOORD_1)
     Unwrap(UnwrapArguments),
@@ -64,57 +72,61 @@ pub enum Subcommand {
     Bake(BakeArguments),
     /// Render a picture of a scene, project or light field
     Render(Box<RenderArguments>),
-    /// Merge the tiles of a picture (render --tiles --shard) to the same bytes as the whole
+    /// Merge the tiles of a picture (render --tiles --shard); the result is byte-identical to an untiled render
     Merge(MergeArguments),
-    /// How far picture A is from the reference B: RMSE, relMSE, PSNR, FLIP, signed mean error
+    /// Compare picture A with the reference B: RMSE, relMSE, PSNR, FLIP, signed mean error
     Compare(CompareArguments),
-    /// Measure every renderer against the ground truth: speed, error, memory, as tables, plots and a page
+    /// Measure every renderer against the ground truth: speed, error and memory as tables, plots and an HTML
+    /// page
     Report(ReportArguments),
     /// Write parts of a project: its focus map, its unwrapped scene, its picture in layers
     Export(ExportArguments),
-    /// The presets of brushes, lenses and bokeh
+    /// List the presets for brushes, lenses and bokeh
     Presets(PresetsArguments),
-    /// The small picture of a project or a light field, as file managers show it
+    /// Write the thumbnail of a project or a light field, as file managers show it
     Thumbnail(ThumbnailArguments),
-    /// Adapters, libraries, what is missing and how to get it
+    /// Check graphics adapters and libraries, and show how to install what is missing
     Doctor(DoctorArguments),
 }
 
-/// How a scene is seen and lit.
+/// Options that affect how a scene looks and is lit.
 #[derive(Clone, Debug, Default, Args)]
 pub struct AppearanceArguments {
-    /// Whether faces that are not double sided are seen from behind (default: the project's, or hide, as glTF asks for). show:
-    /// for files whose faces are turned, and to compare with renderers that show them
-    #[arg(long, value_name = "show|hide", value_parser = named(BackFaces::ALL))]
+    /// Whether single-sided faces are visible from behind (default: the project's setting, or hide, as glTF
+    /// specifies). Use show for files with inverted faces, or to compare with renderers that show back faces
+    #[arg(long, value_name = "show|hide", value_parser = choice_parser(BackFaces::ALL))]
     pub back_faces: Option<BackFaces>,
-    /// What lies beyond all surfaces, and lights them: a world file, or an equirectangular .hdr or .exr (default: the project's, or
-    /// the scene's own; a scene without light has a studio)
+    /// The environment that surrounds and lights the scene: a world file, or an equirectangular .hdr or .exr
+    /// (default: the project's, or the scene's own; a scene without any light gets a studio)
     #[arg(long, value_name = "WORLD.json|SKY.hdr|exr")]
     pub world: Option<PathBuf>,
-    /// The variant of the scene's materials (KHR_materials_variants), by name; info lists them. "" is the scene's own materials
-    /// (default: the project's, or the scene's own; a light field is of the one it was baked in)
+    /// The variant of the scene's materials (KHR_materials_variants), by name; info lists them. "" selects the
+    /// default materials (default: the project's variant, or the default materials; a light field has the
+    /// variant it was baked with)
     #[arg(long, value_name = "NAME", value_parser = name_parser())]
     pub variant: Option<String>,
-    /// Leave out light that meets microfacets more than once, to compare with renderers that do
+    /// Leave out light scattered by microfacets more than once, to compare with renderers that do so
     #[arg(long)]
     pub single_scattering: bool,
-    /// Where the light of a capture's photographs is looked up: at texels, which they were resampled to, or direct, in the photographs
-    /// themselves for each point (slower; what texels cannot show finely enough)
-    #[arg(long, value_name = "texels|direct", default_value = "texels", value_parser = named(PhotoLookup::ALL))]
+    /// Where the light of a capture's photographs is looked up: texels, to which the photographs were
+    /// resampled, or direct, in the photographs themselves at each point (slower; resolves detail finer than a
+    /// texel)
+    #[arg(long, value_name = "texels|direct", default_value = "texels", value_parser = choice_parser(PhotoLookup::ALL))]
     pub photos: PhotoLookup,
 }
 
-/// How well light is found.
+/// Quality of the global illumination.
 #[derive(Debug, Args)]
 pub struct LightArguments {
-    /// Refine the light by so many passes of paths: without, it is as what is kept for every camera tells it, at once and a little
-    /// off; with them it is off by their noise alone, half as much for four times as many (0: none; a pass is four paths a pixel)
+    /// Refine the light with this many passes of path tracing. 0 uses the cached irradiance: immediate,
+    /// slightly biased. With passes the only error is noise, which halves for four times as many passes (a pass
+    /// is four paths per pixel)
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1 << 16))]
     pub light_passes: u32,
 }
 
 impl LightArguments {
-    /// How well light is to be found.
+    /// The light quality these options select.
     pub fn light_quality(&self) -> LightQuality {
         match self.light_passes {
             0 => LightQuality::Fine,
@@ -124,7 +136,13 @@ impl LightArguments {
 }
 
 impl AppearanceArguments {
-    /// The variant that was asked for.
+    /// How light is to be modelled.
+    pub fn light(&self) -> LightOptions {
+        let scattering = if self.single_scattering { Scattering::Single } else { Scattering::Multiple };
+        LightOptions { scattering, photo_lookup: self.photos }
+    }
+
+    /// The requested variant.
     pub fn variant(&self) -> VariantChoice {
         match self.variant.as_deref() {
             None => VariantChoice::AsSaved,
@@ -137,9 +155,9 @@ impl AppearanceArguments {
 /// `info`.
 #[derive(Debug, Args)]
 pub struct InfoArguments {
-    /// A scene (.glb, .gltf), project (.fbrush), light field (.salf) or the folder of a capture
+    /// A scene (.glb, .gltf), a project (.fbrush), a light field (.salf) or the folder of a capture
     pub file: PathBuf,
-    /// Bake a small picture's light field and count what of the scene is modelled
+    /// Bake the light field of a small picture and count which parts of the scene are modelled
     #[arg(long)]
     pub bake: bool,
     #[command(flatten)]
@@ -160,11 +178,12 @@ pub struct NewArguments {
     /// A camera file, or the name of a camera in the scene (default: the scene's first)
     #[arg(long, value_name = "CAM.json|NAME", value_parser = camera_parser())]
     pub camera: Option<CameraChoice>,
-    /// How it is focused to begin with: a recipe (.json) or a focus map (.exr, .png) (default: the ordinary lens)
+    /// The initial focus: a recipe (.json) or a focus map (.exr, .png) (default: the ordinary lens)
     #[arg(long, value_name = "RECIPE.json|MAP.exr|png")]
     pub focus: Option<PathBuf>,
-    /// A project whose paint is carried over by surface: to the nearest point of the node of the same name that looks the same way.
-    /// The project stays as it is; what finds no partner is listed and selected
+    /// A project whose paint is transferred to this scene: each point takes the paint of the nearest point of
+    /// the node of the same name that faces the same way. The old project is not changed; points without a
+    /// counterpart are listed and selected
     #[arg(long, value_name = "OLD.fbrush", conflicts_with = "focus")]
     pub paint_from: Option<PathBuf>,
     #[command(flatten)]
@@ -174,8 +193,9 @@ pub struct NewArguments {
 /// `import`.
 #[derive(Debug, Args)]
 pub struct ImportArguments {
-    /// The folder of the capture (COLMAP's, nerfstudio's, Bundler's, VisualSFM's or Metashape's cameras, pictures and a mesh; the views
-    /// of a light field), or a picture that holds its depth or has it beside it
+    /// The folder of the capture (cameras from COLMAP, nerfstudio, Bundler, VisualSFM or Metashape with
+    /// pictures and a mesh; or the views of a light field), or a picture with embedded depth or a depth map
+    /// beside it
     pub capture: PathBuf,
     /// Where to write the project
     #[arg(short, long, value_name = "PROJECT.fbrush")]
@@ -183,19 +203,20 @@ pub struct ImportArguments {
     /// The mesh (.ply, .obj, .glb) (default: the one in the folder)
     #[arg(long, value_name = "FILE")]
     pub mesh: Option<PathBuf>,
-    /// Photographs that are only compared with, by name: no light is made of them
+    /// Photographs used for comparison only, by name: their light is not used
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub leave_out: Vec<String>,
-    /// What it is taken for (default: what it is found to be)
+    /// The kind of capture (default: detected)
     #[arg(long, value_enum, value_name = "KIND")]
     pub kind: Option<KindName>,
-    /// The disparity map of a light field's middle view, or of a picture (.pfm, .exr, .png) (default: the one that lies beside it)
+    /// The disparity map of a light field's central view, or of a picture (.pfm, .exr, .png) (default: the
+    /// one beside it)
     #[arg(long, value_name = "FILE", conflicts_with = "depth")]
     pub disparity: Option<PathBuf>,
     /// The depth map of a picture (.pfm, .exr, .png) (default: the one in it or beside it)
     #[arg(long, value_name = "FILE")]
     pub depth: Option<PathBuf>,
-    /// Which end of a relative depth map is near, or the distances of black and of white in metres
+    /// Which end of a relative depth map is near, or the distances of black and white in metres
     #[arg(long, value_name = "white|black|LOW,HIGH")]
     pub near: Option<String>,
 }
@@ -221,7 +242,7 @@ pub struct ReplayArguments {
 pub struct UnwrapArguments {
     /// The scene (.glb, .gltf)
     pub scene: PathBuf,
-    /// Where to write it
+    /// Output file
     #[arg(short, long, value_name = "OUT.glb")]
     pub output: PathBuf,
     #[command(flatten)]
@@ -231,16 +252,16 @@ pub struct UnwrapArguments {
     pub json: bool,
 }
 
-/// How a scene is unwrapped.
+/// Options for unwrapping a scene.
 #[derive(Debug, Args)]
 pub struct AtlasArguments {
     /// Texels per unit of length (default: an atlas of 1024² to 2048² texels)
-    #[arg(long, value_name = "TEXELS", value_parser = positive)]
+    #[arg(long, value_name = "TEXELS", value_parser = parse_positive)]
     pub density: Option<f64>,
-    /// The densest atlas that fits a square of this side in texels
+    /// Use the densest atlas that fits a square with this side, in texels
     #[arg(long, value_name = "TEXELS", conflicts_with = "density", value_parser = clap::value_parser!(u32).range(16..=8192))]
     pub side: Option<u32>,
-    /// Unwrap every part, also those with sound texture coordinates of their own
+    /// Unwrap every part, even those with usable texture coordinates of their own
     #[arg(long)]
     pub ignore_uv: bool,
 }
@@ -262,29 +283,28 @@ pub struct BakeArguments {
     pub json: bool,
 }
 
-/// From where, and how focused.
+/// Camera, lens and focus of a picture.
 #[derive(Debug, Args)]
 pub struct ShotArguments {
-    /// A camera file, or the name of a camera in the scene; photo:NAME is that of a photograph, as a pinhole,
-    /// photo:A..B@0.5 is halfway between two (default: the
-    /// project's, or the scene's first)
+    /// A camera file, or the name of a camera in the scene. photo:NAME is the camera of a photograph, as a
+    /// pinhole; photo:A..B@0.5 lies halfway between two (default: the project's camera, or the scene's first)
     #[arg(long, value_name = "CAM.json|NAME", value_parser = camera_parser())]
     pub camera: Option<CameraChoice>,
-    /// The aperture's radius in scene units instead of the camera's; 0 is a pinhole
-    #[arg(long, value_name = "R", value_parser = not_negative)]
+    /// Aperture radius in scene units, overriding the camera's; 0 is a pinhole
+    #[arg(long, value_name = "R", value_parser = parse_non_negative)]
     pub aperture_radius: Option<f64>,
-    /// A lens instead of the camera's: the name of a preset (focus-brush presets lists them) or its file
+    /// A lens, overriding the camera's: the name of a preset (focus-brush presets lists them) or its file
     #[arg(long, value_name = "NAME|FILE.json")]
     pub lens: Option<OsString>,
-    /// An aperture's shape instead of the camera's: the name of a preset or its file
+    /// An aperture shape, overriding the camera's: the name of a preset or its file
     #[arg(long, value_name = "NAME|FILE.json")]
     pub bokeh: Option<OsString>,
-    /// How it is focused: a recipe (.json) or a focus map (.exr, .png) (default: as the project is painted, or the
+    /// The focus: a recipe (.json) or a focus map (.exr, .png) (default: as the project is painted, or the
     /// ordinary lens)
     #[arg(long, value_name = "RECIPE.json|MAP.exr|png")]
     pub focus: Option<PathBuf>,
-    /// Picture size in pixels instead of the camera's
-    #[arg(long, value_name = "WxH", value_parser = size)]
+    /// Picture size in pixels, overriding the camera's
+    #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub size: Option<[u32; 2]>,
     #[command(flatten)]
     pub appearance: AppearanceArguments,
@@ -293,7 +313,7 @@ pub struct ShotArguments {
 /// `render`.
 #[derive(Debug, Args)]
 pub struct RenderArguments {
-    /// A scene (.glb, .gltf), project (.fbrush), light field (.salf) or the folder of a capture
+    /// A scene (.glb, .gltf), a project (.fbrush), a light field (.salf) or the folder of a capture
     pub file: PathBuf,
     /// Where to write the picture; EXR is linear, PNG is sRGB
     #[arg(short, long, value_name = "OUT.exr|png")]
@@ -302,93 +322,99 @@ pub struct RenderArguments {
     pub shot: ShotArguments,
     #[command(flatten)]
     pub light: LightArguments,
-    /// What draws it: the splatted light field or the ray-traced ground truth; or, to compare with: a blur of the pinhole
-    /// picture by depth, the same in layers, shifted pinhole views, or every ray of the light field thrown at one pixel
-    #[arg(long, value_name = "NAME", default_value = "splat", value_parser = named(Renderer::ALL))]
+    /// The renderer: the splatted light field (splat) or the ray-traced ground truth (truth); for comparison: a
+    /// depth-dependent blur of the pinhole picture (blur), the same in layers (layers), shifted pinhole views
+    /// (views), or the light field scattered ray by ray (scatter)
+    #[arg(long, value_name = "NAME", default_value = "splat", value_parser = choice_parser(Renderer::ALL))]
     pub renderer: Renderer,
-    /// Where the splat runs; the picture is the same. auto: on a graphics card if there is one, and on the processor rather
-    /// than on a card that is one in software
+    /// Device that runs the splat; the picture is the same. auto: a graphics card if there is one, otherwise
+    /// the processor; software adapters are not used
     #[arg(long, value_enum, default_value_t = BackendName::Auto)]
     pub backend: BackendName,
-    /// Only a graphics adapter whose name contains this, also one in software (focus-brush doctor lists them)
+    /// Use the graphics adapter whose name contains this, even a software one (focus-brush doctor lists them)
     #[arg(long, value_name = "NAME", value_parser = name_parser())]
     pub adapter: Option<String>,
-    /// How coarse, in pixels, the light field may be: what partly hidden points see of the aperture, and which samples
-    /// are joined where they are out of focus. Smaller is more exact and slower; 0 joins none, and takes 3 cells (default: 2
-    /// for the first, 0 for the second)
-    #[arg(long, value_name = "PX", value_parser = not_negative)]
+    /// How coarse, in pixels, the light field may be: the visibility of the aperture from partly hidden points,
+    /// and which out-of-focus samples are merged. Smaller is more exact and slower; 0 merges none and uses 3
+    /// cells (default: 2 for visibility, 0 for merging)
+    #[arg(long, value_name = "PX", value_parser = parse_non_negative)]
     pub tolerance: Option<f64>,
-    /// Samples the light field on a grid of N × N cells a pixel: less is softened, for N² times the time and memory. For what
-    /// is not baked yet (default: 1, at --tolerance 0 3)
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=session::MAX_CELLS_A_SIDE as i64))]
+    /// Sample the light field on a grid of N × N cells per pixel: sharper, for N² times the time and memory.
+    /// Not for baked light fields (default: 1; 3 at --tolerance 0)
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=render::MAX_CELLS_A_SIDE as i64))]
     pub cells: Option<u32>,
-    /// Rays a pixel of the ground truth
+    /// Rays per pixel of the ground truth
     #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
     pub spp: u32,
-    /// Where rays of the ground truth start: at the sensor, or at the surfaces (an independent check, and slower)
+    /// Where the rays of the ground truth start: at the sensor, or at the surfaces (an independent check;
+    /// slower)
     #[arg(long, value_enum, default_value_t = EstimatorName::Sensor)]
     pub estimator: EstimatorName,
-    /// What the ground truth's samples are drawn from: Owen-scrambled Sobol' points, or independent numbers
+    /// Source of the ground truth's samples: Owen-scrambled Sobol' points, or independent random numbers
     #[arg(long, value_enum, default_value_t = SamplerName::LowDiscrepancy)]
     pub sampler: SamplerName,
-    /// Slices of depth that `--renderer layers` cuts the pinhole picture to
+    /// Depth slices that `--renderer layers` cuts the pinhole picture into
     #[arg(long, value_name = "N", default_value_t = 32, value_parser = clap::value_parser!(u32).range(1..=256))]
     pub layers: u32,
-    /// Views a side of the aperture's square that `--renderer views` shifts and adds
+    /// Views per side of the aperture's square that `--renderer views` shifts and adds
     #[arg(long, value_name = "M", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=64))]
     pub views: u32,
-    /// Rays that `--renderer scatter` throws for each sample of the light field
+    /// Rays that `--renderer scatter` traces for each sample of the light field
     #[arg(long, value_name = "N", default_value_t = 256, value_parser = clap::value_parser!(u32).range(1..=1 << 16))]
     pub rays: u32,
-    /// Pictures that come along: alpha (the share that is not background; the colours are multiplied by it), crypto (Cryptomatte of
-    /// objects and materials), pinhole (everything sharp, to be blurred by others), coverage (the sum for a scene of radiance 1),
-    /// coc (the circle of confusion), depth (axial, depth.Z; inf for the background), t (and anchor), seen (of a capture: 1 photographed, 0 filled in), stderr (the ground truth's standard error: of radiance, luminance and
-    /// coverage, and of their ratios)
-    #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = aov)]
+    /// Additional output channels: alpha (the share that is not background; colours are premultiplied), crypto
+    /// (Cryptomatte of objects and materials), pinhole (everything sharp, to be blurred by other programs),
+    /// coverage (the sum for a scene of radiance 1), coc (the circle of confusion), depth (axial, depth.Z; inf
+    /// for the background), t (and anchor), seen (for captures: 1 photographed, 0 filled in), stderr (the
+    /// ground truth's standard error of radiance, luminance and coverage, and of their ratios)
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = parse_aov)]
     pub aov: Vec<Aov>,
-    /// How coc is told: signed-px (its diameter, below 0 when nearer than the focus), or as nodes that blur by it want it: nuke
-    /// and magicdefocus (its radius, below 0 nearer or farther), flame (0.5 in focus, 0 nearest, 1 farthest)
-    #[arg(long, value_name = "NAME", default_value = "signed-px", value_parser = named(CocConvention::ALL))]
+    /// Convention of the coc channel: signed-px (diameter, negative when nearer than the focus), or what
+    /// compositing nodes expect: nuke and magicdefocus (radius; negative means nearer or farther,
+    /// respectively), flame (0.5 in focus, 0 nearest, 1 farthest)
+    #[arg(long, value_name = "NAME", default_value = "signed-px", value_parser = choice_parser(CocConvention::ALL))]
     pub coc_convention: CocConvention,
-    /// Pixels that are computed around the frame on each side: an EXR's data window is that much larger than its display window
+    /// Extra pixels to render on each side of the frame: the data window of the EXR is that much larger than
+    /// its display window
     #[arg(long, value_name = "PX", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=4096))]
     pub overscan: u32,
-    /// How an EXR is compressed; dwaa loses what is hardly seen of the colours
-    #[arg(long, value_name = "NAME", default_value = "zip", value_parser = named(Compression::ALL))]
+    /// Compression of the EXR; dwaa is lossy, with hardly visible errors in the colours
+    #[arg(long, value_name = "NAME", default_value = "zip", value_parser = choice_parser(Compression::ALL))]
     pub compression: Compression,
-    /// Halves instead of floats in an EXR where that suffices: colours, alpha, coverage
+    /// Store colours, alpha and coverage in the EXR as half floats
     #[arg(long)]
     pub half: bool,
     /// The linear colour space of an EXR
-    #[arg(long, value_name = "NAME", default_value = "rec709", value_parser = named(ColorSpace::ALL))]
+    #[arg(long, value_name = "NAME", default_value = "rec709", value_parser = choice_parser(ColorSpace::ALL))]
     pub color_space: ColorSpace,
-    /// normalise keeps a white scene white; conserve is the model's energy as it is (default: the project's, or
+    /// normalise keeps a white scene white; conserve keeps the energy of the model (default: the project's, or
     /// normalise)
     #[arg(long, value_enum)]
     pub exposure: Option<ExposureName>,
-    /// Two pictures for two eyes, the lens's through two parts of its aperture: beside each other, or in red and cyan
+    /// A stereo pair, seen through two parts of the lens's aperture: side by side, or as a red-cyan anaglyph
     #[arg(long, value_enum, value_name = "FORM", conflicts_with_all = ["aov", "overscan"])]
     pub stereo: Option<StereoName>,
-    /// How far the eyes are apart, as a share of the aperture's diameter, at most 0.9375
+    /// Distance between the eyes as a share of the aperture's diameter, at most 0.9375
     #[arg(long, value_name = "SHARE", default_value_t = 0.5, requires = "stereo")]
     pub eyes: f64,
-    /// The place of the picture that both eyes look at, px: it has no disparity (default: what the camera is focused on)
-    #[arg(long, value_name = "X,Y", requires = "stereo", value_parser = place)]
+    /// The pixel position that both eyes fixate: it has zero disparity (default: what the camera is focused on)
+    #[arg(long, value_name = "X,Y", requires = "stereo", value_parser = parse_position)]
     pub fixate: Option<glam::DVec2>,
-    /// Seed of the ground truth's rays, and of scattered ones
+    /// Seed of the rays of --renderer truth and scatter
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u32,
-    /// Draws the picture in columns and rows of tiles, each within the memory of a tile, to the same bytes: of an .exr, by splat, on the
-    /// processor. With --shard to parts beside it, which `merge` puts together; finished ones are skipped
+    /// Render the picture in columns × rows of tiles, using the memory of one tile; the .exr is byte-identical
+    /// to an untiled render. Splat on the processor only. With --shard, writes parts beside the output for
+    /// `merge`; finished parts are skipped
     #[arg(long, value_name = "CxR", conflicts_with_all = ["frame", "frames", "stereo"])]
     pub tiles: Option<TileGrid>,
-    /// Bits behind the point of the sums of tiles, at most: unpainted and painted, as merge asks for them where a picture is covered many
-    /// times
-    #[arg(long, value_name = "BITS,BITS", requires = "tiles", value_parser = integers)]
+    /// Maximum fraction bits of the tiles' fixed-point sums, unpainted and painted; needed only if merge
+    /// reports an overflow because a picture is covered many times
+    #[arg(long, value_name = "BITS,BITS", requires = "tiles", value_parser = parse_integers)]
     pub integers: Option<Integers>,
     #[command(flatten)]
     pub sequence: SequenceArguments,
-    /// What is told on stderr meanwhile; json is a line of JSON a step
+    /// Format of progress reports on stderr; json writes one line of JSON per step
     #[arg(long, value_enum, value_name = "FORM", default_value_t = ProgressName::Text)]
     pub progress: ProgressName,
     /// Write timings and counts as JSON to stdout
@@ -405,7 +431,7 @@ pub struct MergeArguments {
     /// Where to write the picture
     #[arg(short, long, value_name = "OUT.exr")]
     pub output: PathBuf,
-    /// What is told on stderr meanwhile; json is a line of JSON a step
+    /// Format of progress reports on stderr; json writes one line of JSON per step
     #[arg(long, value_enum, value_name = "FORM", default_value_t = ProgressName::Text)]
     pub progress: ProgressName,
     /// Write timings and counts as JSON to stdout
@@ -420,11 +446,11 @@ pub struct CompareArguments {
     pub a: PathBuf,
     /// The reference, of the same size
     pub b: PathBuf,
-    /// Write where they differ: FLIP in false colours (.png), or difference and FLIP as layers (.exr)
+    /// Write an error map: FLIP in false colours (.png), or difference and FLIP as layers (.exr)
     #[arg(long, value_name = "OUT.png|exr")]
     pub error_map: Option<PathBuf>,
-    /// Tell how much lies within three standard errors, with those that the files hold (`render --renderer truth --aov
-    /// stderr,coverage`); a file without any counts as exact
+    /// Report how much lies within three standard errors, using the standard errors stored in the files
+    /// (`render --renderer truth --aov stderr,coverage`); a file without them counts as exact
     #[arg(long)]
     pub z_test: bool,
     /// Write JSON to stdout
@@ -435,33 +461,33 @@ pub struct CompareArguments {
 /// `report`.
 #[derive(Debug, Args)]
 pub struct ReportArguments {
-    /// Scenes (.glb, .gltf) or projects (.fbrush); without any the demo, or nothing but the hard cases with --hard
+    /// Scenes (.glb, .gltf) or projects (.fbrush). Default: the demo; with --hard, only the hard cases
     pub scenes: Vec<PathBuf>,
-    /// The folder of the report; a run that was stopped goes on there
+    /// The folder of the report; an interrupted run resumes there
     #[arg(short, long, value_name = "DIR")]
     pub output: PathBuf,
     #[command(flatten)]
     pub shot: ShotArguments,
-    /// Rays a pixel of the reference pictures (default: 1024, with --quick 512, with --engine 256)
+    /// Rays per pixel of the reference pictures (default: 1024; with --quick 512, with --engine 256)
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1 << 20))]
     pub spp: Option<u32>,
     /// Measure only a few points of every sweep
     #[arg(long)]
     pub quick: bool,
-    /// Run the numerically hard cases as well: hard.json, and a table on the page
+    /// Also run the numerically hard cases: hard.json, and a table on the page
     #[arg(long)]
     pub hard: bool,
-    /// Measure the splat engine alone instead: times at every tolerance with their errors, and the ray tracer at the same
-    /// error, 1920x1080 unless --size says otherwise
+    /// Measure only the splat engine: time and error at every tolerance, and the ray tracer at equal error;
+    /// 1920x1080 unless --size is given
     #[arg(long, conflicts_with_all = ["hard", "quick"])]
     pub engine: bool,
-    /// What the engine is measured on. auto: the processor, and then a graphics card, too, if there is one
+    /// Device that the engine is measured on. auto: the processor, then also a graphics card if there is one
     #[arg(long, value_enum, requires = "engine", default_value_t = BackendName::Auto)]
     pub backend: BackendName,
-    /// Only a graphics adapter whose name contains this, also one in software (focus-brush doctor lists them)
+    /// Use the graphics adapter whose name contains this, even a software one (focus-brush doctor lists them)
     #[arg(long, value_name = "NAME", requires = "engine", value_parser = name_parser())]
     pub adapter: Option<String>,
-    /// Write what was done as JSON to stdout
+    /// Write a summary as JSON to stdout
     #[arg(long)]
     pub json: bool,
 }
@@ -480,9 +506,9 @@ pub struct ExportArguments {
     /// Write the picture with coverage, coc, depth, t and anchor as layers
     #[arg(long, value_name = "OUT.exr")]
     pub layers: Option<PathBuf>,
-    /// Write a photograph of a capture as its camera photo:NAME shows the scene: undistorted, linear, its exposure as solved, with the
-    /// layer seen
-    #[arg(long, value_name = "NAME=OUT.exr", value_parser = photograph_output)]
+    /// Write a photograph of a capture as its camera photo:NAME shows the scene: undistorted, linear, with its
+    /// solved exposure and the layer seen
+    #[arg(long, value_name = "NAME=OUT.exr", value_parser = parse_photograph_output)]
     pub photo: Vec<(String, PathBuf)>,
 }
 
@@ -497,12 +523,12 @@ pub struct PresetsArguments {
 /// `thumbnail`.
 #[derive(Debug, Args)]
 pub struct ThumbnailArguments {
-    /// A project (.fbrush), which holds what it looked like when it was saved, or a light field (.salf), which is drawn
+    /// A project (.fbrush), whose stored thumbnail is used, or a light field (.salf), which is rendered
     pub file: PathBuf,
-    /// Where to write it
+    /// Output file
     #[arg(short, long, value_name = "PNG")]
     pub output: PathBuf,
-    /// Its longer side in pixels, at most
+    /// Maximum length of the longer side in pixels
     #[arg(long, value_name = "PX", default_value_t = 256, value_parser = clap::value_parser!(u32).range(1..=512))]
     pub size: u32,
 }

@@ -1,26 +1,27 @@
 //! Progress on stderr, results on stdout.
 
 use super::arguments::ProgressName;
-use super::stopping;
+use super::termination;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use progress::{Part, Progress};
 use serde_json::{Value, json};
-use session::Steps;
+use light::{Resources, Steps};
 use std::borrow::Cow;
 use std::io::{IsTerminal, Write};
 use std::path::Path;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
-/// Without a terminal, long steps say how far they are this often.
+/// Without a terminal, long steps report their progress this often.
 const LINE_INTERVAL: Duration = Duration::from_secs(5);
 
-/// Where commands tell what they do.
+/// Where commands report what they do.
 pub struct Console {
     format: ProgressFormat,
+    resources: Resources,
 }
 
-/// How it is told.
+/// Format of the reports.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum ProgressFormat {
     Bars,
@@ -37,18 +38,29 @@ impl Console {
             } else {
                 ProgressFormat::Lines
             },
+            resources: Resources::default(),
         }
     }
 
-    /// The same, which tells progress in this form.
+    /// The console of this process, reporting progress in this format.
     pub fn with_format(format: ProgressName) -> Self {
         match format {
             ProgressName::Text => Self::new(),
-            ProgressName::Json => Self { format: ProgressFormat::Json },
+            ProgressName::Json => Self { format: ProgressFormat::Json, ..Self::new() },
         }
     }
 
-    /// Tells what is odd but does no harm.
+    /// The same, for commands that may use `resources`.
+    pub fn with_resources(self, resources: Resources) -> Self {
+        Self { resources, ..self }
+    }
+
+    /// What commands may use.
+    pub fn resources(&self) -> &Resources {
+        &self.resources
+    }
+
+    /// Reports oddities that do no harm, on stderr.
     pub fn warn<'a>(&self, warnings: impl IntoIterator<Item = &'a String>) {
         for warning in warnings {
             match self.format {
@@ -58,7 +70,7 @@ impl Console {
         }
     }
 
-    /// Tells on stderr what was done.
+    /// Reports on stderr what was done.
     pub fn note(&self, line: &str) {
         match self.format {
             ProgressFormat::Json => write_json_line(&json!({ "note": line })),
@@ -66,7 +78,7 @@ impl Console {
         }
     }
 
-    /// Tells on stderr what a script wants to know: as `line`, or as JSON where that is asked for.
+    /// Reports an event for scripts on stderr: as `line`, or as JSON if that format was chosen.
     pub fn event(&self, line: &str, event: &Value) {
         match self.format {
             ProgressFormat::Json => write_json_line(event),
@@ -79,22 +91,22 @@ fn write_json_line(value: &Value) {
     let _ = writeln!(std::io::stderr(), "{value}");
 }
 
-/// A line of the result on stdout. A reader that has gone is no error.
+/// Prints a line of the result on stdout. A closed pipe is not an error.
 pub fn print_line(line: impl AsRef<str>) {
     let _ = writeln!(std::io::stdout(), "{}", line.as_ref());
 }
 
-/// A path in the result for a script. JSON is UTF-8: bytes of a path that are not become U+FFFD.
+/// A path for a JSON result. JSON is UTF-8: invalid bytes of a path become U+FFFD.
 pub fn path_text(path: &Path) -> Cow<'_, str> {
     path.to_string_lossy()
 }
 
-/// The same of several paths.
+/// Several paths for a JSON result.
 pub fn path_texts<T: AsRef<Path>>(paths: &[T]) -> Vec<Cow<'_, str>> {
     paths.iter().map(|path| path_text(path.as_ref())).collect()
 }
 
-/// The result for a script.
+/// Prints the result as JSON on stdout.
 pub fn print_json(value: &Value) {
     print_line(format!("{value:#}"));
 }
@@ -120,15 +132,15 @@ impl Steps for Console {
     }
 }
 
-/// Whoever asks only whether to go on.
+/// Used where only cancellation matters.
 impl Progress for Console {
     fn report(&self, _fraction: f32) {}
     fn cancelled(&self) -> bool {
-        stopping::is_requested()
+        termination::is_requested()
     }
 }
 
-/// A bar on a terminal; it goes when the step is over.
+/// A progress bar on a terminal; it is removed when the step is over.
 struct ProgressBarStep(ProgressBar);
 
 impl Progress for ProgressBarStep {
@@ -139,7 +151,7 @@ impl Progress for ProgressBarStep {
         }
     }
     fn cancelled(&self) -> bool {
-        stopping::is_requested()
+        termination::is_requested()
     }
     fn begin_part(&self, part: &Part) {
         self.0.set_message(part.name);
@@ -152,14 +164,14 @@ impl Drop for ProgressBarStep {
     }
 }
 
-/// Plain lines where there is no terminal.
+/// Plain lines, used where there is no terminal.
 struct LineStep {
     last: Mutex<LineState>,
 }
 
-/// What was told last.
+/// What was reported last.
 struct LineState {
-    /// What is being done, and the share of the step that is done when it begins and ends.
+    /// The current part, and the shares of the step that are done at its start and end.
     part: Cow<'static, str>,
     shares: [f32; 2],
     reported_at: Instant,
@@ -192,7 +204,7 @@ impl Progress for LineStep {
         }
     }
     fn cancelled(&self) -> bool {
-        stopping::is_requested()
+        termination::is_requested()
     }
     fn begin_part(&self, part: &Part) {
         eprintln!("{}…", part.name);
@@ -203,7 +215,7 @@ impl Progress for LineStep {
     }
 }
 
-/// A line of JSON at the beginning of a step, now and then while it goes on, and at its end.
+/// A line of JSON at the start of a step, at intervals while it runs, and at its end.
 struct JsonStep {
     label: String,
     last: Mutex<(Instant, f32)>,
@@ -226,7 +238,7 @@ impl Progress for JsonStep {
         }
     }
     fn cancelled(&self) -> bool {
-        stopping::is_requested()
+        termination::is_requested()
     }
     fn begin_part(&self, part: &Part) {
         write_json_line(&json!({ "step": self.label, "part": part.name, "done": part.from }));
@@ -235,7 +247,7 @@ impl Progress for JsonStep {
 
 impl Drop for JsonStep {
     fn drop(&mut self) {
-        if !stopping::is_requested() {
+        if !termination::is_requested() {
             write_json_line(&json!({ "step": self.label, "done": 1.0 }));
         }
     }

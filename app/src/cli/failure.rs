@@ -1,18 +1,21 @@
 //! Errors and exit codes.
 
+use document::DocumentError;
+use jobs::JobError;
+use render::RenderError;
 use project::ProjectError;
 use session::SessionError;
 use std::path::Path;
 
 /// Wrong usage.
 pub const WRONG_USAGE: u8 = 2;
-/// A file or value that cannot be used, or a fault of the program.
+/// A file or value that cannot be used, or an internal error.
 pub const BAD_INPUT: u8 = 3;
-/// Some of what was asked for was done.
+/// Only part of the request was carried out.
 pub const PARTLY_DONE: u8 = 4;
-/// A GPU was asked for and there is none that can do the work.
+/// A GPU was requested and none is able to do the work.
 pub const NO_GPU: u8 = 5;
-/// The machine stands in the way for now.
+/// A temporary problem of the machine.
 pub const TRY_AGAIN: u8 = 75;
 
 /// Why a command failed.
@@ -22,7 +25,7 @@ pub struct Failure {
     pub code: u8,
     /// One line: `FILE: what is wrong (what to do)`.
     pub message: String,
-    /// Whether it is a fault of the program itself.
+    /// Whether it is an internal error of the program.
     pub is_internal: bool,
 }
 
@@ -47,22 +50,22 @@ impl Failure {
         Self::new(PARTLY_DONE, message)
     }
 
-    /// Something that a capture speaks of is missing: no failure, and nothing to pass over.
+    /// Parts of a capture are missing: the command succeeded partly.
     pub fn incomplete_capture(file: &Path) -> Self {
-        Self::partly_done(format!("{}: something of it is missing, see above", file.display()))
+        Self::partly_done(format!("{}: parts of it are missing (see the warnings above)", file.display()))
     }
 
-    /// Worth another try.
+    /// A temporary failure.
     pub fn try_again(message: impl Into<String>) -> Self {
         Self::new(TRY_AGAIN, message)
     }
 
-    /// A signal came to end.
+    /// The process was asked to terminate.
     pub fn terminated() -> Self {
-        Self::try_again("stopped: what is finished stays (run it again to go on)")
+        Self::try_again("stopped: finished work is kept (run the command again to resume)")
     }
 
-    /// A fault of the program.
+    /// An internal error.
     pub fn internal(message: impl Into<String>) -> Self {
         Self { is_internal: true, ..Self::new(BAD_INPUT, message) }
     }
@@ -80,6 +83,24 @@ impl From<SessionError> for Failure {
                 Self::bad_input(message)
             }
         }
+    }
+}
+
+impl From<DocumentError> for Failure {
+    fn from(error: DocumentError) -> Self {
+        SessionError::from(error).into()
+    }
+}
+
+impl From<RenderError> for Failure {
+    fn from(error: RenderError) -> Self {
+        SessionError::from(error).into()
+    }
+}
+
+impl From<JobError> for Failure {
+    fn from(error: JobError) -> Self {
+        SessionError::from(error).into()
     }
 }
 

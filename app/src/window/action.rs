@@ -1,45 +1,46 @@
-//! What panels and views ask for. They read the document and emit; the shell carries out.
+//! Requests of panels and views. They read the document and emit actions; the shell performs them.
 
 use super::layout::Pane;
 use project::Preset;
-use session::{Command, CommandId, SurfaceHit};
+use document::SurfaceHit;
+use session::{Command, CommandId};
 use std::path::PathBuf;
 
-/// A wish of a panel or a view.
+/// A request of a panel or a view.
 #[derive(Clone, Debug)]
 pub enum Action {
-    /// A command of the table.
+    /// Runs a command of the command table.
     Run(CommandId),
-    /// Straight to the session.
+    /// Sends a command to the session.
     Apply(Box<Command>),
-    /// Opens a file, after asking about unsaved changes.
+    /// Opens a file, after the dialog about unsaved changes.
     Open(PathBuf),
-    /// Asks for the picture of an aperture mask, then uses it.
+    /// Chooses an image as aperture mask.
     ChooseMask,
-    /// Asks for an environment's picture, then uses it.
+    /// Chooses an image as environment.
     ChooseEnvironment,
-    /// Shows what of the aperture a point sees.
+    /// Shows which part of the aperture is visible from a point.
     Inspect(SurfaceHit),
-    /// The next point of a rack focus.
+    /// Adds the next point of a rack focus.
     RackPoint(SurfaceHit),
-    /// Puts a panel elsewhere.
+    /// Rearranges a panel.
     Place(Pane, PanelCommand),
-    /// Something with a preset.
+    /// Acts on a preset.
     Preset(PresetAction),
-    /// A sentence for the user: something cannot be done.
+    /// Shows an error message: something cannot be done.
     ShowError(String),
 }
 
-/// What is done with a preset.
+/// An action on a preset.
 #[derive(Clone, Debug)]
 pub enum PresetAction {
-    /// Brush or camera become as it says.
+    /// Applies it to the brush or the camera.
     Use(Box<Preset>),
-    /// The user's own preset of a file, with its name, gets another name.
+    /// Renames the user's preset in this file; the string is its current name.
     Rename(PathBuf, String),
-    /// The user's own preset of a file goes.
+    /// Deletes the user's preset in this file.
     Delete(PathBuf),
-    /// It is written to a file that is asked for.
+    /// Writes it to a file that the user chooses.
     Export(Box<Preset>),
 }
 
@@ -49,14 +50,14 @@ impl From<PresetAction> for Action {
     }
 }
 
-/// What is done with a panel.
+/// An action on a panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PanelCommand {
-    /// Over all others, or back.
+    /// Shows it over all others, or restores the layout.
     Enlarge,
-    /// Afloat, or back.
+    /// Makes it float, or docks it again.
     Float,
-    /// Folded away.
+    /// Hides it.
     Close,
 }
 

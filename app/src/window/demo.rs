@@ -1,8 +1,8 @@
-//! Where the demo lies: beside the program, in its share folder, or in the source tree it was built from.
+//! Locates the demo: beside the program, in its share folder, or in the source tree it was built from.
 
 use std::path::{Path, PathBuf};
 
-/// The demo's project. None where it is not installed.
+/// The project file of the demo; `None` if it is not installed.
 pub fn demo_project() -> Option<PathBuf> {
     let program = std::env::current_exe().ok();
     let beside = program.as_deref().and_then(Path::parent);
@@ -21,16 +21,16 @@ pub fn demo_project() -> Option<PathBuf> {
 mod tests {
     use super::*;
     use progress::Unwatched;
-    use session::{Input, Stage};
+    use document::{Input, Stage};
 
     #[test]
     fn the_demo_is_painted_and_fits_its_scene() {
         let file = demo_project().expect("assets/demo/demo.fbrush is there");
-        let input = Input::open(&file, &Unwatched).unwrap();
+        let input = Input::open(&file, &Default::default(), &Unwatched).unwrap();
         assert_eq!(input.warnings, Vec::<String>::new(), "made for the scene beside it");
         let atlas = input.atlas(&Default::default(), &Unwatched).unwrap();
         let stage =
-            Stage::new(std::sync::Arc::new(trace::Tracer::new(input.scene.clone())), atlas, &Unwatched)
+            Stage::new(input.lit_scene().unwrap(), atlas, &Unwatched)
                 .unwrap();
         let map = input.project.unwrap().focus_map.expect("it is painted");
         let sharp = stage.canvas.texels().iter().filter(|t| map.at(t.x, t.y) == lens::FocusOffset::SHARP);

@@ -1,36 +1,38 @@
-//! What the window is started with.
+//! Start options of the window.
 
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// What the window starts with.
+/// Start options of the window.
 #[derive(Clone, Debug)]
 pub struct WindowOptions {
     /// A scene or project to open.
     pub file: Option<PathBuf>,
-    /// Whether the demo is opened when there is no file.
+    /// Whether to open the demo if there is no file.
     pub demo: bool,
-    /// Whether settings and layout of the last run are taken up.
+    /// Whether to restore the settings and layout of the last run.
     pub remember: bool,
-    /// The longest side that the preview is drawn at, px; none for the user's setting.
+    /// Longest side of the preview, px; `None` for the user's setting.
     pub preview_size: Option<u32>,
-    /// For how long nothing must change until the exact picture is drawn; none: never.
+    /// Idle time after which the exact picture is drawn; `None`: never.
     pub exact_after: Option<Duration>,
-    /// By how many passes its light is refined then, at most; 0: not at all.
+    /// Maximum number of passes by which its light is then refined; 0: none.
     pub light_passes: u32,
-    /// Where light fields are kept from one run to the next; none: they are baked every time.
-    pub light_fields: Option<session::LightFieldStore>,
-    /// Where the live picture is summed.
+    /// Disk cache of light fields; `None`: they are baked every time.
+    pub light_fields: Option<render::LightFieldStore>,
+    /// What work on documents may use.
+    pub resources: light::Resources,
+    /// Device that sums the live picture.
     pub backend: splat::BackendChoice,
     /// How scenes are unwrapped.
     pub unwrap: atlas::UnwrapOptions,
-    /// Whether the system is asked for its file dialogs; else paths are typed.
+    /// Whether to use the system's file dialogs; otherwise paths are typed.
     pub system_dialogs: bool,
-    /// Where the user's own presets are; none: nowhere.
+    /// Folder of the user's own presets, if any.
     pub presets: Option<PathBuf>,
-    /// What is played once the file is open.
+    /// A recording to play once the file is open.
     pub replay: Option<Vec<project::RecordedStep>>,
-    /// Where the times of what is played are written; the window then closes.
+    /// Output file for the latencies of the recording; the window closes after writing it.
     pub trace: Option<PathBuf>,
 }
 
@@ -44,6 +46,7 @@ impl Default for WindowOptions {
             exact_after: Some(Duration::from_millis(500)),
             light_passes: 256,
             light_fields: None,
+            resources: light::Resources::default(),
             backend: splat::BackendChoice::Auto,
             unwrap: atlas::UnwrapOptions::default(),
             system_dialogs: system_dialogs_available(),
@@ -54,8 +57,8 @@ impl Default for WindowOptions {
     }
 }
 
-/// Whether the system's file dialogs are worth asking: not without a session bus (no portal answers then), and not when
-/// `FOCUS_BRUSH_FILE_DIALOG=typed` says so.
+/// Whether to try the system's file dialogs: not without a session bus, because there is no portal then, and
+/// not if `FOCUS_BRUSH_FILE_DIALOG=typed`.
 fn system_dialogs_available() -> bool {
     let prefers_typed_paths =
         std::env::var_os("FOCUS_BRUSH_FILE_DIALOG").is_some_and(|value| value == "typed");

@@ -1,11 +1,11 @@
-//! The window: one frame from top to bottom, and what the commands do.
+//! The application of the window: event handling and layout of a frame.
 //!
 //! ```text
 //! session events ─▶ views          keys, menus, panels, views ─▶ actions ─▶ session
 //! ```
 //!
-//! A frame first takes up what happened, then draws everything from the document as it is; what is asked for is collected in a
-//! list of [`Action`]s and carried out at the end.
+//! A frame first handles the session's events, then draws everything from the current document. Requests are
+//! collected as [`Action`]s and performed at the end.
 
 mod commands;
 mod document;
@@ -14,42 +14,43 @@ mod presets;
 mod views;
 
 use super::action::PanelCommand;
-use super::blit::Blitter;
-use super::brush_gesture::BrushGesture;
-use super::drawer::Drawer;
-use super::file_dialog::{FileDialog, Purpose};
-use super::help::Help;
-use super::inspector::Inspector;
+use super::chrome::help::Help;
+use super::chrome::menu_bar::{MenuState, is_possible, menu_bar};
+use super::chrome::palette::Palette;
+use super::chrome::status_line::{StatusNotes, status_line};
+use super::chrome::toasts::{Severity, Toasts};
+use super::chrome::tool_bar::{largest_radius, tool_bar};
+use super::chrome::{keys, theme};
+use super::dialogs::depth_polarity_dialog::DepthPolarityDialog;
+use super::dialogs::file_dialog::{FileDialog, Purpose};
+use super::dialogs::preset_name_dialog::PresetNameDialog;
+use super::dialogs::unsaved_changes_dialog::{PendingAction, UnsavedChangesDialog};
+use super::graphics::blit::Blitter;
+use super::graphics::{device, soft_painter};
 use super::layout::{Layout, Pane};
-use super::looking_round::ApertureOrbit;
-use super::menu_bar::{MenuState, is_possible, menu_bar};
-use super::near_asked::DepthPolarityDialog;
 use super::options::WindowOptions;
-use super::paint_view::PaintView;
-use super::palette::Palette;
-use super::picture_view::{DisplayedPicture, PictureView};
-use super::player::Player;
-use super::preset_name::PresetNameDialog;
-use super::status_line::{StatusNotes, status_line};
-use super::toasts::{Severity, Toasts};
-use super::tool_bar::{largest_radius, tool_bar};
-use super::unsaved_question::{PendingAction, UnsavedChangesDialog};
-use super::{Action, Tool, ViewSettings, graphics, keys, soft_painter, theme};
+use super::stroke_player::Player;
+use super::tools::brush_gesture::BrushGesture;
+use super::views::aperture_orbit::ApertureOrbit;
+use super::views::drawer::Drawer;
+use super::views::inspector::Inspector;
+use super::views::paint_view::PaintView;
+use super::views::picture_view::{DisplayedPicture, PictureView};
+use super::{Action, Tool, ViewSettings};
 use eframe::{CreationContext, Frame, Storage};
 use egui::{CentralPanel, Context, Panel, Ui, ViewportCommand};
 use project::{Preset, PresetLibrary};
-use session::{
-    CameraEdit, Command, CommandId, Event, ReferenceKind, Session, SessionError, SessionOptions, SurfaceHit,
-};
+use ::document::{CameraEdit, SurfaceHit};
+use session::{Command, CommandId, Event, ReferenceKind, Session, SessionError, SessionOptions};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Where eframe keeps the settings between runs.
+/// eframe's storage key of the settings.
 const SETTINGS_KEY: &str = "settings";
-/// Where eframe keeps the layout between runs.
+/// eframe's storage key of the layout.
 const LAYOUT_KEY: &str = "layout";
 
-/// The window's application.
+/// The application of the window.
 pub struct Shell {
     session: Session,
     tool: Tool,
@@ -71,29 +72,32 @@ pub struct Shell {
     depth_polarity: DepthPolarityDialog,
     presets: PresetLibrary,
     preset_name_dialog: PresetNameDialog,
-    /// The preset that a file is asked for.
+    /// The preset to export, while its file is chosen.
     exported_preset: Option<Preset>,
-    /// The first point of a rack focus, until the second is clicked.
+    /// The first point of a rack focus until the second is clicked.
     rack_from: Option<SurfaceHit>,
-    /// What waits for a save to end well.
+    /// An action to perform after a successful save.
     after_save: Option<PendingAction>,
-    /// Whether the window may close without a question.
+    /// Whether the window may close without the dialog about unsaved changes.
     may_close: bool,
     title: String,
     adapter: String,
     showing_demo: bool,
-    /// Whether the display is darker because of the scene, not by the user's choice.
+    /// Whether the display was darkened automatically because of the scene.
     is_dimmed: bool,
     opening: Option<PathBuf>,
-    /// When the picture began to be summed, in the window's time.
+    /// Start of the current summation, in the window's time.
     drawing_since: Option<f64>,
     player: Option<Player>,
-    /// Where the player's times go.
+    /// Output file for the player's latencies.
     trace: Option<PathBuf>,
 }
 
 impl Shell {
-    /// The window's application, with the file of `options` (or the demo) being opened.
+    /// Creates the application and starts opening the file of `options` or the demo.
+    ///
+    /// # Errors
+    /// As [`Session::new`].
     pub fn new(creation: &CreationContext<'_>, options: WindowOptions) -> Result<Self, SessionError> {
         let state = creation.wgpu_render_state.as_ref();
         theme::prepare(&creation.egui_ctx);
@@ -106,8 +110,8 @@ impl Shell {
             stored(SETTINGS_KEY).and_then(|text| serde_json::from_str(&text).ok()).unwrap_or_default();
         let layout = stored(LAYOUT_KEY).and_then(|text| Layout::from_stored(&text)).unwrap_or_default();
         let context = creation.egui_ctx.clone();
-        let gpu = state.map_or(Ok(None), |state| graphics::splat_device(state, options.backend));
-        let fallback_note = "the processor sums the picture, not the graphics card";
+        let gpu = state.map_or(Ok(None), |state| device::splat_device(state, options.backend));
+        let fallback_note = "the picture is summed on the processor, not on the graphics card";
         let gpu_error = gpu.as_ref().err().map(|why| format!("{fallback_note}: {why}"));
         let session = Session::new(SessionOptions {
             unwrap: options.unwrap,
@@ -115,6 +119,7 @@ impl Shell {
             exact_delay: options.exact_after,
             light_passes: options.light_passes,
             light_field_store: options.light_fields,
+            resources: options.resources,
             gpu: gpu.ok().flatten(),
             waker: Arc::new(move || context.request_repaint()),
             ..SessionOptions::default()
@@ -180,12 +185,12 @@ impl Shell {
         &self.picture
     }
 
-    /// Where the panels are.
+    /// The layout of the panels.
     pub fn layout(&self) -> &Layout {
         &self.layout
     }
 
-    /// How things are shown.
+    /// The view settings.
     pub fn settings(&self) -> &ViewSettings {
         &self.settings
     }
@@ -195,12 +200,12 @@ impl Shell {
         &self.drawer
     }
 
-    /// Whether it asks which end of a depth map is near.
+    /// Whether the dialog about the near end of a depth map is open.
     pub fn depth_polarity_dialog_is_open(&self) -> bool {
         self.depth_polarity.is_open()
     }
 
-    /// The chosen tool.
+    /// The active tool.
     pub fn tool(&self) -> Tool {
         self.tool
     }
@@ -215,7 +220,7 @@ impl Shell {
         &self.title
     }
 
-    /// Does what a command of the table says, as its menu entry does.
+    /// Executes a command of the command table if it is possible, like its menu entry.
     pub fn run(&mut self, id: CommandId, context: &Context) {
         let state = MenuState {
             document: self.session.document(),
@@ -233,7 +238,7 @@ impl Shell {
         self.show_failure(applied);
     }
 
-    /// Says what failed.
+    /// Shows an error message if the operation failed.
     fn show_failure(&mut self, done: Result<(), SessionError>) {
         match done {
             Ok(()) | Err(SessionError::Cancelled) => {}
@@ -254,12 +259,12 @@ impl Shell {
         }
     }
 
-    /// Takes up what happened in the session.
+    /// Handles the events of the session.
     fn handle_events(&mut self, context: &Context) {
         for event in self.session.poll() {
             match event {
                 Event::Opened => {
-                    // What another scene needed is no choice of the user's.
+                    // Undoes the automatic dimming for the previous scene.
                     if std::mem::take(&mut self.is_dimmed) {
                         self.settings.display_stops = 0.0;
                     }
@@ -269,7 +274,7 @@ impl Shell {
                     (self.settings.display_stops, self.is_dimmed) = (stops.max(-10.0), true);
                     let stops = -stops;
                     self.toasts.notice(format!(
-                        "Shown {stops} stops darker: its lights are that bright (Lens, Display)"
+                        "Shown {stops} stops darker because its lights are very bright (Lens, Display)"
                     ));
                 }
                 Event::DepthPolarityRequired(question) => self.depth_polarity.open(*question, context),
@@ -310,7 +315,7 @@ impl Shell {
         }
     }
 
-    /// Keys: Esc takes a stroke back; the rest is the command table's.
+    /// Handles keys: Esc aborts a stroke; the others are those of the command table.
     fn handle_keys(&mut self, context: &Context, actions: &mut Vec<Action>) {
         if self.palette.is_open()
             || self.file_dialog.is_open()
@@ -333,13 +338,13 @@ impl Shell {
         actions.extend(keys::pressed_commands(context).into_iter().map(Action::Run));
     }
 
-    /// The picture shows all of the aperture again.
+    /// Shows the picture through the whole aperture again.
     fn use_full_aperture(&mut self) {
         let ended = self.aperture_orbit.stop(&mut self.session);
         self.show_failure(ended);
     }
 
-    /// The pointer and the keys set a number of the brush.
+    /// Lets pointer and keys adjust a parameter of the brush.
     fn update_brush_gesture(&mut self, context: &Context) {
         let Some(document) = self.session.document() else { return };
         if let Some(brush) = self.gesture.update(context, largest_radius(document)) {
@@ -372,7 +377,7 @@ impl Shell {
         }
     }
 
-    /// Tells the session how the screen shows pictures.
+    /// Passes the display settings to the session.
     fn update_display(&mut self) {
         let display = self.settings.display();
         if self.session.display() != display {
@@ -384,7 +389,7 @@ impl Shell {
         }
     }
 
-    /// Plays on what is being played.
+    /// Continues the recording being played.
     fn advance_playback(&mut self, context: &Context) {
         let Some(mut player) = self.player.take() else { return };
         context.request_repaint();
@@ -395,7 +400,7 @@ impl Shell {
         }
     }
 
-    /// All was played: its times are written, and the window closes, if that was asked for.
+    /// The recording has ended: writes the latencies and closes the window, if requested.
     fn finish_playback(&mut self, player: &Player, context: &Context) {
         let Some(file) = self.trace.take() else { return };
         let text = player.latency_report(&self.session).map(|trace| format!("{trace:#}\n"));
@@ -448,7 +453,7 @@ impl eframe::App for Shell {
             let notes = StatusNotes { hover: self.hover_numbers(), is_drawing: drawing, tip };
             status_line(ui, &self.session, notes, &mut actions);
         });
-        // The panels fill all of it.
+        // The panels fill the whole area.
         CentralPanel::default().frame(egui::Frame::NONE).show(ui, |ui| self.panels(ui, &mut actions));
         self.first_hint(&context);
         if let Some(id) = self.palette.show(&context) {
@@ -459,13 +464,13 @@ impl eframe::App for Shell {
         self.show_preset_name_dialog(&context);
         self.toasts.show(&context);
         self.perform_actions(actions, &context);
-        // While work goes on, its progress is shown twice a second.
+        // While jobs run, their progress is updated twice a second.
         if !self.session.jobs().is_empty() || self.session.exact_picture_progress().is_some() {
             context.request_repaint_after_secs(0.5);
         }
     }
 
-    /// What lies beneath everything: panels need not be filled.
+    /// The window is cleared with the panel colour, so that panels need not be filled.
     fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {
         visuals.panel_fill.to_normalized_gamma_f32()
     }

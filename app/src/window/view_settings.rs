@@ -1,19 +1,20 @@
-//! How things are shown. Kept between runs, not part of any document.
+//! Settings of the window. Saved between runs, not part of any document.
 
-use super::paint_view::SurfaceAppearance;
-use super::tool_settings::ToolSettings;
+use super::tools::tool_settings::ToolSettings;
+use super::views::paint_view::SurfaceAppearance;
 use serde::{Deserialize, Serialize};
-use session::{Display, KeyMap, ToneCurve};
+use render::{Display, ToneCurve};
+use session::KeyMap;
 use splat::Tolerance;
 use std::path::{Path, PathBuf};
 
-/// Files that the Open recent menu remembers.
+/// Number of files in the Open recent menu.
 const MAX_RECENT: usize = 8;
 
-/// The largest tolerance of the live picture, px: as wide as the circle of confusion.
+/// Largest tolerance of the live picture, px: the width of the reference circle of confusion.
 pub const LARGEST_TOLERANCE_PX: f64 = 16.0;
 
-/// The tolerance of the live picture at first, px: three eighths of the circle of confusion.
+/// Default tolerance of the live picture, px: three eighths of the reference circle of confusion.
 const TOLERANCE_PX: f64 = 6.0;
 
 /// The user's own settings of the window.
@@ -22,34 +23,35 @@ const TOLERANCE_PX: f64 = 6.0;
 pub struct ViewSettings {
     /// Share of false colour in the paint view, in [0, 1].
     pub focus_share: f32,
-    /// Contour lines of blur.
+    /// Whether to draw contour lines of blur.
     pub contours: bool,
-    /// How many photographs see the surface of a capture, or what of it was invented.
+    /// Whether to show the number of photographs of a capture's surface, or its invented parts.
     #[serde(rename = "seeing")]
     pub photograph_counts: bool,
-    /// How far the surface of a picture is.
+    /// Whether to show the depth of a picture's surface.
     pub depth: bool,
-    /// The longest side that the preview is drawn at, px.
+    /// Longest side of the preview, px.
     pub preview_size: u32,
-    /// Sides of what the live picture draws as one where the circle of confusion is 16 px wide, px; 0: every sample.
+    /// Side of the merged samples of the live picture where the circle of confusion is 16 px wide, px; 0:
+    /// every sample is drawn.
     pub tolerance_px: f64,
     /// Exposure of the display, stops.
     pub display_stops: f32,
-    /// What the display makes of light brighter than white.
+    /// Tone curve of the display.
     pub tone_curve: ToneCurve,
-    /// Dark on light instead of light on dark.
+    /// Whether to use the light theme.
     pub light_theme: bool,
-    /// Size of text and controls: 1 is the system's own.
+    /// Scale of text and controls: 1 is the system's.
     pub scale: f32,
-    /// Length of the string by which the pointer pulls the brush, points: 0 is none, more is steadier.
+    /// Length of the stabiliser's string, points: 0 is off, longer is steadier.
     pub stabiliser: f32,
-    /// Whose keys and mouse buttons are obeyed.
+    /// The key map.
     pub key_map: KeyMap,
-    /// What the tools are set to.
+    /// Settings of the tools.
     pub tools: ToolSettings,
-    /// Files opened lately, the latest first.
+    /// Recently opened files, the latest first.
     pub recent: Vec<PathBuf>,
-    /// Whether the hint of the first start was put away.
+    /// Whether the hint at first start was dismissed.
     #[serde(rename = "hint_seen")]
     pub hint_dismissed: bool,
 }
@@ -78,23 +80,23 @@ impl Default for ViewSettings {
 }
 
 impl ViewSettings {
-    /// The paint view's look.
+    /// Appearance of the surface in the paint view.
     pub fn surface_appearance(&self) -> SurfaceAppearance {
         let Self { focus_share, contours, photograph_counts, depth, .. } = *self;
         SurfaceAppearance { focus_share, contours, photograph_counts, depth }
     }
 
-    /// How pictures are put on screen.
+    /// Display settings of pictures.
     pub fn display(&self) -> Display {
         Display { stops: self.display_stops, curve: self.tone_curve }
     }
 
-    /// How coarse the live picture may be.
+    /// Tolerance of the live picture.
     pub fn tolerance(&self) -> Tolerance {
         Tolerance::px(self.tolerance_px.clamp(0.0, LARGEST_TOLERANCE_PX))
     }
 
-    /// Notes that a file was opened or saved.
+    /// Adds an opened or saved file to the recent files.
     pub fn remember(&mut self, path: &Path) {
         self.recent.retain(|recent| recent != path);
         self.recent.insert(0, path.to_path_buf());

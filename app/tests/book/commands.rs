@@ -16,7 +16,8 @@ fn page() -> String {
     let folder = tempfile::tempdir().unwrap();
     let help = done(folder.path(), "--help");
     let mut page = String::from(
-        "# Commands\n\nThe output of `focus-brush --help` and `focus-brush COMMAND --help`; file formats are in [Files](files.md).\n",
+        "# Commands\n\nThe output of `focus-brush --help` and `focus-brush COMMAND --help`; file formats are \
+         in [Files](files.md).\n",
     );
     let mut section = |title: &str, help: &str| {
         let help: Vec<&str> = help.trim().lines().map(str::trim_end).collect();
@@ -41,6 +42,7 @@ fn the_page_of_commands_is_the_programs_own_help() {
     let differs = written.lines().zip(page.lines()).find(|(written, told)| written != told);
     assert!(
         written == page,
-        "docs/reference/commands.md is not the program's help: {differs:?} (update it: UPDATE_BOOK=1 cargo test -p focus-brush --test book)"
+        "docs/reference/commands.md is not the program's help: {differs:?} (update it: UPDATE_BOOK=1 cargo \
+         test -p focus-brush --test book)"
     );
 }

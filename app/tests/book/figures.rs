@@ -1,12 +1,13 @@
-//! Every command that the figures and their pages name is one that the program understands.
+//! The program accepts every command named in the figures and on their pages.
 //!
-//! A command is parsed by the program itself: once with `--help` at its end, which is answered only after all options before it have
-//! been understood, and once as it is where it names a file to be filled in, which does not exist: that is bad input, not wrong usage.
+//! A command is parsed by the program itself: once with `--help` appended, which is answered only after all
+//! preceding options were parsed, and once unchanged if it names a placeholder file: a missing file is bad
+//! input, not wrong usage.
 
 use crate::pages::{lines, repository};
 use crate::program::run;
 
-/// The pages of figures; those of the book that are run line by line are in `running`.
+/// The pages of figures; the pages of the book whose commands are run are in `running`.
 const PAGES: [&str; 3] = ["docs/performance.md", "docs/performance-light.md", "docs/performance-captures.md"];
 /// Names of files that a reader fills in.
 const FILLED_IN: [&str; 6] = ["SCENE", "CAPTURE", "P.fbrush", "field.salf", "ours.exr", "OUT.exr"];
@@ -19,7 +20,7 @@ fn split(command: &str) -> Vec<String> {
     plain.split(" && ").map(|part| part.trim().to_owned()).collect()
 }
 
-/// What the records of `docs/figures` say was run.
+/// The commands in the records of `docs/figures`.
 fn commands_of_records() -> Vec<String> {
     let entries = std::fs::read_dir(repository().join("docs/figures")).unwrap();
     let files = entries
@@ -37,7 +38,7 @@ fn commands_of_records() -> Vec<String> {
     commands
 }
 
-/// What the pages show as commands: lines of blocks of code, and code within lines, that begin with our program or a script.
+/// The commands on the pages: code blocks and inline code that begin with the program or a script.
 fn commands_of_pages() -> Vec<String> {
     let mut commands = Vec::new();
     for page in PAGES {
@@ -56,7 +57,7 @@ fn commands_of_pages() -> Vec<String> {
     commands
 }
 
-/// Why a command is not understood.
+/// Why a command is rejected.
 fn problem(command: &str) -> Option<String> {
     let (program, arguments) = command.split_once(' ').unwrap_or((command, ""));
     let place = tempfile::tempdir().unwrap();

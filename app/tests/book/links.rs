@@ -1,13 +1,13 @@
-//! Links within the book lead to a file that is there, and to a heading in it.
+//! Links within the book lead to an existing file and heading.
 
 use crate::pages::{lines, pages, repository};
 use std::path::Path;
 
-/// What a page links to: between `](` and `)`.
+/// The targets of a page's links: between `](` and `)`.
 fn targets(text: &str) -> Vec<(usize, String)> {
     let mut found = Vec::new();
     for line in lines(text).into_iter().filter(|line| line.block.is_none()) {
-        // What is between back ticks is code.
+        // Text between backticks is code.
         let prose: String = line.text.split('`').step_by(2).collect::<Vec<_>>().join(" ");
         let rest = prose.split("](").skip(1);
         found.extend(rest.filter_map(|rest| Some((line.number, rest.split_once(')')?.0.to_owned()))));
@@ -15,7 +15,7 @@ fn targets(text: &str) -> Vec<(usize, String)> {
     found
 }
 
-/// A heading as an address has it: small letters, blanks as hyphens, without other signs.
+/// The anchor of a heading: lower case, hyphens for spaces, no other punctuation.
 fn anchor(heading: &str) -> String {
     let kept = heading.trim().chars().filter(|c| c.is_alphanumeric() || [' ', '-', '_'].contains(c));
     kept.flat_map(char::to_lowercase).map(|c| if c == ' ' { '-' } else { c }).collect()

@@ -1,5 +1,5 @@
-//! The book (`docs`) is true: its page of commands is the program's own help, its links lead somewhere, its commands run, and the program understands
-//! the commands of its figures.
+//! The book (`docs`) is correct: its page of commands is the program's own help, its links are valid, its
+//! commands run, and the program accepts the commands of its figures.
 
 #[path = "../card_light_field/mod.rs"]
 mod card_light_field;

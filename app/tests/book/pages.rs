@@ -1,4 +1,4 @@
-//! The pages of the book, and those beside it: the README and its kin.
+//! The pages of the book, and the README and other pages at the root.
 
 use std::path::{Path, PathBuf};
 
@@ -26,7 +26,7 @@ pub fn pages() -> Vec<PathBuf> {
     pages
 }
 
-/// A line of a page, and whether it stands in a block of code; how the block's fence is called, if it has one.
+/// A line of a page, whether it is in a code block, and the name on the block's fence, if any.
 pub struct Line<'a> {
     pub number: usize,
     pub text: &'a str,

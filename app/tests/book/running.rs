@@ -1,14 +1,14 @@
 //! Every command of the book runs, in the order of its page.
 //!
-//! Commands stand in blocks of code; a block that is fenced as `text` shows a form, with names to be filled in, and is passed over. A line
-//! that ends in a backslash goes on; two blanks end a command, what follows tells of it. Pictures that are large for what a page tells of them are
-//! small here.
+//! Commands are lines of code blocks; blocks fenced as `text` contain placeholders and are skipped. A trailing
+//! backslash continues a line; text after two spaces is a remark. Large picture sizes are replaced by small
+//! ones.
 
 use crate::pages::{lines, pages, repository};
 use crate::workplace::workplace;
 use std::process::Command;
 
-/// The size of pictures that are large, and of those that stand for them.
+/// Large sizes of pictures, and their replacements.
 const LARGE: [&str; 2] = ["8192x4608", "256x144"];
 
 /// A page's commands, each with the number of its line.
@@ -50,7 +50,7 @@ fn every_command_of_the_book_runs() {
             continue;
         }
         let place = workplace();
-        // What the repository has, where a page names it.
+        // Files of the repository that pages name.
         for shipped in ["assets", "docs"] {
             std::os::unix::fs::symlink(repository().join(shipped), place.path().join(shipped)).unwrap();
         }
@@ -65,7 +65,7 @@ fn every_command_of_the_book_runs() {
                 .env_remove("XDG_RUNTIME_DIR")
                 .output()
                 .unwrap();
-            // 5: the one graphics card that a command asks for is not there.
+            // 5: the graphics card that a command requests is not available.
             if !output.status.success() && output.status.code() != Some(5) {
                 let said = String::from_utf8_lossy(&output.stderr);
                 let said = said.lines().filter(|line| line.starts_with("error: ")).collect::<Vec<_>>();
@@ -79,7 +79,9 @@ fn every_command_of_the_book_runs() {
 
 #[test]
 fn commands_are_read_as_they_are_meant() {
-    let text = "# A\n\n    focus-brush info a.glb   what is in it\n\n```text\nfocus-brush render FILE\n```\n\n```sh\nfocus-brush new a.glb \\\n    -o a.fbrush\n```\nfocus-brush is a program\n";
+    let text = "# A\n\n    focus-brush info a.glb   what is in it\n\n```text\nfocus-brush render \
+                FILE\n```\n\n```sh\nfocus-brush new a.glb \\\n    -o a.fbrush\n```\nfocus-brush is a \
+                program\n";
     let found: Vec<_> = commands(text).into_iter().map(|(_, command)| command).collect();
     assert_eq!(found, ["focus-brush info a.glb", "focus-brush new a.glb -o a.fbrush"]);
 }

@@ -1,4 +1,4 @@
-//! A folder with small stand-ins for the files that the book's commands name.
+//! A folder with small substitutes for the files that the book's commands name.
 
 use crate::program::done;
 use crate::{card_light_field, tiny_glb, wall_capture};
@@ -8,7 +8,7 @@ use project::{ProjectFile, RecordedStep, RecordedStroke};
 use std::path::Path;
 use tempfile::TempDir;
 
-/// Makes it. Everything is small, so that hundreds of commands take seconds each at most.
+/// Creates the folder. All files are small, so that each of hundreds of commands takes seconds at most.
 pub fn workplace() -> TempDir {
     let place = tempfile::tempdir().unwrap();
     let folder = place.path();
@@ -27,7 +27,7 @@ pub fn workplace() -> TempDir {
     middle.save(folder.join("cat.png")).unwrap();
     middle.save(folder.join("cat.jpg")).unwrap();
     depth(&folder.join("cat_depth.png"));
-    // A scene that brings the lens, and with it a picture that is small.
+    // A scene with its own lens, and thereby a small picture.
     done(folder, "new quads.glb --camera camera.json -o small.fbrush");
     done(folder, "export small.fbrush --glb garden.glb");
     done(folder, "new garden.glb --focus recipe.json -o garden.fbrush");

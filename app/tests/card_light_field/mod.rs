@@ -1,16 +1,16 @@
-//! A made-up light field, a card before a wall, and pictures of it.
+//! A synthetic light field of a card in front of a wall, and pictures of it.
 
 use image::{Rgb, RgbImage};
 use std::path::Path;
 
-/// Columns and rows of the views, and steps to the outermost on each side.
+/// Columns and rows of views, and steps to the outermost on each side.
 pub const SIZE: [u32; 2] = [96, 72];
 pub const STEPS: i32 = 2;
 /// Disparities of the card and of the wall.
 pub const CARD: f64 = 1.5;
 pub const WALL: f64 = -0.5;
 
-/// What a view at (u, v) shows at a place, linear, and the disparity of that.
+/// The linear radiance and disparity that a view at (u, v) shows at a position.
 pub fn shown(x: f64, y: f64, [u, v]: [f64; 2]) -> ([f64; 3], f64) {
     let of = |d: f64| (x + d * u, y + d * v);
     let (cx, cy) = of(CARD);
@@ -22,7 +22,7 @@ pub fn shown(x: f64, y: f64, [u, v]: [f64; 2]) -> ([f64; 3], f64) {
     ([0.2, 0.7 * wave(wx, wy, 0.8), wave(wx, wy, 1.1)], WALL)
 }
 
-/// The same with a highlight on the card, which moves over it as the view does.
+/// The same with a highlight on the card that moves with the view.
 #[allow(dead_code, reason = "not every test wants it")]
 pub fn glossy(x: f64, y: f64, [u, v]: [f64; 2]) -> ([f64; 3], f64) {
     let (mut color, disparity) = shown(x, y, [u, v]);
@@ -35,16 +35,16 @@ pub fn glossy(x: f64, y: f64, [u, v]: [f64; 2]) -> ([f64; 3], f64) {
     (color, disparity)
 }
 
-/// What a view at (u, v) shows at a place, and the disparity of that.
+/// A scene: the radiance and disparity that a view at (u, v) shows at a position.
 pub type Scene = fn(f64, f64, [f64; 2]) -> ([f64; 3], f64);
 
-/// A pixel of a view, by 4 × 4 places in it.
+/// A pixel of a view, from 4 × 4 samples.
 #[allow(dead_code, reason = "not every test wants it")]
 pub fn pixel(x: u32, y: u32, view: [f64; 2]) -> [f64; 3] {
     pixel_at(shown, x.into(), y.into(), view)
 }
 
-/// The same of a scene of one's own, of a pixel whose upper left corner is at a place.
+/// The same for any scene, for the pixel whose upper left corner is at a position.
 pub fn pixel_at(scene: Scene, x: f64, y: f64, view: [f64; 2]) -> [f64; 3] {
     let mut sum = [0.0; 3];
     for k in 0..16u32 {
@@ -69,7 +69,7 @@ fn view_of(scene: Scene, view: [f64; 2]) -> RgbImage {
     RgbImage::from_fn(SIZE[0], SIZE[1], |x, y| Rgb(pixel_at(scene, x.into(), y.into(), view).map(encoded)))
 }
 
-/// The numbers of the middle view's pixels as a PFM, rows from below.
+/// Values of the middle view's pixels as a PFM, rows from the bottom.
 pub fn pfm(file: &Path, of: impl Fn(f64) -> f64) {
     let mut bytes = format!("Pf\n{} {}\n-1.0\n", SIZE[0], SIZE[1]).into_bytes();
     for y in (0..SIZE[1]).rev() {
@@ -86,7 +86,7 @@ pub fn write(folder: &Path) {
     write_of(shown, folder);
 }
 
-/// The same of a scene of one's own.
+/// The same for any scene.
 pub fn write_of(scene: Scene, folder: &Path) {
     std::fs::create_dir_all(folder).unwrap();
     for (row, v) in (-STEPS..=STEPS).enumerate() {
@@ -99,8 +99,8 @@ pub fn write_of(scene: Scene, folder: &Path) {
     pfm(&folder.join("disparity.pfm"), |disparity| disparity);
 }
 
-/// The same scene by cameras that are turned inward so much, and counted in other steps: of each disparity d the views and the map have
-/// `scale`·d + `offset`, of each place a `scale`-th.
+/// The same scene from cameras that converge, and in other units: views and map have `scale`·d + `offset` for
+/// each disparity d, and positions divided by `scale`.
 #[allow(dead_code, reason = "not every test moves it")]
 pub fn write_moved(folder: &Path, scale: f64, offset: f64) {
     std::fs::create_dir_all(folder).unwrap();

@@ -1,4 +1,4 @@
-//! The command line from end to end, on a small scene made here.
+//! The command line, end to end, on a small generated scene.
 
 #[path = "../../../crates/session/tests/tiny_glb/mod.rs"]
 mod tiny_glb;
@@ -30,7 +30,7 @@ fn a_scene_is_told_about_rendered_and_kept_in_a_variant() {
         names.max_by(|a, b| a.0.total_cmp(&b.0)).map_or("", |(_, name)| name)
     };
     assert_eq!((card("varied.glb"), card("varied.glb --variant Blue")), ("red", "blue"));
-    // A recipe by materials is of those that are seen.
+    // A recipe by materials lists the visible ones.
     std::fs::write(place.path("blue.json"), r#"{"materials": {"blue paint": {"t": 1.2, "anchor": 1}}}"#)
         .unwrap();
     place.done("new varied.glb --variant Blue --focus blue.json --camera camera.json -o blue.fbrush");
@@ -71,7 +71,7 @@ fn a_scene_is_lit_by_what_it_brings_unless_a_world_is_given() {
         place.done(&format!("render lit.glb --camera camera.json {world} -o out.exr"));
         read_picture(&place.path("out.exr")).unwrap().rgb[0]
     };
-    // The camera looks toward −Z, from where it is blue; turned by half a circle, it sees the green of +Z.
+    // The camera faces −Z, where the environment is blue; rotated by half a turn, it sees the green of +Z.
     for (world, expected) in
         [("", [0.0, 0.0, 2.0]), ("--world red.json", [1.0, 0.0, 0.0]), ("--world own.json", [0.0, 4.0, 0.0])]
     {
@@ -94,7 +94,7 @@ fn splat_and_truth_agree_and_the_blur_by_depth_does_not() {
     assert!(splat > 36.0, "splat against truth: {splat} dB");
     let blur = place.psnr("blur.exr", "truth.exr");
     assert!(blur < splat - 6.0, "the baseline cannot see behind the card: {blur} dB");
-    // Negative control: another focus is another picture.
+    // Negative control: another focus gives another picture.
     place.done("render quads.glb --camera camera.json -o unpainted.exr");
     let unpainted = place.psnr("unpainted.exr", "truth.exr");
     assert!(unpainted < splat - 6.0, "{unpainted} dB");
@@ -190,7 +190,7 @@ fn comparisons_are_stable_and_show_where() {
     place.done("render quads.glb --camera camera.json --renderer blur -o a.exr");
     place.done(&format!("render quads.glb {SHOT} --renderer blur -o b.exr"));
     let found = place.json("compare a.exr b.exr --error-map map.png --json");
-    // What scripts read: these keys, and no others.
+    // The interface for scripts: exactly these keys.
     let keys: std::collections::BTreeSet<_> = found.as_object().unwrap().keys().map(String::as_str).collect();
     let expected = [
         "flip",
@@ -280,7 +280,7 @@ fn a_project_renders_and_exports_what_was_painted() {
     let same = place.psnr("project.exr", "recipe.exr");
     assert!(same > 50.0, "the painted map is the recipe: {same} dB");
     place.done("export quads.fbrush --focus-map map.exr --glb out.glb --layers layers.exr");
-    // Written with the atlas, read with the project's own atlas again.
+    // Written with the atlas, read again with the project's own atlas.
     place.done("render quads.fbrush --focus map.exr -o map_back.exr");
     assert_eq!(place.psnr("project.exr", "map_back.exr"), 200.0);
     assert!(read_picture(&place.path("layers.exr")).unwrap().layers.contains_key("coc"));
@@ -306,7 +306,7 @@ fn scenes_are_unwrapped_and_told_about() {
     let text = place.done("info quads.glb");
     assert!(text.contains("6 triangles") && text.contains("\"front\""), "{text}");
 
-    // A file with nothing to render is still a file.
+    // A file with nothing to render is valid.
     std::fs::write(place.path("empty.glb"), tiny_glb::glb(&[])).unwrap();
     assert!(place.done("info empty.glb").contains("no triangle"));
     place.fails("render empty.glb -o x.exr", 3, &["empty.glb", "no triangle"]);
@@ -374,7 +374,7 @@ fn lenses_and_bokeh_are_presets_by_name_or_file() {
     let render = "render quads.glb --camera camera.json --exposure conserve -o";
     place.done(&format!("{render} own.exr"));
     place.done(&format!("{render} star.exr --lens lens.json --bokeh Star"));
-    // The wider lens sees less, and blurs the wall as far as its own numbers say.
+    // The lens preset has its own field of view, and blurs the wall accordingly.
     let camera = project::read_camera(&place.path("camera.json"), &lens::Camera::default()).unwrap();
     let preset = project::Preset::read(&place.path("lens.json")).unwrap();
     let with = preset.apply_to_camera(&camera).unwrap().unwrap();
@@ -470,7 +470,7 @@ fn a_report_is_complete_and_goes_on_where_it_was() {
     let about: Value = serde_json::from_str(&read("about.json")).unwrap();
     assert!(about["machine"]["cores"].as_u64().unwrap() >= 1, "{about}");
 
-    // A second run measures nothing again; a lost measurement alone is made anew.
+    // A second run measures nothing again; only a lost measurement is repeated.
     let again = place.json(&command);
     assert_eq!((&again["new"], &again["measurements"]), (&Value::from(0), &first["measurements"]));
     assert_eq!(serde_json::from_str::<Vec<Value>>(&read("report.json")).unwrap(), records);
@@ -521,13 +521,13 @@ fn file_managers_see_what_is_in_a_file() {
     let shown = project::Thumbnail::from_linear(640, 320, vec![[0.25, 0.5, 1.0]; 640 * 320]);
     let saved = ProjectFile { thumbnail: Some(shown), ..ProjectFile::load(&project).unwrap() };
     saved.save(&project).unwrap();
-    // They name the file as they like.
+    // They choose any file name.
     place.done("thumbnail painted.fbrush --size 128 -o small");
     std::fs::rename(place.path("small"), place.path("small.png")).unwrap();
     let small = read_picture(&place.path("small.png")).unwrap();
     assert_eq!((small.width, small.height), (107, 54));
     assert!(small.rgb.iter().all(|rgb| (rgb[1] - 0.5).abs() < 0.01), "{:?}", small.rgb[0]);
-    // A light field is drawn, though its scene is out of reach.
+    // A light field is rendered although its scene is missing.
     place.done(&format!("render quads.glb {SHOT} -o whole.png"));
     place.done("bake quads.glb --camera camera.json -o field.salf");
     std::fs::rename(place.path("quads.glb"), place.path("away.glb")).unwrap();

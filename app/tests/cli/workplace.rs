@@ -1,4 +1,4 @@
-//! Where the program is run.
+//! The folder in which the program is run.
 
 use crate::tiny_glb;
 use focus::Focus;
@@ -39,7 +39,7 @@ impl Workplace {
             .unwrap()
     }
 
-    /// Runs the program, which must succeed; what it wrote to stdout.
+    /// Runs the program, which must succeed. Returns its stdout.
     pub fn done(&self, arguments: &str) -> String {
         let output = self.run(arguments);
         let errors = String::from_utf8_lossy(&output.stderr);
@@ -51,7 +51,7 @@ impl Workplace {
         serde_json::from_str(&self.done(arguments)).unwrap()
     }
 
-    /// Runs the program, which must fail with `code` and one line that has all of `words`.
+    /// Runs the program, which must fail with `code` and a single line that contains all of `words`.
     pub fn fails(&self, arguments: &str, code: i32, words: &[&str]) {
         let output = self.run(arguments);
         let errors = String::from_utf8_lossy(&output.stderr);
@@ -77,7 +77,7 @@ impl Workplace {
         let recipe = project::read_recipe(&self.path("recipe.json")).unwrap();
         let focus: Focus = recipe.evaluate(&loaded).unwrap();
         let map = focus.bake(&atlas.texel_map(&loaded));
-        let defaults = session::shot_camera_from(&loaded.cameras[0], &Default::default());
+        let defaults = document::shot_camera_from(&loaded.cameras[0], &Default::default());
         let camera = project::read_camera(&self.path("camera.json"), &defaults).unwrap();
         let cameras = vec![NamedCamera { name: "shot".into(), camera }];
         let file = self.path(name);

@@ -1,9 +1,9 @@
-//! The program as tests run it: in a folder, with a cache of its own.
+//! Runs the program in a folder with a cache of its own.
 
 use std::path::Path;
 use std::process::{Command, Output};
 
-/// Runs it with arguments that have no spaces in them.
+/// Runs the program with space-separated arguments.
 pub fn run(folder: &Path, arguments: &str) -> Output {
     let program = Command::new(env!("CARGO_BIN_EXE_focus-brush"))
         .args(arguments.split_whitespace())
@@ -14,7 +14,7 @@ pub fn run(folder: &Path, arguments: &str) -> Output {
     program.unwrap()
 }
 
-/// The same, which must succeed; what it says on stdout.
+/// The same, which must succeed. Returns its stdout.
 pub fn done(folder: &Path, arguments: &str) -> String {
     let output = run(folder, arguments);
     assert!(output.status.success(), "{arguments}: {}", String::from_utf8_lossy(&output.stderr));

@@ -1,4 +1,4 @@
-//! A made-up capture: photographs of a wall, taken here.
+//! A synthetic capture: photographs of a wall.
 
 use glam::{DMat3, DQuat, DVec3};
 use image::{Rgb, RgbImage};
@@ -8,13 +8,13 @@ use std::path::Path;
 pub const SIZE: [u32; 2] = [120, 80];
 const FOCAL: f64 = 100.0;
 
-/// What the wall sends at a place, linear.
+/// Linear radiance of the wall at a position.
 pub fn wall(x: f64, y: f64) -> [f64; 3] {
     let wave = |k: f64| 0.3 + 0.2 * (k * x).sin() * (1.3 * k * y).cos();
     [wave(3.0), wave(2.0), 0.5 * wave(1.5) + 0.1]
 }
 
-/// Where photograph k was taken: a ring that looks at the wall's middle; right, down and forward.
+/// Pose of photograph k, in a ring and aimed at the wall's centre; axes right, down and forward.
 fn camera(k: usize) -> (DVec3, DMat3) {
     let angle = k as f64 * 1.1;
     let center = DVec3::new(0.6 * angle.cos(), 0.4 * angle.sin(), 2.0);
@@ -23,7 +23,7 @@ fn camera(k: usize) -> (DVec3, DMat3) {
     (center, DMat3::from_cols(right, forward.cross(right), forward))
 }
 
-/// Stops that photograph k is brighter by.
+/// Exposure of photograph k, stops.
 fn stops(k: usize) -> f64 {
     0.2 * (k as f64 - 2.5)
 }

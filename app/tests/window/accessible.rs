@@ -1,4 +1,4 @@
-//! Every control has a name that a screen reader can say.
+//! Every control has a name for screen readers.
 
 use crate::acting::Person;
 use crate::small_scene::opened;
@@ -6,7 +6,7 @@ use egui::accesskit::{Action, Role};
 use egui_kittest::kittest::{NodeT, Queryable};
 use session::{CommandId, Menu};
 
-/// Controls without a name, as the tree of accessible nodes has them.
+/// Controls without a name in the accessibility tree.
 fn nameless(person: &Person) -> Vec<String> {
     let nodes = person.window.root().children_recursive();
     let mut found = Vec::new();
@@ -15,8 +15,7 @@ fn nameless(person: &Person) -> Vec<String> {
         let node = node.accesskit_node();
         let acts = node.data().supports_action(Action::Click)
             || matches!(node.role(), Role::TextInput | Role::Slider | Role::SpinButton | Role::ComboBox);
-        // Areas that scroll are no controls of their own; the handle between two tiles has no role at all, and is
-        // dragged only.
+        // Scroll areas are not controls; the handle between two tiles has no role, and can only be dragged.
         let other = [Role::ScrollView, Role::ScrollBar, Role::Window, Role::Splitter, Role::Unknown];
         if !acts || other.contains(&node.role()) {
             continue;
@@ -42,7 +41,7 @@ fn every_control_has_a_name_whatever_is_open() {
         person.presses(egui::Modifiers::NONE, egui::Key::Escape);
     }
     let context = person.window.ctx.clone();
-    // All that has settings or a window of its own.
+    // Everything with settings or a window of its own.
     let commands = [
         CommandId::Gradient,
         CommandId::SelectLasso,

@@ -1,19 +1,19 @@
-//! A person at the window: opens files, waits, drags, presses keys, looks.
+//! A simulated user of the window: opens files, waits, drags, presses keys, inspects the screen.
 
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use focus_brush::window::{Severity, Shell, WindowOptions};
 use lens::Picture;
-use session::Document;
+use document::Document;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Longer than any of the small scenes needs on a busy machine.
+/// More than any of the small scenes needs on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(90);
 
-/// A file as the system drops it.
+/// A file dropped by the system.
 #[derive(Debug)]
 struct Dropped(PathBuf);
 
@@ -26,14 +26,14 @@ impl egui::DroppedFile for Dropped {
     }
 }
 
-/// The window with someone in front of it.
+/// The window with a simulated user.
 pub struct Person {
     /// The window, without a display.
     pub window: Harness<'static, Shell>,
 }
 
 impl Person {
-    /// Opens the window on a file and waits until the first picture stands.
+    /// Opens the window on a file and waits for the first complete picture.
     pub fn opens(file: &Path) -> Self {
         let mut person = Self::starts(Some(file));
         person.waits();
@@ -48,7 +48,7 @@ impl Person {
         Self::starts_with(Self::usual(file))
     }
 
-    /// How the window is usually started by tests: small pictures, nothing remembered, nothing drawn unasked.
+    /// Options of most tests: small pictures, no stored settings, no background refinement.
     pub fn usual(file: Option<&Path>) -> WindowOptions {
         WindowOptions {
             file: file.map(Path::to_path_buf),
@@ -90,7 +90,7 @@ impl Person {
         errors.map(|(_, text)| text.to_string()).collect()
     }
 
-    /// Waits until the picture shows the document as it is.
+    /// Waits until the picture shows the current document.
     pub fn waits(&mut self) {
         self.window.step();
         self.wait_until("everything is done", |shell| shell.session().is_settled());
@@ -116,7 +116,7 @@ impl Person {
         self.shell().picture_view().image_rect()
     }
 
-    /// Presses the left button and drags along `path`, without letting go.
+    /// Presses the left button and drags along `path`, without releasing it.
     pub fn drags(&mut self, path: &[Pos2]) {
         self.window.hover_at(path[0]);
         self.window.step();
@@ -127,7 +127,7 @@ impl Person {
         }
     }
 
-    /// Lets the left button go.
+    /// Releases the left button.
     pub fn lets_go(&mut self, at: Pos2) {
         self.button(at, false);
         self.window.step();
@@ -140,7 +140,7 @@ impl Person {
         self.window.step();
     }
 
-    /// A whole stroke, and the wait for its picture.
+    /// A complete stroke; waits for its picture.
     pub fn paints(&mut self, path: &[Pos2]) {
         self.drags(path);
         self.lets_go(path[path.len() - 1]);
@@ -151,7 +151,7 @@ impl Person {
         self.paints(&[at]);
     }
 
-    /// Scrolls until a control is in view, and waits until it stands still.
+    /// Scrolls until a control is in view, and waits until the scrolling ends.
     pub fn scrolls_to(&mut self, label: &str) {
         let found = self.window.get_all_by_label(label).last();
         found.unwrap_or_else(|| panic!("there is no {label}")).scroll_to_me();

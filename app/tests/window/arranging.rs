@@ -1,4 +1,4 @@
-//! Panels are docked, put into tabs, let float, enlarged, folded away and put back.
+//! Panels are docked, tabbed, floated, enlarged, collapsed and restored.
 
 use crate::acting::{Person, at};
 use crate::small_scene::opened;
@@ -21,13 +21,13 @@ impl Person {
         self.shell().layout().is_shown(pane)
     }
 
-    /// Whether a screen reader finds the panel.
+    /// Whether the panel is in the accessibility tree.
     fn finds(&self, pane: Pane) -> bool {
         let name = format!("{} panel", pane.title());
         self.window.query_all_by(|node| node.label().is_some_and(|l| l == name)).count() == 1
     }
 
-    /// Points at a place, without a button.
+    /// Moves the pointer without a button.
     fn points(&mut self, at: Pos2) {
         self.window.hover_at(at);
         self.window.run_steps(2);
@@ -58,7 +58,7 @@ fn a_panel_floats_and_is_docked_again() {
     assert!(person.is_shown(Pane::Atlas) && !person.is_shown(Pane::Histogram));
     person.arranges(Pane::Atlas, "Float");
     assert!(person.is_shown(Pane::Atlas));
-    // Painted on as anywhere.
+    // It can be painted on as in any other place.
     person.window.run_steps(20);
     let map = person.document().map.clone();
     let rect = person.shell().drawer().atlas_rect();
@@ -85,7 +85,7 @@ fn the_panel_under_the_pointer_is_enlarged_and_comes_back() {
     assert!(person.window.query_by_label("f-number").is_none(), "nothing else is there");
     person.arranges(Pane::Paint, "All panels");
     assert_eq!((person.paint_rect(), person.picture_rect()), before);
-    // A folded panel is shown although another one was enlarged.
+    // A collapsed panel is shown although another one was enlarged.
     person.presses(Modifiers::COMMAND, Key::Space);
     person.presses(Modifiers::NONE, Key::F7);
     assert!(person.is_shown(Pane::Atlas) && person.is_shown(Pane::Paint));

@@ -1,4 +1,4 @@
-//! Captures in the window: dropped, looked through, painted, saved and opened again.
+//! Captures in the window: dropped, viewed through their cameras, painted, saved and reopened.
 
 use crate::acting::{Person, at, difference};
 use crate::wall_capture;
@@ -6,7 +6,7 @@ use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use focus_brush::window::Pane;
 
-/// Which photograph the camera looks through.
+/// The photograph whose camera is selected.
 fn looked_through(person: &Person) -> Option<String> {
     person.document().photograph().map(|view| view.name.clone())
 }
@@ -24,7 +24,7 @@ fn a_capture_is_dropped_looked_through_painted_and_the_same_when_opened_again() 
     assert_eq!(person.complaints(), [""; 0]);
     assert!(person.shell().layout().is_shown(Pane::Photographs), "its photographs are there");
 
-    // Through two of them, and on the way between.
+    // Through two of them, and between.
     for name in ["1.png", "4.png"] {
         person.scrolls_to(name);
         person.window.get_by_label(name).click();

@@ -1,5 +1,5 @@
-//! Every command of the table runs; those that are steps of undo are taken back to the bit, the others leave nothing to
-//! take back.
+//! Every command of the table runs; commands that are undo steps are undone bit for bit, the others add no
+//! step.
 
 use crate::acting::Person;
 use crate::small_scene;
@@ -7,9 +7,10 @@ use egui::{Key, Modifiers};
 use focus::{CombineMode, LayerEdit, LayerStack, Selection};
 use lens::{Camera, FocusOffset};
 use project::SelectionShape;
-use session::{COMMANDS, Command, CommandId, FillRegion};
+use document::FillRegion;
+use session::{COMMANDS, Command, CommandId};
 
-/// What undo is about.
+/// The state covered by undo.
 #[derive(Clone, PartialEq)]
 struct State {
     layers: LayerStack,
@@ -22,7 +23,7 @@ struct State {
 fn state(person: &Person) -> State {
     let document = person.document();
     let mut layers = document.layers.clone();
-    // Which layer is painted on is no part of it.
+    // The active layer is not part of it.
     layers.activate(0);
     State {
         layers,
@@ -37,8 +38,8 @@ fn steps(person: &Person) -> usize {
     person.document().undo_names().count()
 }
 
-/// A document in which every command can do something: three layers of which the middle one, masked, is painted on,
-/// something painted, and something selected.
+/// A document in which every command is possible: three layers, of which the middle one is active and masked,
+/// some paint, and a selection.
 fn prepare(person: &mut Person) {
     let shell = person.window.state_mut();
     for _ in 0..2 {
@@ -60,21 +61,21 @@ fn every_command_runs_and_is_undone_or_has_nothing_to_undo() {
     prepare(&mut person);
     for info in COMMANDS {
         let id = info.id;
-        // These have tests of their own: they end the window, or open another document.
+        // These have tests of their own: they close the window, or open another document.
         use CommandId::{Open, OpenCapture, OpenDemo, Quit};
         if matches!(id, Quit | Open | OpenCapture | OpenDemo) {
             continue;
         }
-        // A mask that is there cannot be added.
+        // An existing mask cannot be added.
         if id == CommandId::AddMask {
             person.window.state_mut().apply(Command::EditLayers(LayerEdit::RemoveMask(1)));
         }
-        // From where the shot camera stands already it would not move.
+        // The shot camera must not be there already.
         if id == CommandId::CameraFromView {
             let context = person.window.ctx.clone();
             person.window.state_mut().run(CommandId::FrameAll, &context);
         }
-        // Keys that are not there cannot be taken away.
+        // Only existing keys can be removed.
         if id == CommandId::RemoveKeys {
             let context = person.window.ctx.clone();
             person.window.state_mut().run(CommandId::KeyLens, &context);
@@ -97,7 +98,7 @@ fn every_command_runs_and_is_undone_or_has_nothing_to_undo() {
             assert_eq!(steps(&person), count, "{}: nothing to undo", info.name);
         }
         assert!(person.complaints().is_empty(), "{}: {:?}", info.name, person.complaints());
-        // Whatever it opened is closed again.
+        // Close everything that it opened.
         person.presses(Modifiers::NONE, Key::Escape);
         if id == CommandId::AddMask {
             person.window.state_mut().apply(Command::EditLayers(LayerEdit::AddMask(1)));
@@ -109,7 +110,7 @@ fn every_command_runs_and_is_undone_or_has_nothing_to_undo() {
             | CommandId::ShowInspector
             | CommandId::EnlargePanel
             | CommandId::FloatPanel => shell.run(id, &context),
-            // Nothing is to hold the machine up.
+            // No background work, to keep the test quick.
             CommandId::Bake | CommandId::RenderTruth => shell.apply(Command::CancelAll),
             CommandId::LayerAbove | CommandId::LayerBelow => shell.apply(Command::ActivateLayer(1)),
             CommandId::Undo => shell.apply(Command::Redo),
@@ -127,7 +128,7 @@ fn a_hundred_edits_are_undone_and_done_again_to_the_bit() {
     for k in 0..100 {
         let along = |m: f32| crate::acting::at(rect, 0.1 + 0.008 * k as f32 + m, 0.2 + 0.6 * m);
         match k % 5 {
-            // By hand: strokes that overlap, the lens, another blur between.
+            // Explicitly: overlapping strokes with changes of lens and blur in between.
             0 | 1 => {
                 person.presses(Modifiers::NONE, if k % 2 == 0 { Key::Period } else { Key::Comma });
                 let path = [along(0.0), along(0.1), along(0.2)];

@@ -1,10 +1,11 @@
-//! The picture beside others: the wipe, the ordinary lens, the pinhole, the ray-traced picture.
+//! Comparisons of the picture: wipe, ordinary lens, pinhole, ray-traced picture.
 
 use crate::acting::{Person, at, color_at};
 use crate::small_scene;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
-use session::{Command, FillRegion, ReferenceKind};
+use document::FillRegion;
+use session::{Command, ReferenceKind};
 
 #[test]
 fn a_wipe_shows_the_ordinary_lens_on_the_left_of_a_line_that_can_be_dragged() {
@@ -25,7 +26,7 @@ fn a_wipe_shows_the_ordinary_lens_on_the_left_of_a_line_that_can_be_dragged() {
     let image = person.picture_rect();
     let inspector = person.window.get_by_label("f-number").rect();
     assert!(image.right() <= inspector.left(), "the header does not push the view under the inspector");
-    // Contrast of the chequers along a row.
+    // Contrast of the chequerboard along a row.
     let contrast = |person: &mut Person, from: f32, to: f32| {
         let screen = person.window.render().unwrap();
         let greys = (0..200).map(|k| {
@@ -48,7 +49,7 @@ fn a_wipe_shows_the_ordinary_lens_on_the_left_of_a_line_that_can_be_dragged() {
     let right = contrast(&mut person, 0.55, 0.8);
     assert!(right > 0.8 * left, "now the ordinary lens reaches further: {right} {left}");
 
-    // Paint does not touch what it is compared with; the lens does.
+    // Paint does not affect the reference picture; the lens does.
     person.presses(Modifiers::COMMAND, Key::Z);
     person.waits();
     let same = person.shell().session().reference(ReferenceKind::Standard).unwrap();
@@ -121,7 +122,7 @@ fn a_rectangle_is_checked_by_rays_better_and_better_and_can_be_closed() {
         error.signed_mean_error
     );
     assert!(person.window.query_by_label_contains("PSNR").is_some());
-    // A control that fails: another picture is far off.
+    // Negative control: another picture differs much.
     let mut wrong = preview.clone();
     let mut picture = (*wrong.picture.fetch().unwrap()).clone();
     picture.radiance.iter_mut().for_each(|rgb| *rgb = [0.5; 3]);
@@ -129,7 +130,7 @@ fn a_rectangle_is_checked_by_rays_better_and_better_and_can_be_closed() {
     let far = verification.error_of(&wrong, lens::Exposure::Normalise).unwrap().unwrap();
     assert!(far.psnr < error.psnr - 8.0, "{} {}", far.psnr, error.psnr);
 
-    // Old after a change, gone when closed.
+    // Outdated after a change, gone when closed.
     person.window.state_mut().apply(Command::Fill(FillRegion::All, lens::FocusOffset::SHARP));
     person.waits();
     assert!(!person.shell().session().is_verification_current());

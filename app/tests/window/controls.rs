@@ -1,4 +1,4 @@
-//! Every control has a name and a tooltip's worth of help; the lens follows its controls.
+//! Every control has a name and a tooltip; the lens follows its controls.
 
 use crate::acting::{Person, at};
 use crate::small_scene::opened;

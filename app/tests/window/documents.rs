@@ -20,7 +20,7 @@ fn saved_and_reopened_is_the_same() {
     person.waits();
     assert!(person.shell().title().contains(" *"), "{}", person.shell().title());
 
-    // The first save asks where; the suggestion lies beside the scene.
+    // The first save asks for a file and suggests one beside the scene.
     person.presses(Modifiers::COMMAND, Key::S);
     person.window.get_by_label("Save").click();
     person.waits();

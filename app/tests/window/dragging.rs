@@ -1,4 +1,4 @@
-//! Gradients, selections, symmetric fills, cloning: tools that are dragged and clicked.
+//! Tools other than the brush: gradients, selections, symmetric fills, cloning.
 
 use crate::acting::{Person, at, color_at, difference};
 use crate::small_scene;
@@ -6,7 +6,7 @@ use egui::{Event, Key, Modifiers, PointerButton, Pos2};
 use lens::FocusOffset;
 use session::{Command, CommandId};
 
-/// The small scene, and far blur on the brush.
+/// The small scene, with far blur on the brush.
 fn opened() -> (Person, tempfile::TempDir) {
     let (mut person, folder) = small_scene::opened();
     for _ in 0..12 {
@@ -28,7 +28,7 @@ impl Person {
         self.window.run_steps(2);
     }
 
-    /// A drag with keys held, in one go.
+    /// A complete drag with modifier keys.
     fn drags_holding(&mut self, modifiers: Modifiers, path: &[Pos2]) {
         self.window.event(Event::ModifiersChanged(modifiers));
         self.window.hover_at(path[0]);
@@ -59,7 +59,7 @@ fn a_gradient_shows_while_it_is_dragged_and_is_one_step() {
     person.window.step();
     assert!(person.shell().session().is_painting());
     assert_ne!(person.document().map, map, "it shows before the button is let go");
-    // Another end: drawn anew, not on top.
+    // Another end: replaces the previous gradient.
     person.window.hover_at(at(rect, 0.85, 0.5));
     person.window.run_steps(2);
     person.lets_go(at(rect, 0.85, 0.5));
@@ -78,7 +78,7 @@ fn a_gradient_shows_while_it_is_dragged_and_is_one_step() {
     person.presses(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
     assert_eq!(person.document().map, drawn);
 
-    // Esc takes one back that is being drawn.
+    // Esc cancels an active one.
     person.drags(&[path[0], path[1], at(rect, 0.6, 0.1)]);
     person.window.step();
     assert_ne!(person.document().map, drawn);
@@ -111,7 +111,7 @@ fn only_what_is_selected_is_painted_and_it_shows() {
     let darker = |p: Pos2| color_at(&bare, p)[1] - color_at(&striped, p)[1];
     assert!(darker(frozen) > 20.0 && darker(free).abs() < 1.0, "{} {}", darker(frozen), darker(free));
 
-    // A stroke across, a fill and a gradient: all keep within.
+    // A stroke, a fill and a gradient stay within the selection.
     person.presses(Modifiers::NONE, Key::B);
     let across: Vec<_> = (0..=10).map(|k| at(rect, 0.45 + 0.05 * k as f32, 0.8)).collect();
     person.paints(&across);
@@ -121,7 +121,7 @@ fn only_what_is_selected_is_painted_and_it_shows() {
     assert!((focus_at(&person, 0.65, 0.2).t - target.t).abs() < 1e-4);
     assert_eq!(focus_at(&person, 0.25, 0.5), FocusOffset::STANDARD);
 
-    // Ctrl takes away, Shift adds, Ctrl+I inverts, Everything frees.
+    // Ctrl subtracts, Shift adds, Ctrl+I inverts, Everything clears.
     person.presses(Modifiers::SHIFT, Key::L);
     person.drags_holding(Modifiers::COMMAND, &[at(rect, 0.5, 0.0), at(rect, 0.6, 0.2), at(rect, 0.9, 0.5)]);
     let count = |person: &Person| person.document().selection.as_ref().map_or(0, focus::Selection::count);

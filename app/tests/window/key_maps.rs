@@ -1,4 +1,4 @@
-//! The three key maps: their keys, their mouse buttons, kept between starts; and the brush set up at the pointer.
+//! The three key maps: keys, mouse buttons, persistence; and adjusting the brush at the pointer.
 
 use crate::acting::{Person, at};
 use crate::small_scene::opened;
@@ -13,7 +13,7 @@ impl Person {
         self.window.run_steps(2);
     }
 
-    /// Drags with any button and keys held.
+    /// Drags with any button and modifier keys.
     fn drags_with(&mut self, button: PointerButton, modifiers: Modifiers, space: bool, path: [Pos2; 2]) {
         let key =
             |pressed| Event::Key { key: Key::Space, physical_key: None, pressed, repeat: false, modifiers };
@@ -58,7 +58,7 @@ fn each_map_has_its_keys_and_its_mouse() {
 
     let rect = person.paint_rect();
     let path = [at(rect, 0.4, 0.5), at(rect, 0.6, 0.55)];
-    // What a drag does: turn (another direction), slide (another pivot), come nearer (another distance).
+    // Effect of a drag: orbit (direction), pan (pivot), or dolly (distance).
     let mut motion = |map: CommandId, button, modifiers, space| {
         person.runs(map);
         let before = *person.shell().paint_view().camera();

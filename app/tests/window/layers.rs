@@ -1,4 +1,4 @@
-//! Layers: painted on, blended, hidden, drawn as a curve, undone, saved.
+//! Layers: painting, blending, hiding, curves, undo, saving.
 
 use crate::acting::{Person, at, difference};
 use crate::small_scene::opened;
@@ -42,7 +42,7 @@ fn a_layer_is_painted_hidden_shown_weakened_and_taken_back() {
     person.waits();
     assert_eq!(person.document().map, blank);
     assert_eq!(difference(&person.picture(), &picture), 0.0);
-    // A hidden layer is not painted on by mistake.
+    // Hidden layers cannot be painted on.
     let middle = at(person.picture_rect(), 0.75, 0.5);
     person.clicks(middle);
     assert!(person.complaints().iter().any(|text| text.contains("hidden")), "{:?}", person.complaints());
@@ -91,7 +91,7 @@ fn the_reset_brush_uncovers_what_lies_beneath_and_layers_are_saved() {
     let layer = person.document().layers.active().clone();
     assert!(layer.map.has_mask());
 
-    // An adjustment layer above: a curve that blurs what is far, multiplied onto what lies beneath.
+    // An adjustment layer on top: a curve that blurs distant surfaces, multiplied onto the layers beneath.
     let wall = person.focus_at(0.95, 0.9);
     assert_eq!(wall, FocusOffset::STANDARD);
     person.scrolls_to("+ Depth curve");
@@ -130,7 +130,7 @@ fn the_reset_brush_uncovers_what_lies_beneath_and_layers_are_saved() {
     assert_eq!(person.document().map, map);
     assert_eq!(difference(&person.picture(), &picture), 0.0);
 
-    // Order counts, and is a matter of two keys.
+    // The order matters, and two keys change it.
     person.presses(Modifiers::COMMAND, Key::OpenBracket);
     assert_eq!(person.document().layers.active_index(), 1);
     assert_eq!(person.document().layers.layers()[2].name, "Layer 1");
@@ -154,7 +154,7 @@ fn a_focal_plane_runs_through_three_places_that_are_clicked() {
         Some(Adjustment::Plane(plane)) => plane,
         other => panic!("a plane: {other:?}"),
     };
-    // It begins as the ordinary lens's.
+    // It starts as the plane of the ordinary lens.
     let camera = person.document().camera.clone();
     assert!((plane(&person).depth_on_axis(&camera) - camera.focus_distance).abs() < 1e-9);
     let rect = person.picture_rect();
@@ -172,7 +172,7 @@ fn a_focal_plane_runs_through_three_places_that_are_clicked() {
     let beside = person.focus_at(0.6, 0.5);
     assert!((beside.t - 1.0).abs() > 1e-3, "the wall between lies behind it: {beside:?}");
     assert!(person.picture().radiance != before);
-    // A point is dragged on, and taken back.
+    // A point is dragged, and undone.
     let placed = plane(&person);
     let from = at(rect, 0.9, 0.8);
     person.drags(&[from, at(rect, 0.8, 0.75), at(rect, 0.7, 0.7)]);
@@ -185,13 +185,13 @@ fn a_focal_plane_runs_through_three_places_that_are_clicked() {
     person.waits();
     assert_eq!(plane(&person), placed);
 
-    // Turned by hand: what is above comes nearer.
+    // Tilted by dragging: the upper part comes nearer.
     person.scrolls_to("Tilt");
     let tilt = plane(&person).tilt_and_swing(&person.document().camera)[0];
     assert!(tilt.abs() < 1.5);
     person.scrolls_to("Place by three points");
     assert!(person.window.query_by_label("Curvature").is_some());
-    // Clicks on a layer that is none say so.
+    // Clicking on another kind of layer is reported.
     person.presses(Modifiers::NONE, Key::PageDown);
     person.clicks(at(rect, 0.3, 0.3));
     assert!(

@@ -1,4 +1,4 @@
-//! Light fields and pictures with depth in the window: dropped, painted, saved and opened again.
+//! Light fields and pictures with depth in the window: dropped, painted, saved and reopened.
 
 use crate::acting::{Person, at, difference};
 use crate::card_light_field;
@@ -6,10 +6,11 @@ use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use focus_brush::window::Shell;
 use glam::DVec2;
-use session::{ReferenceKind, StereoForm};
+use render::StereoForm;
+use session::ReferenceKind;
 use std::path::Path;
 
-/// Copies the depth of the card over the wall beside it, takes that back, and does it again.
+/// Copies the depth of the card over the wall beside it, undoes and redoes it.
 fn repairs_depth(person: &mut Person) {
     let painted = person.document().map.clone();
     let depth = |person: &Person| {
@@ -18,7 +19,7 @@ fn repairs_depth(person: &mut Person) {
         person.shell().session().pick(&ray).map(|hit| camera.camera_from_world(hit.position).z).unwrap()
     };
     let (before, picture) = (depth(person), person.picture());
-    // A point looks at the aperture meanwhile: it is none of the surface afterwards.
+    // A point is chosen for the aperture view meanwhile; it is no longer on the surface afterwards.
     person.presses(Modifiers::NONE, Key::F8);
     person.clicks(at(person.picture_rect(), 0.5, 0.5));
     let rect = person.picture_rect();
@@ -96,12 +97,12 @@ fn two_eyes_look_where_one_clicks() {
     };
     let [width, height] = card_light_field::SIZE;
     let lens = person.document().camera.focus_distance;
-    // For glasses, looking at what the lens is focused on.
+    // Anaglyph, fixated on the focus distance.
     let picture_rect = person.picture_rect();
     person.presses(Modifiers::ALT, Key::S);
     person.wait_until("it is drawn for glasses", current(of(StereoForm::Anaglyph)));
     assert_eq!(focused(&person, of(StereoForm::Anaglyph)), ([width, height], lens));
-    // Then at the card, on which one clicks: the nearest thing, one unit away.
+    // Then fixated on the card by a click: the nearest surface, one unit away.
     person.presses(Modifiers::ALT, Key::H);
     person.clicks(at(picture_rect, 0.5, 0.5));
     person.wait_until("they look at the card", current(of(StereoForm::Anaglyph)));

@@ -1,4 +1,4 @@
-//! The window, acted on by pointer and keys, headless.
+//! The window, driven headlessly by pointer and keys.
 
 mod accessible;
 mod acting;

@@ -1,7 +1,7 @@
-//! The picture summed on the window's own device and shown from there: the same as the processor's, and it does not come
-//! back to be shown.
+//! The picture summed and displayed on the window's own device: it equals the processor's, and is not read back
+//! for display.
 //!
-//! Skipped, loudly, where the window's device cannot sum.
+//! Skipped with a message if the window's device cannot sum.
 
 use crate::acting::{Person, at, difference};
 use crate::small_scene;
@@ -29,7 +29,7 @@ impl Person {
         &self.shell().session().preview().expect("a picture").picture
     }
 
-    /// What the screen shows of the picture.
+    /// The picture's pixels on screen.
     fn sees(&mut self) -> (RgbaImage, Rect) {
         self.window.remove_cursor();
         self.window.run_steps(2);
@@ -37,7 +37,7 @@ impl Person {
     }
 }
 
-/// The largest difference within a rectangle of two pictures of the screen, and the mean one, of 255.
+/// The largest and mean difference of two screenshots within a rectangle, of 255.
 fn apart((a, rect): &(RgbaImage, Rect), (b, _): &(RgbaImage, Rect)) -> (u8, f64) {
     let inner = rect.shrink(2.0);
     let columns = inner.left() as u32..inner.right() as u32;

@@ -7,7 +7,7 @@ use egui_kittest::kittest::Queryable;
 use glam::DVec3;
 use lens::FocusOffset;
 
-/// Chooses strong far blur by the keys.
+/// Selects strong far blur with keys.
 fn chooses_blur(person: &mut Person) {
     for _ in 0..12 {
         person.presses(Modifiers::NONE, Key::Period);
@@ -50,7 +50,7 @@ fn a_stroke_in_the_paint_view_shows_while_it_goes_on_and_can_be_undone() {
     assert!(new[2] - new[0] > old[2] - old[0] + 40.0, "far blur is blue: {old:?} became {new:?}");
     let aside = at(person.paint_rect(), 0.95, 0.1);
     assert_eq!(color_at(&before, aside), color_at(&after, aside), "and only under the brush");
-    // Another size and back: all is drawn anew, and looks as what was recoloured dab by dab.
+    // Resizing and back redraws everything; the result equals incremental recolouring.
     person.window.set_size(egui::vec2(1281.0, 720.0));
     person.window.run_steps(2);
     person.window.set_size(egui::vec2(1280.0, 720.0));
@@ -100,7 +100,7 @@ fn escape_takes_a_stroke_back_without_a_trace() {
     assert_ne!(person.document().map, map);
     person.presses(Modifiers::NONE, Key::Escape);
     assert_eq!(person.document().map, map);
-    // The rest of the drag paints nothing.
+    // The remainder of the drag paints nothing.
     person.window.hover_at(path[3]);
     person.window.run_steps(2);
     person.lets_go(path[3]);
@@ -177,7 +177,7 @@ fn gloss_obeys_the_paint_where_that_is_ticked() {
     person.presses(Modifiers::COMMAND, Key::Z);
     assert!(!person.document().map.has_gloss());
 
-    // The palette has it, too.
+    // The palette offers it, too.
     person.presses(Modifiers::COMMAND | Modifiers::SHIFT, Key::P);
     person.window.event(egui::Event::Text("gloss".into()));
     person.window.run_steps(2);
@@ -285,7 +285,7 @@ fn what_a_fill_would_take_is_outlined_before_the_click() {
     let before = person.window.render().unwrap();
     let card = point(&mut person, 0.25, 0.5).expect("the card");
     let after = person.window.render().unwrap();
-    // What is there, and what the click makes of it: the brush paints sharp.
+    // Before and after the click: the brush paints sharp.
     let says = |person: &Person, what: &str| {
         person.window.query_all_by(|node| node.value().is_some_and(|text| text.contains(what))).count() > 0
     };
@@ -297,7 +297,7 @@ fn what_a_fill_would_take_is_outlined_before_the_click() {
     let changed = before.pixels().zip(after.pixels()).filter(|(a, b)| a != b).count();
     assert!(changed > 300, "it shows: {changed} pixels");
     assert!(person.document().map == map && person.document().undo_name().is_none());
-    // With a mirror, what is filled at the image is outlined as well.
+    // With symmetry, the mirrored fill is outlined as well.
     let brush = focus::Brush {
         // Half way between card and wall: front is back.
         mirror: [false, false, true],
@@ -343,7 +343,7 @@ fn something_thin_is_filled_by_a_click_beside_it() {
     assert_eq!(focus_at(bar), person.document().brush.target);
     assert_eq!(focus_at(bar + DVec3::new(0.1, 0.0, 0.0)), FocusOffset::STANDARD);
 
-    // What goes on beyond is no such thing: beside the card's edge the wall is taken.
+    // Beside the card's edge the wall is chosen.
     let (mut person, _folder) = opened();
     let edge = x_of(&person, DVec3::new(-0.2, 0.0, -2.0)).expect("it is in view");
     person.presses(Modifiers::NONE, Key::G);

@@ -1,4 +1,4 @@
-//! The history, the drawer beneath the views, the look of the window, a recording played in it.
+//! History, drawer, theme, and playback of a recording.
 
 use crate::acting::{Person, at, color_at};
 use crate::small_scene::{self, opened};
@@ -8,7 +8,8 @@ use egui_kittest::kittest::Queryable;
 use focus_brush::window::{Shell, WindowOptions};
 use lens::FocusOffset;
 use project::{RecordedFill, RecordedStep, RecordedStroke};
-use session::{Command, CommandId, FillRegion};
+use document::FillRegion;
+use session::{Command, CommandId};
 
 impl Person {
     /// Clicks a step of the history.
@@ -74,7 +75,7 @@ fn the_atlas_is_painted_on_in_2d() {
     let (map, target) = (person.document().map.clone(), person.document().brush.target);
     person.presses(Modifiers::NONE, Key::F7);
     person.window.run_steps(30);
-    // The place of a texel of the card on screen.
+    // The screen position of a texel of the card.
     let document = person.document();
     let card = document.stage.canvas.texels().iter().find(|texel| texel.position.z > -3.0).unwrap();
     let chart = &document.stage.atlas.charts[card.chart as usize];
@@ -93,22 +94,22 @@ fn the_atlas_is_painted_on_in_2d() {
     let after = person.window.render().unwrap();
     let (old, new) = (color_at(&before, place), color_at(&after, place));
     assert!(old != new && new[2] > new[0], "far blur is blue in the atlas too: {old:?} {new:?}");
-    // It is recorded, and does the same again; but not on another atlas.
+    // It is recorded, and its replay gives the same result; but not on another atlas.
     let strokes = folder.path().join("strokes.json");
     person.window.state_mut().apply(session::Command::ExportStrokes(strokes.clone()));
     let painted = person.document().map.clone();
     let mut steps = project::read_strokes(&strokes).unwrap();
     let begun = || {
         let scene = folder.path().join("wall.glb");
-        session::Document::create(&scene, &Default::default(), &Default::default(), &progress::Unwatched)
+        document::Document::create(&scene, &Default::default(), &Default::default(), &Default::default(), &progress::Unwatched)
             .unwrap()
     };
     let mut again = begun();
-    assert_eq!(session::replay(&mut again, &steps).unwrap(), 1);
+    assert_eq!(document::replay(&mut again, &steps).unwrap(), 1);
     assert!(again.map == painted);
     let RecordedStep::Stroke(stroke) = &mut steps[0] else { panic!("a stroke: {steps:?}") };
     stroke.view = project::StrokeView::Atlas { atlas: "another".into() };
-    let refused = session::replay(&mut begun(), &steps).unwrap_err().to_string();
+    let refused = document::replay(&mut begun(), &steps).unwrap_err().to_string();
     assert!(refused.contains("another atlas"), "{refused}");
     person.presses(Modifiers::COMMAND, Key::Z);
     person.waits();
@@ -130,9 +131,9 @@ fn the_aperture_as_a_point_sees_it() {
     let kept = image.baked.expect("a sample of the light field");
     assert_eq!((kept.side, kept.visible_share()), (1, 1.0), "and the light field keeps it open");
     assert!((image.depth - 2.0).abs() < 1e-6 && image.circle_px < 0.0, "nearer than the focus");
-    // A disc: its corners are closed.
+    // A disc: its corners are opaque.
     assert!(image.cells[0].transmission == 0.0 && image.cells[16 * 32 + 16].transmission == 1.0);
-    // The wall just beside the card's outline, seen past it by part of the aperture: look for it along a row.
+    // The wall beside the card's outline, visible from part of the aperture: searched along a row.
     let session = person.shell().session();
     let images: Vec<_> = (0..400)
         .filter_map(|k| {
@@ -142,7 +143,7 @@ fn the_aperture_as_a_point_sees_it() {
         })
         .collect();
     let shares: Vec<f64> = images.iter().map(|image| image.visible_share()).collect();
-    // What the light field keeps, over the whole square, is what rays find there.
+    // The light field's aperture cells equal the rays' over the whole square.
     let by_rays = |image: &session::ApertureImage| {
         image.cells.iter().filter(|cell| cell.is_visible).count() as f64 / image.cells.len() as f64
     };
@@ -172,7 +173,7 @@ fn the_aperture_as_a_point_sees_it() {
 #[test]
 fn the_window_can_be_light_and_twice_as_large_and_tones_are_mapped() {
     let (mut person, _folder) = opened();
-    // Within a button: panels have the colour that the window is cleared with.
+    // Within a button, because panels have the clear colour of the window.
     let corner = person.window.get_by_label("Fit").rect().left_top() + egui::vec2(4.0, 4.0);
     person.window.run_steps(2);
     let dark = color_at(&person.window.render().unwrap(), corner);
@@ -190,7 +191,7 @@ fn the_window_can_be_light_and_twice_as_large_and_tones_are_mapped() {
     }
     person.window.run_steps(10);
     assert_eq!(person.window.ctx.zoom_factor(), 2.0);
-    // All of the window is still inside it: the views, the tool bar's slider, the list of keys.
+    // Everything still fits into the window: views, slider of the tool bar, list of keys.
     let whole = person.window.ctx.content_rect();
     person.does(CommandId::Shortcuts);
     person.window.run_steps(10);
@@ -275,7 +276,7 @@ fn a_drag_over_the_aperture_looks_through_it() {
     assert_eq!(person.shell().session().sub_aperture_point(), None);
     assert_eq!(person.picture().radiance, before);
 
-    // It runs round until Esc.
+    // It orbits until Esc.
     person.presses(Modifiers::NONE, Key::J);
     let mut points = Vec::new();
     for _ in 0..20 {

@@ -1,4 +1,4 @@
-//! Presets in the window: chosen from the lists, saved under a name, carried in and out by files.
+//! Presets in the window: chosen, saved under a name, imported and exported as files.
 
 use crate::acting::Person;
 use crate::small_scene;
@@ -36,7 +36,7 @@ fn presets_are_chosen_saved_exported_and_imported() {
         person.window.run_steps(3);
         person.waits();
     };
-    // A lens: pose, focus distance and size stay, and it is one step of undo.
+    // A lens preset keeps pose, focus distance and size, and is one undo step.
     chooses(&mut person, "Lens preset", "Full frame 85 mm f/1.4");
     let camera = person.document().camera.clone();
     assert!((camera.optics().focal_length() - 0.085).abs() < 1e-9 && (camera.f_number() - 1.4).abs() < 1e-9);
@@ -50,11 +50,11 @@ fn presets_are_chosen_saved_exported_and_imported() {
     person.presses(Modifiers::COMMAND, Key::Z);
     person.waits();
     assert_eq!(person.document().camera, before);
-    // A bokeh with a mask in it.
+    // A bokeh preset with a mask.
     chooses(&mut person, "Bokeh preset", "Heart");
     assert!(matches!(person.document().camera.aperture.shape, ApertureShape::Mask(_)));
 
-    // Saved under a name, found again in a new window.
+    // Saved under a name, and available in a new window.
     let context = person.window.ctx.clone();
     person.window.state_mut().run(CommandId::SaveBokehPreset, &context);
     person.window.run_steps(3);
@@ -72,13 +72,13 @@ fn presets_are_chosen_saved_exported_and_imported() {
     std::fs::rename(own.join("bokeh/mi.json"), &exported).unwrap();
     let mut person = started(&own);
     assert!(person.document().camera.aperture != heart);
-    // Dropped on the window it is on the list, and can be chosen.
+    // Dropped on the window, it appears in the list and can be chosen.
     person.drops(&exported);
     assert!(own.join("bokeh/mi.json").is_file(), "{:?}", person.complaints());
     chooses(&mut person, "Bokeh preset", "mi");
     assert_eq!(person.document().camera.aperture.shape, heart.shape);
     assert!(person.complaints().is_empty(), "{:?}", person.complaints());
-    // What is no preset says so and changes nothing.
+    // A file that is no preset is reported and changes nothing.
     std::fs::write(&exported, "{}").unwrap();
     person.drops(&exported);
     person.window.run_steps(3);

@@ -1,4 +1,4 @@
-//! The picture gets better by itself, and says how good it is.
+//! The picture refines itself and reports its quality.
 
 use crate::acting::{Person, at};
 use crate::small_scene;
@@ -12,7 +12,7 @@ impl Person {
         self.shell().session().preview().expect("a picture").quality
     }
 
-    /// Whether a label begins like this.
+    /// Whether there is a label with this prefix.
     fn reads(&self, begin: &str) -> bool {
         self.window.query_all_by(|node| node.value().is_some_and(|text| text.starts_with(begin))).count() > 0
     }
@@ -30,7 +30,7 @@ fn the_picture_becomes_exact_by_itself_and_the_status_line_says_so() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("wall.glb");
     small_scene::write(&file);
-    // Long enough that a busy machine draws frames before it.
+    // Sufficient for a busy machine to draw frames before it.
     let exact_after = Some(Duration::from_millis(1500));
     let options = WindowOptions { exact_after, ..Person::usual(Some(&file)) };
     let mut person = Person::starts_with(options);

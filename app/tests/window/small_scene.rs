@@ -1,13 +1,14 @@
-//! A scene for the tests: a chequered wall 5 away and a card that stands before its left half, 2 away. Unlit.
+//! A scene for tests: an unlit chequered wall at distance 5 and a card in front of its left half, at distance
+//! 2.
 
 use crate::acting::Person;
 use serde_json::{Value, json};
 use std::path::Path;
 
-/// Fields of the wall a side.
+/// Chequers per side of the wall.
 const FIELDS: u32 = 10;
 
-/// The window, opened on the scene in a folder of its own.
+/// Opens the window on the scene, in a folder of its own.
 pub fn opened() -> (Person, tempfile::TempDir) {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("wall.glb");
@@ -15,7 +16,7 @@ pub fn opened() -> (Person, tempfile::TempDir) {
     (Person::opens(&file), folder)
 }
 
-/// The same with a bar, 2 px wide, in the place of the card: its middle.
+/// The same with a bar, 2 px wide, at the centre of the card instead of it.
 pub fn opened_with_bar() -> (Person, tempfile::TempDir, glam::DVec3) {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("bar.glb");
@@ -28,7 +29,7 @@ pub fn write(file: &Path) {
     write_before(file, [-0.9, -0.35], [0.7; 2]);
 }
 
-/// The wall with something else before it.
+/// The wall with another object in front of it.
 fn write_before(file: &Path, [left, low]: [f32; 2], size: [f32; 2]) {
     let card = ([left, low, -2.0], size);
     let mut mesh = Mesh::default();

@@ -1,4 +1,4 @@
-//! The timeline: keys set, seen, moved, gone to, taken back; a rack focus by two clicks; saved.
+//! The timeline: keys set, shown, moved, visited, undone; a rack focus by two clicks; saving.
 
 use crate::acting::{Person, at, difference};
 use crate::small_scene::opened;
@@ -6,7 +6,8 @@ use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use focus::FocusTarget;
 use focus_brush::window::Tool;
-use session::{CameraEdit, Command, CommandId};
+use document::CameraEdit;
+use session::{Command, CommandId};
 
 impl Person {
     fn carries_out(&mut self, id: CommandId) {
@@ -38,7 +39,7 @@ fn two_clicks_rack_the_focus() {
     let is_point = |key: &focus::Key<FocusTarget>| matches!(key.value, FocusTarget::Point(_));
     assert!(person.document().lens_motion.focus.keys().iter().all(is_point));
     assert_eq!(person.document().undo_name(), Some("Rack focus"));
-    // It stands at the end: the wall is sharp, 5 away; the card, 2 away, at the beginning.
+    // At the end, the wall (distance 5) is sharp; at the beginning, the card (distance 2).
     assert!((person.document().camera.focus_distance - 5.0).abs() < 1e-6);
     let far = person.picture();
     person.shows_time(0.0);
@@ -70,7 +71,7 @@ fn keys_are_set_gone_to_moved_and_saved() {
     assert_eq!(person.focus_keys(), [0.0, 2.0]);
     assert_eq!(person.document().lens_motion.f_number.keys().len(), 2);
 
-    // A click on a key goes there.
+    // A click on a key moves the time there.
     person.window.get_by_label("Focus key at 0.00 s").click();
     person.waits();
     assert_eq!((person.document().seconds, person.document().camera.focus_distance), (0.0, 2.0));
@@ -82,14 +83,14 @@ fn keys_are_set_gone_to_moved_and_saved() {
     let moved = person.focus_keys()[1];
     assert!(moved > 2.3 && (moved * 24.0 - (moved * 24.0).round()).abs() < 1e-9, "to a frame: {moved}");
     assert_eq!(person.document().undo_name(), Some("Move key"));
-    // A drag beside the keys scrubs, which is no step.
+    // A drag beside the keys scrubs, which is no undo step.
     let ruler = |x: f32| egui::pos2(timeline.left() + timeline.width() * x, timeline.top() + 6.0);
     let steps = person.document().undo_names().count();
     person.paints(&[ruler(0.3), ruler(0.4), ruler(0.5)]);
     assert!(person.document().seconds > 0.5);
     assert_eq!(person.document().undo_names().count(), steps);
 
-    // Played, it moves by itself.
+    // Playback advances the time.
     person.carries_out(CommandId::PlayTimeline);
     let before = person.document().seconds;
     person.window.run_steps(5);
@@ -108,7 +109,7 @@ fn keys_are_set_gone_to_moved_and_saved() {
 fn a_layer_fades_as_its_keys_say() {
     let (mut person, _folder) = opened();
     person.carries_out(CommandId::AddLayer);
-    let region = session::FillRegion::All;
+    let region = document::FillRegion::All;
     person.window.state_mut().apply(Command::Fill(region, lens::FocusOffset::new(1.2, 1.0)));
     let opacity = |person: &mut Person, opacity: f64| {
         let index = person.document().layers.active_index();

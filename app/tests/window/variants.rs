@@ -1,4 +1,4 @@
-//! The inspector's choice of a variant, and the name of the light that a scene brings.
+//! The inspector's choice of a variant, and the name of a scene's own light.
 
 use crate::acting::Person;
 use crate::{small_scene, tiny_glb};

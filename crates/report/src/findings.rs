@@ -1,9 +1,9 @@
-//! What the measurements say: time at equal error, and how the ray tracer converges.
+//! Conclusions from the measurements: time at equal error, and convergence of the ray tracer.
 
-use crate::contender::Contender;
-use crate::record::{Record, Series};
+use crate::measurement::contender::Contender;
+use crate::measurement::record::{Record, Series};
 
-/// The splat at its usual tolerance against the ray tracer, on one scene and focus.
+/// The splat at its default tolerance against the ray tracer, for one scene and focus.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EqualError {
     /// The scene.
@@ -12,15 +12,15 @@ pub struct EqualError {
     pub focus: String,
     /// The splat's measurement.
     pub splat: Record,
-    /// Seconds after which the ray tracer has the splat's error.
+    /// Seconds after which the ray tracer reaches the splat's error.
     pub truth_seconds: f64,
-    /// Whether that lies beyond what was measured, and was continued by the law of the last measurements.
+    /// Whether that lies beyond the measurements and was extrapolated.
     pub is_extrapolated: bool,
     /// Slope of log RMSE over log samples of the ray tracer: −1/2 for independent samples.
     pub truth_slope: f64,
 }
 
-/// A point of a curve: seconds, and the error that is left, root mean square.
+/// A point of a convergence curve: time and root mean square error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CurvePoint {
     /// Seconds.
@@ -29,13 +29,13 @@ pub struct CurvePoint {
     pub rmse: f64,
 }
 
-/// The error of a measurement without that of its reference, which is independent of it; 0 where the reference's is all
-/// that is seen.
+/// The error of a measurement without the independent error of its reference; 0 if the reference's error
+/// accounts for all of it.
 pub fn own_rmse(record: &Record) -> f64 {
     (record.rmse.powi(2) - record.reference_rmse.powi(2)).max(0.0).sqrt()
 }
 
-/// The comparison at equal error for every scene and focus whose knobs were turned.
+/// The comparison at equal error for every scene and focus of the knob series.
 pub fn equal_errors<'a>(records: impl Iterator<Item = &'a Record>) -> Vec<EqualError> {
     let knobs: Vec<&Record> = records.filter(|record| record.series == Series::Knob).collect();
     let usual = Contender::default_splat();
@@ -62,8 +62,9 @@ pub fn equal_errors<'a>(records: impl Iterator<Item = &'a Record>) -> Vec<EqualE
         .collect()
 }
 
-/// When a curve of falling error reaches `rmse`: between its points, or beyond them along the law through all of them.
-/// `None` where there are fewer than two points or no error to reach.
+/// The time at which a curve of falling error reaches `rmse`, and whether it is extrapolated: interpolated
+/// between points, or extrapolated by the power law fitted to all of them. `None` if there are fewer than two
+/// points or `rmse` is not positive.
 pub fn seconds_at(curve: &[CurvePoint], rmse: f64) -> Option<(f64, bool)> {
     if curve.len() < 2 || rmse.is_nan() || rmse <= 0.0 {
         return None;
@@ -82,8 +83,8 @@ pub fn seconds_at(curve: &[CurvePoint], rmse: f64) -> Option<(f64, bool)> {
     (slope < 0.0 && seconds.is_finite()).then_some((seconds, true))
 }
 
-/// Slope of the straight line through the logarithms of points, by least squares; points that are not positive are left
-/// out. NaN for fewer than two.
+/// Slope of the least-squares line through the logarithms of the points; points that are not positive are
+/// ignored. NaN for fewer than two.
 pub fn log_slope(points: &[(f64, f64)]) -> f64 {
     let positive = points.iter().filter(|(x, y)| *x > 0.0 && *y > 0.0);
     let logs: Vec<_> = positive.map(|(x, y)| (x.ln(), y.ln())).collect();
@@ -114,7 +115,7 @@ mod tests {
         assert!((before - 0.01).abs() < 1e-9 && extrapolated, "{before}");
         assert_eq!(seconds_at(&curve[..1], 0.1), None);
         assert_eq!(seconds_at(&curve, 0.0), None);
-        // An error that does not fall reaches nothing.
+        // An error that does not fall never reaches a smaller one.
         let flat = [law(1.0), CurvePoint { seconds: 2.0, rmse: 0.2 }];
         assert_eq!(seconds_at(&flat, 0.05), None);
     }

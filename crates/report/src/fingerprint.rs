@@ -1,40 +1,41 @@
-//! What tells one input from another, as SHA-256: measurements of changed inputs do not count.
+//! SHA-256 fingerprints of inputs: stored measurements of changed inputs are not reused.
 
 use focus::{Focus, FocusSource};
 use lens::{ApertureShape, Camera};
+use light::LightOptions;
 use scene::{Environment, ImageLevel, Scene};
 use sha2::{Digest, Sha256};
 use std::sync::Arc;
 
-/// Takes up values and gives one short name for all of them.
+/// Accumulates values into a single fingerprint.
 pub struct Fingerprint(Sha256);
 
 impl Fingerprint {
-    /// Of nothing yet.
+    /// An empty fingerprint.
     pub fn new() -> Self {
         Self(Sha256::new())
     }
 
-    /// Takes up bytes. Their number is taken up too, so that what follows cannot be mistaken for them.
+    /// Adds bytes, preceded by their number, so that the boundaries between values count.
     pub fn add(mut self, bytes: &[u8]) -> Self {
         self.0.update((bytes.len() as u64).to_le_bytes());
         self.0.update(bytes);
         self
     }
 
-    /// Takes up what a value looks like.
+    /// Adds the debug form of a value.
     pub fn add_debug(self, value: &dyn std::fmt::Debug) -> Self {
         self.add(format!("{value:?}").as_bytes())
     }
 
-    /// The name: 24 hexadecimal digits, 96 bits.
+    /// The fingerprint as 24 hexadecimal digits (96 bits).
     pub fn hex_name(self) -> String {
-        self.0.finalize().iter().take(12).map(|byte| format!("{byte:02x}")).collect()
+        hex::encode(&self.0.finalize()[..12])
     }
 }
 
-/// Of all that a scene shows, wherever its files lie.
-pub fn scene_fingerprint(scene: &Scene) -> String {
+/// Fingerprint of the contents of a scene, independent of file locations.
+pub fn scene_fingerprint(scene: &Scene, light: LightOptions) -> String {
     let numbers = |values: &[u32]| bytemuck::cast_slice::<u32, u8>(values).to_vec();
     let triangles: Vec<u32> =
         scene.triangles.iter().flat_map(|t| [&t.vertices[..], &[t.part]].concat()).collect();
@@ -52,8 +53,7 @@ pub fn scene_fingerprint(scene: &Scene) -> String {
         .add_debug(&scene.back_faces)
         .add_debug(&scene.embedded_world)
         .add_debug(&scene.world)
-        .add_debug(&scene.single_scattering)
-        .add_debug(&scene.photo_lookup)
+        .add_debug(&light)
         .add(bytemuck::cast_slice(&scene.tangents));
     for world in scene.embedded_world.iter().chain(&scene.world) {
         if let Environment::Map(map) = &world.environment {
@@ -74,11 +74,11 @@ pub fn scene_fingerprint(scene: &Scene) -> String {
     fingerprint.hex_name()
 }
 
-/// Of a camera with its lens, aperture picture and size.
+/// Fingerprint of a camera with its lens, aperture mask and picture size.
 pub fn camera_fingerprint(camera: &Camera) -> String {
     let fingerprint = Fingerprint::new();
     match &camera.aperture.shape {
-        // The texels of a mask run into millions: as bytes, not as text.
+        // A mask may have millions of texels, which are added as bytes instead of text.
         ApertureShape::Mask(mask) => {
             let aperture = lens::Aperture { shape: ApertureShape::Disc, ..camera.aperture.clone() };
             let rest = Camera { aperture, ..camera.clone() };
@@ -92,10 +92,10 @@ pub fn camera_fingerprint(camera: &Camera) -> String {
     .hex_name()
 }
 
-/// Of a focus. It counts in parts, so it means something only together with its scene.
+/// Fingerprint of a focus. It refers to parts by index, so it is meaningful only together with the scene's.
 pub fn focus_fingerprint(focus: &Focus) -> String {
     let mut fingerprint = Fingerprint::new().add_debug(&focus.background);
-    // Painted parts share one map: it is taken up once.
+    // Painted parts share one map, which is added once.
     let mut last_map = None;
     for part in &focus.parts {
         fingerprint = match part {
@@ -126,8 +126,9 @@ mod tests {
         let scene = Scene { positions: vec![glam::DVec3::ONE; 3], ..Scene::default() };
         let moved = Scene { positions: vec![glam::DVec3::splat(1.0 + 1e-15); 3], ..scene.clone() };
         let elsewhere = Scene { path: "other.glb".into(), ..scene.clone() };
-        assert_ne!(scene_fingerprint(&scene), scene_fingerprint(&moved));
-        assert_eq!(scene_fingerprint(&scene), scene_fingerprint(&elsewhere), "where it lies does not matter");
+        let print = |scene: &Scene| scene_fingerprint(scene, LightOptions::default());
+        assert_ne!(print(&scene), print(&moved));
+        assert_eq!(print(&scene), print(&elsewhere), "where it lies does not matter");
     }
 
     #[test]

@@ -1,63 +1,45 @@
 //! Speed against error: every renderer measured against the ground truth.
 //!
-//! [`run`] takes scenes and a folder and leaves there a page that can be published, and all its figures:
+//! [`run`] measures scenes and writes a self-contained page and all its figures into a folder:
 //!
 //! ```text
 //! report.html   one page, nothing loaded from elsewhere: plots, pictures, error maps, tables
 //! report.md     the tables
-//! report.json   a record a measurement; report.csv the same
+//! report.json   one record per measurement; report.csv the same
 //! about.json    machine, version, scenes, what was modelled
-//! hard.json     the hard cases, if they were asked for
+//! hard.json     the hard cases, if requested
 //! ```
 //!
 //! [`run_engine`] measures the splat engine alone, against its own converged picture.
 //!
-//! The road of the data: `subject` opens a scene with its camera and focuses, `plan` lists what to measure, `reference`
-//! makes the ground truth of each picture with its own error, `contender` draws and is timed, `live` watches the preview, `photographs` leaves some of a capture out, `views` asks those of a light field, `store` keeps every finished
-//! measurement at once (so that a run that was stopped goes on where it was), `findings` draws conclusions, `page` and
-//! `tables` write them down with `plot`.
+//! Data flow: `subject` opens a scene with its camera and focuses; `plan` lists the settings to measure;
+//! `measurement` traces references, and draws, times and compares the contenders; `studies` measures the live
+//! preview, left-out photographs, views of light fields and light refinement; `store` saves every finished
+//! measurement immediately, so that an interrupted run resumes; `findings` draws conclusions; `output` writes
+//! page, tables and plots.
 
-mod band;
-mod contender;
-mod default_lens;
 mod engine;
-mod fields;
 mod findings;
 mod fingerprint;
-mod generic_focus;
-mod live;
-mod machine;
-mod markup;
-mod measure;
-mod memory;
+mod measurement;
 mod options;
-mod page;
-mod photographs;
+mod output;
 mod plan;
-mod plot;
-mod record;
-mod reference;
-mod refined;
 mod report;
 mod run;
-mod stopwatch;
 mod store;
-mod subdivision;
+mod studies;
 mod subject;
 mod summary;
-mod table;
-mod tables;
-mod views;
-mod write;
 
-pub use contender::Contender;
 pub use engine::{Check, EngineRecord, EngineReport, run_engine};
-pub use live::ShownPicture;
-pub use machine::Machine;
+pub use measurement::contender::Contender;
+pub use measurement::machine::Machine;
+pub use measurement::record::{Record, Series};
 pub use options::{ReportOptions, SceneRequest};
-pub use photographs::{Photographs, ReconstructedPhotograph, SparseLightField};
-pub use record::{Record, Series};
 pub use report::Report;
 pub use run::run;
+pub use studies::left_out_photographs::{Photographs, ReconstructedPhotograph, SparseLightField};
+pub use studies::light_field_views::{Disparity, Views};
+pub use studies::live_preview::ShownPicture;
 pub use summary::{FocusSummary, SceneSummary};
-pub use views::{Disparity, Views};

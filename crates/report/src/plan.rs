@@ -1,49 +1,49 @@
-//! What is measured: for every scene a list of settings, each with the contenders that draw it.
+//! The plan of measurements: for every scene a list of settings, each with the contenders that draw it.
 
-use crate::contender::Contender;
+use crate::measurement::contender::Contender;
+use crate::measurement::record::Series;
 use crate::options::ReportOptions;
-use crate::plot::significant;
-use crate::record::Series;
+use crate::output::plot::significant;
 use crate::subject::Subject;
 use lens::Camera;
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
-/// A picture to draw: the contenders' pictures of it are compared with one reference.
+/// A picture to draw; the pictures of all contenders are compared with one reference.
 pub struct Setting {
-    /// What it is part of.
+    /// The series it belongs to.
     pub series: Series,
     /// Index of the subject's focus.
     pub focus: usize,
     /// The camera with its size and aperture.
     pub camera: Camera,
-    /// How often every triangle is cut in four.
+    /// Number of times every triangle is subdivided into four.
     pub cuts: u32,
-    /// Rays a pixel of the reference.
+    /// Rays per pixel of the reference.
     pub reference_spp: u32,
-    /// Who draws it.
+    /// The contenders that draw it.
     pub contenders: Vec<Contender>,
 }
 
-/// A scene is not cut into more triangles than this.
+/// Largest number of triangles of a subdivided scene.
 const MAX_TRIANGLES: usize = 2_000_000;
 
-/// References of what is measured for its cost are traced with this many times fewer rays.
+/// Factor by which references of cost series have fewer rays.
 const COST_REFERENCE_SHARE: u32 = 8;
 
-/// Rays a pixel of the ray tracer where cost is measured.
+/// Rays per pixel of the ray tracer in cost series.
 const COST_SPP: u32 = 64;
 
-/// Views a side of the aperture where cost is measured.
+/// Views per side of the aperture in cost series.
 const COST_VIEWS_A_SIDE: u32 = 5;
 
-/// The standard focus is the subject's first.
+/// Index of the standard focus.
 const STANDARD_FOCUS: usize = 0;
 
-/// What is drawn where cost is measured, in a sentence.
+/// A sentence that describes the cost series.
 pub fn cost_note() -> String {
     let splat = Contender::default_splat();
     format!(
-        "Cost is that under the standard lens: the splat at a tolerance of {} px, the ray tracer with {COST_SPP} rays a pixel, \
+        "Cost is measured under the standard lens: the splat at a tolerance of {} px, the ray tracer with {COST_SPP} rays per pixel, \
          {COST_VIEWS_A_SIDE} × {COST_VIEWS_A_SIDE} views.",
         significant(splat.knob_value())
     )
@@ -98,7 +98,7 @@ pub fn plan_settings(subject: &Subject, options: &ReportOptions) -> Vec<Setting>
     settings
 }
 
-/// Every contender with its knob at several places.
+/// Every contender with several values of its knob.
 fn knob_sweep(is_quick: bool) -> Vec<Contender> {
     let tolerances: &[f64] = if is_quick { &[2.0, 0.0] } else { &[8.0, 4.0, 2.0, 1.0, 0.5, 0.0] };
     let spps: &[u32] = if is_quick { &[4, 16, 64] } else { &[4, 8, 16, 32, 64, 128, 256] };

@@ -1,20 +1,20 @@
-//! What a run comes to.
+//! The result of a run.
 
-use crate::machine::Machine;
-use crate::record::Record;
+use crate::measurement::machine::Machine;
+use crate::measurement::record::Record;
 use crate::summary::SceneSummary;
 use std::path::PathBuf;
 
-/// A measurement, and the pictures of it.
+/// A measurement with its pictures.
 #[derive(Clone, Debug)]
 pub struct Measured {
-    /// The figures.
+    /// The record.
     pub record: Record,
-    /// The picture and its FLIP error map; only where the knob was turned.
+    /// The picture and its FLIP error map; only in the knob series.
     pub pictures: Option<[PathBuf; 2]>,
 }
 
-/// Everything that a report tells.
+/// The contents of a report.
 pub struct Report {
     /// The machine.
     pub machine: Machine,
@@ -22,11 +22,11 @@ pub struct Report {
     pub scenes: Vec<SceneSummary>,
     /// The measurements, in the order of the plan.
     pub measured: Vec<Measured>,
-    /// The hard cases, if they were asked for.
+    /// The hard cases, if requested.
     pub hard: Option<Vec<hard_cases::Outcome>>,
-    /// How many of the measurements were made in this run.
+    /// Number of measurements made in this run.
     pub new: usize,
-    /// Files that were written for people and programs.
+    /// The written files.
     pub files: Vec<PathBuf>,
     /// Seconds of this run.
     pub seconds: f64,

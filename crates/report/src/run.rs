@@ -1,47 +1,55 @@
-//! The run: from scenes to measurements, each kept as soon as it is done.
+//! Runs the measurements; each is saved as soon as it is finished.
 
-use crate::band::OutlineBand;
-use crate::contender::{Contender, Shot};
-use crate::default_lens::quantile;
 use crate::fingerprint::{self, Fingerprint};
-use crate::live::{self, ShownPicture};
-use crate::machine::Machine;
-use crate::measure::{Comparison, MeasurementNames, measure};
-use crate::memory::PeakMemory;
+use crate::measurement::band::OutlineBand;
+use crate::measurement::contender::{Contender, Shot};
+use crate::measurement::machine::Machine;
+use crate::measurement::measure::{Comparison, MeasurementNames, measure};
+use crate::measurement::memory::PeakMemory;
+use crate::measurement::record::{Record, Series};
+use crate::measurement::reference::{conserved_picture, trace_reference};
 use crate::options::{ReportOptions, SceneRequest};
-use crate::photographs::{self, Photographs};
+use crate::output::write::write_report;
 use crate::plan::{Setting, plan_settings};
-use crate::record::{Record, Series};
-use crate::reference::{conserved_picture, trace_reference};
-use crate::refined::RefinedLight;
 use crate::report::{Measured, Report};
 use crate::store::{Store, file_name_part};
-use crate::subdivision::subdivide;
+use crate::studies::left_out_photographs::{self, Photographs};
+use crate::studies::light_field_views::Views;
+use crate::studies::live_preview::{self, ShownPicture};
+use crate::studies::refined_light::RefinedLight;
+use crate::subject::subdivision::subdivide;
 use crate::subject::{Subject, trace_first_hits};
 use crate::summary::{FocusSummary, ModelledScene, Reference, SceneSummary};
-use crate::views::Views;
-use crate::write::write_report;
 use focus::Focus;
+use numerics::quantile;
 use progress::Progress;
 use project::{LinearPicture, compare, read_picture, write_error_map, write_rgb};
 use salf::Salf;
-use session::{Modelled, RenderOptions, SessionError, Steps, bake, bake_unpacked, can_refine_light};
+use light::LitScene;
+use light::Steps;
+use render::{Modelled, RenderOptions, bake, bake_unpacked};
+use session::SessionError;
 use splat::Splatter;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
 use trace::Tracer;
 
-/// Results of other forms than this do not count.
+/// Version of stored results; results of other versions are not reused.
 const FORMAT_VERSION: &str = "3";
 
 /// The tolerance of the finest light field, px.
 const FINEST_TOLERANCE_PX: f64 = 0.0;
 
-/// Measures and writes the report to `folder`, which is made if it is not there. `note` is told of every measurement.
+/// Measures and writes the report to `folder`, which is created if necessary. `note` receives a line per
+/// measurement.
 ///
-/// Stopped at any time, it leaves every finished measurement in `folder/measurements`; the same call goes on from there.
-/// A measurement counts as finished only for the same scene, camera, focus, size, reference and build of the program.
+/// If interrupted, it leaves every finished measurement in `folder/measurements`, and the same call resumes
+/// from there. A measurement is reused only for the same scene, camera, focus, size, reference and build of the
+/// program.
+///
+/// # Errors
+/// A scene cannot be opened or rendered, a file cannot be written, or the run is cancelled.
 pub fn run(
     requests: &[SceneRequest],
     options: &ReportOptions,
@@ -80,7 +88,7 @@ struct ReportRunner<'a> {
     note: &'a dyn Fn(&str),
 }
 
-/// A setting, with what names its results.
+/// A setting, with the fingerprints that identify its results.
 struct SettingContext<'a> {
     subject: &'a Subject,
     setting: &'a Setting,
@@ -96,7 +104,7 @@ impl ReportRunner<'_> {
             subject.name = format!("{} ({})", subject.name, same_name + 1);
         }
         subject.warnings.iter().for_each(|warning| (self.note)(&format!("warning: {warning}")));
-        let scene_print = fingerprint::scene_fingerprint(&subject.scene);
+        let scene_print = fingerprint::scene_fingerprint(&subject.scene, subject.input.light);
         let focus_prints: Vec<_> =
             subject.focuses.iter().map(|named| fingerprint::focus_fingerprint(&named.focus)).collect();
         let live = self.live(request, &subject, &scene_print)?;
@@ -106,8 +114,8 @@ impl ReportRunner<'_> {
         let total: usize = settings.iter().map(|setting| setting.contenders.len()).sum();
         let mut done = 0;
         let mut focuses = Vec::new();
-        // The scene in finer and finer triangles, made when it is needed.
-        let mut cut: Option<(u32, Arc<Tracer>)> = None;
+        // The subdivided scene, created when needed.
+        let mut cut: Option<(u32, Arc<LitScene>)> = None;
         for setting in &settings {
             let place = SettingContext {
                 subject: &subject,
@@ -128,13 +136,13 @@ impl ReportRunner<'_> {
                             None => reference.insert(self.reference(&place)?),
                         };
                         let band = band
-                            .get_or_insert_with(|| OutlineBand::from_scene(&subject.tracer, &setting.camera));
+                            .get_or_insert_with(|| OutlineBand::from_scene(subject.lit.tracer(), &setting.camera));
                         let (error, coc_px) = (reference_summary.error, reference_summary.circles_px[2]);
                         let against = Comparison { picture, error, coc_px, band: band.clone() };
-                        let tracer = self.cut_tracer(&place, &mut cut)?;
+                        let lit = self.cut_scene(&place, &mut cut)?;
                         report.new += 1;
                         let count = [done, total];
-                        self.measure(&place, contender, &tracer, &against, &name, count)?
+                        self.measure(&place, contender, &lit, &against, &name, count)?
                     }
                 };
                 report.measured.push(measured);
@@ -169,7 +177,7 @@ impl ReportRunner<'_> {
             focus_distance: camera.focus_distance.is_finite().then_some(camera.focus_distance),
             lens: subject.lens.clone(),
             prepare_seconds: subject.prepare_seconds,
-            hierarchy_bytes: subject.tracer.bytes(),
+            hierarchy_bytes: subject.lit.tracer().bytes(),
             focuses,
             live,
             photographs,
@@ -181,7 +189,7 @@ impl ReportRunner<'_> {
         Ok(())
     }
 
-    /// A measurement of an earlier run, if its figures and pictures are all there.
+    /// A measurement of an earlier run, if its record and pictures exist.
     fn stored_measurement(&self, name: &str, series: Series) -> Option<Measured> {
         let record = Record { series, ..self.store.get(name)? };
         let pictures = (series == Series::Knob).then(|| self.picture_files(name));
@@ -197,7 +205,7 @@ impl ReportRunner<'_> {
         &self,
         place: &SettingContext<'_>,
         contender: Contender,
-        tracer: &Arc<Tracer>,
+        lit: &Arc<LitScene>,
         against: &Comparison<'_>,
         name: &str,
         [done, total]: [usize; 2],
@@ -207,9 +215,9 @@ impl ReportRunner<'_> {
         let label = format!("{}, {}: {} [{done}/{total}]", subject.name, focus.name, contender.renderer());
         let bar = self.steps.begin(&label);
         let one = SharedBar { bar: &*bar, furthest_fraction: Mutex::new(0.0) };
-        // Only the standard focus is measured on a cut scene, whose parts are the same.
-        let cut_focus = Focus { scene: tracer.scene().clone(), ..focus.focus.clone() };
-        let shot = Shot { tracer, camera: &setting.camera, focus: &cut_focus };
+        // A subdivided scene is measured with the standard focus only; its parts are the same.
+        let cut_focus = Focus { scene: lit.scene().clone(), ..focus.focus.clone() };
+        let shot = Shot { lit, camera: &setting.camera, focus: &cut_focus };
         let named = MeasurementNames { scene: &subject.name, focus: focus.name, series: setting.series };
         let (record, picture) = measure(contender, shot, against, &named, &one)?;
         let pictures = if setting.series == Series::Knob {
@@ -232,31 +240,34 @@ impl ReportRunner<'_> {
         Ok(Measured { record, pictures })
     }
 
-    /// The tracer of a setting's scene.
-    fn cut_tracer(
+    /// The tracer of a setting's scene, subdivided if necessary.
+    fn cut_scene(
         &self,
         place: &SettingContext<'_>,
-        cut: &mut Option<(u32, Arc<Tracer>)>,
-    ) -> Result<Arc<Tracer>, SessionError> {
+        cut: &mut Option<(u32, Arc<LitScene>)>,
+    ) -> Result<Arc<LitScene>, SessionError> {
         let cuts = place.setting.cuts;
         if cuts == 0 {
-            return Ok(place.subject.tracer.clone());
+            return Ok(place.subject.lit.clone());
         }
-        if let Some((_, tracer)) = cut.as_ref().filter(|(have, _)| *have == cuts) {
-            return Ok(tracer.clone());
+        if let Some((_, lit)) = cut.as_ref().filter(|(have, _)| *have == cuts) {
+            return Ok(lit.clone());
         }
         let mut scene = place.subject.scene.as_ref().clone();
         for _ in 0..cuts {
-            let too_many =
-                || SessionError::bad_file(&place.subject.file, "too many vertices to cut its triangles");
+            let too_many = || {
+                SessionError::bad_file(&place.subject.file, "too many vertices to subdivide its triangles")
+            };
             scene = subdivide(&scene).ok_or_else(too_many)?;
         }
+        let Subject { input, .. } = place.subject;
         let tracer = Arc::new(Tracer::new(Arc::new(scene)));
-        *cut = Some((cuts, tracer.clone()));
-        Ok(tracer)
+        let lit = LitScene::new(tracer, input.light, &input.resources);
+        *cut = Some((cuts, lit.clone()));
+        Ok(lit)
     }
 
-    /// The reference of a setting, traced or as an earlier run left it.
+    /// The reference of a setting, from an earlier run or traced now.
     fn reference(&self, place: &SettingContext<'_>) -> Result<(LinearPicture, Reference), SessionError> {
         let name = self.reference_name(place);
         let file = self.store.file(&name, "exr");
@@ -267,17 +278,15 @@ impl ReportRunner<'_> {
         let focus = &subject.focuses[setting.focus];
         let bar = self.steps.begin(&format!("{}, {}: reference", subject.name, focus.name));
         let one = SharedBar { bar: &*bar, furthest_fraction: Mutex::new(0.0) };
-        let shot = Shot { tracer: &subject.tracer, camera: &setting.camera, focus: &focus.focus };
+        let shot = Shot { lit: &subject.lit, camera: &setting.camera, focus: &focus.focus };
         let (picture, error) = trace_reference(shot, setting.reference_spp, &one)?;
-        let hits = trace_first_hits(shot.tracer, shot.focus, shot.camera, &one)?;
-        // The background is at infinity, and blurred or not it looks the same.
+        let hits = trace_first_hits(shot.lit.tracer(), shot.focus, shot.camera, &one)?;
+        // The background is at infinity, where blur is not visible.
         let circles = hits.circle_of_confusion_px(shot.camera).into_iter().zip(&hits.depth);
         let circles = circles.filter(|(_, depth)| depth.is_finite());
         let mut circles: Vec<f64> = circles.map(|(circle, _)| f64::from(circle.abs())).collect();
-        if circles.is_empty() {
-            circles.push(0.0);
-        }
-        let about = Reference { error, circles_px: [0.5, 0.9, 0.99].map(|at| quantile(&mut circles, at)) };
+        let circles_px = [0.5, 0.9, 0.99].map(|share| quantile(&mut circles, share).unwrap_or(0.0));
+        let about = Reference { error, circles_px };
         let [width, height] = [picture.width, picture.height];
         write_rgb(&file, width, height, &picture.rgb)?;
         write_rgb(&self.store.file(&name, "png"), width, height, &picture.rgb)?;
@@ -285,9 +294,9 @@ impl ReportRunner<'_> {
         Ok((picture, about))
     }
 
-    /// How the photographs of a capture tell those that are left out.
+    /// How well photographs of a capture are reconstructed from the others; `None` if there are too few.
     fn photographs(&self, subject: &Subject, scene_print: &str) -> Result<Option<Photographs>, SessionError> {
-        if subject.scene.views.len() <= photographs::LEFT_OUT_COUNT {
+        if subject.scene.views.len() <= left_out_photographs::LEFT_OUT_COUNT {
             return Ok(None);
         }
         let print = self.scene_and_camera_fingerprint(subject, scene_print).hex_name();
@@ -299,8 +308,9 @@ impl ReportRunner<'_> {
             }
         }
         let memory = PeakMemory::watch();
-        let left_out = subject.input.leave_photographs_out(
-            photographs::LEFT_OUT_COUNT,
+        let left_out = render::leave_photographs_out(
+            &subject.input,
+            left_out_photographs::LEFT_OUT_COUNT,
             &self.options.unwrap,
             self.steps,
         )?;
@@ -315,14 +325,15 @@ impl ReportRunner<'_> {
         Ok(Some(measured))
     }
 
-    /// What the live preview shows as time goes on. The window has no switch for single scattering: not watched then.
+    /// What the live preview shows over time. Empty with single scattering, for which the window has no
+    /// setting.
     fn live(
         &self,
         request: &SceneRequest,
         subject: &Subject,
         scene_print: &str,
     ) -> Result<Vec<ShownPicture>, SessionError> {
-        if request.single_scattering {
+        if request.light.scattering == light::Scattering::Single {
             return Ok(Vec::new());
         }
         let print = self
@@ -334,14 +345,14 @@ impl ReportRunner<'_> {
             return Ok(stored);
         }
         let bar = self.steps.begin(&format!("{}: the live preview", subject.name));
-        let live = live::watch_preview(request, subject, &self.options.unwrap, &*bar)?;
+        let live = live_preview::watch_preview(request, subject, &self.options.unwrap, &*bar)?;
         self.store.put(&name, &live)?;
         Ok(live)
     }
 
-    /// How far the light at once is off.
+    /// The error of the cached light; `None` if the light cannot be refined.
     fn light(&self, subject: &Subject, scene_print: &str) -> Result<Option<RefinedLight>, SessionError> {
-        if !can_refine_light(&subject.tracer) {
+        if !subject.lit.can_be_refined() {
             return Ok(None);
         }
         let passes: u32 = if self.options.is_quick { 16 } else { 64 };
@@ -354,12 +365,12 @@ impl ReportRunner<'_> {
         let bar = self.steps.begin(&format!("{}: its light", subject.name));
         let one = SharedBar { bar: &*bar, furthest_fraction: Mutex::new(0.0) };
         let standard = &subject.focuses[0].focus;
-        let measured = RefinedLight::measure(&subject.tracer, &subject.camera, standard, passes, &one)?;
+        let measured = RefinedLight::measure(&subject.lit, &subject.camera, standard, passes, &one)?;
         self.store.put(&name, &measured)?;
         Ok(Some(measured))
     }
 
-    /// What was modelled under the standard lens, and what the saving cost.
+    /// What is modelled under the standard lens, and the error of the compact form.
     fn modelled(&self, subject: &Subject, scene_print: &str) -> Result<ModelledScene, SessionError> {
         let standard = &subject.focuses[0].focus;
         let print = self.scene_and_camera_fingerprint(subject, scene_print).hex_name();
@@ -377,13 +388,13 @@ impl ReportRunner<'_> {
             splatter.render(&subject.camera, standard, &*one.begin("splatting"))?;
             Ok::<_, SessionError>((salf, conserved_picture(splatter.picture())))
         };
-        let Subject { tracer, camera, .. } = subject;
-        let (salf, picture) = drawn(bake(tracer, camera, standard, tolerance_px, &one)?)?;
-        let finest = bake_unpacked(tracer, camera, standard, FINEST_TOLERANCE_PX, &one)?;
+        let Subject { lit, camera, .. } = subject;
+        let (salf, picture) = drawn(bake(lit, camera, standard, tolerance_px, &one)?)?;
+        let finest = bake_unpacked(lit, camera, standard, FINEST_TOLERANCE_PX, &one)?;
         let (finest, finest_picture) = drawn(finest)?;
         let cost = compare(&picture, &finest_picture)?;
         let scene = ModelledScene {
-            modelled: Modelled::measure(&salf, &subject.tracer, Some(&atlas)),
+            modelled: Modelled::measure(&salf, subject.lit.tracer(), Some(&atlas)),
             tolerance_px,
             saving_psnr: cost.psnr,
             saving_flip: cost.flip,
@@ -393,7 +404,7 @@ impl ReportRunner<'_> {
         Ok(scene)
     }
 
-    /// Of a scene and its camera.
+    /// Fingerprint of a scene and its camera.
     fn scene_and_camera_fingerprint(&self, subject: &Subject, scene_print: &str) -> Fingerprint {
         Fingerprint::new()
             .add(FORMAT_VERSION.as_bytes())
@@ -425,7 +436,7 @@ impl ReportRunner<'_> {
         file_name_part(&format!("{}-{focus}-{renderer}-{value}-{print}", subject.name))
     }
 
-    /// Of the picture that is drawn.
+    /// Fingerprint of the drawn picture.
     fn picture_fingerprint(&self, place: &SettingContext<'_>) -> Fingerprint {
         Fingerprint::new()
             .add(FORMAT_VERSION.as_bytes())
@@ -436,13 +447,13 @@ impl ReportRunner<'_> {
     }
 }
 
-/// Steps that share one bar, each an equal share of what those before it left.
+/// Lets several steps share one progress bar; each takes a fixed share of the rest.
 struct SharedBar<'a> {
     bar: &'a dyn Progress,
     furthest_fraction: Mutex<f32>,
 }
 
-/// The share of what is left that a step gets.
+/// The share of the rest that a step takes.
 const STEP_SHARE: f32 = 0.6;
 
 impl Steps for SharedBar<'_> {

@@ -1,4 +1,4 @@
-//! Finished work on disk: every result is written at once, so that a run that was stopped goes on where it was.
+//! Results on disk: each is written immediately, so that an interrupted run resumes.
 
 use atomic_write_file::AtomicWriteFile;
 use serde::Serialize;
@@ -7,36 +7,45 @@ use session::SessionError;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// A folder of results, each a JSON file named by all that it depends on.
+/// A folder of results, each a JSON file whose name includes a fingerprint of its inputs.
 pub struct Store {
     folder: PathBuf,
 }
 
 impl Store {
-    /// The store in `folder`, which is made if it is not there.
+    /// The store in `folder`, which is created if necessary.
+    ///
+    /// # Errors
+    /// The folder cannot be created.
     pub fn open(folder: &Path) -> Result<Self, SessionError> {
         std::fs::create_dir_all(folder).map_err(|error| SessionError::io(folder, &error))?;
         Ok(Self { folder: folder.to_owned() })
     }
 
-    /// The file of a result, or beside it.
+    /// A file that belongs to a result.
     pub fn file(&self, name: &str, extension: &str) -> PathBuf {
         self.folder.join(format!("{name}.{extension}"))
     }
 
-    /// A result, if it is there and can be read; else it is to be made anew.
+    /// A result, if it exists and can be read; otherwise it has to be computed again.
     pub fn get<T: DeserializeOwned>(&self, name: &str) -> Option<T> {
         let bytes = std::fs::read(self.file(name, "json")).ok()?;
         serde_json::from_slice(&bytes).ok()
     }
 
-    /// Keeps a result.
+    /// Saves a result.
+    ///
+    /// # Errors
+    /// The file cannot be written.
     pub fn put<T: Serialize>(&self, name: &str, result: &T) -> Result<(), SessionError> {
         write_atomically(&self.file(name, "json"), &to_json(result)?)
     }
 }
 
-/// A value as JSON for people and programs.
+/// A value as pretty-printed JSON.
+///
+/// # Errors
+/// The value is not representable as JSON.
 pub fn to_json<T: Serialize>(value: &T) -> Result<Vec<u8>, SessionError> {
     let mut text = serde_json::to_vec_pretty(value)
         .map_err(|error| SessionError::Internal(format!("a result cannot be written as JSON: {error}")))?;
@@ -44,7 +53,10 @@ pub fn to_json<T: Serialize>(value: &T) -> Result<Vec<u8>, SessionError> {
     Ok(text)
 }
 
-/// Writes a file: it holds either all of `bytes` or what it held before.
+/// Writes a file atomically: it holds either all of `bytes` or its previous contents.
+///
+/// # Errors
+/// The file cannot be written.
 pub fn write_atomically(file: &Path, bytes: &[u8]) -> Result<(), SessionError> {
     let written = AtomicWriteFile::open(file).and_then(|mut new| {
         new.write_all(bytes)?;
@@ -54,6 +66,9 @@ pub fn write_atomically(file: &Path, bytes: &[u8]) -> Result<(), SessionError> {
 }
 
 /// Writes files into `folder`. Returns them.
+///
+/// # Errors
+/// A file cannot be written.
 pub fn write_files<'a>(
     folder: &Path,
     files: impl IntoIterator<Item = (&'a str, Vec<u8>)>,
@@ -66,7 +81,7 @@ pub fn write_files<'a>(
     files.into_iter().map(write).collect()
 }
 
-/// `text` as part of a file's name: letters, digits, dots and dashes.
+/// `text` as part of a file name: letters, digits, dots and dashes.
 pub fn file_name_part(text: &str) -> String {
     text.chars().map(|c| if c.is_alphanumeric() || c == '.' { c } else { '-' }).collect()
 }

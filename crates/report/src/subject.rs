@@ -1,36 +1,44 @@
 //! A scene to measure on: opened, with its camera, lens and focuses.
 
-use crate::default_lens::open_aperture;
-use crate::generic_focus::generic_recipe;
+pub mod default_lens;
+mod generic_focus;
+pub mod subdivision;
+
 use crate::options::{ReportOptions, SceneRequest};
+use default_lens::open_aperture;
 use focus::Focus;
+use generic_focus::generic_recipe;
 use lens::{Camera, FocusOffset};
 use scene::Scene;
-use session::{FirstHits, Input, InputKind, SessionError, Steps};
+use baselines::FirstHits;
+use document::{Input, InputKind};
+use light::LitScene;
+use light::Steps;
+use session::SessionError;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 use trace::{OutgoingRadiance, Radiance, Tracer};
 
-/// A scene with its camera and what it is focused by.
+/// A scene with its camera and focuses.
 pub struct Subject {
-    /// What it is called: the file's name without its extension.
+    /// The file name without extension.
     pub name: String,
     /// The file.
     pub file: PathBuf,
     /// The scene.
     pub scene: Arc<Scene>,
-    /// What answers rays.
-    pub tracer: Arc<Tracer>,
-    /// Seconds for the hierarchy over the triangles.
+    /// The scene ready for rays, with its light.
+    pub lit: Arc<LitScene>,
+    /// Seconds to build the hierarchy over the triangles.
     pub prepare_seconds: f64,
     /// The camera, at the size of the pictures.
     pub camera: Camera,
-    /// Where the lens comes from, a sentence.
+    /// The source of the lens, a sentence.
     pub lens: String,
-    /// The standard lens first, then what is painted.
+    /// The standard focus first, then the painted one.
     pub focuses: Vec<NamedFocus>,
-    /// What is odd but does no harm.
+    /// Oddities that do no harm.
     pub warnings: Vec<String>,
     /// The opened file, for its atlas.
     pub input: Input,
@@ -41,24 +49,28 @@ pub struct Subject {
 pub struct NamedFocus {
     /// Its name.
     pub name: &'static str,
-    /// What it does, a sentence.
+    /// A sentence that describes it.
     pub what: String,
     /// The focus.
     pub focus: Focus,
 }
 
 impl Subject {
-    /// Opens what was asked for.
+    /// Opens the requested scene.
+    ///
+    /// # Errors
+    /// The file, camera or focus cannot be read, or the work is cancelled.
     pub fn open(
         request: &SceneRequest,
         options: &ReportOptions,
         steps: &dyn Steps,
     ) -> Result<Self, SessionError> {
         if InputKind::from_path(&request.file)? == InputKind::LightField {
-            let what = "is baked for one size and tolerance, a report bakes many (give its scene or project)";
+            let what =
+                "baked for one size and tolerance, but a report bakes many (give its scene or project)";
             return Err(SessionError::bad_file(&request.file, what));
         }
-        let mut input = Input::open_variant(&request.file, &request.variant, steps)?;
+        let mut input = Input::open_variant(&request.file, &request.variant, &options.resources, steps)?;
         if let Some(back_faces) = request.back_faces {
             input.set_back_faces(back_faces);
         }
@@ -66,8 +78,7 @@ impl Subject {
             let world = world.load(&input.scene)?;
             input.set_world(Some(world));
         }
-        input.set_single_scattering(request.single_scattering);
-        input.set_photo_lookup(request.photo_lookup);
+        input.light = request.light;
         let mut camera = input.camera(request.camera.as_ref())?;
         let [width, height] = options.size.unwrap_or_else(|| {
             let width = (ReportOptions::HEIGHT as f64 * camera.aspect()).round().max(1.0) as u32;
@@ -78,13 +89,13 @@ impl Subject {
 
         let scene = input.scene.clone();
         let start = Instant::now();
-        let tracer = Arc::new(Tracer::new(scene.clone()));
+        let lit = LitScene::new(Arc::new(Tracer::new(scene.clone())), input.light, &input.resources);
         let prepare_seconds = start.elapsed().as_secs_f64();
         let standard = Focus::constant(scene.clone(), FocusOffset::STANDARD);
-        let hits = trace_first_hits(&tracer, &standard, &camera, steps)?;
-        // A glTF file knows where cameras stand, not what lens they have.
+        let hits = trace_first_hits(lit.tracer(), &standard, &camera, steps)?;
+        // A glTF file contains poses of cameras, but not their lenses.
         let has_lens =
-            input.project.is_some() || matches!(request.camera, Some(session::CameraChoice::File(_)));
+            input.project.is_some() || matches!(request.camera, Some(document::CameraChoice::File(_)));
         let lens =
             if has_lens { "as the camera says".to_string() } else { open_aperture(&mut camera, &hits) };
 
@@ -104,7 +115,7 @@ impl Subject {
         let painted = match painted {
             Some(painted) => painted,
             None => {
-                let (recipe, what) = generic_recipe(&scene, &tracer, &camera);
+                let (recipe, what) = generic_recipe(&scene, lit.tracer(), &camera);
                 let focus =
                     recipe.evaluate(&scene).map_err(|error| SessionError::bad_file(&request.file, error))?;
                 NamedFocus { name: "painted", what, focus }
@@ -121,7 +132,7 @@ impl Subject {
             file: request.file.clone(),
             warnings: input.warnings.clone(),
             scene,
-            tracer,
+            lit,
             prepare_seconds,
             camera,
             lens,
@@ -131,7 +142,10 @@ impl Subject {
     }
 }
 
-/// Where the chief rays of `camera` meet the scene; without its light.
+/// The first hits of the chief rays of `camera`, without light.
+///
+/// # Errors
+/// Tracing is cancelled.
 pub fn trace_first_hits(
     tracer: &Tracer,
     focus: &Focus,
@@ -141,7 +155,7 @@ pub fn trace_first_hits(
     Ok(FirstHits::trace(tracer, &NoLight, focus, camera, &*steps.begin("first hits"))?)
 }
 
-/// No light: for first hits of which only the places count.
+/// Zero radiance, for first hits of which only the positions matter.
 struct NoLight;
 
 impl Radiance for NoLight {

@@ -1,27 +1,27 @@
-//! What is told of each scene beside its measurements.
+//! What is reported for each scene besides its measurements.
 
-use crate::live::ShownPicture;
-use crate::photographs::Photographs;
-use crate::reference::ReferenceError;
-use crate::refined::RefinedLight;
-use crate::views::Views;
+use crate::measurement::reference::ReferenceError;
+use crate::studies::left_out_photographs::Photographs;
+use crate::studies::light_field_views::Views;
+use crate::studies::live_preview::ShownPicture;
+use crate::studies::refined_light::RefinedLight;
 use lens::Camera;
 use serde::{Deserialize, Serialize};
-use session::Modelled;
+use render::Modelled;
 use std::path::PathBuf;
 
 /// A scene of the report.
 #[derive(Clone, Debug, Serialize)]
 pub struct SceneSummary {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its file's name.
+    /// File name.
     pub file: String,
-    /// Triangles.
+    /// Number of triangles.
     pub triangles: usize,
-    /// Parts that can be painted apart.
+    /// Number of parts that can be painted separately.
     pub parts: usize,
-    /// Lights.
+    /// Number of lights.
     pub lights: usize,
     /// The camera, at the size of the pictures.
     #[serde(skip)]
@@ -32,36 +32,36 @@ pub struct SceneSummary {
     pub aperture_radius: f64,
     /// f-number.
     pub f_number: f64,
-    /// Distance to the focus plane, scene units; none for infinity.
+    /// Distance to the plane of focus, scene units; `None` for infinity.
     pub focus_distance: Option<f64>,
-    /// Where the lens comes from.
+    /// Source of the lens.
     pub lens: String,
-    /// Seconds for the hierarchy over the triangles, which no measurement includes.
+    /// Seconds to build the hierarchy over the triangles, which no measurement includes.
     pub prepare_seconds: f64,
     /// Bytes of the hierarchy.
     pub hierarchy_bytes: usize,
-    /// How it is focused.
+    /// Its focuses.
     pub focuses: Vec<FocusSummary>,
-    /// What the live preview showed of it; empty where it was not watched.
+    /// Pictures of the live preview; empty if it was not measured.
     pub live: Vec<ShownPicture>,
-    /// How its photographs tell those that are left out; none where there are too few.
+    /// Reconstruction of left-out photographs; `None` if there are too few.
     pub photographs: Option<Photographs>,
-    /// What the views of a light field tell; none of others.
+    /// Measurements of the views of a light field; `None` for other scenes.
     pub views: Option<Views>,
-    /// How far its light at once is off; none where no light is found.
+    /// Error of the cached light; `None` if there is no light to compute.
     pub light: Option<RefinedLight>,
-    /// What was modelled of it.
+    /// What is modelled.
     pub modelled: ModelledScene,
-    /// What is odd but does no harm.
+    /// Oddities that do no harm.
     pub warnings: Vec<String>,
 }
 
 /// A focus of a scene.
 #[derive(Clone, Debug, Serialize)]
 pub struct FocusSummary {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// What it does.
+    /// What it does, a sentence.
     pub what: String,
     /// Its reference.
     pub reference: Reference,
@@ -70,23 +70,23 @@ pub struct FocusSummary {
     pub picture: PathBuf,
 }
 
-/// A reference and the picture it is of, as kept.
+/// A reference, as stored.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Reference {
-    /// How far off it is.
+    /// Its error.
     pub error: ReferenceError,
-    /// The circles of confusion that half, 90 % and 99 % of the pixels with a surface stay below, px.
+    /// The 50th, 90th and 99th percentile of the circle of confusion over the pixels with a surface, px.
     pub circles_px: [f64; 3],
 }
 
-/// What was modelled of a scene under the standard lens, and what the saving cost.
+/// What is modelled of a scene under the standard lens, and the error of the compact form.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ModelledScene {
     /// Texels, samples, bytes.
     pub modelled: Modelled,
-    /// The tolerance that it was baked with, px.
+    /// Tolerance of the bake, px.
     pub tolerance_px: f64,
-    /// PSNR of its picture against that of the finest light field, whose samples are not packed, dB.
+    /// PSNR of its picture against that of the finest light field with unpacked samples, dB.
     pub saving_psnr: f64,
     /// Mean FLIP between the two.
     pub saving_flip: f64,

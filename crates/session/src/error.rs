@@ -1,6 +1,12 @@
 //! What can go wrong in a session, by what the user can do about it.
 
+use document::{DocumentError, IoFault};
+use jobs::JobError;
+use light::LightError;
 use progress::Cancelled;
+use project::ProjectError;
+use render::RenderError;
+use splat::SplatError;
 use std::path::{Path, PathBuf};
 
 /// Why something was not done. Its text is one line: `FILE: what is wrong (what to do)`.
@@ -40,46 +46,71 @@ impl From<Cancelled> for SessionError {
     }
 }
 
+impl From<JobError> for SessionError {
+    fn from(error: JobError) -> Self {
+        match error {
+            JobError::NoThread { .. } => Self::TryAgain(error.to_string()),
+            JobError::Panicked { .. } => Self::Internal(error.to_string()),
+        }
+    }
+}
+
+impl From<DocumentError> for SessionError {
+    fn from(error: DocumentError) -> Self {
+        match error {
+            DocumentError::BadInput(text) => Self::BadInput(text),
+            DocumentError::NearUnknown { map, text } => Self::NearUnknown { map, text },
+            DocumentError::TryAgain(text) => Self::TryAgain(text),
+            DocumentError::Cancelled => Self::Cancelled,
+            DocumentError::Internal(text) => Self::Internal(text),
+        }
+    }
+}
+
+impl From<RenderError> for SessionError {
+    fn from(error: RenderError) -> Self {
+        match error {
+            RenderError::BadInput(text) => Self::BadInput(text),
+            RenderError::TryAgain(text) => Self::TryAgain(text),
+            RenderError::GpuAbsent(text) => Self::GpuAbsent(text),
+            RenderError::Cancelled => Self::Cancelled,
+            RenderError::Internal(text) => Self::Internal(text),
+        }
+    }
+}
+
+impl From<LightError> for SessionError {
+    fn from(error: LightError) -> Self {
+        DocumentError::from(error).into()
+    }
+}
+
+impl From<ProjectError> for SessionError {
+    fn from(error: ProjectError) -> Self {
+        DocumentError::from(error).into()
+    }
+}
+
+impl From<SplatError> for SessionError {
+    fn from(error: SplatError) -> Self {
+        RenderError::from(error).into()
+    }
+}
+
+impl From<IoFault> for SessionError {
+    fn from(fault: IoFault) -> Self {
+        DocumentError::from(fault).into()
+    }
+}
+
 impl SessionError {
     /// Bad input in `file`.
     pub fn bad_file(file: &Path, what: impl std::fmt::Display) -> Self {
-        Self::BadInput(format!("{}: {what}", file.display()))
+        DocumentError::bad_file(file, what).into()
     }
 
     /// What an I/O error on `file` means: bad input, or worth another try.
     pub fn io(file: &Path, error: &std::io::Error) -> Self {
-        use std::io::ErrorKind::{
-            Deadlock, Interrupted, OutOfMemory, QuotaExceeded, ResourceBusy, StorageFull, TimedOut,
-            WouldBlock,
-        };
-        let text = |remedy| format!("{}: {} ({remedy})", file.display(), without_error_number(error));
-        match error.kind() {
-            StorageFull | QuotaExceeded => Self::TryAgain(text("free some disk space and try again")),
-            ResourceBusy | Deadlock | TimedOut | WouldBlock | Interrupted | OutOfMemory => {
-                Self::TryAgain(text("try again"))
-            }
-            std::io::ErrorKind::NotFound => Self::BadInput(text("check the path")),
-            std::io::ErrorKind::PermissionDenied => Self::BadInput(text("check the permissions")),
-            _ => Self::BadInput(text("check the path and the disk")),
-        }
+        IoFault::new(file, error).into()
     }
-
-    /// What a panic means to the user.
-    pub(crate) fn from_panic(task: &str, payload: &(dyn std::any::Any + Send)) -> Self {
-        let message = payload.downcast_ref::<&str>().copied();
-        let message = message.or_else(|| payload.downcast_ref::<String>().map(String::as_str));
-        let message = message.unwrap_or("no message").lines().next().unwrap_or_default();
-        Self::Internal(format!("{task}: stopped by a fault of the program: {message} (please report this)"))
-    }
-}
-
-/// The operating system's sentence without its error number.
-fn without_error_number(error: &std::io::Error) -> String {
-    let text = error.to_string();
-    text.split(" (os error").next().unwrap_or(&text).to_lowercase()
-}
-
-/// The file of a document as people call it.
-pub(crate) fn file_name(path: &Path) -> String {
-    path.file_name().map_or_else(|| PathBuf::from(path).display().to_string(), |n| n.to_string_lossy().into())
 }

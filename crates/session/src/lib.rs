@@ -13,56 +13,26 @@
 //! session.preview()                                             // the last good picture, always
 //! ```
 
-mod carrying;
+mod blur_histogram;
 mod commands;
 mod display;
-mod document;
-mod editing;
 mod error;
-mod jobs;
-mod kept_files;
+mod job_steps;
 mod light_field;
-mod output;
 mod preview;
-mod sequence;
+mod reference;
 mod session;
-mod tiles;
 #[cfg(test)]
 #[path = "../tests/tiny_glb/mod.rs"]
 mod tiny_glb;
+mod verification;
 
-pub use baselines::{FirstHits, LayeredOptions, ScatterOptions, ViewsOptions};
-pub use carrying::{TransferredPaint, UnmatchedNode};
+pub use blur_histogram::BlurHistogram;
 pub use commands::{COMMANDS, Command, CommandId, CommandInfo, Event, KeyMap, Menu, Shortcut};
-pub use display::{
-    Display, LivePicture, OcioViews, Screen, ScreenPixel, Thumbnail, ThumbnailResult, Thumbnails, Tone,
-    ToneCurve, enlarged, to_screen,
-};
-pub use document::{
-    CameraChoice, CameraEdit, DepthPolarityRequest, DisparityError, Document, HistoryStep, Input, InputKind,
-    NewDocumentOptions, Stage, SurfaceHit, VariantChoice, camera_between, chief_ray, is_capture, load_scene,
-    pick, shot_camera_from, view_ray,
-};
-pub use editing::{FillRegion, StrokePoint, StrokeTarget, rectangle_outline, replay};
+pub use display::{LivePicture, Screen, Thumbnail, ThumbnailResult, Thumbnails, enlarged};
 pub use error::SessionError;
-pub use jobs::{JobId, JobProgress, JobStatus, Steps, Waker, catch_panics};
-pub use kept_files::set_cache_folder;
-pub use light_field::{
-    ApertureCell, ApertureImage, BakedVisibility, DENSE_SAMPLE_BYTES, LightErrors, LightFieldStore,
-    LightQuality, Modelled, ModelledRow, TexelStatistics, bake, bake_unpacked, can_refine_light, write_salf,
-};
-pub use output::{
-    Aov, BlurHistogram, CocConvention, LeftOut, LeftOutPicture, LeftOutPrediction, MAX_CELLS_A_SIDE,
-    Reference, ReferenceKind, RenderCost, RenderOptions, Rendered, Renderer, Stereo, StereoForm,
-    Verification, VerifiedError, read_thumbnail, render, render_input, render_stereo, write_unwrapped,
-};
+pub use light_field::{ApertureCell, ApertureImage, BakedVisibility};
 pub use preview::{DrawingCosts, PictureTimes, Preview, PreviewActivity, PreviewKind, Quality};
-pub use relief::{DepthRepair, DepthStroke};
-pub use sequence::{
-    Baking, FrameFiles, FrameList, FrameReport, Outcome, SequenceOptions, SequenceReport, Shard, Take,
-    TakeOptions, WritePicture, render_frames,
-};
+pub use reference::{Reference, ReferenceKind};
 pub use session::{FullSizeFieldState, Session, SessionOptions};
-pub use slf::PhotographLight;
-pub use tiles::{Merged, TileGrid, TileOptions, TileReport, TilesReport, merge_tiles, render_tiles};
-pub use trace::truth::Region;
+pub use verification::{Verification, VerifiedError};

@@ -4,7 +4,8 @@ mod tiny_glb;
 
 use glam::{DMat4, DVec2, DVec3};
 use scene::BackFaces;
-use session::{CameraEdit, Command, Event, Quality, Session, SessionOptions, StrokePoint};
+use document::{CameraEdit, StrokePoint};
+use session::{Command, Event, Quality, Session, SessionOptions};
 use std::path::Path;
 use std::time::{Duration, Instant};
 

@@ -9,7 +9,8 @@ use at_work::{opened, settle, stroke};
 use focus::FocusMap;
 use glam::DVec3;
 use progress::Unwatched;
-use session::{Command, Document, NewDocumentOptions};
+use document::{Document, NewDocumentOptions};
+use session::Command;
 use std::path::{Path, PathBuf};
 use tiny_glb::{QUADS, Quad};
 
@@ -39,7 +40,7 @@ impl Place {
     }
 
     fn open(&self) -> Document {
-        Document::open(&self.project(), &Default::default(), &Unwatched).unwrap()
+        Document::open(&self.project(), &Default::default(), &Default::default(), &Unwatched).unwrap()
     }
 }
 
@@ -55,7 +56,7 @@ fn t_at(document: &Document, [x, y]: [f64; 2]) -> f64 {
     let from = DVec3::new(x, y, -3.95);
     let ray =
         trace::Ray { origin: from, direction: DVec3::NEG_Z, t_min: 0.0, t_max: f64::INFINITY, skip: None };
-    let hit = document.stage.tracer.first_hit(&ray).expect("the wall");
+    let hit = document.stage.tracer().first_hit(&ray).expect("the wall");
     document.map.sample(document.stage.atlas.position_of(hit.point)).t
 }
 
@@ -130,5 +131,5 @@ fn paint_follows_what_was_moved_as_a_whole_and_told_is_what_has_no_partner() {
 
 fn begun(scene: &Path, project: &Path) -> Document {
     let beginning = NewDocumentOptions { paint_from: Some(project), ..NewDocumentOptions::default() };
-    Document::create(scene, &beginning, &Default::default(), &Unwatched).unwrap()
+    Document::create(scene, &beginning, &Default::default(), &Default::default(), &Unwatched).unwrap()
 }

@@ -5,9 +5,9 @@ mod tiny_glb;
 use focus::Brush;
 use glam::DVec2;
 use lens::{FocusOffset, Picture};
-use session::{
-    CameraEdit, Command, Event, Preview, Quality, Session, SessionOptions, StrokePoint, Tone, to_screen,
-};
+use document::{CameraEdit, StrokePoint};
+use render::{Tone, to_screen};
+use session::{Command, Event, Preview, Quality, Session, SessionOptions};
 use splat::Tolerance;
 use std::path::Path;
 use std::time::{Duration, Instant};

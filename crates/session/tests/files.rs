@@ -8,7 +8,8 @@ mod tiny_glb;
 use at_work::{opened, opened_with, picture, settle, stroke};
 use focus::BrushMode;
 use glam::DVec2;
-use session::{CameraEdit, Command, Event, FillRegion, Session, SessionOptions};
+use document::{CameraEdit, FillRegion};
+use session::{Command, Event, Session, SessionOptions};
 use std::time::{Duration, Instant};
 
 #[test]
@@ -71,7 +72,7 @@ fn the_unwrapped_scene_is_written_in_the_background_or_not_at_all() {
     assert!(job.label.contains("unwrapped.glb") && job.can_cancel, "{job:?}");
     let events = settle(&mut session);
     assert!(events.contains(&Event::FileWritten(unwrapped.clone())));
-    let again = session::load_scene(&unwrapped, &progress::Unwatched).unwrap();
+    let again = document::load_scene(&unwrapped, &progress::Unwatched).unwrap();
     let document = session.document().unwrap();
     assert_eq!(again.triangles.len(), document.scene().triangles.len());
     let size = glam::Vec2::new(document.stage.atlas.width as f32, document.stage.atlas.height as f32);
@@ -87,7 +88,7 @@ fn the_unwrapped_scene_is_written_in_the_background_or_not_at_all() {
     }
 
     // Cancelled before it began: there is no file.
-    let progress = session::JobProgress::default();
+    let progress = jobs::JobProgress::default();
     progress.cancel();
     let never = folder.path().join("never.glb");
     let stage = &session.document().unwrap().stage;
@@ -100,15 +101,15 @@ fn a_scene_that_is_written_has_the_lens_of_the_shot_camera() {
     let folder = tempfile::tempdir().unwrap();
     let scene = folder.path().join("quads.glb");
     tiny_glb::write(&scene);
-    let input = session::Input::open(&scene, &progress::Unwatched).unwrap();
+    let input = document::Input::open(&scene, &Default::default(), &progress::Unwatched).unwrap();
     let atlas = input.atlas(&Default::default(), &progress::Unwatched).unwrap();
     let own =
         lens::Camera { shift: glam::DVec2::new(0.25, -0.5), aperture_radius: 0.03, ..input.camera.clone() };
     let elsewhere = lens::Camera { yfov: 0.9, ..own.clone() };
     for (shot, count) in [(own, 1), (elsewhere, 2)] {
         let file = folder.path().join("written.glb");
-        session::write_unwrapped(&file, &input.scene, &atlas, Some(&shot), &progress::Unwatched).unwrap();
-        let again = session::Input::open(&file, &progress::Unwatched).unwrap();
+        render::write_unwrapped(&file, &input.scene, &atlas, Some(&shot), &progress::Unwatched).unwrap();
+        let again = document::Input::open(&file, &Default::default(), &progress::Unwatched).unwrap();
         assert_eq!(again.scene.cameras.len(), count);
         let camera = &again.scene.cameras[count - 1];
         assert_eq!(camera.lens.apply_to(input.camera.clone()).shift, shot.shift);
@@ -129,8 +130,8 @@ fn a_template_begins_a_document_without_a_file() {
     std::fs::write(&recipe, r#"{"nodes": {"card": {"t": 1.1, "anchor": 1}}}"#).unwrap();
     let unwrap = Default::default();
     let begun = {
-        let beginning = session::NewDocumentOptions { focus: Some(&recipe), ..Default::default() };
-        session::Document::create(&scene, &beginning, &unwrap, &progress::Unwatched).unwrap()
+        let beginning = document::NewDocumentOptions { focus: Some(&recipe), ..Default::default() };
+        document::Document::create(&scene, &beginning, &unwrap, &Default::default(), &progress::Unwatched).unwrap()
     };
     begun.to_project().save(&template).unwrap();
     let bytes = std::fs::read(&template).unwrap();

@@ -13,7 +13,9 @@ use lens::{Camera, Exposure, FocusOffset, Picture};
 use progress::Unwatched;
 use project::{LinearPicture, compare};
 use scene::{Scene, SurfaceField, SurfacePoint};
-use session::{CameraEdit, Command, RenderOptions, Session};
+use document::CameraEdit;
+use render::RenderOptions;
+use session::{Command, Session};
 use std::sync::Arc;
 use trace::truth::{RayFocus, RayOptics, Truth, TruthOptions};
 
@@ -99,17 +101,17 @@ fn it_is_splatted_as_it_is_traced() {
     let focus =
         Focus::from_atlas_map(stage.scene.clone(), stage.atlas.clone(), Arc::new(document.map.clone()));
     let options = RenderOptions::at_tolerance(0.0);
-    let splat = session::render(&stage.tracer, &camera, &focus, &options, &Unwatched).unwrap().picture;
+    let splat = render::render(&stage.lit, &camera, &focus, &options, &Unwatched).unwrap().picture;
 
     let light = slf::Transport::new(
-        stage.tracer.clone(),
+        stage.tracer().clone(),
         scene::World::uniform(glam::Vec3::ZERO),
         Default::default(),
     );
     let rays = TruthOptions { samples_per_pixel: 512, ..TruthOptions::default() };
-    let traced = trace::truth::render(&stage.tracer, &light, &focus, &camera, &rays, &Unwatched).unwrap();
+    let traced = trace::truth::render(stage.tracer(), &light, &focus, &camera, &rays, &Unwatched).unwrap();
     let tilted = Tilted { scene: &stage.scene, camera: &camera, plane: leaning() };
-    let mut truth = Truth::new(&stage.tracer, &light, &Unpainted, &camera, &rays).with_ray_focus(&tilted);
+    let mut truth = Truth::new(stage.tracer(), &light, &Unpainted, &camera, &rays).with_ray_focus(&tilted);
     while !truth.is_done() {
         truth.pass(&Unwatched).unwrap();
     }
@@ -118,7 +120,7 @@ fn it_is_splatted_as_it_is_traced() {
     assert!(of_lens > 42.0, "{of_lens} dB from the lens itself");
     // The ordinary lens is another picture.
     let plain = Focus::constant(stage.scene.clone(), FocusOffset::STANDARD);
-    let plain = session::render(&stage.tracer, &camera, &plain, &options, &Unwatched).unwrap().picture;
+    let plain = render::render(&stage.lit, &camera, &plain, &options, &Unwatched).unwrap().picture;
     let unlike = decibels(&plain, &traced.picture);
     eprintln!("paint {of_paint:.1} dB, lens {of_lens:.1} dB, ordinary lens {unlike:.1} dB");
     assert!(unlike < of_lens - 10.0, "{unlike} dB");

@@ -6,7 +6,8 @@ use focus::{Brush, BrushMode, CombineMode, Gradient, GradientLine, GradientShape
 use glam::{DVec2, DVec3};
 use lens::FocusOffset;
 use project::SelectionShape;
-use session::{CameraEdit, Command, FillRegion, Session, SessionOptions, StrokePoint};
+use document::{CameraEdit, FillRegion, StrokePoint};
+use session::{Command, Session, SessionOptions};
 use std::time::{Duration, Instant};
 
 /// Memory that the steps may keep alive here: a few hundred of them.

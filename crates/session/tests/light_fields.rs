@@ -3,10 +3,9 @@
 mod tiny_glb;
 
 use lens::{FocusOffset, Picture};
-use session::{
-    CameraEdit, Command, Event, FillRegion, FullSizeFieldState, LightFieldStore, Preview, Quality, Session,
-    SessionOptions,
-};
+use document::{CameraEdit, FillRegion};
+use render::LightFieldStore;
+use session::{Command, Event, FullSizeFieldState, Preview, Quality, Session, SessionOptions};
 use std::path::Path;
 use std::time::{Duration, Instant};
 

@@ -6,7 +6,8 @@ mod tiny_glb;
 
 use glam::DVec2;
 use lens::{FocusOffset, Picture};
-use session::{Command, Event, LivePicture, Session, SessionOptions, StrokePoint};
+use document::StrokePoint;
+use session::{Command, Event, LivePicture, Session, SessionOptions};
 use splat::{BackendChoice, Gpu};
 use std::path::Path;
 use std::sync::Arc;

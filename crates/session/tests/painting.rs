@@ -8,7 +8,9 @@ mod tiny_glb;
 use at_work::{ON_WALL, opened, picture, settle, stroke};
 use glam::DVec2;
 use lens::FocusOffset;
-use session::{CameraEdit, Command, Display, Event, FillRegion, Session, SessionError, Tone, to_screen};
+use document::{CameraEdit, FillRegion};
+use render::{Display, Tone, to_screen};
+use session::{Command, Event, Session, SessionError};
 
 #[test]
 fn paint_shows_while_the_stroke_goes_on_and_undo_brings_the_same_bits_back() {

@@ -10,7 +10,8 @@ use focus::BrushMode;
 use glam::DVec2;
 use lens::FocusOffset;
 use project::RecordedStep;
-use session::{Command, Session, SessionOptions, StrokePoint};
+use document::StrokePoint;
+use session::{Command, Session, SessionOptions};
 use std::time::Duration;
 
 /// A wave across the picture, `bunch` events between two polls.
@@ -19,7 +20,7 @@ fn wave(session: &mut Session, y: f64, bunch: usize) {
     let point = |k: usize| {
         let at = DVec2::new(0.1 + 0.016 * k as f64, y + 0.1 * (k as f64 * 0.3).sin());
         let pressure = 0.4 + 0.6 * (k as f32 / 50.0);
-        StrokePoint { target: session::StrokeTarget::View(view, at), pressure }
+        StrokePoint { target: document::StrokeTarget::View(view, at), pressure }
     };
     session.apply(Command::BeginStroke(point(0))).unwrap();
     for k in 1..=50 {
@@ -81,16 +82,16 @@ fn recorded_strokes_paint_the_same_map_again_whatever_the_timing() {
     let strokes: Vec<_> = steps.iter().filter(|s| matches!(s, RecordedStep::Stroke(_))).cloned().collect();
     let nobody = progress::Unwatched;
     let mut again =
-        session::Document::create(&scene, &Default::default(), &Default::default(), &nobody).unwrap();
-    let missing = session::replay(&mut again, &strokes).unwrap_err().to_string();
+        document::Document::create(&scene, &Default::default(), &Default::default(), &Default::default(), &nobody).unwrap();
+    let missing = document::replay(&mut again, &strokes).unwrap_err().to_string();
     assert!(
         missing.contains("step 5") && missing.contains("Layer 1") && missing.contains("Paint"),
         "{missing}"
     );
 
     let mut again =
-        session::Document::create(&scene, &Default::default(), &Default::default(), &nobody).unwrap();
-    assert_eq!(session::replay(&mut again, &steps).unwrap(), 6);
+        document::Document::create(&scene, &Default::default(), &Default::default(), &Default::default(), &nobody).unwrap();
+    assert_eq!(document::replay(&mut again, &steps).unwrap(), 6);
     assert!(again.map == document.map && again.layers == document.layers);
 
     // On a project that has the layer: the same bits, saved and opened as well.
@@ -99,8 +100,8 @@ fn recorded_strokes_paint_the_same_map_again_whatever_the_timing() {
     let project = folder.path().join("blank.fbrush");
     blank.apply(Command::SaveAs(project.clone())).unwrap();
     settle(&mut blank);
-    let mut again = session::Document::open_saved(&project, &Default::default(), &nobody).unwrap();
-    assert_eq!(session::replay(&mut again, &strokes).unwrap(), 5);
+    let mut again = document::Document::open_saved(&project, &Default::default(), &Default::default(), &nobody).unwrap();
+    assert_eq!(document::replay(&mut again, &strokes).unwrap(), 5);
     assert!(again.map == document.map && again.layers.layers()[0] == document.layers.layers()[0]);
     assert_eq!(again.undo_names().count(), 5);
     assert!(live.apply(Command::ExportStrokes(folder.path().join("none/strokes.json"))).is_err());
@@ -129,7 +130,7 @@ fn a_stroke_is_mirrored_about_the_object_it_begins_on_and_so_is_its_recording() 
     };
     let (right, left) = (place(-0.25), place(-0.55));
     let view = shot_view(&session);
-    let point = StrokePoint { target: session::StrokeTarget::View(view, right), pressure: 1.0 };
+    let point = StrokePoint { target: document::StrokeTarget::View(view, right), pressure: 1.0 };
     session.apply(Command::BeginStroke(point)).unwrap();
     session.apply(Command::CommitStroke).unwrap();
     let focus_at = |session: &Session, at: DVec2| {
@@ -146,8 +147,8 @@ fn a_stroke_is_mirrored_about_the_object_it_begins_on_and_so_is_its_recording() 
     let steps = project::read_strokes(&strokes).unwrap();
     let nobody = progress::Unwatched;
     let mut again =
-        session::Document::create(&scene, &Default::default(), &Default::default(), &nobody).unwrap();
-    assert_eq!(session::replay(&mut again, &steps).unwrap(), 1);
+        document::Document::create(&scene, &Default::default(), &Default::default(), &Default::default(), &nobody).unwrap();
+    assert_eq!(document::replay(&mut again, &steps).unwrap(), 1);
     assert!(again.map == session.document().unwrap().map);
 
     // A fill takes the object at the image of the click: on the card that is the card itself.

@@ -6,9 +6,9 @@ mod tiny_glb;
 use focus::Brush;
 use glam::DVec2;
 use lens::{FocusOffset, Picture};
-use session::{
-    CameraEdit, Command, Event, LightFieldStore, Preview, Quality, Session, SessionOptions, StrokePoint,
-};
+use document::{CameraEdit, StrokePoint};
+use render::LightFieldStore;
+use session::{Command, Event, Preview, Quality, Session, SessionOptions};
 use std::path::Path;
 use std::time::{Duration, Instant};
 

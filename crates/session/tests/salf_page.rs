@@ -3,13 +3,15 @@
 
 mod tiny_glb;
 
+use light::LitScene;
 use glam::{DMat4, DVec3};
 use lens::{Aperture, ApertureMask, ApertureShape, Camera, FocusOffset};
 use progress::Unwatched;
 use salf::{Salf, SalfFile, Sample, Visibility};
 use scene::{AlphaMode, Material, Scalar, Workflow};
 use serde_json::Value;
-use session::{Input, RenderOptions, render_input, write_salf};
+use document::Input;
+use render::{RenderOptions, render_input, write_salf};
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -116,15 +118,15 @@ impl Baked {
         let folder = tempfile::tempdir().unwrap();
         let scene = folder.path().join("quads.glb");
         tiny_glb::write(&scene);
-        let input = Input::open(&scene, &Unwatched).unwrap();
+        let input = Input::open(&scene, &Default::default(), &Unwatched).unwrap();
         let lens = Camera { aperture_radius: 0.1, sensor_height: 0.1, ..input.camera.clone() };
         let mut camera = Camera { width: 60, height: 40, background: Some([0.1, 0.05, 0.2]), ..lens };
         change(&mut camera);
         let focus = focus::Focus::constant(input.scene.clone(), FocusOffset::STANDARD);
         let mut changed = (*input.scene).clone();
         materials(&mut changed.materials);
-        let tracer = Arc::new(Tracer::new(changed.into()));
-        let salf = Arc::new(RenderOptions::default().bake(&tracer, &camera, &focus, &Unwatched).unwrap());
+        let lit = LitScene::new(Arc::new(Tracer::new(changed.into())), input.light, &input.resources);
+        let salf = Arc::new(RenderOptions::default().bake(&lit, &camera, &focus, &Unwatched).unwrap());
         let baked = Self { folder, salf };
         write_salf(&baked.path(), &scene, &input.scene, &baked.salf).unwrap();
         baked
@@ -415,7 +417,7 @@ fn the_sum_of_the_page_is_our_picture() {
     }
     let baked = Baked::from_the_front();
     let drawn = drawn_by_the_page(&baked);
-    let input = Input::open(&baked.path(), &Unwatched).unwrap();
+    let input = Input::open(&baked.path(), &Default::default(), &Unwatched).unwrap();
     let focus = focus::Focus::constant(input.scene.clone(), FocusOffset::STANDARD);
     let ours = |camera: &Camera| {
         let options = RenderOptions::default();

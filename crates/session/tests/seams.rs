@@ -8,7 +8,9 @@ use glam::{DVec2, Mat2, Vec2};
 use lens::{Camera, FocusOffset};
 use project::{RecordedStep, RecordedStroke};
 use serde_json::json;
-use session::{Command, Document, RenderOptions, Session, SessionOptions, StrokePoint, render, view_ray};
+use document::{Document, StrokePoint, view_ray};
+use render::{RenderOptions, render};
+use session::{Command, Session, SessionOptions};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -81,7 +83,7 @@ fn write_wall(file: &Path, layouts: &[[[f32; 2]; 2]]) {
 }
 
 fn begun(file: &Path) -> Document {
-    Document::create(file, &Default::default(), &Default::default(), &progress::Unwatched).unwrap()
+    Document::create(file, &Default::default(), &Default::default(), &Default::default(), &progress::Unwatched).unwrap()
 }
 
 /// The shot camera, small and with a wide lens focused on the wall.
@@ -142,7 +144,7 @@ fn kappas(document: &Document, map: &FocusMap, camera: &Camera, places: &[DVec2]
     let view = ViewFrame::from_camera(camera);
     let kappa = |&at: &DVec2| {
         let hit =
-            session::pick(&document.stage.tracer, &view_ray(&view, at)).expect("the wall fills the picture");
+            document::pick(document.stage.tracer(), &view_ray(&view, at)).expect("the wall fills the picture");
         let focus = map.sample(document.stage.atlas.position_of(hit.point));
         camera.optics().kappa(1.0 / camera.camera_from_world(hit.position).z, focus)
     };
@@ -159,7 +161,7 @@ fn coverage(document: &Document, map: &FocusMap, camera: &Camera) -> Vec<f64> {
     let focus =
         Focus::from_atlas_map(stage.scene.clone(), stage.atlas.clone(), std::sync::Arc::new(map.clone()));
     let options = RenderOptions::default();
-    let rendered = render(&stage.tracer, camera, &focus, &options, &progress::Unwatched).unwrap();
+    let rendered = render(&stage.lit, camera, &focus, &options, &progress::Unwatched).unwrap();
     rendered.picture.coverage.iter().map(|c| f64::from(*c)).collect()
 }
 
@@ -189,7 +191,7 @@ fn a_stroke_over_charts_and_a_mirrored_island_leaves_no_crack() {
     let steps = [RecordedStep::Stroke(stroke)];
     project::write_strokes(&folder.join("seams.json"), &steps).unwrap();
     for document in [&mut strips, &mut whole] {
-        assert_eq!(session::replay(document, &steps).unwrap(), 1);
+        assert_eq!(document::replay(document, &steps).unwrap(), 1);
     }
     let charts = &strips.stage.atlas.charts;
     assert_eq!((charts.len(), whole.stage.atlas.charts.len()), (4, 1));
@@ -225,7 +227,7 @@ fn a_stroke_paints_the_same_map_at_any_rate_of_events_and_frames() {
     write_wall(&file, &LAID_OUT);
     let mut replayed = begun(&file);
     let stroke = stroke(&camera(&replayed));
-    session::replay(&mut replayed, &[RecordedStep::Stroke(stroke.clone())]).unwrap();
+    document::replay(&mut replayed, &[RecordedStep::Stroke(stroke.clone())]).unwrap();
     // Events a frame, and how long a frame takes.
     for (events, pause) in [(1, 0), (1, 3), (7, 1), (500, 0)] {
         let keep_after = Duration::from_secs(3600);
@@ -253,6 +255,6 @@ fn a_stroke_paints_the_same_map_at_any_rate_of_events_and_frames() {
     // And it can fail: a point less is another map.
     let mut shorter = begun(&file);
     let points = stroke.points[..110].to_vec();
-    session::replay(&mut shorter, &[RecordedStep::Stroke(RecordedStroke { points, ..stroke })]).unwrap();
+    document::replay(&mut shorter, &[RecordedStep::Stroke(RecordedStroke { points, ..stroke })]).unwrap();
     assert!(shorter.map != replayed.map);
 }

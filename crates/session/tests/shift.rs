@@ -6,7 +6,8 @@ mod tiny_glb;
 use glam::DVec2;
 use lens::{Camera, Picture};
 use progress::Unwatched;
-use session::{Input, RenderOptions, Renderer, render_input};
+use document::Input;
+use render::{RenderOptions, Renderer, render_input};
 
 /// Width and height of the part, px.
 const PART: [u32; 2] = [48, 32];
@@ -45,7 +46,7 @@ fn drawn(camera: &Camera, renderer: Renderer) -> Picture {
     let folder = tempfile::tempdir().unwrap();
     let scene = folder.path().join("quads.glb");
     tiny_glb::write(&scene);
-    let input = Input::open(&scene, &Unwatched).unwrap();
+    let input = Input::open(&scene, &Default::default(), &Unwatched).unwrap();
     let focus = input.focus(None, &Default::default(), &Unwatched).unwrap();
     let options = RenderOptions { renderer, ..RenderOptions::default() };
     render_input(&input, camera, &focus, &options, &Unwatched).unwrap().picture

@@ -5,7 +5,8 @@ mod tiny_glb;
 
 use glam::DVec2;
 use lens::{FocusOffset, Picture};
-use session::{CameraEdit, Command, FillRegion, Quality, Session, SessionOptions};
+use document::{CameraEdit, FillRegion};
+use session::{Command, Quality, Session, SessionOptions};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 

@@ -6,7 +6,8 @@ mod at_work;
 mod tiny_glb;
 
 use at_work::{opened, picture, settle, stroke};
-use session::{Command, Event, FillRegion, Input, Session, SessionError, VariantChoice};
+use document::{FillRegion, Input, VariantChoice};
+use session::{Command, Event, Session, SessionError};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
@@ -134,12 +135,12 @@ fn a_project_keeps_its_variant() {
     let again = opened(&place.project());
     assert_eq!(variant(&again), Some("Blue"));
     drop(again);
-    let open = |choice| Input::open_variant(&place.project(), &choice, &progress::Unwatched);
+    let open = |choice| Input::open_variant(&place.project(), &choice, &Default::default(), &progress::Unwatched);
     let chosen = |choice| open(choice).unwrap().scene.variant.clone();
     assert_eq!(chosen(VariantChoice::AsSaved).as_deref(), Some("Blue"));
     assert_eq!(chosen(VariantChoice::Named("Green".into())).as_deref(), Some("Green"));
     assert_eq!(chosen(VariantChoice::Own), None);
-    let Err(SessionError::BadInput(error)) = open(VariantChoice::Named("Pink".into())) else {
+    let Err(document::DocumentError::BadInput(error)) = open(VariantChoice::Named("Pink".into())) else {
         panic!("no error")
     };
     assert!(error.contains("varied.glb: no variant is called \"Pink\" (there are \"Blue\""), "{error}");

@@ -1,4 +1,4 @@
-//! The names that options take as values.
+//! Names accepted as values of command-line options.
 
 use clap::ValueEnum;
 
@@ -9,12 +9,12 @@ pub enum KindName {
     Photographs,
     /// Views of one place from points of an aperture
     Lightfield,
-    /// A picture and its depth
+    /// A picture with its depth
     Depth,
 }
 
 impl KindName {
-    /// As projects have it.
+    /// The name as written in project files.
     pub fn name(self) -> &'static str {
         match self {
             Self::Photographs => "photographs",
@@ -24,12 +24,12 @@ impl KindName {
     }
 }
 
-/// How progress is told.
+/// Format of progress reports on stderr.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum ProgressName {
-    /// Bars on a terminal, else plain lines
+    /// Bars on a terminal, otherwise plain lines
     Text,
-    /// A line of JSON a step
+    /// One line of JSON per step
     Json,
 }
 
@@ -43,7 +43,7 @@ pub enum StereoName {
     Anaglyph,
 }
 
-impl From<StereoName> for session::StereoForm {
+impl From<StereoName> for render::StereoForm {
     fn from(name: StereoName) -> Self {
         match name {
             StereoName::SideBySide => Self::SideBySide,
@@ -52,7 +52,7 @@ impl From<StereoName> for session::StereoForm {
     }
 }
 
-/// Where rays of the ground truth start.
+/// Where the rays of the ground truth start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum EstimatorName {
     /// At the sensor.
@@ -61,7 +61,7 @@ pub enum EstimatorName {
     Surface,
 }
 
-/// What the ground truth's samples are drawn from.
+/// Source of the ground truth's samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum SamplerName {
     /// Owen-scrambled Sobol' points.
@@ -70,10 +70,10 @@ pub enum SamplerName {
     Independent,
 }
 
-/// Where the splat runs.
+/// Device that the splat runs on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum BackendName {
-    /// The best there is.
+    /// The best available.
     Auto,
     /// The graphics processor.
     Gpu,
@@ -91,11 +91,11 @@ impl From<BackendName> for splat::BackendChoice {
     }
 }
 
-/// How the sum becomes the picture.
+/// How the splatted sum is normalised to a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum ExposureName {
-    /// The model as it is.
+    /// The energy of the model, unchanged.
     Conserve,
-    /// Divided by coverage.
+    /// The sum divided by its coverage.
     Normalise,
 }

@@ -1,4 +1,4 @@
-//! What panels there are.
+//! The panels of the window.
 
 use serde::{Deserialize, Serialize};
 use session::CommandId;
@@ -10,11 +10,11 @@ pub enum Pane {
     Paint,
     /// The refocused picture.
     Picture,
-    /// What the document is made of, section by section.
+    /// The settings of the document, section by section.
     Inspector,
-    /// The focus map flat.
+    /// The flat focus map.
     Atlas,
-    /// What of the aperture one point sees.
+    /// The aperture as seen from one point.
     Aperture,
     /// The circles of confusion of the picture.
     Histogram,
@@ -25,7 +25,7 @@ pub enum Pane {
 }
 
 impl Pane {
-    /// All.
+    /// All panels.
     pub const ALL: [Self; 8] = [
         Self::Paint,
         Self::Picture,
@@ -37,7 +37,7 @@ impl Pane {
         Self::Timeline,
     ];
 
-    /// What it is called.
+    /// The displayed title.
     pub fn title(self) -> &'static str {
         match self {
             Self::Paint => "Paint",
@@ -51,7 +51,7 @@ impl Pane {
         }
     }
 
-    /// The command that shows it, or folds it away; none for the two views, one of which there always is.
+    /// The command that opens or closes it; `None` for the two views, of which one is always open.
     pub fn command(self) -> Option<CommandId> {
         match self {
             Self::Paint | Self::Picture => None,
@@ -64,7 +64,7 @@ impl Pane {
         }
     }
 
-    /// Whether it can be folded away.
+    /// Whether it can be closed.
     pub fn is_foldable(self) -> bool {
         self.command().is_some()
     }

@@ -1,4 +1,4 @@
-//! How the tiles look and what may be done with them.
+//! Appearance and behaviour of the tiles.
 
 use super::pane::Pane;
 use egui::accesskit::Role;
@@ -6,29 +6,29 @@ use egui::{Ui, WidgetText};
 use egui_tiles::{Behavior, Container, SimplificationOptions, TileId, Tiles, UiResponse};
 use std::collections::HashSet;
 
-/// How a panel stands among the others.
+/// How a panel is docked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DockState {
-    /// Beside others: its header names it, and drags it elsewhere.
+    /// Beside others: its header shows its title and can be dragged.
     Tiled,
-    /// In a tab, which does that.
+    /// In a tab, which does this instead of the header.
     Tab,
-    /// Over the others, in a window with its name.
+    /// Floating over the others, in a window with its title.
     Floating,
-    /// Instead of all others.
+    /// Enlarged over all others.
     Enlarged,
 }
 
-/// What is in the panels.
+/// The contents of the panels.
 pub trait PaneContents {
-    /// Draws one. Returns whether it is being dragged elsewhere by its header.
+    /// Draws a panel. Returns whether it is being dragged by its header.
     fn pane_ui(&mut self, ui: &mut Ui, pane: Pane, docked: DockState) -> bool;
 
-    /// Draws what stands at the right end of the bar of tabs, of which `pane` is in front.
+    /// Draws the controls at the right end of the tab bar whose active tab is `pane`.
     fn tabs_ui(&mut self, ui: &mut Ui, pane: Pane);
 }
 
-/// Names a panel for screen readers.
+/// Sets the accessible name of a panel.
 pub fn set_accessible_name(ui: &Ui, pane: Pane) {
     ui.ctx().accesskit_node_builder(ui.unique_id(), |node| {
         node.set_role(Role::Pane);
@@ -36,7 +36,7 @@ pub fn set_accessible_name(ui: &Ui, pane: Pane) {
     });
 }
 
-/// The tiles.
+/// egui_tiles' view of the panels.
 pub struct TileBehavior<'a> {
     pub panes: &'a mut dyn PaneContents,
     pub tabbed: HashSet<Pane>,
@@ -53,7 +53,7 @@ impl Behavior<Pane> for TileBehavior<'_> {
         pane.title().into()
     }
 
-    /// A tile of several is named after those.
+    /// A tile with several panels shows all of their titles.
     fn tab_title_for_tile(&mut self, tiles: &Tiles<Pane>, tile: TileId) -> WidgetText {
         fn names(tiles: &Tiles<Pane>, tile: TileId) -> Vec<&'static str> {
             match (tiles.get_pane(&tile), tiles.get_container(tile)) {

@@ -1,18 +1,18 @@
-//! Panels that can be folded away keep their size in points when the window's changes; the views take what is left.
+//! Panels that can be closed keep their size in points when the window is resized; the views take the rest.
 
 use super::pane::Pane;
 use egui_tiles::{Container, LinearDir, Tile, TileId, Tiles, Tree};
 
-/// Width and height, points, for which the shares of the first layout are made.
+/// Width and height for which the shares of the initial layout are made, points.
 pub const NOMINAL_SIZE: [f32; 2] = [1280.0, 640.0];
 
-/// What panels that keep their size may take of a row or a column.
+/// Largest share of a row or column for panels of fixed size.
 const LARGEST_SHARE: f32 = 0.5;
 
-/// A change by fewer points than this is none.
+/// Smaller changes are ignored, points.
 const MIN_CHANGE: f32 = 0.5;
 
-/// Takes up another `size` of the whole, points, in place of the one that it `had`.
+/// Adapts the layout to a new `size` of the whole, points, and stores it in `previous_size`.
 pub fn fit_to_size(tree: &mut Tree<Pane>, previous_size: &mut [f32; 2], size: [f32; 2]) {
     let growth = [0, 1].map(|axis| size[axis] / previous_size[axis]);
     let has_changed = [0, 1].map(|axis| (size[axis] - previous_size[axis]).abs() > MIN_CHANGE);
@@ -35,7 +35,7 @@ pub fn fit_to_size(tree: &mut Tree<Pane>, previous_size: &mut [f32; 2], size: [f
     }
 }
 
-/// Whether all in it can be folded away.
+/// Whether all panels of a tile can be closed.
 fn keeps_size(tiles: &Tiles<Pane>, tile: TileId) -> bool {
     match tiles.get(tile) {
         Some(Tile::Pane(pane)) => pane.is_foldable(),
@@ -44,7 +44,7 @@ fn keeps_size(tiles: &Tiles<Pane>, tile: TileId) -> bool {
     }
 }
 
-/// Shares of a row that grew: those that keep their size have less of it, the others more.
+/// The shares of a row after it grew: fixed panels get a smaller share, the others a larger one.
 fn rescaled(shares: &[(f32, bool)], growth: f32) -> Vec<f32> {
     let total: f32 = shares.iter().map(|(share, _)| share).sum();
     let fixed: f32 = shares.iter().filter(|(_, is_fixed)| *is_fixed).map(|(share, _)| share).sum();
@@ -61,11 +61,11 @@ fn rescaled(shares: &[(f32, bool)], growth: f32) -> Vec<f32> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Layout;
     use super::*;
+    use crate::window::layout::Layout;
 
     #[test]
-    fn kept_panels_have_the_same_points_and_views_the_rest() {
+    fn fixed_panels_keep_their_points_and_views_take_the_rest() {
         let before = [(0.5, false), (0.25, false), (0.25, true)];
         let wider = rescaled(&before, 2.0);
         // A row of 1000 points that comes to have 2000.

@@ -1,35 +1,36 @@
-//! What each command of the table does in the window.
+//! Executes the commands of the command table.
 
 use super::Shell;
-use crate::window::brush_gesture::BrushParameter;
-use crate::window::file_dialog::Purpose;
+use crate::window::chrome::tool_bar::{largest_radius, signed_circle_px};
+use crate::window::dialogs::file_dialog::Purpose;
+use crate::window::dialogs::unsaved_changes_dialog::PendingAction;
 use crate::window::layout::{Layout, Pane};
-use crate::window::paint_view::PaintView;
-use crate::window::picture_view::TRUTH_SAMPLES;
-use crate::window::tool_bar::{largest_radius, signed_circle_px};
-use crate::window::unsaved_question::PendingAction;
+use crate::window::tools::brush_gesture::BrushParameter;
+use crate::window::views::paint_view::PaintView;
+use crate::window::views::picture_view::TRUTH_SAMPLES;
 use crate::window::{Tool, ViewSettings};
 use egui::{Context, ViewportCommand};
 use focus::{Brush, BrushMode, CombineMode, LayerEdit};
 use lens::{Exposure, FocusOffset};
 use project::{PresetKind, SelectionShape};
-use session::{CameraEdit, Command, CommandId, FillRegion, KeyMap, ReferenceKind};
+use document::{CameraEdit, FillRegion};
+use session::{Command, CommandId, KeyMap, ReferenceKind};
 use std::path::Path;
 
-/// How large the contents of the window may be drawn.
+/// Scales of the user interface.
 const SCALES: [f32; 8] = [0.75, 0.9, 1.0, 1.1, 1.25, 1.5, 1.75, 2.0];
 
-/// What a key changes of the brush's size.
+/// Factor of the brush size per key press.
 const SIZE_STEP: f64 = 1.15;
-/// A third of a stop, as a ratio of f-numbers: the sixth root of 2.
+/// A third of a stop as a ratio of f-numbers: the sixth root of 2.
 const THIRD_STOP: f64 = 1.122_462_048_309_373;
-/// A twentieth nearer or farther.
+/// Factor of the focus distance per key press.
 const DISTANCE_STEP: f64 = 1.05;
-/// What a key moves the brush's blur on the map from near to far.
+/// Step of the brush's blur on the blur map per key press.
 const BLUR_STEP: f64 = 0.05;
 
 impl Shell {
-    /// Does what a command of the table says; it is possible now.
+    /// Executes a command of the table, which must be possible.
     pub(super) fn execute(&mut self, id: CommandId, context: &Context) {
         match id {
             CommandId::Open => self.confirm_then(PendingAction::ChooseFile, context),
@@ -72,7 +73,7 @@ impl Shell {
             CommandId::ShowAtlas => self.layout.toggle(Pane::Atlas),
             CommandId::ShowAperture => {
                 self.layout.toggle(Pane::Aperture);
-                // The next click says from where.
+                // The next click chooses the point.
                 if self.layout.is_shown(Pane::Aperture) && !self.drawer.has_aperture_point() {
                     self.tool = Tool::Inspect;
                 }
@@ -227,13 +228,13 @@ impl Shell {
         }
     }
 
-    fn with_paint_view(&mut self, act: impl FnOnce(&mut PaintView, &session::Document)) {
+    fn with_paint_view(&mut self, act: impl FnOnce(&mut PaintView, &document::Document)) {
         if let Some(document) = self.session.document() {
             act(&mut self.paint, document);
         }
     }
 
-    /// Draws the contents larger or smaller, a step of [`SCALES`] up or down.
+    /// Changes the scale of the user interface by steps of [`SCALES`].
     fn change_scale(&mut self, step: isize) {
         let at = SCALES.partition_point(|scale| *scale < self.settings.scale - 1e-3);
         let next = at.saturating_add_signed(step).min(SCALES.len() - 1);
@@ -246,10 +247,10 @@ impl Shell {
         }
     }
 
-    /// Takes the tool of a command in hand.
+    /// Activates the tool of a command.
     fn choose_tool_of(&mut self, id: CommandId) {
         let (Some(document), Some(tool)) = (self.session.document(), Tool::for_command(id)) else { return };
-        // Back from another tool's mode to one that paints the chosen focus.
+        // Returns from another tool's mode to one that paints the chosen focus.
         let paints_target =
             matches!(document.brush.mode, BrushMode::Set | BrushMode::Add | BrushMode::Subtract);
         let mode = tool.mode(if paints_target { document.brush.mode } else { BrushMode::Set });
@@ -258,7 +259,7 @@ impl Shell {
         self.rack_from = None;
     }
 
-    /// Changes the layer that is painted on.
+    /// Edits the active layer.
     fn edit_layer(&mut self, edit: impl FnOnce(usize) -> LayerEdit) {
         let Some(document) = self.session.document() else { return };
         let edit = edit(document.layers.active_index());
@@ -286,9 +287,9 @@ impl Shell {
         self.apply(Command::FinishEdit);
     }
 
-    /// Moves the brush's blur on the map from near to far, stopping at sharp when it comes by.
+    /// Moves the brush's blur on the blur map, stopping at sharp on the way.
     fn move_blur(&mut self, step: f64) {
-        use crate::window::false_colour::{circle_px, position};
+        use crate::window::views::false_colour::{circle_px, position};
         let Some(document) = self.session.document() else { return };
         let optics = document.camera.optics();
         let before = position(signed_circle_px(&optics, document.brush.target.t));

@@ -1,13 +1,14 @@
-//! The document's way in and out: opened, saved, asked about, dropped on the window; its name in the title.
+//! Opening, saving and exporting documents, the dialogs involved, dropped files, and the window title.
 
 use super::Shell;
-use crate::window::file_dialog::Purpose;
+use crate::window::dialogs::file_dialog::Purpose;
+use crate::window::dialogs::unsaved_changes_dialog::{Answer, PendingAction};
 use crate::window::layout::Pane;
-use crate::window::unsaved_question::{Answer, PendingAction};
 use crate::window::{Tool, demo};
 use egui::{Context, ViewportCommand};
 use project::CaptureChoices;
-use session::{Command, DepthPolarityRequest, FullSizeFieldState, is_capture};
+use document::{DepthPolarityRequest, is_capture};
+use session::{Command, FullSizeFieldState};
 use std::path::{Path, PathBuf};
 
 impl Shell {
@@ -28,7 +29,7 @@ impl Shell {
         }
     }
 
-    /// Does `next` now, or after the question about unsaved changes.
+    /// Performs `next` now, or after the dialog about unsaved changes.
     pub(super) fn confirm_then(&mut self, next: PendingAction, context: &Context) {
         if self.session.document().is_some_and(|document| document.is_unsaved()) {
             self.unsaved_dialog.open(next);
@@ -65,17 +66,17 @@ impl Shell {
         }
     }
 
-    /// The viewpoint is saved with the document, but is no change of it.
+    /// Stores the viewpoint in the document, which does not count as a change.
     pub(super) fn store_viewpoint(&mut self) {
         self.apply(Command::SetView(self.paint.viewpoint()));
     }
 
-    /// Asks for a file to write, beside the document and named after it.
+    /// Opens the file dialog in the document's folder, with a name derived from the document's.
     pub(super) fn open_file_dialog(&mut self, purpose: Purpose, context: &Context) {
         let Some(document) = self.session.document() else { return };
         let base = document.path.clone().unwrap_or_else(|| document.scene().path.clone());
         let stem = base.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
-        // What is made of the demo does not belong among the program's own files.
+        // Files derived from the demo do not belong in the program's folder.
         let base = if self.showing_demo && document.path.is_none() {
             user_folder().join(stem.as_str())
         } else {
@@ -99,29 +100,29 @@ impl Shell {
         self.file_dialog.note(self.export_size_note(purpose));
     }
 
-    /// Asks for a file to write that belongs to no document, among the user's own.
+    /// Opens the file dialog in the user's folder, for files that belong to no document.
     pub(super) fn open_dialog_in_user_folder(&mut self, purpose: Purpose, name: &Path, context: &Context) {
         self.file_dialog.open(purpose, user_folder().join(name), context);
     }
 
-    /// What is to be known before a picture is exported: how large it is, and what will be waited for.
+    /// A note for the export of a picture: its size, and what has to be computed first.
     fn export_size_note(&self, purpose: Purpose) -> Option<String> {
         let size = |camera: &lens::Camera| format!("{} × {} px", camera.width, camera.height);
         let shown = self.session.preview().map(|preview| size(&preview.camera))?;
         let full = self.session.document().map(|document| size(&document.camera))?;
         match purpose {
-            Purpose::ExportShown => Some(format!("{shown}, as it is on screen.")),
+            Purpose::ExportShown => Some(format!("{shown}, as displayed.")),
             Purpose::ExportPicture => Some(match self.session.full_size_field_state() {
                 FullSizeFieldState::Ready => {
-                    format!("{full}, exact: rendered in the background, from the light field that is there.")
+                    format!("{full}, exact: rendered in the background from the existing light field.")
                 }
                 FullSizeFieldState::InProgress => format!(
                     "{full}, exact: rendered in the background, as soon as the light field of the live picture is \
-                     baked. The status line says how long that takes."
+                     baked. The status line shows how long that takes."
                 ),
                 FullSizeFieldState::Missing => format!(
-                    "{full}, exact. Its light field is baked first, in the background: the status line says for how \
-                     long. At once, but {shown}: File, Export as shown."
+                    "{full}, exact. Its light field is baked first, in the background: the status line shows how \
+                     long. For {shown} immediately: File, Export as shown."
                 ),
             }),
             _ => None,
@@ -200,7 +201,7 @@ impl Shell {
         }
     }
 
-    /// Asks before the window closes over unsaved changes.
+    /// Opens the dialog about unsaved changes before the window closes.
     pub(super) fn confirm_close(&mut self, context: &Context) {
         let closing = context.input(|input| input.viewport().close_requested());
         let unsaved = self.session.document().is_some_and(|document| document.is_unsaved());
@@ -250,14 +251,14 @@ impl Shell {
     }
 }
 
-/// Whether a file is a picture that may show all directions.
+/// Whether a file may be an environment map.
 fn is_environment(path: &Path) -> bool {
     let has_extension =
         |extension: &str| path.extension().is_some_and(|own| own.eq_ignore_ascii_case(extension));
     has_extension("hdr") || has_extension("exr")
 }
 
-/// Where the user's own files go when nothing says where: documents, else home, else here.
+/// Default folder of the user's files: documents, else home, else the current folder.
 fn user_folder() -> PathBuf {
     let folders = directories::UserDirs::new();
     let user_folder = folders.map(|folders| {

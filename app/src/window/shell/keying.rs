@@ -1,11 +1,12 @@
-//! Keys of the timeline, as commands set them and clicks.
+//! Sets and removes keys of the timeline.
 
 use super::Shell;
 use focus::{FocusTarget, Key, Keys, LayerEdit};
-use session::{Command, SurfaceHit};
+use document::SurfaceHit;
+use session::Command;
 
 impl Shell {
-    /// Keeps focus distance and f-number for this time.
+    /// Sets keys for focus distance and f-number at the current time.
     pub(super) fn key_lens(&mut self) {
         let Some(document) = self.session.document() else { return };
         let (seconds, ease) = (document.seconds, self.settings.tools.rack.ease);
@@ -22,7 +23,7 @@ impl Shell {
         }
     }
 
-    /// Keeps the opacity of the layer that is painted on for this time.
+    /// Sets a key for the opacity of the active layer at the current time.
     pub(super) fn key_layer(&mut self) {
         let Some(document) = self.session.document() else { return };
         let (seconds, ease) = (document.seconds, self.settings.tools.rack.ease);
@@ -37,7 +38,7 @@ impl Shell {
         }
     }
 
-    /// Takes the keys of the lens at this time away.
+    /// Removes the keys of the lens at the current time.
     pub(super) fn remove_keys(&mut self) {
         let Some(document) = self.session.document() else { return };
         let mut motion = document.lens_motion.clone();
@@ -46,12 +47,13 @@ impl Shell {
         self.apply(Command::SetLensMotion("Remove lens keys", motion));
     }
 
-    /// A click of the rack focus: the first point, or the second, at which the timeline stands afterwards.
+    /// Handles a click of the rack focus tool: the first point, or the second, after which the time moves to
+    /// its key.
     pub(super) fn rack_point(&mut self, hit: SurfaceHit) {
         let Some(document) = self.session.document() else { return };
         let Some(from) = self.rack_from.take() else {
             self.rack_from = Some(hit);
-            self.toasts.notice("Rack focus: now click what becomes sharp.");
+            self.toasts.notice("Rack focus: now click what should become sharp.");
             return;
         };
         let (start, rack) = (document.seconds, &self.settings.tools.rack);
@@ -62,5 +64,5 @@ impl Shell {
 }
 
 fn too_many_keys_message() -> String {
-    format!("There are {} keys already: take some away first.", Keys::<f64>::MAX_KEYS)
+    format!("There are already {} keys: remove some first.", Keys::<f64>::MAX_KEYS)
 }

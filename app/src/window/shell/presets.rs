@@ -1,12 +1,13 @@
-//! What is done with presets: used, named, saved, carried in and out.
+//! Actions on presets: apply, name, save, import and export.
 
 use super::Shell;
 use crate::window::action::PresetAction;
-use crate::window::file_dialog::Purpose;
-use crate::window::preset_name::PresetNaming;
+use crate::window::dialogs::file_dialog::Purpose;
+use crate::window::dialogs::preset_name_dialog::PresetNaming;
 use egui::Context;
 use project::{LensPreset, Preset, PresetContent, PresetKind};
-use session::{CameraEdit, Command};
+use document::CameraEdit;
+use session::Command;
 use std::path::{Path, PathBuf};
 
 impl Shell {
@@ -17,7 +18,7 @@ impl Shell {
                 self.preset_name_dialog.open(PresetNaming::Rename(file), name)
             }
             PresetAction::Delete(file) => match self.presets.delete(&file) {
-                Ok(backup) => self.toasts.notice(format!("The preset is kept as {}", backup.display())),
+                Ok(backup) => self.toasts.notice(format!("The preset was moved to {}", backup.display())),
                 Err(error) => self.toasts.error(error.to_string()),
             },
             PresetAction::Export(preset) => {
@@ -28,7 +29,7 @@ impl Shell {
         }
     }
 
-    /// Uses a preset: a step of undo like the same change by hand.
+    /// Applies a preset as one undo step, like the same change by hand.
     pub(super) fn use_preset(&mut self, preset: &Preset) {
         let Some(document) = self.session.document() else { return };
         let brush = preset.apply_to_brush(&document.brush);
@@ -51,7 +52,7 @@ impl Shell {
         }
     }
 
-    /// Asks for the name of what is to be saved as a preset.
+    /// Opens the name dialog for a new preset.
     pub(super) fn save_preset(&mut self, kind: PresetKind) {
         let Some(document) = self.session.document() else { return };
         let content = match kind {
@@ -66,7 +67,7 @@ impl Shell {
         match self.presets.import(file) {
             Ok(preset) => {
                 self.toasts.notice(format!(
-                    "{}: a preset of {}, now in its list",
+                    "{}: imported to the {} presets",
                     preset.name,
                     preset.kind().name()
                 ));
@@ -83,7 +84,7 @@ impl Shell {
         }
     }
 
-    /// Takes up the name that was asked for.
+    /// Shows the name dialog and handles its result.
     pub(super) fn show_preset_name_dialog(&mut self, context: &Context) {
         let Some((naming, name)) = self.preset_name_dialog.show(context, &self.presets) else { return };
         let done = match naming {

@@ -1,29 +1,30 @@
-//! The two views, what the user holds over them, and what lies under the pointer.
+//! The panels, the active tool over the views, and the surface under the pointer.
 
 use super::Shell;
-use crate::window::brush_ring::BrushRing;
-use crate::window::drawer::Drawer;
-use crate::window::hand::ActiveTool;
-use crate::window::inspector::{Inspected, Inspector};
+use crate::window::chrome::status_line::Hover;
+use crate::window::chrome::tool_bar::signed_circle_px;
+use crate::window::chrome::view_header::{ViewHeader, panel_menu};
 use crate::window::layout::{DockState, Pane, PaneContents};
-use crate::window::paint_view::PaintView;
-use crate::window::picture_view::PictureView;
-use crate::window::status_line::Hover;
-use crate::window::tool_bar::signed_circle_px;
-use crate::window::view_header::{ViewHeader, panel_menu};
+use crate::window::tools::active_tool::ActiveTool;
+use crate::window::tools::brush_ring::BrushRing;
+use crate::window::views::drawer::Drawer;
+use crate::window::views::inspector::{Inspected, Inspector};
+use crate::window::views::paint_view::PaintView;
+use crate::window::views::picture_view::PictureView;
 use crate::window::{Action, Tool, ViewSettings};
 use egui::{Context, Ui};
 use project::PresetLibrary;
-use session::{PreviewActivity, Session, SurfaceHit};
+use document::SurfaceHit;
+use session::{PreviewActivity, Session};
 
-/// Work shorter than this is not spoken of.
+/// Shorter work is not reported in the status line.
 const MIN_NOTICEABLE_SECONDS: f64 = 0.5;
 
-/// Views lower than this have no room for the hint of the first start, points.
+/// Smallest height of a view with room for the hint at first start, points.
 const MIN_HEIGHT_FOR_HINT: f32 = 220.0;
 
 impl Shell {
-    /// Whether the picture has been summed for longer than one would not notice.
+    /// Whether the picture has been summing for a noticeable time.
     pub(super) fn is_drawing_noticeably(&mut self, context: &Context) -> bool {
         if self.session.preview_activity() != PreviewActivity::Splatting {
             self.drawing_since = None;
@@ -35,11 +36,11 @@ impl Shell {
         now - since > MIN_NOTICEABLE_SECONDS
     }
 
-    pub(super) fn hovered_surface(&self) -> Option<session::SurfaceHit> {
+    pub(super) fn hovered_surface(&self) -> Option<document::SurfaceHit> {
         self.paint.hover().or(self.picture.hover())
     }
 
-    /// What lies under the pointer, in numbers.
+    /// The numbers of the surface point under the pointer.
     pub(super) fn hover_numbers(&self) -> Option<Hover> {
         let hit = self.hovered_surface()?;
         let document = self.session.document()?;
@@ -73,14 +74,14 @@ impl Shell {
             Tool::Brush => signed_circle_px(&document.camera.optics(), brush.target.t),
             _ => 0.0,
         };
-        // The normals of a surface that was made from depth are rough: there the ring faces the camera that took the picture.
+        // Normals of a surface made from depth are noisy: there the ring faces the camera of the picture.
         let scene = document.scene();
         let axis = || scene.cameras.first().map(|camera| camera.camera_to_world.z_axis.truncate());
         let facing = scene.picture.as_ref().and_then(|_| axis());
         Some(BrushRing { radius: brush.radius, hardness: brush.hardness, circle_px, facing })
     }
 
-    /// What the user holds.
+    /// The active tool with its settings.
     pub(super) fn active_tool(&self) -> ActiveTool {
         ActiveTool {
             tool: self.tool,
@@ -124,7 +125,7 @@ impl Shell {
         };
         layout.ui(ui, &mut contents);
         let drawn = contents.drawn;
-        // Nothing is under the pointer in a view that is not there.
+        // A view that is not drawn has no hovered point.
         if !drawn.contains(&Pane::Paint) {
             self.paint.pointer_left();
         }
@@ -133,7 +134,7 @@ impl Shell {
         }
     }
 
-    /// The hint of the first start: three lines over the demo, until it is put away.
+    /// The hint at first start: three lines over the demo, until dismissed.
     pub(super) fn first_hint(&mut self, context: &Context) {
         if !self.showing_demo || self.settings.hint_dismissed || self.session.document().is_none() {
             return;
@@ -142,7 +143,7 @@ impl Shell {
             return;
         }
         let rect = self.paint.rect();
-        // In a small view it would hide what it speaks of.
+        // In a small view it would cover what it describes.
         if rect.height() < MIN_HEIGHT_FOR_HINT {
             return;
         }
@@ -150,8 +151,8 @@ impl Shell {
         area.fixed_pos(rect.left_top() + egui::vec2(12.0, 12.0)).show(context, |ui| {
             ui.set_max_width((rect.width() - 60.0).clamp(160.0, 420.0));
             ui.label("Drag over the scene here, or over the picture: what you paint becomes sharp.");
-            ui.label("Move the slider above from near to far to paint blur instead.");
-            ui.label("Middle drag (or Alt+drag) turns this view; Ctrl+Z takes anything back.");
+            ui.label("Move the slider above toward near or far to paint blur instead.");
+            ui.label("Middle drag (or Alt+drag) rotates this view; Ctrl+Z undoes anything.");
             if ui.button("Got it").clicked() {
                 self.settings.hint_dismissed = true;
             }
@@ -159,7 +160,7 @@ impl Shell {
     }
 }
 
-/// What is in the panels.
+/// The contents of the panels.
 struct PanelContents<'a> {
     paint: &'a mut PaintView,
     picture: &'a mut PictureView,
@@ -173,7 +174,7 @@ struct PanelContents<'a> {
     hover: Option<SurfaceHit>,
     /// The panel that the pointer was over last.
     hovered_pane: &'a mut Pane,
-    /// The panels that are there.
+    /// The panels drawn in this frame.
     drawn: Vec<Pane>,
     actions: &'a mut Vec<Action>,
 }
@@ -184,16 +185,16 @@ impl PaneContents for PanelContents<'_> {
         if ui.rect_contains_pointer(ui.max_rect()) {
             *self.hovered_pane = pane;
         }
-        // Nothing but the window is beneath a panel that does not float, in the same colour.
+        // A panel that does not float lies directly on the window, which has the same colour.
         if pane.is_foldable() && docked == DockState::Floating {
             ui.painter().rect_filled(ui.max_rect(), 0.0, ui.visuals().panel_fill);
         }
         let spacing = std::mem::take(&mut ui.spacing_mut().item_spacing.y);
-        let Self { session, active_tool: hand, actions, settings, picture, .. } = self;
+        let Self { session, active_tool, actions, settings, picture, .. } = self;
         let dragged = ViewHeader { pane, docked, session, settings, picture }.show(ui, actions);
         match pane {
-            Pane::Paint => self.paint.ui(ui, session, hand, settings.surface_appearance(), actions),
-            Pane::Picture => picture.ui(ui, session, hand, settings.display(), actions),
+            Pane::Paint => self.paint.ui(ui, session, active_tool, settings.surface_appearance(), actions),
+            Pane::Picture => picture.ui(ui, session, active_tool, settings.display(), actions),
             Pane::Inspector
             | Pane::Atlas
             | Pane::Aperture
@@ -208,7 +209,7 @@ impl PaneContents for PanelContents<'_> {
                         let inspected = Inspected { session, presets, tool, hover };
                         self.inspector.ui(ui, inspected, settings, actions);
                     }
-                    _ => self.drawer.ui(ui, session, pane, hand, actions),
+                    _ => self.drawer.ui(ui, session, pane, active_tool, actions),
                 });
             }
         }

@@ -1,4 +1,4 @@
-//! Painting while the picture is watched: what one dab costs.
+//! The cost of a single dab while the picture is live.
 
 use lens::FocusOffset;
 use salf::{Salf, SampleLocation};
@@ -6,24 +6,23 @@ use scene::{SurfaceField, SurfacePoint};
 use std::collections::HashSet;
 use std::sync::Arc;
 
-/// Samples of a dab.
+/// Samples covered by a dab.
 const SAMPLES: usize = 5000;
 
-/// The circle of confusion that it gives them, px: in a large scene any t that is written in a few digits would blur them
-/// beyond the picture.
+/// Circle of confusion of the dab, px: a fixed t would blur beyond the picture in a large scene.
 const CIRCLE_PX: f64 = 48.0;
 
-/// A focus with a dab on it: the samples at some points are blurred.
+/// A focus with a dab: the samples at some points are blurred.
 pub struct DabbedFocus {
     focus: Arc<dyn SurfaceField<FocusOffset> + Send>,
     points: HashSet<[u64; 3]>,
     offset: FocusOffset,
-    /// The samples that it covers.
+    /// Indices of the covered samples.
     pub samples: Vec<u32>,
 }
 
 impl DabbedFocus {
-    /// A dab on the samples of surfaces nearest to the picture's middle.
+    /// A dab on the surface samples nearest to the picture's centre.
     pub fn new(salf: &Salf, focus: Arc<dyn SurfaceField<FocusOffset> + Send>) -> Self {
         let middle = glam::Vec2::new(salf.camera.width as f32, salf.camera.height as f32) / 2.0;
         let spots = salf.samples.runs().flat_map(|run| run.indices.clone().zip(run.locations()));
@@ -34,7 +33,7 @@ impl DabbedFocus {
         nearest.truncate(SAMPLES);
         let points = nearest.iter().filter_map(|(_, spot)| spot.address.surface.map(point_key)).collect();
         let optics = salf.camera.optics();
-        // With an anchor of 1 the blur is the same at any depth; without an aperture there is none.
+        // With anchor 1 the blur is the same at any depth; without an aperture there is none.
         let kappa = optics.kappa_for_circle_px(CIRCLE_PX).unwrap_or(0.0);
         let offset = FocusOffset::new(1.0 + kappa * optics.image_distance, 1.0);
         Self { focus, points, offset, samples: nearest.into_iter().map(|(index, _)| index).collect() }

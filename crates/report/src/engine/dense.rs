@@ -1,18 +1,18 @@
-//! Dense scatter: every sample adds to every pixel of its aperture image. What the splat must beat at the same picture.
+//! Dense scatter: every sample adds to every pixel of its aperture image. The baseline for the splat.
 
-use crate::stopwatch::median;
+use crate::measurement::stopwatch::median_seconds;
 use rayon::prelude::*;
 use salf::Salf;
 use std::time::Instant;
 
-/// Rows that one thread works on.
+/// Rows per thread.
 const BAND_ROWS: i64 = 64;
 
-/// About as many additions to a pixel are timed, and what all would take is told from them.
+/// Approximate number of timed pixel additions; the time of all additions is extrapolated.
 const TIMED_ADDITIONS: f64 = 3e9;
 
-/// The seconds that dense scatter of a field takes: all samples see the whole disc. Where that is too long only every so
-/// many-th sample is thrown, and the time is multiplied.
+/// Time of dense scatter of a field whose samples see the whole disc, s. If that would take too long, only
+/// every n-th sample is scattered and the time is multiplied by n.
 pub fn dense_seconds(salf: &Salf) -> f64 {
     let camera = &salf.camera;
     let optics = camera.optics();
@@ -21,7 +21,7 @@ pub fn dense_seconds(salf: &Salf) -> f64 {
         .iter()
         .map(|sample| {
             let radius = optics.splat_radius_px(optics.standard_kappa(sample.inverse_depth.into()));
-            // A disc narrower than a pixel lights four.
+            // A disc narrower than a pixel contributes to four.
             let radius = (radius.abs() as f32).max(0.6);
             let [r, g, b] = (sample.radiance / (std::f32::consts::PI * radius * radius)).to_array();
             (sample.center, radius, [r, g, b, 1.0 / (std::f32::consts::PI * radius * radius)])
@@ -55,5 +55,5 @@ pub fn dense_seconds(salf: &Salf) -> f64 {
         std::hint::black_box(&sums);
         start.elapsed().as_secs_f64() * stride as f64
     };
-    median(&mut [time_once(), time_once(), time_once()])
+    median_seconds(&mut [time_once(), time_once(), time_once()])
 }

@@ -1,58 +1,63 @@
-//! One light field under one focus, at every tolerance.
+//! Measurements of one light field under one focus, at every tolerance.
 
-use crate::band::{OutlineBand, picture_psnr};
-use crate::engine::dab::DabbedFocus;
-use crate::engine::dense::dense_seconds;
-use crate::engine::frame_copy::{FrameCopy, Timing};
-use crate::engine::measured::EngineMeasurements;
-use crate::engine::ray_tracer::{RayTracer, Traced};
-use crate::engine::{Check, EngineRecord};
+use super::dab::DabbedFocus;
+use super::dense::dense_seconds;
+use super::frame_copy::{FrameCopy, Timing};
+use super::measurements::EngineMeasurements;
+use super::ray_tracer::{RayTracer, Traced};
+use super::{Check, EngineRecord};
 use crate::findings::CurvePoint;
-use crate::stopwatch::median;
+use crate::measurement::band::{OutlineBand, picture_psnr};
+use crate::measurement::stopwatch::median_seconds;
 use lens::{Camera, FocusOffset, Picture};
 use salf::Salf;
 use scene::SurfaceField;
-use session::{SessionError, Steps};
+use light::Steps;
+use session::SessionError;
 use splat::{Splatter, Tolerance};
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Shares of a circle of confusion of 16 px that a node's side may have, from the converged picture on.
+/// Tolerances: side of a node as a share of a circle of confusion of 16 px, starting with the converged
+/// picture.
 pub const SHARES: [f64; 10] =
     [0.0, 1.0 / 8.0, 3.0 / 16.0, 1.0 / 4.0, 5.0 / 16.0, 3.0 / 8.0, 7.0 / 16.0, 5.0 / 8.0, 3.0 / 4.0, 1.0];
 
-/// How often a dab is painted and taken back.
+/// Number of times a dab is painted or removed.
 const DABS: usize = 21;
 
 /// A light field to measure.
 pub struct LightFieldCase {
-    /// What it is called.
+    /// Name of the scene or field.
     pub scene: String,
-    /// What it is focused by.
+    /// Name of the focus; empty if there is only one.
     pub what: &'static str,
     pub salf: Arc<Salf>,
     pub focus: Arc<dyn SurfaceField<FocusOffset> + Send>,
     pub band: OutlineBand,
-    /// The circle of confusion it is named for, px.
+    /// Nominal circle of confusion, px.
     pub coc_px: f64,
-    /// Whether to time dense scatter: all samples are unpainted and see the whole disc.
+    /// Whether to time dense scatter; requires unpainted samples that see the whole disc.
     pub with_dense: bool,
     /// Whether to paint dabs.
     pub with_dab: bool,
-    /// The ground truth of it; nothing that is made up has one.
+    /// The ground truth; `None` for synthetic fields.
     pub truth: Option<GroundTruth>,
 }
 
-/// What the splat of a scene is held against.
+/// What the splat of a scene is compared with.
 pub struct GroundTruth {
     /// The ray tracer's pictures.
     pub ray_tracer: RayTracer,
-    /// What the light field took to bake, s.
+    /// Time taken to bake the light field, s.
     pub bake_seconds: f64,
 }
 
 impl LightFieldCase {
-    /// Measures it at every tolerance.
+    /// Measures the field at every tolerance.
+    ///
+    /// # Errors
+    /// Splatting fails or is cancelled.
     pub fn measure(
         &self,
         measured: &mut EngineMeasurements,
@@ -109,7 +114,7 @@ impl LightFieldCase {
             add_record(record);
         }
         checks.push(self.check("the error grows with the tolerance", errors_grow(&errors)));
-        // The others do not depend on what sums.
+        // Dense scatter does not depend on the device, so it is timed once.
         if self.with_dense && gpu.is_none() {
             let mut record = self.record("full_splat", frame.timing_of(dense_seconds(&self.salf)), &splatter);
             (record.renderer, record.bytes) = ("dense_scatter".into(), 0);
@@ -138,7 +143,7 @@ impl LightFieldCase {
         }
     }
 
-    /// `what` with the focus, if the field has several.
+    /// Appends the name of the focus, if any.
     fn with_focus_name(&self, what: &str) -> String {
         if self.what.is_empty() { what.into() } else { format!("{what}, {}", self.what) }
     }
@@ -167,7 +172,7 @@ impl LightFieldCase {
         EngineRecord { coc_px: self.coc_px, ..record }
     }
 
-    /// Paints a dab and takes it back, again and again, on a live picture at the tolerance of viewing.
+    /// Repeatedly paints and removes a dab on a live picture at the viewing tolerance.
     fn dab(
         &self,
         splatter: &mut Splatter,
@@ -189,7 +194,7 @@ impl LightFieldCase {
             splatter.update(focus, &dabbed.samples)?;
             times.push(start.elapsed().as_secs_f64());
         }
-        let mut record = self.record("dab", frame.timing_of(median(&mut times)), splatter);
+        let mut record = self.record("dab", frame.timing_of(median_seconds(&mut times)), splatter);
         record.card_ms = splatter.seconds_on_card().map(|seconds| seconds * 1e3);
         record.tolerance = Some(Tolerance::VIEWING.share_of_circle);
         splatter.fetch_picture()?;
@@ -200,8 +205,8 @@ impl LightFieldCase {
         Ok((record, &after == splatter.picture() && after != before))
     }
 
-    /// Whether the picture is the same summed otherwise: that of a card (`is_on_card`) by the processor, that of the processor by
-    /// one thread.
+    /// Whether another device sums the same picture: the processor if it was on a card (`is_on_card`), a single
+    /// thread otherwise.
     fn matches_other_summation(
         &self,
         splatter: &mut Splatter,
@@ -223,8 +228,8 @@ impl LightFieldCase {
     }
 }
 
-/// Cameras focused elsewhere, by so little that pictures stay as they are, however many are asked for: what is kept for a lens
-/// is of no use to the next.
+/// Cameras with focus distances that differ too little to change the picture, so that data cached for one lens
+/// cannot be reused for the next.
 pub fn nudged_lenses(camera: &Camera) -> impl Iterator<Item = Camera> + use<> {
     let camera = camera.clone();
     (1..).map(move |k| {
@@ -233,8 +238,8 @@ pub fn nudged_lenses(camera: &Camera) -> impl Iterator<Item = Camera> + use<> {
     })
 }
 
-/// Whether pictures get no closer to the converged one, dB, from the first to the last: but for what a few nodes make, joined
-/// where all others are drawn alike, whose errors happen to offset others.
+/// Whether the PSNR against the converged picture never increases from the first to the last, apart from small
+/// gains where errors of a few merged nodes cancel by chance.
 fn errors_grow(decibels: &[f64]) -> bool {
     const CHANCE_DECIBELS: f64 = 0.01;
     decibels.windows(2).all(|pair| pair[1] <= pair[0] + CHANCE_DECIBELS)

@@ -1,11 +1,12 @@
-//! The unit of time: copying one frame, beside whatever is timed, for machines are slower at one moment than at another.
+//! The unit of time: copying one frame. It is timed alongside each task, because the speed of a machine
+//! varies over time.
 
-use crate::stopwatch::median;
+use crate::measurement::stopwatch::median_seconds;
 use rayon::prelude::*;
 use session::SessionError;
 use std::time::Instant;
 
-/// How long something took, and how long it took to copy one frame meanwhile.
+/// The time of a task, and the time to copy one frame meanwhile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Timing {
     /// Median, s.
@@ -15,46 +16,49 @@ pub struct Timing {
 }
 
 impl Timing {
-    /// So many frames could have been copied.
+    /// The time of the task in frame copies.
     pub fn frame_copies(self) -> f64 {
         self.seconds / self.frame_copy
     }
 }
 
-/// Work is repeated until all of it took this long, s …
+/// Tasks are repeated until this much time per task has passed, s …
 const MIN_SECONDS_PER_TASK: f64 = 3.0;
-/// … or was done this often.
+/// … or each was done this often.
 const MAX_ROUNDS: usize = 11;
-/// Copies after each piece of work.
+/// Frame copies after each task.
 const COPIES_PER_ROUND: usize = 3;
 
-/// Two RGB float frames, one of which is copied to the other with all threads.
+/// Two RGB float frames; one is copied to the other with all threads.
 pub struct FrameCopy {
     source: Vec<[f32; 3]>,
     target: Vec<[f32; 3]>,
-    /// What each copy took, s.
+    /// Times of the copies, s.
     times: Vec<f64>,
 }
 
 impl FrameCopy {
-    /// Frames of so many pixels.
+    /// Frames with this number of pixels.
     pub fn new(pixels: usize) -> Self {
         Self { source: vec![[0.5; 3]; pixels], target: vec![[0.0; 3]; pixels], times: Vec::new() }
     }
 
-    /// The median of all copies, s.
+    /// Median time of all copies, s.
     pub fn seconds(&self) -> f64 {
-        median(&mut self.times.clone())
+        median_seconds(&mut self.times.clone())
     }
 
-    /// What took so many seconds just now.
+    /// The timing of a task that has just taken `seconds`.
     pub fn timing_of(&mut self, seconds: f64) -> Timing {
         let before = self.times.len();
         (0..MAX_ROUNDS).for_each(|_| self.copy());
-        Timing { seconds, frame_copy: median(&mut self.times[before..].to_vec()) }
+        Timing { seconds, frame_copy: median_seconds(&mut self.times[before..].to_vec()) }
     }
 
-    /// Times pieces of work in turn, frames copied between them: the longer it takes, the less often.
+    /// Times several tasks in turn, with frame copies between them; slow tasks are repeated less often.
+    ///
+    /// # Errors
+    /// A task fails.
     pub fn time_interleaved(
         &mut self,
         tasks: &mut [impl FnMut() -> Result<(), SessionError>],
@@ -73,8 +77,8 @@ impl FrameCopy {
                 break;
             }
         }
-        let frame_copy = median(&mut self.times[before..].to_vec());
-        Ok(times.iter_mut().map(|times| Timing { seconds: median(times), frame_copy }).collect())
+        let frame_copy = median_seconds(&mut self.times[before..].to_vec());
+        Ok(times.iter_mut().map(|times| Timing { seconds: median_seconds(times), frame_copy }).collect())
     }
 
     fn copy(&mut self) {

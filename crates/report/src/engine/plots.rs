@@ -1,14 +1,14 @@
-//! The engine's figures as plots.
+//! Plots of the engine's measurements.
 
-use crate::engine::EngineRecord;
-use crate::page::plots::{error_axis, time_axis};
-use crate::plot::{Axis, Chart, Kind, Point, Series, plain, seconds};
+use super::EngineRecord;
+use crate::output::page::plots::{error_axis, time_axis};
+use crate::output::plot::{Axis, Chart, Kind, Point, Series, plain, seconds};
 
-/// Pictures that are at least so close, dB, are the converged one: there is no error to draw.
+/// From this PSNR on a picture counts as converged and is not plotted, dB.
 const EXACT_PSNR: f64 = 150.0;
 
-/// Error against tolerance, time against error, time against circle of confusion; and for each scene and focus, the splat
-/// and the ray tracer against the ground truth.
+/// Error against tolerance, time against error, time against circle of confusion; and for each scene and
+/// focus, the splat and the ray tracer against the ground truth.
 pub fn plots(records: &[EngineRecord]) -> Vec<Chart> {
     let tolerance = |record: &EngineRecord| record.tolerance.filter(|&tolerance| tolerance > 0.0);
     let mut charts = vec![
@@ -45,7 +45,7 @@ pub fn plots(records: &[EngineRecord]) -> Vec<Chart> {
     charts
 }
 
-/// A scene and focus: the splat and the ray tracer, time against error.
+/// Time against error of the splat and the ray tracer, for a scene and focus.
 fn ground_truth_chart(title: String, records: &[EngineRecord]) -> Chart {
     let line = |what: &str, style, is_dashed| {
         let own = records.iter().filter(|record| line_name(record) == title && record.what.starts_with(what));
@@ -71,12 +71,12 @@ fn ground_truth_chart(title: String, records: &[EngineRecord]) -> Chart {
     }
 }
 
-/// From the PSNR on a range of 1.
+/// RMSE from a PSNR on a range of 1; `None` if converged.
 fn rmse_from_psnr(psnr: Option<f64>) -> Option<f64> {
     psnr.filter(|&psnr| psnr < EXACT_PSNR).map(|psnr| 10f64.powf(-psnr / 20.0))
 }
 
-/// A line for each field and focus that was splatted at several tolerances, as `of` places its records.
+/// A line for each field and focus over the tolerances, with its points given by `position`.
 fn tolerance_lines(
     records: &[EngineRecord],
     position: impl Fn(&EngineRecord) -> Option<(f64, f64)>,
@@ -99,14 +99,14 @@ fn tolerance_lines(
     lines
 }
 
-/// The scene or field, its focus, and the graphics card, if that is one.
+/// Name of a line: the scene or field, its focus, and the graphics card, if any.
 fn line_name(record: &EngineRecord) -> String {
     let focus = record.what.split_once(", ").map(|(_, focus)| focus);
     let parts = [Some(record.scene.as_str()), focus, record.adapter.as_deref()];
     parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
 }
 
-/// Planes of growing circles, a line for each thing that sums.
+/// Time against the circle of confusion of planes, a line per device.
 fn circle_lines(records: &[EngineRecord]) -> Vec<Series> {
     let planes: Vec<_> = records.iter().filter(|record| record.what == "against circle").collect();
     let line = |planes: &[&EngineRecord]| {

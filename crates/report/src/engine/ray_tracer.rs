@@ -1,23 +1,24 @@
-//! When the ray tracer gets as close to the ground truth as the splat.
+//! The time after which the ray tracer reaches the splat's error against the ground truth.
 
-use crate::band::OutlineBand;
-use crate::contender::{Contender, Shot};
 use crate::findings::{CurvePoint, seconds_at};
-use crate::reference::{ReferenceError, conserved_picture, trace_reference};
+use crate::measurement::band::OutlineBand;
+use crate::measurement::contender::{Contender, Shot};
+use crate::measurement::reference::{ReferenceError, conserved_picture, trace_reference};
 use lens::Picture;
 use project::{LinearPicture, compare};
 use serde::Serialize;
-use session::{SessionError, Steps};
+use light::Steps;
+use session::SessionError;
 
-/// Rays a pixel with which it is measured, beside those of the reference.
+/// Measured numbers of rays per pixel, in addition to those of the reference.
 const SPPS: [u32; 4] = [1, 4, 16, 64];
 
-/// A picture of the ray tracer: what it took, and how far off it was.
+/// Cost and error of a picture of the ray tracer.
 #[derive(Clone, Copy, Debug)]
 pub struct Traced {
     /// Rays a pixel.
     pub spp: u32,
-    /// Time, and the difference from the reference, of values clipped to [0, 1].
+    /// Time and RMSE against the reference, on values clipped to [0, 1].
     pub point: CurvePoint,
 }
 
@@ -25,28 +26,31 @@ pub struct Traced {
 #[derive(Clone, Debug)]
 pub struct RayTracer {
     reference: LinearPicture,
-    /// Its pictures, from few rays to many.
+    /// Its pictures, by increasing number of rays.
     pub curve: Vec<Traced>,
 }
 
-/// A picture against the ground truth, and the ray tracer at the same error in the same run. The reference's own error is
-/// part of either's.
+/// A picture against the ground truth, and the ray tracer at equal error in the same run. The reference's own
+/// error is included in both.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AgainstTruth {
     /// Against the reference, on linear values clipped to [0, 1], exposure "conserve", dB.
     pub psnr: f64,
-    /// The same within 6 px of outlines.
+    /// The same within 6 px of outlines, dB; `None` without outlines.
     pub band_psnr: Option<f64>,
     /// Mean FLIP.
     pub flip: f64,
-    /// When the ray tracer is as far off, ms.
+    /// Time after which the ray tracer reaches this error, ms.
     pub ray_tracer_ms: f64,
-    /// Whether it would take longer than that: the picture is closer than a second reference would be.
+    /// Whether it takes longer than that: the picture is closer than a second reference would be.
     pub ray_tracer_takes_longer: bool,
 }
 
 impl RayTracer {
     /// Traces the reference and the ray tracer's pictures with fewer rays.
+    ///
+    /// # Errors
+    /// Tracing is cancelled.
     pub fn measure(shot: Shot<'_>, reference_spp: u32, steps: &dyn Steps) -> Result<Self, SessionError> {
         let (reference, error) = trace_reference(shot, reference_spp, steps)?;
         let mut curve = Vec::new();
@@ -61,6 +65,9 @@ impl RayTracer {
     }
 
     /// Compares a picture of the same scene and focus.
+    ///
+    /// # Errors
+    /// The pictures cannot be compared.
     pub fn against(&self, picture: &Picture, band: &OutlineBand) -> Result<AgainstTruth, SessionError> {
         let picture = conserved_picture(picture);
         let errors = compare(&picture, &self.reference)?;
@@ -75,8 +82,9 @@ impl RayTracer {
     }
 }
 
-/// What the reference tells of the ray tracer. If r is its error, a half of it errs by √2 r, and would be √(2 + 1) r from
-/// another reference, as a picture like itself would be √(1 + 1) r.
+/// Points of the curve derived from the reference. If its error is r, each half of it has the error √2 r, which
+/// would measure as √(2 + 1) r against another reference; a picture like the reference itself would measure as
+/// √(1 + 1) r.
 fn points_from_reference(reference: &ReferenceError) -> [Traced; 2] {
     let point = |spp, share: f64, squares: f64| {
         let seconds = reference.seconds * share;
@@ -85,16 +93,16 @@ fn points_from_reference(reference: &ReferenceError) -> [Traced; 2] {
     [point(reference.spp / 2, 0.5, 3.0), point(reference.spp, 1.0, 2.0)]
 }
 
-/// When an error is reached.
+/// The time at which an error is reached.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct TimeToError {
     seconds: f64,
-    /// Later than all of the curve.
+    /// Whether that lies beyond the end of the curve.
     takes_longer: bool,
 }
 
-/// When a curve, from few rays to many, has come down to `rmse`: never before its first picture, and no further than it was
-/// traced.
+/// The time at which a curve, by increasing number of rays, reaches `rmse`; clamped to the times of its first
+/// and last picture.
 fn time_to_error(curve: &[Traced], rmse: f64) -> TimeToError {
     let points: Vec<_> = curve.iter().map(|traced| traced.point).collect();
     let seconds = |point: Option<&CurvePoint>| point.map_or(f64::NAN, |point| point.seconds);

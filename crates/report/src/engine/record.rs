@@ -1,59 +1,61 @@
-//! One measurement of the engine, as written to `report.json`.
+//! A measurement of the engine, as written to `report.json`.
 
-use crate::engine::frame_copy::Timing;
-use crate::engine::ray_tracer::AgainstTruth;
+use super::frame_copy::Timing;
+use super::ray_tracer::AgainstTruth;
 use salf::Salf;
 use serde::Serialize;
 use splat::Splatter;
 
-/// A time with its error. Pictures are compared with the converged splat of the same light field, those of the ray tracer
-/// with the ground truth, on linear values clipped to [0, 1].
+/// A time with its error. Splatted pictures are compared with the converged splat of the same light field,
+/// those of the ray tracer with the ground truth, on linear values clipped to [0, 1].
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct EngineRecord {
-    /// The scene, or the made-up field.
+    /// The scene, or the synthetic field.
     pub scene: String,
     /// What was timed.
     pub what: String,
-    /// What drew.
+    /// The renderer.
     pub renderer: String,
     /// Where it ran: "cpu" or "gpu".
     pub backend: String,
-    /// What the graphics card's driver calls it, where that is one.
+    /// Name of the graphics card, if one was used.
     pub adapter: Option<String>,
-    /// Threads that worked.
+    /// Number of threads.
     pub threads: u32,
-    /// Columns and rows, px.
+    /// Width and height, px.
     pub size: [u32; 2],
     /// Samples of the light field.
     pub samples: u64,
-    /// The largest circle of confusion of a field; of a scene the one that 99 % of the picture stays below. px.
+    /// The largest circle of confusion of a synthetic field, or the 99th percentile of a scene's, px.
     pub coc_px: f64,
-    /// A node may be drawn as one where its side is this share of a 16 px circle of confusion; 0: every sample is drawn.
+    /// Side of a node that may be drawn as one, as a share of a circle of confusion of 16 px; 0: every sample
+    /// is drawn.
     pub tolerance: Option<f64>,
-    /// Rays a pixel of the ray tracer.
+    /// Rays per pixel of the ray tracer.
     pub spp: Option<u32>,
     /// Median time, ms.
     pub ms_median: f64,
-    /// The last of these times by the graphics card's own clock, from the first sum to the last pixel, where it has one, ms.
+    /// The last of these times by the graphics card's own clock, from the first sum to the last pixel, if
+    /// available, ms.
     pub card_ms: Option<f64>,
     /// Median time to copy one frame meanwhile, ms.
     pub frame_copy_ms: f64,
-    /// The one in times of the other.
+    /// Median time in frame copies.
     pub frame_copies: f64,
-    /// Against the converged picture, or the ray tracer against the ground truth, dB.
+    /// PSNR against the converged picture, or of the ray tracer against the ground truth, dB.
     pub psnr: Option<f64>,
-    /// The same within 6 px of outlines, dB; none where there are none.
+    /// PSNR within 6 px of outlines, dB; `None` without outlines.
     pub band_psnr: Option<f64>,
     /// Root mean square difference of the coverage within 6 px of outlines.
     pub band_coverage_rms: Option<f64>,
-    /// A splat of a scene against the ground truth.
+    /// Comparison of a scene's splat with the ground truth.
     pub truth: Option<AgainstTruth>,
-    /// Bytes of the samples, or of the hierarchy over them and the sums.
+    /// Memory of the samples, or of the hierarchy and the sums, bytes.
     pub bytes: u64,
 }
 
 impl EngineRecord {
-    /// A time with nothing to compare it with.
+    /// A record without a comparison.
     pub(super) fn new(scene: &str, what: &str, salf: &Salf, timing: Timing) -> Self {
         Self {
             scene: scene.into(),
@@ -80,7 +82,7 @@ impl EngineRecord {
         .with_timing(timing)
     }
 
-    /// The same with another time.
+    /// Replaces the time.
     pub(super) fn with_timing(self, timing: Timing) -> Self {
         let Timing { seconds, frame_copy } = timing;
         Self {
@@ -91,7 +93,7 @@ impl EngineRecord {
         }
     }
 
-    /// The same of what a splatter sums, where it does.
+    /// Sets the device and the memory of a splatter.
     pub(super) fn summed_by(self, splatter: &Splatter) -> Self {
         let bytes = splatter.bytes().iter().sum::<usize>() as u64;
         match splatter.gpu() {
@@ -100,12 +102,12 @@ impl EngineRecord {
         }
     }
 
-    /// How many times as fast as the ray tracer it comes to its error; at least so many, if that takes longer than known.
+    /// Speedup over the ray tracer at equal error; a lower bound if the ray tracer takes longer than measured.
     pub(super) fn speedup_over_ray_tracer(&self) -> Option<f64> {
         self.truth.as_ref().map(|truth| truth.ray_tracer_ms / self.ms_median)
     }
 
-    /// It in a line.
+    /// A one-line summary.
     pub(super) fn summary_line(&self) -> String {
         let decibels =
             |name: &str, value: Option<f64>| value.map_or(String::new(), |v| format!(", {name}{v:.1} dB"));

@@ -1,18 +1,19 @@
-//! Light fields that are made up: a case each, whose circles of confusion are known.
+//! Synthetic light fields with known circles of confusion.
 
-use crate::band::OutlineBand;
-use crate::engine::EngineRecord;
-use crate::engine::field::{LightFieldCase, nudged_lenses};
-use crate::engine::measured::EngineMeasurements;
+use super::EngineRecord;
+use super::field::{LightFieldCase, nudged_lenses};
+use super::measurements::EngineMeasurements;
+use crate::measurement::band::OutlineBand;
 use glam::{Vec2, Vec3};
 use lens::{Camera, FocusOffset};
 use salf::{Cell, Domain, Salf, Sample, Visibility};
 use scene::{SurfaceField, SurfacePoint};
-use session::{SessionError, Steps};
+use light::Steps;
+use session::SessionError;
 use splat::{Splatter, Tolerance};
 use std::sync::Arc;
 
-/// Nothing is painted.
+/// A focus without paint.
 struct UnpaintedFocus;
 
 impl SurfaceField<FocusOffset> for UnpaintedFocus {
@@ -24,17 +25,17 @@ impl SurfaceField<FocusOffset> for UnpaintedFocus {
     }
 }
 
-/// A camera focused at infinity: what is there is sharp, and the circle of confusion grows with 1/z.
+/// A camera focused at infinity: the circle of confusion grows with 1/z.
 fn camera([width, height]: [u32; 2]) -> Camera {
     Camera { width, height, focus_distance: f64::INFINITY, aperture_radius: 0.1, ..Camera::default() }
 }
 
-/// 1/z where the circle of confusion is `diameter` px wide.
+/// The 1/z at which the circle of confusion has a diameter of `diameter` px.
 fn inverse_depth(camera: &Camera, diameter: f64) -> f32 {
     (diameter / 2.0 / camera.optics().splat_radius_px(1.0).abs()) as f32
 }
 
-/// Some colour: four pixels a tile, all different.
+/// A pseudo-random colour that is constant over tiles of 2 × 2 pixels.
 fn radiance(x: i32, y: i32) -> Vec3 {
     let hash = |k: u32| {
         let mixed =
@@ -60,7 +61,8 @@ fn sample(cell: Cell, inverse_depth: f32, visibility: Visibility) -> Sample {
     }
 }
 
-/// A sample a pixel of the frame and a cell of its margin, where `of` gives them.
+/// A light field with the samples that `add_samples` gives for each pixel of the frame and each cell of its
+/// margin.
 fn salf(camera: &Camera, margin_px: f64, add_samples: impl Fn(Cell, &mut Vec<Sample>)) -> Arc<Salf> {
     let domain = Domain::new(camera.width, camera.height, margin_px);
     let mut samples = Vec::new();
@@ -73,14 +75,15 @@ fn salf(camera: &Camera, margin_px: f64, add_samples: impl Fn(Cell, &mut Vec<Sam
     })
 }
 
-/// A plane whose circle of confusion is `diameter` px wide.
+/// A plane with a circle of confusion of `diameter` px.
 fn plane(size: [u32; 2], diameter: f64) -> Arc<Salf> {
     let camera = camera(size);
     let depth = inverse_depth(&camera, diameter);
     salf(&camera, diameter / 2.0, |cell, samples| samples.push(sample(cell, depth, Visibility::Open)))
 }
 
-/// Circles of confusion from 0 to 80 px, left to right, behind a near half-plane with an upright edge.
+/// Circles of confusion from 0 to 80 px, left to right, behind a near half-plane with a vertical edge.
+/// Returns the column of the edge, too.
 fn ramp(size: [u32; 2]) -> (Arc<Salf>, i32) {
     const WIDEST: f64 = 80.0;
     const OCCLUDER: f64 = 140.0;
@@ -88,13 +91,14 @@ fn ramp(size: [u32; 2]) -> (Arc<Salf>, i32) {
     let edge = size[0] as i32 * 2 / 3;
     let occluder = inverse_depth(&camera, OCCLUDER);
     let salf = salf(&camera, OCCLUDER / 2.0, |cell, samples| {
-        // Cells above and below the frame are wider than a pixel; the edge goes on there to a cell's precision.
+        // Cells above and below the frame are wider than a pixel; the edge continues there with the precision
+        // of a cell.
         if cell.corner.x >= edge {
             samples.push(sample(cell, occluder, Visibility::Open));
         }
         let middle = f64::from(cell.corner.x) + f64::from(cell.side) / 2.0;
         let diameter = WIDEST * (f64::from(cell.corner.x) / f64::from(size[0])).clamp(0.0, 1.0);
-        // From x the aperture point u sees past the edge if x + reach·u < edge.
+        // From x, the aperture point u is visible past the edge if x + reach·u < edge.
         let reach = (OCCLUDER - diameter) / 2.0;
         let last = (f64::from(edge) - middle) / reach;
         if last <= -1.0 {
@@ -115,7 +119,7 @@ fn ramp(size: [u32; 2]) -> (Arc<Salf>, i32) {
     (salf, edge)
 }
 
-/// The five fields.
+/// All five fields.
 pub fn fields(size: [u32; 2]) -> impl Iterator<Item = LightFieldCase> {
     let (width, height) = (size[0] as usize, size[1] as usize);
     let planes =
@@ -141,7 +145,7 @@ pub fn fields(size: [u32; 2]) -> impl Iterator<Item = LightFieldCase> {
     })
 }
 
-/// Cost against the circle of confusion, at the tolerance of viewing.
+/// Measures cost against the circle of confusion, at the viewing tolerance.
 pub fn sweep_circles(
     size: [u32; 2],
     measured: &mut EngineMeasurements,
@@ -154,7 +158,8 @@ pub fn sweep_circles(
     Ok(())
 }
 
-/// Cost against the number of samples, which is that of pixels: in turn, for it is compared.
+/// Measures cost against the number of samples, which equals that of pixels; the sizes are timed in turn,
+/// because they are compared.
 pub fn sweep_sizes(
     [width, height]: [u32; 2],
     measured: &mut EngineMeasurements,
@@ -166,7 +171,7 @@ pub fn sweep_sizes(
     time_planes(&[0.25, 0.5, 0.75, 1.0].map(size_for_share), 10.0, "against size", measured, steps, note)
 }
 
-/// Times planes of one circle of confusion and several sizes, in turn.
+/// Times planes with one circle of confusion and several sizes, in turn.
 fn time_planes(
     sizes: &[[u32; 2]],
     diameter: f64,
@@ -232,7 +237,7 @@ mod tests {
         let mut splatter = Splatter::new(salf.clone());
         splatter.render(&salf.camera, &UnpaintedFocus, &progress::Unwatched).unwrap();
         let row = &splatter.picture().coverage[24 * 96..25 * 96];
-        // Beside the edge the aperture's cells are what limits it.
+        // Near the edge the resolution of the aperture's cells limits the accuracy.
         for (x, covered) in row.iter().enumerate() {
             let far = (x as i32 - edge).abs() > 3;
             assert!((covered - 1.0).abs() < if far { 0.02 } else { 0.2 }, "{x}: {covered}");

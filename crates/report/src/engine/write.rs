@@ -1,17 +1,20 @@
-//! The engine's figures as files.
+//! The files of the engine's report.
 
-use crate::engine::plots::plots;
-use crate::engine::{Check, EngineRecord, EngineReport};
-use crate::markup::escaped;
-use crate::page;
-use crate::plot::significant;
+use super::plots::plots;
+use super::{Check, EngineRecord, EngineReport};
+use crate::output::markup::escaped;
+use crate::output::page;
+use crate::output::plot::significant;
+use crate::output::table::Table;
 use crate::store::{to_json, write_files};
-use crate::table::Table;
 use serde_json::json;
 use session::SessionError;
 use std::path::{Path, PathBuf};
 
-/// Writes them into `folder`. Returns the files.
+/// Writes the report into `folder`; `copy` is the time of a frame copy, s. Returns the files.
+///
+/// # Errors
+/// A file cannot be written.
 pub fn write_engine_report(
     report: &EngineReport,
     copy: f64,
@@ -32,11 +35,11 @@ const TITLE: &str = "The splat engine: speed and error";
 fn method(copy: f64) -> String {
     format!(
         "F = {:.2} ms: copying one RGB float frame with all threads, the median of the run; \
-         a time is in copies that were made beside it. PSNR against the converged splat of \
+         times are also given in frame copies made alongside them. PSNR against the converged splat of \
          the same light field, on linear values clipped to [0, 1]; outlines: within 6 px of depth discontinuities. \
          Tolerance: the side of a node as a share of a circle of confusion of 16 px. Truth: against ray tracing with many \
-         rays, exposure \"conserve\", the own error of which is part of it; the ray tracer itself: how many times as long it \
-         takes to be as close. Pictures on a graphics card stay there; a time ends when the picture is there.",
+         rays, exposure \"conserve\", including the reference's own error; ray tracer: how many times as long it \
+         takes to reach the same error. Pictures on a graphics card stay there; a time ends when the picture is complete.",
         copy * 1e3
     )
 }

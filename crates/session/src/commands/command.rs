@@ -1,10 +1,12 @@
 //! What a session can be asked to do, and what it tells back.
 
-use crate::display::Display;
-use crate::document::{CameraEdit, SurfaceHit};
-use crate::editing::{FillRegion, StrokePoint};
-use crate::jobs::JobId;
-use crate::output::ReferenceKind;
+use render::Display;
+use document::CameraEdit;
+use document::SurfaceHit;
+use document::FillRegion;
+use document::StrokePoint;
+use jobs::JobId;
+use crate::reference::ReferenceKind;
 use focus::{Brush, CombineMode, Ease, Gradient, LayerEdit, LensMotion};
 use glam::DVec2;
 use lens::{Exposure, FocusOffset};

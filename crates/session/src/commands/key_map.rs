@@ -1,6 +1,7 @@
 //! Key maps: whose keys and mouse buttons the window obeys. Each is the command table's own keys but for some.
 
-use super::table::{CommandId, Shortcut};
+use crate::commands::table::CommandId;
+use crate::commands::table::Shortcut;
 use serde::{Deserialize, Serialize};
 
 /// Whose keys and mouse buttons the window obeys.
@@ -91,7 +92,7 @@ const KRITA: &[(CommandId, Option<Shortcut>)] = &[
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::COMMANDS;
+    use crate::commands::table::COMMANDS;
     use std::collections::HashMap;
 
     #[test]

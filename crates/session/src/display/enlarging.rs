@@ -5,7 +5,7 @@
 //! the largest of the pixels around nothing goes: no rings around lamps. Against pictures of full size that is 6 and 7 dB nearer than
 //! straight lines, for a third of the pixels a side.
 
-use super::picture_ring::Rectangle;
+use crate::display::picture_ring::Rectangle;
 use glam::Vec4;
 use lens::Picture;
 use rayon::prelude::*;

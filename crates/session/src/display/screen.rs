@@ -1,7 +1,8 @@
 //! The live picture as the screen shows it, and where it changed lately.
 
-use super::picture_ring::Rectangle;
-use super::tone::{ScreenPixel, Tone};
+use crate::display::picture_ring::Rectangle;
+use render::ScreenPixel;
+use render::Tone;
 use focus::rectangle_union;
 use splat::PictureOnCard;
 use std::collections::VecDeque;

@@ -1,8 +1,13 @@
 //! Photographs of a capture as a strip shows them: small, and read one after the other when they are looked at.
 
-use super::tone::{ScreenPixel, Tone, to_screen};
+use render::ScreenPixel;
+use render::Tone;
+use render::to_screen;
 use crate::error::SessionError;
-use crate::jobs::{Urgency, Waker, catch_panics, run_in_own_pool};
+use jobs::Urgency;
+use jobs::Waker;
+use jobs::catch_panics;
+use jobs::run_in_own_pool;
 use lens::{Exposure, Picture};
 use scene::{LoadOptions, Scene, View};
 use std::collections::HashMap;

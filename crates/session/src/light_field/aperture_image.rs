@@ -1,8 +1,8 @@
 //! What of the aperture a surface point sees, and what it sends there: the light field at one point, cell by cell.
 
-use super::light::available_light;
-use super::running_sum::BakedField;
-use crate::document::{Document, SurfaceHit};
+use crate::light_field::running_sum::BakedField;
+use document::Document;
+use document::SurfaceHit;
 use glam::{DVec2, DVec3};
 use lens::FocusOffset;
 use rayon::prelude::*;
@@ -87,12 +87,12 @@ impl ApertureImage {
         field: Option<&BakedField>,
         hit: &SurfaceHit,
     ) -> Option<Self> {
-        let (camera, tracer) = (&document.camera, &document.stage.tracer);
+        let (camera, tracer) = (&document.camera, document.stage.tracer());
         let (radius, depth) = (camera.aperture_radius, camera.camera_from_world(hit.position).z);
         if radius <= 0.0 || depth <= 0.0 {
             return None;
         }
-        let light = available_light(tracer, camera);
+        let light = document.stage.lit.available(camera);
         let side = ApertureImage::SIDE;
         let cell = |index: usize| {
             let [row, column] = [index / side, index % side].map(|k| (k as f64 + 0.5) / side as f64);

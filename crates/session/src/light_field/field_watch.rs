@@ -1,7 +1,7 @@
 //! Which light field is being made for the live picture: whoever needs the same one waits for it instead of baking it again.
 
-use super::serves::is_compatible;
-use crate::document::Stage;
+use render::is_compatible;
+use document::Stage;
 use lens::Camera;
 use salf::Salf;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, Weak};
@@ -73,10 +73,9 @@ impl FieldWatch {
 
 #[cfg(test)]
 mod tests {
-    use super::super::kept_light::LightQuality;
+    use light::LightQuality;
     use super::*;
-    use crate::document::Document;
-    use crate::light_field::solve_light;
+    use document::Document;
     use progress::Unwatched;
     use std::time::Instant;
 
@@ -85,7 +84,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("quads.glb");
         crate::tiny_glb::write(&file);
-        let open = || Document::create(&file, &Default::default(), &Default::default(), &Unwatched).unwrap();
+        let open = || Document::create(&file, &Default::default(), &Default::default(), &Default::default(), &Unwatched).unwrap();
         let (document, other) = (open(), open());
         let camera = Camera { width: 24, height: 16, ..document.camera.clone() };
         let watch = FieldWatch::default();
@@ -93,9 +92,9 @@ mod tests {
         assert!(matches!(now(&document.stage), BakeState::Absent));
         watch.begin(&document.stage);
         assert!(matches!(now(&document.stage), BakeState::InProgress));
-        let tracer = &document.stage.tracer;
+        let tracer = document.stage.tracer();
         let options = salf::BakeOptions::default();
-        let light = solve_light(tracer, &camera, LightQuality::Fine, &Unwatched).unwrap();
+        let light = document.stage.lit.solve(&camera, LightQuality::Fine, &Unwatched).unwrap();
         let salf = Arc::new(salf::bake(tracer, &*light, &camera, &options, &Unwatched).unwrap());
         let long = Duration::from_secs(60);
         let start = Instant::now();

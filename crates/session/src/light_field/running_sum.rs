@@ -1,14 +1,14 @@
 //! A baked light field with its running sum, and what it takes to bring the sum up to date.
 
-use super::changes::Changes;
-use super::kept_light::LightQuality;
-use super::light::solve_light;
-use super::modelled::Modelled;
-use super::reach::MarginReach;
-use super::sample_index::SampleIndex;
-use super::serves::is_compatible;
-use crate::display::{PictureSource, Rectangle};
-use crate::document::Stage;
+use crate::light_field::changes::Changes;
+use light::LightQuality;
+use render::Modelled;
+use crate::light_field::margin_reach::MarginReach;
+use crate::light_field::sample_index::SampleIndex;
+use render::is_compatible;
+use crate::display::PictureSource;
+use crate::display::Rectangle;
+use document::Stage;
 use crate::error::SessionError;
 use focus::Focus;
 use lens::{Camera, Picture};
@@ -88,15 +88,6 @@ pub(crate) struct LightField {
     light_passes: u32,
 }
 
-impl From<SplatError> for SessionError {
-    fn from(error: SplatError) -> Self {
-        match error {
-            SplatError::Cancelled => Self::Cancelled,
-            other => Self::BadInput(other.to_string()),
-        }
-    }
-}
-
 /// Of a bake's time, where light has to be solved for.
 const LIGHT_SHARE: f32 = 0.3;
 
@@ -110,13 +101,13 @@ impl LightField {
         progress: &dyn Progress,
     ) -> Result<Self, SessionError> {
         let needed =
-            BakeOptions::for_focus(&stage.tracer, camera, focus).margin_px.max(field_options.least_margin_px);
+            BakeOptions::for_focus(stage.tracer(), camera, focus).margin_px.max(field_options.least_margin_px);
         let margin_px = needed + MARGIN_HEADROOM * camera.height as f64;
         let options = BakeOptions { margin_px, carried: Carried::for_focus(focus), ..BakeOptions::default() };
         let radiance =
-            solve_light(&stage.tracer, camera, field_options.light, &Share::new(progress, 0.0, LIGHT_SHARE))?;
+            stage.lit.solve(camera, field_options.light, &Share::new(progress, 0.0, LIGHT_SHARE))?;
         let baking = Share::new(progress, LIGHT_SHARE, 1.0);
-        let salf = salf::bake(&stage.tracer, &*radiance, camera, &options, &baking)?;
+        let salf = salf::bake(stage.tracer(), &*radiance, camera, &options, &baking)?;
         let passes = if let LightQuality::Refined { passes } = field_options.light { passes } else { 0 };
         Ok(Self {
             light_passes: passes,
@@ -137,7 +128,7 @@ impl LightField {
     /// A light field that was baked before.
     pub fn from_salf(stage: &Stage, salf: Arc<Salf>, tolerance: Tolerance, gpu: Option<Gpu>) -> Self {
         let index = Arc::new(SampleIndex::new(salf.clone(), stage.atlas.clone()));
-        let modelled = Modelled::with_texels(&salf, &stage.tracer, Some(&stage.texels.texels));
+        let modelled = Modelled::with_texels(&salf, stage.tracer(), Some(&stage.texels.texels));
         let mut splatter = Splatter::new(salf);
         splatter.set_tolerance(tolerance);
         // The first dab on it is to cost what any dab does.
@@ -325,7 +316,7 @@ impl LightField {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::document::Document;
+    use document::Document;
     use crate::tiny_glb;
     use glam::DVec3;
     use lens::FocusOffset;
@@ -336,7 +327,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let scene = folder.path().join("quads.glb");
         tiny_glb::write(&scene);
-        Document::create(&scene, &Default::default(), &Default::default(), &Unwatched).unwrap()
+        Document::create(&scene, &Default::default(), &Default::default(), &Default::default(), &Unwatched).unwrap()
     }
 
     /// The texels of the wall whose middle lies where `wanted` says, and the focus with `value` on them.
@@ -390,7 +381,7 @@ mod tests {
             assert!(texels.len() > 10);
             field.note(&Changes::Texels(texels));
             field.update_sum(&camera, &focus, &Unwatched).unwrap();
-            let needed = BakeOptions::for_focus(&stage.tracer, &camera, &focus).margin_px;
+            let needed = BakeOptions::for_focus(stage.tracer(), &camera, &focus).margin_px;
             let rebake_px = field.rebake_margin_px(&camera, &focus);
             assert_eq!(rebake_px.is_some(), needed > margin, "{share} of the margin");
             if let Some(rebake_px) = rebake_px {

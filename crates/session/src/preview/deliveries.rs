@@ -1,7 +1,8 @@
 //! What the helpers of the preview's thread hand over to it.
 
 use crate::error::SessionError;
-use crate::light_field::{LightErrors, LightField};
+use light::LightErrors;
+use crate::light_field::LightField;
 use lens::Camera;
 
 /// The share of making a light field that the bake is; the rest is the first sum.

@@ -1,13 +1,22 @@
 //! What the session and the preview's threads share: one mailbox for wishes, one for news.
 
-use super::activity::PreviewActivity;
-use super::deliveries::{ExactDelivery, FieldDelivery, InterimField, RefinedLightDelivery};
-use super::news::{PreviewEvents, Published};
-use super::picture::{PictureTimes, Preview, Quality};
-use super::wishes::{PreviewRequest, StopScope};
+use crate::preview::activity::PreviewActivity;
+use crate::preview::deliveries::ExactDelivery;
+use crate::preview::deliveries::FieldDelivery;
+use crate::preview::deliveries::InterimField;
+use crate::preview::deliveries::RefinedLightDelivery;
+use crate::preview::events::PreviewEvents;
+use crate::preview::events::Published;
+use crate::preview::picture::PictureTimes;
+use crate::preview::picture::Preview;
+use crate::preview::picture::Quality;
+use crate::preview::request::PreviewRequest;
+use crate::preview::request::StopScope;
 use crate::display::Patch;
-use crate::jobs::{JobProgress, Waker};
-use crate::light_field::{BakedField, FieldWatch};
+use jobs::JobProgress;
+use jobs::Waker;
+use crate::light_field::BakedField;
+use crate::light_field::FieldWatch;
 use progress::{Cancelled, Progress};
 use splat::Gpu;
 use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU32, AtomicUsize, Ordering};

@@ -1,7 +1,7 @@
 //! A picture of the preview, how it was made and what it cost.
 
 use crate::display::LivePicture;
-use crate::light_field::Modelled;
+use render::Modelled;
 use lens::Camera;
 use std::time::Instant;
 

@@ -1,16 +1,20 @@
 //! The session's end of the preview's thread: wishes are posted, what was made is taken.
 
-use super::activity::PreviewActivity;
-use super::mailbox::Shared;
-use super::news::PreviewEvents;
-use super::picture::Preview;
-use super::wishes::StopScope;
-use super::worker::Worker;
-use crate::display::Tone;
-use crate::document::Stage;
+use crate::preview::activity::PreviewActivity;
+use crate::preview::mailbox::Shared;
+use crate::preview::events::PreviewEvents;
+use crate::preview::picture::Preview;
+use crate::preview::request::StopScope;
+use crate::preview::worker::Worker;
+use render::Tone;
+use document::Stage;
 use crate::error::SessionError;
-use crate::jobs::{JobProgress, Urgency, Waker, build_thread_pool};
-use crate::light_field::{Changes, LightFieldStore};
+use jobs::JobProgress;
+use jobs::Urgency;
+use jobs::Waker;
+use jobs::build_thread_pool;
+use crate::light_field::Changes;
+use render::LightFieldStore;
 use focus::FocusMap;
 use lens::Camera;
 use splat::{Gpu, Tolerance};

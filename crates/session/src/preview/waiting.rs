@@ -1,8 +1,8 @@
 //! How others wait for the preview's work, or have it wait for theirs.
 
-use super::deliveries::BAKE_SHARE;
-use super::mailbox::Shared;
-use crate::document::Stage;
+use crate::preview::deliveries::BAKE_SHARE;
+use crate::preview::mailbox::Shared;
+use document::Stage;
 use crate::light_field::BakeState;
 use lens::Camera;
 use progress::{Cancelled, Progress};

@@ -1,23 +1,37 @@
 //! What the preview thread does with its wishes.
 
-use super::activity::PreviewActivity;
-use super::coarse::{coarse_cameras, interim_camera};
-use super::deliveries::{ExactDelivery, FieldDelivery, FinerField, InterimField};
-use super::light_refinement::{self, LightRefinement};
-use super::mailbox::Shared;
-use super::maker::{FieldOrder, FieldOrigin, LightFieldMaker};
-use super::picture::{PreviewKind, Quality};
-use super::presenter::{NewPicture, Presenter, Relation};
-use super::refinement::{ExactRefinement, ExactTask};
-use super::wishes::PreviewRequest;
+use crate::preview::activity::PreviewActivity;
+use crate::preview::picture_sizes::coarse_cameras;
+use crate::preview::picture_sizes::interim_camera;
+use crate::preview::deliveries::ExactDelivery;
+use crate::preview::deliveries::FieldDelivery;
+use crate::preview::deliveries::FinerField;
+use crate::preview::deliveries::InterimField;
+use super::light_refinement;
+use crate::preview::light_refinement::LightRefinement;
+use crate::preview::mailbox::Shared;
+use crate::preview::light_field_maker::FieldOrder;
+use crate::preview::light_field_maker::FieldOrigin;
+use crate::preview::light_field_maker::LightFieldMaker;
+use crate::preview::picture::PreviewKind;
+use crate::preview::picture::Quality;
+use crate::preview::presenter::NewPicture;
+use crate::preview::presenter::Presenter;
+use crate::preview::presenter::Relation;
+use crate::preview::exact_refinement::ExactRefinement;
+use crate::preview::exact_refinement::ExactTask;
+use crate::preview::request::PreviewRequest;
 use crate::display::PictureSource;
-use crate::document::Stage;
+use document::Stage;
 use crate::error::SessionError;
-use crate::jobs::catch_panics;
-use crate::light_field::{
-    FieldOptions, LightField, LightFieldStore, LightQuality, Modelled, Plan, SumUpdate, can_refine_light,
-    solve_light,
-};
+use jobs::catch_panics;
+use crate::light_field::FieldOptions;
+use crate::light_field::LightField;
+use render::LightFieldStore;
+use light::LightQuality;
+use render::Modelled;
+use crate::light_field::Plan;
+use crate::light_field::SumUpdate;
 use baselines::FirstHits;
 use focus::{Focus, FocusMap};
 use lens::Camera;
@@ -363,8 +377,8 @@ impl Worker {
         self.shared.begin(PreviewActivity::Tracing)?;
         let start = Instant::now();
         let camera = &interim_camera(camera).unwrap_or_else(|| camera.clone());
-        let radiance = solve_light(&stage.tracer, camera, LightQuality::Rough, &self.shared.quick)?;
-        let hits = FirstHits::trace(&stage.tracer, &*radiance, focus, camera, &self.shared.quick)?;
+        let radiance = stage.lit.solve(camera, LightQuality::Rough, &self.shared.quick)?;
+        let hits = FirstHits::trace(stage.tracer(), &*radiance, focus, camera, &self.shared.quick)?;
         self.presenter.show(NewPicture {
             picture: PictureSource::InMemory(&hits.picture()),
             camera,
@@ -468,7 +482,7 @@ impl Worker {
             !self.is_paused && !self.is_light_paused && !self.is_painting && !self.maker.is_at_work();
         let is_quiet = is_quiet && !self.shared.is_exporting() && !self.light.is_at_work();
         let is_allowed =
-            is_exact && is_quiet && fine.is_up_to_date(camera) && can_refine_light(&stage.tracer);
+            is_exact && is_quiet && fine.is_up_to_date(camera) && stage.lit.can_be_refined();
         self.light.next_passes(camera, fine.light_passes(), self.light_passes).filter(|_| is_allowed)
     }
 

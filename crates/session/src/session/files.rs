@@ -1,13 +1,20 @@
 //! Opening, saving, exporting and keeping unsaved work: all in the background.
 
-use super::first_look::OpeningSteps;
-use super::outcome::JobOutcome;
-use super::state::Session;
+use crate::session::opening_preview::OpeningSteps;
+use crate::session::job_outcome::JobOutcome;
+use crate::session::state::Session;
 use crate::commands::Event;
-use crate::document::{DepthPolarityRequest, Document, Input, InputKind, NewDocumentOptions};
-use crate::error::{SessionError, file_name};
-use crate::jobs::JobSteps;
-use crate::output::write_scene;
+use document::DepthPolarityRequest;
+use document::Document;
+use document::Input;
+use document::InputKind;
+use document::NewDocumentOptions;
+use crate::error::SessionError;
+use light::Resources;
+use document::DocumentError;
+use document::file_name;
+use crate::job_steps::JobSteps;
+use render::write_scene;
 use atlas::UnwrapOptions;
 use lens::Picture;
 use project::{CaptureChoices, FocusMapFile, Thumbnail, write_focus_map};
@@ -25,7 +32,7 @@ const MAX_WRITE_WAIT: Duration = Duration::from_secs(30);
 
 impl Session {
     pub(super) fn open(&mut self, path: PathBuf) -> Result<(), SessionError> {
-        self.start_opening(path, |path, unwrap, steps| Document::open(path, unwrap, steps))
+        self.start_opening(path, |path, unwrap, resources, steps| Document::open(path, unwrap, resources, steps))
     }
 
     pub(super) fn open_capture(
@@ -33,30 +40,32 @@ impl Session {
         path: PathBuf,
         choices: CaptureChoices,
     ) -> Result<(), SessionError> {
-        self.start_opening(path, |path, unwrap, steps| {
-            let input = Input::open_capture(path, choices, steps)?;
+        self.start_opening(path, |path, unwrap, resources, steps| {
+            let input = Input::open_capture(path, choices, resources, steps)?;
             Document::create_from_input(input, &NewDocumentOptions::default(), unwrap, steps)
         })
     }
 
     pub(super) fn open_template(&mut self, path: PathBuf) -> Result<(), SessionError> {
-        self.start_opening(path, |path, unwrap, steps| Document::open_template(path, unwrap, steps))
+        self.start_opening(path, |path, unwrap, resources, steps| {
+            Document::open_template(path, unwrap, resources, steps)
+        })
     }
 
     /// Opens in the background what `open` opens; a question that comes up is passed on.
     fn start_opening(
         &mut self,
         path: PathBuf,
-        open: impl FnOnce(&Path, &UnwrapOptions, &OpeningSteps<'_>) -> Result<Document, SessionError>
+        open: impl FnOnce(&Path, &UnwrapOptions, &Resources, &OpeningSteps<'_>) -> Result<Document, DocumentError>
         + Send
         + 'static,
     ) -> Result<(), SessionError> {
-        let unwrap = self.options.unwrap.clone();
+        let (unwrap, resources) = (self.options.unwrap.clone(), self.options.resources.clone());
         let label = format!("opening {}", file_name(&path));
         let opening_preview = self.opening_preview();
         self.start_job(label, move |progress| {
-            match open(&path, &unwrap, &opening_preview.steps(progress)) {
-                Err(SessionError::NearUnknown { map, .. })
+            match open(&path, &unwrap, &resources, &opening_preview.steps(progress)) {
+                Err(DocumentError::NearUnknown { map, .. })
                     if InputKind::from_path(&path) == Ok(InputKind::Capture) =>
                 {
                     Ok(JobOutcome::DepthPolarityRequired(Box::new(DepthPolarityRequest::from_map(
@@ -154,7 +163,7 @@ impl Session {
         let document = self.document_mut()?;
         let (stage, camera) = (document.stage.clone(), document.camera.clone());
         self.start_job(format!("writing {}", file_name(&path)), move |progress| {
-            write_scene(&path, &stage.tracer, &stage.atlas, &camera, &JobSteps { progress })?;
+            write_scene(&path, &stage.lit, &stage.atlas, &camera, &JobSteps { progress })?;
             Ok(JobOutcome::FileWritten(path, Vec::new()))
         })?;
         Ok(())

@@ -1,9 +1,12 @@
 //! Undo and redo: steps taken back and done again, and shown.
 
-use super::restaged::{ChangeCause, StageChange};
-use super::state::Session;
+use crate::session::stage_change::ChangeCause;
+use crate::session::stage_change::StageChange;
+use crate::session::state::Session;
 use crate::commands::Event;
-use crate::document::{Document, StepEffect, UndoState};
+use document::Document;
+use document::StepEffect;
+use document::UndoState;
 use crate::error::SessionError;
 use focus::ChangedTexels;
 use std::cmp::Ordering;

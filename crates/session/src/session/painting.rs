@@ -1,8 +1,13 @@
 //! Strokes, gradients, fills, selections and layers.
 
-use super::state::Session;
+use crate::session::state::Session;
 use crate::commands::Event;
-use crate::editing::{ActiveEdit, ActiveGradient, FillRegion, Painter, StrokePoint, apply_recorded_step};
+use document::ActiveEdit;
+use document::ActiveGradient;
+use document::FillRegion;
+use document::Painter;
+use document::StrokePoint;
+use document::apply_recorded_step;
 use crate::error::SessionError;
 use focus::{CombineMode, FillTarget, FocusMap, Gradient, LayerEdit};
 use lens::FocusOffset;

@@ -1,10 +1,10 @@
 //! What background work brings, taken up once a frame.
 
-use super::outcome::JobOutcome;
-use super::recovery::Recovery;
-use super::state::Session;
+use crate::session::job_outcome::JobOutcome;
+use crate::session::recovery::Recovery;
+use crate::session::state::Session;
 use crate::commands::Event;
-use crate::document::Document;
+use document::Document;
 use crate::error::SessionError;
 use progress::Progress;
 

@@ -1,20 +1,32 @@
 //! The state of a session, one document open at a time.
 
-use super::outcome::JobOutcome;
-use super::recovery::Recovery;
-use super::watched::WatchedFile;
+use crate::session::job_outcome::JobOutcome;
+use crate::session::recovery::Recovery;
+use crate::session::watched_file::WatchedFile;
 use crate::commands::Event;
-use crate::display::{Display, Screen};
-use crate::document::Document;
-use crate::editing::ActiveEdit;
+use render::Display;
+use crate::display::Screen;
+use document::Document;
+use document::ActiveEdit;
 use crate::error::SessionError;
-use crate::jobs::{Job, JobId, JobProgress, JobStatus, Waker};
-use crate::light_field::{BakedField, LightFieldStore, solved_photograph_light};
-use crate::output::{Reference, ReferenceKind, Verification};
-use crate::preview::{PictureTimes, Preview, PreviewActivity, PreviewThread};
+use jobs::Job;
+use jobs::JobId;
+use jobs::JobProgress;
+use jobs::JobStatus;
+use jobs::Waker;
+use crate::light_field::BakedField;
+use render::LightFieldStore;
+use crate::reference::Reference;
+use crate::reference::ReferenceKind;
+use crate::verification::Verification;
+use crate::preview::PictureTimes;
+use crate::preview::Preview;
+use crate::preview::PreviewActivity;
+use crate::preview::PreviewThread;
 
 use atlas::UnwrapOptions;
 use glam::{DVec2, DVec3};
+use light::Resources;
 use lens::Camera;
 use slf::PhotographLight;
 use splat::{Gpu, Tolerance};
@@ -28,6 +40,8 @@ use std::time::Duration;
 pub struct SessionOptions {
     /// How scenes are unwrapped.
     pub unwrap: UnwrapOptions,
+    /// What work on documents may use.
+    pub resources: Resources,
     /// The longest side that the preview is drawn at, px.
     pub preview_size: u32,
     /// Memory that steps of undo may keep alive, in bytes; the oldest are forgotten beyond it.
@@ -51,6 +65,7 @@ impl Default for SessionOptions {
     fn default() -> Self {
         Self {
             unwrap: UnwrapOptions::default(),
+            resources: Resources::default(),
             preview_size: 960,
             undo_budget_bytes: Document::UNDO_BUDGET_BYTES,
             recovery_delay: Duration::from_secs(15),
@@ -192,7 +207,7 @@ impl Session {
 
     /// The light of the photographs of what is open, once it is there.
     pub fn photograph_light(&self) -> Option<Arc<PhotographLight>> {
-        solved_photograph_light(&self.document.as_ref()?.stage.tracer)
+        self.document.as_ref()?.stage.lit.solved_photograph_light()
     }
 
     /// The live picture as the screen shows it.

@@ -4,9 +4,9 @@
 //! step of undo: what the keys say is kept in the keys. The scene itself is shown at rest; frames show it in motion
 //! ([`crate::render_frames`]).
 
-use super::state::Session;
+use crate::session::state::Session;
 use crate::commands::Event;
-use crate::document::SurfaceHit;
+use document::SurfaceHit;
 use crate::error::SessionError;
 use focus::{Ease, FocusTarget, Key, LensMotion};
 use scene::SurfacePoint;

@@ -2,7 +2,8 @@
 
 use glam::DVec2;
 use lens::{FocusOffset, Picture};
-use session::{Command, Event, PreviewKind, Session, SessionOptions, StrokePoint};
+use document::StrokePoint;
+use session::{Command, Event, PreviewKind, Session, SessionOptions};
 use std::path::Path;
 use std::time::{Duration, Instant};
 

@@ -1,0 +1,143 @@
+//! Rows of the inspector (a label, a control, and a tooltip on both), accessible names, and formatted numbers.
+
+use crate::window::Action;
+use egui::{DragValue, Response, Ui, WidgetText};
+use session::Command;
+
+/// Adds a row to a two-column grid: a label, then the control, which takes the label as its accessible name.
+pub fn row(
+    ui: &mut Ui,
+    label: impl Into<WidgetText>,
+    tooltip: &str,
+    control: impl FnOnce(&mut Ui) -> Response,
+) -> Response {
+    let label = ui.label(label).on_hover_text(tooltip);
+    let response = control(ui).labelled_by(label.id).on_hover_text(tooltip);
+    ui.end_row();
+    response
+}
+
+/// A two-column grid for [`row`]s.
+pub fn rows(ui: &mut Ui, id: &str, add: impl FnOnce(&mut Ui)) {
+    egui::Grid::new(id).num_columns(2).min_col_width(84.0).spacing([8.0, 5.0]).show(ui, add);
+}
+
+/// Finishes an edit when its control is released, so that a drag is one undo step.
+pub fn finish_edit(response: &Response, actions: &mut Vec<Action>) {
+    if response.drag_stopped() || response.lost_focus() {
+        actions.push(Command::FinishEdit.into());
+    }
+}
+
+/// A number that changes in proportion to its value when dragged: for lengths and f-numbers.
+pub fn proportional_value<'a>(value: &'a mut f64, range: std::ops::RangeInclusive<f64>) -> DragValue<'a> {
+    let speed = value.abs().clamp(1e-6, 1e9) * 0.01;
+    DragValue::new(value).speed(speed).range(range)
+}
+
+/// Sets the accessible name of a control without a label, for screen readers and tests.
+pub fn set_accessible_name(response: &Response, name: &str) {
+    response.ctx.accesskit_node_builder(response.id, |node| node.set_label(name));
+}
+
+/// A selectable row of a list, as wide as the list and left-aligned.
+pub fn list_row(ui: &mut Ui, chosen: bool, text: &str) -> Response {
+    let layout = egui::Layout::top_down_justified(egui::Align::LEFT);
+    ui.with_layout(layout, |ui| ui.add(egui::Button::selectable(chosen, text))).inner
+}
+
+/// A length in metres with three significant digits.
+pub fn length_text(metres: f64) -> String {
+    if metres.is_infinite() { "∞".into() } else { format!("{} m", significant_digits(metres)) }
+}
+
+/// A number with three significant digits.
+pub fn significant_digits(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value}");
+    }
+    let magnitude = value.abs().log10().floor() as i32;
+    let decimals = (2 - magnitude).clamp(0, 9) as usize;
+    format!("{value:.decimals$}")
+}
+
+/// Formats the number of a control: three significant digits without trailing zeros.
+pub fn format_number(value: f64, _decimals: std::ops::RangeInclusive<usize>) -> String {
+    let text = significant_digits(value);
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_string() } else { text }
+}
+
+/// A number of bytes with a decimal unit.
+pub fn bytes_text(count: usize) -> String {
+    match count {
+        0..1_000 => format!("{count} B"),
+        1_000..1_000_000 => format!("{} kB", significant_digits(count as f64 / 1e3)),
+        1_000_000..1_000_000_000 => format!("{} MB", significant_digits(count as f64 / 1e6)),
+        _ => format!("{} GB", significant_digits(count as f64 / 1e9)),
+    }
+}
+
+/// A count, abbreviated from 10 000 on.
+pub fn count_text(n: usize) -> String {
+    match n {
+        0..10_000 => n.to_string(),
+        10_000..1_000_000 => format!("{} k", significant_digits(n as f64 / 1e3)),
+        _ => format!("{} M", significant_digits(n as f64 / 1e6)),
+    }
+}
+
+/// A duration, in milliseconds below one second.
+pub fn seconds_text(seconds: f64) -> String {
+    if seconds < 1.0 {
+        format!("{} ms", significant_digits(seconds * 1e3))
+    } else {
+        format!("{} s", significant_digits(seconds))
+    }
+}
+
+/// A remaining time, rounded to the precision of such an estimate.
+pub fn time_left_text(seconds: u32) -> String {
+    match seconds {
+        0..10 => format!("{seconds} s left"),
+        10..90 => format!("{} s left", seconds.div_ceil(5) * 5),
+        _ => format!("{} min left", seconds.div_ceil(60)),
+    }
+}
+
+/// A signed circle of confusion in words: `near 12 px`, `sharp`, `far 3.1 px`.
+pub fn circle_text(px: f64) -> String {
+    match px {
+        _ if px.abs() < 0.05 => "sharp".into(),
+        _ if px < 0.0 => format!("near {} px", significant_digits(-px)),
+        _ => format!("far {} px", significant_digits(px)),
+    }
+}
+
+/// A signed circle of confusion as an amount: `12 px of near blur`, `no blur`.
+pub fn circle_amount_text(px: f64) -> String {
+    match px {
+        _ if px.abs() < 0.05 => "no blur".into(),
+        _ if px < 0.0 => format!("{} px of near blur", significant_digits(-px)),
+        _ => format!("{} px of far blur", significant_digits(px)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_read_well() {
+        assert_eq!(significant_digits(0.012345), "0.0123");
+        assert_eq!(significant_digits(1234.5), "1234");
+        assert_eq!(significant_digits(1.0), "1.00");
+        assert_eq!(format_number(1.4, 0..=3), "1.4");
+        assert_eq!(format_number(100.0, 0..=3), "100");
+        assert_eq!(length_text(f64::INFINITY), "∞");
+        assert_eq!(bytes_text(12_300_000), "12.3 MB");
+        assert_eq!(count_text(1_900_000), "1.90 M");
+        assert_eq!(seconds_text(0.021), "21.0 ms");
+        assert_eq!(circle_text(-12.0), "near 12.0 px");
+        assert_eq!(circle_text(0.0), "sharp");
+    }
+}

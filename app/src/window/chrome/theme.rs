@@ -1,0 +1,124 @@
+//! The theme: neutral greys, without colour near the picture that would bias its perception.
+
+use egui::{Color32, CornerRadius, Stroke, Theme, Visuals};
+
+/// Colour of warnings.
+pub const WARNING: Color32 = Color32::from_rgb(232, 190, 110);
+/// Colour of errors.
+pub const ERROR: Color32 = Color32::from_rgb(240, 140, 120);
+/// Neutral grey around the picture.
+pub const SURROUNDINGS: Color32 = Color32::from_gray(48);
+
+/// Sets colours and spacing of both themes.
+pub fn prepare(context: &egui::Context) {
+    // The scale is a setting with its own commands.
+    context.options_mut(|options| options.zoom_with_keyboard = false);
+    for (theme, visuals) in [(Theme::Dark, dark()), (Theme::Light, light())] {
+        context.set_visuals_of(theme, visuals);
+        context.style_mut_of(theme, |style| {
+            style.spacing.item_spacing = egui::vec2(6.0, 5.0);
+            style.spacing.button_padding = egui::vec2(6.0, 2.0);
+            style.spacing.slider_width = 150.0;
+            style.interaction.tooltip_delay = 0.4;
+            style.url_in_tooltip = true;
+        });
+    }
+}
+
+/// The frame of a bar along the window's edge. It is not filled: the window is already cleared with the panel
+/// colour, and filling is slow on a software adapter.
+pub fn bar_frame(style: &egui::Style) -> egui::Frame {
+    egui::Frame::side_top_panel(style).fill(Color32::TRANSPARENT)
+}
+
+/// Sets the theme and the scale of the user interface.
+pub fn apply_theme(context: &egui::Context, light: bool, scale: f32) {
+    context.set_theme(if light { Theme::Light } else { Theme::Dark });
+    context.set_zoom_factor(scale.clamp(0.5, 3.0));
+}
+
+/// Grey levels from window to text, and the two message colours.
+struct GreyLevels {
+    panel: u8,
+    window: u8,
+    inset: u8,
+    faint: u8,
+    outline: u8,
+    selected: [u8; 2],
+    /// De-emphasised text.
+    weak: u8,
+    /// Fill and text of widgets: noninteractive, inactive, hovered, active, open.
+    widgets: [[u8; 2]; 5],
+    messages: [Color32; 2],
+}
+
+fn dark() -> Visuals {
+    let greys = GreyLevels {
+        panel: 38,
+        window: 44,
+        inset: 24,
+        faint: 43,
+        outline: 56,
+        weak: 150,
+        selected: [96, 250],
+        widgets: [[38, 190], [58, 215], [74, 245], [92, 255], [52, 230]],
+        messages: [WARNING, ERROR],
+    };
+    visuals(Visuals::dark(), &greys)
+}
+
+fn light() -> Visuals {
+    let greys = GreyLevels {
+        panel: 214,
+        window: 224,
+        inset: 240,
+        faint: 208,
+        outline: 176,
+        weak: 86,
+        selected: [150, 0],
+        widgets: [[214, 50], [196, 25], [182, 0], [164, 0], [204, 15]],
+        messages: [Color32::from_rgb(122, 80, 0), Color32::from_rgb(160, 30, 10)],
+    };
+    visuals(Visuals::light(), &greys)
+}
+
+fn visuals(mut visuals: Visuals, greys: &GreyLevels) -> Visuals {
+    let grey = Color32::from_gray;
+    visuals.panel_fill = grey(greys.panel);
+    visuals.window_fill = grey(greys.window);
+    visuals.extreme_bg_color = grey(greys.inset);
+    visuals.faint_bg_color = grey(greys.faint);
+    visuals.window_stroke = Stroke::new(1.0, grey(greys.outline));
+    visuals.window_corner_radius = CornerRadius::same(4);
+    visuals.menu_corner_radius = CornerRadius::same(4);
+    visuals.selection.bg_fill = grey(greys.selected[0]);
+    visuals.selection.stroke = Stroke::new(1.0, grey(greys.selected[1]));
+    visuals.hyperlink_color = grey(greys.widgets[1][1]);
+    [visuals.warn_fg_color, visuals.error_fg_color] = greys.messages;
+    visuals.weak_text_color = Some(grey(greys.weak));
+    visuals.slider_trailing_fill = true;
+    let widgets = &mut visuals.widgets;
+    let kinds = [
+        &mut widgets.noninteractive,
+        &mut widgets.inactive,
+        &mut widgets.hovered,
+        &mut widgets.active,
+        &mut widgets.open,
+    ];
+    for (widget, [fill, text]) in kinds.into_iter().zip(greys.widgets) {
+        widget.bg_fill = grey(fill);
+        widget.weak_bg_fill = grey(fill);
+        widget.fg_stroke = Stroke::new(1.0, grey(text));
+        widget.corner_radius = CornerRadius::same(3);
+        widget.expansion = 0.0;
+    }
+    widgets.noninteractive.bg_stroke = Stroke::new(1.0, grey(greys.outline));
+    widgets.inactive.bg_stroke = Stroke::NONE;
+    let between = |share: f32| {
+        let [low, high] = [greys.panel as f32, greys.widgets[1][1] as f32];
+        grey((low + (high - low) * share) as u8)
+    };
+    widgets.hovered.bg_stroke = Stroke::new(1.0, between(0.4));
+    widgets.active.bg_stroke = Stroke::new(1.0, between(0.63));
+    visuals
+}

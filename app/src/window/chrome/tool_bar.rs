@@ -1,0 +1,153 @@
+//! The tool bar: the tools and the main parameters of the brush.
+
+use super::focus_slider::focus_slider;
+use super::{controls, keys};
+use crate::window::{Action, Tool};
+use egui::{Button, Ui};
+use focus::Brush;
+use lens::{FocusOffset, Optics};
+use document::Document;
+use session::Command;
+
+/// Draws the tool bar.
+pub fn tool_bar(ui: &mut Ui, document: Option<&Document>, tool: Tool, actions: &mut Vec<Action>) {
+    ui.horizontal(|ui| {
+        let has_depth = document.is_some_and(|document| document.scene().picture.is_some());
+        for family in Tool::BAR {
+            if family[0].depth_repair().is_some() && !has_depth {
+                continue;
+            }
+            tool_button(ui, family, tool, actions);
+        }
+        let Some(document) = document else { return };
+        ui.separator();
+        let mut brush = document.brush.clone();
+        ui.spacing_mut().slider_width = 104.0;
+        brush_sliders(ui, &mut brush, largest_radius(document));
+        let optics = document.camera.optics();
+        let width = (ui.available_width() - CIRCLE_WIDTH).clamp(60.0, FOCUS_WIDTH);
+        if let Some(target) = target_slider(ui, &optics, brush.target, width) {
+            brush.target = target;
+        }
+        let px = signed_circle_px(&optics, brush.target.t);
+        ui.label(controls::circle_text(px))
+            .on_hover_text("The blur that the brush paints, in the full-size picture.");
+        push_brush_change(document, brush, actions);
+    });
+}
+
+/// Width of the blur slider, and of the text beside it, points.
+const FOCUS_WIDTH: f32 = 170.0;
+const CIRCLE_WIDTH: f32 = 90.0;
+/// Width of a brush slider with its label, points.
+const SLIDER_WIDTH: f32 = 182.0;
+
+/// Sliders for size, strength and hardness, as many as fit; the inspector has all of them.
+fn brush_sliders(ui: &mut Ui, brush: &mut Brush, largest: f64) {
+    let has_room = |ui: &Ui| ui.available_width() > FOCUS_WIDTH + CIRCLE_WIDTH + SLIDER_WIDTH;
+    if has_room(ui) {
+        ui.label("Size").on_hover_text(SIZE_TIP);
+        let size = egui::Slider::new(&mut brush.radius, largest * 1e-3..=largest);
+        let size = size.logarithmic(true).show_value(false);
+        controls::set_accessible_name(&ui.add(size).on_hover_text(SIZE_TIP), "Brush size");
+    }
+    let shares = [
+        (&mut brush.strength, "Strength", STRENGTH_TIP, "Brush strength"),
+        (&mut brush.hardness, "Hardness", HARDNESS_TIP, "Brush hardness"),
+    ];
+    for (share, label, tip, name) in shares {
+        if has_room(ui) {
+            ui.label(label).on_hover_text(tip);
+            let slider = egui::Slider::new(share, 0.0..=1.0).show_value(false);
+            controls::set_accessible_name(&ui.add(slider).on_hover_text(tip), name);
+        }
+    }
+    ui.separator();
+}
+
+/// The button of a family of tools: the active tool or the first; a right click shows all.
+fn tool_button(ui: &mut Ui, family: &[Tool], tool: Tool, actions: &mut Vec<Action>) {
+    let chosen = family.contains(&tool);
+    let shown = if chosen { tool } else { family[0] };
+    let response = ui.add(Button::selectable(chosen, shown.label()));
+    let tip = keys::command_tooltip(ui.ctx(), shown.command());
+    let more = if family.len() > 1 { "\nRight-click for related tools." } else { "" };
+    let response = response.on_hover_text(format!("{tip}{more}"));
+    if response.clicked() {
+        actions.push(shown.command().into());
+    }
+    if family.len() > 1 {
+        response.context_menu(|ui| {
+            for tool in family {
+                let key = keys::shortcut_text(ui.ctx(), tool.command());
+                let button = Button::new(tool.label()).shortcut_text(key);
+                if ui.add(button).on_hover_text(tool.command().info().tooltip).clicked() {
+                    actions.push(tool.command().into());
+                    ui.close();
+                }
+            }
+        });
+    }
+}
+
+/// Sends the brush if it changed.
+pub fn push_brush_change(document: &Document, brush: Brush, actions: &mut Vec<Action>) {
+    if brush != document.brush {
+        actions.push(Command::SetBrush(brush).into());
+    }
+}
+
+/// Tooltip of the size slider.
+pub const SIZE_TIP: &str = "Radius of the brush on the surface. Keys: [ and ].";
+/// Tooltip of the strength slider.
+pub const STRENGTH_TIP: &str = "How far one stroke moves the focus toward the brush's.";
+
+/// Tooltip of the hardness slider.
+pub const HARDNESS_TIP: &str =
+    "The share of the radius with full strength; beyond it the brush fades out. Keys: Shift+[ and Shift+].";
+
+/// The largest brush radius: a quarter of the scene's diagonal.
+pub fn largest_radius(document: &Document) -> f64 {
+    let (low, high) = document.stage.bounds;
+    let diagonal = (high - low).length();
+    if diagonal > 0.0 && diagonal.is_finite() { diagonal / 4.0 } else { 1.0 }
+}
+
+/// The signed circle of confusion of an offset t, px: in the focus plane, or at any depth with anchor 1.
+pub fn signed_circle_px(optics: &Optics, t: f64) -> f64 {
+    let kappa = optics.kappa(optics.inverse_focus_distance, FocusOffset::new(t, 1.0));
+    2.0 * optics.splat_radius_px(kappa)
+}
+
+/// The near–sharp–far slider for a focus. Returns the new focus if it was moved.
+pub fn target_slider(ui: &mut Ui, optics: &Optics, target: FocusOffset, width: f32) -> Option<FocusOffset> {
+    let mut circle_px = signed_circle_px(optics, target.t);
+    let enabled = optics.aperture_radius > 0.0;
+    let response = ui.add_enabled_ui(enabled, |ui| focus_slider(ui, &mut circle_px, width)).inner;
+    let changed = response.changed();
+    response
+        .on_hover_text(
+            "What the brush paints: near blur ← sharp → far blur. Keys: , and . to move, X for sharp.",
+        )
+        .on_disabled_hover_text("A pinhole blurs nothing: open the aperture first.");
+    let kappa = optics.kappa_for_circle_px(circle_px).filter(|_| changed)?;
+    let t = optics.offset_for_kappa(kappa, optics.inverse_focus_distance, 1.0)?;
+    Some(FocusOffset { t, ..target })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lens::Camera;
+
+    #[test]
+    fn the_slider_speaks_of_the_circle_that_the_lens_draws() {
+        let optics = Camera::default().optics();
+        for t in [0.9, 1.0, 1.02] {
+            let px = signed_circle_px(&optics, t);
+            let kappa = optics.kappa(0.1, FocusOffset::new(t, 1.0));
+            assert!((px.abs() - optics.circle_of_confusion_px(kappa)).abs() < 1e-9);
+            assert_eq!(px < 0.0, t < 1.0, "near is negative");
+        }
+    }
+}

@@ -1,0 +1,305 @@
+//! The layout of the panels: docked side by side or in tabs, floating over the others, or one enlarged over
+//! all.
+//!
+//! Docked panels form a tree of tiles. A floating panel keeps its hidden tile, to which it returns when docked.
+//! A closed panel has a hidden tile, too.
+
+mod pane;
+mod panes;
+mod sizes;
+
+pub use pane::Pane;
+pub use panes::{DockState, PaneContents};
+
+use egui::{Rect, Ui, Vec2, pos2, vec2};
+use egui_tiles::{Container, Linear, LinearDir, Tile, TileId, Tiles, Tree};
+use serde::{Deserialize, Serialize};
+use sizes::NOMINAL_SIZE;
+use std::collections::HashSet;
+
+/// Initial width of the inspector, points.
+const INSPECTOR_WIDTH: f32 = 300.0;
+
+/// Initial height of the tabs beneath the views, points.
+const DRAWER_HEIGHT: f32 = 210.0;
+
+/// Initial share of the views' width that the paint view takes.
+const PAINT_SHARE: f32 = 0.46;
+
+/// A floating panel.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Floating {
+    pane: Pane,
+    /// Left, top, width and height of its contents, points.
+    place: [f32; 4],
+}
+
+/// The layout of the panels.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Layout {
+    tree: Tree<Pane>,
+    floating: Vec<Floating>,
+    /// The panel that is enlarged over all others.
+    #[serde(skip)]
+    enlarged: Option<Pane>,
+    /// Width and height of the last layout of the tiles, points.
+    size: [f32; 2],
+}
+
+impl Default for Layout {
+    fn default() -> Self {
+        let mut tiles = Tiles::default();
+        let mut pane = |pane| tiles.insert_pane(pane);
+        let [paint, picture, inspector, atlas, aperture, histogram, photographs, timeline] =
+            Pane::ALL.map(&mut pane);
+        let views = Linear::new_binary(LinearDir::Horizontal, [paint, picture], PAINT_SHARE);
+        let views = tiles.insert_container(views);
+        let drawer = tiles.insert_tab_tile(vec![atlas, aperture, histogram, photographs, timeline]);
+        tiles.set_visible(drawer, false);
+        let drawer_share = DRAWER_HEIGHT / NOMINAL_SIZE[1];
+        let left = Linear::new_binary(LinearDir::Vertical, [views, drawer], 1.0 - drawer_share);
+        let left = tiles.insert_container(left);
+        let inspector_share = INSPECTOR_WIDTH / NOMINAL_SIZE[0];
+        let root = Linear::new_binary(LinearDir::Horizontal, [left, inspector], 1.0 - inspector_share);
+        let root = tiles.insert_container(root);
+        let tree = Tree::new(egui::Id::unique("panels"), root, tiles);
+        Self { tree, floating: Vec::new(), enlarged: None, size: NOMINAL_SIZE }
+    }
+}
+
+impl Layout {
+    /// A layout from its stored JSON; `None` unless it contains every panel once and one of the views is
+    /// visible.
+    pub fn from_stored(text: &str) -> Option<Self> {
+        let layout: Self = serde_json::from_str(text).ok()?;
+        let panes = layout.tree.tiles.tiles().filter_map(|tile| match tile {
+            Tile::Pane(pane) => Some(*pane),
+            Tile::Container(_) => None,
+        });
+        let panes: Vec<Pane> = panes.collect();
+        let is_whole = panes.len() == Pane::ALL.len() && Pane::ALL.iter().all(|pane| panes.contains(pane));
+        let has_place = layout.floating.iter().flat_map(|floating| floating.place).all(f32::is_finite);
+        let has_size = layout.size.iter().all(|side| side.is_finite() && *side > 0.0);
+        let has_view = [Pane::Paint, Pane::Picture].iter().any(|view| layout.is_open(*view));
+        (is_whole && has_place && has_size && has_view).then_some(layout)
+    }
+
+    fn tile_with(&self, pane: Pane) -> Option<TileId> {
+        self.tree.tiles.find_pane(&pane)
+    }
+
+    /// The containers of a tile, from the innermost outward.
+    fn containers_of(&self, tile: TileId) -> Vec<TileId> {
+        std::iter::successors(self.tree.tiles.parent_of(tile), |id| self.tree.tiles.parent_of(*id)).collect()
+    }
+
+    /// Whether a panel is docked or floating, even if behind another tab.
+    pub fn is_open(&self, pane: Pane) -> bool {
+        let is_visible = |tile: TileId| {
+            self.containers_of(tile).into_iter().chain([tile]).all(|tile| self.tree.is_visible(tile))
+        };
+        self.is_floating(pane) || self.tile_with(pane).is_some_and(is_visible)
+    }
+
+    /// Whether a panel is visible.
+    pub fn is_shown(&self, pane: Pane) -> bool {
+        if let Some(enlarged) = self.enlarged {
+            return enlarged == pane;
+        }
+        let Some(tile) = self.tile_with(pane) else { return false };
+        let mut child = tile;
+        let is_behind = self.containers_of(tile).into_iter().any(|id| {
+            let container = self.tree.tiles.get_container(id);
+            let is_behind = matches!(container, Some(Container::Tabs(tabs)) if !tabs.is_active(child));
+            child = id;
+            is_behind
+        });
+        self.is_floating(pane) || (self.is_open(pane) && !is_behind)
+    }
+
+    /// Whether a panel floats.
+    pub fn is_floating(&self, pane: Pane) -> bool {
+        self.floating.iter().any(|floating| floating.pane == pane)
+    }
+
+    /// The panel that is enlarged over all others.
+    pub fn enlarged(&self) -> Option<Pane> {
+        self.enlarged
+    }
+
+    /// Opens a panel, in front of the other tabs.
+    pub fn open(&mut self, pane: Pane) {
+        self.enlarged = self.enlarged.filter(|enlarged| *enlarged == pane);
+        if self.is_floating(pane) {
+            return;
+        }
+        let Some(tile) = self.tile_with(pane) else { return };
+        self.tree.set_visible(tile, true);
+        let mut child = tile;
+        for id in self.containers_of(tile) {
+            self.tree.set_visible(id, true);
+            if let Some(Tile::Container(Container::Tabs(tabs))) = self.tree.tiles.get_mut(id) {
+                tabs.set_active(child);
+            }
+            child = id;
+        }
+    }
+
+    /// Closes a panel, together with the other tabs if all of them can be closed.
+    pub fn close(&mut self, pane: Pane) {
+        if !pane.is_foldable() {
+            return;
+        }
+        self.enlarged = self.enlarged.filter(|enlarged| *enlarged != pane);
+        if self.is_floating(pane) {
+            self.floating.retain(|floating| floating.pane != pane);
+            return;
+        }
+        let Some(tile) = self.tile_with(pane) else { return };
+        let tabs = self.tree.tiles.parent_of(tile).filter(|parent| {
+            let container = self.tree.tiles.get_container(*parent);
+            container.is_some_and(|container| {
+                let foldable = |id: &TileId| self.tree.tiles.get_pane(id).is_some_and(|p| p.is_foldable());
+                matches!(container, Container::Tabs(_)) && container.children().all(foldable)
+            })
+        });
+        self.tree.set_visible(tabs.unwrap_or(tile), false);
+    }
+
+    /// Opens a panel in front, or closes it if it is visible.
+    pub fn toggle(&mut self, pane: Pane) {
+        if self.is_shown(pane) { self.close(pane) } else { self.open(pane) }
+    }
+
+    /// Enlarges a panel over all others, or restores the layout.
+    pub fn toggle_enlarged(&mut self, pane: Pane) {
+        if self.enlarged.take().is_none() {
+            self.open(pane);
+            self.enlarged = Some(pane);
+        }
+    }
+
+    /// Makes a panel float over its current place, or docks it again.
+    pub fn toggle_floating(&mut self, pane: Pane) {
+        self.enlarged = None;
+        if self.is_floating(pane) {
+            self.floating.retain(|floating| floating.pane != pane);
+            self.open(pane);
+            return;
+        }
+        let Some(tile) = self.tile_with(pane) else { return };
+        let rect = self.tree.tiles.rect(tile).filter(|_| self.is_shown(pane));
+        let rect = rect.unwrap_or(Rect::from_min_size(pos2(120.0, 120.0), vec2(420.0, 320.0)));
+        self.tree.set_visible(tile, false);
+        let place = [rect.left(), rect.top(), rect.width(), rect.height()];
+        self.floating.push(Floating { pane, place });
+    }
+
+    /// The panels that are in tabs.
+    fn tabbed_panes(&self) -> HashSet<Pane> {
+        let tiles = &self.tree.tiles;
+        let tabs = tiles.tiles().filter_map(|tile| match tile {
+            Tile::Container(Container::Tabs(tabs)) => Some(tabs),
+            _ => None,
+        });
+        tabs.flat_map(|tabs| &tabs.children).filter_map(|child| tiles.get_pane(child).copied()).collect()
+    }
+
+    /// Draws all panels into the remaining space of `ui`.
+    pub fn ui(&mut self, ui: &mut Ui, panes: &mut dyn PaneContents) {
+        if let Some(pane) = self.enlarged {
+            panes::set_accessible_name(ui, pane);
+            panes.pane_ui(ui, pane, DockState::Enlarged);
+            return;
+        }
+        let size: Vec2 = ui.available_size();
+        sizes::fit_to_size(&mut self.tree, &mut self.size, size.into());
+        let tabbed = self.tabbed_panes();
+        self.tree.ui(&mut panes::TileBehavior { panes, tabbed }, ui);
+        self.floating_ui(ui, panes);
+    }
+
+    fn floating_ui(&mut self, ui: &Ui, panes: &mut dyn PaneContents) {
+        let mut closed = None;
+        for floating in &mut self.floating {
+            let (pane, [left, top, width, height]) = (floating.pane, floating.place);
+            let mut is_open = true;
+            let title = egui::RichText::new(pane.title()).text_style(egui::TextStyle::Body).strong();
+            let window = egui::Window::new(title)
+                .id(egui::Id::unique(("floating", pane.title())))
+                .open(&mut is_open)
+                .collapsible(false)
+                .frame(egui::Frame::window(ui.style()).inner_margin(0.0))
+                .default_pos([left, top])
+                .default_size([width, height])
+                .min_size([180.0, 120.0]);
+            let shown = window.show(ui.ctx(), |ui| {
+                panes::set_accessible_name(ui, pane);
+                panes.pane_ui(ui, pane, DockState::Floating);
+                ui.min_rect().size()
+            });
+            if let Some(shown) = shown {
+                let at = shown.response.rect.min;
+                let size = shown.inner.unwrap_or(vec2(width, height));
+                floating.place = [at.x, at.y, size.x, size.y];
+            }
+            closed = closed.or((!is_open).then_some(pane));
+        }
+        if let Some(pane) = closed {
+            self.toggle_floating(pane);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shown(layout: &Layout) -> Vec<Pane> {
+        Pane::ALL.into_iter().filter(|pane| layout.is_shown(*pane)).collect()
+    }
+
+    #[test]
+    fn panels_open_close_float_and_grow() {
+        let mut layout = Layout::default();
+        let first = [Pane::Paint, Pane::Picture, Pane::Inspector];
+        assert_eq!(shown(&layout), first);
+        layout.toggle(Pane::Aperture);
+        assert_eq!(shown(&layout), [Pane::Paint, Pane::Picture, Pane::Inspector, Pane::Aperture]);
+        assert!(layout.is_open(Pane::Atlas), "behind it, in a tab");
+        layout.toggle(Pane::Histogram);
+        assert_eq!(shown(&layout).last(), Some(&Pane::Histogram));
+        layout.toggle(Pane::Histogram);
+        assert_eq!(shown(&layout), first, "the tabs are folded away together");
+
+        layout.toggle_floating(Pane::Atlas);
+        assert!(layout.is_floating(Pane::Atlas) && layout.is_shown(Pane::Atlas));
+        layout.toggle(Pane::Aperture);
+        assert!(layout.is_shown(Pane::Atlas) && layout.is_shown(Pane::Aperture));
+        layout.close(Pane::Atlas);
+        assert!(!layout.is_open(Pane::Atlas));
+        layout.open(Pane::Atlas);
+        assert!(layout.is_shown(Pane::Atlas) && !layout.is_floating(Pane::Atlas), "back in its tab");
+
+        layout.toggle_enlarged(Pane::Picture);
+        assert_eq!(shown(&layout), [Pane::Picture]);
+        layout.toggle_enlarged(Pane::Paint);
+        assert_eq!(layout.enlarged(), None, "and back");
+        layout.close(Pane::Paint);
+        assert!(layout.is_shown(Pane::Paint), "a view stays");
+    }
+
+    #[test]
+    fn what_is_stored_comes_back_and_what_is_not_whole_does_not() {
+        let mut layout = Layout::default();
+        layout.toggle_floating(Pane::Histogram);
+        layout.toggle(Pane::Inspector);
+        let text = serde_json::to_string(&layout).unwrap();
+        let again = Layout::from_stored(&text).expect("it is whole");
+        assert_eq!(shown(&again), shown(&layout));
+        assert_eq!(Layout::from_stored(&text.replace("Histogram", "Atlas")), None, "a panel twice");
+        assert_eq!(Layout::from_stored("{}"), None);
+        let text = serde_json::to_string(&Layout { size: [0.0, 4.0], ..layout }).unwrap();
+        assert_eq!(Layout::from_stored(&text), None);
+    }
+}

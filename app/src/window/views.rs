@@ -1,0 +1,8 @@
+//! The panes of the window: paint view, picture view, inspector and drawer.
+
+pub mod aperture_orbit;
+pub mod drawer;
+pub mod false_colour;
+pub mod inspector;
+pub mod paint_view;
+pub mod picture_view;

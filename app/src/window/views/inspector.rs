@@ -1,0 +1,98 @@
+//! The inspector: the settings of the document, section by section. Panels read the document and emit actions.
+
+mod brush_panel;
+mod curve_editor;
+mod falloff_editor;
+mod focus_panel;
+mod history_panel;
+mod layers_panel;
+mod lens_panel;
+mod modelled_panel;
+mod plane_editor;
+mod preset_row;
+mod scene_panel;
+mod shape_panel;
+mod tool_panel;
+mod variant_panel;
+mod world_panel;
+
+pub use layers_panel::is_layer_command_possible;
+pub use tool_panel::selection_summary;
+
+use crate::window::{Action, Tool, ViewSettings};
+use egui::{CollapsingHeader, ScrollArea, Ui};
+use project::PresetLibrary;
+use document::SurfaceHit;
+use session::Session;
+
+/// State of the inspector between frames.
+#[derive(Default)]
+pub struct Inspector {
+    scene: scene_panel::ScenePanel,
+}
+
+/// Inputs of the inspector.
+pub struct Inspected<'a> {
+    /// The session.
+    pub session: &'a Session,
+    /// All presets.
+    pub presets: &'a PresetLibrary,
+    /// The active tool.
+    pub tool: Tool,
+    /// The surface point under the pointer.
+    pub hover: Option<SurfaceHit>,
+}
+
+impl Inspector {
+    /// Draws all sections.
+    pub fn ui(
+        &mut self,
+        ui: &mut Ui,
+        inspected: Inspected<'_>,
+        settings: &mut ViewSettings,
+        actions: &mut Vec<Action>,
+    ) {
+        let Inspected { session, presets, tool, hover } = inspected;
+        // Narrow enough for label, slider and number at the inspector's minimum width.
+        ui.spacing_mut().slider_width = 110.0;
+        ScrollArea::vertical().auto_shrink([false; 2]).show(ui, |ui| {
+            let Some(document) = session.document() else {
+                ui.add_space(8.0);
+                ui.weak("Nothing is open.");
+                return;
+            };
+            if tool_panel::has_settings(tool) {
+                section(ui, tool.label(), true, |ui| {
+                    tool_panel::tool_panel(ui, document, tool, &mut settings.tools, actions);
+                });
+            }
+            section(ui, "Lens", true, |ui| lens_panel::lens_panel(ui, document, presets, actions));
+            section(ui, "Focus", true, |ui| focus_panel::focus_panel(ui, document, actions));
+            section(ui, "Layers", true, |ui| layers_panel::layers_panel(ui, document, actions));
+            section(ui, "Brush", true, |ui| {
+                brush_panel::brush_panel(ui, document, settings, presets, hover, actions);
+            });
+            section(ui, "Picture", true, |ui| {
+                lens_panel::picture_panel(ui, session, document, settings, actions);
+            });
+            if !document.scene().variants.is_empty() {
+                section(ui, "Material variants", true, |ui| {
+                    variant_panel::variant_panel(ui, document, actions);
+                });
+            }
+            section(ui, "World", true, |ui| world_panel::world_panel(ui, document, actions));
+            section(ui, "Scene", false, |ui| self.scene.ui(ui, document, actions));
+            section(ui, "What was modelled", false, |ui| {
+                modelled_panel::modelled_panel(ui, session, document)
+            });
+            section(ui, "History", false, |ui| history_panel::history_panel(ui, document, actions));
+        });
+    }
+}
+
+fn section(ui: &mut Ui, title: &str, open: bool, add: impl FnOnce(&mut Ui)) {
+    CollapsingHeader::new(egui::RichText::new(title).strong()).default_open(open).show_unindented(ui, |ui| {
+        add(ui);
+        ui.add_space(6.0);
+    });
+}

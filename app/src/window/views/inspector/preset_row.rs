@@ -1,0 +1,110 @@
+//! The presets of one kind: choose, save, rename, delete, import and export.
+
+use crate::window::Action;
+use crate::window::action::PresetAction;
+use crate::window::chrome::controls::row;
+use crate::window::chrome::keys;
+use egui::{Button, Ui};
+use project::{LibraryEntry, Preset, PresetKind, PresetLibrary};
+use session::CommandId;
+
+/// Width of the menu, points.
+const MENU_WIDTH: f32 = 240.0;
+/// Height of the list within it, points.
+const LIST_HEIGHT: f32 = 420.0;
+
+/// A row with the preset in use, as determined by `is_current`, and a menu of all presets.
+pub fn preset_row(
+    ui: &mut Ui,
+    shelf: &PresetLibrary,
+    kind: PresetKind,
+    is_current: impl Fn(&Preset) -> bool,
+    actions: &mut Vec<Action>,
+) {
+    let (label, save, tip) = match kind {
+        PresetKind::Brush => {
+            ("Brush preset", CommandId::SaveBrushPreset, "A saved brush; the current size is kept.")
+        }
+        PresetKind::Lens => (
+            "Lens preset",
+            CommandId::SaveLensPreset,
+            "A lens with its sensor; pose, focus distance and picture size are kept.",
+        ),
+        PresetKind::Bokeh => ("Bokeh preset", CommandId::SaveBokehPreset, "An aperture shape."),
+    };
+    let current = |entry: &&LibraryEntry| entry.preset.as_ref().is_ok_and(&is_current);
+    let name = shelf.entries_of_kind(kind).find(current).map_or("Own".to_string(), LibraryEntry::name);
+    row(ui, label, tip, |ui| {
+        let menu = ui.menu_button(&name, |ui| {
+            ui.set_width(MENU_WIDTH);
+            let list = egui::ScrollArea::vertical().max_height(LIST_HEIGHT);
+            list.show(ui, |ui| {
+                for entry in shelf.entries_of_kind(kind).filter(|entry| entry.file.is_none()) {
+                    entry_button(ui, entry, current(&entry), actions);
+                }
+                let own: Vec<_> = shelf.entries_of_kind(kind).filter(|entry| entry.file.is_some()).collect();
+                if !own.is_empty() {
+                    ui.separator();
+                }
+                for entry in own {
+                    own_entry(ui, entry, current(&entry), actions);
+                }
+            });
+            ui.separator();
+            for (id, label) in [(save, "Save as preset…"), (CommandId::ImportPreset, "Import preset…")] {
+                if ui.button(label).on_hover_text(keys::command_tooltip(ui.ctx(), id)).clicked() {
+                    actions.push(id.into());
+                    ui.close();
+                }
+            }
+        });
+        menu.response
+    });
+}
+
+/// A preset that can be chosen.
+fn entry_button(ui: &mut Ui, entry: &LibraryEntry, is_current: bool, actions: &mut Vec<Action>) {
+    match &entry.preset {
+        Ok(preset) => {
+            if ui.add(Button::selectable(is_current, &preset.name)).clicked() {
+                actions.push(PresetAction::Use(Box::new(preset.clone())).into());
+                ui.close();
+            }
+        }
+        Err(error) => {
+            ui.add_enabled(false, Button::new(format!("{} (cannot be read)", entry.name())))
+                .on_disabled_hover_text(error);
+        }
+    }
+}
+
+/// One of the user's own presets, with a menu.
+fn own_entry(ui: &mut Ui, entry: &LibraryEntry, is_current: bool, actions: &mut Vec<Action>) {
+    let Some(file) = entry.file.clone() else { return };
+    ui.horizontal(|ui| {
+        entry_button(ui, entry, is_current, actions);
+        let more = ui.menu_button("…", |ui| {
+            if let Ok(preset) = &entry.preset {
+                if ui.button("Rename…").on_hover_text("Give this preset another name.").clicked() {
+                    actions.push(PresetAction::Rename(file.clone(), preset.name.clone()).into());
+                    ui.close();
+                }
+                let tip = "Write this preset to a file, to be imported elsewhere.";
+                if ui.button("Export…").on_hover_text(tip).clicked() {
+                    actions.push(PresetAction::Export(Box::new(preset.clone())).into());
+                    ui.close();
+                }
+            }
+            let tip =
+                "Remove this preset from the list; its file is moved to the folder \"deleted\" beside it.";
+            if ui.button("Delete").on_hover_text(tip).clicked() {
+                actions.push(PresetAction::Delete(file.clone()).into());
+                ui.close();
+            }
+        });
+        crate::window::chrome::controls::set_accessible_name(
+            &more.response,
+            &format!("{}: more", entry.name()),
+        );
+    });
+}

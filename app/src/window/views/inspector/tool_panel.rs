@@ -1,0 +1,130 @@
+//! Settings of the active tool, other than those of the brush.
+
+use crate::window::chrome::controls::{self, row, rows};
+use crate::window::chrome::keys;
+use crate::window::tools::tool_settings::{GradientEnd, ToolSettings};
+use crate::window::{Action, Tool};
+use egui::{Button, ComboBox, DragValue, Ui};
+use focus::{Ease, GradientShape};
+use document::Document;
+use session::CommandId;
+
+/// Whether the tool has settings in this panel.
+pub fn has_settings(tool: Tool) -> bool {
+    matches!(tool, Tool::Gradient | Tool::RackFocus) || tool.selects()
+}
+
+/// Settings of gradients (shape, space, end), rack focus and selections.
+pub fn tool_panel(
+    ui: &mut Ui,
+    document: &Document,
+    tool: Tool,
+    settings: &mut ToolSettings,
+    actions: &mut Vec<Action>,
+) {
+    if tool == Tool::Gradient {
+        rows(ui, "gradient", |ui| gradient_rows(ui, settings));
+        return;
+    }
+    if tool == Tool::RackFocus {
+        rows(ui, "rack focus", |ui| rack_rows(ui, settings));
+        return;
+    }
+    rows(ui, "selection", |ui| {
+        let tip = "Let lasso and box also select hidden surfaces.";
+        row(ui, "Through", tip, |ui| ui.checkbox(&mut settings.select_through, "hidden ones too"));
+        let tip = "Largest angle between the clicked surface's normal and the selected ones.";
+        row(ui, "Facing", tip, |ui| {
+            let value = DragValue::new(&mut settings.facing_degrees);
+            ui.add(value.range(0.0..=180.0).speed(0.5).suffix("°").max_decimals(0))
+        });
+        let tip = "The share of the surface that can be painted; the rest is frozen.";
+        row(ui, "Selected", tip, |ui| ui.label(selection_summary(document)));
+    });
+    ui.horizontal_wrapped(|ui| {
+        let commands = [CommandId::SelectAll, CommandId::InvertSelection, CommandId::MaskFromSelection];
+        for (id, label) in commands.into_iter().zip(["Everything", "Invert", "Make a mask of it"]) {
+            let possible = document.selection.is_some();
+            let response = ui.add_enabled(possible, Button::new(label));
+            let tip = keys::command_tooltip(ui.ctx(), id);
+            if response.on_hover_text(&tip).on_disabled_hover_text(tip).clicked() {
+                actions.push(id.into());
+            }
+        }
+    });
+}
+
+/// The size of the selection as text.
+pub fn selection_summary(document: &Document) -> String {
+    let all = document.stage.canvas.texels().len();
+    match &document.selection {
+        None => "everything".into(),
+        Some(selection) => {
+            let share = selection.count() as f64 / all.max(1) as f64 * 100.0;
+            format!("{} % of all texels", controls::significant_digits(share))
+        }
+    }
+}
+
+fn rack_rows(ui: &mut Ui, settings: &mut ToolSettings) {
+    let rack = &mut settings.rack;
+    let tip = "Time that the lens takes from the first clicked point to the second.";
+    row(ui, "Takes", tip, |ui| {
+        ui.add(
+            DragValue::new(&mut rack.seconds).range(0.01..=3600.0).speed(0.02).suffix(" s").max_decimals(2),
+        )
+    });
+    let tip = "Interpolation: linear, eased at both ends, or a jump at the end.";
+    row(ui, "Goes", tip, |ui| {
+        let combo = ComboBox::from_id_salt("rack ease").selected_text(ease_name(rack.ease)).width(130.0);
+        combo
+            .show_ui(ui, |ui| {
+                for (_, ease) in Ease::ALL {
+                    ui.selectable_value(&mut rack.ease, ease, ease_name(ease));
+                }
+            })
+            .response
+    });
+}
+
+/// Display name of an ease.
+pub fn ease_name(ease: Ease) -> &'static str {
+    match ease {
+        Ease::Hold => "at once",
+        Ease::Linear => "evenly",
+        Ease::Smooth => "smoothly",
+    }
+}
+
+fn gradient_rows(ui: &mut Ui, settings: &mut ToolSettings) {
+    let gradient = &mut settings.gradient;
+    let tip = "Linear runs along the dragged line, radial around its start.";
+    row(ui, "Shape", tip, |ui| {
+        ui.horizontal(|ui| {
+            let linear = ui.selectable_value(&mut gradient.shape, GradientShape::Linear, "Linear");
+            ui.selectable_value(&mut gradient.shape, GradientShape::Radial, "Radial").on_hover_text(tip);
+            linear.on_hover_text(tip)
+        })
+        .inner
+    });
+    let tip = "Screen: along the line as seen in the view. World: between the two surface points.";
+    row(ui, "Space", tip, |ui| {
+        ui.horizontal(|ui| {
+            let screen = ui.selectable_value(&mut gradient.in_world, false, "Screen");
+            ui.selectable_value(&mut gradient.in_world, true, "World").on_hover_text(tip);
+            screen.on_hover_text(tip)
+        })
+        .inner
+    });
+    let tip = "Focus at the end of the gradient; the chosen focus is at its start.";
+    row(ui, "Leads to", tip, |ui| {
+        let combo = ComboBox::from_id_salt("gradient end").selected_text(gradient.end.name()).width(130.0);
+        combo
+            .show_ui(ui, |ui| {
+                for end in GradientEnd::ALL {
+                    ui.selectable_value(&mut gradient.end, end, end.name());
+                }
+            })
+            .response
+    });
+}

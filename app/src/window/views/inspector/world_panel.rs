@@ -1,0 +1,182 @@
+//! The world: the environment that lights the scene and is visible behind all surfaces.
+
+use crate::window::Action;
+use crate::window::chrome::controls::{proportional_value, row, rows};
+use egui::{Button, ComboBox, DragValue, Ui};
+use glam::{DVec3, Vec3};
+use scene::{Backdrop, Environment, Scene, World};
+use document::Document;
+use session::Command;
+use std::sync::Arc;
+
+/// The kinds of environment that the panel offers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum EnvironmentKind {
+    Own,
+    Studio,
+    Color,
+    File,
+}
+
+/// Draws the settings of the world.
+pub fn world_panel(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) {
+    let scene = document.scene();
+    let background = document.camera.background.map(|color| DVec3::from_array(color).as_vec3());
+    let shown = World::from_scene(scene, background);
+    let kind = environment_kind(scene);
+    rows(ui, "world", |ui| {
+        let tip = "The environment that lights the scene. Drop an equirectangular .hdr or .exr on the window \
+                   to use it.";
+        row(ui, "Environment", tip, |ui| environment_choice(ui, kind, &shown, actions));
+        if let Some(source) = source_name(&shown, scene) {
+            row(ui, "Source", "Source of the environment.", |ui| ui.add(egui::Label::new(source).truncate()));
+        }
+        let mut world = shown.clone();
+        if let Environment::Uniform(color) = &mut world.environment {
+            row(ui, "Color", "Linear radiance.", |ui| color_edit(ui, color));
+        }
+        let mut degrees = world.rotation.to_degrees();
+        let tip = "Rotates the environment about the vertical axis.";
+        let response = row(ui, "Turn", tip, |ui| {
+            ui.add(DragValue::new(&mut degrees).speed(1.0).range(-360.0..=360.0).suffix("°").max_decimals(1))
+        });
+        if response.changed() {
+            world.rotation = degrees.to_radians();
+        }
+        let mut strength = f64::from(world.strength);
+        let tip = "Scales the radiance of the environment.";
+        if row(ui, "Strength", tip, |ui| ui.add(proportional_value(&mut strength, 0.0..=1e6))).changed() {
+            world.strength = strength as f32;
+        }
+        row(ui, "Backdrop", "What the camera sees behind all surfaces. It does not light the scene.", |ui| {
+            backdrop_buttons(ui, &mut world.backdrop)
+        });
+        if let Backdrop::Color(color) = &mut world.backdrop {
+            row(ui, "Backdrop color", "Linear radiance of the backdrop.", |ui| color_edit(ui, color));
+        }
+        let tip = "Maximum number of bounces of light between surfaces: 0 is direct light only.";
+        row(ui, "Bounces", tip, |ui| bounces(ui, &mut world.bounces));
+        if world != shown {
+            actions.push(Command::SetWorld(Some(world)).into());
+        }
+    });
+}
+
+fn environment_kind(scene: &Scene) -> EnvironmentKind {
+    match scene.world.as_ref().map(|world| &world.environment) {
+        None => EnvironmentKind::Own,
+        Some(environment) if is_scene_environment(environment, scene) => EnvironmentKind::Own,
+        Some(Environment::Uniform(_)) => EnvironmentKind::Color,
+        Some(environment) if *environment == World::studio().environment => EnvironmentKind::Studio,
+        Some(_) => EnvironmentKind::File,
+    }
+}
+
+/// Whether an environment is the one provided by the scene's file.
+fn is_scene_environment(environment: &Environment, scene: &Scene) -> bool {
+    let own = scene.embedded_world.as_ref().map(|own| &own.environment);
+    match (environment, own) {
+        // The usual case, without comparing texels.
+        (Environment::Map(map), Some(Environment::Map(own))) if Arc::ptr_eq(map, own) => true,
+        (environment, own) => Some(environment) == own,
+    }
+}
+
+/// The file name of an environment map, or the scene's name for its own.
+fn source_name(world: &World, scene: &Scene) -> Option<String> {
+    let Environment::Map(map) = &world.environment else { return None };
+    if is_scene_environment(&world.environment, scene) {
+        return Some(format!("{} of the scene", map.name));
+    }
+    let name = std::path::Path::new(&map.name).file_name();
+    Some(name.map_or_else(|| map.name.clone(), |name| name.to_string_lossy().into_owned()))
+}
+
+fn environment_choice(
+    ui: &mut Ui,
+    kind: EnvironmentKind,
+    shown: &World,
+    actions: &mut Vec<Action>,
+) -> egui::Response {
+    let choices = [
+        (
+            EnvironmentKind::Own,
+            "The scene's own",
+            "The environment of the scene's file (EXT_lights_image_based); a scene without light gets the \
+             studio.",
+        ),
+        (EnvironmentKind::Studio, "Studio", "A soft neutral studio."),
+        (EnvironmentKind::Color, "Color", "The same radiance from all directions."),
+        (EnvironmentKind::File, "Picture…", "An equirectangular image, .hdr or .exr."),
+    ];
+    let label = choices.iter().find(|(choice, ..)| *choice == kind).map_or("", |(_, label, _)| label);
+    let mut chosen = None;
+    let response = ComboBox::from_id_salt("environment")
+        .selected_text(label)
+        .show_ui(ui, |ui| {
+            for (choice, label, tip) in choices {
+                if ui.selectable_label(kind == choice, label).on_hover_text(tip).clicked() {
+                    chosen = Some(choice);
+                }
+            }
+        })
+        .response;
+    match chosen {
+        Some(EnvironmentKind::Own) => actions.push(Command::SetWorld(None).into()),
+        Some(EnvironmentKind::Studio) => actions.push(Command::SetWorld(Some(World::studio())).into()),
+        Some(EnvironmentKind::Color) => {
+            let color = match shown.environment {
+                Environment::Uniform(color) if color != Vec3::ZERO => color,
+                _ => Vec3::splat(0.5),
+            };
+            actions.push(Command::SetWorld(Some(World::uniform(color))).into());
+        }
+        Some(EnvironmentKind::File) => actions.push(Action::ChooseEnvironment),
+        None => {}
+    }
+    response
+}
+
+fn backdrop_buttons(ui: &mut Ui, backdrop: &mut Backdrop) -> egui::Response {
+    ui.horizontal(|ui| {
+        let is_environment = *backdrop == Backdrop::Environment;
+        if ui
+            .add(Button::selectable(is_environment, "Environment"))
+            .on_hover_text("The camera sees the environment.")
+            .clicked()
+        {
+            *backdrop = Backdrop::Environment;
+        }
+        if ui
+            .add(Button::selectable(!is_environment, "Plain"))
+            .on_hover_text("The camera sees a plain colour.")
+            .clicked()
+            && is_environment
+        {
+            *backdrop = World::studio().backdrop;
+        }
+    })
+    .response
+}
+
+fn color_edit(ui: &mut Ui, color: &mut Vec3) -> egui::Response {
+    let mut rgb = color.to_array();
+    let response = ui.color_edit_button_rgb(&mut rgb);
+    if response.changed() {
+        *color = Vec3::from_array(rgb);
+    }
+    response
+}
+
+fn bounces(ui: &mut Ui, bounces: &mut Option<u32>) -> egui::Response {
+    ui.horizontal(|ui| {
+        let mut all = bounces.is_none();
+        if ui.checkbox(&mut all, "All").on_hover_text("As many bounces as contribute.").changed() {
+            *bounces = if all { None } else { Some(2) };
+        }
+        if let Some(count) = bounces {
+            ui.add(DragValue::new(count).range(0..=64));
+        }
+    })
+    .response
+}

@@ -1,0 +1,22 @@
+//! What painting does to a document.
+//!
+//! Strokes, fills, gradients, selections and layers, each a step of undo that can be recorded and done again. Nothing here
+//! knows of pictures: what changed is returned.
+
+mod active_edit;
+mod active_gradient;
+mod depth_stroke;
+mod edits;
+mod object_axes;
+mod paintable;
+mod painter;
+mod recorded_steps;
+mod selection_shapes;
+mod stroke_point;
+
+pub use active_edit::ActiveEdit;
+pub use active_gradient::ActiveGradient;
+pub use painter::Painter;
+pub use recorded_steps::{apply_recorded_step, replay};
+pub use selection_shapes::rectangle_outline;
+pub use stroke_point::{FillRegion, StrokePoint, StrokeTarget};

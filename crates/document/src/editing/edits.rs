@@ -1,0 +1,190 @@
+//! What painting does to a document beside strokes: fills, gradients, selections, layers. Each is a step of undo and, as
+//! data, of the recording; nothing is left of one that changed nothing.
+
+use crate::editing::paintable::paintable_channels;
+use crate::editing::selection_shapes::select_texels;
+use crate::editing::stroke_point::FillRegion;
+use crate::adjustment_view::AdjustmentView;
+use crate::open_document::Document;
+use crate::error::DocumentError;
+use focus::{
+    ChangedTexels, Channels, CombineMode, Edit, FillTarget, FocusError, FocusMap, Gradient, LayerEdit,
+    LayerStack, SelectionResult, draw_gradient, fill_selected,
+};
+use lens::FocusOffset;
+use project::{RecordedFill, RecordedGradient, RecordedSelection, RecordedStep, SelectionShape};
+
+impl From<FocusError> for DocumentError {
+    fn from(error: FocusError) -> Self {
+        Self::BadInput(error.to_string())
+    }
+}
+
+impl Document {
+    /// What a region covers. What lies at the images of the brush's symmetry belongs to it too.
+    pub fn fill_targets(&self, region: FillRegion) -> Vec<FillTarget> {
+        let hit = match region {
+            FillRegion::Node(hit)
+            | FillRegion::Part(hit)
+            | FillRegion::Material(hit)
+            | FillRegion::Chart(hit) => hit,
+            FillRegion::All => return vec![FillTarget::Everything],
+        };
+        let stage = &self.stage;
+        let target = |part: u32, chart: u32| match region {
+            // A picture is one object: what hangs together in depth stands for those that it shows.
+            FillRegion::Node(_) if stage.scene.picture.is_some() => FillTarget::Chart(chart),
+            FillRegion::Node(_) => FillTarget::Node(stage.scene.parts[part as usize].node),
+            FillRegion::Material(_) => FillTarget::Material(stage.scene.parts[part as usize].material),
+            FillRegion::Chart(_) => FillTarget::Chart(chart),
+            FillRegion::Part(_) | FillRegion::All => FillTarget::Part(part),
+        };
+        let (triangle, images) = (hit.point.triangle as usize, self.symmetry_at(Some(&hit)).images());
+        let hit_target = target(stage.scene.triangles[triangle].part, stage.atlas.chart_of[triangle]);
+        let mirrored_targets = images[1..].iter().filter_map(|image| {
+            let index = stage.canvas.nearest(image.point(hit.position), |_| true)?;
+            let texel = &stage.canvas.texels()[index];
+            Some(target(texel.part, texel.chart))
+        });
+        let mut targets: Vec<_> = std::iter::once(hit_target).chain(mirrored_targets).collect();
+        targets.sort_unstable();
+        targets.dedup();
+        targets
+    }
+
+    /// Gives targets of the active layer a focus. What changed in the layer.
+    pub fn fill(
+        &mut self,
+        targets: Vec<FillTarget>,
+        focus: FocusOffset,
+    ) -> Result<ChangedTexels, DocumentError> {
+        let name = match targets.first() {
+            Some(FillTarget::Node(_)) => "Fill object",
+            Some(FillTarget::Part(_)) => "Fill part",
+            Some(FillTarget::Material(_)) => "Fill material",
+            Some(FillTarget::Chart(_)) if self.stage.scene.picture.is_some() => "Fill region",
+            Some(FillTarget::Chart(_)) => "Fill chart",
+            Some(FillTarget::Background) => "Background focus",
+            Some(FillTarget::Everything) | None => "Fill everything",
+        };
+        let channels = paintable_channels(self.layers.active(), Channels::All)?;
+        let (canvas, selection) = (self.stage.canvas.clone(), self.selection.clone());
+        let layer = self.layers.active_mut();
+        let before = layer.map.clone();
+        let changed =
+            fill_selected(&mut layer.map, &canvas, &targets, (focus, channels), selection.as_ref())?;
+        let record = RecordedFill { layer: layer.name.clone(), targets, focus };
+        self.push_paint(name, &before, RecordedStep::Fill(record));
+        Ok(changed)
+    }
+
+    /// Draws a gradient over the active layer, which was `before` when it was begun. What changed is not told: a
+    /// gradient in the making is drawn again and again.
+    pub fn draw_gradient(
+        &mut self,
+        before: &FocusMap,
+        gradient: &Gradient,
+    ) -> Result<(), DocumentError> {
+        let channels = paintable_channels(self.layers.active(), self.brush.channels)?;
+        let (canvas, selection) = (self.stage.canvas.clone(), self.selection.clone());
+        let map = &mut self.layers.active_mut().map;
+        *map = before.clone();
+        draw_gradient(map, &canvas, gradient, channels, selection.as_ref())?;
+        Ok(())
+    }
+
+    /// Ends a gradient.
+    pub fn finish_gradient(&mut self, before: &FocusMap, gradient: Gradient) -> bool {
+        let layer = self.layers.active().name.clone();
+        let record = RecordedGradient { layer, gradient };
+        self.push_paint("Gradient", before, RecordedStep::Gradient(record))
+    }
+
+    /// Notes a change of the active layer's map, if there is one.
+    fn push_paint(&mut self, name: &str, before: &FocusMap, record: RecordedStep) -> bool {
+        let index = self.layers.active_index();
+        let Some(edit) = Edit::from_difference(name, before, &self.layers.active().map) else { return false };
+        self.undo.push_paint(index, edit, Some(record));
+        self.revision += 1;
+        true
+    }
+
+    /// Chooses what may be painted. Whether that is something else than before.
+    pub fn select(
+        &mut self,
+        shape: SelectionShape,
+        combine: CombineMode,
+    ) -> Result<bool, DocumentError> {
+        if !shape.is_valid() {
+            return Err(DocumentError::BadInput("selection: the shape cannot be used".into()));
+        }
+        let before = self.selection.as_ref();
+        let matches = select_texels(&self.stage, &shape, before);
+        let after = match matches.combine_with(before, combine, self.stage.canvas.texels().len()) {
+            SelectionResult::Nothing => {
+                let what = "selection: nothing would be left to paint on (choose something else)";
+                return Err(DocumentError::BadInput(what.into()));
+            }
+            SelectionResult::Everything => None,
+            SelectionResult::Some(selection) => Some(selection),
+        };
+        if after == self.selection {
+            return Ok(false);
+        }
+        let before = std::mem::replace(&mut self.selection, after.clone());
+        let name = if after.is_none() { "Select everything" } else { "Select" };
+        let record = RecordedStep::Select(RecordedSelection { shape, combine });
+        self.undo.push_selection(name, before, after, Some(record));
+        Ok(true)
+    }
+
+    /// Changes the layers. Whether anything changed.
+    pub fn edit_layers(&mut self, edit: LayerEdit) -> Result<bool, DocumentError> {
+        let (name, record) = (edit.name(), RecordedStep::Layers(edit.clone()));
+        self.change_layers(name, Some(record), |layers, document| {
+            Ok(edit.apply(layers, &document.stage.canvas, &document.camera)?)
+        })
+    }
+
+    /// Lets the active layer count only where it may be painted. Whether that changed anything.
+    pub fn mask_selected(&mut self) -> Result<bool, DocumentError> {
+        let Some(selection) = self.selection.clone() else {
+            let what = "selection: everything may be painted (choose what the layer is to count on first)";
+            return Err(DocumentError::BadInput(what.into()));
+        };
+        self.change_layers("Mask from selection", Some(RecordedStep::Mask), |layers, document| {
+            layers.active_mut().map.set_mask_from_selection(&document.stage.canvas, &selection);
+            Ok(())
+        })
+    }
+
+    /// Takes all paint and all layers away. Whether there was any.
+    pub fn reset_map(&mut self) -> Result<bool, DocumentError> {
+        let [width, height] = self.map.size();
+        let blank = LayerStack::from_map(FocusMap::new(width, height, FocusOffset::STANDARD));
+        self.change_layers("Reset all paint", Some(RecordedStep::Reset), |layers, _| {
+            *layers = blank;
+            Ok(())
+        })
+    }
+
+    /// Changes the layers as one step of undo. A change that fails, or changes nothing, leaves no trace.
+    pub fn change_layers(
+        &mut self,
+        name: &str,
+        record: Option<RecordedStep>,
+        change: impl FnOnce(&mut LayerStack, &Document) -> Result<(), DocumentError>,
+    ) -> Result<bool, DocumentError> {
+        let before = self.layers.clone();
+        let mut after = before.clone();
+        change(&mut after, self)?;
+        if after == before {
+            return Ok(false);
+        }
+        self.layers = after.clone();
+        self.adjustment_view = AdjustmentView::from_camera(&self.camera);
+        self.undo.push_layers(name, before, after, record);
+        self.revision += 1;
+        Ok(true)
+    }
+}

@@ -1,0 +1,503 @@
+//! What can be opened: a scene, a project or a light field, as the renderers need it.
+
+mod capture_scene;
+mod depth_polarity;
+mod depth_scene;
+mod disparity_error;
+mod disparity_estimate;
+mod light_field_scene;
+mod picture_regions;
+mod picture_scene;
+mod picture_surface;
+mod picture_views;
+mod variant_choice;
+
+pub(crate) use picture_scene::picture_atlas;
+pub(crate) use capture_scene::load_capture;
+pub use capture_scene::{camera_from_photograph, find_photograph, is_capture};
+pub use depth_polarity::DepthPolarityRequest;
+pub use disparity_error::DisparityError;
+pub use variant_choice::VariantChoice;
+
+use crate::input::capture_scene::CaptureScene;
+use crate::input::capture_scene::PHOTOGRAPH_PREFIX;
+use crate::input::capture_scene::capture_disparity_error;
+use crate::input::capture_scene::parse_photograph_camera;
+use light::{LightOptions, LitScene, Resources, load_or_unwrap_atlas};
+use crate::scene_camera::shot_camera_from;
+use crate::scene_camera::shot_camera_in_any_unit;
+use crate::stage::Stage;
+use crate::stage::atlas_error;
+use crate::stage::load_variant;
+use crate::paint_transfer::TransferredPaint;
+use crate::error::DocumentError;
+use light::Steps;
+use atlas::{Atlas, AtlasError, UnwrapOptions};
+use focus::{Focus, FocusMap, FocusRecipe, RecipeEntry};
+use lens::{Camera, Exposure, FocusOffset};
+use progress::Progress;
+use project::{CaptureChoices, FocusFile, ProjectError, ProjectFile, SceneState, read_camera, read_focus};
+use salf::{Salf, SalfFile};
+use scene::{BackFaces, Fault, Scene, SceneError, World};
+use std::fs::File;
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use trace::Tracer;
+
+impl From<ProjectError> for DocumentError {
+    fn from(error: ProjectError) -> Self {
+        use std::io::ErrorKind::{QuotaExceeded, ResourceBusy, StorageFull, TimedOut, WouldBlock};
+        match &error {
+            ProjectError::Read { source, .. } | ProjectError::Write { source, .. } => match source.kind() {
+                StorageFull | QuotaExceeded | ResourceBusy | TimedOut | WouldBlock => {
+                    Self::TryAgain(error.to_string())
+                }
+                _ => Self::BadInput(error.to_string()),
+            },
+            ProjectError::Unverified { .. } => Self::TryAgain(error.to_string()),
+            _ => Self::BadInput(error.to_string()),
+        }
+    }
+}
+
+/// An opened file.
+pub struct Input {
+    /// The file.
+    pub path: PathBuf,
+    /// The scene: its own, the project's, or the one that the light field was baked from.
+    pub scene: Arc<Scene>,
+    /// The camera that it is shown with unless another one is asked for.
+    pub camera: Camera,
+    /// Of a project: everything else that it says.
+    pub project: Option<ProjectFile>,
+    /// Of a light field: the light field.
+    pub salf: Option<Arc<Salf>>,
+    /// Of a capture that was opened as such: what of it was chosen.
+    pub capture: Option<CaptureChoices>,
+    /// What is odd but does no harm, a sentence each.
+    pub warnings: Vec<String>,
+    /// Whether something is missing that the file speaks of: photographs of a capture.
+    pub is_incomplete: bool,
+    /// How the project's paint came onto this surface, where it was painted on another.
+    pub paint_transfer: Option<TransferredPaint>,
+    /// How its light is modelled.
+    pub light: LightOptions,
+    /// What work on it may use.
+    pub resources: Resources,
+}
+
+/// A camera, as asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub enum CameraChoice {
+    /// A camera file; what it lacks is as in the input's own camera.
+    File(PathBuf),
+    /// The camera of this name in the scene or project.
+    Named(String),
+}
+
+/// What a file seems to be, by its extension.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum InputKind {
+    /// `.glb` or `.gltf`.
+    Scene,
+    /// `.fbrush`.
+    Project,
+    /// `.salf`.
+    LightField,
+    /// The folder of a capture, or a picture that is one.
+    Capture,
+}
+
+impl InputKind {
+    /// What `path` seems to be; an error for a file that is none of them.
+    pub fn from_path(path: &Path) -> Result<Self, DocumentError> {
+        let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+        if path.is_dir() {
+            return Ok(Self::Capture);
+        }
+        match extension.as_str() {
+            "glb" | "gltf" => Ok(Self::Scene),
+            ProjectFile::EXTENSION | "recovery" => Ok(Self::Project),
+            "salf" => Ok(Self::LightField),
+            _ if !path.exists() => Err(DocumentError::bad_file(path, "no such file (check the path)")),
+            _ if capture::may_be_picture(path) => Ok(Self::Capture),
+            _ => {
+                let extensions = format!(".glb, .gltf, .{} or .salf", ProjectFile::EXTENSION);
+                Err(DocumentError::bad_file(
+                    path,
+                    format!("neither scene, project nor light field (give a {extensions} file)"),
+                ))
+            }
+        }
+    }
+}
+
+impl Input {
+    /// Opens `path`.
+    pub fn open(path: &Path, resources: &Resources, steps: &dyn Steps) -> Result<Self, DocumentError> {
+        Self::open_variant(path, &VariantChoice::AsSaved, resources, steps)
+    }
+
+    /// Opens `path` in a variant of its scene.
+    pub fn open_variant(
+        path: &Path,
+        variant: &VariantChoice,
+        resources: &Resources,
+        steps: &dyn Steps,
+    ) -> Result<Self, DocumentError> {
+        match InputKind::from_path(path)? {
+            InputKind::Scene => Self::open_scene(path, variant, resources, steps),
+            InputKind::Project => Self::open_project(path, ProjectFile::load(path)?, variant, resources, steps),
+            InputKind::LightField => Self::open_light_field(path, variant, resources, steps),
+            InputKind::Capture => Self::open_capture(path, CaptureChoices::default(), resources, steps),
+        }
+    }
+
+    /// Opens the capture in a folder.
+    pub fn open_capture(
+        path: &Path,
+        choices: CaptureChoices,
+        resources: &Resources,
+        steps: &dyn Steps,
+    ) -> Result<Self, DocumentError> {
+        let loaded = load_capture(path, &choices, &resources.cache, steps)?;
+        let CaptureScene { scene, camera, remarks: mut warnings, is_incomplete } = loaded;
+        warnings.extend(prefix_with_path(path, &scene.warnings));
+        let camera = camera.unwrap_or_else(|| shot_camera_in_any_unit(&scene.cameras[0]));
+        let input = Self::new(path, scene, camera, warnings, resources);
+        Ok(Self { capture: Some(choices), is_incomplete, ..input })
+    }
+
+    /// How far the disparities that the views of a light field tell by themselves are from those that came with them; none where none did.
+    ///
+    /// # Errors
+    /// The views cannot be read, or `progress` says to stop.
+    pub fn disparity_error(&self, progress: &dyn Progress) -> Result<Option<DisparityError>, DocumentError> {
+        let project_choices = self.project.as_ref().and_then(|project| project.capture.as_ref());
+        match (self.capture.as_ref().or(project_choices), &self.scene.picture) {
+            (Some(choices), Some(_)) => capture_disparity_error(&self.scene.path, choices, &self.resources.cache, progress),
+            _ => Ok(None),
+        }
+    }
+
+    /// Neither project nor light field nor capture, and complete.
+    fn new(
+        path: &Path,
+        scene: Arc<Scene>,
+        camera: Camera,
+        warnings: Vec<String>,
+        resources: &Resources,
+    ) -> Self {
+        Self {
+            path: path.into(),
+            scene,
+            camera,
+            project: None,
+            salf: None,
+            capture: None,
+            warnings,
+            is_incomplete: false,
+            paint_transfer: None,
+            light: LightOptions::default(),
+            resources: resources.clone(),
+        }
+    }
+
+    fn open_scene(
+        path: &Path,
+        variant: &VariantChoice,
+        resources: &Resources,
+        steps: &dyn Steps,
+    ) -> Result<Self, DocumentError> {
+        let scene = load_variant(path, variant.name(None), &*steps.begin("reading"))?;
+        let camera = shot_camera_from(&scene.cameras[0], &Camera::default());
+        let warnings = prefix_with_path(path, &scene.warnings);
+        Ok(Self::new(path, scene, camera, warnings, resources))
+    }
+
+    /// Opens what `project` says, which was read from `path`.
+    pub(crate) fn open_project(
+        path: &Path,
+        project: ProjectFile,
+        variant: &VariantChoice,
+        resources: &Resources,
+        steps: &dyn Steps,
+    ) -> Result<Self, DocumentError> {
+        let mut warnings = Vec::new();
+        match project.scene_state() {
+            SceneState::Same => {}
+            SceneState::Changed => warnings.push(format!(
+                "{}: its scene {} has changed since (look at the paint before saving)",
+                path.display(),
+                project.scene.display()
+            )),
+            SceneState::Missing => {
+                let what = format!("its scene {} is missing (put it back)", project.scene.display());
+                return Err(DocumentError::bad_file(path, what));
+            }
+        }
+        if let Some(choices) = &project.capture {
+            let loaded = load_capture(&project.scene, choices, &resources.cache, steps)?;
+            warnings.extend(loaded.remarks);
+            let is_incomplete = loaded.is_incomplete;
+            return Ok(Self { is_incomplete, ..Self::from_project(path, project, loaded.scene, warnings, resources) });
+        }
+        let load_scene_variant = |variant| load_variant(&project.scene, variant, &*steps.begin("reading"));
+        let scene = match load_scene_variant(variant.name(project.variant.as_deref())) {
+            Err(SceneError::Bad { file, fault: fault @ Fault::NoVariant { .. } })
+                if *variant == VariantChoice::AsSaved =>
+            {
+                let instead = "it has its own materials instead, choose a variant before saving";
+                warnings.push(format!("{}: {fault}; {instead}", file.display()));
+                load_scene_variant(None)?
+            }
+            loaded => loaded?,
+        };
+        Ok(Self::from_project(path, project, scene, warnings, resources))
+    }
+
+    /// A project whose scene was read.
+    fn from_project(
+        path: &Path,
+        project: ProjectFile,
+        scene: Arc<Scene>,
+        mut warnings: Vec<String>,
+        resources: &Resources,
+    ) -> Self {
+        warnings.extend(prefix_with_path(&project.scene, &scene.warnings));
+        let camera = project.cameras[project.active_camera].camera.clone();
+        let (back_faces, world) = (project.back_faces, project.world.clone());
+        let mut input = Self { project: Some(project), ..Self::new(path, scene, camera, warnings, resources) };
+        input.set_back_faces(back_faces);
+        match world.map(|world| world.load(&input.scene)).transpose() {
+            Ok(world) => input.set_world(world),
+            Err(error) => {
+                input
+                    .warnings
+                    .push(format!("{error}; the scene has its own world (choose one before saving)"));
+            }
+        }
+        input
+    }
+
+    /// Has faces seen from behind, or not, whatever the project says.
+    pub fn set_back_faces(&mut self, back_faces: BackFaces) {
+        if back_faces != self.scene.back_faces {
+            Arc::make_mut(&mut self.scene).back_faces = back_faces;
+        }
+    }
+
+    /// Gives the scene a world, whatever the project says; none: its own.
+    pub fn set_world(&mut self, world: Option<World>) {
+        if world != self.scene.world {
+            Arc::make_mut(&mut self.scene).world = world;
+        }
+    }
+
+    fn open_light_field(
+        path: &Path,
+        variant: &VariantChoice,
+        resources: &Resources,
+        steps: &dyn Steps,
+    ) -> Result<Self, DocumentError> {
+        let file = File::open(path).map_err(|error| DocumentError::io(path, &error))?;
+        let SalfFile { source, triangles, salf } =
+            SalfFile::read(BufReader::new(file)).map_err(|error| DocumentError::bad_file(path, error))?;
+        let source_path = path.parent().unwrap_or(Path::new("")).join(&source);
+        if InputKind::from_path(&source_path).ok() == Some(InputKind::LightField) || !source_path.exists() {
+            let what =
+                format!("the scene it was baked from, {}, is missing (put it back)", source_path.display());
+            return Err(DocumentError::bad_file(path, what));
+        }
+        let baked_from = Self::open_variant(&source_path, variant, resources, steps)?;
+        if baked_from.scene.triangles.len() != triangles as usize {
+            let what = format!(
+                "the scene it was baked from, {}, has changed since (bake again)",
+                source_path.display()
+            );
+            return Err(DocumentError::bad_file(path, what));
+        }
+        Ok(Self { path: path.into(), camera: salf.camera.clone(), salf: Some(salf), ..baked_from })
+    }
+
+    /// The camera to show it with. Where none is asked for: the project's, else the scene's first.
+    pub fn camera(&self, choice: Option<&CameraChoice>) -> Result<Camera, DocumentError> {
+        match choice {
+            None => Ok(self.camera.clone()),
+            Some(CameraChoice::File(file)) => {
+                // A framing that was made up for a scene without a camera is nothing that a camera file counts on.
+                let is_invented =
+                    self.project.is_none() && self.salf.is_none() && self.scene.has_default_camera;
+                let defaults = if is_invented { &Camera::default() } else { &self.camera };
+                Ok(read_camera(file, defaults)?)
+            }
+            Some(CameraChoice::Named(name)) => {
+                let saved = self.project.iter().flat_map(|project| &project.cameras);
+                let mut saved = saved.filter(|named| named.name == *name).map(|named| named.camera.clone());
+                if let Some(name) = name.strip_prefix(PHOTOGRAPH_PREFIX) {
+                    let camera = parse_photograph_camera(&self.scene, name, &self.camera);
+                    return camera.map_err(|what| DocumentError::bad_file(&self.path, what));
+                }
+                let in_scene = || self.scene.cameras.iter().find(|camera| camera.name == *name);
+                saved.next().or_else(|| in_scene().map(|c| shot_camera_from(c, &self.camera))).ok_or_else(
+                    || {
+                        let names: Vec<_> =
+                            self.scene.cameras.iter().map(|c| format!("\"{}\"", c.name)).collect();
+                        let available =
+                            format!("there are {}; a camera file ends in .json", names.join(", "));
+                        DocumentError::bad_file(
+                            &self.path,
+                            format!("no camera is called \"{name}\" ({available})"),
+                        )
+                    },
+                )
+            }
+        }
+    }
+
+    /// How the sum becomes the picture unless asked otherwise.
+    pub fn exposure(&self) -> Exposure {
+        self.project.as_ref().map_or(Exposure::Normalise, |project| project.exposure)
+    }
+
+    /// The focus that `file` gives (a recipe or a map), or without one that of the project; the ordinary lens for
+    /// a scene. The scene is unwrapped only for a map that needs it.
+    pub fn focus(
+        &self,
+        file: Option<&Path>,
+        unwrap: &UnwrapOptions,
+        steps: &dyn Steps,
+    ) -> Result<Focus, DocumentError> {
+        let evaluated = |recipe: FocusRecipe, file: &Path| {
+            recipe.evaluate(&self.scene).map_err(|error| DocumentError::bad_file(file, error))
+        };
+        match file {
+            None => self.project_focus(unwrap, steps),
+            Some(file) => match read_focus(file)? {
+                FocusFile::Recipe(recipe) => evaluated(recipe, file),
+                FocusFile::Map(map) if map.atlas_hash.is_none() => {
+                    let background = map.background.map(RecipeEntry::Value);
+                    let default = RecipeEntry::Map(Arc::new(map.image));
+                    evaluated(FocusRecipe { default, background, ..FocusRecipe::default() }, file)
+                }
+                FocusFile::Map(map) => {
+                    let atlas = self.atlas(unwrap, steps)?;
+                    let map = map.into_atlas_map(file, &atlas)?;
+                    Ok(Focus::from_atlas_map(self.scene.clone(), atlas, Arc::new(map)))
+                }
+            },
+        }
+    }
+
+    fn project_focus(&self, unwrap: &UnwrapOptions, steps: &dyn Steps) -> Result<Focus, DocumentError> {
+        let scene = self.scene.clone();
+        let Some(project) = &self.project else { return Ok(Focus::constant(scene, FocusOffset::STANDARD)) };
+        match &project.focus_map {
+            None => {
+                let mut focus = Focus::constant(scene, FocusOffset::STANDARD);
+                focus.background = project.background_focus;
+                Ok(focus)
+            }
+            Some(map) => {
+                let atlas = self.atlas(unwrap, steps)?;
+                self.check_map_size(map, &atlas)?;
+                Ok(Focus::from_atlas_map(scene, atlas, Arc::new(map.clone())))
+            }
+        }
+    }
+
+    fn check_map_size(&self, map: &FocusMap, atlas: &Atlas) -> Result<(), DocumentError> {
+        if map.size() == [atlas.width, atlas.height] {
+            return Ok(());
+        }
+        Err(DocumentError::bad_file(
+            &self.path,
+            "its focus map does not fit its atlas (restore the file from a copy)",
+        ))
+    }
+
+    /// The atlas: the project's, or the scene unwrapped.
+    pub fn atlas(&self, unwrap: &UnwrapOptions, steps: &dyn Steps) -> Result<Arc<Atlas>, DocumentError> {
+        let stored = self.project.as_ref().and_then(|project| project.atlas.as_ref());
+        // That of a picture follows from it, however its depth was repaired since.
+        let stored = stored.filter(|_| self.scene.picture.is_none());
+        let atlas = match stored {
+            Some(bytes) => Atlas::from_bytes(bytes, &self.scene),
+            None => self.unwrap_scene(unwrap, steps),
+        };
+        Ok(Arc::new(atlas.map_err(|error| atlas_error(&self.path, error))?))
+    }
+
+    /// The atlas of the scene as it is: that of its picture, or the scene unwrapped, now or before.
+    pub(crate) fn unwrap_scene(
+        &self,
+        unwrap: &UnwrapOptions,
+        steps: &dyn Steps,
+    ) -> Result<Atlas, AtlasError> {
+        match picture_atlas(&self.scene) {
+            Some(atlas) => Ok(atlas),
+            None => {
+                let cache = &self.resources.cache;
+                load_or_unwrap_atlas(&self.scene, unwrap, cache, &*steps.begin("unwrapping"))
+            }
+        }
+    }
+
+    /// The scene ready for rays, whose light from photographs is kept at the texels of the project's atlas, if it has one.
+    ///
+    /// # Errors
+    /// The project's atlas is damaged.
+    pub fn lit_scene(&self) -> Result<Arc<LitScene>, DocumentError> {
+        let tracer = Arc::new(Tracer::new(self.scene.clone()));
+        let lit = LitScene::new(tracer, self.light, &self.resources);
+        let stored = self.project.as_ref().and_then(|project| project.atlas.as_ref());
+        if let Some(bytes) = stored.filter(|_| lit.is_photographed()) {
+            let atlas =
+                Atlas::from_bytes(bytes, &self.scene).map_err(|error| atlas_error(&self.path, error))?;
+            lit.set_atlas(&Arc::new(atlas));
+        }
+        Ok(lit)
+    }
+
+    /// Everything that painting needs, and the focus map.
+    pub(crate) fn prepare_stage(
+        &self,
+        unwrap: &UnwrapOptions,
+        steps: &dyn Steps,
+    ) -> Result<(Stage, FocusMap), DocumentError> {
+        let lit = LitScene::new(Arc::new(Tracer::new(self.scene.clone())), self.light, &self.resources);
+        let project = self.project.as_ref();
+        let is_large = self.scene.triangles.len() >= LARGE_SCENE_TRIANGLES;
+        let is_unwrapped = project.is_some_and(|project| project.atlas.is_some());
+        if is_large && !is_unwrapped {
+            steps.scene_ready(&lit, &self.camera);
+        }
+        let atlas = self.atlas(unwrap, steps)?;
+        if is_large && is_unwrapped {
+            lit.set_atlas(&atlas);
+            steps.scene_ready(&lit, &self.camera);
+        }
+        let map = match project.and_then(|project| project.focus_map.clone()) {
+            Some(map) => map,
+            None => {
+                let mut map = FocusMap::new(atlas.width, atlas.height, FocusOffset::STANDARD);
+                map.background = project.map_or(FocusOffset::STANDARD, |project| project.background_focus);
+                map
+            }
+        };
+        self.check_map_size(&map, &atlas)?;
+        let mut stage = Stage::new(lit, atlas, &*steps.begin("preparing"))?;
+        let choices = project.and_then(|project| project.capture.as_ref()).or(self.capture.as_ref());
+        stage.depth_strokes = choices.map(|choices| choices.depth_strokes.clone()).unwrap_or_default().into();
+        Ok((stage, map))
+    }
+}
+
+/// So many are unwrapped in a second or two.
+const LARGE_SCENE_TRIANGLES: usize = 50_000;
+
+/// Warnings that say whose they are.
+pub(crate) fn prefix_with_path(path: &Path, warnings: &[String]) -> Vec<String> {
+    warnings.iter().map(|warning| format!("{}: {warning}", path.display())).collect()
+}

@@ -1,0 +1,465 @@
+//! What is open: the scene, its focus and its camera.
+
+use crate::adjustment_view::AdjustmentView;
+use crate::input::camera_from_photograph;
+use crate::input::CameraChoice;
+use crate::input::Input;
+use crate::input::InputKind;
+use crate::input::prefix_with_path;
+use crate::picking::SurfaceHit;
+use crate::scene_camera::shot_camera_from;
+use crate::stage::Stage;
+use crate::undo::HistoryStep;
+use crate::undo::UndoHistory;
+use crate::input::VariantChoice;
+use crate::paint_transfer::TransferredPaint;
+use crate::error::DocumentError;
+use crate::error::file_name;
+use light::{Resources, Steps};
+use atlas::UnwrapOptions;
+use focus::{
+    Brush, ChangedTexels, EditThumbnail, FocusMap, FocusRecipe, LayerStack, LensMotion, RecipeEntry,
+    Selection, SelectionResult,
+};
+use lens::{Camera, Exposure, FocusOffset};
+use project::{CaptureChoices, FocusFile, NamedCamera, ProjectFile, TexelSet, WorldFile};
+use relief::DepthStroke;
+use scene::{Scene, View};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// What a new document begins with.
+#[derive(Clone, Debug, Default)]
+pub struct NewDocumentOptions<'a> {
+    /// The camera; without one the scene's first.
+    pub camera: Option<&'a CameraChoice>,
+    /// A recipe or a focus map; without one the ordinary lens.
+    pub focus: Option<&'a Path>,
+    /// A project whose paint is carried over by surface.
+    pub paint_from: Option<&'a Path>,
+    /// The scene's variant.
+    pub variant: VariantChoice,
+}
+
+/// An open document. Focus map, camera and the scene's variant are saved and can be undone. The selection can be undone and is
+/// saved with them, but is no change of theirs; brush, exposure and view are saved, too, and are not part of the history.
+pub struct Document {
+    /// Scene, atlas and what works on them.
+    pub stage: Arc<Stage>,
+    /// The layers of focus.
+    pub layers: LayerStack,
+    /// What the layers make together: the focus as it is rendered and exported.
+    pub map: FocusMap,
+    /// The shot camera.
+    pub camera: Camera,
+    /// How the lens moves over time; how layers do, they know themselves.
+    pub lens_motion: LensMotion,
+    /// The time that is shown, s: camera and layers are as their keys say then. Neither saved nor undone.
+    pub seconds: f64,
+    /// How the sum becomes the picture.
+    pub exposure: Exposure,
+    /// The brush of the strokes to come.
+    pub brush: Brush,
+    /// What may be painted; everything where there is none.
+    pub selection: Option<Selection>,
+    /// The strokes that repair depth, in their order; the stage may still be made without the latest.
+    pub depth_strokes: Arc<Vec<DepthStroke>>,
+    /// Layout and viewpoint as the window wants them, any JSON.
+    pub view: serde_json::Value,
+    /// The project file; none before the first save.
+    pub path: Option<PathBuf>,
+    /// What is odd about its files but does no harm, a sentence each.
+    pub warnings: Vec<String>,
+    /// How the paint came onto this surface, where it was painted on another. The step can be taken back; the project that it comes
+    /// from stays as it is.
+    pub paint_transfer: Option<TransferredPaint>,
+    /// The view that the adjustment layers were evaluated for.
+    pub adjustment_view: AdjustmentView,
+    /// What is saved beside the fields above.
+    template: ProjectFile,
+    /// Steps of undo and redo.
+    pub undo: UndoHistory,
+    /// The map after the latest step.
+    thumbnail_base: FocusMap,
+    /// Counts changes of what is saved.
+    pub revision: u64,
+    /// The revision that the project file holds.
+    pub saved_revision: u64,
+}
+
+/// What the saved camera of a new document is called.
+const SHOT_CAMERA_NAME: &str = "shot";
+
+impl Document {
+    /// Memory that steps of undo may keep alive unless told otherwise.
+    pub const UNDO_BUDGET_BYTES: usize = 256 << 20;
+
+    /// Opens a scene or a project. Work that was not saved when the program last ended is restored: the document
+    /// is then unsaved, and its warnings say so.
+    pub fn open(
+        path: &Path,
+        unwrap: &UnwrapOptions,
+        resources: &Resources,
+        steps: &dyn Steps,
+    ) -> Result<Self, DocumentError> {
+        let kind = InputKind::from_path(path)?;
+        if kind == InputKind::LightField {
+            let what =
+                "a light field has no surface to paint on (open the scene or project it was baked from)";
+            return Err(DocumentError::bad_file(path, what));
+        }
+        let is_project = kind == InputKind::Project;
+        let recovery = recovery_path(path, is_project);
+        let recovered = project::find_recovery(&recovery, is_project.then_some(path));
+        let is_recovered = recovered.is_some();
+        let input = match recovered {
+            Some(project) => Input::open_project(path, project, &VariantChoice::AsSaved, resources, steps)?,
+            None => Input::open(path, resources, steps)?,
+        };
+        let mut document = Self::from_input(input, unwrap, steps)?;
+        document.path = (is_project && document.paint_transfer.is_none()).then(|| path.into());
+        if is_recovered {
+            document.note_recovery(path);
+        }
+        Ok(document)
+    }
+
+    /// Opens a project as what a new document begins with: it has no file of its own until it is saved as one.
+    /// Unsaved work on the same scene is restored as by [`Self::open`].
+    pub fn open_template(
+        path: &Path,
+        unwrap: &UnwrapOptions,
+        resources: &Resources,
+        steps: &dyn Steps,
+    ) -> Result<Self, DocumentError> {
+        let template = ProjectFile::load(path)?;
+        let recovered = project::find_recovery(&recovery_path(&template.scene, false), None);
+        let is_recovered = recovered.is_some();
+        let input = Input::open_project(path, recovered.unwrap_or(template), &VariantChoice::AsSaved, resources, steps)?;
+        let mut document = Self::from_input(input, unwrap, steps)?;
+        if is_recovered {
+            document.note_recovery(path);
+        }
+        Ok(document)
+    }
+
+    /// Opens a project as it was saved, whatever was left unsaved.
+    pub fn open_saved(
+        path: &Path,
+        unwrap: &UnwrapOptions,
+        resources: &Resources,
+        steps: &dyn Steps,
+    ) -> Result<Self, DocumentError> {
+        let input = Input::open_project(path, ProjectFile::load(path)?, &VariantChoice::AsSaved, resources, steps)?;
+        let document = Self::from_input(input, unwrap, steps)?;
+        Ok(Self { path: document.paint_transfer.is_none().then(|| path.into()), ..document })
+    }
+
+    /// Begins a document of a scene.
+    pub fn create(
+        scene: &Path,
+        options: &NewDocumentOptions<'_>,
+        unwrap: &UnwrapOptions,
+        resources: &Resources,
+        steps: &dyn Steps,
+    ) -> Result<Self, DocumentError> {
+        if InputKind::from_path(scene)? != InputKind::Scene {
+            return Err(DocumentError::bad_file(scene, "is no scene (give a .glb or .gltf)"));
+        }
+        let mut input = Input::open_variant(scene, &options.variant, resources, steps)?;
+        if let Some(project) = options.paint_from {
+            input.import_paint_from(project, unwrap, steps)?;
+        }
+        Self::create_from_input(input, options, unwrap, steps)
+    }
+
+    /// Begins a document of a scene or capture that was read.
+    pub fn create_from_input(
+        input: Input,
+        options: &NewDocumentOptions<'_>,
+        unwrap: &UnwrapOptions,
+        steps: &dyn Steps,
+    ) -> Result<Self, DocumentError> {
+        let camera = input.camera(options.camera)?;
+        let mut document = Self::from_input(input, unwrap, steps)?;
+        document.camera = camera;
+        if let Some(focus) = options.focus {
+            document.map = document.load_focus_file(focus)?;
+            document.layers = LayerStack::from_map(document.map.clone());
+        }
+        Ok(document)
+    }
+
+    /// The focus map that a recipe or a focus map gives this document.
+    pub fn load_focus_file(&self, path: &Path) -> Result<FocusMap, DocumentError> {
+        let stage = &self.stage;
+        let recipe = match project::read_focus(path)? {
+            FocusFile::Map(map) if map.atlas_hash.is_some() => {
+                return Ok(map.into_atlas_map(path, &stage.atlas)?);
+            }
+            FocusFile::Map(map) => FocusRecipe {
+                background: map.background.map(RecipeEntry::Value),
+                default: RecipeEntry::Map(Arc::new(map.image)),
+                ..Default::default()
+            },
+            FocusFile::Recipe(recipe) => recipe,
+        };
+        let focus = recipe.evaluate(&stage.scene).map_err(|error| DocumentError::bad_file(path, error))?;
+        Ok(focus.bake(&stage.texels))
+    }
+
+    /// Takes up what is odd about another variant of the scene; returns what is told for the first time.
+    pub fn add_warnings_of(&mut self, scene: &Scene) -> Vec<String> {
+        let mut new_warnings = prefix_with_path(&scene.path, &scene.warnings);
+        new_warnings.retain(|warning| !self.warnings.contains(warning));
+        self.warnings.extend_from_slice(&new_warnings);
+        new_warnings
+    }
+
+    fn note_recovery(&mut self, path: &Path) {
+        self.revision += 1;
+        let what = "unsaved work from last time was restored (save it to keep it)";
+        self.warnings.push(format!("{}: {what}", path.display()));
+    }
+
+    pub fn from_input(
+        mut input: Input,
+        unwrap: &UnwrapOptions,
+        steps: &dyn Steps,
+    ) -> Result<Self, DocumentError> {
+        input.transfer_paint_if_changed(unwrap, steps)?;
+        let (stage, map) = input.prepare_stage(unwrap, steps)?;
+        let stored = input.project.as_ref().and_then(|project| project.layers.clone());
+        let (layers, map) = match stored {
+            Some(mut layers) => {
+                layers.evaluate(&stage.canvas, &input.camera);
+                let map = layers.composite();
+                (layers, map)
+            }
+            None => (LayerStack::from_map(map.clone()), map),
+        };
+        let template = match &input.project {
+            Some(project) => project.clone(),
+            None => {
+                let shot_camera = NamedCamera { name: SHOT_CAMERA_NAME.into(), camera: input.camera.clone() };
+                let (low, high) = input.scene.bounds();
+                let radius = brush_radius(&input.camera, (high - low).length());
+                let mut brush = Brush { radius, ..Brush::default() };
+                if input.scene.picture.is_some() {
+                    // The normals of a surface that was made from depth are as rough as that.
+                    brush.normal_limit_degrees = 180.0;
+                }
+                let capture = input.capture.clone();
+                ProjectFile { brush, capture, ..ProjectFile::new(&input.scene.path, vec![shot_camera])? }
+            }
+        };
+        let selection = template.selection.as_ref().and_then(|saved| selection_from_texels(&stage, saved));
+        let mut undo = UndoHistory::new(Self::UNDO_BUDGET_BYTES);
+        if input.paint_transfer.is_some() {
+            let [width, height] = map.size();
+            let mut blank = FocusMap::new(width, height, FocusOffset::STANDARD);
+            blank.background = map.background;
+            undo.push_layers("Carry paint over", LayerStack::from_map(blank), layers.clone(), None);
+        }
+        Ok(Self {
+            depth_strokes: stage.depth_strokes.clone(),
+            stage: Arc::new(stage),
+            layers,
+            thumbnail_base: map.clone(),
+            map,
+            adjustment_view: AdjustmentView::from_camera(&input.camera),
+            camera: input.camera.clone(),
+            lens_motion: template.lens_motion.clone(),
+            seconds: 0.0,
+            exposure: input.exposure(),
+            brush: template.brush.clone(),
+            view: template.view.clone(),
+            path: None,
+            warnings: input.warnings,
+            template,
+            undo,
+            selection,
+            revision: u64::from(input.paint_transfer.is_some()),
+            paint_transfer: input.paint_transfer,
+            saved_revision: 0,
+        })
+    }
+
+    /// The document as it is saved now.
+    pub fn to_project(&self) -> ProjectFile {
+        let scene = &self.stage.scene;
+        let mut project = self.template.clone();
+        project.cameras[project.active_camera].camera = self.camera.clone();
+        project.lens_motion = self.lens_motion.clone();
+        project.exposure = self.exposure;
+        project.back_faces = scene.back_faces;
+        project.variant = scene.variant.clone();
+        project.world = scene.world.as_ref().map(|world| WorldFile::from_world(world, scene));
+        project.brush = self.brush.clone();
+        project.view = self.view.clone();
+        project.capture = self.capture_choices();
+        // That of a picture follows from it, and its depth may be repaired further than the stage's.
+        project.atlas = scene.picture.is_none().then(|| self.stage.atlas.to_bytes());
+        project.surface = scene.picture.is_none().then(|| self.stage.surface_bytes().to_vec());
+        project.background_focus = self.map.background;
+        project.focus_map = Some(self.map.clone());
+        project.selection =
+            self.selection.as_ref().map(|selection| selection_to_texels(&self.stage, selection));
+        project.layers = (!self.layers.is_single_painted_layer()).then(|| self.layers.clone());
+        project
+    }
+
+    /// Of a capture, what of it was chosen.
+    pub fn capture_choices(&self) -> Option<CaptureChoices> {
+        let choices = self.template.capture.clone();
+        choices.map(|choices| CaptureChoices { depth_strokes: (*self.depth_strokes).clone(), ..choices })
+    }
+
+    /// Takes up another surface in the same atlas, on which paint and selections stay where they are.
+    pub fn replace_surface(&mut self, stage: Stage) {
+        let before = std::mem::replace(&mut self.stage, Arc::new(stage));
+        let after = self.stage.clone();
+        let remap_selection =
+            |selection: &Selection| selection_from_texels(&after, &selection_to_texels(&before, selection));
+        self.selection = self.selection.as_ref().and_then(remap_selection);
+        self.undo.map_selections(remap_selection);
+        for index in 0..self.layers.layers().len() {
+            if let Some(layer) = self.layers.layer_mut(index) {
+                after.canvas.dilate(&mut layer.map);
+            }
+        }
+        self.evaluate_adjustments();
+    }
+
+    /// Brings the map up to date after `changed` texels of any layer have changed, or after any change (`None`).
+    /// Returns what changed in the map, and whether the background's focus did.
+    pub fn recomposite(&mut self, changed: Option<&ChangedTexels>) -> (ChangedTexels, bool) {
+        let background = self.map.background;
+        let changed = match changed {
+            Some(changed) => self.layers.recomposite(&mut self.map, changed),
+            None => self.layers.recomposite_all(&mut self.map),
+        };
+        (changed, background != self.map.background)
+    }
+
+    /// Where unsaved work is kept.
+    pub fn recovery_path(&self) -> PathBuf {
+        let file = self.path.as_deref().unwrap_or(&self.stage.scene.path);
+        recovery_path(file, self.path.is_some())
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &Arc<Scene> {
+        &self.stage.scene
+    }
+
+    /// The focus at a surface point.
+    pub fn focus_at(&self, hit: &SurfaceHit) -> FocusOffset {
+        self.map.sample(self.stage.atlas.position_of(hit.point))
+    }
+
+    /// Whether the project file (or, before the first save, the scene as opened) differs from what is open.
+    pub fn is_unsaved(&self) -> bool {
+        self.revision != self.saved_revision
+    }
+
+    /// What to call it: the project's file name, else the scene's.
+    pub fn name(&self) -> String {
+        file_name(self.path.as_deref().unwrap_or(&self.stage.scene.path))
+    }
+
+    /// What undo would take back.
+    pub fn undo_name(&self) -> Option<&str> {
+        self.undo.undo_name()
+    }
+
+    /// What redo would do again.
+    pub fn redo_name(&self) -> Option<&str> {
+        self.undo.redo_name()
+    }
+
+    /// The history, oldest step first: what is done, then what was taken back and can be done again.
+    pub fn history(&self) -> impl Iterator<Item = HistoryStep<'_>> {
+        self.undo.steps()
+    }
+
+    /// Adds a picture of what it changed to the step that was just taken, if it was of paint.
+    pub fn add_step_thumbnail(&mut self) {
+        self.undo.set_thumbnail(EditThumbnail::from_difference(&self.thumbnail_base, &self.map));
+        self.thumbnail_base = self.map.clone();
+    }
+
+    /// Brings adjustment layers up to date with the shot camera.
+    pub fn evaluate_adjustments(&mut self) {
+        self.adjustment_view = AdjustmentView::from_camera(&self.camera);
+        self.layers.evaluate(&self.stage.canvas, &self.camera);
+    }
+
+    /// A step was taken back, or done again.
+    pub fn reset_thumbnail_base(&mut self) {
+        self.thumbnail_base = self.map.clone();
+    }
+
+    /// All that can be undone, oldest first.
+    pub fn undo_names(&self) -> impl Iterator<Item = &str> {
+        self.undo.names()
+    }
+
+    /// Memory that the undo steps keep alive, and how much they may, in bytes.
+    pub fn undo_bytes(&self) -> [usize; 2] {
+        self.undo.bytes()
+    }
+
+    /// The cameras of the scene by name, as shot cameras: with the lens of the current one. Those of its photographs follow.
+    pub fn scene_cameras(&self) -> impl Iterator<Item = (&str, Camera)> {
+        let scene = &self.stage.scene;
+        let cameras = scene.cameras.iter();
+        let cameras = cameras.map(|camera| (camera.name.as_str(), shot_camera_from(camera, &self.camera)));
+        let names = scene.all_views().map(|view| view.name.as_str());
+        cameras.chain(names.zip(self.photograph_cameras()))
+    }
+
+    /// The cameras of the scene's photographs, first of those that its light is made from, then of those left out, with the current
+    /// aperture.
+    pub fn photograph_cameras(&self) -> impl Iterator<Item = Camera> {
+        let scene = &self.stage.scene;
+        scene.all_views().map(|view| Camera {
+            aperture_radius: self.camera.aperture_radius,
+            ..camera_from_photograph(self.stage.bounds, view, &self.camera)
+        })
+    }
+
+    /// The photograph that the camera looks through, if it is that of one.
+    pub fn photograph(&self) -> Option<&View> {
+        let scene = &self.stage.scene;
+        let mut views = scene.all_views();
+        views.find(|view| view.camera_to_world == self.camera.camera_to_world)
+    }
+}
+
+/// A selection by the places of its texels.
+fn selection_to_texels(stage: &Stage, selection: &Selection) -> TexelSet {
+    let texels = stage.canvas.texels().iter().enumerate();
+    let selected = texels.filter(|(index, _)| selection.contains(*index));
+    TexelSet::new([stage.atlas.width, stage.atlas.height], selected.map(|(_, texel)| [texel.x, texel.y]))
+}
+
+/// The selection that a project kept; none where it chose nothing, or everything.
+fn selection_from_texels(stage: &Stage, saved: &TexelSet) -> Option<Selection> {
+    match Selection::from_predicate(&stage.canvas, |texel| saved.contains([texel.x, texel.y])) {
+        SelectionResult::Some(selection) => Some(selection),
+        SelectionResult::Nothing | SelectionResult::Everything => None,
+    }
+}
+
+fn recovery_path(file: &Path, is_project: bool) -> PathBuf {
+    if is_project { project::recovery_path_for(file) } else { project::unsaved_recovery_path(file) }
+}
+
+/// An eighth of half the picture's height where the lens focuses, but at most a twentieth of the scene; the brush's
+/// default for a scene that is a point.
+fn brush_radius(camera: &Camera, diagonal: f64) -> f64 {
+    let half_height_share = camera.focus_distance * (camera.yfov / 2.0).tan() / 8.0;
+    let radius = half_height_share.min(diagonal / 20.0);
+    if radius > 0.0 && radius.is_finite() { radius } else { Brush::default().radius }
+}

@@ -1,0 +1,160 @@
+//! A project's paint on another surface.
+
+use crate::paint_transfer::correspondences::find_correspondences;
+use crate::error::DocumentError;
+use atlas::{Atlas, TexelMap};
+use focus::{FocusLayer, FocusMap, LayerStack};
+use glam::DVec2;
+use lens::FocusOffset;
+use project::{ProjectFile, TexelSet, surface_to_bytes};
+use scene::Scene;
+use std::path::Path;
+
+/// How paint came onto another surface.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TransferredPaint {
+    /// Nodes of which something found no partner, most of them first.
+    pub unmatched_nodes: Vec<UnmatchedNode>,
+    /// The share of the whole surface that found one.
+    pub matched_share: f64,
+}
+
+/// What of a node found no partner.
+#[derive(Clone, Debug, PartialEq)]
+pub struct UnmatchedNode {
+    /// Its name.
+    pub name: String,
+    /// The share of its surface without a partner, in (0, 1].
+    pub unmatched_share: f64,
+}
+
+impl TransferredPaint {
+    /// A sentence about the file at `scene`.
+    pub fn summary(&self, scene: &Path) -> String {
+        const MAX_LISTED: usize = 8;
+        let percent =
+            |share: f64| if share >= 0.995 { "all".into() } else { format!("{:.1} %", 100.0 * share) };
+        let listed: Vec<_> = (self.unmatched_nodes.iter().take(MAX_LISTED))
+            .map(|node| format!("{} of \"{}\"", percent(node.unmatched_share), node.name))
+            .collect();
+        let more = self.unmatched_nodes.len().saturating_sub(MAX_LISTED);
+        let more = if more > 0 { format!(" and parts of {more} more nodes") } else { String::new() };
+        let what = match listed.is_empty() {
+            true => "all of it found its partner".into(),
+            false => format!("no partner has {}{more}, which keeps the ordinary lens", listed.join(", ")),
+        };
+        format!("{}: is another surface now, and the paint was carried over to it: {what}", scene.display())
+    }
+}
+
+/// The project with its paint on the surface of `new`, whose atlas is `atlas`; it lay on that of `old`, in the project's own atlas. The
+/// scene of the project is the new one then.
+pub(crate) fn transfer_paint(
+    project: &ProjectFile,
+    old: &Scene,
+    new: &Scene,
+    atlas: &Atlas,
+) -> Result<(ProjectFile, TransferredPaint), DocumentError> {
+    let bad_scene = |what: String| DocumentError::bad_file(&project.scene, what);
+    let stored =
+        project.atlas.as_ref().ok_or_else(|| bad_scene("its project has no atlas (paint it anew)".into()))?;
+    let old_atlas = Atlas::from_bytes(stored, old).map_err(|error| bad_scene(error.to_string()))?;
+    let new_texels = atlas.texel_map(new);
+    let source_positions = find_correspondences(old, &old_atlas, new, &new_texels);
+    let transfer = PaintTransfer { atlas, texels: &new_texels, source_positions: &source_positions };
+
+    let focus_map = project.focus_map.as_ref().map(|map| transfer.transfer_map(map));
+    let layers = project.layers.as_ref().and_then(|layers| {
+        let transferred = layers
+            .layers()
+            .iter()
+            .map(|layer| FocusLayer { map: transfer.transfer_map(&layer.map), ..layer.clone() });
+        LayerStack::new(transferred.collect(), layers.active_index())
+    });
+    let project = ProjectFile {
+        scene: new.path.clone(),
+        scene_sha256: ProjectFile::scene_checksum(&new.path)?,
+        atlas: Some(atlas.to_bytes()),
+        surface: Some(surface_to_bytes(new)),
+        focus_map,
+        layers,
+        selection: transfer.unmatched_texels(),
+        ..project.clone()
+    };
+    Ok((project, transfer.report(new)))
+}
+
+/// The way onto the new texels.
+struct PaintTransfer<'a> {
+    atlas: &'a Atlas,
+    texels: &'a TexelMap,
+    source_positions: &'a [Option<DVec2>],
+}
+
+impl PaintTransfer<'_> {
+    fn transfer_map(&self, old: &FocusMap) -> FocusMap {
+        let (width, height) = (self.atlas.width, self.atlas.height);
+        let count = width as usize * height as usize;
+        let standard = FocusOffset::STANDARD;
+        let mut values = vec![[standard.t as f32, standard.anchor as f32]; count];
+        let mut gloss = vec![standard.gloss as f32; count];
+        let mut mask = vec![0.0; count];
+        for (texel, source_position) in self.texels.texels.iter().zip(self.source_positions) {
+            let Some(source_position) = source_position else { continue };
+            let index = texel.y as usize * width as usize + texel.x as usize;
+            let focus = old.sample(*source_position);
+            values[index] = [focus.t as f32, focus.anchor as f32];
+            gloss[index] = focus.gloss as f32;
+            mask[index] = old.sample_mask(*source_position);
+        }
+        self.atlas.dilate(self.texels, &mut values);
+        self.atlas.dilate(self.texels, &mut gloss);
+        self.atlas.dilate(self.texels, &mut mask);
+        let mut map = FocusMap::new(width, height, standard);
+        if let Some(transferred) = FocusMap::from_rows(width, height, &values, old.background) {
+            map = transferred;
+        }
+        let is_whole = (!old.has_gloss() || map.set_gloss_rows(&gloss))
+            && (!old.has_mask() || map.set_mask_rows(Some(&mask)));
+        debug_assert!(is_whole, "rows have the size of the atlas");
+        (map.background, map.background_mask) = (old.background, old.background_mask);
+        map
+    }
+
+    /// Texels without a partner as a selection; none where all have one.
+    fn unmatched_texels(&self) -> Option<TexelSet> {
+        let unmatched = self
+            .texels
+            .texels
+            .iter()
+            .zip(self.source_positions)
+            .filter(|(_, source_position)| source_position.is_none());
+        let mut unmatched = unmatched.map(|(texel, _)| [texel.x, texel.y]).peekable();
+        unmatched.peek()?;
+        Some(TexelSet::new([self.atlas.width, self.atlas.height], unmatched))
+    }
+
+    fn report(&self, scene: &Scene) -> TransferredPaint {
+        let mut areas = vec![[0.0; 2]; scene.nodes.len()];
+        for (texel, source_position) in self.texels.texels.iter().zip(self.source_positions) {
+            let [node_area, unmatched_area] =
+                &mut areas[scene.part_of(texel.centroid.triangle).node as usize];
+            *node_area += texel.area;
+            *unmatched_area += if source_position.is_none() { texel.area } else { 0.0 };
+        }
+        let incomplete =
+            scene.nodes.iter().zip(&areas).filter(|(_, [_, unmatched_area])| *unmatched_area > 0.0);
+        let mut unmatched_nodes: Vec<UnmatchedNode> = incomplete
+            .map(|(node, [node_area, unmatched_area])| UnmatchedNode {
+                name: node.name.clone(),
+                unmatched_share: unmatched_area / node_area,
+            })
+            .collect();
+        unmatched_nodes.sort_by(|a, b| b.unmatched_share.total_cmp(&a.unmatched_share));
+        let [total_area, unmatched_area] = areas.iter().fold([0.0; 2], |[a, b], [c, d]| [a + c, b + d]);
+        TransferredPaint {
+            unmatched_nodes,
+            matched_share: if total_area > 0.0 { 1.0 - unmatched_area / total_area } else { 1.0 },
+        }
+    }
+}

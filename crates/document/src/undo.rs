@@ -1,0 +1,497 @@
+//! Undo and redo of paint, selection, lens, repaired depth and the scene's variant in the order in which they happened.
+
+use focus::{Edit, EditThumbnail, LayerStack, LensMotion, Selection};
+use lens::Camera;
+use project::RecordedStep;
+use relief::DepthStroke;
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+/// What a step changed, and both its ends.
+#[derive(Clone, Debug)]
+enum Change {
+    /// The map of one layer.
+    Paint { layer: usize, edit: Edit },
+    /// The layers themselves.
+    Layers { before: Box<LayerStack>, after: Box<LayerStack> },
+    /// The camera.
+    Camera { before: Box<Camera>, after: Box<Camera> },
+    /// The keys of the lens.
+    LensMotion { before: Box<LensMotion>, after: Box<LensMotion> },
+    /// What may be painted.
+    Selection { before: Option<Selection>, after: Option<Selection> },
+    /// The scene's variant, by name. Who takes such a step back reads the scene again.
+    Variant { before: Option<String>, after: Option<String> },
+    /// The strokes that repair depth. Who takes such a step back makes the surface anew.
+    Depth { before: Arc<Vec<DepthStroke>>, after: Arc<Vec<DepthStroke>> },
+}
+
+impl Change {
+    fn bytes(&self) -> usize {
+        let selection_bytes = |selection: &Option<Selection>| selection.as_ref().map_or(0, Selection::bytes);
+        match self {
+            Self::Paint { edit, .. } => edit.bytes(),
+            Self::Layers { before, after } => before.unshared_bytes(after) + after.unshared_bytes(before),
+            Self::Camera { .. } => 2 * size_of::<Camera>(),
+            Self::LensMotion { before, after } => {
+                [before, after].into_iter().map(|motion| motion.bytes()).sum()
+            }
+            Self::Selection { before, after } => selection_bytes(before) + selection_bytes(after),
+            // Each list has a stroke more than the one before it.
+            Self::Depth { after, .. } => after.iter().map(depth_stroke_bytes).sum(),
+            Self::Variant { before, after } => [before, after].into_iter().flatten().map(String::len).sum(),
+        }
+    }
+}
+
+fn depth_stroke_bytes(stroke: &DepthStroke) -> usize {
+    size_of::<DepthStroke>() + size_of_val(&*stroke.path)
+}
+
+/// One step.
+#[derive(Clone, Debug)]
+struct Step {
+    name: String,
+    change: Change,
+    /// What was done, as data, where it can be done again.
+    record: Option<Box<RecordedStep>>,
+    /// What it changed, where that is paint.
+    thumbnail: Option<EditThumbnail>,
+    /// Memory that it keeps alive.
+    bytes: usize,
+}
+
+impl Step {
+    fn new(name: String, change: Change, record: Option<RecordedStep>) -> Self {
+        let record_bytes = record.as_ref().map_or(0, RecordedStep::bytes);
+        let bytes = size_of::<Self>() + name.len() + change.bytes() + record_bytes;
+        Self { name, change, record: record.map(Box::new), thumbnail: None, bytes }
+    }
+}
+
+/// What a step of undo or redo changed.
+#[derive(Clone, Debug, PartialEq)]
+pub enum StepEffect {
+    /// These texels of a layer, and perhaps its background.
+    Paint { texels: Vec<[u32; 2]>, changes_background: bool },
+    /// The layers, in whatever way.
+    Layers,
+    /// The camera.
+    Camera,
+    /// The keys of the lens.
+    LensMotion,
+    /// What may be painted.
+    Selection,
+    /// The variant that the scene is to have now, by name.
+    Variant(Option<String>),
+    /// The strokes that repair depth.
+    Depth,
+}
+
+/// A step of the history, as a list shows it.
+#[derive(Clone, Copy, Debug)]
+pub struct HistoryStep<'a> {
+    /// What was done.
+    pub name: &'a str,
+    /// What it changed of the focus map, if anything.
+    pub thumbnail: Option<&'a EditThumbnail>,
+    /// Whether it is done, or was taken back and can be done again.
+    pub is_done: bool,
+}
+
+impl<'a> HistoryStep<'a> {
+    fn from_step(step: &'a Step, is_done: bool) -> Self {
+        Self { name: &step.name, thumbnail: step.thumbnail.as_ref(), is_done }
+    }
+}
+
+/// What the steps change.
+pub struct UndoState<'a> {
+    pub layers: &'a mut LayerStack,
+    pub camera: &'a mut Camera,
+    pub lens_motion: &'a mut LensMotion,
+    pub selection: &'a mut Option<Selection>,
+    pub depth_strokes: &'a mut Arc<Vec<DepthStroke>>,
+}
+
+/// The steps that can be taken back, and those that can be done again.
+#[derive(Clone, Debug)]
+pub struct UndoHistory {
+    done: VecDeque<Step>,
+    undone: Vec<Step>,
+    /// Whether the next edit of the same name joins the latest step.
+    is_run_open: bool,
+    /// Memory that the steps may keep alive; the oldest are forgotten beyond it.
+    budget_bytes: usize,
+    bytes: usize,
+}
+
+impl UndoHistory {
+    /// No steps yet.
+    pub fn new(budget_bytes: usize) -> Self {
+        Self { done: VecDeque::new(), undone: Vec::new(), is_run_open: false, budget_bytes, bytes: 0 }
+    }
+
+    /// Sets the memory that the steps may keep alive.
+    pub fn set_budget(&mut self, budget_bytes: usize) {
+        self.budget_bytes = budget_bytes;
+        self.forget_beyond_budget();
+    }
+
+    /// Takes up a change of the map of a layer.
+    pub fn push_paint(&mut self, layer: usize, edit: Edit, record: Option<RecordedStep>) {
+        self.push(Step::new(edit.name().into(), Change::Paint { layer, edit }, record));
+        self.is_run_open = false;
+    }
+
+    /// Takes up a change of what may be painted.
+    pub fn push_selection(
+        &mut self,
+        name: &str,
+        before: Option<Selection>,
+        after: Option<Selection>,
+        record: Option<RecordedStep>,
+    ) {
+        self.push(Step::new(name.into(), Change::Selection { before, after }, record));
+        self.is_run_open = false;
+    }
+
+    /// Takes up a change of the keys of the lens.
+    pub fn push_lens_motion(&mut self, name: &str, before: LensMotion, after: LensMotion) {
+        let change = Change::LensMotion { before: before.into(), after: after.into() };
+        self.push(Step::new(name.into(), change, None));
+        self.is_run_open = false;
+    }
+
+    /// Takes up a change of the scene's variant.
+    pub fn push_variant(&mut self, before: Option<String>, after: Option<String>) {
+        self.push(Step::new("Variant".into(), Change::Variant { before, after }, None));
+        self.is_run_open = false;
+    }
+
+    /// Takes up a change of the strokes that repair depth.
+    pub fn push_depth(&mut self, name: &str, before: Arc<Vec<DepthStroke>>, after: Arc<Vec<DepthStroke>>) {
+        self.push(Step::new(name.into(), Change::Depth { before, after }, None));
+        self.is_run_open = false;
+    }
+
+    /// Exchanges all selections, because the texels that may be selected are others now.
+    pub fn map_selections(&mut self, remap: impl Fn(&Selection) -> Option<Selection>) {
+        for step in self.done.iter_mut().chain(&mut self.undone) {
+            if let Change::Selection { before, after } = &mut step.change {
+                *before = before.as_ref().and_then(&remap);
+                *after = after.as_ref().and_then(&remap);
+            }
+        }
+    }
+
+    /// What was done and can be taken back, as data, oldest first.
+    pub fn records(&self) -> impl Iterator<Item = &RecordedStep> {
+        self.done.iter().filter_map(|step| step.record.as_deref())
+    }
+
+    /// Takes up a change of the layers; edits of one thing in a row, as a dragged slider makes them, are one step. The values
+    /// of adjustment layers are not kept: who takes a step back evaluates them again.
+    pub fn push_layers(
+        &mut self,
+        name: &str,
+        before: LayerStack,
+        after: LayerStack,
+        record: Option<RecordedStep>,
+    ) {
+        let drag_target = |record: Option<&RecordedStep>| match record {
+            Some(RecordedStep::Layers(edit)) => edit.drag_target(),
+            _ => None,
+        };
+        let dragged = drag_target(record.as_ref());
+        let continues_run = |last: &Step| dragged.is_some() && drag_target(last.record.as_deref()) == dragged;
+        let before = match self.pop_if_continued(continues_run) {
+            Some(Step { change: Change::Layers { before, .. }, .. }) => before,
+            _ => before.without_adjusted_values().into(),
+        };
+        let after = after.without_adjusted_values().into();
+        self.push(Step::new(name.into(), Change::Layers { before, after }, record));
+        self.is_run_open = dragged.is_some();
+    }
+
+    /// Takes up a change of the camera; edits of one name in a row are one step.
+    pub fn push_camera(&mut self, name: &str, before: Camera, after: Camera) {
+        let before = match self.pop_if_continued(|last| last.name == name) {
+            Some(Step { change: Change::Camera { before, .. }, .. }) => before,
+            _ => before.into(),
+        };
+        self.push(Step::new(name.into(), Change::Camera { before, after: after.into() }, None));
+        self.is_run_open = true;
+    }
+
+    /// Takes the latest step away, if the run of edits that it belongs to goes on.
+    fn pop_if_continued(&mut self, continues_run: impl Fn(&Step) -> bool) -> Option<Step> {
+        let is_run_open = self.is_run_open;
+        let last = self.done.pop_back_if(|last| is_run_open && continues_run(last))?;
+        self.bytes -= last.bytes;
+        Some(last)
+    }
+
+    /// Ends a run of edits.
+    pub fn finish_run(&mut self) {
+        self.is_run_open = false;
+    }
+
+    fn push(&mut self, step: Step) {
+        self.bytes -= self.undone.drain(..).map(|step| step.bytes).sum::<usize>();
+        self.bytes += step.bytes;
+        self.done.push_back(step);
+        self.forget_beyond_budget();
+    }
+
+    fn forget_beyond_budget(&mut self) {
+        while self.bytes > self.budget_bytes && self.done.len() > 1 {
+            self.bytes -= self.done.pop_front().map_or(0, |step| step.bytes);
+        }
+    }
+
+    /// Adds a picture to the latest step.
+    pub fn set_thumbnail(&mut self, thumbnail: EditThumbnail) {
+        if let Some(step) = self.done.back_mut() {
+            let before = step.thumbnail.as_ref().map_or(0, EditThumbnail::bytes);
+            step.bytes = step.bytes - before + thumbnail.bytes();
+            self.bytes = self.bytes - before + thumbnail.bytes();
+            step.thumbnail = Some(thumbnail);
+            self.forget_beyond_budget();
+        }
+    }
+
+    /// Takes the latest step back.
+    pub fn undo(&mut self, state: UndoState<'_>) -> Option<StepEffect> {
+        let step = self.done.pop_back()?;
+        self.is_run_open = false;
+        let effect = match &step.change {
+            Change::Paint { layer, edit } => {
+                state.layers.activate(*layer);
+                let texels = edit.revert(&mut state.layers.active_mut().map).texels;
+                StepEffect::Paint { texels, changes_background: edit.changes_background() }
+            }
+            Change::Layers { before, .. } => {
+                *state.layers = (**before).clone();
+                StepEffect::Layers
+            }
+            Change::Camera { before, .. } => {
+                *state.camera = (**before).clone();
+                StepEffect::Camera
+            }
+            Change::LensMotion { before, .. } => {
+                *state.lens_motion = (**before).clone();
+                StepEffect::LensMotion
+            }
+            Change::Selection { before, .. } => {
+                *state.selection = before.clone();
+                StepEffect::Selection
+            }
+            Change::Variant { before, .. } => StepEffect::Variant(before.clone()),
+            Change::Depth { before, .. } => {
+                *state.depth_strokes = before.clone();
+                StepEffect::Depth
+            }
+        };
+        self.undone.push(step);
+        Some(effect)
+    }
+
+    /// Makes the step again that was taken back last.
+    pub fn redo(&mut self, state: UndoState<'_>) -> Option<StepEffect> {
+        let step = self.undone.pop()?;
+        self.is_run_open = false;
+        let effect = match &step.change {
+            Change::Paint { layer, edit } => {
+                state.layers.activate(*layer);
+                let texels = edit.apply(&mut state.layers.active_mut().map).texels;
+                StepEffect::Paint { texels, changes_background: edit.changes_background() }
+            }
+            Change::Layers { after, .. } => {
+                *state.layers = (**after).clone();
+                StepEffect::Layers
+            }
+            Change::Camera { after, .. } => {
+                *state.camera = (**after).clone();
+                StepEffect::Camera
+            }
+            Change::LensMotion { after, .. } => {
+                *state.lens_motion = (**after).clone();
+                StepEffect::LensMotion
+            }
+            Change::Selection { after, .. } => {
+                *state.selection = after.clone();
+                StepEffect::Selection
+            }
+            Change::Variant { after, .. } => StepEffect::Variant(after.clone()),
+            Change::Depth { after, .. } => {
+                *state.depth_strokes = after.clone();
+                StepEffect::Depth
+            }
+        };
+        self.done.push_back(step);
+        Some(effect)
+    }
+
+    pub fn undo_name(&self) -> Option<&str> {
+        self.done.back().map(|step| &*step.name)
+    }
+
+    pub fn redo_name(&self) -> Option<&str> {
+        self.undone.last().map(|step| &*step.name)
+    }
+
+    /// All steps that can be taken back, oldest first.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.done.iter().map(|step| &*step.name)
+    }
+
+    /// All steps, oldest first: what they are called, what they changed, and whether they are done.
+    pub fn steps(&self) -> impl Iterator<Item = HistoryStep<'_>> {
+        let done = self.done.iter().map(|step| HistoryStep::from_step(step, true));
+        done.chain(self.undone.iter().rev().map(|step| HistoryStep::from_step(step, false)))
+    }
+
+    /// Memory that the steps keep alive, and how much they may.
+    pub fn bytes(&self) -> [usize; 2] {
+        [self.bytes, self.budget_bytes]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use focus::{FocusLayer, FocusMap, LayerEdit};
+    use lens::FocusOffset;
+
+    /// What a document has to be undone.
+    struct State {
+        undo: UndoHistory,
+        layers: LayerStack,
+        camera: Camera,
+        lens_motion: LensMotion,
+        selection: Option<Selection>,
+        depth_strokes: Arc<Vec<DepthStroke>>,
+    }
+
+    impl State {
+        fn new() -> Self {
+            let layers = LayerStack::from_map(FocusMap::new(4, 4, FocusOffset::STANDARD));
+            let (lens_motion, selection, depth_strokes) = (LensMotion::default(), None, Arc::default());
+            Self {
+                undo: UndoHistory::new(1 << 20),
+                layers,
+                camera: camera_focused_at(3.0),
+                lens_motion,
+                selection,
+                depth_strokes,
+            }
+        }
+
+        fn undo(&mut self) -> Option<StepEffect> {
+            let Self { undo, layers, camera, lens_motion, selection, depth_strokes } = self;
+            undo.undo(UndoState { layers, camera, lens_motion, selection, depth_strokes })
+        }
+
+        fn redo(&mut self) -> Option<StepEffect> {
+            let Self { undo, layers, camera, lens_motion, selection, depth_strokes } = self;
+            undo.redo(UndoState { layers, camera, lens_motion, selection, depth_strokes })
+        }
+
+        fn set_focus(&mut self, at: f64) {
+            let before = std::mem::replace(&mut self.camera, camera_focused_at(at));
+            self.undo.push_camera("Focus distance", before, self.camera.clone());
+        }
+    }
+
+    fn camera_focused_at(at: f64) -> Camera {
+        Camera { focus_distance: at, ..Camera::default() }
+    }
+
+    #[test]
+    fn a_dragged_slider_is_one_step() {
+        let mut state = State::new();
+        (4..9).for_each(|at| state.set_focus(at as f64));
+        state.undo.finish_run();
+        state.set_focus(9.0);
+        assert_eq!(state.undo(), Some(StepEffect::Camera));
+        assert_eq!(state.camera.focus_distance, 8.0);
+        state.undo();
+        assert_eq!(state.camera.focus_distance, 3.0);
+        assert_eq!(state.undo(), None);
+        state.redo();
+        assert_eq!(state.camera.focus_distance, 8.0);
+    }
+
+    #[test]
+    fn the_oldest_steps_are_forgotten_first() {
+        let mut state = State::new();
+        state.set_focus(4.0);
+        let [one, _] = state.undo.bytes();
+        state.undo = UndoHistory::new(5 * one + one / 2);
+        for at in 5..15 {
+            state.set_focus(at as f64);
+            state.undo.finish_run();
+        }
+        assert_eq!(state.undo.bytes(), [5 * one, 5 * one + one / 2]);
+        state.undo();
+        assert_eq!(state.undo.bytes()[0], 5 * one, "what can be done again counts too");
+        state.set_focus(20.0);
+        assert_eq!(state.undo.bytes()[0], 5 * one);
+        while state.undo().is_some() {}
+        assert_eq!(state.camera.focus_distance, 9.0, "the first five are forgotten");
+        state.undo = UndoHistory::new(0);
+        state.set_focus(1.0);
+        assert_eq!(state.undo.names().count(), 1, "the latest is kept");
+    }
+
+    #[test]
+    fn paint_layers_and_lens_are_undone_in_order() {
+        let mut state = State::new();
+        let before = state.layers.clone();
+        state.layers.active_mut().map.set(1, 2, [0.5, 1.0]);
+        let map = &state.layers.active().map;
+        let edit = Edit::from_difference("Brush stroke", &before.active().map, map).unwrap();
+        state.undo.push_paint(0, edit, None);
+        let painted = state.layers.clone();
+        assert!(state.layers.insert(FocusLayer::from_map("Layer 1", FocusMap::transparent(4, 4))));
+        state.undo.push_layers("Add layer", painted.clone(), state.layers.clone(), None);
+        let two = state.layers.clone();
+        state.set_focus(5.0);
+        assert_eq!(state.undo.undo_name(), Some("Focus distance"));
+        state.undo();
+        assert_eq!((state.camera.focus_distance, &state.layers), (3.0, &two));
+        assert_eq!(state.undo(), Some(StepEffect::Layers));
+        assert_eq!(state.layers, painted);
+        assert_eq!(state.undo(), Some(StepEffect::Paint { texels: vec![[1, 2]], changes_background: false }));
+        assert_eq!(state.layers, before);
+        state.redo();
+        state.redo();
+        assert_eq!(state.layers, two);
+        state.set_focus(6.0);
+        assert_eq!(state.undo.redo_name(), None, "a new step forgets what was undone");
+    }
+
+    #[test]
+    fn a_dragged_opacity_is_one_step_and_another_layer_s_is_another() {
+        let mut state = State::new();
+        assert!(state.layers.insert(FocusLayer::from_map("Layer 1", FocusMap::transparent(4, 4))));
+        let first = state.layers.clone();
+        for (layer, opacity) in [(0, 0.9), (0, 0.8), (0, 0.7), (1, 0.6), (1, 0.5)] {
+            let before = state.layers.clone();
+            state.layers.layer_mut(layer).unwrap().opacity = opacity;
+            let edit = RecordedStep::Layers(LayerEdit::Opacity(layer, opacity));
+            state.undo.push_layers("Layer opacity", before, state.layers.clone(), Some(edit));
+        }
+        let records: Vec<_> = state.undo.records().cloned().collect();
+        assert_eq!(
+            records,
+            [(0, 0.7), (1, 0.5)].map(|(k, o)| RecordedStep::Layers(LayerEdit::Opacity(k, o)))
+        );
+        state.undo();
+        assert_eq!(state.layers.layers()[0].opacity, 0.7);
+        state.undo();
+        assert_eq!(state.layers, first);
+        assert_eq!(state.undo.undo_name(), None);
+    }
+}

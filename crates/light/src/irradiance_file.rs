@@ -1,0 +1,91 @@
+//! Irradiance kept from one run of the program to the next: light that was solved for once is not solved for again.
+//!
+//! A file is of a scene (all of it that gives, blocks or scatters light) in a world, and holds a number for each patch and colour, direct
+//! and indirect, f32 little endian.
+
+use crate::disk_cache::CacheSection;
+use crate::options::LightOptions;
+use crate::scene_hashes::light_hash;
+use glam::Vec3;
+use scene::{Environment, Scene, World};
+use sha2::{Digest, Sha256};
+use slf::{Irradiance, IrradianceOptions};
+
+/// A megabyte a scene and world.
+pub(super) const SECTION: CacheSection = CacheSection { name: "light", budget_bytes: 256 << 20 };
+
+/// What the irradiance of a scene in a world is made from.
+pub(super) fn hash_inputs(
+    hash: &mut Sha256,
+    scene: &Scene,
+    world: &World,
+    light: LightOptions,
+    options: IrradianceOptions,
+) {
+    hash.update(light_hash(scene, light));
+    hash.update(format!("{world:?} {options:?}"));
+    if let Environment::Map(map) = &world.environment {
+        hash.update(bytemuck::cast_slice(&map.texels));
+    }
+}
+
+/// The irradiance of a scene from the bytes of a file; none if they are of another number of patches.
+pub(super) fn from_bytes(
+    bytes: &[u8],
+    scene: &Scene,
+    world: &World,
+    options: IrradianceOptions,
+) -> Option<Irradiance> {
+    let number = |bytes: &[u8]| f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
+    let all: Vec<Vec3> = bytes
+        .chunks_exact(12)
+        .map(|rgb| Vec3::new(number(rgb), number(&rgb[4..]), number(&rgb[8..])))
+        .collect();
+    let (direct, indirect) = all.split_at(all.len() / 2);
+    Irradiance::from_values(scene, world, options, [direct.to_vec(), indirect.to_vec()])
+}
+
+/// The bytes of a file.
+pub(super) fn to_bytes(irradiance: &Irradiance) -> Vec<u8> {
+    let numbers = irradiance.values().into_iter().flatten().flat_map(|value| value.to_array());
+    numbers.flat_map(f32::to_le_bytes).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+    use progress::Unwatched;
+    use scene::Material;
+    use slf::{Transport, TransportOptions};
+    use std::sync::Arc;
+    use test_scenes::{Mesh, scene_of};
+    use trace::Tracer;
+
+    const OPTIONS: IrradianceOptions = IrradianceOptions { patches: 50, rays: 8 };
+
+    fn solved(world: &World) -> (Arc<Scene>, Irradiance) {
+        let triangle = Mesh::triangle([DVec3::ZERO, DVec3::X, DVec3::Y]);
+        let scene = scene_of([(triangle, Material::lambertian_white())]);
+        let tracer = Arc::new(Tracer::new(scene.clone()));
+        let transport = Transport::new(tracer, world.clone(), TransportOptions::default());
+        (scene, Irradiance::solve(&transport, OPTIONS, &Unwatched).unwrap())
+    }
+
+    #[test]
+    fn light_comes_back_bit_by_bit_and_no_other_does() {
+        let world = World::uniform(Vec3::ONE);
+        let (scene, irradiance) = solved(&world);
+        let bytes = to_bytes(&irradiance);
+        let again = from_bytes(&bytes, &scene, &world, OPTIONS).unwrap();
+        assert_eq!(again.values(), irradiance.values());
+        // Of other options it has another number of patches.
+        assert!(from_bytes(&bytes, &scene, &world, IrradianceOptions { patches: 5, rays: 8 }).is_none());
+        let origin = |world: &World| {
+            let mut hash = Sha256::new();
+            hash_inputs(&mut hash, &scene, world, LightOptions::default(), OPTIONS);
+            hash.finalize()
+        };
+        assert_ne!(origin(&World { strength: 2.0, ..world.clone() }), origin(&world));
+    }
+}

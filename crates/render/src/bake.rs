@@ -1,0 +1,14 @@
+//! Light fields: baked as coarse as a picture allows, kept as files, counted.
+
+mod baking;
+mod camera_compatibility;
+mod light_field_store;
+mod modelled;
+mod salf_file;
+
+pub(crate) use baking::bake_with;
+pub use baking::{bake, bake_unpacked};
+pub use camera_compatibility::is_compatible;
+pub use light_field_store::{LIGHT_PASSES, LightFieldStore};
+pub use modelled::{DENSE_SAMPLE_BYTES, Modelled, ModelledRow, TexelStatistics};
+pub use salf_file::write_salf;

@@ -1,0 +1,91 @@
+//! What can go wrong when pictures are made, by what the user can do about it.
+
+use document::{DocumentError, IoFault};
+use light::LightError;
+use progress::Cancelled;
+use project::ProjectError;
+use scene::SceneError;
+use splat::SplatError;
+use std::path::Path;
+
+/// Why there is no picture. Its text is one line: `FILE: what is wrong (what to do)`.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum RenderError {
+    /// A file or a value cannot be used; the text names it, what is wrong and what to do.
+    #[error("{0}")]
+    BadInput(String),
+    /// The machine, not the input, stands in the way for now: a full disk, a locked file.
+    #[error("{0}")]
+    TryAgain(String),
+    /// A GPU was asked for and there is none that can do the work.
+    #[error("{0}")]
+    GpuAbsent(String),
+    /// The user stopped it, or a newer request took its place.
+    #[error("cancelled")]
+    Cancelled,
+    /// A fault of the program itself.
+    #[error("{0}")]
+    Internal(String),
+}
+
+impl From<Cancelled> for RenderError {
+    fn from(_: Cancelled) -> Self {
+        Self::Cancelled
+    }
+}
+
+impl From<DocumentError> for RenderError {
+    fn from(error: DocumentError) -> Self {
+        match error {
+            DocumentError::BadInput(text) | DocumentError::NearUnknown { text, .. } => Self::BadInput(text),
+            DocumentError::TryAgain(text) => Self::TryAgain(text),
+            DocumentError::Cancelled => Self::Cancelled,
+            DocumentError::Internal(text) => Self::Internal(text),
+        }
+    }
+}
+
+impl From<LightError> for RenderError {
+    fn from(error: LightError) -> Self {
+        DocumentError::from(error).into()
+    }
+}
+
+impl From<ProjectError> for RenderError {
+    fn from(error: ProjectError) -> Self {
+        DocumentError::from(error).into()
+    }
+}
+
+impl From<SceneError> for RenderError {
+    fn from(error: SceneError) -> Self {
+        DocumentError::from(error).into()
+    }
+}
+
+impl From<SplatError> for RenderError {
+    fn from(error: SplatError) -> Self {
+        match error {
+            SplatError::Cancelled => Self::Cancelled,
+            other => Self::BadInput(other.to_string()),
+        }
+    }
+}
+
+impl From<IoFault> for RenderError {
+    fn from(fault: IoFault) -> Self {
+        DocumentError::from(fault).into()
+    }
+}
+
+impl RenderError {
+    /// Bad input in `file`.
+    pub fn bad_file(file: &Path, what: impl std::fmt::Display) -> Self {
+        DocumentError::bad_file(file, what).into()
+    }
+
+    /// What an I/O error on `file` means: bad input, or worth another try.
+    pub fn io(file: &Path, error: &std::io::Error) -> Self {
+        IoFault::new(file, error).into()
+    }
+}

@@ -1,0 +1,6 @@
+//! Scenes as files: with their atlas and the lens of their shot.
+
+mod scene_file;
+mod shot_extras;
+
+pub use scene_file::{export_glb, write_scene, write_unwrapped};

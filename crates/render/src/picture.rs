@@ -1,0 +1,30 @@
+//! Pictures of full size, and what comes along: extra channels, pictures to compare with, counts, tone.
+
+mod aov;
+mod coc_convention;
+mod cross_validation;
+mod ocio_views;
+mod photograph_picture;
+mod render;
+mod renderer;
+mod stereo;
+mod thumbnail;
+mod tone;
+mod tone_curve;
+
+pub use aov::Aov;
+pub(crate) use aov::LayerInputs;
+pub use coc_convention::CocConvention;
+pub use cross_validation::{LeftOut, LeftOutPicture, LeftOutPrediction, leave_photographs_out};
+pub use ocio_views::OcioViews;
+pub use photograph_picture::{photograph_picture, render_photograph};
+pub use render::{
+    MAX_CELLS_A_SIDE, RenderCost, RenderOptions, Rendered, light_of_photographs, render, render_input,
+    sum_light_field,
+};
+pub(crate) use render::{new_splatter, photographed_shares_of_pixels, sum_baked, lit_scene_of};
+pub use renderer::Renderer;
+pub use stereo::{Stereo, StereoForm, render_pair, render_stereo};
+pub use thumbnail::read_thumbnail;
+pub use tone::{Display, ScreenPixel, Tone, rectangle_to_screen, to_screen};
+pub use tone_curve::ToneCurve;

@@ -1,0 +1,150 @@
+//! Pictures beside the picture: what compositing and measuring ask for.
+
+use crate::picture::coc_convention::CocConvention;
+use crate::mattes::Mattes;
+use baselines::FirstHits;
+use lens::{Camera, Exposure, FocusOffset, Picture};
+use project::{Cryptomatte, Layer};
+use trace::truth::Estimate;
+
+/// An extra channel of a rendered picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Aov {
+    /// The model's sum for a scene of radiance 1; 1 in a standard picture.
+    Coverage,
+    /// The share of the pixel's light paths that end on a surface, in [0, 1]. The picture is then multiplied by it: the background
+    /// is black. Only the light field and the ground truth know it; other renderers leave it out.
+    Alpha,
+    /// Cryptomatte of objects and materials, whose shares sum to alpha. Who knows it is who knows alpha.
+    Crypto,
+    /// What a pinhole sees, to be blurred by others. Who knows it is who knows alpha, by which it is multiplied where that is wanted, too.
+    Pinhole,
+    /// The circle of confusion, by a [`CocConvention`]. Of the first surface along the chief ray of each pixel's centre, as are the
+    /// following.
+    CircleOfConfusion,
+    /// Axial depth in scene units; infinite where no surface is.
+    Depth,
+    /// The focus offset t, and with it the anchor a; and gloss, where it obeys them.
+    Focus,
+    /// Of a capture: 1 where the surface was photographed, 0 where its light is filled in from around, and beside it. Other scenes leave
+    /// it out.
+    Seen,
+    /// The standard error of conserved radiance, luminance and coverage, and of their ratios. Only the ground truth knows
+    /// it; other renderers leave the layers out.
+    StandardError,
+}
+
+/// What layers are made of.
+pub(crate) struct LayerInputs<'a> {
+    pub picture: &'a Picture,
+    pub hits: Option<&'a FirstHits>,
+    pub estimate: Option<&'a Estimate>,
+    /// What [`Aov::Seen`] is.
+    pub photographed: Option<&'a [f32]>,
+    pub mattes: Option<&'a Mattes>,
+    /// What a pinhole sees, and its alpha, where that is wanted.
+    pub pinhole: Option<&'a (Picture, Option<Layer>)>,
+    pub camera: &'a Camera,
+    pub coc: CocConvention,
+    /// How many pixels on each side of the picture lie around the frame.
+    pub overscan: u32,
+}
+
+impl Aov {
+    /// All of them, by the names that the command line knows.
+    pub const ALL: [(&'static str, Aov); 9] = [
+        ("alpha", Aov::Alpha),
+        ("crypto", Aov::Crypto),
+        ("pinhole", Aov::Pinhole),
+        ("coverage", Aov::Coverage),
+        ("coc", Aov::CircleOfConfusion),
+        ("depth", Aov::Depth),
+        ("t", Aov::Focus),
+        ("seen", Aov::Seen),
+        ("stderr", Aov::StandardError),
+    ];
+
+    /// The entry of one among all.
+    pub fn entry(&self) -> Option<(&'static str, Aov)> {
+        Self::ALL.into_iter().find(|(_, aov)| aov == self)
+    }
+
+    /// The one of this name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.iter().find(|(entry_name, _)| *entry_name == name).map(|(_, aov)| *aov)
+    }
+
+    /// Whether it is made of first hits.
+    pub(crate) fn needs_first_hits(self) -> bool {
+        matches!(self, Self::CircleOfConfusion | Self::Depth | Self::Focus)
+    }
+
+    /// Whether it tells which things a pixel shows: something that only the light field and the ground truth know.
+    pub fn needs_paths(self) -> bool {
+        matches!(self, Self::Alpha | Self::Crypto | Self::Pinhole)
+    }
+
+    /// Its layers; none if what they are made of is missing.
+    pub(crate) fn layers(self, inputs: &LayerInputs) -> Vec<Layer> {
+        let layer = |name: &str, values| Layer { name: name.into(), values };
+        match (self, inputs.hits, inputs.estimate) {
+            (Self::Coverage, ..) => vec![Layer::coverage(inputs.picture)],
+            (Self::CircleOfConfusion, Some(hits), _) => {
+                let frame_height = inputs.camera.height.saturating_sub(2 * inputs.overscan);
+                let diameters = hits.circle_of_confusion_px(inputs.camera).into_iter();
+                vec![layer("coc", diameters.map(|d| inputs.coc.encode(d, frame_height)).collect())]
+            }
+            (Self::Alpha, ..) => {
+                let alpha = inputs.mattes.map(|mattes| layer(Layer::ALPHA, mattes.alpha.clone()));
+                alpha.into_iter().collect()
+            }
+            (Self::Crypto, ..) => inputs
+                .mattes
+                .into_iter()
+                .flat_map(|mattes| &mattes.crypto)
+                .flat_map(Cryptomatte::layers)
+                .collect(),
+            (Self::Pinhole, ..) => inputs.pinhole.map_or_else(Vec::new, |(picture, alpha)| {
+                let colors = Layer::from_colors(Layer::PINHOLE, &picture.exposed(Exposure::Normalise));
+                let alpha =
+                    alpha.iter().map(|alpha| layer(&format!("{}.A", Layer::PINHOLE), alpha.values.clone()));
+                colors.into_iter().chain(alpha).collect()
+            }),
+            (Self::Seen, ..) => inputs
+                .photographed
+                .map(|photographed| layer("seen", photographed.to_vec()))
+                .into_iter()
+                .collect(),
+            (Self::Depth, Some(hits), _) => vec![layer("depth.Z", hits.depth.clone())],
+            (Self::Focus, Some(hits), _) => {
+                let layer_of = |name: &str, number: fn(&FocusOffset) -> f64| {
+                    layer(name, hits.focus.iter().map(|focus| number(focus) as f32).collect())
+                };
+                let has_gloss = hits.focus.iter().any(|focus| focus.gloss != 0.0);
+                let gloss = has_gloss.then(|| layer_of("gloss", |focus| focus.gloss));
+                [layer_of("t", |focus| focus.t), layer_of("anchor", |focus| focus.anchor)]
+                    .into_iter()
+                    .chain(gloss)
+                    .collect()
+            }
+            (Self::StandardError, _, Some(estimate)) => {
+                let rgb = |group: &str, errors: &[[f32; 3]]| {
+                    ["R", "G", "B"]
+                        .into_iter()
+                        .enumerate()
+                        .map(|(c, channel)| {
+                            layer(&format!("{group}.{channel}"), errors.iter().map(|rgb| rgb[c]).collect())
+                        })
+                        .collect::<Vec<_>>()
+                };
+                let mut layers = rgb("stderr", &estimate.standard_error.radiance);
+                layers.push(layer("stderr.Y", estimate.luminance_error.clone()));
+                layers.push(layer("stderr.coverage", estimate.standard_error.coverage.clone()));
+                layers.extend(rgb("stderr.normalised", &estimate.normalised_error));
+                layers.push(layer("stderr.normalised.Y", estimate.normalised_luminance_error.clone()));
+                layers
+            }
+            _ => Vec::new(),
+        }
+    }
+}

@@ -1,0 +1,149 @@
+//! How well photographs of a capture tell one that was left out: light, and what it is to be better than.
+
+use crate::picture::photograph_picture::MIN_PHOTOGRAPHED_SHARE;
+use crate::picture::photograph_picture::photograph_picture;
+use crate::picture::render::pixel_ray;
+use document::Input;
+use document::camera_from_photograph;
+use crate::error::RenderError;
+use light::Steps;
+use atlas::UnwrapOptions;
+use glam::Vec3;
+use lens::{Camera, Exposure};
+use project::{LinearPicture, compare, psnr};
+use rayon::prelude::*;
+use scene::{Scene, SurfacePoint, View};
+use slf::{PhotographLight, PhotographModel, PhotographOptions};
+use std::sync::Arc;
+use std::time::Instant;
+use trace::{Radiance, Tracer};
+
+/// What tells a photograph that was left out.
+#[derive(Clone, Debug)]
+pub struct LeftOutPrediction {
+    /// `light`, `constant texture` or `texture of one photograph`.
+    pub method: &'static str,
+    /// PSNR where the others see the surface, dB; linear, clipped to [0, 1].
+    pub psnr: f64,
+    /// Mean FLIP there.
+    pub flip: f64,
+    /// What it shows; the photograph itself where nothing is seen.
+    pub picture: LinearPicture,
+}
+
+/// A photograph that was left out.
+#[derive(Clone, Debug)]
+pub struct LeftOutPicture {
+    /// Its name.
+    pub name: String,
+    /// The share of the frame where the others see the surface.
+    pub visible_share: f64,
+    /// The photograph as it is compared with: undistorted, linear, a gain a channel fitted to the light.
+    pub photograph: LinearPicture,
+    /// What tells it, the light first.
+    pub predictions: Vec<LeftOutPrediction>,
+}
+
+/// What was measured by leaving photographs out.
+#[derive(Clone, Debug)]
+pub struct LeftOut {
+    /// Each of them.
+    pub pictures: Vec<LeftOutPicture>,
+    /// Seconds that light of the others took.
+    pub seconds: f64,
+}
+
+/// Leaves `count` photographs out, evenly among those of the capture, and looks how the others tell them. Those that the project
+/// leaves out stay out.
+///
+/// # Errors
+/// It is no capture of more than `count` photographs, one cannot be read, or it was cancelled.
+pub fn leave_photographs_out(
+    input: &Input,
+    count: usize,
+    unwrap: &UnwrapOptions,
+    steps: &dyn Steps,
+) -> Result<LeftOut, RenderError> {
+    let all = &input.scene.views;
+    if all.len() <= count {
+        let what = format!("has {} photographs ({} at least to leave {count} out)", all.len(), count + 1);
+        return Err(RenderError::bad_file(&input.path, what));
+    }
+    let is_out = |number: usize| (0..count).any(|k| (2 * k + 1) * all.len() / (2 * count) == number);
+    let (out, rest): (Vec<_>, Vec<_>) =
+        all.iter().cloned().enumerate().partition(|(number, _)| is_out(*number));
+    let views = |numbered: Vec<(usize, View)>| numbered.into_iter().map(|(_, view)| view).collect();
+    let (out, rest): (Vec<View>, Vec<View>) = (views(out), views(rest));
+    let scene = Arc::new(Scene { views: rest.clone(), ..Scene::clone(&input.scene) });
+    let atlas = input.atlas(unwrap, steps)?;
+    let tracer = Arc::new(Tracer::new(scene));
+    let solved = |model: PhotographModel| {
+        let options = PhotographOptions { model, ..PhotographOptions::default() };
+        PhotographLight::solve(
+            &tracer,
+            &atlas,
+            &rest,
+            &options,
+            &*steps.begin("light without some photographs"),
+        )
+        .map_err(|error| RenderError::BadInput(error.to_string()))
+    };
+    let start = Instant::now();
+    let light = solved(PhotographModel::Light)?;
+    let seconds = start.elapsed().as_secs_f64();
+    let one_view = solved(PhotographModel::OneView)?;
+    let predict = |view| left_out_picture(input, view, &tracer, &light, &one_view);
+    Ok(LeftOut { pictures: out.iter().map(predict).collect::<Result<_, _>>()?, seconds })
+}
+
+fn left_out_picture(
+    input: &Input,
+    view: &View,
+    tracer: &Tracer,
+    light: &PhotographLight,
+    one_view: &PhotographLight,
+) -> Result<LeftOutPicture, RenderError> {
+    let camera = camera_from_photograph(tracer.scene().bounds(), view, &input.camera);
+    let (photograph, mut layers) = photograph_picture(view, &camera, tracer, Some(light))?;
+    let photograph = LinearPicture::from_picture(&photograph, Exposure::Conserve);
+    let is_visible: Vec<bool> =
+        layers.remove(0).values.into_iter().map(|share| share >= MIN_PHOTOGRAPHED_SHARE).collect();
+    let visible_share = is_visible.iter().filter(|&&is_visible| is_visible).count() as f64
+        / is_visible.len().max(1) as f64;
+    let from = view.position();
+    let predict = |method, radiance: &(dyn Fn(SurfacePoint) -> Vec3 + Sync)| {
+        let picture = predicted(tracer, &camera, &photograph, &is_visible, radiance);
+        let compared = compare(&picture, &photograph)?;
+        // Elsewhere there is no difference.
+        let within = |mean: f64| if visible_share > 0.0 { mean / visible_share } else { 0.0 };
+        Ok(LeftOutPrediction {
+            method,
+            psnr: psnr(within(compared.rmse.powi(2))),
+            flip: within(compared.flip),
+            picture,
+        })
+    };
+    let predictions = [
+        predict("light", &|point| light.total_outgoing(point, from)),
+        predict("constant texture", &|point| light.constant(point)),
+        predict("texture of one photograph", &|point| one_view.constant(point)),
+    ];
+    let predictions = predictions.into_iter().collect::<Result<_, RenderError>>()?;
+    Ok(LeftOutPicture { name: view.name.clone(), visible_share, photograph, predictions })
+}
+
+/// What the surface sends through a pinhole where it is seen, elsewhere the photograph.
+fn predicted(
+    tracer: &Tracer,
+    camera: &Camera,
+    photograph: &LinearPicture,
+    is_visible: &[bool],
+    radiance: &(dyn Fn(SurfacePoint) -> Vec3 + Sync),
+) -> LinearPicture {
+    let of_pixel = |(number, (&photograph, &is_visible)): (usize, (&[f32; 3], &bool))| {
+        let hit = is_visible.then(|| tracer.first_hit(&pixel_ray(camera, number as u32))).flatten();
+        hit.map_or(photograph, |hit| radiance(hit.point).to_array())
+    };
+    let rgb = photograph.rgb.par_iter().zip(is_visible).enumerate().map(of_pixel).collect();
+    LinearPicture { rgb, ..photograph.clone() }
+}

@@ -1,0 +1,565 @@
+//! A picture without a window: what the command line and the export of the window do.
+
+use crate::picture::aov::Aov;
+use crate::picture::aov::LayerInputs;
+use crate::picture::coc_convention::CocConvention;
+use crate::mattes::BlackBackground;
+use crate::mattes::LightFieldMattes;
+use crate::mattes::MatteRequest;
+use crate::mattes::Mattes;
+use crate::mattes::SampleParts;
+use crate::mattes::TruthMattes;
+use crate::picture::renderer::Renderer;
+use document::Input;
+use crate::error::RenderError;
+use light::Steps;
+use light::LightQuality;
+use crate::bake::bake_with;
+use crate::bake::is_compatible;
+use light::LitScene;
+use baselines::{BaselineError, FirstHits, LayeredOptions, ScatterOptions, ViewsOptions};
+use focus::Focus;
+use glam::DVec2;
+use lens::{Camera, FocusOffset, Picture};
+use project::{Cryptomatte, Layer};
+use rayon::prelude::*;
+use salf::{BakeOptions, Salf, SalfStatistics};
+use scene::SurfacePoint;
+use serde::Serialize;
+use slf::PhotographLight;
+use splat::{Gpu, Splatter, Tolerance};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::time::Instant;
+use trace::truth::{Estimate, TruthOptions};
+use trace::{Radiance, Ray, Tracer};
+
+impl From<BaselineError> for RenderError {
+    fn from(error: BaselineError) -> Self {
+        match error {
+            BaselineError::Cancelled => Self::Cancelled,
+            other => Self::BadInput(other.to_string()),
+        }
+    }
+}
+
+/// How to render.
+#[derive(Clone, Debug)]
+pub struct RenderOptions {
+    /// What draws it.
+    pub renderer: Renderer,
+    /// How the ray tracer samples. Its region must be the frame.
+    pub truth: TruthOptions,
+    /// How coarse the light field may be, px (see [`BakeOptions::tolerance_px`]).
+    pub tolerance_px: f64,
+    /// How well its light is found; the ground truth's is whole paths.
+    pub light: LightQuality,
+    /// How coarse its splat may be.
+    pub splat_tolerance: Tolerance,
+    /// A light field that is to be baked is sampled on a grid of n × n cells a pixel, n from 1 to [`MOST_CELLS_A_SIDE`],
+    /// and a pixel is the mean of what these give. What a tolerance of 0 leaves of the error is how far apart samples lie.
+    pub cells_a_side: u32,
+    /// The graphics card that the splat is summed on; none for the processor. The picture is the same.
+    pub gpu: Option<Gpu>,
+    /// How [`Renderer::Layers`] cuts the picture.
+    pub layered: LayeredOptions,
+    /// What [`Renderer::Views`] captures.
+    pub views: ViewsOptions,
+    /// What [`Renderer::Scatter`] throws.
+    pub scatter: ScatterOptions,
+    /// The pictures that come along.
+    pub aovs: Vec<Aov>,
+    /// How the circle of confusion is told among them.
+    pub coc: CocConvention,
+    /// How many pixels on each side of the camera's picture lie around the frame ([`Camera::overscanned`]): what is told as a share of
+    /// the frame's height is one of the frame's.
+    pub overscan: u32,
+}
+
+impl Default for RenderOptions {
+    fn default() -> Self {
+        Self {
+            renderer: Renderer::Splat,
+            truth: TruthOptions { samples_per_pixel: 64, ..TruthOptions::default() },
+            tolerance_px: BakeOptions::TOLERANCE_PX,
+            light: LightQuality::Fine,
+            splat_tolerance: Tolerance::NONE,
+            cells_a_side: 1,
+            gpu: None,
+            layered: LayeredOptions::default(),
+            views: ViewsOptions::default(),
+            scatter: ScatterOptions::default(),
+            aovs: Vec::new(),
+            coc: CocConvention::default(),
+            overscan: 0,
+        }
+    }
+}
+
+/// The most of [`RenderOptions::cells_a_side`].
+pub const MAX_CELLS_A_SIDE: u32 = 4;
+
+impl RenderOptions {
+    /// A light field and splat as coarse as `px` pixels. At 0 they are as fine as they are meant to get, with nine cells a
+    /// pixel.
+    pub fn at_tolerance(px: f64) -> Self {
+        Self {
+            tolerance_px: px,
+            splat_tolerance: Tolerance::px(px),
+            cells_a_side: if px == 0.0 { 3 } else { 1 },
+            ..Self::default()
+        }
+    }
+
+    fn has_aov(&self, aov: Aov) -> bool {
+        self.aovs.contains(&aov)
+    }
+
+    /// Whether the picture is multiplied by alpha: the background is black.
+    pub(crate) fn is_premultiplied(&self) -> bool {
+        self.has_aov(Aov::Alpha)
+    }
+
+    /// Of whom a pixel is, as far as the AOVs tell it.
+    pub(crate) fn matte_request(&self) -> Option<MatteRequest> {
+        let crypto = self.has_aov(Aov::Crypto);
+        (crypto || self.has_aov(Aov::Alpha)).then_some(MatteRequest { crypto })
+    }
+
+    /// Bakes the light field for `camera`: its own camera is as much finer as [`Self::cells_a_side`] says.
+    pub fn bake(
+        &self,
+        lit: &Arc<LitScene>,
+        camera: &Camera,
+        focus: &Focus,
+        steps: &dyn Steps,
+    ) -> Result<Salf, RenderError> {
+        let needed = BakeOptions::for_focus(lit.tracer(), &self.finer(camera)?, focus);
+        self.bake_as(lit, camera, needed, steps)
+    }
+
+    /// The same for a margin, and light carried as finely, as `needed` says of the finer camera.
+    pub(crate) fn bake_as(
+        &self,
+        lit: &Arc<LitScene>,
+        camera: &Camera,
+        needed: BakeOptions,
+        steps: &dyn Steps,
+    ) -> Result<Salf, RenderError> {
+        let tolerance_px = self.tolerance_px * f64::from(self.cells_a_side);
+        bake_with(lit, &self.finer(camera)?, &BakeOptions { tolerance_px, ..needed }, self.light, steps)
+    }
+
+    /// The camera whose light field is baked for `camera`.
+    pub(crate) fn finer(&self, camera: &Camera) -> Result<Camera, RenderError> {
+        let finer = camera.finer(self.cells_a_side);
+        let describe = |error| {
+            let n = self.cells_a_side;
+            RenderError::BadInput(format!(
+                "with {n} × {n} cells a pixel the {error} (take fewer, or a smaller picture)"
+            ))
+        };
+        finer.validate().map_err(describe)?;
+        Ok(finer)
+    }
+}
+
+/// A rendered picture, what came along and what it cost.
+#[derive(Clone, Debug)]
+pub struct Rendered {
+    /// The picture, radiance and coverage.
+    pub picture: Picture,
+    /// The layers of the AOVs, in the order in which they were asked for.
+    pub layers: Vec<Layer>,
+    /// What a file that holds the layers has to say of them, as attributes.
+    pub attributes: BTreeMap<String, String>,
+    /// What it cost.
+    pub cost: RenderCost,
+    /// What the picture lacks, a sentence each.
+    pub warnings: Vec<String>,
+}
+
+/// What a picture cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct RenderCost {
+    /// Seconds for the hierarchy over the triangles.
+    pub prepare_seconds: f64,
+    /// Seconds for the light field.
+    pub bake_seconds: f64,
+    /// Seconds for the picture itself.
+    pub picture_seconds: f64,
+    /// Samples that see the whole aperture.
+    pub open_samples: usize,
+    /// Samples that see part of it.
+    pub partial_samples: usize,
+    /// Samples of the background, which are among the others.
+    pub background_samples: usize,
+    /// Bytes of all samples.
+    pub salf_bytes: usize,
+    /// How far outside the frame was sampled, px.
+    pub margin_px: u32,
+    /// Whether the picture was summed on a graphics card.
+    pub is_on_gpu: bool,
+}
+
+impl RenderCost {
+    /// What is told of a light field; no time was spent yet.
+    fn from_salf(salf: &Salf) -> Self {
+        let SalfStatistics { open, partial, background, bytes, .. } = salf.statistics();
+        Self {
+            open_samples: open,
+            partial_samples: partial,
+            background_samples: background,
+            salf_bytes: bytes,
+            margin_px: salf.margin_px,
+            ..Self::default()
+        }
+    }
+}
+
+/// Renders a scene.
+pub fn render(
+    lit: &Arc<LitScene>,
+    camera: &Camera,
+    focus: &Focus,
+    options: &RenderOptions,
+    steps: &dyn Steps,
+) -> Result<Rendered, RenderError> {
+    let start = Instant::now();
+    let mut cost = RenderCost::default();
+    let (mut estimate, mut mattes) = (None, None);
+    let picture = match options.renderer {
+        Renderer::Splat | Renderer::Scatter => {
+            let salf = Arc::new(options.bake(lit, camera, focus, steps)?);
+            let bake_seconds = start.elapsed().as_secs_f64();
+            let drawn = draw_baked(&salf, lit, camera, focus, options, steps)?;
+            return Ok(Rendered { cost: RenderCost { bake_seconds, ..drawn.cost }, ..drawn });
+        }
+        Renderer::Truth => {
+            let light = lit.ground_truth(camera, &*steps.begin("light"))?;
+            let premultiplied = BlackBackground(&*light);
+            let radiance: &dyn Radiance = if options.has_aov(Aov::Alpha) { &premultiplied } else { &*light };
+            let progress = steps.begin("tracing");
+            let traced = trace::truth::render(lit.tracer(), radiance, focus, camera, &options.truth, &*progress)?;
+            if let Some(request) = options.matte_request() {
+                let truth = TruthOptions { surveys_light: false, ..options.truth };
+                let source = TruthMattes { tracer: lit.tracer(), radiance: &*light, focus, camera, options: truth };
+                mattes = Some(Mattes::render(lit.scene(), source, request, steps)?);
+            }
+            estimate.insert(traced).picture.clone()
+        }
+        Renderer::Blur => {
+            let hits = first_hits(lit, camera, focus, options.light, steps)?;
+            baselines::gather_blur(&hits, camera, &*steps.begin("blurring"))?
+        }
+        Renderer::Layers => {
+            let hits = first_hits(lit, camera, focus, options.light, steps)?;
+            baselines::layered_blur(&hits, camera, &options.layered, &*steps.begin("blurring"))?
+        }
+        Renderer::Views => {
+            let radiance = lit.solve(camera, options.light, &*steps.begin("light"))?;
+            let progress = steps.begin("views");
+            baselines::shift_and_add(lit.tracer(), &*radiance, focus, camera, &options.views, &*progress)?
+        }
+    };
+    cost.picture_seconds = start.elapsed().as_secs_f64();
+    let shot = Shot { lit, camera, focus };
+    finish(shot, options, Drawn { picture, estimate, mattes, cost }, steps)
+}
+
+/// Draws what [`RenderOptions::bake`] baked, for a camera that it serves.
+pub(crate) fn draw_baked(
+    salf: &Arc<Salf>,
+    lit: &Arc<LitScene>,
+    camera: &Camera,
+    focus: &Focus,
+    options: &RenderOptions,
+    steps: &dyn Steps,
+) -> Result<Rendered, RenderError> {
+    let shot = Shot { lit, camera, focus };
+    let drawn = draw_light_field(salf.clone(), shot, options.cells_a_side, options, steps)?;
+    finish(shot, options, drawn, steps)
+}
+
+/// Renders what was opened: a scene, a project, or (where the renderer draws one) a light field.
+pub fn render_input(
+    input: &Input,
+    camera: &Camera,
+    focus: &Focus,
+    options: &RenderOptions,
+    steps: &dyn Steps,
+) -> Result<Rendered, RenderError> {
+    let start = Instant::now();
+    let lit = lit_scene_of(input, camera)?;
+    let prepare_seconds = start.elapsed().as_secs_f64();
+    let mut rendered = match input.salf.as_ref().filter(|_| options.renderer.draws_light_field()) {
+        None => render(&lit, camera, focus, options, steps)?,
+        Some(salf) => {
+            if let Some(difference) = incompatibility(&salf.camera, camera) {
+                let what = format!("it was baked {difference} (bake it again for this camera)");
+                return Err(RenderError::bad_file(&input.path, what));
+            }
+            let mut rendered = sum_light_field(salf.clone(), &lit, camera, focus, options, steps)?;
+            let needed = BakeOptions::for_focus(lit.tracer(), camera, focus).margin_px;
+            if needed > salf.margin_px as f64 {
+                rendered.warnings.push(format!(
+                    "{}: paint spreads light from {needed:.0} px outside the frame, {} px were baked (bake it with --focus)",
+                    input.path.display(),
+                    salf.margin_px
+                ));
+            }
+            rendered
+        }
+    };
+    rendered.cost.prepare_seconds = prepare_seconds;
+    Ok(rendered)
+}
+
+/// What answers the rays of a camera that can be used.
+pub(crate) fn lit_scene_of(input: &Input, camera: &Camera) -> Result<Arc<LitScene>, RenderError> {
+    camera.validate().map_err(|error| RenderError::bad_file(&input.path, error))?;
+    Ok(input.lit_scene()?)
+}
+
+/// What keeps a light field of `baked` from serving `camera`.
+fn incompatibility(baked: &Camera, camera: &Camera) -> Option<String> {
+    if is_compatible(baked, camera) {
+        return None;
+    }
+    Some(if (baked.width, baked.height) != (camera.width, camera.height) {
+        format!("for {} × {} px, not {} × {}", baked.width, baked.height, camera.width, camera.height)
+    } else if camera.aperture_radius > baked.aperture_radius {
+        format!("for an aperture radius of {}, not {}", baked.aperture_radius, camera.aperture_radius)
+    } else {
+        "for another pose, angle of view, sensor or background".into()
+    })
+}
+
+/// Renders a light field.
+pub fn sum_light_field(
+    salf: Arc<Salf>,
+    lit: &Arc<LitScene>,
+    camera: &Camera,
+    focus: &Focus,
+    options: &RenderOptions,
+    steps: &dyn Steps,
+) -> Result<Rendered, RenderError> {
+    let shot = Shot { lit, camera, focus };
+    finish(shot, options, draw_light_field(salf, shot, 1, options, steps)?, steps)
+}
+
+/// The picture of a light field of so many cells a pixel's side, what it shows, and what it cost.
+fn draw_light_field(
+    salf: Arc<Salf>,
+    Shot { lit, camera, focus }: Shot,
+    cells_a_side: u32,
+    options: &RenderOptions,
+    steps: &dyn Steps,
+) -> Result<Drawn, RenderError> {
+    let camera = &camera.finer(cells_a_side);
+    let start = Instant::now();
+    let mut mattes = None;
+    let (picture, cost) = if options.renderer == Renderer::Scatter {
+        let scattering = steps.begin("scattering");
+        let picture = baselines::scatter_rays(&salf, camera, focus, &options.scatter, &*scattering)?;
+        (picture, RenderCost::from_salf(&salf))
+    } else {
+        let scene = lit.scene();
+        let matte_request = options.matte_request().map(|request| (request, SampleParts::new(&salf, scene)));
+        let mut splatter = new_splatter(salf, options);
+        if let Some((_, sample_parts)) = matte_request.as_ref().filter(|_| options.has_aov(Aov::Alpha)) {
+            splatter.blacken(|sample| sample_parts.part(sample).is_none());
+        }
+        let cost = run_splatter(&mut splatter, camera, focus, steps)?;
+        let picture = splatter.picture().clone();
+        if let Some((request, sample_parts)) = matte_request {
+            let source = LightFieldMattes { mattes: splatter.into_mattes(), sample_parts, cells_a_side };
+            mattes = Some(Mattes::render(scene, source, request, steps)?);
+        }
+        (picture, cost)
+    };
+    let cost = RenderCost { picture_seconds: start.elapsed().as_secs_f64(), ..cost };
+    Ok(Drawn { picture: picture.averaged(cells_a_side), estimate: None, mattes, cost })
+}
+
+/// What sums a light field.
+pub(crate) fn new_splatter(salf: Arc<Salf>, options: &RenderOptions) -> Splatter {
+    let mut splatter = Splatter::new(salf);
+    splatter.set_tolerance(options.splat_tolerance);
+    splatter.use_gpu(options.gpu.clone());
+    splatter
+}
+
+/// Has a splatter draw; what it cost.
+fn run_splatter(
+    splatter: &mut Splatter,
+    camera: &Camera,
+    focus: &Focus,
+    steps: &dyn Steps,
+) -> Result<RenderCost, RenderError> {
+    let start = Instant::now();
+    splatter.render(camera, focus, &*steps.begin("splatting"))?;
+    let (is_on_gpu, picture_seconds) = (splatter.gpu().is_some(), start.elapsed().as_secs_f64());
+    Ok(RenderCost { is_on_gpu, picture_seconds, ..RenderCost::from_salf(splatter.salf()) })
+}
+
+/// Sums what [`RenderOptions::bake`] baked, for a camera that it serves, as often as one likes.
+pub(crate) fn sum_baked(
+    splatter: &mut Splatter,
+    lit: &Arc<LitScene>,
+    camera: &Camera,
+    focus: &Focus,
+    options: &RenderOptions,
+    steps: &dyn Steps,
+) -> Result<Rendered, RenderError> {
+    let (shot, cells) = (Shot { lit, camera, focus }, options.cells_a_side);
+    if options.matte_request().is_some() {
+        // Of whom light is, is told by a sum of its own.
+        let drawn = draw_light_field(splatter.salf().clone(), shot, cells, options, steps)?;
+        return finish(shot, options, drawn, steps);
+    }
+    let cost = run_splatter(splatter, &camera.finer(cells), focus, steps)?;
+    let picture = splatter.picture().averaged(cells);
+    finish(shot, options, Drawn { picture, estimate: None, mattes: None, cost }, steps)
+}
+
+/// What is rendered.
+#[derive(Clone, Copy)]
+struct Shot<'a> {
+    lit: &'a Arc<LitScene>,
+    camera: &'a Camera,
+    focus: &'a Focus,
+}
+
+/// A picture, before what comes along.
+struct Drawn {
+    picture: Picture,
+    /// What the ground truth knows of its error.
+    estimate: Option<Estimate>,
+    /// Of whom its pixels are, if that was asked for.
+    mattes: Option<Mattes>,
+    cost: RenderCost,
+}
+
+fn finish(
+    Shot { lit, camera, focus }: Shot,
+    options: &RenderOptions,
+    Drawn { picture, estimate, mattes, cost }: Drawn,
+    steps: &dyn Steps,
+) -> Result<Rendered, RenderError> {
+    let needs_hits = options.aovs.iter().any(|aov| aov.needs_first_hits());
+    let hits = needs_hits.then(|| first_hits(lit, camera, focus, options.light, steps)).transpose()?;
+    let is_captured = lit.is_photographed() || lit.scene().picture.is_some();
+    let needs_photographed = options.aovs.contains(&Aov::Seen) && is_captured;
+    let photographed = needs_photographed.then(|| {
+        let light = light_of_photographs(lit, steps)?;
+        Ok::<_, RenderError>(photographed_shares(lit.tracer(), camera, light.as_deref()))
+    });
+    let photographed = photographed.transpose()?;
+    let needs_pinhole = options.has_aov(Aov::Pinhole) && options.renderer.resolves_paths();
+    let pinhole = needs_pinhole.then(|| render_pinhole(lit, camera, options, steps)).transpose()?;
+    let inputs = LayerInputs {
+        picture: &picture,
+        hits: hits.as_ref(),
+        estimate: estimate.as_ref(),
+        photographed: photographed.as_deref(),
+        mattes: mattes.as_ref(),
+        pinhole: pinhole.as_ref(),
+        camera,
+        coc: options.coc,
+        overscan: options.overscan,
+    };
+    let layers = options.aovs.iter().flat_map(|aov| aov.layers(&inputs)).collect();
+    let crypto = mattes.iter().flat_map(|mattes| &mattes.crypto);
+    let mut attributes: BTreeMap<_, _> = crypto.flat_map(Cryptomatte::attributes).collect();
+    if options.has_aov(Aov::CircleOfConfusion) {
+        attributes.insert("focusBrush.cocConvention".into(), options.coc.name().into());
+    }
+    let warnings = mattes.map_or_else(Vec::new, |mattes| mattes.warnings);
+    Ok(Rendered { picture, layers, attributes, cost, warnings })
+}
+
+/// What a pinhole sees, unpainted, by the same renderer; with its alpha where that is asked for.
+fn render_pinhole(
+    lit: &Arc<LitScene>,
+    camera: &Camera,
+    options: &RenderOptions,
+    steps: &dyn Steps,
+) -> Result<(Picture, Option<Layer>), RenderError> {
+    let camera = Camera { aperture_radius: 0.0, ..camera.clone() };
+    let unpainted = Focus::constant(lit.scene().clone(), FocusOffset::STANDARD);
+    let aovs = options.aovs.iter().copied().filter(|aov| *aov == Aov::Alpha).collect();
+    let options = RenderOptions { aovs, ..options.clone() };
+    let mut rendered = render(lit, &camera, &unpainted, &options, steps)?;
+    Ok((rendered.picture, rendered.layers.pop()))
+}
+
+/// The chief ray of a pixel's middle; pixels are numbered row by row.
+pub(crate) fn pixel_ray(camera: &Camera, number: u32) -> Ray {
+    let pixel = DVec2::new(f64::from(number % camera.width), f64::from(number / camera.width));
+    Ray::pinhole(camera, DVec2::ZERO, pixel + 0.5)
+}
+
+/// The light of a capture's photographs; none of a surface that was made from a picture, whose texture has it.
+pub fn light_of_photographs(
+    lit: &Arc<LitScene>,
+    steps: &dyn Steps,
+) -> Result<Option<Arc<PhotographLight>>, RenderError> {
+    if lit.scene().picture.is_some() {
+        return Ok(None);
+    }
+    let Some(light) = lit.photograph_light(&*steps.begin("light"))? else { return Ok(None) };
+    if let Some(sentence) = alignment_message(&light.max_displacements_px()) {
+        steps.notice(&sentence);
+    }
+    Ok(Some(light))
+}
+
+/// How many photographs were aligned, if any, and by how much.
+fn alignment_message(moved_px: &[f64]) -> Option<String> {
+    let count = moved_px.iter().filter(|&&px| px > 0.0).count();
+    let most = moved_px.iter().copied().fold(0.0, f64::max);
+    let all = moved_px.len();
+    (count > 0).then(|| {
+        format!("{count} of {all} photographs are off, by up to {most:.1} px: aligned with the others")
+    })
+}
+
+/// How far the surface along each pixel's chief ray was photographed, in the photographs of `light`, or else in the picture that it was
+/// made from.
+pub(crate) fn photographed_shares(
+    tracer: &Tracer,
+    camera: &Camera,
+    light: Option<&PhotographLight>,
+) -> Vec<f32> {
+    photographed_shares_of_pixels(tracer, camera, light, (0..camera.width * camera.height).collect())
+}
+
+/// The same in some pixels.
+pub(crate) fn photographed_shares_of_pixels(
+    tracer: &Tracer,
+    camera: &Camera,
+    light: Option<&PhotographLight>,
+    pixels: Vec<u32>,
+) -> Vec<f32> {
+    let share_at = |point: SurfacePoint| match light {
+        Some(light) => light.observed_share(point),
+        None => tracer.scene().photographed_share(point).unwrap_or(0.0),
+    };
+    let of_pixel = |number: u32| {
+        let hit = tracer.first_hit(&pixel_ray(camera, number));
+        hit.map_or(0.0, |hit| share_at(hit.point))
+    };
+    pixels.into_par_iter().map(of_pixel).collect()
+}
+
+fn first_hits(
+    lit: &Arc<LitScene>,
+    camera: &Camera,
+    focus: &Focus,
+    quality: LightQuality,
+    steps: &dyn Steps,
+) -> Result<FirstHits, RenderError> {
+    let light = lit.solve(camera, quality, &*steps.begin("light"))?;
+    Ok(FirstHits::trace(lit.tracer(), &*light, focus, camera, &*steps.begin("first hits"))?)
+}

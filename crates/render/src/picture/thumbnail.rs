@@ -1,0 +1,60 @@
+//! Small pictures of files, for file managers.
+
+use crate::picture::tone::Tone;
+use document::InputKind;
+use crate::error::RenderError;
+use lens::{Exposure, FocusOffset};
+use progress::Progress;
+use project::Thumbnail;
+use salf::SalfFile;
+use scene::{SurfaceField, SurfacePoint};
+use splat::Splatter;
+use std::fs::File;
+use std::io::BufReader;
+use std::path::Path;
+
+/// The small picture that a project holds; of a light field, what its camera sees, drawn without its scene, which a file manager may keep
+/// out of reach.
+///
+/// # Errors
+/// The file is neither of them, cannot be read, or is a project that was saved without a picture; `progress` says to stop.
+pub fn read_thumbnail(path: &Path, progress: &dyn Progress) -> Result<Thumbnail, RenderError> {
+    let none = |what: &str| Err(RenderError::bad_file(path, what));
+    match InputKind::from_path(path)? {
+        InputKind::Project => match Thumbnail::read(path)? {
+            Some(thumbnail) => Ok(thumbnail),
+            None => none("was saved without a picture (open it in the window and save it)"),
+        },
+        InputKind::LightField => {
+            let file = File::open(path).map_err(|error| RenderError::io(path, &error))?;
+            let read =
+                SalfFile::read(BufReader::new(file)).map_err(|error| RenderError::bad_file(path, error))?;
+            let camera = read.salf.camera.clone();
+            let mut splatter = Splatter::new(read.salf);
+            splatter.render(&camera, &OrdinaryLens, progress)?;
+            let picture = splatter.picture();
+            let tone = Tone { exposure: Exposure::Normalise, ..Tone::default() };
+            Ok(Thumbnail::from_linear(picture.width, picture.height, tone.displayed(picture)))
+        }
+        InputKind::Scene | InputKind::Capture => {
+            none("holds no picture of itself (give a project or a light field)")
+        }
+    }
+}
+
+/// Nothing painted, of no scene in particular.
+struct OrdinaryLens;
+
+impl SurfaceField<FocusOffset> for OrdinaryLens {
+    fn at(&self, _point: SurfacePoint) -> FocusOffset {
+        FocusOffset::STANDARD
+    }
+
+    fn at_infinity(&self) -> FocusOffset {
+        FocusOffset::STANDARD
+    }
+
+    fn affects_carried_light(&self) -> bool {
+        false
+    }
+}

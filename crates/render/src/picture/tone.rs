@@ -1,0 +1,143 @@
+//! From linear radiance to the screen: exposure, display gain, tone curve, clamp, sRGB encoding.
+
+use crate::picture::tone_curve::ToneCurve;
+use lens::{Exposure, Picture};
+use rayon::prelude::*;
+use scene::srgb_from_linear;
+use std::ops::Range;
+use std::sync::LazyLock;
+
+/// A pixel of a screen: red, green and blue in sRGB's encoding, and 255.
+pub type ScreenPixel = [u8; 4];
+
+/// Entries of the encoding table: an 8-bit step is at least three entries wide even in the shadows.
+const ENTRIES: usize = 1 << 13;
+
+/// Fewer pixels than this are not worth another thread.
+const PIXELS_OF_A_TASK: usize = 1 << 13;
+
+/// sRGB encoding of the middle of each of [`ENTRIES`] cells of [0, 1].
+static ENCODED: LazyLock<Vec<u8>> = LazyLock::new(|| {
+    (0..ENTRIES)
+        .map(|k| (srgb_from_linear((k as f32 + 0.5) / ENTRIES as f32) * 255.0).round() as u8)
+        .collect()
+});
+
+/// How a picture is put on screen.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct Tone {
+    /// Conserved or normalised.
+    pub exposure: Exposure,
+    /// What is no part of the picture.
+    pub display: Display,
+}
+
+/// How the screen shows any picture.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct Display {
+    /// Gain, stops.
+    pub stops: f32,
+    /// What becomes of light brighter than white.
+    pub curve: ToneCurve,
+}
+
+impl Tone {
+    /// The picture as the screen shows it, before it is clamped and encoded: linear, row by row.
+    pub fn displayed(self, picture: &Picture) -> Vec<[f32; 3]> {
+        let shown = picture.radiance.par_iter().zip(&picture.coverage);
+        shown.map(|(radiance, coverage)| self.displayed_pixel(*radiance, *coverage)).collect()
+    }
+
+    #[inline(always)]
+    fn displayed_pixel(self, radiance: [f32; 3], coverage: f32) -> [f32; 3] {
+        let gain = self.display.stops.exp2();
+        let scale = match self.exposure {
+            Exposure::Conserve => gain,
+            Exposure::Normalise if coverage > 0.0 => gain / coverage,
+            Exposure::Normalise => 0.0,
+        };
+        self.display.curve.map(radiance.map(|c| c * scale))
+    }
+}
+
+/// One channel on screen; what is no number is black.
+fn encoded(linear: f32) -> u8 {
+    ENCODED[((linear.max(0.0) * ENTRIES as f32) as usize).min(ENTRIES - 1)]
+}
+
+/// The picture as the screen shows it, row by row.
+pub fn to_screen(picture: &Picture, tone: Tone) -> Vec<ScreenPixel> {
+    rectangle_to_screen(picture, tone, [0..picture.width, 0..picture.height])
+}
+
+/// A rectangle of the picture, columns and rows within it, as the screen shows it, row by row.
+pub fn rectangle_to_screen(
+    picture: &Picture,
+    tone: Tone,
+    [columns, rows]: [Range<u32>; 2],
+) -> Vec<ScreenPixel> {
+    let pixel = |index: usize| {
+        let displayed = tone.displayed_pixel(picture.radiance[index], picture.coverage[index]);
+        let [r, g, b] = displayed.map(encoded);
+        [r, g, b, u8::MAX]
+    };
+    let width = columns.len();
+    let mut pixels = vec![[0; 4]; width * rows.len()];
+    if width > 0 {
+        pixels.par_chunks_mut(width).zip(rows).with_min_len(PIXELS_OF_A_TASK.div_ceil(width)).for_each(
+            |(pixels, row)| {
+                let first = row as usize * picture.width as usize + columns.start as usize;
+                for (offset, shown) in pixels.iter_mut().enumerate() {
+                    *shown = pixel(first + offset);
+                }
+            },
+        );
+    }
+    pixels
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shown_at(exposure: Exposure, stops: f32) -> Tone {
+        Tone { exposure, display: Display { stops, curve: ToneCurve::Clip } }
+    }
+
+    #[test]
+    fn black_grey_and_white_are_encoded() {
+        let mut picture = Picture::black(5, 1);
+        picture.radiance = vec![[0.0; 3], [0.2140; 3], [1.0; 3], [7.0; 3], [f32::NAN; 3]];
+        picture.coverage = vec![1.0; 5];
+        let tone = shown_at(Exposure::Conserve, 0.0);
+        let shown: Vec<u8> = to_screen(&picture, tone).iter().map(|c| c[0]).collect();
+        assert_eq!(shown[0], 0);
+        assert!(shown[1].abs_diff(127) <= 1, "{}", shown[1]);
+        assert_eq!(shown[2..], [255, 255, 0]);
+    }
+
+    #[test]
+    fn normalising_divides_by_coverage_and_a_stop_doubles() {
+        let mut picture = Picture::black(2, 1);
+        picture.radiance = vec![[0.5; 3], [0.25; 3]];
+        picture.coverage = vec![2.0, 0.0];
+        let shown = to_screen(&picture, shown_at(Exposure::Normalise, 0.0));
+        assert_eq!(shown[1], [0, 0, 0, 255], "what nothing covers is black");
+        let conserved = to_screen(&picture, shown_at(Exposure::Conserve, 1.0));
+        assert_eq!(shown[0], to_screen(&picture, shown_at(Exposure::Conserve, -1.0))[0]);
+        assert_eq!(conserved[0][0], 255);
+    }
+    #[test]
+    fn a_rectangle_is_shown_as_it_is_in_the_whole() {
+        let mut picture = Picture::black(300, 70);
+        for (k, (radiance, coverage)) in picture.radiance.iter_mut().zip(&mut picture.coverage).enumerate() {
+            (*radiance, *coverage) = ([k as f32 * 4e-5, 0.3, 0.01], 0.5 + (k % 7) as f32 * 0.1);
+        }
+        let tone = Tone { display: Display { stops: 0.3, curve: ToneCurve::Agx }, ..Tone::default() };
+        let whole = to_screen(&picture, tone);
+        let part = rectangle_to_screen(&picture, tone, [120..121, 3..70]);
+        let expected: Vec<_> = (3..70).map(|y| whole[y * 300 + 120]).collect();
+        assert_eq!(part, expected);
+        assert!(rectangle_to_screen(&picture, tone, [5..5, 0..70]).is_empty());
+    }
+}

@@ -1,0 +1,186 @@
+//! Drawing tiles one after the other.
+
+use crate::tiles::crop::CropFailure;
+use crate::tiles::draw::Shot;
+use crate::tiles::grid::TileGrid;
+use crate::tiles::merge::MergeFailure;
+use crate::tiles::merge::Merged;
+use crate::tiles::merge::merge;
+use crate::tiles::part::Output;
+use crate::tiles::part::Part;
+use crate::tiles::part::part_path;
+use document::Input;
+use crate::error::RenderError;
+use light::Steps;
+use crate::picture::RenderOptions;
+use crate::picture::lit_scene_of;
+use crate::sequence::Outcome;
+use crate::sequence::Shard;
+use crate::sequence::still_frame_plan;
+use focus::Focus;
+use lens::Camera;
+use progress::Progress;
+use project::{PartWriter, PictureOptions};
+use splat::{Crop, Integers};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// What is drawn in tiles, and where to.
+pub struct TileOptions<'a> {
+    /// How it is rendered: by the splat, on the processor.
+    pub render: RenderOptions,
+    /// How it is divided.
+    pub grid: TileGrid,
+    /// The share of the tiles that is drawn, to parts that are merged later; none for all of them, and the picture.
+    pub shard: Option<Shard>,
+    /// The picture: an EXR.
+    pub output: PathBuf,
+    /// How it is written.
+    pub written: PictureOptions,
+    /// How fine the integers of its sums may be.
+    pub integers: Integers,
+    /// Is told of every tile.
+    pub on_tile: &'a dyn Fn(&TileReport),
+    /// Whether the work is to end: asked before each tile.
+    pub progress: &'a dyn Progress,
+}
+
+/// A tile of the report.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TileReport {
+    /// Its number, from 1, row by row.
+    pub tile: u32,
+    /// How many there are.
+    pub tile_count: u32,
+    /// Its part.
+    pub file: PathBuf,
+    /// What became of it.
+    pub outcome: Outcome,
+    /// How long it took, s.
+    pub took_seconds: f64,
+}
+
+/// What was done.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TilesReport {
+    /// The tiles, in order.
+    pub tiles: Vec<TileReport>,
+    /// The picture, if all tiles were merged.
+    pub merged: Option<Merged>,
+}
+
+/// Draws tiles of a picture to parts, but for those that are finished; and, where all of them are asked for, merges them and removes the
+/// parts. A tile that cannot be drawn does not keep the others from it.
+///
+/// # Errors
+/// The picture cannot be divided so, the work was cancelled, or the machine stands in the way: what is finished stays.
+pub fn render_tiles(
+    input: &Input,
+    camera: &Camera,
+    focus: &Focus,
+    options: &TileOptions<'_>,
+    steps: &dyn Steps,
+) -> Result<TilesReport, RenderError> {
+    let lit = lit_scene_of(input, camera)?;
+    let shot = Shot { lit: &lit, camera, focus, options: &options.render };
+    let size = [camera.width, camera.height];
+    let tiles = options.grid.tiles(size).map_err(|what| RenderError::bad_file(&options.output, what))?;
+    let written = PictureOptions { attributes: shot.attributes(), ..options.written.clone() };
+    let TileGrid { columns, rows } = options.grid;
+    let plan = still_frame_plan(
+        &lit,
+        camera,
+        focus,
+        &options.render,
+        &format!("{written:?} tiles {columns}x{rows}"),
+    );
+    let aov_name = |aov: &crate::picture::Aov| aov.entry().map(|(name, _)| name.to_string());
+    let blank = Part {
+        plan: hex::encode(plan),
+        tile: 0,
+        tiles: [columns, rows],
+        size,
+        cells: options.render.cells_a_side,
+        aovs: options.render.aovs.iter().filter_map(aov_name).collect(),
+        output: Output::new(&written),
+        things: shot.things(),
+        pieces: Vec::new(),
+    };
+    let mut integers = options.integers;
+    loop {
+        let mut report = TilesReport::default();
+        for (number, tile) in (0..).zip(&tiles) {
+            if !options.shard.is_none_or(|shard| shard.contains(number as usize)) {
+                continue;
+            }
+            options.progress.check()?;
+            let start = Instant::now();
+            let file = part_path(&options.output, options.grid, number);
+            let part = Part { tile: number, ..blank.clone() };
+            let outcome = match draw_tile(shot, *tile, part, integers, &file, steps) {
+                Ok(outcome) => outcome,
+                Err(error @ (RenderError::Cancelled | RenderError::TryAgain(_))) => return Err(error),
+                Err(error) => Outcome::Failed(error),
+            };
+            let took_seconds = start.elapsed().as_secs_f64();
+            let (tile, tile_count) = (number + 1, options.grid.count());
+            let tile_report = TileReport { tile, tile_count, file, outcome, took_seconds };
+            (options.on_tile)(&tile_report);
+            report.tiles.push(tile_report);
+        }
+        let is_whole = report.tiles.iter().all(|tile| tile.outcome.error().is_none());
+        if options.shard.is_some() || !is_whole {
+            return Ok(report);
+        }
+        let files: Vec<_> = report.tiles.iter().map(|tile| tile.file.clone()).collect();
+        match merge(&files, &options.output, steps) {
+            Ok(merged) => {
+                report.merged = Some(merged);
+                // What is left of one that cannot be removed harms nobody.
+                files.iter().for_each(|file| drop(std::fs::remove_file(file)));
+                return Ok(report);
+            }
+            Err(MergeFailure::Other(error)) => return Err(error),
+            Err(MergeFailure::TooFine { integers: needed, .. }) => {
+                steps.notice("the picture needs coarser integers: its tiles are drawn again");
+                integers = integers.coarsest(needed);
+            }
+        }
+    }
+}
+
+/// Draws a tile, unless it is finished.
+fn draw_tile(
+    shot: Shot,
+    tile: Crop,
+    part: Part,
+    mut integers: Integers,
+    file: &Path,
+    steps: &dyn Steps,
+) -> Result<Outcome, RenderError> {
+    if is_finished(file, &part, integers) {
+        return Ok(Outcome::Skipped);
+    }
+    loop {
+        let mut writer = PartWriter::create(file)?;
+        match shot.draw(tile, integers, &mut writer, steps) {
+            Ok(pieces) => {
+                let part = Part { pieces, ..part };
+                let what = serde_json::to_value(&part);
+                writer.finish(&what.map_err(|error| RenderError::Internal(error.to_string()))?)?;
+                return Ok(Outcome::Written);
+            }
+            Err(CropFailure::Other(error)) => return Err(error),
+            Err(CropFailure::TooFine(kind)) => {
+                integers = integers.coarser(kind).ok_or(splat::SplatError::Overflow)?;
+            }
+        }
+    }
+}
+
+/// Whether the part of a tile is there, whole and by the same plan.
+fn is_finished(file: &Path, expected: &Part, integers: Integers) -> bool {
+    let Ok((_, part)) = Part::open(file) else { return false };
+    let is_coarse = part.facts().all(|facts| facts.integers == facts.integers.coarsest(integers));
+    part.plan == expected.plan && part.tile == expected.tile && is_coarse
+}

@@ -1,0 +1,52 @@
+//! How blurred the picture is: its circles of confusion, counted.
+
+use document::Document;
+use document::chief_ray;
+use document::pick;
+use glam::DVec2;
+use numerics::quantile_of_sorted;
+
+/// Signed circles of confusion on the full-size picture, px (negative near, positive far), of places spread evenly over
+/// it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BlurHistogram {
+    /// Ascending; of the places where a surface is seen.
+    pub circles_px: Vec<f64>,
+    /// Places without a surface.
+    pub background: usize,
+}
+
+impl BlurHistogram {
+    /// The circle that this share of the surface places is below or at, in [0, 1].
+    pub fn quantile(&self, share: f64) -> Option<f64> {
+        quantile_of_sorted(&self.circles_px, share)
+    }
+
+    /// The share of all places whose circle is less than `px`.
+    pub fn sharper_than(&self, px: f64) -> f64 {
+        let sharper = self.circles_px.iter().filter(|circle| circle.abs() < px).count();
+        sharper as f64 / (self.circles_px.len() + self.background).max(1) as f64
+    }
+}
+
+impl BlurHistogram {
+    /// The circles of confusion of `columns` × `rows` places of a document's picture, by chief rays.
+    pub(crate) fn measure(document: &Document, [columns, rows]: [usize; 2]) -> Self {
+        let optics = document.camera.optics();
+        let mut histogram = Self { circles_px: Vec::new(), background: 0 };
+        for k in 0..columns * rows {
+            let at = DVec2::new((k % columns) as f64 + 0.5, (k / columns) as f64 + 0.5);
+            let ray = chief_ray(&document.camera, at / DVec2::new(columns as f64, rows as f64));
+            match pick(document.stage.tracer(), &ray) {
+                None => histogram.background += 1,
+                Some(hit) => {
+                    let depth = document.camera.camera_from_world(hit.position).z;
+                    let kappa = optics.kappa(1.0 / depth, document.focus_at(&hit));
+                    histogram.circles_px.push(2.0 * optics.splat_radius_px(kappa));
+                }
+            }
+        }
+        histogram.circles_px.sort_by(f64::total_cmp);
+        histogram
+    }
+}

@@ -1,0 +1,21 @@
+//! How linear light is shown on a screen.
+//!
+//! Tone, the pixels as the screen has them, and what of them changed since somebody looked.
+
+mod enlarging;
+mod glare;
+mod live_picture;
+mod picture_ring;
+mod screen;
+mod thumbnails;
+
+pub use enlarging::enlarged;
+pub use live_picture::LivePicture;
+pub use screen::Screen;
+pub use thumbnails::{Thumbnail, ThumbnailResult, Thumbnails};
+
+pub(crate) use enlarging::{enlarged_part, enlarged_rectangle};
+pub(crate) use glare::darkening_stops;
+pub(crate) use live_picture::PictureSource;
+pub(crate) use picture_ring::{PictureRing, Rectangle, whole};
+pub(crate) use screen::{Content, Patch};

@@ -1,0 +1,14 @@
+//! A document's light field while it is open: which one is shown, what of it is summed, and what it tells of a place.
+
+mod aperture_image;
+mod changes;
+mod field_watch;
+mod margin_reach;
+mod running_sum;
+mod sample_index;
+
+pub use aperture_image::{ApertureCell, ApertureImage, BakedVisibility};
+pub(crate) use changes::Changes;
+pub(crate) use field_watch::{BakeState, FieldWatch};
+pub(crate) use margin_reach::MarginReach;
+pub(crate) use running_sum::{BakedField, FieldOptions, LightField, Plan, SumUpdate};

@@ -1,0 +1,197 @@
+//! Making the light field of the preview: a thread of its own bakes and sums it.
+
+use crate::preview::deliveries::BAKE_SHARE;
+use crate::preview::deliveries::FieldDelivery;
+use crate::preview::deliveries::INTERIM_SHARE;
+use crate::preview::deliveries::InterimField;
+use crate::preview::mailbox::Shared;
+use document::Stage;
+use crate::error::SessionError;
+use jobs::Urgency;
+use jobs::catch_panics;
+use jobs::run_in_own_pool;
+use crate::light_field::Changes;
+use crate::light_field::FieldOptions;
+use crate::light_field::LightField;
+use render::LightFieldStore;
+use light::LightQuality;
+use focus::Focus;
+use lens::Camera;
+use progress::Stage as Share;
+use salf::Carried;
+use splat::Tolerance;
+use std::sync::Arc;
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+/// What is begun with.
+pub(crate) enum FieldOrigin {
+    /// A light field that is there.
+    Resum(Box<LightField>),
+    /// None: it is taken from the store or baked, with a margin of at least this many pixels.
+    LoadOrBake { least_margin_px: f64 },
+    /// None: it is baked, whatever is in the store.
+    Bake,
+}
+
+/// What the light field is to show.
+pub(crate) struct FieldOrder {
+    pub origin: FieldOrigin,
+    pub stage: Arc<Stage>,
+    pub camera: Camera,
+    /// That of a light field of fewer pixels, which is handed over first if there is anything to bake.
+    pub interim: Option<Camera>,
+    pub focus: Focus,
+    pub tolerance: Tolerance,
+    /// Comes back with the light field.
+    pub epoch: u64,
+}
+
+/// At rest or at work on one light field.
+pub(crate) struct LightFieldMaker {
+    store: Option<LightFieldStore>,
+    thread: Option<JoinHandle<()>>,
+    /// What changed since it began.
+    pending_changes: Changes,
+}
+
+impl LightFieldMaker {
+    /// At rest. What is baked is kept in `store`, if there is one.
+    pub fn new(store: Option<LightFieldStore>) -> Self {
+        Self { store, thread: None, pending_changes: Changes::default() }
+    }
+
+    /// Whether the light field need not be baked.
+    pub fn has_stored(&self, stage: &Stage, camera: &Camera) -> bool {
+        self.store.as_ref().is_some_and(|store| store.has(stage, camera))
+    }
+
+    /// Keeps a light field of refined light, if there is a store.
+    pub fn save(&self, stage: &Arc<Stage>, field: &LightField, bake_seconds: f64) {
+        if let Some(store) = &self.store {
+            let bake = Duration::from_secs_f64(bake_seconds);
+            store.save(stage, &field.baked().salf, field.light_passes(), bake);
+        }
+    }
+
+    /// Whether a light field is being made.
+    pub fn is_at_work(&self) -> bool {
+        self.thread.is_some()
+    }
+
+    /// Begins, unless that is already known to be useless. What is made is delivered to `shared`.
+    pub fn start(&mut self, shared: &Arc<Shared>, order: FieldOrder) {
+        if !shared.begin_helper() {
+            return;
+        }
+        self.pending_changes = Changes::default();
+        let (thread_shared, epoch, store) = (shared.clone(), order.epoch, self.store.clone());
+        let is_baked = matches!(order.origin, FieldOrigin::Resum(_));
+        if !is_baked {
+            // Whoever asks from now on waits for it.
+            shared.field.begin(&order.stage);
+        }
+        // One that is there has only to be summed for another lens that somebody turns.
+        let urgency = if is_baked { Urgency::Interactive } else { Urgency::Background };
+        let work = move || {
+            let make = || make(order, &thread_shared, store.as_ref());
+            let result = catch_panics("drawing the preview", || run_in_own_pool(urgency, make));
+            thread_shared.field.end();
+            thread_shared.deliver(FieldDelivery { result, epoch });
+        };
+        let thread = std::thread::Builder::new().name("light field".into()).stack_size(16 << 20).spawn(work);
+        match thread {
+            Ok(thread) => self.thread = Some(thread),
+            Err(error) => {
+                let result = Err(SessionError::TryAgain(format!("no thread: {error} (try again)")));
+                shared.field.end();
+                shared.deliver(FieldDelivery { result, epoch });
+            }
+        }
+    }
+
+    /// Notes changes of the focus map.
+    pub fn note(&mut self, changes: &Changes) {
+        self.pending_changes.join(changes);
+    }
+
+    /// What was made first, with all that changed meanwhile noted.
+    pub fn take_up_interim(&self, interim: InterimField) -> (LightField, u64) {
+        let InterimField { mut field, epoch } = interim;
+        field.note(&self.pending_changes);
+        (field, epoch)
+    }
+
+    /// What was made, with all that changed meanwhile noted.
+    pub fn take_up(&mut self, delivery: FieldDelivery) -> Result<(LightField, u64), SessionError> {
+        self.join();
+        let pending_changes = std::mem::take(&mut self.pending_changes);
+        let mut field = delivery.result?;
+        field.note(&pending_changes);
+        Ok((field, delivery.epoch))
+    }
+
+    /// Waits for the thread, which was told to stop or is done.
+    pub fn join(&mut self) {
+        if let Some(thread) = self.thread.take() {
+            // Its result is delivered; its panics were caught.
+            let _ = thread.join();
+        }
+    }
+}
+
+fn make(
+    order: FieldOrder,
+    shared: &Shared,
+    store: Option<&LightFieldStore>,
+) -> Result<LightField, SessionError> {
+    let FieldOrder { origin, stage, camera, interim, focus, tolerance, epoch } = order;
+    let bake = |least_margin_px| {
+        let options_with_margin = |least_margin_px| FieldOptions {
+            least_margin_px,
+            tolerance,
+            gpu: shared.gpu(),
+            light: LightQuality::Fine,
+        };
+        shared.progress.begin_step("", 0.0, BAKE_SHARE);
+        let mut done_share = 0.0;
+        if let Some(interim) = &interim {
+            let share = Share::new(&shared.progress, 0.0, INTERIM_SHARE);
+            let field = LightField::bake(&stage, interim, &focus, options_with_margin(0.0), &share)?;
+            shared.deliver_interim(InterimField { field, epoch });
+            done_share = INTERIM_SHARE;
+        }
+        let start = Instant::now();
+        let share = Share::new(&shared.progress, done_share, BAKE_SHARE);
+        let field = LightField::bake(&stage, &camera, &focus, options_with_margin(least_margin_px), &share)?;
+        if let Some(store) = store {
+            store.save(&stage, &field.baked().salf, 0, start.elapsed());
+        }
+        Ok::<_, SessionError>(field)
+    };
+    // One that is there has another lens to show, and no time.
+    let is_resum = matches!(origin, FieldOrigin::Resum(_));
+    let mut field = match origin {
+        FieldOrigin::Resum(field) => *field,
+        FieldOrigin::Bake => bake(0.0)?,
+        FieldOrigin::LoadOrBake { least_margin_px } => {
+            let carried = Carried::for_focus(&focus);
+            let stored = store.and_then(|store| store.find(&stage, &camera, least_margin_px, carried));
+            match stored {
+                Some((salf, passes)) => {
+                    LightField::from_salf(&stage, Arc::new(salf), tolerance, shared.gpu()).refined(passes)
+                }
+                None => bake(least_margin_px)?,
+            }
+        }
+    };
+    shared.field.set_baked(&field.baked().salf);
+    shared.begin_helper_sum();
+    shared.progress.begin_step("", BAKE_SHARE, 1.0);
+    field.update_sum(&camera, &focus, &Share::new(&shared.progress, BAKE_SHARE, 1.0))?;
+    field.survey(&camera, &focus);
+    if !is_resum {
+        field.prepare()(&shared.progress);
+    }
+    Ok(field)
+}

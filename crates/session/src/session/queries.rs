@@ -1,0 +1,44 @@
+//! What can be asked of a session at any time.
+
+use crate::session::state::Session;
+use document::SurfaceHit;
+use document::chief_ray;
+use document::pick;
+use crate::light_field::ApertureImage;
+use crate::blur_histogram::BlurHistogram;
+use glam::DVec2;
+use lens::FocusOffset;
+use trace::Ray;
+
+impl Session {
+    /// What a ray of either view meets first.
+    pub fn pick(&self, ray: &Ray) -> Option<SurfaceHit> {
+        pick(self.document.as_ref()?.stage.tracer(), ray)
+    }
+
+    /// The ray of a position in the picture: (0, 0) its upper left corner, (1, 1) its lower right.
+    pub fn picture_ray(&self, position: DVec2) -> Option<Ray> {
+        Some(chief_ray(&self.document.as_ref()?.camera, position))
+    }
+
+    /// The focus at a surface point.
+    pub fn focus_at(&self, hit: &SurfaceHit) -> Option<FocusOffset> {
+        Some(self.document.as_ref()?.focus_at(hit))
+    }
+
+    /// The aperture as a surface point sees it. `None` where nothing is open, the aperture is a pinhole, or the point stands
+    /// behind it.
+    pub fn aperture_image(&self, hit: &SurfaceHit) -> Option<ApertureImage> {
+        ApertureImage::trace_at(self.document()?, self.light_field.as_ref(), hit)
+    }
+
+    /// Counts the light fields that the preview was made of: [`Self::aperture_image`] may tell more after another.
+    pub fn light_field_count(&self) -> u64 {
+        self.light_field_count
+    }
+
+    /// The circles of confusion of `columns` × `rows` places of the picture, by chief rays. `None` where nothing is open.
+    pub fn blur_histogram(&self, grid: [usize; 2]) -> Option<BlurHistogram> {
+        Some(BlurHistogram::measure(self.document()?, grid))
+    }
+}

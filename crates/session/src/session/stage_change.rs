@@ -1,0 +1,88 @@
+//! What of a stage is to be different, and the stage that came of it.
+
+use document::Stage;
+use crate::error::SessionError;
+use jobs::JobProgress;
+use crate::job_steps::JobSteps;
+use project::{CaptureChoices, WorldFile};
+use scene::{BackFaces, World};
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// What is to be different.
+#[derive(Clone, Debug)]
+pub(super) enum StageChange {
+    /// Whether faces that are not double sided are seen from behind.
+    BackFaces(BackFaces),
+    /// What lies beyond all surfaces; none: what suits the scene.
+    World(Option<World>),
+    /// The same of an environment's file, seen as it is; turn, strength and bounces stay.
+    Environment(PathBuf),
+    /// The scene's variant; none: its own materials.
+    Variant { name: Option<String>, cause: ChangeCause },
+    /// The depth of a picture: what was chosen of it, and the strokes that repair it.
+    Depth(CaptureChoices),
+}
+
+/// Why it is to be different.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum ChangeCause {
+    /// It was asked for: a step of undo.
+    Command,
+    /// A step was taken back, or done again.
+    History,
+}
+
+/// A stage that was prepared.
+pub(super) struct RebuiltStage {
+    pub change: StageChange,
+    /// The stage that it was made from, in the document of this generation.
+    pub base: Arc<Stage>,
+    pub generation: u64,
+    pub stage: Stage,
+}
+
+impl StageChange {
+    /// What the job is called; those of one name are in each other's place.
+    pub fn job_label(&self) -> &'static str {
+        match self {
+            Self::BackFaces(_) => "looking at other faces",
+            Self::World(_) | Self::Environment(_) => "changing the world",
+            Self::Variant { .. } => "changing the variant",
+            Self::Depth(_) => "repairing depth",
+        }
+    }
+
+    /// Whether the stage is not that way already.
+    pub fn differs_from(&self, stage: &Stage) -> bool {
+        let scene = &stage.scene;
+        match self {
+            Self::BackFaces(back_faces) => scene.back_faces != *back_faces,
+            Self::World(world) => scene.world != *world,
+            Self::Environment(_) => true,
+            Self::Variant { name, .. } => scene.variant != *name,
+            Self::Depth(choices) => *stage.depth_strokes != choices.depth_strokes,
+        }
+    }
+
+    /// The stage made so.
+    pub fn apply_to(&self, stage: &Stage, progress: &JobProgress) -> Result<Stage, SessionError> {
+        match self {
+            Self::BackFaces(back_faces) => Ok(stage.with_back_faces(*back_faces, progress)?),
+            Self::World(world) => Ok(stage.with_world(world.clone(), progress)?),
+            Self::Environment(file) => {
+                let before = stage.scene.world.as_ref();
+                let file_world = WorldFile::from_environment_file(file);
+                let world = WorldFile {
+                    rotation: before.map_or(file_world.rotation, |world| world.rotation),
+                    strength: before.map_or(file_world.strength, |world| world.strength),
+                    bounces: before.and_then(|world| world.bounces),
+                    ..file_world
+                };
+                Ok(stage.with_world(Some(world.load(&stage.scene)?), progress)?)
+            }
+            Self::Variant { name, .. } => Ok(stage.with_variant(name.as_deref(), progress)?),
+            Self::Depth(choices) => Ok(stage.with_depth_repaired(choices, &JobSteps { progress })?),
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! The scene seen or lit in another way: other faces, another world, another variant; or its surface made anew, of repaired depth.
+//!
+//! The stage is prepared anew in the background and taken up when it is ready. Of two changes of one kind the later counts; one
+//! that was prepared from a stage that is no longer there, because another change came first, is prepared once more.
+
+use crate::session::job_outcome::JobOutcome;
+use crate::session::stage_change::ChangeCause;
+use crate::session::stage_change::RebuiltStage;
+use crate::session::stage_change::StageChange;
+use crate::session::state::Session;
+use crate::commands::Event;
+use crate::error::SessionError;
+use relief::DepthStroke;
+use std::sync::Arc;
+
+impl Session {
+    /// Prepares the stage anew in the background, in place of what goes on under the same label; not if nothing is new.
+    pub(super) fn rebuild_stage(&mut self, change: StageChange) -> Result<(), SessionError> {
+        let label = change.job_label();
+        self.jobs.iter().filter(|job| job.label == label).for_each(|job| job.progress.cancel());
+        let generation = self.generation;
+        let base = self.document_mut()?.stage.clone();
+        if change.differs_from(&base) {
+            self.start_job(label.into(), move |progress| {
+                let stage = change.apply_to(&base, progress)?;
+                Ok(JobOutcome::StageRebuilt(Box::new(RebuiltStage { change, base, generation, stage })))
+            })?;
+        }
+        Ok(())
+    }
+
+    /// Takes up a stage that was prepared.
+    pub(super) fn show_rebuilt_stage(&mut self, rebuilt: RebuiltStage) -> Result<(), SessionError> {
+        let RebuiltStage { change, base, generation, stage } = rebuilt;
+        if generation != self.generation {
+            return Ok(());
+        }
+        self.commit_stroke()?;
+        let document = self.document_mut()?;
+        if !Arc::ptr_eq(&base, &document.stage) {
+            return self.rebuild_stage(change);
+        }
+        let new_warnings = document.add_warnings_of(&stage.scene);
+        if let StageChange::Depth(_) = change {
+            // The strokes were counted as a change when they were made.
+            document.replace_surface(stage);
+            document.recomposite(None);
+            self.map_serial += 1;
+        } else {
+            if let StageChange::Variant { name, cause: ChangeCause::Command } = change {
+                document.undo.push_variant(base.scene.variant.clone(), name);
+            }
+            document.stage = Arc::new(stage);
+            document.revision += 1;
+        }
+        let document = self.document_mut()?;
+        let (stage, map, shot_camera) =
+            (document.stage.clone(), document.map.clone(), document.camera.clone());
+        let camera = self.preview_camera_from(&shot_camera);
+        (self.light_field, self.preview_camera) = (None, Some(camera.clone()));
+        self.preview_thread.set_stage((stage, generation), (map, self.map_serial), camera);
+        self.end_verification();
+        self.events.extend(new_warnings.into_iter().map(Event::Notice));
+        self.events.push(Event::SurfaceChanged);
+        Ok(())
+    }
+
+    /// Repairs the depth of a picture by another stroke: a step of undo. The surface follows in the background.
+    pub(super) fn repair_depth(&mut self, stroke: DepthStroke) -> Result<(), SessionError> {
+        self.commit_stroke()?;
+        let document = self.document_mut()?;
+        if document.scene().picture.is_none() {
+            let what = "depth can be repaired of light fields and pictures with depth alone (move the scene's surfaces in the program that made them)";
+            return Err(SessionError::bad_file(&document.scene().path, what));
+        }
+        let before = document.depth_strokes.clone();
+        let after = Arc::new([&before[..], &[stroke]].concat());
+        document.undo.push_depth("Depth repair", before, after.clone());
+        document.depth_strokes = after;
+        document.revision += 1;
+        self.rebuild_depth()
+    }
+
+    /// Has the surface made as the document's strokes say.
+    pub(super) fn rebuild_depth(&mut self) -> Result<(), SessionError> {
+        match self.document_mut()?.capture_choices() {
+            Some(choices) => self.rebuild_stage(StageChange::Depth(choices)),
+            None => Ok(()),
+        }
+    }
+}
