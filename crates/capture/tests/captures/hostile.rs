@@ -78,11 +78,13 @@ fn counts_are_checked_against_the_size_of_the_file() {
     for count in [u64::MAX, 1 << 60, 2] {
         let text = refusal("sparse/cameras.bin", &counted(count, &[0; 50]));
         assert!(
-            text.contains(&format!("cameras.bin: byte 0: says {count} cameras, but 50 bytes are left")),
+            text.contains(&format!(
+                "cameras.bin: byte 0: declares {count} cameras, but only 50 bytes are left"
+            )),
             "{text}"
         );
         let text = refusal("sparse/images.bin", &counted(count, &[0; 100]));
-        assert!(text.contains(&format!("says {count} pictures, but 100 bytes are left")), "{text}");
+        assert!(text.contains(&format!("declares {count} pictures, but only 100 bytes are left")), "{text}");
     }
     // The points of a picture.
     let head =
