@@ -23,18 +23,19 @@
 //!
 //! // A textured wall that moves by two pixels from view to view.
 //! let wall = |step: usize| -> Vec<[f32; 3]> {
-//!     (0..32 * 32).map(|i| [((i % 32 + 2 * step) * 7919 % 97 + i / 32 * 31 % 53) as f32 / 150.0; 3]).collect()
+//!     let wave = |x: f32, y: f32| 0.5 + 0.2 * (0.9 * x + y).sin() + 0.2 * (0.4 * x - 0.7 * y).cos();
+//!     (0..48 * 48).map(|i| [wave((i % 48 + 2 * step) as f32, (i / 48) as f32); 3]).collect()
 //! };
 //! let pictures = [wall(0), wall(1), wall(2)];
 //! let views: Vec<View> = (0..3)
 //!     .map(|k| View {
-//!         picture: Picture { width: 32, height: 32, rgb: &pictures[k] },
+//!         picture: Picture { width: 48, height: 48, rgb: &pictures[k] },
 //!         position: [k as f64, 0.0],
 //!     })
 //!     .collect();
 //! let request = DisparityRequest { reference: 1, range: Some((0.0, 4.0)), ..DisparityRequest::default() };
 //! let map = &estimate_disparities(&views, &request, &Unwatched).unwrap()[0];
-//! assert!((map.disparity[16 * 32 + 16] - 2.0).abs() < 0.2);
+//! assert!((map.disparity[24 * 48 + 24] - 2.0).abs() < 0.2);
 //! ```
 
 pub mod colour_coded;
