@@ -7,11 +7,15 @@
 //! it, `circle` finds the files that depend on one another. `mod x;` is no dependency, nor is the re-export
 //! of an item of a child module.
 //!
+//! Sibling modules are compared once more, each together with its folder (`siblings`): files may form no
+//! cycle while the folders that hold them do.
+//!
 //! It reads text, not types, and therefore ignores uses without a path: methods and fields, and so `impl`s of
 //! one type in several files.
 
 mod circle;
 mod crate_modules;
+mod siblings;
 mod source;
 #[cfg(test)]
 mod tests;
@@ -21,6 +25,7 @@ use crate::chore::{Failure, cargo, output_of};
 use circle::{Circle, circles_of};
 use crate_modules::CrateModules;
 use serde_json::Value;
+use siblings::Siblings;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
@@ -75,7 +80,16 @@ fn circles_in(root: &Path, read: &dyn Fn(&Path) -> Option<String>) -> Result<Vec
         let file = &modules.files()[file];
         file.strip_prefix(folder).unwrap_or(file).display().to_string()
     };
-    Ok(circles_of(&modules.arrows()).iter().map(|circle| describe_circle(circle, &shown)).collect())
+    let arrows = modules.arrows();
+    let mut circles: Vec<_> =
+        circles_of(&arrows).iter().map(|circle| describe_circle(circle, &shown)).collect();
+    if circles.is_empty() {
+        let paths: Vec<_> = (0..modules.files().len()).map(shown).collect();
+        let siblings = Siblings::new(&paths, &arrows);
+        let name = |sibling: usize| siblings.names()[sibling].clone();
+        circles.extend(circles_of(siblings.arrows()).iter().map(|circle| describe_circle(circle, &name)));
+    }
+    Ok(circles)
 }
 
 /// Describes a cycle: the number of modules, then one line per dependency.

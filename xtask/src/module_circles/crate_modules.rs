@@ -142,8 +142,8 @@ impl CrateModules {
         std::iter::successors(Some(module), |m| self.modules[*m].parent).skip(1).any(|m| m == above)
     }
 
-    /// What `path`, written in `module`, names within this crate. `asked` are the names that wait for this
-    /// answer.
+    /// What `path`, written in `module`, names within this crate. `visited` are the names being resolved,
+    /// so that a cycle of names ends.
     fn resolve(
         &self,
         module: usize,

@@ -92,6 +92,23 @@ fn a_parent_that_only_passes_on_is_not_in_a_circle() {
 }
 
 #[test]
+fn folders_that_use_each_other_are_a_circle_even_where_their_files_are_none() {
+    let root = ("src/lib.rs", "mod draw; mod seen;");
+    let draw = ("src/draw.rs", "pub mod pen; pub mod paper;");
+    let pen = ("src/draw/pen.rs", "use crate::seen::runs::Run;\npub struct Pen(Run);");
+    let paper = ("src/draw/paper.rs", "pub struct Paper;");
+    let seen = ("src/seen.rs", "pub mod runs; pub mod area;");
+    let runs = ("src/seen/runs.rs", "pub struct Run;");
+    let apart = ("src/seen/area.rs", "pub struct Area;");
+    assert_eq!(circles(&[root, draw, pen, paper, seen, runs, apart]), NONE);
+    let area = ("src/seen/area.rs", "use crate::draw::paper::Paper;\npub struct Area(Paper);");
+    assert_eq!(
+        arrows(&[root, draw, pen, paper, seen, runs, area]),
+        ["draw -> seen: Run (draw/pen.rs)", "seen -> draw: Paper (seen/area.rs)"]
+    );
+}
+
+#[test]
 fn what_is_passed_on_and_used_as_well_ties() {
     let files = [
         ("src/lib.rs", "mod a;\npub use a::Ray;\npub trait Light { fn toward(&self, ray: Ray); }"),
