@@ -8,7 +8,7 @@
 //! collected as [`Action`]s and performed at the end.
 
 mod commands;
-mod document;
+mod open_file;
 mod keying;
 mod presets;
 mod views;
@@ -40,7 +40,7 @@ use super::{Action, Tool, ViewSettings};
 use eframe::{CreationContext, Frame, Storage};
 use egui::{CentralPanel, Context, Panel, Ui, ViewportCommand};
 use project::{Preset, PresetLibrary};
-use ::document::{CameraEdit, SurfaceHit};
+use document::{CameraEdit, SurfaceHit};
 use session::{Command, CommandId, Event, ReferenceKind, Session, SessionError, SessionOptions};
 use std::path::PathBuf;
 use std::sync::Arc;
