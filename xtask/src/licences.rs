@@ -1,6 +1,8 @@
 //! Licences: every linked crate must be usable in a program under MIT or Apache-2.0.
+//!
+//! Where `cargo deny` is installed, it checks bans and sources as well (`deny.toml`).
 
-use crate::chore::{Failure, cargo, output_of};
+use crate::chore::{Failure, cargo, execute, output_of};
 use serde_json::Value;
 
 /// Licences that require no more than a notice; MPL-2.0 also requires the publication of changes to its own
@@ -30,6 +32,10 @@ const PERMISSIVE: &[&str] = &[
 /// # Errors
 /// A licence is not permissive, or `cargo metadata` fails.
 pub fn check() -> Result<(), Failure> {
+    let has_deny = cargo("deny").arg("--version").output().is_ok_and(|output| output.status.success());
+    if has_deny {
+        execute(cargo("deny").args(["check", "licenses", "bans", "sources"]))?;
+    }
     let platform = format!("{}-unknown-linux-gnu", std::env::consts::ARCH);
     let metadata =
         output_of(cargo("metadata").args(["--format-version", "1", "--filter-platform", &platform]))?;

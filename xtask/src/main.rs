@@ -24,6 +24,7 @@ mod package;
 mod packages;
 mod run;
 mod shared_build;
+mod spelling;
 
 use chore::Failure;
 
@@ -42,7 +43,8 @@ usage: cargo xtask CHORE
   window [ARG…] drive the real window under Xvfb, with a screenshot of every step
   circles [CRATE…]
                 cyclic dependencies between the modules of a crate, with the names that cause them
-  ci            crate directions, module cycles, licences, formatting, lints, docs, tests";
+  lint          crate directions, module cycles, licences, figures, spelling, formatting, lints, docs
+  ci            these, and all tests";
 
 /// The argument of `demo`: rays per texel, fewer for drafts.
 fn sky_rays(arguments: &[std::ffi::OsString]) -> usize {
@@ -59,6 +61,7 @@ fn main() -> std::process::ExitCode {
         "window" => run::window(&rest),
         "circles" => module_circles::circles(&rest),
         "package" => package::package(&rest),
+        "lint" => ci::lint(),
         "ci" => ci::ci(),
         "demo" => demo::demo(sky_rays(&rest)),
         "figures" => figures::figures(&rest),
