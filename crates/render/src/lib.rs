@@ -19,19 +19,18 @@ mod tiles;
 #[path = "../../session/tests/tiny_glb/mod.rs"]
 mod tiny_glb;
 
-pub use baselines::{LayeredOptions, ScatterOptions, ViewsOptions};
 pub use bake::{
     DENSE_SAMPLE_BYTES, LIGHT_PASSES, LightFieldStore, Modelled, ModelledRow, TexelStatistics, bake,
     bake_unpacked, is_compatible, write_salf,
 };
+pub use baselines::{LayeredOptions, ScatterOptions, ViewsOptions};
 pub use error::RenderError;
 pub use export::{export_glb, write_scene, write_unwrapped};
 pub use picture::{
-    Aov, leave_photographs_out, render_photograph, CocConvention, Display, LeftOut, LeftOutPicture, LeftOutPrediction,
-    MAX_CELLS_A_SIDE, OcioViews, RenderCost, RenderOptions, Rendered, Renderer,
-    ScreenPixel, Stereo, StereoForm, Tone, ToneCurve, light_of_photographs, photograph_picture,
-    read_thumbnail, rectangle_to_screen, render, render_input, render_pair, render_stereo, sum_light_field,
-    to_screen,
+    Aov, CocConvention, Display, LeftOut, LeftOutPicture, LeftOutPrediction, MAX_CELLS_A_SIDE, OcioViews,
+    RenderCost, RenderOptions, Rendered, Renderer, ScreenPixel, Stereo, StereoForm, Tone, ToneCurve,
+    leave_photographs_out, light_of_photographs, photograph_picture, read_thumbnail, rectangle_to_screen,
+    render, render_input, render_pair, render_photograph, render_stereo, sum_light_field, to_screen,
 };
 pub use sequence::{
     Baking, FrameFiles, FrameList, FrameReport, Outcome, SequenceOptions, SequenceReport, Shard, Take,

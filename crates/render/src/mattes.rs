@@ -16,8 +16,8 @@ pub(crate) use tally::{Entry, Ranking, Tally, left_out_warning, ranks_of};
 pub(crate) use things::Things;
 
 use crate::error::RenderError;
-use light::Steps;
 use lens::Picture;
+use light::Steps;
 use progress::Stage;
 use project::Cryptomatte;
 use scene::Scene;

@@ -22,7 +22,7 @@ pub use render::{
     MAX_CELLS_A_SIDE, RenderCost, RenderOptions, Rendered, light_of_photographs, render, render_input,
     sum_light_field,
 };
-pub(crate) use render::{new_splatter, photographed_shares_of_pixels, sum_baked, lit_scene_of};
+pub(crate) use render::{lit_scene_of, new_splatter, photographed_shares_of_pixels, sum_baked};
 pub use renderer::Renderer;
 pub use stereo::{Stereo, StereoForm, render_pair, render_stereo};
 pub use thumbnail::read_thumbnail;

@@ -1,8 +1,6 @@
 //! How blurred the picture is: its circles of confusion, counted.
 
-use document::Document;
-use document::chief_ray;
-use document::pick;
+use document::{Document, chief_ray, pick};
 use glam::DVec2;
 use numerics::quantile_of_sorted;
 

@@ -19,18 +19,18 @@
 //! a newer wish makes useless is stopped. The last good picture is never taken away.
 
 mod activity;
-mod picture_sizes;
 mod deliveries;
+mod events;
+mod exact_refinement;
+mod light_field_maker;
 mod light_refinement;
 mod mailbox;
-mod light_field_maker;
-mod events;
 mod picture;
+mod picture_sizes;
 mod presenter;
-mod exact_refinement;
+mod request;
 mod thread;
 mod waiting;
-mod request;
 mod worker;
 
 pub use activity::PreviewActivity;

@@ -1,7 +1,7 @@
 //! Pictures to compare the live one with.
 
-use render::StereoForm;
 use lens::{Camera, Picture};
+use render::StereoForm;
 use std::sync::Arc;
 
 /// Which picture.

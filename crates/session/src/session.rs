@@ -4,20 +4,20 @@
 //! long. The window sees nothing below.
 
 mod command_dispatch;
-mod queries;
-mod references;
-mod picture_export;
 mod files;
-mod opening_preview;
-mod scene_watching;
 mod history;
 mod job_outcome;
+mod opening_preview;
 mod painting;
+mod picture_export;
 mod polling;
+mod preview_updates;
+mod queries;
 mod recovery;
+mod references;
+mod scene_watching;
 mod stage_change;
 mod stage_rebuild;
-mod preview_updates;
 mod state;
 mod timeline;
 mod verification;

@@ -1,8 +1,6 @@
 //! A rectangle of the picture, checked against the ground truth.
 
-use crate::preview::Preview;
-use crate::preview::PreviewKind;
-use crate::preview::Quality;
+use crate::preview::{Preview, PreviewKind, Quality};
 use lens::{Camera, Exposure};
 use project::{LinearPicture, ProjectError, compare};
 use std::sync::Arc;

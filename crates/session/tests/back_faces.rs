@@ -2,9 +2,9 @@
 
 mod tiny_glb;
 
+use document::{CameraEdit, StrokePoint};
 use glam::{DMat4, DVec2, DVec3};
 use scene::BackFaces;
-use document::{CameraEdit, StrokePoint};
 use session::{Command, Event, Quality, Session, SessionOptions};
 use std::path::Path;
 use std::time::{Duration, Instant};

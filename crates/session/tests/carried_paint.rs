@@ -6,10 +6,10 @@ mod at_work;
 mod tiny_glb;
 
 use at_work::{opened, settle, stroke};
+use document::{Document, NewDocumentOptions};
 use focus::FocusMap;
 use glam::DVec3;
 use progress::Unwatched;
-use document::{Document, NewDocumentOptions};
 use session::Command;
 use std::path::{Path, PathBuf};
 use tiny_glb::{QUADS, Quad};

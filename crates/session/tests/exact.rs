@@ -2,10 +2,10 @@
 
 mod tiny_glb;
 
+use document::{CameraEdit, StrokePoint};
 use focus::Brush;
 use glam::DVec2;
 use lens::{FocusOffset, Picture};
-use document::{CameraEdit, StrokePoint};
 use render::{Tone, to_screen};
 use session::{Command, Event, Preview, Quality, Session, SessionOptions};
 use splat::Tolerance;

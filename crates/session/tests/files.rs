@@ -6,9 +6,9 @@ mod at_work;
 mod tiny_glb;
 
 use at_work::{opened, opened_with, picture, settle, stroke};
+use document::{CameraEdit, FillRegion};
 use focus::BrushMode;
 use glam::DVec2;
-use document::{CameraEdit, FillRegion};
 use session::{Command, Event, Session, SessionOptions};
 use std::time::{Duration, Instant};
 
@@ -131,7 +131,8 @@ fn a_template_begins_a_document_without_a_file() {
     let unwrap = Default::default();
     let begun = {
         let beginning = document::NewDocumentOptions { focus: Some(&recipe), ..Default::default() };
-        document::Document::create(&scene, &beginning, &unwrap, &Default::default(), &progress::Unwatched).unwrap()
+        document::Document::create(&scene, &beginning, &unwrap, &Default::default(), &progress::Unwatched)
+            .unwrap()
     };
     begun.to_project().save(&template).unwrap();
     let bytes = std::fs::read(&template).unwrap();

@@ -7,14 +7,14 @@ mod at_work;
 mod tiny_glb;
 
 use at_work::{ON_WALL, opened, settle};
+use document::CameraEdit;
 use focus::{Adjustment, FocalPlane, Focus, LayerEdit};
 use glam::{DMat4, DVec2, DVec3};
 use lens::{Camera, Exposure, FocusOffset, Picture};
 use progress::Unwatched;
 use project::{LinearPicture, compare};
-use scene::{Scene, SurfaceField, SurfacePoint};
-use document::CameraEdit;
 use render::RenderOptions;
+use scene::{Scene, SurfaceField, SurfacePoint};
 use session::{Command, Session};
 use std::sync::Arc;
 use trace::truth::{RayFocus, RayOptics, Truth, TruthOptions};

@@ -2,11 +2,11 @@
 
 mod tiny_glb;
 
+use document::{CameraEdit, FillRegion, StrokePoint};
 use focus::{Brush, BrushMode, CombineMode, Gradient, GradientLine, GradientShape, LayerEdit};
 use glam::{DVec2, DVec3};
 use lens::FocusOffset;
 use project::SelectionShape;
-use document::{CameraEdit, FillRegion, StrokePoint};
 use session::{Command, Session, SessionOptions};
 use std::time::{Duration, Instant};
 

@@ -2,8 +2,8 @@
 
 mod tiny_glb;
 
-use lens::{FocusOffset, Picture};
 use document::{CameraEdit, FillRegion};
+use lens::{FocusOffset, Picture};
 use render::LightFieldStore;
 use session::{Command, Event, FullSizeFieldState, Preview, Quality, Session, SessionOptions};
 use std::path::Path;

@@ -4,9 +4,9 @@
 
 mod tiny_glb;
 
+use document::StrokePoint;
 use glam::DVec2;
 use lens::{FocusOffset, Picture};
-use document::StrokePoint;
 use session::{Command, Event, LivePicture, Session, SessionOptions};
 use splat::{BackendChoice, Gpu};
 use std::path::Path;

@@ -6,9 +6,9 @@ mod at_work;
 mod tiny_glb;
 
 use at_work::{ON_WALL, opened, picture, settle, stroke};
+use document::{CameraEdit, FillRegion};
 use glam::DVec2;
 use lens::FocusOffset;
-use document::{CameraEdit, FillRegion};
 use render::{Display, Tone, to_screen};
 use session::{Command, Event, Session, SessionError};
 

@@ -6,11 +6,11 @@ mod at_work;
 mod tiny_glb;
 
 use at_work::{opened, opened_with, settle, shot_view};
+use document::StrokePoint;
 use focus::BrushMode;
 use glam::DVec2;
 use lens::FocusOffset;
 use project::RecordedStep;
-use document::StrokePoint;
 use session::{Command, Session, SessionOptions};
 use std::time::Duration;
 
@@ -81,16 +81,28 @@ fn recorded_strokes_paint_the_same_map_again_whatever_the_timing() {
     assert_eq!(first.points.len(), 51);
     let strokes: Vec<_> = steps.iter().filter(|s| matches!(s, RecordedStep::Stroke(_))).cloned().collect();
     let nobody = progress::Unwatched;
-    let mut again =
-        document::Document::create(&scene, &Default::default(), &Default::default(), &Default::default(), &nobody).unwrap();
+    let mut again = document::Document::create(
+        &scene,
+        &Default::default(),
+        &Default::default(),
+        &Default::default(),
+        &nobody,
+    )
+    .unwrap();
     let missing = document::replay(&mut again, &strokes).unwrap_err().to_string();
     assert!(
         missing.contains("step 5") && missing.contains("Layer 1") && missing.contains("Paint"),
         "{missing}"
     );
 
-    let mut again =
-        document::Document::create(&scene, &Default::default(), &Default::default(), &Default::default(), &nobody).unwrap();
+    let mut again = document::Document::create(
+        &scene,
+        &Default::default(),
+        &Default::default(),
+        &Default::default(),
+        &nobody,
+    )
+    .unwrap();
     assert_eq!(document::replay(&mut again, &steps).unwrap(), 6);
     assert!(again.map == document.map && again.layers == document.layers);
 
@@ -100,7 +112,8 @@ fn recorded_strokes_paint_the_same_map_again_whatever_the_timing() {
     let project = folder.path().join("blank.fbrush");
     blank.apply(Command::SaveAs(project.clone())).unwrap();
     settle(&mut blank);
-    let mut again = document::Document::open_saved(&project, &Default::default(), &Default::default(), &nobody).unwrap();
+    let mut again =
+        document::Document::open_saved(&project, &Default::default(), &Default::default(), &nobody).unwrap();
     assert_eq!(document::replay(&mut again, &strokes).unwrap(), 5);
     assert!(again.map == document.map && again.layers.layers()[0] == document.layers.layers()[0]);
     assert_eq!(again.undo_names().count(), 5);
@@ -146,8 +159,14 @@ fn a_stroke_is_mirrored_about_the_object_it_begins_on_and_so_is_its_recording() 
     assert!(text.contains("mirror_center") && !text.contains("mirror_by_object"), "{text}");
     let steps = project::read_strokes(&strokes).unwrap();
     let nobody = progress::Unwatched;
-    let mut again =
-        document::Document::create(&scene, &Default::default(), &Default::default(), &Default::default(), &nobody).unwrap();
+    let mut again = document::Document::create(
+        &scene,
+        &Default::default(),
+        &Default::default(),
+        &Default::default(),
+        &nobody,
+    )
+    .unwrap();
     assert_eq!(document::replay(&mut again, &steps).unwrap(), 1);
     assert!(again.map == session.document().unwrap().map);
 

@@ -3,10 +3,10 @@
 #[allow(dead_code, reason = "shared by several tests")]
 mod tiny_glb;
 
+use document::{CameraEdit, StrokePoint};
 use focus::Brush;
 use glam::DVec2;
 use lens::{FocusOffset, Picture};
-use document::{CameraEdit, StrokePoint};
 use render::LightFieldStore;
 use session::{Command, Event, Preview, Quality, Session, SessionOptions};
 use std::path::Path;

@@ -3,15 +3,15 @@
 
 mod tiny_glb;
 
-use light::LitScene;
+use document::Input;
 use glam::{DMat4, DVec3};
 use lens::{Aperture, ApertureMask, ApertureShape, Camera, FocusOffset};
+use light::LitScene;
 use progress::Unwatched;
+use render::{RenderOptions, render_input, write_salf};
 use salf::{Salf, SalfFile, Sample, Visibility};
 use scene::{AlphaMode, Material, Scalar, Workflow};
 use serde_json::Value;
-use document::Input;
-use render::{RenderOptions, render_input, write_salf};
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

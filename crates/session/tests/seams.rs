@@ -3,13 +3,13 @@
 #[allow(dead_code, reason = "only its container is needed")]
 mod tiny_glb;
 
+use document::{Document, StrokePoint, view_ray};
 use focus::{Brush, Focus, FocusMap, ViewFrame};
 use glam::{DVec2, Mat2, Vec2};
 use lens::{Camera, FocusOffset};
 use project::{RecordedStep, RecordedStroke};
-use serde_json::json;
-use document::{Document, StrokePoint, view_ray};
 use render::{RenderOptions, render};
+use serde_json::json;
 use session::{Command, Session, SessionOptions};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -83,7 +83,14 @@ fn write_wall(file: &Path, layouts: &[[[f32; 2]; 2]]) {
 }
 
 fn begun(file: &Path) -> Document {
-    Document::create(file, &Default::default(), &Default::default(), &Default::default(), &progress::Unwatched).unwrap()
+    Document::create(
+        file,
+        &Default::default(),
+        &Default::default(),
+        &Default::default(),
+        &progress::Unwatched,
+    )
+    .unwrap()
 }
 
 /// The shot camera, small and with a wide lens focused on the wall.
@@ -143,8 +150,8 @@ fn places(document: &Document, camera: &Camera) -> Vec<DVec2> {
 fn kappas(document: &Document, map: &FocusMap, camera: &Camera, places: &[DVec2]) -> Vec<f64> {
     let view = ViewFrame::from_camera(camera);
     let kappa = |&at: &DVec2| {
-        let hit =
-            document::pick(document.stage.tracer(), &view_ray(&view, at)).expect("the wall fills the picture");
+        let hit = document::pick(document.stage.tracer(), &view_ray(&view, at))
+            .expect("the wall fills the picture");
         let focus = map.sample(document.stage.atlas.position_of(hit.point));
         camera.optics().kappa(1.0 / camera.camera_from_world(hit.position).z, focus)
     };

@@ -3,10 +3,10 @@
 #[allow(dead_code, reason = "shared by several tests")]
 mod tiny_glb;
 
+use document::Input;
 use glam::DVec2;
 use lens::{Camera, Picture};
 use progress::Unwatched;
-use document::Input;
 use render::{RenderOptions, Renderer, render_input};
 
 /// Width and height of the part, px.

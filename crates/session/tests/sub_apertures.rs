@@ -3,9 +3,9 @@
 #[allow(dead_code, reason = "only its quads are needed")]
 mod tiny_glb;
 
+use document::{CameraEdit, FillRegion};
 use glam::DVec2;
 use lens::{FocusOffset, Picture};
-use document::{CameraEdit, FillRegion};
 use session::{Command, Quality, Session, SessionOptions};
 use std::sync::Arc;
 use std::time::{Duration, Instant};

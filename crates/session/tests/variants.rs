@@ -135,7 +135,8 @@ fn a_project_keeps_its_variant() {
     let again = opened(&place.project());
     assert_eq!(variant(&again), Some("Blue"));
     drop(again);
-    let open = |choice| Input::open_variant(&place.project(), &choice, &Default::default(), &progress::Unwatched);
+    let open =
+        |choice| Input::open_variant(&place.project(), &choice, &Default::default(), &progress::Unwatched);
     let chosen = |choice| open(choice).unwrap().scene.variant.clone();
     assert_eq!(chosen(VariantChoice::AsSaved).as_deref(), Some("Blue"));
     assert_eq!(chosen(VariantChoice::Named("Green".into())).as_deref(), Some("Green"));

@@ -1,11 +1,9 @@
 //! Light fields, baked as coarse as a picture allows.
 
-use light::LightQuality;
-use light::LitScene;
 use crate::error::RenderError;
-use light::Steps;
 use focus::Focus;
 use lens::Camera;
+use light::{LightQuality, LitScene, Steps};
 use salf::{BakeOptions, Salf};
 use std::sync::Arc;
 
@@ -30,13 +28,7 @@ pub fn bake_unpacked(
     steps: &dyn Steps,
 ) -> Result<Salf, RenderError> {
     let margin = BakeOptions::for_focus(lit.tracer(), camera, focus);
-    bake_with(
-        lit,
-        camera,
-        &BakeOptions { tolerance_px, packs: false, ..margin },
-        LightQuality::Fine,
-        steps,
-    )
+    bake_with(lit, camera, &BakeOptions { tolerance_px, packs: false, ..margin }, LightQuality::Fine, steps)
 }
 
 /// The same with these options, and light as well as that.

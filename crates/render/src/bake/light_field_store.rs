@@ -6,9 +6,8 @@
 
 use crate::bake::salf_file::write_salf;
 use document::Stage;
-use light::build_id;
-use light::evict_oldest;
 use lens::{Aperture, Camera};
+use light::{build_id, evict_oldest};
 use salf::{Carried, Salf, SalfFile};
 use sha2::{Digest, Sha256};
 use std::fs::File;

@@ -1,15 +1,13 @@
 //! Scenes with their atlas, as files: glTF scenes as their file has them; surfaces of captures, which no glTF file tells of, by themselves,
 //! with what they send toward all directions alike as their texture.
 
-use crate::picture::light_of_photographs;
-use crate::export::shot_extras::write_lens_extras;
-use document::Input;
-use document::atlas_error;
 use crate::error::RenderError;
-use light::Steps;
-use light::LitScene;
+use crate::export::shot_extras::write_lens_extras;
+use crate::picture::light_of_photographs;
 use atlas::{Atlas, UnwrapOptions};
+use document::{Input, atlas_error};
 use lens::Camera;
+use light::{LitScene, Steps};
 use project::texture_png;
 use rayon::prelude::*;
 use scene::{ImageLevel, Scene, srgb_from_linear};

@@ -1,9 +1,8 @@
 //! Who makes mattes: the light field that makes the picture, or the rays of the ground truth.
 
-use crate::mattes::packing::Footprints;
-use crate::mattes::packing::Packing;
-use crate::mattes::things::Things;
 use crate::error::RenderError;
+use crate::mattes::packing::{Footprints, Packing};
+use crate::mattes::things::Things;
 use focus::Focus;
 use glam::{DVec3, Vec3};
 use lens::{Camera, Picture};

@@ -1,7 +1,7 @@
 //! Pictures beside the picture: what compositing and measuring ask for.
 
-use crate::picture::coc_convention::CocConvention;
 use crate::mattes::Mattes;
+use crate::picture::coc_convention::CocConvention;
 use baselines::FirstHits;
 use lens::{Camera, Exposure, FocusOffset, Picture};
 use project::{Cryptomatte, Layer};

@@ -1,15 +1,13 @@
 //! How well photographs of a capture tell one that was left out: light, and what it is to be better than.
 
-use crate::picture::photograph_picture::MIN_PHOTOGRAPHED_SHARE;
-use crate::picture::photograph_picture::photograph_picture;
-use crate::picture::render::pixel_ray;
-use document::Input;
-use document::camera_from_photograph;
 use crate::error::RenderError;
-use light::Steps;
+use crate::picture::photograph_picture::{MIN_PHOTOGRAPHED_SHARE, photograph_picture};
+use crate::picture::render::pixel_ray;
 use atlas::UnwrapOptions;
+use document::{Input, camera_from_photograph};
 use glam::Vec3;
 use lens::{Camera, Exposure};
+use light::Steps;
 use project::{LinearPicture, compare, psnr};
 use rayon::prelude::*;
 use scene::{Scene, SurfacePoint, View};
@@ -108,8 +106,8 @@ fn left_out_picture(
     let photograph = LinearPicture::from_picture(&photograph, Exposure::Conserve);
     let is_visible: Vec<bool> =
         layers.remove(0).values.into_iter().map(|share| share >= MIN_PHOTOGRAPHED_SHARE).collect();
-    let visible_share = is_visible.iter().filter(|&&is_visible| is_visible).count() as f64
-        / is_visible.len().max(1) as f64;
+    let visible_share =
+        is_visible.iter().filter(|&&is_visible| is_visible).count() as f64 / is_visible.len().max(1) as f64;
     let from = view.position();
     let predict = |method, radiance: &(dyn Fn(SurfacePoint) -> Vec3 + Sync)| {
         let picture = predicted(tracer, &camera, &photograph, &is_visible, radiance);

@@ -1,15 +1,11 @@
 //! A photograph as pictures are compared with it: without its lens's distortion, in linear light, exposed as all of them together.
 
-use crate::picture::render::light_of_photographs;
-use crate::picture::render::photographed_shares;
-use crate::picture::render::pixel_ray;
-use document::Input;
-use document::camera_from_photograph;
-use document::find_photograph;
 use crate::error::RenderError;
-use light::Steps;
+use crate::picture::render::{light_of_photographs, photographed_shares, pixel_ray};
+use document::{Input, camera_from_photograph, find_photograph};
 use glam::{DVec2, DVec3, Vec3};
 use lens::{Camera, Picture};
+use light::Steps;
 use project::Layer;
 use rayon::prelude::*;
 use scene::{LoadOptions, Photograph, View};

@@ -1,26 +1,17 @@
 //! A picture without a window: what the command line and the export of the window do.
 
-use crate::picture::aov::Aov;
-use crate::picture::aov::LayerInputs;
-use crate::picture::coc_convention::CocConvention;
-use crate::mattes::BlackBackground;
-use crate::mattes::LightFieldMattes;
-use crate::mattes::MatteRequest;
-use crate::mattes::Mattes;
-use crate::mattes::SampleParts;
-use crate::mattes::TruthMattes;
-use crate::picture::renderer::Renderer;
-use document::Input;
+use crate::bake::{bake_with, is_compatible};
 use crate::error::RenderError;
-use light::Steps;
-use light::LightQuality;
-use crate::bake::bake_with;
-use crate::bake::is_compatible;
-use light::LitScene;
+use crate::mattes::{BlackBackground, LightFieldMattes, MatteRequest, Mattes, SampleParts, TruthMattes};
+use crate::picture::aov::{Aov, LayerInputs};
+use crate::picture::coc_convention::CocConvention;
+use crate::picture::renderer::Renderer;
 use baselines::{BaselineError, FirstHits, LayeredOptions, ScatterOptions, ViewsOptions};
+use document::Input;
 use focus::Focus;
 use glam::DVec2;
 use lens::{Camera, FocusOffset, Picture};
+use light::{LightQuality, LitScene, Steps};
 use project::{Cryptomatte, Layer};
 use rayon::prelude::*;
 use salf::{BakeOptions, Salf, SalfStatistics};
@@ -240,10 +231,12 @@ pub fn render(
             let premultiplied = BlackBackground(&*light);
             let radiance: &dyn Radiance = if options.has_aov(Aov::Alpha) { &premultiplied } else { &*light };
             let progress = steps.begin("tracing");
-            let traced = trace::truth::render(lit.tracer(), radiance, focus, camera, &options.truth, &*progress)?;
+            let traced =
+                trace::truth::render(lit.tracer(), radiance, focus, camera, &options.truth, &*progress)?;
             if let Some(request) = options.matte_request() {
                 let truth = TruthOptions { surveys_light: false, ..options.truth };
-                let source = TruthMattes { tracer: lit.tracer(), radiance: &*light, focus, camera, options: truth };
+                let source =
+                    TruthMattes { tracer: lit.tracer(), radiance: &*light, focus, camera, options: truth };
                 mattes = Some(Mattes::render(lit.scene(), source, request, steps)?);
             }
             estimate.insert(traced).picture.clone()

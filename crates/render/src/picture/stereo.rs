@@ -3,20 +3,16 @@
 //! A thin lens shows what it is focused on at one place through every part of its aperture, so that an eye's picture is the lens's through a
 //! small part of it, focused on the point that both eyes fixate: that has no disparity, and nothing is cut off at the frame's sides.
 
-use crate::picture::render::RenderCost;
-use crate::picture::render::RenderOptions;
-use crate::picture::render::Rendered;
-use crate::picture::render::draw_baked;
-use crate::picture::render::pixel_ray;
-use crate::picture::render::render_input;
-use crate::picture::render::lit_scene_of;
+use crate::error::RenderError;
+use crate::picture::render::{
+    RenderCost, RenderOptions, Rendered, draw_baked, lit_scene_of, pixel_ray, render_input,
+};
 use crate::picture::renderer::Renderer;
 use document::Input;
-use crate::error::RenderError;
-use light::Steps;
 use focus::Focus;
 use glam::DVec2;
 use lens::{Aperture, Camera, Exposure, Picture, SUB_APERTURE_RADIUS};
+use light::Steps;
 use std::sync::Arc;
 use std::time::Instant;
 use trace::Tracer;

@@ -1,8 +1,8 @@
 //! Small pictures of files, for file managers.
 
+use crate::error::RenderError;
 use crate::picture::tone::Tone;
 use document::InputKind;
-use crate::error::RenderError;
 use lens::{Exposure, FocusOffset};
 use progress::Progress;
 use project::Thumbnail;

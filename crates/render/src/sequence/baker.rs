@@ -4,18 +4,11 @@
 //! all keys of the timeline at once, as the scene and the camera stand at a frame: which frames are rendered makes no difference to it, and
 //! a rack focus in a scene that stands still is one light field.
 
-use crate::sequence::take::FrameState;
-use crate::sequence::take::Take;
 use crate::error::RenderError;
-use light::Steps;
-use light::LightQuality;
-use crate::picture::RenderOptions;
-use crate::picture::Rendered;
-use crate::picture::Renderer;
-use crate::picture::new_splatter;
-use crate::picture::render;
-use crate::picture::sum_baked;
+use crate::picture::{RenderOptions, Rendered, Renderer, new_splatter, render, sum_baked};
+use crate::sequence::take::{FrameState, Take};
 use lens::Camera;
+use light::{LightQuality, Steps};
 use salf::{BakeOptions, Carried};
 use scene::SurfaceField;
 use splat::Splatter;

@@ -1,13 +1,13 @@
 //! What the bytes of a frame depend on, as a checksum: a frame whose file was made by the same plan is finished.
 
+use crate::picture::RenderOptions;
 use crate::sequence::scene_in_time::SceneInTime;
 use crate::sequence::take::FrameState;
-use crate::picture::RenderOptions;
 use focus::{Focus, FocusMap, FocusSource};
 use lens::Camera;
+use light::LitScene;
 use sha2::{Digest, Sha256};
 use std::sync::Arc;
-use light::LitScene;
 
 /// Changes whenever the same input may give other bytes.
 const VERSION: &str = concat!("frame 1, ", env!("CARGO_PKG_VERSION"));

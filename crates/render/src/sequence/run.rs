@@ -1,15 +1,13 @@
 //! Rendering frames one after the other.
 
-use crate::sequence::baker::Baking;
-use crate::sequence::baker::FrameBaker;
+use crate::error::RenderError;
+use crate::picture::{RenderOptions, Rendered};
+use crate::sequence::baker::{Baking, FrameBaker};
 use crate::sequence::frame_files::FrameFiles;
 use crate::sequence::outcome::Outcome;
 use crate::sequence::plan::frame_plan;
 use crate::sequence::take::Take;
-use crate::error::RenderError;
 use light::Steps;
-use crate::picture::RenderOptions;
-use crate::picture::Rendered;
 use progress::Progress;
 use project::is_finished;
 use std::path::{Path, PathBuf};
@@ -92,9 +90,7 @@ pub fn render_frames(
         let made = render_one_frame(take, &mut baker, seconds, &file, options, &mut report.warnings, steps);
         let outcome = match made {
             Ok(outcome) => outcome,
-            Err(
-                error @ (RenderError::Cancelled | RenderError::TryAgain(_) | RenderError::GpuAbsent(_)),
-            ) => {
+            Err(error @ (RenderError::Cancelled | RenderError::TryAgain(_) | RenderError::GpuAbsent(_))) => {
                 return Err(error);
             }
             Err(error) => Outcome::Failed(error),

@@ -3,13 +3,13 @@
 //! Atlas and paint belong to the surface at rest: a triangle keeps its place in the atlas wherever it is, so that a texel stays on its
 //! piece of surface ([`posed_atlas`]).
 
-use document::build_canvas;
-use light::{LightOptions, LitScene, Resources, content_hash};
 use crate::error::RenderError;
 use atlas::Atlas;
+use document::build_canvas;
 use focus::{Canvas, Focus, FocusMap, FocusSource};
 use glam::{DVec2, DVec3, Vec2};
 use lens::FocusOffset;
+use light::{LightOptions, LitScene, Resources, content_hash};
 use progress::Progress;
 use scene::{AnimatedScene, AnimationTime, PosedScene, RestTriangle, Scene, SurfacePoint};
 use std::collections::HashMap;
@@ -163,8 +163,8 @@ fn posed_atlas(rest: &Atlas, scene: &Scene, at_rest: &[Option<RestTriangle>]) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-    use document::load_scene;
     use atlas::UnwrapOptions;
+    use document::load_scene;
     use progress::Unwatched;
     use scene::{LoadOptions, SurfaceField};
 

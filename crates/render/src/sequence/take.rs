@@ -1,13 +1,12 @@
 //! What a document looks like at a time: scene, camera and focus.
 
-use crate::sequence::scene_in_time::SceneInTime;
-use document::Input;
-use document::InputKind;
 use crate::error::RenderError;
-use light::Steps;
 use crate::picture::lit_scene_of;
+use crate::sequence::scene_in_time::SceneInTime;
+use document::{Input, InputKind};
 use focus::{Focus, FocusMap, FocusSource, LayerStack, LensMotion};
 use lens::Camera;
+use light::Steps;
 use progress::Progress;
 use scene::{AnimatedScene, AnimationTime, LoadOptions, SceneCamera};
 use std::sync::{Arc, Mutex, PoisonError};

@@ -1,18 +1,11 @@
 //! A crop of a picture, drawn: the light field around it is baked square by square, and each goes into the sums.
 
-use crate::tiles::lit_picture::LitPicture;
 use crate::error::RenderError;
-use light::Steps;
-use crate::mattes::Footprints;
-use crate::mattes::MatteRequest;
-use crate::mattes::Packing;
-use crate::mattes::Ranking;
-use crate::mattes::SampleParts;
-use crate::mattes::Tally;
-use crate::mattes::Things;
-use crate::mattes::shares;
+use crate::mattes::{Footprints, MatteRequest, Packing, Ranking, SampleParts, Tally, Things, shares};
+use crate::tiles::lit_picture::LitPicture;
 use glam::{IVec2, Vec2};
 use lens::Picture;
+use light::Steps;
 use progress::{Progress, Stage};
 use salf::{PartsBaker, Surroundings};
 use scene::Scene;

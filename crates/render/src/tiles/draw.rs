@@ -1,29 +1,17 @@
 //! A tile, drawn to its part.
 
-use crate::tiles::crop::CropDrawer;
-use crate::tiles::crop::CropFailure;
-use crate::tiles::crop::DrawnCrop;
+use crate::error::RenderError;
+use crate::mattes::{Ranking, Things};
+use crate::picture::{Aov, LayerInputs, RenderOptions, light_of_photographs, photographed_shares_of_pixels};
+use crate::tiles::crop::{CropDrawer, CropFailure, DrawnCrop};
 use crate::tiles::grid::split_into_pieces;
 use crate::tiles::lit_picture::LitPicture;
-use crate::tiles::part::Matte;
-use crate::tiles::part::NamedThings;
-use crate::tiles::part::NumbersAt;
-use crate::tiles::part::Piece;
-use crate::tiles::part::Sums;
-use crate::error::RenderError;
-use light::Steps;
-use light::LitScene;
-use crate::picture::Aov;
-use crate::picture::LayerInputs;
-use crate::mattes::Ranking;
-use crate::picture::RenderOptions;
-use crate::mattes::Things;
-use crate::picture::light_of_photographs;
-use crate::picture::photographed_shares_of_pixels;
+use crate::tiles::part::{Matte, NamedThings, NumbersAt, Piece, Sums};
 use baselines::FirstHits;
 use focus::Focus;
 use glam::{DVec3, Vec3};
 use lens::{Camera, FocusOffset, Picture};
+use light::{LitScene, Steps};
 use project::{Cryptomatte, Layer, PartWriter, Section};
 use scene::SurfacePoint;
 use splat::{Crop, Integers};

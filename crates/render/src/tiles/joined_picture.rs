@@ -1,9 +1,7 @@
 //! The sums of all pieces of a picture, joined row by row.
 
-use crate::tiles::part::Part;
-use crate::tiles::part::Piece;
-use crate::tiles::part::Sums;
 use crate::error::RenderError;
+use crate::tiles::part::{Part, Piece, Sums};
 use lens::Picture;
 use progress::Progress;
 use project::{NumberReader, PartFile, Section};

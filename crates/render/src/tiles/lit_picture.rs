@@ -1,12 +1,11 @@
 //! What a picture in tiles is lit and baked by.
 
 use crate::error::RenderError;
-use light::Steps;
-use light::LitScene;
 use crate::mattes::MatteRequest;
 use crate::picture::RenderOptions;
 use focus::Focus;
 use lens::Camera;
+use light::{LitScene, Steps};
 use salf::{BakeOptions, PartsBaker};
 use std::sync::Arc;
 use trace::{Radiance, Tracer};

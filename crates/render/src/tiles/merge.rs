@@ -1,20 +1,13 @@
 //! Parts to the picture.
 
-use crate::tiles::grid::TileGrid;
-use crate::tiles::joined_picture::JoinedPicture;
-use crate::tiles::joined_picture::PieceRows;
-use crate::tiles::part::Matte;
-use crate::tiles::part::NamedThings;
-use crate::tiles::part::NumbersAt;
-use crate::tiles::part::Part;
-use crate::tiles::part::part_path;
 use crate::error::RenderError;
-use light::Steps;
+use crate::mattes::{Entry, left_out_warning, ranks_of};
 use crate::picture::Aov;
-use crate::mattes::Entry;
-use crate::mattes::left_out_warning;
-use crate::mattes::ranks_of;
+use crate::tiles::grid::TileGrid;
+use crate::tiles::joined_picture::{JoinedPicture, PieceRows};
+use crate::tiles::part::{Matte, NamedThings, NumbersAt, Part, part_path};
 use lens::{Exposure, Picture};
+use light::Steps;
 use project::{Cryptomatte, Layer, NumberReader, PartFile, write_picture_in_bands};
 use splat::{Integers, Kind};
 use std::collections::{BTreeMap, BTreeSet};

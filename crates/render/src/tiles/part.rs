@@ -1,8 +1,8 @@
 //! What a part of a picture is.
 
-use crate::tiles::grid::TileGrid;
 use crate::error::RenderError;
 use crate::picture::Aov;
+use crate::tiles::grid::TileGrid;
 use lens::Exposure;
 use project::{ColorSpace, Compression, PartFile, PictureOptions, Section};
 use serde::{Deserialize, Serialize};

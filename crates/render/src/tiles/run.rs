@@ -1,24 +1,17 @@
 //! Drawing tiles one after the other.
 
+use crate::error::RenderError;
+use crate::picture::{RenderOptions, lit_scene_of};
+use crate::sequence::{Outcome, Shard, still_frame_plan};
 use crate::tiles::crop::CropFailure;
 use crate::tiles::draw::Shot;
 use crate::tiles::grid::TileGrid;
-use crate::tiles::merge::MergeFailure;
-use crate::tiles::merge::Merged;
-use crate::tiles::merge::merge;
-use crate::tiles::part::Output;
-use crate::tiles::part::Part;
-use crate::tiles::part::part_path;
+use crate::tiles::merge::{MergeFailure, Merged, merge};
+use crate::tiles::part::{Output, Part, part_path};
 use document::Input;
-use crate::error::RenderError;
-use light::Steps;
-use crate::picture::RenderOptions;
-use crate::picture::lit_scene_of;
-use crate::sequence::Outcome;
-use crate::sequence::Shard;
-use crate::sequence::still_frame_plan;
 use focus::Focus;
 use lens::Camera;
+use light::Steps;
 use progress::Progress;
 use project::{PartWriter, PictureOptions};
 use splat::{Crop, Integers};

@@ -1,17 +1,14 @@
 //! What a session can be asked to do, and what it tells back.
 
-use render::Display;
-use document::CameraEdit;
-use document::SurfaceHit;
-use document::FillRegion;
-use document::StrokePoint;
-use jobs::JobId;
 use crate::reference::ReferenceKind;
+use document::{CameraEdit, FillRegion, StrokePoint, SurfaceHit};
 use focus::{Brush, CombineMode, Ease, Gradient, LayerEdit, LensMotion};
 use glam::DVec2;
+use jobs::JobId;
 use lens::{Exposure, FocusOffset};
 use project::{CaptureChoices, RecordedStep, SelectionShape};
 use relief::DepthStroke;
+use render::Display;
 use scene::{BackFaces, World};
 use splat::Tolerance;
 use std::path::PathBuf;

@@ -1,8 +1,8 @@
 //! What a session tells back.
 
+use crate::reference::ReferenceKind;
 use document::DepthPolarityRequest;
 use jobs::JobStatus;
-use crate::reference::ReferenceKind;
 use std::ops::Range;
 use std::path::PathBuf;
 

@@ -1,7 +1,6 @@
 //! Key maps: whose keys and mouse buttons the window obeys. Each is the command table's own keys but for some.
 
-use crate::commands::table::CommandId;
-use crate::commands::table::Shortcut;
+use crate::commands::table::{CommandId, Shortcut};
 use serde::{Deserialize, Serialize};
 
 /// Whose keys and mouse buttons the window obeys.

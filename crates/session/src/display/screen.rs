@@ -1,9 +1,8 @@
 //! The live picture as the screen shows it, and where it changed lately.
 
 use crate::display::picture_ring::Rectangle;
-use render::ScreenPixel;
-use render::Tone;
 use focus::rectangle_union;
+use render::{ScreenPixel, Tone};
 use splat::PictureOnCard;
 use std::collections::VecDeque;
 use std::ops::Range;

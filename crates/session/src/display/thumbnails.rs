@@ -1,14 +1,9 @@
 //! Photographs of a capture as a strip shows them: small, and read one after the other when they are looked at.
 
-use render::ScreenPixel;
-use render::Tone;
-use render::to_screen;
 use crate::error::SessionError;
-use jobs::Urgency;
-use jobs::Waker;
-use jobs::catch_panics;
-use jobs::run_in_own_pool;
+use jobs::{Urgency, Waker, catch_panics, run_in_own_pool};
 use lens::{Exposure, Picture};
+use render::{ScreenPixel, Tone, to_screen};
 use scene::{LoadOptions, Scene, View};
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};

@@ -1,8 +1,7 @@
 //! What of the aperture a surface point sees, and what it sends there: the light field at one point, cell by cell.
 
 use crate::light_field::running_sum::BakedField;
-use document::Document;
-use document::SurfaceHit;
+use document::{Document, SurfaceHit};
 use glam::{DVec2, DVec3};
 use lens::FocusOffset;
 use rayon::prelude::*;

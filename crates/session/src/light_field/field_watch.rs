@@ -1,8 +1,8 @@
 //! Which light field is being made for the live picture: whoever needs the same one waits for it instead of baking it again.
 
-use render::is_compatible;
 use document::Stage;
 use lens::Camera;
+use render::is_compatible;
 use salf::Salf;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, Weak};
 use std::time::Duration;
@@ -73,9 +73,9 @@ impl FieldWatch {
 
 #[cfg(test)]
 mod tests {
-    use light::LightQuality;
     use super::*;
     use document::Document;
+    use light::LightQuality;
     use progress::Unwatched;
     use std::time::Instant;
 
@@ -84,7 +84,10 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("quads.glb");
         crate::tiny_glb::write(&file);
-        let open = || Document::create(&file, &Default::default(), &Default::default(), &Default::default(), &Unwatched).unwrap();
+        let open = || {
+            Document::create(&file, &Default::default(), &Default::default(), &Default::default(), &Unwatched)
+                .unwrap()
+        };
         let (document, other) = (open(), open());
         let camera = Camera { width: 24, height: 16, ..document.camera.clone() };
         let watch = FieldWatch::default();

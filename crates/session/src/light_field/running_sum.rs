@@ -1,18 +1,16 @@
 //! A baked light field with its running sum, and what it takes to bring the sum up to date.
 
+use crate::display::{PictureSource, Rectangle};
+use crate::error::SessionError;
 use crate::light_field::changes::Changes;
-use light::LightQuality;
-use render::Modelled;
 use crate::light_field::margin_reach::MarginReach;
 use crate::light_field::sample_index::SampleIndex;
-use render::is_compatible;
-use crate::display::PictureSource;
-use crate::display::Rectangle;
 use document::Stage;
-use crate::error::SessionError;
 use focus::Focus;
 use lens::{Camera, Picture};
+use light::LightQuality;
 use progress::{Progress, Stage as Share};
+use render::{Modelled, is_compatible};
 use salf::{BakeOptions, Carried, Salf};
 use scene::SurfaceField;
 use splat::{Gpu, SplatError, Splatter, Tolerance};
@@ -100,8 +98,9 @@ impl LightField {
         field_options: FieldOptions,
         progress: &dyn Progress,
     ) -> Result<Self, SessionError> {
-        let needed =
-            BakeOptions::for_focus(stage.tracer(), camera, focus).margin_px.max(field_options.least_margin_px);
+        let needed = BakeOptions::for_focus(stage.tracer(), camera, focus)
+            .margin_px
+            .max(field_options.least_margin_px);
         let margin_px = needed + MARGIN_HEADROOM * camera.height as f64;
         let options = BakeOptions { margin_px, carried: Carried::for_focus(focus), ..BakeOptions::default() };
         let radiance =
@@ -316,8 +315,8 @@ impl LightField {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use document::Document;
     use crate::tiny_glb;
+    use document::Document;
     use glam::DVec3;
     use lens::FocusOffset;
     use progress::Unwatched;
@@ -327,7 +326,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let scene = folder.path().join("quads.glb");
         tiny_glb::write(&scene);
-        Document::create(&scene, &Default::default(), &Default::default(), &Default::default(), &Unwatched).unwrap()
+        Document::create(&scene, &Default::default(), &Default::default(), &Default::default(), &Unwatched)
+            .unwrap()
     }
 
     /// The texels of the wall whose middle lies where `wanted` says, and the focus with `value` on them.

@@ -1,9 +1,9 @@
 //! What the helpers of the preview's thread hand over to it.
 
 use crate::error::SessionError;
-use light::LightErrors;
 use crate::light_field::LightField;
 use lens::Camera;
+use light::LightErrors;
 
 /// The share of making a light field that the bake is; the rest is the first sum.
 pub(crate) const BAKE_SHARE: f32 = 0.7;

@@ -1,9 +1,8 @@
 //! What the preview's thread has to show and to tell, until the session takes it.
 
-use crate::preview::picture::PictureTimes;
-use crate::preview::picture::Preview;
 use crate::display::Patch;
 use crate::light_field::BakedField;
+use crate::preview::picture::{PictureTimes, Preview};
 
 /// The newest picture, and what happened.
 #[derive(Default)]

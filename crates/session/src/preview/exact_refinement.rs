@@ -4,16 +4,12 @@
 //! on a thread of its own as soon as there is time; any change stops it. It is kept, so that after the next strokes only
 //! what they moved is summed again.
 
-use crate::preview::deliveries::ExactDelivery;
-use crate::preview::deliveries::ExactPicture;
-use crate::preview::mailbox::Shared;
 use crate::error::SessionError;
-use jobs::Urgency;
-use jobs::catch_panics;
-use jobs::run_in_own_pool;
-use crate::light_field::Changes;
-use crate::light_field::LightField;
+use crate::light_field::{Changes, LightField};
+use crate::preview::deliveries::{ExactDelivery, ExactPicture};
+use crate::preview::mailbox::Shared;
 use focus::Focus;
+use jobs::{Urgency, catch_panics, run_in_own_pool};
 use lens::{Camera, Exposure, Picture};
 use progress::Stage as Share;
 use rayon::prelude::*;

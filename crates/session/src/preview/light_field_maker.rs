@@ -1,23 +1,16 @@
 //! Making the light field of the preview: a thread of its own bakes and sums it.
 
-use crate::preview::deliveries::BAKE_SHARE;
-use crate::preview::deliveries::FieldDelivery;
-use crate::preview::deliveries::INTERIM_SHARE;
-use crate::preview::deliveries::InterimField;
+use crate::error::SessionError;
+use crate::light_field::{Changes, FieldOptions, LightField};
+use crate::preview::deliveries::{BAKE_SHARE, FieldDelivery, INTERIM_SHARE, InterimField};
 use crate::preview::mailbox::Shared;
 use document::Stage;
-use crate::error::SessionError;
-use jobs::Urgency;
-use jobs::catch_panics;
-use jobs::run_in_own_pool;
-use crate::light_field::Changes;
-use crate::light_field::FieldOptions;
-use crate::light_field::LightField;
-use render::LightFieldStore;
-use light::LightQuality;
 use focus::Focus;
+use jobs::{Urgency, catch_panics, run_in_own_pool};
 use lens::Camera;
+use light::LightQuality;
 use progress::Stage as Share;
+use render::LightFieldStore;
 use salf::Carried;
 use splat::Tolerance;
 use std::sync::Arc;

@@ -5,24 +5,18 @@
 //! noise of the later one; how far it is from the picture that stands, what that one is off. From when on it is the nearer one to the
 //! truth, it stands. Paint and lenses do not stop it: they are of no concern to light.
 
-use crate::preview::deliveries::FinerField;
-use crate::preview::deliveries::RefinedLightDelivery;
-use crate::preview::mailbox::Shared;
-use crate::preview::exact_refinement::mean_square_difference;
-use document::Stage;
 use crate::error::SessionError;
-use jobs::Urgency;
-use jobs::catch_panics;
-use jobs::run_in_own_pool;
-use crate::light_field::Changes;
-use crate::light_field::FieldOptions;
-use render::LIGHT_PASSES;
-use light::LightErrors;
-use crate::light_field::LightField;
-use light::LightQuality;
+use crate::light_field::{Changes, FieldOptions, LightField};
+use crate::preview::deliveries::{FinerField, RefinedLightDelivery};
+use crate::preview::exact_refinement::mean_square_difference;
+use crate::preview::mailbox::Shared;
+use document::Stage;
 use focus::Focus;
+use jobs::{Urgency, catch_panics, run_in_own_pool};
 use lens::{Camera, Exposure, Picture};
+use light::{LightErrors, LightQuality};
 use progress::Stage as Share;
+use render::LIGHT_PASSES;
 use splat::Tolerance;
 use std::sync::Arc;
 use std::thread::JoinHandle;

@@ -1,22 +1,13 @@
 //! What the session and the preview's threads share: one mailbox for wishes, one for news.
 
-use crate::preview::activity::PreviewActivity;
-use crate::preview::deliveries::ExactDelivery;
-use crate::preview::deliveries::FieldDelivery;
-use crate::preview::deliveries::InterimField;
-use crate::preview::deliveries::RefinedLightDelivery;
-use crate::preview::events::PreviewEvents;
-use crate::preview::events::Published;
-use crate::preview::picture::PictureTimes;
-use crate::preview::picture::Preview;
-use crate::preview::picture::Quality;
-use crate::preview::request::PreviewRequest;
-use crate::preview::request::StopScope;
 use crate::display::Patch;
-use jobs::JobProgress;
-use jobs::Waker;
-use crate::light_field::BakedField;
-use crate::light_field::FieldWatch;
+use crate::light_field::{BakedField, FieldWatch};
+use crate::preview::activity::PreviewActivity;
+use crate::preview::deliveries::{ExactDelivery, FieldDelivery, InterimField, RefinedLightDelivery};
+use crate::preview::events::{PreviewEvents, Published};
+use crate::preview::picture::{PictureTimes, Preview, Quality};
+use crate::preview::request::{PreviewRequest, StopScope};
+use jobs::{JobProgress, Waker};
 use progress::{Cancelled, Progress};
 use splat::Gpu;
 use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU32, AtomicUsize, Ordering};

@@ -1,8 +1,8 @@
 //! A picture of the preview, how it was made and what it cost.
 
 use crate::display::LivePicture;
-use render::Modelled;
 use lens::Camera;
+use render::Modelled;
 use std::time::Instant;
 
 /// A picture of the preview.

@@ -1,27 +1,13 @@
 //! How pictures come to be shown: where one differs from the one before, in what tone, with which number.
 
+use crate::display::{
+    Content, LivePicture, Patch, PictureRing, PictureSource, Rectangle, darkening_stops, enlarged_part,
+    enlarged_rectangle, whole,
+};
 use crate::preview::mailbox::Shared;
-use crate::preview::picture::DrawingCosts;
-use crate::preview::picture::PictureTimes;
-use crate::preview::picture::Preview;
-use crate::preview::picture::PreviewKind;
-use crate::preview::picture::Quality;
-use crate::display::Content;
-use crate::display::LivePicture;
-use crate::display::Patch;
-use crate::display::PictureRing;
-use crate::display::PictureSource;
-use crate::display::Rectangle;
-use render::Tone;
-use render::ToneCurve;
-use crate::display::darkening_stops;
-use crate::display::enlarged_part;
-use crate::display::enlarged_rectangle;
-use render::rectangle_to_screen;
-use render::to_screen;
-use crate::display::whole;
-use render::Modelled;
+use crate::preview::picture::{DrawingCosts, PictureTimes, Preview, PreviewKind, Quality};
 use lens::{Camera, Exposure, Picture};
+use render::{Modelled, Tone, ToneCurve, rectangle_to_screen, to_screen};
 use salf::Salf;
 use splat::PictureOnCard;
 use std::sync::Arc;

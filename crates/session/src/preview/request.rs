@@ -1,14 +1,11 @@
 //! What is wanted of the preview, joined until its thread looks.
 
-use crate::preview::deliveries::ExactDelivery;
-use crate::preview::deliveries::FieldDelivery;
-use crate::preview::deliveries::InterimField;
-use crate::preview::deliveries::RefinedLightDelivery;
-use render::Tone;
-use document::Stage;
 use crate::light_field::Changes;
+use crate::preview::deliveries::{ExactDelivery, FieldDelivery, InterimField, RefinedLightDelivery};
+use document::Stage;
 use focus::FocusMap;
 use lens::Camera;
+use render::Tone;
 use splat::Tolerance;
 use std::sync::Arc;
 

@@ -1,22 +1,18 @@
 //! The session's end of the preview's thread: wishes are posted, what was made is taken.
 
+use crate::error::SessionError;
+use crate::light_field::Changes;
 use crate::preview::activity::PreviewActivity;
-use crate::preview::mailbox::Shared;
 use crate::preview::events::PreviewEvents;
+use crate::preview::mailbox::Shared;
 use crate::preview::picture::Preview;
 use crate::preview::request::StopScope;
 use crate::preview::worker::Worker;
-use render::Tone;
 use document::Stage;
-use crate::error::SessionError;
-use jobs::JobProgress;
-use jobs::Urgency;
-use jobs::Waker;
-use jobs::build_thread_pool;
-use crate::light_field::Changes;
-use render::LightFieldStore;
 use focus::FocusMap;
+use jobs::{JobProgress, Urgency, Waker, build_thread_pool};
 use lens::Camera;
+use render::{LightFieldStore, Tone};
 use splat::{Gpu, Tolerance};
 use std::sync::Arc;
 use std::time::Duration;

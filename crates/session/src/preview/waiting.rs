@@ -1,9 +1,9 @@
 //! How others wait for the preview's work, or have it wait for theirs.
 
+use crate::light_field::BakeState;
 use crate::preview::deliveries::BAKE_SHARE;
 use crate::preview::mailbox::Shared;
 use document::Stage;
-use crate::light_field::BakeState;
 use lens::Camera;
 use progress::{Cancelled, Progress};
 use salf::Salf;

@@ -1,40 +1,26 @@
 //! What the preview thread does with its wishes.
 
-use crate::preview::activity::PreviewActivity;
-use crate::preview::picture_sizes::coarse_cameras;
-use crate::preview::picture_sizes::interim_camera;
-use crate::preview::deliveries::ExactDelivery;
-use crate::preview::deliveries::FieldDelivery;
-use crate::preview::deliveries::FinerField;
-use crate::preview::deliveries::InterimField;
 use super::light_refinement;
+use crate::display::PictureSource;
+use crate::error::SessionError;
+use crate::light_field::{FieldOptions, LightField, Plan, SumUpdate};
+use crate::preview::activity::PreviewActivity;
+use crate::preview::deliveries::{ExactDelivery, FieldDelivery, FinerField, InterimField};
+use crate::preview::exact_refinement::{ExactRefinement, ExactTask};
+use crate::preview::light_field_maker::{FieldOrder, FieldOrigin, LightFieldMaker};
 use crate::preview::light_refinement::LightRefinement;
 use crate::preview::mailbox::Shared;
-use crate::preview::light_field_maker::FieldOrder;
-use crate::preview::light_field_maker::FieldOrigin;
-use crate::preview::light_field_maker::LightFieldMaker;
-use crate::preview::picture::PreviewKind;
-use crate::preview::picture::Quality;
-use crate::preview::presenter::NewPicture;
-use crate::preview::presenter::Presenter;
-use crate::preview::presenter::Relation;
-use crate::preview::exact_refinement::ExactRefinement;
-use crate::preview::exact_refinement::ExactTask;
+use crate::preview::picture::{PreviewKind, Quality};
+use crate::preview::picture_sizes::{coarse_cameras, interim_camera};
+use crate::preview::presenter::{NewPicture, Presenter, Relation};
 use crate::preview::request::PreviewRequest;
-use crate::display::PictureSource;
-use document::Stage;
-use crate::error::SessionError;
-use jobs::catch_panics;
-use crate::light_field::FieldOptions;
-use crate::light_field::LightField;
-use render::LightFieldStore;
-use light::LightQuality;
-use render::Modelled;
-use crate::light_field::Plan;
-use crate::light_field::SumUpdate;
 use baselines::FirstHits;
+use document::Stage;
 use focus::{Focus, FocusMap};
+use jobs::catch_panics;
 use lens::Camera;
+use light::LightQuality;
+use render::{LightFieldStore, Modelled};
 use splat::Tolerance;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -481,8 +467,7 @@ impl Worker {
         let is_quiet =
             !self.is_paused && !self.is_light_paused && !self.is_painting && !self.maker.is_at_work();
         let is_quiet = is_quiet && !self.shared.is_exporting() && !self.light.is_at_work();
-        let is_allowed =
-            is_exact && is_quiet && fine.is_up_to_date(camera) && stage.lit.can_be_refined();
+        let is_allowed = is_exact && is_quiet && fine.is_up_to_date(camera) && stage.lit.can_be_refined();
         self.light.next_passes(camera, fine.light_passes(), self.light_passes).filter(|_| is_allowed)
     }
 

@@ -1,14 +1,10 @@
 //! Commands, and what each sets going.
 
-use crate::session::stage_change::ChangeCause;
-use crate::session::stage_change::StageChange;
-use crate::session::state::LIGHT_JOB;
-use crate::session::state::PREVIEW_JOB;
-use crate::session::state::Session;
-use crate::commands::Command;
-use crate::commands::Event;
-use document::CameraEdit;
+use crate::commands::{Command, Event};
 use crate::error::SessionError;
+use crate::session::stage_change::{ChangeCause, StageChange};
+use crate::session::state::{LIGHT_JOB, PREVIEW_JOB, Session};
+use document::CameraEdit;
 use focus::FillTarget;
 
 impl Session {

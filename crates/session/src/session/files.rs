@@ -1,23 +1,19 @@
 //! Opening, saving, exporting and keeping unsaved work: all in the background.
 
-use crate::session::opening_preview::OpeningSteps;
-use crate::session::job_outcome::JobOutcome;
-use crate::session::state::Session;
 use crate::commands::Event;
-use document::DepthPolarityRequest;
-use document::Document;
-use document::Input;
-use document::InputKind;
-use document::NewDocumentOptions;
 use crate::error::SessionError;
-use light::Resources;
-use document::DocumentError;
-use document::file_name;
 use crate::job_steps::JobSteps;
-use render::write_scene;
+use crate::session::job_outcome::JobOutcome;
+use crate::session::opening_preview::OpeningSteps;
+use crate::session::state::Session;
 use atlas::UnwrapOptions;
+use document::{
+    DepthPolarityRequest, Document, DocumentError, Input, InputKind, NewDocumentOptions, file_name,
+};
 use lens::Picture;
+use light::Resources;
 use project::{CaptureChoices, FocusMapFile, Thumbnail, write_focus_map};
+use render::write_scene;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -32,7 +28,9 @@ const MAX_WRITE_WAIT: Duration = Duration::from_secs(30);
 
 impl Session {
     pub(super) fn open(&mut self, path: PathBuf) -> Result<(), SessionError> {
-        self.start_opening(path, |path, unwrap, resources, steps| Document::open(path, unwrap, resources, steps))
+        self.start_opening(path, |path, unwrap, resources, steps| {
+            Document::open(path, unwrap, resources, steps)
+        })
     }
 
     pub(super) fn open_capture(

@@ -1,13 +1,10 @@
 //! Undo and redo: steps taken back and done again, and shown.
 
-use crate::session::stage_change::ChangeCause;
-use crate::session::stage_change::StageChange;
-use crate::session::state::Session;
 use crate::commands::Event;
-use document::Document;
-use document::StepEffect;
-use document::UndoState;
 use crate::error::SessionError;
+use crate::session::stage_change::{ChangeCause, StageChange};
+use crate::session::state::Session;
+use document::{Document, StepEffect, UndoState};
 use focus::ChangedTexels;
 use std::cmp::Ordering;
 

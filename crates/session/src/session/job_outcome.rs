@@ -1,9 +1,8 @@
 //! What background work hands to the session.
 
-use crate::session::stage_change::RebuiltStage;
-use document::DepthPolarityRequest;
-use document::Document;
 use crate::reference::Reference;
+use crate::session::stage_change::RebuiltStage;
+use document::{DepthPolarityRequest, Document};
 use lens::Picture;
 use std::path::PathBuf;
 use trace::truth::Estimate;

@@ -1,22 +1,18 @@
 //! What is seen of a scene that takes a while to prepare, before it can be painted on: a small picture without blur.
 
+use crate::display::{Content, Patch};
+use crate::error::SessionError;
+use crate::job_steps::JobSteps;
 use crate::session::job_outcome::JobOutcome;
 use crate::session::preview_updates::scale_to_fit;
 use crate::session::state::Session;
-use crate::display::Content;
-use crate::display::Patch;
-use render::to_screen;
-use crate::error::SessionError;
-use jobs::JobId;
-use jobs::JobProgress;
-use crate::job_steps::JobSteps;
-use light::Steps;
-use jobs::Waker;
-use light::LitScene;
 use baselines::FirstHits;
 use focus::Focus;
+use jobs::{JobId, JobProgress, Waker};
 use lens::{Camera, FocusOffset, Picture};
+use light::{LitScene, Steps};
 use progress::Progress;
+use render::to_screen;
 use std::sync::Arc;
 use std::sync::mpsc::Sender;
 

@@ -1,14 +1,9 @@
 //! Strokes, gradients, fills, selections and layers.
 
-use crate::session::state::Session;
 use crate::commands::Event;
-use document::ActiveEdit;
-use document::ActiveGradient;
-use document::FillRegion;
-use document::Painter;
-use document::StrokePoint;
-use document::apply_recorded_step;
 use crate::error::SessionError;
+use crate::session::state::Session;
+use document::{ActiveEdit, ActiveGradient, FillRegion, Painter, StrokePoint, apply_recorded_step};
 use focus::{CombineMode, FillTarget, FocusMap, Gradient, LayerEdit};
 use lens::FocusOffset;
 use project::{RecordedStep, SelectionShape};

@@ -1,27 +1,17 @@
 //! Pictures as files: rendered at full size, from the light field that stands if it serves, or as they are on screen.
 
+use crate::error::SessionError;
+use crate::job_steps::JobSteps;
+use crate::light_field::MarginReach;
+use crate::preview::{Exporting, Quality, Shared};
 use crate::session::job_outcome::JobOutcome;
 use crate::session::state::Session;
-use render::Tone;
-use document::Stage;
-use crate::error::SessionError;
-use document::file_name;
-use crate::job_steps::JobSteps;
-use light::Steps;
-use render::LightFieldStore;
-use crate::light_field::MarginReach;
-use render::bake;
-use render::is_compatible;
-use render::Aov;
-use render::RenderOptions;
-use render::Rendered;
-use render::sum_light_field;
-use crate::preview::Exporting;
-use crate::preview::Quality;
-use crate::preview::Shared;
+use document::{Stage, file_name};
 use focus::Focus;
 use lens::{Camera, Picture};
+use light::Steps;
 use project::{Layer, PictureOptions, write_picture, write_rgb};
+use render::{Aov, LightFieldStore, RenderOptions, Rendered, Tone, bake, is_compatible, sum_light_field};
 use salf::{BakeOptions, Carried, Salf};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -198,10 +188,8 @@ fn write_displayed(path: &Path, picture: &Picture, layers: &[Layer], tone: Tone)
 #[cfg(test)]
 mod tests {
     use super::*;
-    use render::Display;
-    use render::ToneCurve;
-    use render::to_screen;
     use lens::Exposure;
+    use render::{Display, ToneCurve, to_screen};
 
     #[test]
     fn a_png_holds_what_the_screen_shows() {

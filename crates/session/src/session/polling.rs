@@ -1,11 +1,11 @@
 //! What background work brings, taken up once a frame.
 
+use crate::commands::Event;
+use crate::error::SessionError;
 use crate::session::job_outcome::JobOutcome;
 use crate::session::recovery::Recovery;
 use crate::session::state::Session;
-use crate::commands::Event;
 use document::Document;
-use crate::error::SessionError;
 use progress::Progress;
 
 impl Session {

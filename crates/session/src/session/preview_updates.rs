@@ -1,15 +1,14 @@
 //! What changes in the document, brought to the views: camera, paint, exposure.
 
-use crate::session::state::Session;
 use crate::commands::Event;
-use document::AdjustmentView;
-use document::CameraEdit;
 use crate::error::SessionError;
 use crate::light_field::Changes;
-use render::is_compatible;
+use crate::session::state::Session;
+use document::{AdjustmentView, CameraEdit};
 use focus::{ChangedTexels, rectangle_union};
 use glam::DVec2;
 use lens::{Aperture, Camera};
+use render::is_compatible;
 use std::collections::BTreeMap;
 
 impl Session {

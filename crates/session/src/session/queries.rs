@@ -1,11 +1,9 @@
 //! What can be asked of a session at any time.
 
-use crate::session::state::Session;
-use document::SurfaceHit;
-use document::chief_ray;
-use document::pick;
-use crate::light_field::ApertureImage;
 use crate::blur_histogram::BlurHistogram;
+use crate::light_field::ApertureImage;
+use crate::session::state::Session;
+use document::{SurfaceHit, chief_ray, pick};
 use glam::DVec2;
 use lens::FocusOffset;
 use trace::Ray;

@@ -1,27 +1,20 @@
 //! Pictures to compare with, made in the background.
 
-use crate::session::job_outcome::JobOutcome;
-use crate::session::state::Session;
 use crate::commands::Event;
-use document::Document;
-use document::depth_in_direction;
 use crate::error::SessionError;
 use crate::job_steps::JobSteps;
-use light::Steps;
-use light::LightQuality;
-use crate::reference::Reference;
-use crate::reference::ReferenceKind;
-use render::RenderOptions;
-use render::Renderer;
-use render::Stereo;
-use render::light_of_photographs;
-use render::photograph_picture;
-use render::render;
-use render::render_pair;
 use crate::preview::PreviewActivity;
+use crate::reference::{Reference, ReferenceKind};
+use crate::session::job_outcome::JobOutcome;
+use crate::session::state::Session;
 use baselines::FirstHits;
+use document::{Document, depth_in_direction};
 use focus::Focus;
 use lens::{Camera, FocusOffset};
+use light::{LightQuality, Steps};
+use render::{
+    RenderOptions, Renderer, Stereo, light_of_photographs, photograph_picture, render, render_pair,
+};
 use std::sync::Arc;
 use std::time::Instant;
 use trace::truth::TruthOptions;
@@ -105,8 +98,7 @@ impl Session {
             let steps = JobSteps { progress };
             let picture = match kind {
                 ReferenceKind::Pinhole => {
-                    let radiance =
-                        stage.lit.solve(&camera, LightQuality::Fine, &*steps.begin("light"))?;
+                    let radiance = stage.lit.solve(&camera, LightQuality::Fine, &*steps.begin("light"))?;
                     let progress = steps.begin("first hits");
                     FirstHits::trace(stage.tracer(), &*radiance, &focus, &camera, &*progress)?.picture()
                 }

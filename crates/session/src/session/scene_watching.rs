@@ -3,13 +3,12 @@
 //!
 //! Scenes without a manifest are read once, and nobody looks.
 
+use crate::commands::Event;
+use crate::job_steps::JobSteps;
 use crate::session::job_outcome::JobOutcome;
 use crate::session::state::Session;
 use crate::session::watched_file::WatchedFile;
-use crate::commands::Event;
-use document::Document;
-use document::file_name;
-use crate::job_steps::JobSteps;
+use document::{Document, file_name};
 use std::time::{Duration, Instant};
 
 /// How often the file is looked at. A file that changed is read when it has stayed the same for as long.
@@ -57,7 +56,8 @@ impl Session {
         let cameras = document.scene().cameras.clone();
         let label = format!("following {}", file_name(&project.scene));
         let started = self.start_job(label, move |progress| {
-            let document = Document::reload(project, &cameras, path, (&unwrap, &resources), &JobSteps { progress })?;
+            let document =
+                Document::reload(project, &cameras, path, (&unwrap, &resources), &JobSteps { progress })?;
             Ok(JobOutcome::SceneReloaded { document: Box::new(document), generation, revision })
         });
         if let Err(error) = started {

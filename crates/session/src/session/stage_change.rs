@@ -1,9 +1,9 @@
 //! What of a stage is to be different, and the stage that came of it.
 
-use document::Stage;
 use crate::error::SessionError;
-use jobs::JobProgress;
 use crate::job_steps::JobSteps;
+use document::Stage;
+use jobs::JobProgress;
 use project::{CaptureChoices, WorldFile};
 use scene::{BackFaces, World};
 use std::path::PathBuf;

@@ -3,13 +3,11 @@
 //! The stage is prepared anew in the background and taken up when it is ready. Of two changes of one kind the later counts; one
 //! that was prepared from a stage that is no longer there, because another change came first, is prepared once more.
 
-use crate::session::job_outcome::JobOutcome;
-use crate::session::stage_change::ChangeCause;
-use crate::session::stage_change::RebuiltStage;
-use crate::session::stage_change::StageChange;
-use crate::session::state::Session;
 use crate::commands::Event;
 use crate::error::SessionError;
+use crate::session::job_outcome::JobOutcome;
+use crate::session::stage_change::{ChangeCause, RebuiltStage, StageChange};
+use crate::session::state::Session;
 use relief::DepthStroke;
 use std::sync::Arc;
 

@@ -1,33 +1,23 @@
 //! The state of a session, one document open at a time.
 
+use crate::commands::Event;
+use crate::display::Screen;
+use crate::error::SessionError;
+use crate::light_field::BakedField;
+use crate::preview::{PictureTimes, Preview, PreviewActivity, PreviewThread};
+use crate::reference::{Reference, ReferenceKind};
 use crate::session::job_outcome::JobOutcome;
 use crate::session::recovery::Recovery;
 use crate::session::watched_file::WatchedFile;
-use crate::commands::Event;
-use render::Display;
-use crate::display::Screen;
-use document::Document;
-use document::ActiveEdit;
-use crate::error::SessionError;
-use jobs::Job;
-use jobs::JobId;
-use jobs::JobProgress;
-use jobs::JobStatus;
-use jobs::Waker;
-use crate::light_field::BakedField;
-use render::LightFieldStore;
-use crate::reference::Reference;
-use crate::reference::ReferenceKind;
 use crate::verification::Verification;
-use crate::preview::PictureTimes;
-use crate::preview::Preview;
-use crate::preview::PreviewActivity;
-use crate::preview::PreviewThread;
+use document::{ActiveEdit, Document};
+use jobs::{Job, JobId, JobProgress, JobStatus, Waker};
+use render::{Display, LightFieldStore};
 
 use atlas::UnwrapOptions;
 use glam::{DVec2, DVec3};
-use light::Resources;
 use lens::Camera;
+use light::Resources;
 use slf::PhotographLight;
 use splat::{Gpu, Tolerance};
 use std::collections::BTreeMap;

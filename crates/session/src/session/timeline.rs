@@ -4,10 +4,10 @@
 //! step of undo: what the keys say is kept in the keys. The scene itself is shown at rest; frames show it in motion
 //! ([`crate::render_frames`]).
 
-use crate::session::state::Session;
 use crate::commands::Event;
-use document::SurfaceHit;
 use crate::error::SessionError;
+use crate::session::state::Session;
+use document::SurfaceHit;
 use focus::{Ease, FocusTarget, Key, LensMotion};
 use scene::SurfacePoint;
 

@@ -1,9 +1,9 @@
 //! Checking a rectangle of the picture against the ground truth, pass by pass.
 
-use crate::session::job_outcome::JobOutcome;
-use crate::session::state::Session;
 use crate::commands::Event;
 use crate::error::SessionError;
+use crate::session::job_outcome::JobOutcome;
+use crate::session::state::Session;
 use crate::verification::Verification;
 use focus::Focus;
 use glam::DVec2;

@@ -1,8 +1,8 @@
 //! A session at work: opens a file, paints a stroke, waits, looks.
 
+use document::StrokePoint;
 use glam::DVec2;
 use lens::{FocusOffset, Picture};
-use document::StrokePoint;
 use session::{Command, Event, PreviewKind, Session, SessionOptions};
 use std::path::Path;
 use std::time::{Duration, Instant};
