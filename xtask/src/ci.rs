@@ -2,7 +2,7 @@
 
 use crate::chore::{Failure, cargo, execute};
 use crate::packages::{TO_BUILD, TO_RUN, install_missing};
-use crate::{crate_directions, figures, licences, module_circles, shared_build, spelling};
+use crate::{architecture_paths, crate_directions, figures, licences, module_circles, shared_build, spelling};
 
 /// Runs every check and all tests, and stops at the first that fails.
 ///
@@ -22,6 +22,7 @@ pub fn ci() -> Result<(), Failure> {
 pub fn lint() -> Result<(), Failure> {
     install_missing(&[TO_BUILD, TO_RUN])?;
     crate_directions::check()?;
+    architecture_paths::check()?;
     module_circles::check()?;
     licences::check()?;
     shared_build::check()?;

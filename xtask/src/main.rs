@@ -13,6 +13,7 @@
 //!
 //! Pure Rust without build scripts of its own, so that it needs nothing but Rust and a C linker.
 
+mod architecture_paths;
 mod chore;
 mod ci;
 mod crate_directions;
@@ -43,7 +44,8 @@ usage: cargo xtask CHORE
   window [ARG…] drive the real window under Xvfb, with a screenshot of every step
   circles [CRATE…]
                 cyclic dependencies between the modules of a crate, with the names that cause them
-  lint          crate directions, module cycles, licences, figures, spelling, formatting, lints, docs
+  lint          crate directions, paths in ARCHITECTURE.md, module cycles, licences, figures,
+                spelling, formatting, lints, docs
   ci            these, and all tests";
 
 /// The argument of `demo`: rays per texel, fewer for drafts.
