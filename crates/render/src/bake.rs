@@ -1,4 +1,4 @@
-//! Light fields: baked as coarse as a picture allows, kept as files, counted.
+//! Light fields: baking them, storing them as files, and counting their samples.
 
 mod baking;
 mod camera_compatibility;
@@ -9,6 +9,6 @@ mod salf_file;
 pub(crate) use baking::bake_with;
 pub use baking::{bake, bake_unpacked};
 pub use camera_compatibility::is_compatible;
-pub use light_field_store::{LIGHT_PASSES, LightFieldStore};
+pub use light_field_store::LightFieldStore;
 pub use modelled::{DENSE_SAMPLE_BYTES, Modelled, ModelledRow, TexelStatistics};
 pub use salf_file::write_salf;

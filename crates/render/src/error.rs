@@ -1,4 +1,4 @@
-//! What can go wrong when pictures are made, by what the user can do about it.
+//! Errors of baking and rendering, grouped by what the user can do about them.
 
 use document::{DocumentError, IoFault};
 use light::LightError;
@@ -8,22 +8,22 @@ use scene::SceneError;
 use splat::SplatError;
 use std::path::Path;
 
-/// Why there is no picture. Its text is one line: `FILE: what is wrong (what to do)`.
+/// An error of baking, rendering or exporting. It displays as one line: `FILE: what is wrong (what to do)`.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RenderError {
     /// A file or a value cannot be used; the text names it, what is wrong and what to do.
     #[error("{0}")]
     BadInput(String),
-    /// The machine, not the input, stands in the way for now: a full disk, a locked file.
+    /// A temporary problem of the machine rather than the input, for example a full disk or a locked file.
     #[error("{0}")]
     TryAgain(String),
-    /// A GPU was asked for and there is none that can do the work.
+    /// A GPU was requested, but none is available that can do the work.
     #[error("{0}")]
     GpuAbsent(String),
-    /// The user stopped it, or a newer request took its place.
+    /// The user stopped the work, or a newer request replaced it.
     #[error("cancelled")]
     Cancelled,
-    /// A fault of the program itself.
+    /// A bug in the program.
     #[error("{0}")]
     Internal(String),
 }
@@ -79,12 +79,12 @@ impl From<IoFault> for RenderError {
 }
 
 impl RenderError {
-    /// Bad input in `file`.
+    /// A [`RenderError::BadInput`] about `file`; `what` says what is wrong and what to do.
     pub fn bad_file(file: &Path, what: impl std::fmt::Display) -> Self {
         DocumentError::bad_file(file, what).into()
     }
 
-    /// What an I/O error on `file` means: bad input, or worth another try.
+    /// Classifies an I/O error on `file` as bad input or as a temporary problem.
     pub fn io(file: &Path, error: &std::io::Error) -> Self {
         IoFault::new(file, error).into()
     }

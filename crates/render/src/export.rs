@@ -1,4 +1,4 @@
-//! Scenes as files: with their atlas and the lens of their shot.
+//! Exporting scenes as GLB, with their atlas and the lens of the shot camera.
 
 mod scene_file;
 mod shot_extras;

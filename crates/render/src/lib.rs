@@ -1,4 +1,4 @@
-//! Pictures without a window: what the command line does, and what the window exports.
+//! Baking and rendering without a window, for the command line and the window's exports.
 //!
 //! ```text
 //! Input (document) ─▶ LitScene (light) ─▶ bake ─▶ picture ─▶ files
@@ -6,7 +6,8 @@
 //!                          sequence: one a frame ◀─┴─▶ tiles: one in parts
 //! ```
 //!
-//! [`RenderOptions`] say how, [`render`] and [`render_input`] do it, [`render_frames`] and [`render_tiles`] do many.
+//! [`RenderOptions`] configure a picture; [`render`] and [`render_input`] render one, [`render_frames`] a sequence, and [`render_tiles`] a
+//! large picture in tiles. `examples/refocus.rs` bakes a light field once and refocuses it.
 
 mod bake;
 mod error;
@@ -16,12 +17,13 @@ mod picture;
 mod sequence;
 mod tiles;
 #[cfg(test)]
+#[allow(dead_code, reason = "shared with the tests of `session`")]
 #[path = "../../session/tests/tiny_glb/mod.rs"]
 mod tiny_glb;
 
 pub use bake::{
-    DENSE_SAMPLE_BYTES, LIGHT_PASSES, LightFieldStore, Modelled, ModelledRow, TexelStatistics, bake,
-    bake_unpacked, is_compatible, write_salf,
+    DENSE_SAMPLE_BYTES, LightFieldStore, Modelled, ModelledRow, TexelStatistics, bake, bake_unpacked,
+    is_compatible, write_salf,
 };
 pub use baselines::{LayeredOptions, ScatterOptions, ViewsOptions};
 pub use error::RenderError;
@@ -29,11 +31,11 @@ pub use export::{export_glb, write_scene, write_unwrapped};
 pub use picture::{
     Aov, CocConvention, Display, LeftOut, LeftOutPicture, LeftOutPrediction, MAX_CELLS_A_SIDE, OcioViews,
     RenderCost, RenderOptions, Rendered, Renderer, ScreenPixel, Stereo, StereoForm, Tone, ToneCurve,
-    leave_photographs_out, light_of_photographs, photograph_picture, read_thumbnail, rectangle_to_screen,
-    render, render_input, render_pair, render_photograph, render_stereo, sum_light_field, to_screen,
+    leave_photographs_out, light_of_photographs, photograph_picture, read_thumbnail, render, render_input,
+    render_photograph, render_stereo, to_screen,
 };
 pub use sequence::{
     Baking, FrameFiles, FrameList, FrameReport, Outcome, SequenceOptions, SequenceReport, Shard, Take,
-    TakeOptions, WritePicture, render_frames,
+    TakeOptions, render_frames,
 };
 pub use tiles::{Merged, TileGrid, TileOptions, TileReport, TilesReport, merge_tiles, render_tiles};

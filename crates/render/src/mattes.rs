@@ -1,9 +1,9 @@
-//! Which share of each pixel things have: alpha, and Cryptomatte of objects and materials.
+//! Alpha, and Cryptomatte of objects and materials: the share of each pixel that each thing covers.
 //!
-//! The share of a thing in a pixel is the coverage of what of it lands there over that of all. Whoever makes the picture makes mattes
-//! (`source`): pictures in which some things send 1 and all others nothing, three at once. A scene may have thousands of things, but a pixel
-//! shows few: things whose light lands in no common tile of the picture are drawn together (`packing`), and taken apart again where
-//! they are counted (`tally`).
+//! A thing's share of a pixel is its coverage there divided by the total coverage. The renderer of the picture also draws the mattes
+//! (`source`): pictures in which some things emit 1 and all others 0, three sets at once. A scene may have thousands of things, but a
+//! pixel shows few of them: things whose light never lands in the same tile of the picture are drawn together (`packing`) and separated
+//! again when they are counted (`tally`).
 
 mod packing;
 mod source;
@@ -24,26 +24,26 @@ use scene::Scene;
 use source::Sets;
 use splat::SETS;
 
-/// What is wanted of mattes.
+/// Which mattes to render.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct MatteRequest {
-    /// Cryptomatte of objects and materials, beside alpha.
+    /// Whether to render Cryptomatte of objects and materials in addition to alpha.
     pub crypto: bool,
 }
 
-/// The share of each pixel that is not background, and what has it.
+/// The mattes of a picture.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Mattes {
-    /// Row by row, in [0, 1].
+    /// The share of each pixel that is not background, in [0, 1], row by row.
     pub alpha: Vec<f32>,
-    /// Of objects and of materials, if they were wanted: their shares sum to alpha.
+    /// Cryptomatte of objects and of materials, if requested. Their shares sum to alpha.
     pub crypto: Vec<Cryptomatte>,
-    /// What they lack, a sentence each.
+    /// What the mattes lack, one sentence each.
     pub warnings: Vec<String>,
 }
 
 impl Mattes {
-    /// Those of a picture of a scene.
+    /// Renders the mattes of a picture of `scene`.
     pub fn render(
         scene: &Scene,
         mut source: impl MatteSource,
@@ -61,7 +61,7 @@ impl Mattes {
         let kinds = [Things::objects(scene), Things::materials(scene)];
         let packings = kinds.each_ref().map(|things| source.packing(things, size));
         let mut tallies = kinds.each_ref().map(|_| Tally::new(size));
-        // Each color of either kind, and those that are drawn together.
+        // All (kind, color) pairs; up to `SETS` of them are drawn in one pass.
         let colors: Vec<(usize, usize)> = (0..kinds.len())
             .flat_map(|kind| (0..packings[kind].colors()).map(move |color| (kind, color)))
             .collect();
@@ -89,7 +89,7 @@ impl Mattes {
     }
 }
 
-/// The share of each pixel that a set has; 0 where nothing is covered.
+/// The share of each pixel that a set covers; 0 where nothing is covered.
 pub(crate) fn shares(picture: &Picture, set: usize) -> impl Iterator<Item = f32> {
     let share =
         move |(rgb, &coverage): (&[f32; 3], &f32)| if coverage > 0.0 { rgb[set] / coverage } else { 0.0 };

@@ -1,4 +1,4 @@
-//! Pictures of full size, and what comes along: extra channels, pictures to compare with, counts, tone.
+//! Full-size pictures and what belongs to them: AOVs, stereo pairs, photographs for comparison, thumbnails and tone mapping.
 
 mod aov;
 mod coc_convention;
@@ -20,11 +20,10 @@ pub use ocio_views::OcioViews;
 pub use photograph_picture::{photograph_picture, render_photograph};
 pub use render::{
     MAX_CELLS_A_SIDE, RenderCost, RenderOptions, Rendered, light_of_photographs, render, render_input,
-    sum_light_field,
 };
 pub(crate) use render::{lit_scene_of, new_splatter, photographed_shares_of_pixels, sum_baked};
 pub use renderer::Renderer;
-pub use stereo::{Stereo, StereoForm, render_pair, render_stereo};
+pub use stereo::{Stereo, StereoForm, render_stereo};
 pub use thumbnail::read_thumbnail;
-pub use tone::{Display, ScreenPixel, Tone, rectangle_to_screen, to_screen};
+pub use tone::{Display, ScreenPixel, Tone, to_screen};
 pub use tone_curve::ToneCurve;

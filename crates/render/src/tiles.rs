@@ -1,15 +1,15 @@
-//! A picture in tiles: each is drawn within the memory of a tile, and they are merged to the bytes of the whole.
+//! Tiled rendering: each tile is drawn in bounded memory, and merging the tiles gives the same bytes as rendering the whole picture.
 //!
 //! ```text
 //! TileGrid, Shard ─▶ which tiles ─▶ render_tiles ─▶ a part a tile (part) ─▶ merge_tiles ─▶ the picture
-//!                                        │ skips what is finished by the same plan
+//!                                        │ skips tiles that are finished by the same plan
 //!                                        ▼
 //!                      draw: pieces of a tile ─▶ crop: the light field around one, square by square
 //! ```
 //!
-//! A part holds what its tile brings to the picture. What the picture decides as a whole (gains, the finest integers, whether
-//! anything is painted, how many ranks of things there are) is decided when all parts are there; what a tile has to know before, is the
-//! same for all by their plan. Nothing depends on who draws which tile, nor on when.
+//! A part file holds a tile's contribution to the picture. Properties of the whole picture (gains, the precision of the integer sums,
+//! whether anything is painted, the number of Cryptomatte ranks) are determined once all parts exist; everything a tile needs earlier is
+//! fixed by the plan. The result does not depend on which process draws which tile, or when.
 
 mod crop;
 mod draw;

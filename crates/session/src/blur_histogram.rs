@@ -1,26 +1,26 @@
-//! How blurred the picture is: its circles of confusion, counted.
+//! A histogram of the picture's circles of confusion.
 
 use document::{Document, chief_ray, pick};
 use glam::DVec2;
 use numerics::quantile_of_sorted;
 
-/// Signed circles of confusion on the full-size picture, px (negative near, positive far), of places spread evenly over
-/// it.
+/// Signed diameters of circles of confusion at positions spread evenly over the picture, in pixels of the full-size picture (negative
+/// near, positive far).
 #[derive(Clone, Debug, PartialEq)]
 pub struct BlurHistogram {
-    /// Ascending; of the places where a surface is seen.
+    /// Diameters at positions that show a surface, ascending.
     pub circles_px: Vec<f64>,
-    /// Places without a surface.
+    /// Number of positions without a surface.
     pub background: usize,
 }
 
 impl BlurHistogram {
-    /// The circle that this share of the surface places is below or at, in [0, 1].
+    /// The quantile at `share`, in [0, 1], of the positions that show a surface.
     pub fn quantile(&self, share: f64) -> Option<f64> {
         quantile_of_sorted(&self.circles_px, share)
     }
 
-    /// The share of all places whose circle is less than `px`.
+    /// The share of all positions whose diameter is less than `px`.
     pub fn sharper_than(&self, px: f64) -> f64 {
         let sharper = self.circles_px.iter().filter(|circle| circle.abs() < px).count();
         sharper as f64 / (self.circles_px.len() + self.background).max(1) as f64
@@ -28,7 +28,7 @@ impl BlurHistogram {
 }
 
 impl BlurHistogram {
-    /// The circles of confusion of `columns` × `rows` places of a document's picture, by chief rays.
+    /// Measures `columns` × `rows` positions of a document's picture, by chief rays.
     pub(crate) fn measure(document: &Document, [columns, rows]: [usize; 2]) -> Self {
         let optics = document.camera.optics();
         let mut histogram = Self { circles_px: Vec::new(), background: 0 };

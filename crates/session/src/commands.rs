@@ -1,6 +1,6 @@
-//! What can be asked for, and by which name and key.
+//! Commands and events, and the table of commands with their names and keys.
 //!
-//! [`Command`] and [`Event`] are the session's two directions; the table names everything that a person can invoke, for menus,
+//! [`Command`]s go into a session, [`Event`]s come out of it. The table lists everything that a user can invoke, for menus,
 //! palette, keys and help.
 
 mod command;

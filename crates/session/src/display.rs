@@ -1,6 +1,4 @@
-//! How linear light is shown on a screen.
-//!
-//! Tone, the pixels as the screen has them, and what of them changed since somebody looked.
+//! Showing pictures on a screen: tone-mapped pixels, and which of them changed since the last frame.
 
 mod enlarging;
 mod glare;

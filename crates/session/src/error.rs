@@ -1,4 +1,4 @@
-//! What can go wrong in a session, by what the user can do about it.
+//! Errors of a session, grouped by what the user can do about them.
 
 use document::{DocumentError, IoFault};
 use jobs::JobError;
@@ -9,33 +9,33 @@ use render::RenderError;
 use splat::SplatError;
 use std::path::{Path, PathBuf};
 
-/// Why something was not done. Its text is one line: `FILE: what is wrong (what to do)`.
+/// An error of a session. It displays as one line: `FILE: what is wrong (what to do)`.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SessionError {
-    /// A command that needs a document came before one was open.
+    /// A command that needs a document was given while none is open.
     #[error("nothing is open (open a scene or a project first)")]
     NothingOpen,
     /// A file or a value cannot be used; the text names it, what is wrong and what to do.
     #[error("{0}")]
     BadInput(String),
-    /// A capture's depth map does not say which end is near; the text says how to tell.
+    /// A capture's depth map does not say which end is near; the text explains how to specify it.
     #[error("{text}")]
     NearUnknown {
-        /// The map.
+        /// The depth map.
         map: PathBuf,
         /// What is wrong and what to do.
         text: String,
     },
-    /// The machine, not the input, stands in the way for now: a full disk, a locked file.
+    /// A temporary problem of the machine rather than the input, for example a full disk or a locked file.
     #[error("{0}")]
     TryAgain(String),
-    /// A GPU was asked for and there is none that can do the work.
+    /// A GPU was requested, but none is available that can do the work.
     #[error("{0}")]
     GpuAbsent(String),
-    /// The user stopped it, or a newer request took its place.
+    /// The user stopped the work, or a newer request replaced it.
     #[error("cancelled")]
     Cancelled,
-    /// A fault of the program itself.
+    /// A bug in the program.
     #[error("{0}")]
     Internal(String),
 }
@@ -104,12 +104,12 @@ impl From<IoFault> for SessionError {
 }
 
 impl SessionError {
-    /// Bad input in `file`.
+    /// A [`SessionError::BadInput`] about `file`; `what` says what is wrong and what to do.
     pub fn bad_file(file: &Path, what: impl std::fmt::Display) -> Self {
         DocumentError::bad_file(file, what).into()
     }
 
-    /// What an I/O error on `file` means: bad input, or worth another try.
+    /// Classifies an I/O error on `file` as bad input or as a temporary problem.
     pub fn io(file: &Path, error: &std::io::Error) -> Self {
         IoFault::new(file, error).into()
     }

@@ -1,11 +1,11 @@
-//! The steps of a background job, as its progress bar shows them.
+//! The steps of a background job, as shown by its progress bar.
 
 use jobs::JobProgress;
 use light::Steps;
 use progress::Progress;
 
-/// The steps of a background job, each an equal share of what the steps before it have left, so that the bar
-/// never runs back however many there are.
+/// Maps the steps of a background job to its progress bar. Each step takes a fixed share of what is left, so that the bar never runs
+/// back, however many steps there are.
 pub(crate) struct JobSteps<'a> {
     pub progress: &'a JobProgress,
 }

@@ -1,16 +1,16 @@
-//! An open document: commands, caches and background work, without a window.
+//! An open document without a window: commands, background work and the live preview.
 //!
-//! The window and the command line are both thin over this crate. [`Session`] is the window's: it takes a
-//! [`Command`], does it or starts it in the background, and tells by [`Event`]s what happened.
+//! A [`Session`] takes [`Command`]s, carries them out or starts them in the background, and reports by [`Event`]s what happened. The
+//! window polls it once per frame; [`Session::preview`] is always the last good picture.
 //!
-//! ```text
-//! let mut session = Session::new(SessionOptions { waker, ..Default::default() })?;
-//! session.apply(Command::Open("garden.glb".into()))?;          // in the background
-//! for event in session.poll() { … }                             // once a frame
-//! if let Some(ray) = session.picture_ray(position) {            // either view paints with rays
-//!     session.apply(Command::BeginStroke(StrokePoint::ray(ray)))?;
-//! }
-//! session.preview()                                             // the last good picture, always
+//! ```
+//! use session::{Command, Event, Session, SessionOptions};
+//!
+//! let mut session = Session::new(SessionOptions::default())?;
+//! assert!(session.apply(Command::Undo).is_err(), "nothing is open");
+//! session.apply(Command::Open("no such scene.glb".into()))?; // in the background
+//! while !session.poll().iter().any(|event| matches!(event, Event::Failed(_))) {}
+//! # Ok::<(), session::SessionError>(())
 //! ```
 
 mod blur_histogram;

@@ -1,4 +1,4 @@
-//! A document's light field while it is open: which one is shown, what of it is summed, and what it tells of a place.
+//! The light field of an open document: its running sum, and what it contains at a surface point.
 
 mod aperture_image;
 mod changes;

@@ -1,22 +1,20 @@
 //! The live preview: a thread that owns the light field and keeps its picture up to date.
 //!
-//! The session posts what is wanted (scene, camera, changed texels) into one mailbox; newer wishes replace or
-//! join older ones there, so that the thread, whenever it looks, does the least that leads to the newest state.
-//! Two light fields serve it:
+//! The session posts requests (scene, camera, changed texels) to a mailbox. Newer requests replace older ones or are merged with them, so
+//! that the thread does the least work that leads to the newest state. It uses two light fields:
 //!
 //! ```text
 //!                  coarse (a fifth of the size)           fine (the preview's size)
-//! scene, pose …    baked at once, after a pinhole and,   baked on a helper thread, if large
-//!                  if large, a rough one                 after one between in the coarse one's place
-//! lens             summed at once                        summed on a helper thread, if it takes long
-//! paint            updated until the fine one is there   updated
+//! scene, pose …    baked at once, after a pinhole        baked on a helper thread; if it is large,
+//!                  picture and, if large, a rougher one  an interim one replaces the coarse one first
+//! lens             summed at once                        summed on a helper thread if it takes long
+//! paint            updated until the fine one is ready   updated
 //! ```
 //!
-//! When nothing has changed for a while, the fine one is summed once more without tolerance (`exact_refinement.rs`), and then its light is
-//! refined (`light_refinement.rs`).
-//! So a dab or a turned ring shows at once and sharpens by itself, however large the scene. The thread works on
-//! snapshots of the focus map (tiles are shared until one is painted on): neither ever waits for the other. What
-//! a newer wish makes useless is stopped. The last good picture is never taken away.
+//! When nothing has changed for a while, the fine light field is summed again without tolerance (`exact_refinement.rs`), and then its
+//! light is refined (`light_refinement.rs`). A change therefore shows at once and sharpens afterwards, however large the scene. The thread
+//! works on snapshots of the focus map (tiles are copied on write), so session and thread never wait for each other. Work that a newer
+//! request makes useless is stopped. The last good picture always stays.
 
 mod activity;
 mod deliveries;

@@ -1,45 +1,45 @@
-//! Pictures to compare the live one with.
+//! Reference pictures, to compare the live picture with.
 
 use lens::{Camera, Picture};
 use render::StereoForm;
 use std::sync::Arc;
 
-/// Which picture.
+/// The kind of a reference picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ReferenceKind {
-    /// Everything sharp: what a pinhole sees.
+    /// The pinhole picture: everything sharp.
     Pinhole,
-    /// The ordinary lens: nothing painted.
+    /// The standard lens: without paint.
     Standard,
-    /// The document as it is, ray traced.
+    /// The document, ray traced.
     Truth,
     /// The photograph that the camera looks through.
     Photograph,
-    /// The document as it is for two eyes.
+    /// The document as a stereo pair.
     Stereo(StereoForm),
 }
 
-/// A picture of the document to compare the live one with, at the preview's size.
+/// A reference picture, at the preview's size.
 #[derive(Clone, Debug)]
 pub struct Reference {
-    /// Which.
+    /// The kind.
     pub kind: ReferenceKind,
     /// The picture.
     pub picture: Arc<Picture>,
     /// The camera it was made with.
     pub camera: Camera,
-    /// Rays a pixel, of a ray-traced one; else 0.
+    /// Rays per pixel if it is ray traced; otherwise 0.
     pub samples_per_pixel: u32,
-    /// Seconds it took.
+    /// Time it took, s.
     pub seconds: f64,
-    /// The document's revision that it shows.
+    /// Revision of the document that it shows.
     pub(crate) revision: u64,
-    /// Which of the session's documents it shows.
+    /// Generation of the document that it shows.
     pub(crate) generation: u64,
 }
 
 impl Reference {
-    /// Whether it would still be the same if it were made for this camera and revision.
+    /// Whether it is still valid for this camera and revision.
     pub(crate) fn shows(&self, camera: &Camera, revision: u64) -> bool {
         match self.kind {
             ReferenceKind::Pinhole | ReferenceKind::Photograph => {
@@ -53,7 +53,7 @@ impl Reference {
     }
 }
 
-/// What of a camera a pinhole picture depends on.
+/// The camera without the lens settings that a pinhole picture does not depend on.
 fn without_lens(camera: &Camera) -> Camera {
     let Camera { focus_distance, aperture_radius, sensor_height, aperture, .. } = Camera::default();
     Camera { focus_distance, aperture_radius, sensor_height, aperture, ..camera.clone() }

@@ -1,7 +1,6 @@
 //! An open document and the work on it: commands in, events out.
 //!
-//! [`Session`] holds the state; each file beside it does one kind of work on that state, in the background where it takes
-//! long. The window sees nothing below.
+//! [`Session`] holds the state; each submodule implements one kind of work on it, in the background if it takes long.
 
 mod command_dispatch;
 mod files;

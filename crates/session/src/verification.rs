@@ -1,4 +1,4 @@
-//! A rectangle of the picture, checked against the ground truth.
+//! Verifying a rectangle of the picture against the ground truth.
 
 use crate::preview::{Preview, PreviewKind, Quality};
 use lens::{Camera, Exposure};
@@ -6,38 +6,38 @@ use project::{LinearPicture, ProjectError, compare};
 use std::sync::Arc;
 use trace::truth::{Estimate, Region};
 
-/// The ground truth of a rectangle of the preview, as far as it is traced.
+/// The ground truth of a rectangle of the preview, as far as it has been traced.
 #[derive(Clone, Debug)]
 pub struct Verification {
-    /// Which pixels of the preview.
+    /// The pixels of the preview.
     pub region: Region,
     /// The preview's camera.
     pub camera: Camera,
-    /// What is known so far; none before the first pass.
+    /// The estimate so far; `None` before the first pass.
     pub estimate: Option<Arc<Estimate>>,
-    /// Rays a pixel that are wanted.
+    /// Target number of rays per pixel.
     pub target_samples: u32,
-    /// The document's revision that is traced.
+    /// Revision of the document that is traced.
     pub(crate) revision: u64,
-    /// Counts verifications.
+    /// Number of this verification in the session.
     pub(crate) number: u64,
 }
 
 /// How far the preview is from the ground truth in a verified rectangle.
 #[derive(Clone, Debug)]
 pub struct VerifiedError {
-    /// Peak signal-to-noise ratio of the preview against the rays, dB.
+    /// PSNR of the preview against the ground truth, dB.
     pub psnr: f64,
-    /// Mean of preview − truth over the mean of truth.
+    /// Mean of (preview − truth), divided by the mean of truth.
     pub signed_mean_error: f64,
-    /// The PSNR that the rays' own noise would give an exact picture, dB; no more can be told yet.
+    /// The PSNR that an exact picture would have because of the ground truth's noise, dB: an upper limit of what can be measured so far.
     pub noise_psnr: f64,
-    /// Where they differ: FLIP in false colours, 8-bit sRGB, interleaved, row 0 on top.
+    /// FLIP error map in false colours: 8-bit sRGB, interleaved, top row first.
     pub map: Vec<u8>,
 }
 
 impl Verification {
-    /// How far a preview is from what is known; none where the preview shows something else, or is a quick one.
+    /// The error of a preview against the estimate. `None` if there is no estimate yet, or the preview shows something else or is coarse.
     pub fn error_of(
         &self,
         preview: &Preview,

@@ -7,7 +7,7 @@ mod tiny_glb;
 
 use at_work::{opened, picture, settle, stroke};
 use document::{FillRegion, Input, VariantChoice};
-use session::{Command, Event, Session, SessionError};
+use session::{Command, Event, Session};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 

@@ -1,4 +1,4 @@
-//! Light fields, baked as coarse as a picture allows.
+//! Baking light fields, as coarse as the picture allows.
 
 use crate::error::RenderError;
 use focus::Focus;
@@ -7,7 +7,10 @@ use light::{LightQuality, LitScene, Steps};
 use salf::{BakeOptions, Salf};
 use std::sync::Arc;
 
-/// Bakes the light field that `camera` needs to show `focus`, as coarse as `tolerance_px` allows.
+/// Bakes the light field that `camera` needs to show `focus`, as coarse as `tolerance_px` (pixels) allows.
+///
+/// # Errors
+/// The scene's light cannot be solved, or the work was cancelled.
 pub fn bake(
     lit: &Arc<LitScene>,
     camera: &Camera,
@@ -19,7 +22,10 @@ pub fn bake(
     bake_with(lit, camera, &options, LightQuality::Fine, steps)
 }
 
-/// The same light field with samples as they were found, not packed: what the saving is measured against.
+/// Bakes the light field of [`bake`] without packing its samples. Used to measure what packing saves.
+///
+/// # Errors
+/// As [`bake`].
 pub fn bake_unpacked(
     lit: &Arc<LitScene>,
     camera: &Camera,
@@ -31,7 +37,7 @@ pub fn bake_unpacked(
     bake_with(lit, camera, &BakeOptions { tolerance_px, packs: false, ..margin }, LightQuality::Fine, steps)
 }
 
-/// The same with these options, and light as well as that.
+/// Bakes a light field with explicit options and light quality, and reports outliers as a notice.
 pub(crate) fn bake_with(
     lit: &Arc<LitScene>,
     camera: &Camera,
@@ -45,7 +51,7 @@ pub(crate) fn bake_with(
     if outliers.samples > 0 {
         let (samples, percent) = (outliers.samples, 100.0 * outliers.share());
         steps.notice(&format!(
-            "{samples} samples found far more light than those around them: {percent:.2} % of all light was spread among these"
+            "{samples} samples received far more light than their neighbours: {percent:.2} % of all light was redistributed among the neighbours"
         ));
     }
     Ok(salf)

@@ -1,8 +1,9 @@
-//! Which cameras a baked light field can show.
+//! Which cameras a baked light field can be used for.
 
 use lens::Camera;
 
-/// Whether a light field that was baked for `baked` can show what `camera` sees.
+/// Whether a light field that was baked for the camera `baked` can show the picture of `camera`: they may differ in focus distance and
+/// aperture shape, and the aperture of `camera` may be smaller.
 pub fn is_compatible(baked: &Camera, camera: &Camera) -> bool {
     let like = Camera {
         focus_distance: baked.focus_distance,

@@ -1,8 +1,8 @@
-//! Light fields kept from one run of the program to the next, so that what was baked once is not baked again.
+//! Light fields stored on disk, so that they need not be baked again in the next run of the program.
 //!
-//! A light field is found by what it was baked from: all of the scene that gives or blocks light, the camera but for what
-//! may differ (see [`crate::light_field::serves`]), and the very build of the program. They are `.salf` files in a folder of
-//! their own; when that holds too much, those go that were not looked for the longest.
+//! The key of a light field is a hash of what it was baked from: everything in the scene that emits or blocks light, the camera except
+//! for what may differ (see [`crate::is_compatible`]), and the build of the program. Light fields are `.salf` files in one folder; when
+//! they exceed a budget, the least recently used are removed.
 
 use crate::bake::salf_file::write_salf;
 use document::Stage;
@@ -16,16 +16,13 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, SystemTime};
 
-/// Bytes that the folder may hold: half a dozen light fields of 1920 × 1080 pixels.
+/// Maximum size of the folder: about six light fields of 1920 × 1080 pixels.
 const BUDGET_BYTES: u64 = 2 << 30;
 
-/// Passes that light is refined by, one after the other, each in place of the one before.
-pub const LIGHT_PASSES: [u32; 5] = [4, 16, 64, 256, 1024];
-
-/// What is baked in less time is baked again.
+/// Light fields that take less time to bake than this are not stored.
 const SHORTEST_BAKE: Duration = Duration::from_secs(2);
 
-/// A folder of light fields.
+/// A folder of baked light fields.
 #[derive(Clone, Debug)]
 pub struct LightFieldStore {
     folder: PathBuf,
@@ -34,17 +31,20 @@ pub struct LightFieldStore {
 }
 
 impl LightFieldStore {
-    /// Light fields in `folder`, which is made when there is one to keep.
+    /// Numbers of passes by which the light of a light field is refined. Each result replaces the one before.
+    pub const LIGHT_PASSES: [u32; 5] = [4, 16, 64, 256, 1024];
+
+    /// A store in `folder`, which is created when the first light field is saved.
     pub fn new(folder: PathBuf) -> Self {
         Self { folder, budget_bytes: BUDGET_BYTES, shortest_bake: SHORTEST_BAKE }
     }
 
-    /// The same store, which keeps what took at least `shortest_bake` to bake.
+    /// Stores only light fields that took at least `shortest_bake` to bake.
     pub fn with_shortest_bake(self, shortest_bake: Duration) -> Self {
         Self { shortest_bake, ..self }
     }
 
-    /// The file of a light field whose light was refined by so many passes; none where builds of the program cannot be told apart.
+    /// The file of a light field whose light was refined by `light_passes` passes. `None` if the build of the program has no identifier.
     fn file(&self, stage: &Stage, camera: &Camera, light_passes: u32) -> Option<PathBuf> {
         let mut hash = Sha256::new();
         hash.update(build_id()?);
@@ -55,24 +55,23 @@ impl LightFieldStore {
         Some(self.folder.join(name).with_extension("salf"))
     }
 
-    /// Whether there is a light field of the stage for `camera`.
+    /// Whether there is an unrefined light field of the stage for `camera`.
     pub fn has(&self, stage: &Stage, camera: &Camera) -> bool {
         self.file(stage, camera, 0).is_some_and(|file| file.exists())
     }
 
-    /// The light field of the stage for `camera`, if one is kept that reaches at least `least_margin_px` beyond the frame and tells
-    /// carried light as finely as is wanted: of those the one whose light was refined most, and by how many passes. One that cannot be
-    /// read is as good as none.
+    /// Loads the most refined light field of the stage for `camera` whose margin is at least `min_margin_px` pixels and whose carried
+    /// light is at least as fine as `carried`. Also returns its number of light passes. Files that cannot be read are ignored.
     pub fn find(
         &self,
         stage: &Stage,
         camera: &Camera,
-        least_margin_px: f64,
+        min_margin_px: f64,
         carried: Carried,
     ) -> Option<(Salf, u32)> {
-        let passes = LIGHT_PASSES.into_iter().rev().chain([0]);
+        let passes = Self::LIGHT_PASSES.into_iter().rev().chain([0]);
         passes.into_iter().find_map(|passes| {
-            Some((self.find_with_passes(stage, camera, passes, least_margin_px, carried)?, passes))
+            Some((self.find_with_passes(stage, camera, passes, min_margin_px, carried)?, passes))
         })
     }
 
@@ -81,30 +80,30 @@ impl LightFieldStore {
         stage: &Stage,
         camera: &Camera,
         light_passes: u32,
-        least_margin_px: f64,
+        min_margin_px: f64,
         carried: Carried,
     ) -> Option<Salf> {
         let path = self.file(stage, camera, light_passes)?;
         let file = File::open(&path).ok()?;
-        // It was looked for: it goes last. Where that cannot be noted, it goes by when it was written.
+        // Marks the file as recently used. If that fails, its age is the time since it was written.
         let _ = file.set_modified(SystemTime::now());
         let salf_file = SalfFile::read(BufReader::with_capacity(1 << 20, file)).ok()?;
         let salf = Arc::into_inner(salf_file.salf)?;
         let fits = compatibility_key(&salf.camera) == compatibility_key(camera)
             && salf_file.triangles as usize == stage.scene.triangles.len()
-            && f64::from(salf.margin_px) >= least_margin_px
+            && f64::from(salf.margin_px) >= min_margin_px
             && salf.carried >= carried;
         fits.then_some(salf)
     }
 
-    /// Keeps a light field that took `bake` to make, on a thread of its own. That it cannot be kept only costs time later.
+    /// Saves a light field that took `bake` to bake, on another thread. Failures are ignored: they only cost time later.
     pub fn save(&self, stage: &Arc<Stage>, salf: &Arc<Salf>, light_passes: u32, bake: Duration) {
         if bake < self.shortest_bake {
             return;
         }
         let (store, stage, salf) = (self.clone(), stage.clone(), salf.clone());
         let write = move || store.write(&stage, &salf, light_passes);
-        let _ = std::thread::Builder::new().name("keeping light field".into()).spawn(write);
+        let _ = std::thread::Builder::new().name("light field store".into()).spawn(write);
     }
 
     fn write(&self, stage: &Stage, salf: &Arc<Salf>, light_passes: u32) {
@@ -116,7 +115,7 @@ impl LightFieldStore {
     }
 }
 
-/// What all cameras have in common that a light field serves, but for smaller apertures.
+/// What all cameras that a light field is compatible with have in common, apart from smaller apertures.
 fn compatibility_key(camera: &Camera) -> Camera {
     Camera { focus_distance: f64::INFINITY, aperture: Aperture::default(), ..camera.clone() }
 }

@@ -1,8 +1,8 @@
-//! What of a scene is modelled: only what its picture needs.
+//! Statistics of what a light field models: only what its picture needs.
 //!
-//! Texels are counted by asking: a few rays from a texel's centroid tell whether it sees all of the aperture (open), part
-//! of it (partly occluded) or nothing. They are asked at regular steps through the atlas, so the counts of a large atlas
-//! are estimates; those of the samples and their bytes are exact.
+//! A few rays from a texel's centroid determine whether it sees all of the aperture (open), part of it (partly occluded) or nothing.
+//! Texels are sampled at regular steps through the atlas, so the counts of a large atlas are estimates; the counts of samples and
+//! their bytes are exact.
 
 use atlas::{Atlas, AtlasTexel};
 use glam::DVec2;
@@ -12,32 +12,32 @@ use salf::{Salf, SalfStatistics};
 use serde::{Deserialize, Serialize};
 use trace::Tracer;
 
-/// Bytes of a sample in dense form: a microimage of 8 × 8 aperture cells, each red, green and blue as half floats.
+/// Bytes of a sample in dense form: a microimage of 8 × 8 aperture cells of RGB half floats.
 pub const DENSE_SAMPLE_BYTES: usize = 8 * 8 * 3 * 2;
 
-/// Texels that are asked at most: their share of any kind is then known to 0.4 % of all texels (one standard error).
+/// Maximum number of texels that are sampled. The standard error of each share is then 0.4 % of all texels.
 const MAX_SAMPLED_TEXELS: usize = 1 << 14;
 
-/// Aperture points a side that an asked texel looks at.
+/// Aperture points per side that are tested for a sampled texel.
 const APERTURE_POINTS_A_SIDE: usize = 3;
 
-/// How many texels of an atlas there are of each kind, for one camera.
+/// Number of texels of an atlas by visibility, for one camera.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TexelStatistics {
     /// Texels that cover surface.
     pub exist: usize,
-    /// Texels in the picture or its margin that some point of the aperture sees.
+    /// Texels in the picture or its margin that are visible from some point of the aperture.
     pub visible: usize,
-    /// Visible texels that see the whole aperture.
+    /// Visible texels from which the whole aperture is visible.
     pub open: usize,
-    /// Visible texels that something hides from part of it.
+    /// Visible texels from which part of the aperture is occluded.
     pub partial: usize,
-    /// How many were asked; the counts are estimates unless all were.
+    /// Number of texels that were sampled. The counts are estimates unless all were.
     #[serde(rename = "asked")]
     pub sampled: usize,
 }
 
-/// What a texel sees of the aperture.
+/// How much of the aperture is visible from a texel.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum ApertureVisibility {
     Hidden,
@@ -46,8 +46,8 @@ enum ApertureVisibility {
 }
 
 impl TexelStatistics {
-    /// Asks the covered `texels` of an atlas what they see of `camera`'s aperture. A texel counts as in the picture if the
-    /// aperture's centre sees it at most `margin_px` outside the frame.
+    /// Estimates how much of `camera`'s aperture is visible from the covered `texels` of an atlas. A texel counts as in the picture if
+    /// it projects, through the aperture's centre, to at most `margin_px` pixels outside the frame.
     pub fn estimate(tracer: &Tracer, camera: &Camera, margin_px: f64, texels: &[AtlasTexel]) -> Self {
         let step = texels.len().div_ceil(MAX_SAMPLED_TEXELS).max(1);
         let sampled: Vec<&AtlasTexel> = texels.iter().skip(step / 2).step_by(step).collect();
@@ -93,23 +93,23 @@ fn aperture_visibility(
     }
 }
 
-/// What a light field holds of a scene.
+/// What a light field models of a scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Modelled {
-    /// Its samples and their bytes.
+    /// Counts and bytes of the samples.
     pub samples: SalfStatistics,
-    /// The texels of the atlas, where there is one.
+    /// Counts of the texels, if there is an atlas.
     pub texels: Option<TexelStatistics>,
 }
 
-/// One kind of what is modelled.
+/// A row of the table of what is modelled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct ModelledRow {
     /// The kind's name.
     pub kind: &'static str,
-    /// What it is, in a sentence.
+    /// A description of the kind.
     pub what: &'static str,
-    /// Texels of this kind, where there is an atlas and the kind lies on it.
+    /// Texels of this kind, if there is an atlas and the kind applies to texels.
     pub texels: Option<usize>,
     /// Samples of this kind.
     pub samples: Option<usize>,
@@ -118,35 +118,35 @@ pub struct ModelledRow {
 }
 
 impl Modelled {
-    /// Counts what `salf` holds of the scene in `tracer`; with the texels of its atlas, if it has been unwrapped.
+    /// Counts what `salf` models of the scene in `tracer`, with the texels of `atlas` if there is one.
     pub fn measure(salf: &Salf, tracer: &Tracer, atlas: Option<&Atlas>) -> Self {
         let texels = atlas.map(|atlas| atlas.texels(tracer.scene()));
         Self::with_texels(salf, tracer, texels.as_deref())
     }
 
-    /// The same with the covered texels of the atlas, if they are known already.
+    /// [`Self::measure`] with precomputed covered texels of the atlas.
     pub fn with_texels(salf: &Salf, tracer: &Tracer, texels: Option<&[AtlasTexel]>) -> Self {
         let estimate =
             |texels| TexelStatistics::estimate(tracer, &salf.camera, salf.margin_px as f64, texels);
         Self { samples: salf.statistics(), texels: texels.map(estimate) }
     }
 
-    /// All samples.
+    /// Number of samples.
     pub fn sample_count(&self) -> usize {
         self.samples.open + self.samples.partial
     }
 
-    /// What the samples would take in dense form, a microimage each.
+    /// Bytes of the samples in dense form, one microimage each.
     pub fn dense_bytes(&self) -> usize {
         self.sample_count() * DENSE_SAMPLE_BYTES
     }
 
-    /// Mean bytes of a sample; 0 where there is none.
+    /// Mean bytes of a sample; 0 if there are no samples.
     pub fn bytes_a_sample(&self) -> f64 {
         self.samples.bytes as f64 / self.sample_count().max(1) as f64
     }
 
-    /// The table of what was modelled, kind by kind, and what the dense form would take.
+    /// A table of what is modelled, by kind, and the size of the dense form.
     pub fn rows(&self) -> Vec<ModelledRow> {
         let row = |kind, what| ModelledRow { kind, what, texels: None, samples: None, bytes: None };
         let (samples, texels) = (&self.samples, self.texels);

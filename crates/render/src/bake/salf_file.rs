@@ -1,4 +1,4 @@
-//! Light fields as files: beside their scene, replaced only when complete.
+//! Writing light fields to files, atomically.
 
 use crate::error::RenderError;
 use atomic_write_file::AtomicWriteFile;
@@ -7,8 +7,11 @@ use std::io::BufWriter;
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
-/// Writes a light field that was baked from `source`, a scene or project. Returns the bytes written. An old file
-/// stays until the new one is complete.
+/// Writes a light field that was baked from `source`, a scene or project. An existing file is replaced only once the new one is
+/// complete. Returns the number of bytes written.
+///
+/// # Errors
+/// The file cannot be written.
 pub fn write_salf(
     path: &Path,
     source: &Path,
@@ -29,7 +32,7 @@ pub fn write_salf(
     Ok(bytes)
 }
 
-/// `file` as seen from the folder of `from`; absolute where the two share nothing.
+/// The path of `file` relative to the folder of `from`; absolute if the two have no common ancestor.
 fn relative_to(file: &Path, from: &Path) -> PathBuf {
     let absolute = |path: &Path| {
         let path = std::fs::canonicalize(path).or_else(|_| std::path::absolute(path));

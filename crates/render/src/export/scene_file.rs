@@ -1,5 +1,5 @@
-//! Scenes with their atlas, as files: glTF scenes as their file has them; surfaces of captures, which no glTF file tells of, by themselves,
-//! with what they send toward all directions alike as their texture.
+//! Writing scenes with their atlas as GLB. A glTF scene is an amended copy of its file; the surface of a capture, which has no glTF file, is
+//! written with its direction-independent light as a texture.
 
 use crate::error::RenderError;
 use crate::export::shot_extras::write_lens_extras;
@@ -15,10 +15,10 @@ use serde_json::{Map, Value};
 use std::path::Path;
 use std::sync::Arc;
 
-/// Writes `scene` as GLB with `atlas` as its second UV set, and, if there is one, with the lens of a shot camera in its extras.
+/// Writes a glTF `scene` as GLB with `atlas` as its second UV set and, if given, the lens of a shot camera in its extras.
 ///
 /// # Errors
-/// The path names no `.glb`, or what [`atlas::write_amended_glb`] tells.
+/// The path does not end in `.glb`, or an error of [`atlas::write_amended_glb`].
 pub fn write_unwrapped(
     path: &Path,
     scene: &Scene,
@@ -36,11 +36,11 @@ pub fn write_unwrapped(
         .map_err(|error| atlas_error(path, error).into())
 }
 
-/// The same of a scene that may be a capture's: its mesh with the atlas as the first UV set, unlit, its texture what its light sends toward
-/// all directions alike, white the brightest that is shown.
+/// Writes a scene as GLB. A glTF scene is written as by [`write_unwrapped`]. The surface of a capture is written as an unlit mesh with the
+/// atlas as its first UV set, and its direction-independent light, clipped at white, as its texture.
 ///
 /// # Errors
-/// Those of [`write_unwrapped`]; there is no light of the photographs.
+/// As [`write_unwrapped`], or the light of the photographs cannot be solved.
 pub fn write_scene(
     path: &Path,
     lit: &Arc<LitScene>,
@@ -71,7 +71,7 @@ pub fn write_scene(
         .map_err(|error| atlas_error(path, error).into())
 }
 
-/// Writes the scene with its atlas and the lens of its camera as GLB; a capture's surface with its light as a texture.
+/// Unwraps the scene of `input` and writes it as by [`write_scene`], with the lens of its camera.
 ///
 /// # Errors
 /// There is no atlas, the scene's file cannot be read again, photographs cannot be read, or the file cannot be written.
@@ -95,20 +95,20 @@ fn check_extension(path: &Path) -> Result<(), RenderError> {
     if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("glb")) {
         return Ok(());
     }
-    Err(RenderError::bad_file(path, "unwrapped scenes are written as .glb (name one)"))
+    Err(RenderError::bad_file(path, "unwrapped scenes are written as .glb (choose a name that ends in .glb)"))
 }
 
-/// Whether a scene is a capture's: no glTF file tells of it.
+/// Whether a scene is a capture, which has no glTF file.
 fn is_captured(scene: &Scene) -> bool {
     scene.picture.is_some() || !scene.views.is_empty()
 }
 
-/// The texture of a surface that was made from a picture. Its atlas is the texture's own UV set.
+/// The texture of a surface that was made from a picture. Its atlas is the texture's UV set.
 fn picture_png(scene: &Scene) -> Result<Vec<u8>, String> {
     let image =
-        scene.images.first().ok_or("a surface from a picture has no texture: a fault of the program")?;
+        scene.images.first().ok_or("a surface from a picture has no texture (a bug in the program)")?;
     let brightest = scene.materials.first().map_or(1.0, |material| material.base_color.x);
-    // What is brighter than white is white there.
+    // Clipped at white.
     let encoded = |encoded: f32| {
         let linear = scene::linear_from_srgb(f64::from(encoded)) * brightest;
         eight_bits(srgb_from_linear(linear.clamp(0.0, 1.0)))

@@ -1,20 +1,20 @@
-//! The shot camera's lens in a glTF document: what glTF cannot carry stands in the camera's `extras` under our key.
+//! Writing the shot camera's lens to a glTF document: what glTF cannot express goes to the camera's `extras` under our key.
 //!
-//! It goes to the camera of the scene that stands where the shot camera stands and sees as much; where none does, a camera of its own
-//! joins the document, and all others stay as they were.
+//! The lens is written to the scene camera with the same pose and angle of view as the shot camera. If there is none, a camera is added;
+//! all others are unchanged.
 
 use lens::{ApertureShape, Camera};
 use project::camera_to_json;
 use scene::{EXTRAS_KEY, EXTRAS_VERSION, Scene, SceneCamera};
 use serde_json::{Map, Value, json};
 
-/// What a camera of its own is called.
+/// Name of an added camera.
 const CAMERA_NAME: &str = "Focus Brush shot";
 
-/// What of a camera file glTF has itself.
+/// Keys of a camera file that glTF can express itself.
 const GLTF_KEYS: [&str; 3] = ["yfov", "camera_to_world", "background"];
 
-/// Tells the lens of `shot` in the document of `scene`.
+/// Writes the lens of `shot` to the document of `scene`.
 pub fn write_lens_extras(root: &mut Map<String, Value>, scene: &Scene, shot: &Camera) {
     let own = scene.cameras.iter().find(|camera| is_at(camera, shot)).and_then(|camera| camera.index);
     let index = own.map_or_else(|| add_camera(root, shot), |index| index as usize);
@@ -22,13 +22,13 @@ pub fn write_lens_extras(root: &mut Map<String, Value>, scene: &Scene, shot: &Ca
         root.get_mut("cameras").and_then(|cameras| cameras.get_mut(index)).and_then(Value::as_object_mut);
     let Some(camera) = camera else { return };
     let extras = camera.entry("extras").or_insert_with(|| json!({}));
-    // Extras may be anything; what is no object has no room for a key.
+    // Extras may be any JSON value; only objects can have a key.
     if let Some(extras) = extras.as_object_mut() {
         extras.insert(EXTRAS_KEY.into(), lens_json(shot));
     }
 }
 
-/// Whether a camera of the scene shows what the shot camera shows, as far as 32 bits tell.
+/// Whether a scene camera has the view of the shot camera, up to the precision of 32-bit floats.
 fn is_at(camera: &SceneCamera, shot: &Camera) -> bool {
     let scale = 1.0 + shot.position().length();
     camera.camera_to_world.abs_diff_eq(shot.camera_to_world, 1e-6 * scale)
@@ -39,7 +39,7 @@ fn lens_json(shot: &Camera) -> Value {
     let mut lens = camera_to_json(shot);
     if let Some(lens) = lens.as_object_mut() {
         GLTF_KEYS.iter().for_each(|name| drop(lens.remove(*name)));
-        // A picture's path means nothing beside another file.
+        // A mask's path is relative to its own file, so it cannot be written to another.
         if matches!(shot.aperture.shape, ApertureShape::Mask(_)) {
             lens.remove("aperture");
         }
@@ -48,7 +48,7 @@ fn lens_json(shot: &Camera) -> Value {
     lens
 }
 
-/// Adds a camera in a node of its own; gives its index.
+/// Adds a camera with its own node. Returns the camera's index.
 fn add_camera(root: &mut Map<String, Value>, shot: &Camera) -> usize {
     let camera = json!({
         "name": CAMERA_NAME,

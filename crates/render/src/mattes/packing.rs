@@ -1,38 +1,38 @@
-//! Which things are drawn together: those whose light lands in no common tile of the picture have one color.
+//! Deciding which things are drawn together: things whose light never lands in the same tile of the picture may share a color.
 
 use std::ops::Range;
 
 /// Side of a tile, px.
 const TILE_PX: u32 = 32;
 
-/// No thing.
+/// Marks a tile or thing without owner or color.
 const NO_OWNER: u32 = u32::MAX;
 
-/// Tiles of a picture where the light of things may land.
+/// For each thing, the tiles of a picture where its light may land.
 pub(crate) struct Footprints {
     /// Columns and rows of tiles.
     tiles: [u32; 2],
-    /// Of each thing, a bit a tile.
+    /// For each thing, one bit per tile.
     of_things: Vec<Vec<u64>>,
 }
 
-/// Colors of things.
+/// A graph coloring of things.
 pub(crate) struct Packing {
     columns: u32,
     color_of_thing: Vec<u32>,
-    /// Of each color, the thing that each tile has of it.
+    /// For each color, the thing of that color in each tile.
     owners: Vec<Vec<u32>>,
 }
 
 impl Footprints {
-    /// Those of things whose light lands nowhere yet, in a picture of this width and height.
+    /// Empty footprints of this number of things, in a picture of this width and height, px.
     pub fn empty(things: usize, size: [u32; 2]) -> Self {
         let tiles = size.map(|side| side.div_ceil(TILE_PX));
         let words = (tiles[0] * tiles[1]).div_ceil(64) as usize;
         Self { tiles, of_things: vec![vec![0; words]; things] }
     }
 
-    /// The light of a thing may land in these columns and rows of pixels.
+    /// Adds the columns and rows of pixels where the light of a thing may land.
     pub fn add(&mut self, thing: u32, window: [Range<u32>; 2]) {
         let [columns, rows] = [0, 1].map(|axis: usize| {
             let range = &window[axis];
@@ -44,8 +44,8 @@ impl Footprints {
         }
     }
 
-    /// Colors for them: the largest first, each has the first color that is free wherever its light lands. What lands nowhere has
-    /// none.
+    /// Colors the things greedily: the largest first, each with the first color that is free in all its tiles. Things with an empty
+    /// footprint have no color.
     pub fn pack(self) -> Packing {
         let area = |thing: &usize| self.of_things[*thing].iter().map(|word| word.count_ones()).sum::<u32>();
         let mut order: Vec<usize> = (0..self.of_things.len()).filter(|thing| area(thing) > 0).collect();
@@ -76,24 +76,24 @@ impl Footprints {
 }
 
 impl Packing {
-    /// A color for each thing, whose light may land anywhere.
+    /// A separate color for each thing, because their light may land anywhere.
     pub fn separate(things: usize, size: [u32; 2]) -> Self {
         let mut footprints = Footprints::empty(things, size);
         (0..things as u32).for_each(|thing| footprints.add(thing, size.map(|side| 0..side)));
         footprints.pack()
     }
 
-    /// How many there are.
+    /// Number of colors.
     pub fn colors(&self) -> usize {
         self.owners.len()
     }
 
-    /// That of a thing; more than there are if it has none.
+    /// The color of a thing; at least [`Self::colors`] if it has none.
     pub fn color_of(&self, thing: u32) -> usize {
         self.color_of_thing[thing as usize] as usize
     }
 
-    /// Whose light of a color lands in a pixel.
+    /// The thing of a color whose light may land in a pixel.
     pub fn owner(&self, color: usize, x: usize, y: usize) -> Option<u32> {
         let tile = y / TILE_PX as usize * self.columns as usize + x / TILE_PX as usize;
         Some(self.owners[color][tile]).filter(|owner| *owner != NO_OWNER)

@@ -1,4 +1,4 @@
-//! Who makes mattes: the light field that makes the picture, or the rays of the ground truth.
+//! Sources of mattes: the light field of the picture, or the rays of the ground truth.
 
 use crate::error::RenderError;
 use crate::mattes::packing::{Footprints, Packing};
@@ -14,17 +14,17 @@ use splat::SETS;
 use trace::truth::TruthOptions;
 use trace::{OutgoingRadiance, Radiance, Tracer};
 
-/// In which of the sets that are drawn at once something is.
+/// Which of the sets that are drawn at once something belongs to.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Sets(pub [bool; SETS]);
 
 impl Sets {
-    /// In the first alone, or in none.
+    /// Membership in the first set only, or in none.
     pub fn first_only(is_in: bool) -> Self {
         Self::from_flags([is_in].into_iter())
     }
 
-    /// In those that are told of, from the first on.
+    /// Membership by one flag per set; missing flags are false.
     pub fn from_flags(is_in: impl Iterator<Item = bool>) -> Self {
         let mut sets = Self::default();
         sets.0.iter_mut().zip(is_in).for_each(|(set, is_in)| *set = is_in);
@@ -32,26 +32,26 @@ impl Sets {
     }
 }
 
-/// Tells sets by the part of the scene; none is the background.
+/// The sets of a part of the scene; `None` is the background.
 pub(crate) type SetsOfPart<'a> = dyn Fn(Option<u32>) -> Sets + Sync + 'a;
 
-/// Makes mattes.
+/// A renderer of mattes.
 pub(crate) trait MatteSource {
-    /// The coverage of up to [`SETS`] sets of parts, as red, green and blue; and that of all.
+    /// Draws the coverage of up to [`SETS`] sets of parts, as red, green and blue, and the total coverage.
     fn draw(&mut self, sets: &SetsOfPart, progress: &dyn Progress) -> Result<Picture, RenderError>;
 
-    /// Which things may be drawn together, once something was drawn.
+    /// Which things may be drawn together. Valid after a call of [`Self::draw`].
     fn packing(&self, things: &Things, size: [u32; 2]) -> Packing;
 }
 
-/// The part of the background.
+/// The part of background samples.
 const NO_PART: u32 = u32::MAX;
 
-/// The parts that samples of a light field show.
+/// The part of the scene of each sample of a light field.
 pub(crate) struct SampleParts(Vec<u32>);
 
 impl SampleParts {
-    /// Those of a scene.
+    /// Looks up the parts of all samples.
     pub fn new(salf: &Salf, scene: &Scene) -> Self {
         let runs: Vec<_> = salf.samples.runs().collect();
         let part = |point: SurfacePoint| scene.triangles[point.triangle as usize].part;
@@ -67,17 +67,17 @@ impl SampleParts {
         Self(parts)
     }
 
-    /// The part that a sample shows; none is the background.
+    /// The part of a sample; `None` for the background.
     pub fn part(&self, sample: u32) -> Option<u32> {
         Some(self.0[sample as usize]).filter(|part| *part != NO_PART)
     }
 }
 
-/// Mattes of a light field's picture.
+/// Mattes drawn from the picture's light field.
 pub(crate) struct LightFieldMattes {
     pub mattes: splat::Mattes,
     pub sample_parts: SampleParts,
-    /// A pixel is the mean of so many times so many.
+    /// Cells per side of a pixel.
     pub cells_a_side: u32,
 }
 
@@ -101,7 +101,7 @@ impl MatteSource for LightFieldMattes {
     }
 }
 
-/// Mattes by the rays of the ground truth.
+/// Mattes drawn by the rays of the ground truth.
 pub(crate) struct TruthMattes<'a> {
     pub tracer: &'a Tracer,
     pub radiance: &'a dyn Radiance,
@@ -122,7 +122,7 @@ impl MatteSource for TruthMattes<'_> {
     }
 }
 
-/// What is in a set sends 1 of that set's colour, as far as it is covered by what is its own and what it carries.
+/// Light for mattes: parts in a set emit 1 in that set's channel, split into own and carried light as in the scene.
 struct MatteLight<'a> {
     scene: &'a Scene,
     radiance: &'a dyn Radiance,
@@ -149,7 +149,7 @@ impl Radiance for MatteLight<'_> {
     }
 }
 
-/// The light of a scene before a black background.
+/// The light of a scene with a black background.
 pub(crate) struct BlackBackground<'a>(pub &'a dyn Radiance);
 
 impl Radiance for BlackBackground<'_> {

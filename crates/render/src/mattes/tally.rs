@@ -1,12 +1,12 @@
-//! What each pixel shows, counted thing by thing, and ranked.
+//! Counting and ranking the things that each pixel shows.
 
 use project::RankedCoverage;
 use rayon::prelude::*;
 
-/// Pixels are told apart by this much: what is left of a pixel may be in no matte.
+/// Shares up to this size may be left out of the mattes.
 const NEGLIGIBLE: f32 = 1e-5;
 
-/// The most ranks.
+/// Maximum number of ranks.
 const MAX_RANKS: usize = 32;
 
 /// A thing's share of a pixel.
@@ -17,31 +17,31 @@ pub(crate) struct Entry {
     pub share: f32,
 }
 
-/// The things of each pixel by rank.
+/// The things of each pixel, ranked by share.
 pub(crate) struct Ranking {
-    /// Of each row of pixels, column by column, those of each the largest first.
+    /// Entries of each row, by column and then by descending share.
     pub rows: Vec<Vec<Entry>>,
-    /// How many ranks are needed.
+    /// Number of ranks needed.
     pub needed: usize,
-    /// The most that is left out of a pixel, if it is more than negligible.
+    /// The largest share left out of a pixel; 0 if negligible.
     pub left_out: f32,
 }
 
-/// The shares of things of one kind.
+/// Accumulates the shares of things of one kind.
 pub(crate) struct Tally {
     width: usize,
-    /// Of each row of pixels, in any order.
+    /// Entries of each row, in any order.
     rows: Vec<Vec<Entry>>,
 }
 
 impl Tally {
-    /// Of a picture of this width and height, px: nothing is counted yet.
+    /// An empty tally of a picture of this width and height, px.
     pub fn new([width, height]: [u32; 2]) -> Self {
         Self { width: width as usize, rows: vec![Vec::new(); height as usize] }
     }
 
-    /// Counts the shares of all pixels, row by row, of the things that `owner` tells for columns and rows. Where an image
-    /// undershoots they may be below 0: that counts as nothing.
+    /// Adds the shares of all pixels, row by row; `owner` is the thing of a column and row. Negative shares, from undershooting
+    /// images, are ignored.
     pub fn add(&mut self, shares: impl Iterator<Item = f32>, owner: impl Fn(usize, usize) -> Option<u32>) {
         for (pixel, share) in shares.enumerate().filter(|(_, share)| *share > 0.0) {
             let (x, y) = (pixel % self.width, pixel / self.width);
@@ -51,18 +51,18 @@ impl Tally {
         }
     }
 
-    /// The things of each pixel by rank, their shares made to sum to alpha: as many ranks as are needed, one at least. And the most that is left
-    /// out of a pixel, if it is more than negligible.
+    /// The things of each pixel by rank, with shares scaled to sum to alpha (at least one rank), and the largest share left out of a
+    /// pixel (0 if negligible).
     pub fn ranks(self, alpha: &[f32]) -> (Vec<Vec<RankedCoverage>>, f32) {
         let width = self.width;
         let Ranking { rows, needed, left_out } = self.ranking(alpha);
         (ranks_of(rows.iter().map(Vec::as_slice), width, needed.max(1)), left_out)
     }
 
-    /// The same as lists of what each pixel has.
+    /// [`Self::ranks`] as lists of entries.
     pub fn ranking(self, alpha: &[f32]) -> Ranking {
         let width = self.width;
-        // The entries of each pixel follow each other, the largest first.
+        // Entries of a pixel are adjacent, by descending share.
         let ranked = self.rows.into_par_iter().enumerate().map(|(y, mut row)| {
             row.sort_by(|a, b| {
                 a.column.cmp(&b.column).then(b.share.total_cmp(&a.share)).then(a.thing.cmp(&b.thing))
@@ -94,7 +94,7 @@ impl Tally {
     }
 }
 
-/// So many ranks of rows of pixels, each of this width, from the lists of what each pixel has.
+/// Converts ranked entries of rows of `width` pixels to `count` ranks.
 pub(crate) fn ranks_of<'a>(
     rows: impl ExactSizeIterator<Item = &'a [Entry]>,
     width: usize,
@@ -112,7 +112,7 @@ pub(crate) fn ranks_of<'a>(
     ranks
 }
 
-/// The sentence on what has no rank, of things that are called so; none where all have one.
+/// A warning if things were left out of the ranks.
 pub(crate) fn left_out_warning(plural_name: &str, left_out: f32) -> Option<String> {
     (left_out > 0.0).then(|| {
         format!(

@@ -1,26 +1,26 @@
-//! Things that a picture shows, by name: objects or materials.
+//! Named things that a picture shows: objects or materials.
 
 use scene::{Part, Scene};
 use std::collections::HashMap;
 
-/// Things of one kind.
+/// The things of one kind.
 pub(crate) struct Things {
-    /// As Cryptomatte calls the kind.
+    /// The kind's name in Cryptomatte.
     pub kind: &'static str,
-    /// As sentences call it.
+    /// The kind's plural name in messages.
     pub plural_name: &'static str,
-    /// Those of one name are one thing, as they are for recipes.
+    /// Names of the things. Objects or materials of the same name are one thing, as in recipes.
     pub names: Vec<String>,
     of_part: Vec<u32>,
 }
 
 impl Things {
-    /// The scene's nodes.
+    /// The scene's nodes as things.
     pub fn objects(scene: &Scene) -> Self {
         Self::new("Object", "objects", scene, |part| &scene.nodes[part.node as usize].name)
     }
 
-    /// Its materials.
+    /// The scene's materials as things.
     pub fn materials(scene: &Scene) -> Self {
         Self::new("Material", "materials", scene, |part| &scene.materials[part.material as usize].name)
     }
@@ -43,7 +43,7 @@ impl Things {
         Self { kind, plural_name, names, of_part }
     }
 
-    /// What a part of the scene belongs to.
+    /// The thing that a part of the scene belongs to.
     pub fn of_part(&self, part: u32) -> u32 {
         self.of_part[part as usize]
     }

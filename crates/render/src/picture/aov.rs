@@ -1,4 +1,4 @@
-//! Pictures beside the picture: what compositing and measuring ask for.
+//! AOVs: extra channels for compositing and measuring.
 
 use crate::mattes::Mattes;
 use crate::picture::coc_convention::CocConvention;
@@ -10,48 +10,49 @@ use trace::truth::Estimate;
 /// An extra channel of a rendered picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Aov {
-    /// The model's sum for a scene of radiance 1; 1 in a standard picture.
+    /// The picture of a scene of radiance 1. It is 1 without paint.
     Coverage,
-    /// The share of the pixel's light paths that end on a surface, in [0, 1]. The picture is then multiplied by it: the background
-    /// is black. Only the light field and the ground truth know it; other renderers leave it out.
+    /// The share of the pixel's light paths that end on a surface, in [0, 1]. If requested, the picture is premultiplied by it: the
+    /// background is black. Only the splat and the ground truth provide it; other renderers leave it out.
     Alpha,
-    /// Cryptomatte of objects and materials, whose shares sum to alpha. Who knows it is who knows alpha.
+    /// Cryptomatte of objects and materials, whose shares sum to alpha. Provided by the renderers that provide alpha.
     Crypto,
-    /// What a pinhole sees, to be blurred by others. Who knows it is who knows alpha, by which it is multiplied where that is wanted, too.
+    /// The pinhole picture, to be blurred in compositing. Provided by the renderers that provide alpha, and premultiplied by its own
+    /// alpha if alpha is requested too.
     Pinhole,
-    /// The circle of confusion, by a [`CocConvention`]. Of the first surface along the chief ray of each pixel's centre, as are the
-    /// following.
+    /// The circle of confusion, by a [`CocConvention`]. As with `Depth`, `Focus` and `Seen`, the value is that of the first surface along
+    /// the chief ray of the pixel's centre.
     CircleOfConfusion,
-    /// Axial depth in scene units; infinite where no surface is.
+    /// Axial depth in scene units; infinite where there is no surface.
     Depth,
-    /// The focus offset t, and with it the anchor a; and gloss, where it obeys them.
+    /// The focus offset t and the anchor a; also gloss, if any surface has it.
     Focus,
-    /// Of a capture: 1 where the surface was photographed, 0 where its light is filled in from around, and beside it. Other scenes leave
-    /// it out.
+    /// For captures: 1 where the surface was photographed, 0 where its light is filled in from neighbours or there is no surface. Left
+    /// out for other scenes.
     Seen,
-    /// The standard error of conserved radiance, luminance and coverage, and of their ratios. Only the ground truth knows
-    /// it; other renderers leave the layers out.
+    /// The standard error of conserved radiance, luminance and coverage, and of their ratios. Only the ground truth provides it;
+    /// other renderers leave it out.
     StandardError,
 }
 
-/// What layers are made of.
+/// The inputs that layers are computed from.
 pub(crate) struct LayerInputs<'a> {
     pub picture: &'a Picture,
     pub hits: Option<&'a FirstHits>,
     pub estimate: Option<&'a Estimate>,
-    /// What [`Aov::Seen`] is.
+    /// The values of [`Aov::Seen`].
     pub photographed: Option<&'a [f32]>,
     pub mattes: Option<&'a Mattes>,
-    /// What a pinhole sees, and its alpha, where that is wanted.
+    /// The pinhole picture, and its alpha if requested.
     pub pinhole: Option<&'a (Picture, Option<Layer>)>,
     pub camera: &'a Camera,
     pub coc: CocConvention,
-    /// How many pixels on each side of the picture lie around the frame.
+    /// Extra pixels around the frame, on each side.
     pub overscan: u32,
 }
 
 impl Aov {
-    /// All of them, by the names that the command line knows.
+    /// All AOVs with their names on the command line.
     pub const ALL: [(&'static str, Aov); 9] = [
         ("alpha", Aov::Alpha),
         ("crypto", Aov::Crypto),
@@ -64,27 +65,29 @@ impl Aov {
         ("stderr", Aov::StandardError),
     ];
 
-    /// The entry of one among all.
+    /// The entry in [`Self::ALL`].
     pub fn entry(&self) -> Option<(&'static str, Aov)> {
         Self::ALL.into_iter().find(|(_, aov)| aov == self)
     }
 
-    /// The one of this name.
+    /// The AOV of this name.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.iter().find(|(entry_name, _)| *entry_name == name).map(|(_, aov)| *aov)
     }
 
-    /// Whether it is made of first hits.
+    /// Whether it is computed from first hits.
     pub(crate) fn needs_first_hits(self) -> bool {
         matches!(self, Self::CircleOfConfusion | Self::Depth | Self::Focus)
     }
 
-    /// Whether it tells which things a pixel shows: something that only the light field and the ground truth know.
+    /// Whether it depends on where light paths end, which only some renderers can determine ([`Renderer::resolves_paths`]).
+    ///
+    /// [`Renderer::resolves_paths`]: crate::Renderer::resolves_paths
     pub fn needs_paths(self) -> bool {
         matches!(self, Self::Alpha | Self::Crypto | Self::Pinhole)
     }
 
-    /// Its layers; none if what they are made of is missing.
+    /// Its layers; empty if their inputs are missing.
     pub(crate) fn layers(self, inputs: &LayerInputs) -> Vec<Layer> {
         let layer = |name: &str, values| Layer { name: name.into(), values };
         match (self, inputs.hits, inputs.estimate) {

@@ -1,4 +1,4 @@
-//! How circles of confusion are told to the nodes that blur by them.
+//! Conventions for circles of confusion in compositing programs.
 //!
 //! | convention | in focus | nearer | farther | a circle of D px is |
 //! | --- | --- | --- | --- | --- |
@@ -7,9 +7,9 @@
 //! | magicdefocus | 0 | above 0 | below 0 | its radius: ∓D/2 |
 //! | flame | 0.5 | to 0 | to 1 | 0.5 ± D/(2·H), H the frame's height, in [0, 1] |
 //!
-//! Where they are from is told in `docs/guide/compositing.md`.
+//! `docs/guide/compositing.md` describes their sources.
 
-/// What the layer `coc` holds.
+/// How the layer `coc` encodes circles of confusion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum CocConvention {
     /// Signed diameter, px: negative in near defocus.
@@ -19,12 +19,12 @@ pub enum CocConvention {
     Nuke,
     /// Signed radius, px: positive in near defocus. For MagicDefocus2 and OpenDefocus with `math` direct.
     MagicDefocus,
-    /// A matte in [0, 1]: 0.5 in focus, 0 nearest, 1 farthest. For Flame's defocus, which wants depth in [0, 1].
+    /// A matte in [0, 1]: 0.5 in focus, 0 nearest, 1 farthest. For Flame's defocus, which takes depth in [0, 1].
     Flame,
 }
 
 impl CocConvention {
-    /// All of them, by the names that the command line knows.
+    /// All conventions with their names on the command line.
     pub const ALL: [(&'static str, Self); 4] = [
         ("signed-px", Self::SignedPx),
         ("nuke", Self::Nuke),
@@ -32,7 +32,7 @@ impl CocConvention {
         ("flame", Self::Flame),
     ];
 
-    /// The one of this name.
+    /// The convention of this name.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.iter().find(|(entry_name, _)| *entry_name == name).map(|(_, convention)| *convention)
     }
@@ -42,7 +42,7 @@ impl CocConvention {
         Self::ALL.iter().find(|(_, convention)| *convention == self).map_or("", |(name, _)| name)
     }
 
-    /// What it says of a circle of this signed diameter, px, in a frame of this height, px.
+    /// Encodes a circle of this signed diameter, px, in a frame of this height, px.
     pub(crate) fn encode(self, diameter: f32, frame_height: u32) -> f32 {
         match self {
             Self::SignedPx => diameter,

@@ -1,4 +1,5 @@
-//! How well photographs of a capture tell one that was left out: light, and what it is to be better than.
+//! Cross-validation of captures: how well the light from the other photographs predicts one that was left out, compared with simple
+//! baselines.
 
 use crate::error::RenderError;
 use crate::picture::photograph_picture::{MIN_PHOTOGRAPHED_SHARE, photograph_picture};
@@ -16,16 +17,16 @@ use std::sync::Arc;
 use std::time::Instant;
 use trace::{Radiance, Tracer};
 
-/// What tells a photograph that was left out.
+/// A prediction of a photograph that was left out.
 #[derive(Clone, Debug)]
 pub struct LeftOutPrediction {
     /// `light`, `constant texture` or `texture of one photograph`.
     pub method: &'static str,
-    /// PSNR where the others see the surface, dB; linear, clipped to [0, 1].
+    /// PSNR where other photographs show the surface, dB, of linear values clipped to [0, 1].
     pub psnr: f64,
     /// Mean FLIP there.
     pub flip: f64,
-    /// What it shows; the photograph itself where nothing is seen.
+    /// The prediction; equals the photograph where no other photograph shows the surface.
     pub picture: LinearPicture,
 }
 
@@ -34,28 +35,28 @@ pub struct LeftOutPrediction {
 pub struct LeftOutPicture {
     /// Its name.
     pub name: String,
-    /// The share of the frame where the others see the surface.
+    /// The share of the frame where other photographs show the surface, in [0, 1].
     pub visible_share: f64,
-    /// The photograph as it is compared with: undistorted, linear, a gain a channel fitted to the light.
+    /// The reference: the photograph undistorted, linear, with a gain per channel fitted to the light.
     pub photograph: LinearPicture,
-    /// What tells it, the light first.
+    /// The predictions; the first is by the light.
     pub predictions: Vec<LeftOutPrediction>,
 }
 
-/// What was measured by leaving photographs out.
+/// The results of leaving photographs out.
 #[derive(Clone, Debug)]
 pub struct LeftOut {
-    /// Each of them.
+    /// The photographs that were left out.
     pub pictures: Vec<LeftOutPicture>,
-    /// Seconds that light of the others took.
+    /// Time for solving the light from the others, s.
     pub seconds: f64,
 }
 
-/// Leaves `count` photographs out, evenly among those of the capture, and looks how the others tell them. Those that the project
-/// leaves out stay out.
+/// Leaves `count` photographs out, evenly spaced among those of the capture, and measures how well the others predict them. Photographs
+/// that the project excludes are not used at all.
 ///
 /// # Errors
-/// It is no capture of more than `count` photographs, one cannot be read, or it was cancelled.
+/// The input is not a capture of more than `count` photographs, a photograph cannot be read, or the work was cancelled.
 pub fn leave_photographs_out(
     input: &Input,
     count: usize,
@@ -64,7 +65,8 @@ pub fn leave_photographs_out(
 ) -> Result<LeftOut, RenderError> {
     let all = &input.scene.views;
     if all.len() <= count {
-        let what = format!("has {} photographs ({} at least to leave {count} out)", all.len(), count + 1);
+        let what =
+            format!("has {} photographs (leaving {count} out takes at least {})", all.len(), count + 1);
         return Err(RenderError::bad_file(&input.path, what));
     }
     let is_out = |number: usize| (0..count).any(|k| (2 * k + 1) * all.len() / (2 * count) == number);
@@ -112,7 +114,7 @@ fn left_out_picture(
     let predict = |method, radiance: &(dyn Fn(SurfacePoint) -> Vec3 + Sync)| {
         let picture = predicted(tracer, &camera, &photograph, &is_visible, radiance);
         let compared = compare(&picture, &photograph)?;
-        // Elsewhere there is no difference.
+        // Elsewhere the difference is 0, so the mean over visible pixels is larger.
         let within = |mean: f64| if visible_share > 0.0 { mean / visible_share } else { 0.0 };
         Ok(LeftOutPrediction {
             method,
@@ -130,7 +132,7 @@ fn left_out_picture(
     Ok(LeftOutPicture { name: view.name.clone(), visible_share, photograph, predictions })
 }
 
-/// What the surface sends through a pinhole where it is seen, elsewhere the photograph.
+/// The pinhole picture of the surface where it is visible; the photograph elsewhere.
 fn predicted(
     tracer: &Tracer,
     camera: &Camera,

@@ -1,4 +1,4 @@
-//! A photograph as pictures are compared with it: without its lens's distortion, in linear light, exposed as all of them together.
+//! Photographs for comparison with pictures: undistorted, linear, with the exposure fitted to all photographs.
 
 use crate::error::RenderError;
 use crate::picture::render::{light_of_photographs, photographed_shares, pixel_ray};
@@ -12,15 +12,15 @@ use scene::{LoadOptions, Photograph, View};
 use slf::{Exposure, PhotographLight};
 use trace::{Radiance, Tracer};
 
-/// From here on a point counts as photographed.
+/// Points with at least this share count as photographed.
 pub(crate) const MIN_PHOTOGRAPHED_SHARE: f32 = 0.5;
 
-/// The photograph of a capture as its camera (`camera_of_photograph`) would show it, and the layer `seen`: 1 where others have
-/// photographed the surface, 0 where they have not, and beside what the photograph shows. The exposure of one that was left out is
-/// fitted afterwards, a gain a channel; it feeds nothing else. The views of a light field are as they were taken.
+/// The photograph `name` of a capture as its camera ([`document::camera_from_photograph`]) would show it, and the layer `seen`: 1 where
+/// the surface was photographed by others, 0 where it was not or the photograph shows nothing. For a photograph that the project
+/// excludes, a gain per channel is fitted. Views of a light field keep their exposure.
 ///
 /// # Errors
-/// There is no photograph of that name, it cannot be read, or there is no light from the others.
+/// There is no photograph of that name, it cannot be read, or the light of the others cannot be solved.
 pub fn render_photograph(
     input: &Input,
     name: &str,
@@ -34,8 +34,11 @@ pub fn render_photograph(
     photograph_picture(view, &camera, lit.tracer(), light.as_deref())
 }
 
-/// The photograph `view` as `camera` (`camera_of_photograph` of it) shows it, beside light from others or itself too; none of a surface
-/// that was made from a picture.
+/// The photograph `view` as `camera` ([`document::camera_from_photograph`]) shows it, and the layer `seen` as in [`render_photograph`].
+/// `light` is the light of the photographs, with or without this one; `None` for a surface that was made from a picture.
+///
+/// # Errors
+/// The photograph cannot be read.
 pub fn photograph_picture(
     view: &View,
     camera: &Camera,
@@ -72,25 +75,25 @@ pub fn photograph_picture(
     Ok((picture, vec![layer]))
 }
 
-/// A photograph, and the camera that it is shown by.
+/// A photograph, and the camera that shows it.
 struct PhotographProjection<'a> {
     camera: &'a Camera,
     view: &'a View,
-    /// Each pixel of it the mean of `reduction`² of the photograph's own.
+    /// The photograph, downsampled by `reduction` per side.
     shown: &'a Photograph,
     reduction: f64,
 }
 
 impl PhotographProjection<'_> {
-    /// What the photograph has for a pixel of the camera, and where.
+    /// Position and value of the photograph at a pixel of the camera.
     fn at(&self, number: u32) -> Option<(DVec2, Vec3)> {
         let ray = pixel_ray(self.camera, number);
         let at = self.view.project(ray.origin + ray.direction)?;
         self.view.lens.is_in_picture(at).then(|| (at, self.shown.sample(at / self.reduction)))
     }
 
-    /// Gains with which it shows least squares' best of the light where that is photographed and its sensor was not at its limit;
-    /// vignetting as of another photograph of its lens. A channel that was at its limit everywhere has the gain of the others.
+    /// Fits a gain per channel to the light by least squares, where the surface was photographed and the sensor is not clipped.
+    /// Vignetting is that of another photograph of the same lens. A channel that is clipped everywhere has the mean gain of the others.
     fn fit_exposure(&self, tracer: &Tracer, light: &PhotographLight, photographed: &[f32]) -> Exposure {
         let views = &tracer.scene().views;
         let of_lens = views.iter().position(|other| other.lens == self.view.lens);
@@ -107,7 +110,7 @@ impl PhotographProjection<'_> {
             let light = light.total_outgoing(hit.point, ray.origin).as_dvec3();
             Some([shown * light, shown * shown])
         };
-        // In order, so that the sum is the same for any number of threads.
+        // Summed in order, so that the result does not depend on the number of threads.
         let product_pairs: Vec<_> =
             (0..self.camera.width * self.camera.height).into_par_iter().filter_map(products).collect();
         let [both, square] =

@@ -1,4 +1,4 @@
-//! A picture without a window: what the command line and the export of the window do.
+//! Rendering a picture without a window, for the command line and the window's export.
 
 use crate::bake::{bake_with, is_compatible};
 use crate::error::RenderError;
@@ -34,36 +34,41 @@ impl From<BaselineError> for RenderError {
     }
 }
 
-/// How to render.
+/// How to render. The `Debug` form is hashed into plans: names must not change.
+///
+/// ```
+/// let options = render::RenderOptions::at_tolerance(0.0);
+/// assert_eq!(options.cells_a_side, 3);
+/// ```
 #[derive(Clone, Debug)]
 pub struct RenderOptions {
-    /// What draws it.
+    /// The renderer.
     pub renderer: Renderer,
-    /// How the ray tracer samples. Its region must be the frame.
+    /// Sampling of the ground truth. Its region must be the frame.
     pub truth: TruthOptions,
-    /// How coarse the light field may be, px (see [`BakeOptions::tolerance_px`]).
+    /// Tolerance of the light field, px (see [`BakeOptions::tolerance_px`]).
     pub tolerance_px: f64,
-    /// How well its light is found; the ground truth's is whole paths.
+    /// Quality of the light. Does not apply to the ground truth, which traces whole paths.
     pub light: LightQuality,
-    /// How coarse its splat may be.
+    /// Tolerance of the splat.
     pub splat_tolerance: Tolerance,
-    /// A light field that is to be baked is sampled on a grid of n × n cells a pixel, n from 1 to [`MOST_CELLS_A_SIDE`],
-    /// and a pixel is the mean of what these give. What a tolerance of 0 leaves of the error is how far apart samples lie.
+    /// Cells per side of a pixel, from 1 to [`MAX_CELLS_A_SIDE`]: light fields are baked on a grid of n × n cells per pixel, and a pixel
+    /// is their mean. At a tolerance of 0 the spacing of samples is the remaining source of error.
     pub cells_a_side: u32,
-    /// The graphics card that the splat is summed on; none for the processor. The picture is the same.
+    /// The graphics card to sum the splat on; `None` for the processor. The picture is the same.
     pub gpu: Option<Gpu>,
-    /// How [`Renderer::Layers`] cuts the picture.
+    /// Options of [`Renderer::Layers`].
     pub layered: LayeredOptions,
-    /// What [`Renderer::Views`] captures.
+    /// Options of [`Renderer::Views`].
     pub views: ViewsOptions,
-    /// What [`Renderer::Scatter`] throws.
+    /// Options of [`Renderer::Scatter`].
     pub scatter: ScatterOptions,
-    /// The pictures that come along.
+    /// The AOVs to render.
     pub aovs: Vec<Aov>,
-    /// How the circle of confusion is told among them.
+    /// Convention of [`Aov::CircleOfConfusion`].
     pub coc: CocConvention,
-    /// How many pixels on each side of the camera's picture lie around the frame ([`Camera::overscanned`]): what is told as a share of
-    /// the frame's height is one of the frame's.
+    /// Pixels of overscan that the camera includes on each side ([`Camera::overscanned`]). Values relative to the frame's height exclude
+    /// them.
     pub overscan: u32,
 }
 
@@ -87,11 +92,11 @@ impl Default for RenderOptions {
     }
 }
 
-/// The most of [`RenderOptions::cells_a_side`].
+/// Maximum of [`RenderOptions::cells_a_side`].
 pub const MAX_CELLS_A_SIDE: u32 = 4;
 
 impl RenderOptions {
-    /// A light field and splat as coarse as `px` pixels. At 0 they are as fine as they are meant to get, with nine cells a
+    /// Options for a light field and splat with a tolerance of `px` pixels. At 0 they are as fine as possible, with nine cells per
     /// pixel.
     pub fn at_tolerance(px: f64) -> Self {
         Self {
@@ -111,13 +116,16 @@ impl RenderOptions {
         self.has_aov(Aov::Alpha)
     }
 
-    /// Of whom a pixel is, as far as the AOVs tell it.
+    /// The mattes that the AOVs need.
     pub(crate) fn matte_request(&self) -> Option<MatteRequest> {
         let crypto = self.has_aov(Aov::Crypto);
         (crypto || self.has_aov(Aov::Alpha)).then_some(MatteRequest { crypto })
     }
 
-    /// Bakes the light field for `camera`: its own camera is as much finer as [`Self::cells_a_side`] says.
+    /// Bakes the light field for `camera`. Its own camera is finer by [`Self::cells_a_side`].
+    ///
+    /// # Errors
+    /// The finer camera is invalid, the light cannot be solved, or the work was cancelled.
     pub fn bake(
         &self,
         lit: &Arc<LitScene>,
@@ -129,7 +137,23 @@ impl RenderOptions {
         self.bake_as(lit, camera, needed, steps)
     }
 
-    /// The same for a margin, and light carried as finely, as `needed` says of the finer camera.
+    /// Renders a light field for a compatible `camera`, one sample grid cell per pixel.
+    ///
+    /// # Errors
+    /// As [`render`].
+    pub fn sum_light_field(
+        &self,
+        salf: Arc<Salf>,
+        lit: &Arc<LitScene>,
+        camera: &Camera,
+        focus: &Focus,
+        steps: &dyn Steps,
+    ) -> Result<Rendered, RenderError> {
+        let shot = Shot { lit, camera, focus };
+        finish(shot, self, draw_light_field(salf, shot, 1, self, steps)?, steps)
+    }
+
+    /// [`Self::bake`] with the margin and carried light that `needed` gives for the finer camera.
     pub(crate) fn bake_as(
         &self,
         lit: &Arc<LitScene>,
@@ -141,13 +165,13 @@ impl RenderOptions {
         bake_with(lit, &self.finer(camera)?, &BakeOptions { tolerance_px, ..needed }, self.light, steps)
     }
 
-    /// The camera whose light field is baked for `camera`.
+    /// The camera of the light field that is baked for `camera`.
     pub(crate) fn finer(&self, camera: &Camera) -> Result<Camera, RenderError> {
         let finer = camera.finer(self.cells_a_side);
         let describe = |error| {
             let n = self.cells_a_side;
             RenderError::BadInput(format!(
-                "with {n} × {n} cells a pixel the {error} (take fewer, or a smaller picture)"
+                "with {n} × {n} cells per pixel the {error} (use fewer cells, or a smaller picture)"
             ))
         };
         finer.validate().map_err(describe)?;
@@ -155,46 +179,46 @@ impl RenderOptions {
     }
 }
 
-/// A rendered picture, what came along and what it cost.
+/// A rendered picture with its layers and cost.
 #[derive(Clone, Debug)]
 pub struct Rendered {
     /// The picture, radiance and coverage.
     pub picture: Picture,
-    /// The layers of the AOVs, in the order in which they were asked for.
+    /// The layers of the AOVs, in the requested order.
     pub layers: Vec<Layer>,
-    /// What a file that holds the layers has to say of them, as attributes.
+    /// Metadata of the layers, for the file's attributes.
     pub attributes: BTreeMap<String, String>,
-    /// What it cost.
+    /// Time and memory that it took.
     pub cost: RenderCost,
-    /// What the picture lacks, a sentence each.
+    /// What the picture lacks, one sentence each.
     pub warnings: Vec<String>,
 }
 
-/// What a picture cost.
+/// Time and memory that a picture took.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct RenderCost {
-    /// Seconds for the hierarchy over the triangles.
+    /// Time for building the ray tree, s.
     pub prepare_seconds: f64,
-    /// Seconds for the light field.
+    /// Time for the light field, s.
     pub bake_seconds: f64,
-    /// Seconds for the picture itself.
+    /// Time for the picture itself, s.
     pub picture_seconds: f64,
-    /// Samples that see the whole aperture.
+    /// Samples from which the whole aperture is visible.
     pub open_samples: usize,
-    /// Samples that see part of it.
+    /// Samples from which part of the aperture is visible.
     pub partial_samples: usize,
-    /// Samples of the background, which are among the others.
+    /// Samples of the background, included in the other counts.
     pub background_samples: usize,
     /// Bytes of all samples.
     pub salf_bytes: usize,
-    /// How far outside the frame was sampled, px.
+    /// Width of the baked margin around the frame, px.
     pub margin_px: u32,
     /// Whether the picture was summed on a graphics card.
     pub is_on_gpu: bool,
 }
 
 impl RenderCost {
-    /// What is told of a light field; no time was spent yet.
+    /// The counts of a light field, with all times 0.
     fn from_salf(salf: &Salf) -> Self {
         let SalfStatistics { open, partial, background, bytes, .. } = salf.statistics();
         Self {
@@ -208,7 +232,10 @@ impl RenderCost {
     }
 }
 
-/// Renders a scene.
+/// Renders a scene; bakes a light field if the renderer needs one.
+///
+/// # Errors
+/// The options do not fit the camera, the light cannot be solved, the sums overflow, or the work was cancelled.
 pub fn render(
     lit: &Arc<LitScene>,
     camera: &Camera,
@@ -260,7 +287,7 @@ pub fn render(
     finish(shot, options, Drawn { picture, estimate, mattes, cost }, steps)
 }
 
-/// Draws what [`RenderOptions::bake`] baked, for a camera that it serves.
+/// Draws a light field from [`RenderOptions::bake`] for a compatible camera.
 pub(crate) fn draw_baked(
     salf: &Arc<Salf>,
     lit: &Arc<LitScene>,
@@ -274,7 +301,10 @@ pub(crate) fn draw_baked(
     finish(shot, options, drawn, steps)
 }
 
-/// Renders what was opened: a scene, a project, or (where the renderer draws one) a light field.
+/// Renders an input: a scene, a project, or a light field (if the renderer draws from one).
+///
+/// # Errors
+/// The camera is invalid, or incompatible with the light field; otherwise as [`render`].
 pub fn render_input(
     input: &Input,
     camera: &Camera,
@@ -292,11 +322,11 @@ pub fn render_input(
                 let what = format!("it was baked {difference} (bake it again for this camera)");
                 return Err(RenderError::bad_file(&input.path, what));
             }
-            let mut rendered = sum_light_field(salf.clone(), &lit, camera, focus, options, steps)?;
+            let mut rendered = options.sum_light_field(salf.clone(), &lit, camera, focus, steps)?;
             let needed = BakeOptions::for_focus(lit.tracer(), camera, focus).margin_px;
             if needed > salf.margin_px as f64 {
                 rendered.warnings.push(format!(
-                    "{}: paint spreads light from {needed:.0} px outside the frame, {} px were baked (bake it with --focus)",
+                    "{}: paint spreads light from {needed:.0} px outside the frame, but only {} px were baked (bake it with --focus)",
                     input.path.display(),
                     salf.margin_px
                 ));
@@ -308,13 +338,13 @@ pub fn render_input(
     Ok(rendered)
 }
 
-/// What answers the rays of a camera that can be used.
+/// The lit scene of `input`, after checking that `camera` is valid.
 pub(crate) fn lit_scene_of(input: &Input, camera: &Camera) -> Result<Arc<LitScene>, RenderError> {
     camera.validate().map_err(|error| RenderError::bad_file(&input.path, error))?;
     Ok(input.lit_scene()?)
 }
 
-/// What keeps a light field of `baked` from serving `camera`.
+/// Why a light field of `baked` cannot show `camera`; `None` if it can.
 fn incompatibility(baked: &Camera, camera: &Camera) -> Option<String> {
     if is_compatible(baked, camera) {
         return None;
@@ -328,20 +358,7 @@ fn incompatibility(baked: &Camera, camera: &Camera) -> Option<String> {
     })
 }
 
-/// Renders a light field.
-pub fn sum_light_field(
-    salf: Arc<Salf>,
-    lit: &Arc<LitScene>,
-    camera: &Camera,
-    focus: &Focus,
-    options: &RenderOptions,
-    steps: &dyn Steps,
-) -> Result<Rendered, RenderError> {
-    let shot = Shot { lit, camera, focus };
-    finish(shot, options, draw_light_field(salf, shot, 1, options, steps)?, steps)
-}
-
-/// The picture of a light field of so many cells a pixel's side, what it shows, and what it cost.
+/// Draws a light field with `cells_a_side` cells per side of a pixel.
 fn draw_light_field(
     salf: Arc<Salf>,
     Shot { lit, camera, focus }: Shot,
@@ -375,7 +392,7 @@ fn draw_light_field(
     Ok(Drawn { picture: picture.averaged(cells_a_side), estimate: None, mattes, cost })
 }
 
-/// What sums a light field.
+/// A splatter for a light field, configured by the options.
 pub(crate) fn new_splatter(salf: Arc<Salf>, options: &RenderOptions) -> Splatter {
     let mut splatter = Splatter::new(salf);
     splatter.set_tolerance(options.splat_tolerance);
@@ -383,7 +400,7 @@ pub(crate) fn new_splatter(salf: Arc<Salf>, options: &RenderOptions) -> Splatter
     splatter
 }
 
-/// Has a splatter draw; what it cost.
+/// Runs a splatter. Returns the cost.
 fn run_splatter(
     splatter: &mut Splatter,
     camera: &Camera,
@@ -396,7 +413,7 @@ fn run_splatter(
     Ok(RenderCost { is_on_gpu, picture_seconds, ..RenderCost::from_salf(splatter.salf()) })
 }
 
-/// Sums what [`RenderOptions::bake`] baked, for a camera that it serves, as often as one likes.
+/// Sums a light field from [`RenderOptions::bake`] for a compatible camera. The splatter can be reused.
 pub(crate) fn sum_baked(
     splatter: &mut Splatter,
     lit: &Arc<LitScene>,
@@ -407,7 +424,7 @@ pub(crate) fn sum_baked(
 ) -> Result<Rendered, RenderError> {
     let (shot, cells) = (Shot { lit, camera, focus }, options.cells_a_side);
     if options.matte_request().is_some() {
-        // Of whom light is, is told by a sum of its own.
+        // Mattes need their own sums.
         let drawn = draw_light_field(splatter.salf().clone(), shot, cells, options, steps)?;
         return finish(shot, options, drawn, steps);
     }
@@ -416,7 +433,7 @@ pub(crate) fn sum_baked(
     finish(shot, options, Drawn { picture, estimate: None, mattes: None, cost }, steps)
 }
 
-/// What is rendered.
+/// The subject of a picture.
 #[derive(Clone, Copy)]
 struct Shot<'a> {
     lit: &'a Arc<LitScene>,
@@ -424,12 +441,12 @@ struct Shot<'a> {
     focus: &'a Focus,
 }
 
-/// A picture, before what comes along.
+/// A picture before its layers are made.
 struct Drawn {
     picture: Picture,
-    /// What the ground truth knows of its error.
+    /// The ground truth's estimate, with its errors.
     estimate: Option<Estimate>,
-    /// Of whom its pixels are, if that was asked for.
+    /// Its mattes, if requested.
     mattes: Option<Mattes>,
     cost: RenderCost,
 }
@@ -472,7 +489,7 @@ fn finish(
     Ok(Rendered { picture, layers, attributes, cost, warnings })
 }
 
-/// What a pinhole sees, unpainted, by the same renderer; with its alpha where that is asked for.
+/// The unpainted pinhole picture by the same renderer, with its alpha if requested.
 fn render_pinhole(
     lit: &Arc<LitScene>,
     camera: &Camera,
@@ -487,13 +504,17 @@ fn render_pinhole(
     Ok((rendered.picture, rendered.layers.pop()))
 }
 
-/// The chief ray of a pixel's middle; pixels are numbered row by row.
+/// The chief ray of a pixel's centre. Pixels are numbered row by row.
 pub(crate) fn pixel_ray(camera: &Camera, number: u32) -> Ray {
     let pixel = DVec2::new(f64::from(number % camera.width), f64::from(number / camera.width));
     Ray::pinhole(camera, DVec2::ZERO, pixel + 0.5)
 }
 
-/// The light of a capture's photographs; none of a surface that was made from a picture, whose texture has it.
+/// The light of a capture's photographs. `None` for a surface that was made from a picture (its texture holds the light) and for scenes
+/// without photographs.
+///
+/// # Errors
+/// Photographs cannot be read, or the work was cancelled.
 pub fn light_of_photographs(
     lit: &Arc<LitScene>,
     steps: &dyn Steps,
@@ -508,18 +529,18 @@ pub fn light_of_photographs(
     Ok(Some(light))
 }
 
-/// How many photographs were aligned, if any, and by how much.
+/// A message about photographs that were aligned; `None` if there are none.
 fn alignment_message(moved_px: &[f64]) -> Option<String> {
     let count = moved_px.iter().filter(|&&px| px > 0.0).count();
     let most = moved_px.iter().copied().fold(0.0, f64::max);
     let all = moved_px.len();
     (count > 0).then(|| {
-        format!("{count} of {all} photographs are off, by up to {most:.1} px: aligned with the others")
+        format!("{count} of {all} photographs were misaligned by up to {most:.1} px and have been aligned with the others")
     })
 }
 
-/// How far the surface along each pixel's chief ray was photographed, in the photographs of `light`, or else in the picture that it was
-/// made from.
+/// The share of the surface along each pixel's chief ray that was photographed: in the photographs of `light`, or else in the picture that
+/// the surface was made from.
 pub(crate) fn photographed_shares(
     tracer: &Tracer,
     camera: &Camera,
@@ -528,7 +549,7 @@ pub(crate) fn photographed_shares(
     photographed_shares_of_pixels(tracer, camera, light, (0..camera.width * camera.height).collect())
 }
 
-/// The same in some pixels.
+/// [`photographed_shares`] of selected pixels.
 pub(crate) fn photographed_shares_of_pixels(
     tracer: &Tracer,
     camera: &Camera,

@@ -1,25 +1,25 @@
-//! Who can draw the picture.
+//! The renderers.
 
-/// What draws the picture.
+/// The renderer of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Renderer {
-    /// The light field, splatted.
+    /// Splatting of the light field.
     #[default]
     Splat,
-    /// Distributed ray tracing.
+    /// The ground truth: distributed ray tracing.
     Truth,
-    /// A baseline: a blur of the pinhole picture by each pixel's own circle of confusion.
+    /// A baseline: the pinhole picture blurred by each pixel's circle of confusion.
     Blur,
-    /// A baseline: the pinhole picture cut to layers by depth, each blurred, composited.
+    /// A baseline: the pinhole picture split into depth layers that are blurred and composited.
     Layers,
     /// A baseline: pinhole views over the aperture, shifted and added.
     Views,
-    /// A baseline: every ray of the light field, thrown at one pixel.
+    /// A baseline: every ray of the light field scattered to one pixel.
     Scatter,
 }
 
 impl Renderer {
-    /// All of them, by the names that the command line knows.
+    /// All renderers with their names on the command line.
     pub const ALL: [(&'static str, Renderer); 6] = [
         ("splat", Renderer::Splat),
         ("truth", Renderer::Truth),
@@ -29,7 +29,7 @@ impl Renderer {
         ("scatter", Renderer::Scatter),
     ];
 
-    /// The one of this name.
+    /// The renderer of this name.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.iter().find(|(entry_name, _)| *entry_name == name).map(|(_, renderer)| *renderer)
     }
@@ -39,7 +39,7 @@ impl Renderer {
         Self::ALL.iter().find(|(_, renderer)| *renderer == self).map_or("", |(name, _)| name)
     }
 
-    /// Whether it tells where light paths end: what alpha, Cryptomatte and the pinhole's picture are made of.
+    /// Whether it determines where light paths end, as alpha, Cryptomatte and the pinhole picture require.
     pub fn resolves_paths(self) -> bool {
         matches!(self, Self::Splat | Self::Truth)
     }

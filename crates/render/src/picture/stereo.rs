@@ -1,7 +1,7 @@
-//! A pair of pictures for two eyes: the same light field through two small parts of the aperture.
+//! Stereo pairs: the same light field through two small parts of the aperture.
 //!
-//! A thin lens shows what it is focused on at one place through every part of its aperture, so that an eye's picture is the lens's through a
-//! small part of it, focused on the point that both eyes fixate: that has no disparity, and nothing is cut off at the frame's sides.
+//! Through every part of its aperture, a thin lens shows the plane in focus at the same place. Each eye's picture is therefore that of a
+//! sub-aperture, focused on the point that both eyes fixate: that point has no disparity, and nothing is cut off at the sides of the frame.
 
 use crate::error::RenderError;
 use crate::picture::render::{
@@ -17,37 +17,57 @@ use std::sync::Arc;
 use std::time::Instant;
 use trace::Tracer;
 
-/// How the two pictures become one.
+/// How the two pictures are combined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum StereoForm {
-    /// The left eye's on the left, the right eye's on the right.
+    /// The left eye's picture on the left, the right eye's on the right.
     SideBySide,
-    /// Red of the left eye's, green and blue of the right eye's, for glasses of red and cyan.
+    /// Red from the left eye, green and blue from the right eye, for red-cyan glasses.
     Anaglyph,
 }
 
-/// What the eyes do.
+/// Options of a stereo pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stereo {
-    /// How the two pictures become one.
+    /// How the two pictures are combined.
     pub form: StereoForm,
-    /// How far the eyes are apart, as a share of the aperture's diameter, in (0, 15/16].
+    /// Distance between the eyes, as a share of the aperture's diameter, in (0, 15/16].
     pub eyes: f64,
-    /// The place of the picture that both look at, px; none: what the camera is focused on.
+    /// The pixel position that both eyes fixate; `None`: what the camera is focused on.
     pub fixate: Option<DVec2>,
-    /// How sums become pictures: each eye has its own coverage.
+    /// Exposure of the pictures. Each eye has its own coverage.
     pub exposure: Exposure,
 }
 
 impl Stereo {
-    /// The farthest that eyes may be apart: a small part of the aperture is needed around each.
+    /// Maximum of [`Self::eyes`]: each eye needs a sub-aperture around it.
     pub const MAX_EYE_DISTANCE: f64 = 1.0 - SUB_APERTURE_RADIUS;
+
+    /// Combines a pair for a `camera` that is focused on the fixated point. `draw` renders the picture of one eye's camera. Everything but
+    /// the picture is that of the right eye.
+    ///
+    /// # Errors
+    /// Those of `draw`.
+    pub fn render_pair<E>(
+        &self,
+        camera: &Camera,
+        mut draw: impl FnMut(&Camera) -> Result<Rendered, E>,
+    ) -> Result<Rendered, E> {
+        let eye = |side: f64| Camera {
+            aperture: Aperture::sub_aperture(DVec2::new(side * self.eyes, 0.0)),
+            ..camera.clone()
+        };
+        let (left, right) = (draw(&eye(-1.0))?, draw(&eye(1.0))?);
+        let picture = combine(&left.picture, &right.picture, self);
+        Ok(Rendered { picture, ..right })
+    }
 }
 
-/// Renders a pair. AOVs are of one camera and have no place in it.
+/// Renders a stereo pair. AOVs are ignored: they belong to a single camera.
 ///
 /// # Errors
-/// Those of rendering; the camera has no aperture, the eyes no place in it, or the picture does not have the place.
+/// As [`render_input`]; or the camera is a pinhole, the eyes do not fit into its aperture, or the fixated position is outside the
+/// picture.
 pub fn render_stereo(
     input: &Input,
     camera: &Camera,
@@ -58,11 +78,11 @@ pub fn render_stereo(
 ) -> Result<Rendered, RenderError> {
     let bad = |what: &str| Err(RenderError::bad_file(&input.path, what));
     if camera.aperture_radius <= 0.0 {
-        return bad("is seen through a pinhole: two eyes have no place in it (give --aperture-radius)");
+        return bad("its camera is a pinhole, which has no room for two eyes (give --aperture-radius)");
     }
     if !(stereo.eyes > 0.0 && stereo.eyes <= Stereo::MAX_EYE_DISTANCE) {
         return bad(
-            "two eyes have no place that far apart (give --eyes between 0 and 0.9375 of the aperture's diameter)",
+            "the eyes do not fit into the aperture (give --eyes between 0 and 0.9375 of the aperture's diameter)",
         );
     }
     let lit = lit_scene_of(input, camera)?;
@@ -73,38 +93,22 @@ pub fn render_stereo(
     let camera = Camera { focus_distance, ..camera.clone() };
     let options = RenderOptions { aovs: Vec::new(), ..options.clone() };
     let mut rendered = match input.salf.is_none() && options.renderer == Renderer::Splat {
-        // One light field serves both.
+        // Both eyes share one light field.
         true => {
             let start = Instant::now();
             let salf = Arc::new(options.bake(&lit, &camera, focus, steps)?);
             let bake_seconds = start.elapsed().as_secs_f64();
             let drawn =
-                render_pair(&camera, stereo, |eye| draw_baked(&salf, &lit, eye, focus, &options, steps))?;
+                stereo.render_pair(&camera, |eye| draw_baked(&salf, &lit, eye, focus, &options, steps))?;
             Rendered { cost: RenderCost { bake_seconds, ..drawn.cost }, ..drawn }
         }
-        false => render_pair(&camera, stereo, |eye| render_input(input, eye, focus, &options, steps))?,
+        false => stereo.render_pair(&camera, |eye| render_input(input, eye, focus, &options, steps))?,
     };
     rendered.layers.clear();
     Ok(rendered)
 }
 
-/// The pair that a camera's aperture shows, its focus distance the fixated one: each eye's picture as `drawn`, what is told of it that of the
-/// right eye's.
-pub fn render_pair<E>(
-    camera: &Camera,
-    stereo: &Stereo,
-    mut drawn: impl FnMut(&Camera) -> Result<Rendered, E>,
-) -> Result<Rendered, E> {
-    let eye = |side: f64| Camera {
-        aperture: Aperture::sub_aperture(DVec2::new(side * stereo.eyes, 0.0)),
-        ..camera.clone()
-    };
-    let (left, right) = (drawn(&eye(-1.0))?, drawn(&eye(1.0))?);
-    let picture = combine(&left.picture, &right.picture, stereo);
-    Ok(Rendered { picture, ..right })
-}
-
-/// How far ahead is what the picture shows at a place; at infinity where no surface is.
+/// Axial depth of the surface at a pixel position; infinite where there is none.
 fn fixation_distance(
     tracer: &Tracer,
     input: &Input,
@@ -114,7 +118,7 @@ fn fixation_distance(
     let size = DVec2::new(f64::from(camera.width), f64::from(camera.height));
     if !(place.cmpge(DVec2::ZERO).all() && place.cmplt(size).all()) {
         let what = format!(
-            "its picture of {} × {} px has no place {},{} to fixate",
+            "its picture of {} × {} px has no pixel {},{} to fixate",
             camera.width, camera.height, place.x, place.y
         );
         return Err(RenderError::bad_file(&input.path, what));

@@ -1,4 +1,4 @@
-//! Small pictures of files, for file managers.
+//! Thumbnails of files, for file managers.
 
 use crate::error::RenderError;
 use crate::picture::tone::Tone;
@@ -13,11 +13,11 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 
-/// The small picture that a project holds; of a light field, what its camera sees, drawn without its scene, which a file manager may keep
-/// out of reach.
+/// Reads the thumbnail of a project, or draws that of a light field, without its scene: a sandboxed file manager may not have access to it.
 ///
 /// # Errors
-/// The file is neither of them, cannot be read, or is a project that was saved without a picture; `progress` says to stop.
+/// The file is neither a project nor a light field, cannot be read, or is a project that was saved without a picture; or the work was
+/// cancelled.
 pub fn read_thumbnail(path: &Path, progress: &dyn Progress) -> Result<Thumbnail, RenderError> {
     let none = |what: &str| Err(RenderError::bad_file(path, what));
     match InputKind::from_path(path)? {
@@ -37,12 +37,12 @@ pub fn read_thumbnail(path: &Path, progress: &dyn Progress) -> Result<Thumbnail,
             Ok(Thumbnail::from_linear(picture.width, picture.height, tone.displayed(picture)))
         }
         InputKind::Scene | InputKind::Capture => {
-            none("holds no picture of itself (give a project or a light field)")
+            none("contains no thumbnail (give a project or a light field)")
         }
     }
 }
 
-/// Nothing painted, of no scene in particular.
+/// Standard focus, for any scene.
 struct OrdinaryLens;
 
 impl SurfaceField<FocusOffset> for OrdinaryLens {

@@ -1,4 +1,4 @@
-//! From linear radiance to the screen: exposure, display gain, tone curve, clamp, sRGB encoding.
+//! Converting linear radiance to screen pixels: exposure, display gain, tone curve, clamping, sRGB encoding.
 
 use crate::picture::tone_curve::ToneCurve;
 use lens::{Exposure, Picture};
@@ -7,14 +7,14 @@ use scene::srgb_from_linear;
 use std::ops::Range;
 use std::sync::LazyLock;
 
-/// A pixel of a screen: red, green and blue in sRGB's encoding, and 255.
+/// A screen pixel: sRGB-encoded red, green and blue, and 255.
 pub type ScreenPixel = [u8; 4];
 
-/// Entries of the encoding table: an 8-bit step is at least three entries wide even in the shadows.
+/// Entries of the encoding table. Even in the shadows, an 8-bit step is at least three entries wide.
 const ENTRIES: usize = 1 << 13;
 
-/// Fewer pixels than this are not worth another thread.
-const PIXELS_OF_A_TASK: usize = 1 << 13;
+/// Minimum number of pixels per task.
+const MIN_PIXELS_PER_TASK: usize = 1 << 13;
 
 /// sRGB encoding of the middle of each of [`ENTRIES`] cells of [0, 1].
 static ENCODED: LazyLock<Vec<u8>> = LazyLock::new(|| {
@@ -23,29 +23,64 @@ static ENCODED: LazyLock<Vec<u8>> = LazyLock::new(|| {
         .collect()
 });
 
-/// How a picture is put on screen.
+/// How a picture is shown on screen.
+///
+/// ```
+/// use render::{Tone, to_screen};
+/// let mut picture = lens::Picture::black(1, 1);
+/// (picture.radiance[0], picture.coverage[0]) = ([1.0; 3], 1.0);
+/// assert_eq!(to_screen(&picture, Tone::default()), [[255; 4]]);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Tone {
-    /// Conserved or normalised.
+    /// Exposure: conserved or normalised.
     pub exposure: Exposure,
-    /// What is no part of the picture.
+    /// Settings of the display, which are not part of the picture.
     pub display: Display,
 }
 
-/// How the screen shows any picture.
+/// Settings of the display.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Display {
-    /// Gain, stops.
+    /// Display gain, stops.
     pub stops: f32,
-    /// What becomes of light brighter than white.
+    /// Tone mapping.
     pub curve: ToneCurve,
 }
 
 impl Tone {
-    /// The picture as the screen shows it, before it is clamped and encoded: linear, row by row.
+    /// The picture as displayed, before clamping and encoding: linear RGB, row by row.
     pub fn displayed(self, picture: &Picture) -> Vec<[f32; 3]> {
         let shown = picture.radiance.par_iter().zip(&picture.coverage);
         shown.map(|(radiance, coverage)| self.displayed_pixel(*radiance, *coverage)).collect()
+    }
+
+    /// Converts a rectangle of the picture (columns and rows) to screen pixels, row by row.
+    pub fn rectangle_to_screen(
+        self,
+        picture: &Picture,
+        [columns, rows]: [Range<u32>; 2],
+    ) -> Vec<ScreenPixel> {
+        let pixel = |index: usize| {
+            let displayed = self.displayed_pixel(picture.radiance[index], picture.coverage[index]);
+            let [r, g, b] = displayed.map(encoded);
+            [r, g, b, u8::MAX]
+        };
+        let width = columns.len();
+        let mut pixels = vec![[0; 4]; width * rows.len()];
+        if width > 0 {
+            pixels
+                .par_chunks_mut(width)
+                .zip(rows)
+                .with_min_len(MIN_PIXELS_PER_TASK.div_ceil(width))
+                .for_each(|(pixels, row)| {
+                    let first = row as usize * picture.width as usize + columns.start as usize;
+                    for (offset, shown) in pixels.iter_mut().enumerate() {
+                        *shown = pixel(first + offset);
+                    }
+                });
+        }
+        pixels
     }
 
     #[inline(always)]
@@ -60,40 +95,14 @@ impl Tone {
     }
 }
 
-/// One channel on screen; what is no number is black.
+/// Encodes one channel; NaN becomes black.
 fn encoded(linear: f32) -> u8 {
     ENCODED[((linear.max(0.0) * ENTRIES as f32) as usize).min(ENTRIES - 1)]
 }
 
-/// The picture as the screen shows it, row by row.
+/// Converts a picture to screen pixels, row by row.
 pub fn to_screen(picture: &Picture, tone: Tone) -> Vec<ScreenPixel> {
-    rectangle_to_screen(picture, tone, [0..picture.width, 0..picture.height])
-}
-
-/// A rectangle of the picture, columns and rows within it, as the screen shows it, row by row.
-pub fn rectangle_to_screen(
-    picture: &Picture,
-    tone: Tone,
-    [columns, rows]: [Range<u32>; 2],
-) -> Vec<ScreenPixel> {
-    let pixel = |index: usize| {
-        let displayed = tone.displayed_pixel(picture.radiance[index], picture.coverage[index]);
-        let [r, g, b] = displayed.map(encoded);
-        [r, g, b, u8::MAX]
-    };
-    let width = columns.len();
-    let mut pixels = vec![[0; 4]; width * rows.len()];
-    if width > 0 {
-        pixels.par_chunks_mut(width).zip(rows).with_min_len(PIXELS_OF_A_TASK.div_ceil(width)).for_each(
-            |(pixels, row)| {
-                let first = row as usize * picture.width as usize + columns.start as usize;
-                for (offset, shown) in pixels.iter_mut().enumerate() {
-                    *shown = pixel(first + offset);
-                }
-            },
-        );
-    }
-    pixels
+    tone.rectangle_to_screen(picture, [0..picture.width, 0..picture.height])
 }
 
 #[cfg(test)]
@@ -135,9 +144,9 @@ mod tests {
         }
         let tone = Tone { display: Display { stops: 0.3, curve: ToneCurve::Agx }, ..Tone::default() };
         let whole = to_screen(&picture, tone);
-        let part = rectangle_to_screen(&picture, tone, [120..121, 3..70]);
+        let part = tone.rectangle_to_screen(&picture, [120..121, 3..70]);
         let expected: Vec<_> = (3..70).map(|y| whole[y * 300 + 120]).collect();
         assert_eq!(part, expected);
-        assert!(rectangle_to_screen(&picture, tone, [5..5, 0..70]).is_empty());
+        assert!(tone.rectangle_to_screen(&picture, [5..5, 0..70]).is_empty());
     }
 }

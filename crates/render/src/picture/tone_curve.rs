@@ -1,28 +1,28 @@
-//! Tone mapping: bright radiance brought within what a screen can show.
+//! Tone mapping: compressing bright radiance to the range of a screen.
 
 use crate::picture::ocio_views::OcioViews;
 use scene::linear_from_srgb;
 use serde::{Deserialize, Serialize};
 
-/// How radiance beyond white is brought to the screen. All take and give linear RGB with Rec. 709 primaries.
+/// A tone curve. Input and output are linear RGB with Rec. 709 primaries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum ToneCurve {
-    /// Clipped at white: what the file holds.
+    /// None: clipped at white.
     #[default]
     Clip,
-    /// Khronos PBR Neutral: colours stay what they are, highlights roll off.
+    /// Khronos PBR Neutral: preserves colours, rolls off highlights.
     Neutral,
-    /// AgX: everything rolls off, bright colours pale as on film.
+    /// AgX: rolls off everything; bright colours become paler, as on film.
     Agx,
-    /// A view of the configuration that `$OCIO` names, by its number ([`OcioViews`]); what another configuration has no view for is clipped.
+    /// A view of the OpenColorIO configuration in `$OCIO`, by its number ([`OcioViews`]). Clips if there is no such view.
     Ocio(u16),
 }
 
 impl ToneCurve {
-    /// All but those of `$OCIO`, as a menu offers them.
+    /// All curves except those of `$OCIO`, in menu order.
     pub const ALL: [Self; 3] = [Self::Clip, Self::Neutral, Self::Agx];
 
-    /// What it is called.
+    /// The name, for menus.
     pub fn name(self) -> &'static str {
         match self {
             Self::Clip => "None",
@@ -32,19 +32,19 @@ impl ToneCurve {
         }
     }
 
-    /// The next one, round and round.
+    /// The next of [`Self::ALL`], cyclically.
     pub fn next(self) -> Self {
         let at = Self::ALL.iter().position(|curve| *curve == self).unwrap_or(0);
         Self::ALL[(at + 1) % Self::ALL.len()]
     }
 
-    /// Linear radiance as linear light of the screen, in [0, 1] but for [`Self::Clip`], which leaves it as it is.
+    /// Maps linear radiance to linear light of the screen, in [0, 1]. [`Self::Clip`] returns its input.
     pub fn map(self, rgb: [f32; 3]) -> [f32; 3] {
         match self {
             Self::Clip => rgb,
             Self::Neutral => neutral(rgb.map(|c| c.max(0.0))),
             Self::Agx => agx(rgb.map(|c| c.max(0.0))),
-            // As a screen of sRGB's encoding shows what the display of the view is sent.
+            // Decoded as by an sRGB screen.
             Self::Ocio(view) => OcioViews::from_environment()
                 .shown(view, rgb)
                 .map_or(rgb, |sent| sent.map(|c| linear_from_srgb(c.into()))),
@@ -56,8 +56,8 @@ fn largest(rgb: [f32; 3]) -> f32 {
     rgb[0].max(rgb[1]).max(rgb[2])
 }
 
-/// Khronos PBR Neutral Tone Mapper, specification of 2024: the Fresnel reflection of 4 % is taken off, peaks above 0.76
-/// are compressed by a hyperbola, and what is compressed is desaturated.
+/// Khronos PBR Neutral Tone Mapper, specification of 2024: subtracts the Fresnel reflection of 4 %, compresses peaks above 0.76 by a
+/// hyperbola, and desaturates compressed colours.
 fn neutral(rgb: [f32; 3]) -> [f32; 3] {
     const START: f32 = 0.8 - 0.04;
     const DESATURATION: f32 = 0.15;
@@ -77,8 +77,8 @@ fn neutral(rgb: [f32; 3]) -> [f32; 3] {
     })
 }
 
-/// AgX (Sobotka 2022) by the polynomial of Wrensch (2023): primaries are drawn together, 16.5 stops of log2 radiance go
-/// through an S curve, and the primaries are pulled apart again. Its display is a power of 2.2, undone here.
+/// AgX (Sobotka 2022) with the polynomial of Wrensch (2023): moves the primaries inwards, applies an S curve to 16.5 stops of log2
+/// radiance, and moves the primaries outwards. Its display encoding is a power of 2.2, undone here.
 fn agx(rgb: [f32; 3]) -> [f32; 3] {
     const INSET: [[f32; 3]; 3] = [
         [0.842_479_06, 0.078_433_6, 0.079_223_745],

@@ -1,8 +1,8 @@
-//! Light fields for frames: baked where something moved, kept where nothing did.
+//! Baking light fields for frames: a new one only if something moved.
 //!
-//! A light field serves every focus distance and every smaller stop, and any paint that its margin has room for. So it is baked for
-//! all keys of the timeline at once, as the scene and the camera stand at a frame: which frames are rendered makes no difference to it, and
-//! a rack focus in a scene that stands still is one light field.
+//! A light field can show every focus distance, every smaller aperture, and any paint for which its margin is wide enough. It is
+//! therefore baked for all keys of the timeline at once, with scene and camera as they are at a frame. So it does not depend on which
+//! frames are rendered, and a rack focus in a static scene needs one light field.
 
 use crate::error::RenderError;
 use crate::picture::{RenderOptions, Rendered, Renderer, new_splatter, render, sum_baked};
@@ -14,7 +14,7 @@ use scene::SurfaceField;
 use splat::Splatter;
 use std::sync::Arc;
 
-/// What a light field is baked from beside its scene.
+/// What a light field is baked from. The `Debug` form is hashed into plans: names must not change.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Field {
     scene: [u8; 32],
@@ -24,101 +24,110 @@ pub(crate) struct Field {
 }
 
 impl Field {
-    /// All of it in words.
+    /// The inputs as text, for hashing.
     pub fn description(&self) -> String {
         format!("{self:?}")
     }
 }
 
-/// What baking took, and what was not baked again.
+/// Statistics of baking for a sequence.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Baking {
-    /// Light fields that were baked.
+    /// Number of light fields baked.
     pub baked: u32,
-    /// Frames whose light field was there already.
+    /// Number of frames that reused the previous light field.
     pub reused: u32,
-    /// Scenes whose light was solved for.
+    /// Number of different scenes whose light was solved.
     pub scenes: u32,
-    /// Seconds that baking took.
+    /// Time spent baking, s.
     pub seconds: f64,
-    /// Seconds that light was waited for before.
+    /// Time spent solving light before baking, s.
     pub light_seconds: f64,
 }
 
-/// What the keys need of a place: scene and camera.
-struct KeyedNeed {
+/// What all keys of the timeline together need for one scene and camera.
+struct KeyRequirements {
     scene: [u8; 32],
-    placed: Camera,
+    base_camera: Camera,
     camera: Camera,
-    need: BakeOptions,
+    bake_options: BakeOptions,
 }
 
-/// Bakes and sums light fields, and keeps the last one.
+/// Bakes and sums light fields; retains the last one.
 pub(crate) struct FrameBaker<'a> {
     take: &'a Take<'a>,
     options: &'a RenderOptions,
-    keyed: Option<KeyedNeed>,
+    keyed: Option<KeyRequirements>,
     last: Option<(Field, Splatter)>,
     last_scene: Option<[u8; 32]>,
+    /// Statistics so far.
     pub baking: Baking,
 }
 
 impl<'a> FrameBaker<'a> {
+    /// A baker for frames of `take` that has baked nothing yet.
     pub fn new(take: &'a Take<'a>, options: &'a RenderOptions) -> Self {
         Self { take, options, keyed: None, last: None, last_scene: None, baking: Baking::default() }
     }
 
-    /// What the light field of an instant is baked from.
-    pub fn field(&mut self, at: &FrameState) -> Result<Option<Field>, RenderError> {
+    /// What the light field of a frame is baked from. `None` if the renderer needs none.
+    pub fn field(&mut self, state: &FrameState) -> Result<Option<Field>, RenderError> {
         if self.options.renderer != Renderer::Splat {
             return Ok(None);
         }
-        let lit = at.scene.lit();
-        let is_current = |keyed: &KeyedNeed| keyed.scene == at.scene.hash && keyed.placed == at.placed;
+        let lit = state.scene.lit();
+        let is_current = |keyed: &KeyRequirements| {
+            keyed.scene == state.scene.hash && keyed.base_camera == state.base_camera
+        };
         let keyed = match self.keyed.take().filter(is_current) {
             Some(keyed) => keyed,
             None => {
-                let keys = self.take.at_keys(at);
-                let camera = self.take.widest_aperture_camera(at, &keys);
+                let keys = self.take.lens_and_focus_at_keys(state);
+                let camera = self.take.widest_aperture_camera(state, &keys);
                 let finer = |camera: &Camera| self.options.finer(camera);
                 let cameras = keys.iter().map(|(camera, _)| finer(camera)).collect::<Result<Vec<_>, _>>()?;
                 let shots = cameras
                     .iter()
                     .zip(&keys)
                     .map(|(camera, (_, focus))| (camera, focus as &dyn SurfaceField<_>));
-                let need = BakeOptions::for_all(lit.tracer(), shots);
-                KeyedNeed { scene: at.scene.hash, placed: at.placed.clone(), camera, need }
+                let bake_options = BakeOptions::for_all(lit.tracer(), shots);
+                KeyRequirements {
+                    scene: state.scene.hash,
+                    base_camera: state.base_camera.clone(),
+                    camera,
+                    bake_options,
+                }
             }
         };
-        let own = self.options.finer(&at.camera)?;
-        let own = BakeOptions::for_all(lit.tracer(), [(&own, &at.focus as &dyn SurfaceField<_>)]);
+        let own = self.options.finer(&state.camera)?;
+        let own = BakeOptions::for_all(lit.tracer(), [(&own, &state.focus as &dyn SurfaceField<_>)]);
         let field = Field {
-            scene: at.scene.hash,
+            scene: state.scene.hash,
             camera: keyed.camera.clone(),
-            margin_px: keyed.need.margin_px.max(own.margin_px),
-            carried: keyed.need.carried.max(own.carried),
+            margin_px: keyed.bake_options.margin_px.max(own.margin_px),
+            carried: keyed.bake_options.carried.max(own.carried),
         };
         self.keyed = Some(keyed);
         Ok(Some(field))
     }
 
-    /// The picture of an instant, whose light field is `field`.
+    /// Renders a frame whose light field is `field`.
     pub fn render(
         &mut self,
-        at: &FrameState,
+        state: &FrameState,
         field: Option<&Field>,
         steps: &dyn Steps,
     ) -> Result<Rendered, RenderError> {
-        let lit = at.scene.lit();
-        if self.last_scene.replace(at.scene.hash) != Some(at.scene.hash) {
+        let lit = state.scene.lit();
+        if self.last_scene.replace(state.scene.hash) != Some(state.scene.hash) {
             self.baking.scenes += 1;
         }
-        let Some(field) = field else { return render(lit, &at.camera, &at.focus, self.options, steps) };
+        let Some(field) = field else { return render(lit, &state.camera, &state.focus, self.options, steps) };
         let mut bake_seconds = 0.0;
         if self.last.as_ref().is_some_and(|(last, _)| last == field) {
             self.baking.reused += 1;
         } else {
-            // Two light fields at once would need the memory of both.
+            // Dropped first, so that two light fields are never in memory at once.
             self.last = None;
             let start = std::time::Instant::now();
             let _ = lit.solve(&field.camera, LightQuality::Fine, &*steps.begin("light"))?;
@@ -133,7 +142,7 @@ impl<'a> FrameBaker<'a> {
             self.baking.light_seconds += light_seconds;
         }
         let Some((_, splatter)) = &mut self.last else { return Err(RenderError::Cancelled) };
-        let mut rendered = sum_baked(splatter, lit, &at.camera, &at.focus, self.options, steps)?;
+        let mut rendered = sum_baked(splatter, lit, &state.camera, &state.focus, self.options, steps)?;
         rendered.cost.bake_seconds = bake_seconds;
         Ok(rendered)
     }

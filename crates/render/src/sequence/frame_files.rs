@@ -1,38 +1,41 @@
-//! Where frames are written: a name in which `#` stands for digits.
+//! File names of frames: patterns in which `#` stands for a digit.
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
-/// The name of a file for each frame.
+/// A file name for each frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FrameFiles(Name);
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Name {
-    /// The same whatever the frame.
+    /// The same for all frames.
     Fixed(PathBuf),
-    /// The number between two pieces of text.
+    /// The frame number between two pieces of text.
     Numbered { folder: PathBuf, before: String, digits: usize, after: String },
 }
 
 impl FrameFiles {
-    /// A name with a row of `#` in it, as many as there are digits at least: `out.####.exr`.
+    /// File names from a pattern with one run of `#`, one for each digit (the minimum number of digits): `out.####.exr`.
     ///
     /// # Errors
-    /// There is none, or more than one.
+    /// The pattern has no run of `#`, or more than one, or is not UTF-8.
     pub fn new(pattern: &Path) -> Result<Self, String> {
         let name = pattern.file_name().unwrap_or(OsStr::new(""));
         let wrong = || {
-            let what = "has no row of # for the frame's number (write it as out.####.exr)";
+            let what = "has no run of # for the frame number (write it as out.####.exr)";
             format!("{}: {what}", pattern.display())
         };
         let name = name.to_str();
         let name =
-            name.ok_or_else(|| format!("{}: its name is not UTF-8 (choose another)", pattern.display()))?;
+            name.ok_or_else(|| format!("{}: the name is not UTF-8 (choose another)", pattern.display()))?;
         let (before, rest) = name.split_once('#').ok_or_else(wrong)?;
         let after = rest.trim_start_matches('#');
         if after.contains('#') {
-            return Err(format!("{}: has two rows of # (write one, as in out.####.exr)", pattern.display()));
+            return Err(format!(
+                "{}: has more than one run of # (write one, as in out.####.exr)",
+                pattern.display()
+            ));
         }
         let digits = 1 + rest.len() - after.len();
         let (before, after) = (before.to_string(), after.to_string());
@@ -40,7 +43,7 @@ impl FrameFiles {
         Ok(Self(Name::Numbered { folder, before, digits, after }))
     }
 
-    /// One name, for one frame.
+    /// A fixed file name, for a single frame.
     pub fn single(file: &Path) -> Self {
         Self(Name::Fixed(file.to_owned()))
     }

@@ -1,21 +1,27 @@
-//! Which frames: `1-100`, `1-100x2`, `1-3,5,7-10:2`.
+//! Parsing lists of frames: `1-100`, `1-100x2`, `1-3,5,7-10:2`.
 
 use std::str::FromStr;
 
-/// Frame numbers, ascending, no two alike.
+/// Frame numbers, ascending and unique.
+///
+/// ```
+/// let frames: render::FrameList = "1-3,5,7-10:2".parse()?;
+/// assert_eq!(frames.numbers(), [1, 2, 3, 5, 7, 9]);
+/// # Ok::<(), String>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FrameList(Vec<u32>);
 
 impl FrameList {
-    /// So many are rendered at once at most: at 24 a second more than four hours.
+    /// Maximum number of frames: more than four hours at 24 frames per second.
     pub const MAX_FRAMES: usize = 400_000;
 
-    /// One frame.
+    /// A list of one frame.
     pub fn single(frame: u32) -> Self {
         Self(vec![frame])
     }
 
-    /// The numbers.
+    /// The frame numbers.
     pub fn numbers(&self) -> &[u32] {
         &self.0
     }
@@ -24,12 +30,13 @@ impl FrameList {
 impl FromStr for FrameList {
     type Err = String;
 
-    /// Frames and ranges, comma between them; `x` or `:` and a number behind a range takes every so manieth of it (`x` as renderers write
-    /// it, `:` as Open Job Description does).
+    /// Parses comma-separated frames and ranges. A range may have a step after `x` (as renderers write it) or `:` (as in Open Job
+    /// Description).
     fn from_str(text: &str) -> Result<Self, String> {
         let number = |text: &str| {
             let number = text.trim().parse::<u32>();
-            number.map_err(|_| format!("{text:?} is no frame (as in 1-100, 1-100x2, 1-3,5,7-10:2)"))
+            number
+                .map_err(|_| format!("{text:?} is not a frame number (write 1-100, 1-100x2 or 1-3,5,7-10:2)"))
         };
         let mut frames = Vec::new();
         for part in text.split(',') {
@@ -42,7 +49,7 @@ impl FromStr for FrameList {
                 None => (number(range)?, number(range)?),
             };
             if step == 0 {
-                return Err(format!("{part:?}: a step of 0 goes nowhere"));
+                return Err(format!("{part:?}: the step must not be 0"));
             }
             if last < first {
                 return Err(format!("{part:?} ends before it begins"));

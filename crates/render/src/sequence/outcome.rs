@@ -1,20 +1,20 @@
-//! What becomes of a piece of work that is one of many: a frame, a tile.
+//! The outcome of one frame or tile.
 
 use crate::error::RenderError;
 
-/// What became of a frame, or of a tile.
+/// The outcome of a frame or tile.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Outcome {
-    /// It was drawn and written.
+    /// It was rendered and written.
     Written,
-    /// It was there already, by the same plan, and whole.
+    /// It already existed, complete and made by the same plan.
     Skipped,
-    /// It could not be made.
+    /// It could not be rendered or written.
     Failed(RenderError),
 }
 
 impl Outcome {
-    /// In a word, as reports have it.
+    /// The outcome in one word, as used in reports.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Written => "written",
@@ -23,7 +23,7 @@ impl Outcome {
         }
     }
 
-    /// Why it could not be made.
+    /// The error of a failed frame or tile.
     pub fn error(&self) -> Option<&RenderError> {
         match self {
             Self::Failed(error) => Some(error),

@@ -1,4 +1,4 @@
-//! What the bytes of a frame depend on, as a checksum: a frame whose file was made by the same plan is finished.
+//! Plans: hashes of everything that the bytes of a frame depend on. A frame whose file has the same plan is finished.
 
 use crate::picture::RenderOptions;
 use crate::sequence::scene_in_time::SceneInTime;
@@ -9,32 +9,37 @@ use light::LitScene;
 use sha2::{Digest, Sha256};
 use std::sync::Arc;
 
-/// Changes whenever the same input may give other bytes.
+/// Must change whenever the same input may give different bytes.
 const VERSION: &str = concat!("frame 1, ", env!("CARGO_PKG_VERSION"));
 
-/// The plan of a picture of what is seen at an instant; `written` says in which form.
-pub(crate) fn frame_plan(at: &FrameState, baked: &str, options: &RenderOptions, written: &str) -> [u8; 32] {
+/// The plan of a frame. `written` describes the output format, `baked` the light field.
+pub(crate) fn frame_plan(
+    state: &FrameState,
+    baked: &str,
+    options: &RenderOptions,
+    written: &str,
+) -> [u8; 32] {
     let mut hash = Sha256::new();
     let mut add = |bytes: &[u8]| {
         hash.update((bytes.len() as u64).to_le_bytes());
         hash.update(bytes);
     };
     add(VERSION.as_bytes());
-    add(&at.scene.hash);
-    // Mattes are called after objects.
-    at.scene.scene.nodes.iter().for_each(|node| add(node.name.as_bytes()));
-    // Written out, numbers are as exact as they are.
-    add(format!("{:?}", at.camera).as_bytes());
+    add(&state.scene.hash);
+    // Mattes are named after objects.
+    state.scene.scene.nodes.iter().for_each(|node| add(node.name.as_bytes()));
+    // `Debug` output of floats is exact.
+    add(format!("{:?}", state.camera).as_bytes());
     add(baked.as_bytes());
-    add_focus(&mut add, &at.focus);
-    // Where it is summed makes no difference.
+    add_focus(&mut add, &state.focus);
+    // The device does not change the result.
     let anywhere = RenderOptions { gpu: None, ..options.clone() };
     add(format!("{anywhere:?}").as_bytes());
     add(written.as_bytes());
     hash.finalize().into()
 }
 
-/// The plan of a picture of a scene that stands still.
+/// The plan of a picture of a scene at rest.
 pub(crate) fn still_frame_plan(
     lit: &Arc<LitScene>,
     camera: &Camera,
@@ -43,13 +48,14 @@ pub(crate) fn still_frame_plan(
     written: &str,
 ) -> [u8; 32] {
     let scene = Arc::new(SceneInTime::at_rest(lit.clone()));
-    let at = FrameState { scene, camera: camera.clone(), focus: focus.clone(), placed: camera.clone() };
-    frame_plan(&at, "", options, written)
+    let state =
+        FrameState { scene, camera: camera.clone(), focus: focus.clone(), base_camera: camera.clone() };
+    frame_plan(&state, "", options, written)
 }
 
 fn add_focus(add: &mut dyn FnMut(&[u8]), focus: &Focus) {
     add(format!("{:?}", focus.background).as_bytes());
-    // One map is most often that of all parts.
+    // All parts usually share one map.
     let mut last: Option<Arc<FocusMap>> = None;
     for source in &focus.parts {
         match source {

@@ -1,4 +1,4 @@
-//! Rendering frames one after the other.
+//! Rendering frames one after another.
 
 use crate::error::RenderError;
 use crate::picture::{RenderOptions, Rendered};
@@ -13,68 +13,68 @@ use project::is_finished;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Writes a picture to a file, and in it the plan that it was made by; returns all files that it wrote.
+/// Writes a picture and its plan to a file. Returns all files written.
 pub type WritePicture<'a> = dyn Fn(&Path, &Rendered, [u8; 32]) -> Result<Vec<PathBuf>, RenderError> + 'a;
 
-/// What frames are rendered as, and where to.
+/// How frames are rendered, and where they are written.
 pub struct SequenceOptions<'a> {
-    /// How each is rendered.
+    /// How each frame is rendered.
     pub render: RenderOptions,
-    /// Where they are written.
+    /// File names of the frames.
     pub files: FrameFiles,
-    /// All of how a picture is written that its bytes depend on, in words.
+    /// A description of the output format that includes everything the bytes depend on.
     pub written: String,
-    /// Writes a picture, and in it the plan that it was made by; returns the files.
+    /// Writes a picture.
     pub write: &'a WritePicture<'a>,
-    /// Is told of every frame.
+    /// Called after each frame.
     pub on_frame: &'a dyn Fn(&FrameReport),
-    /// Whether the work is to end: asked before each frame.
+    /// Checked for cancellation before each frame.
     pub progress: &'a dyn Progress,
 }
 
-/// A frame of the report.
+/// The report on one frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameReport {
-    /// Its number.
+    /// Frame number.
     pub frame: u32,
-    /// Its time, s.
+    /// Time in the animation, s.
     pub seconds: f64,
-    /// Its picture.
+    /// The file of its picture.
     pub file: PathBuf,
-    /// What became of it.
+    /// Whether it was written.
     pub outcome: Outcome,
-    /// How long it took, s.
+    /// Processing time, s.
     pub took_seconds: f64,
 }
 
-/// What was done.
+/// The report on a sequence.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SequenceReport {
     /// The frames, in order.
     pub frames: Vec<FrameReport>,
-    /// What baking took, and what was not baked again.
+    /// Statistics of baking.
     pub baking: Baking,
-    /// What the frames lack, a sentence each, no two alike.
+    /// What the frames lack, one sentence each, without duplicates.
     pub warnings: Vec<String>,
 }
 
 impl SequenceReport {
-    /// How many frames had an outcome like this.
-    pub fn count(&self, is_like: impl Fn(&Outcome) -> bool) -> usize {
-        self.frames.iter().filter(|frame| is_like(&frame.outcome)).count()
+    /// Number of frames whose outcome satisfies a condition.
+    pub fn count(&self, matches_outcome: impl Fn(&Outcome) -> bool) -> usize {
+        self.frames.iter().filter(|frame| matches_outcome(&frame.outcome)).count()
     }
 
-    /// Seconds that were saved by not baking again what did not move: as many as baking took on average, for each frame.
+    /// Estimated time saved by reusing light fields, s: the mean baking time for each reusing frame.
     pub fn saved_seconds(&self) -> f64 {
         let Baking { baked, reused, seconds, .. } = self.baking;
         if baked == 0 { 0.0 } else { seconds / f64::from(baked) * f64::from(reused) }
     }
 }
 
-/// Renders frames, but for those that are finished. A frame that cannot be made does not keep the others from it.
+/// Renders the frames that are not yet finished. If a frame fails, the others are still rendered.
 ///
 /// # Errors
-/// The work was cancelled, or the machine stands in the way: what is finished stays.
+/// The work was cancelled, or there is a temporary problem of the machine (including a missing GPU). Finished frames stay.
 pub fn render_frames(
     take: &Take<'_>,
     frames: &[u32],
@@ -113,18 +113,19 @@ fn render_one_frame(
     warnings: &mut Vec<String>,
     steps: &dyn Steps,
 ) -> Result<Outcome, RenderError> {
-    let at = take.at(seconds, options.progress)?;
-    at.camera
+    let state = take.evaluate(seconds, options.progress)?;
+    state
+        .camera
         .validate()
         .map_err(|error| RenderError::bad_file(take.path(), format!("at {seconds} s the {error}")))?;
-    let field = baker.field(&at)?;
+    let field = baker.field(&state)?;
     let baked = field.as_ref().map(|field| field.description()).unwrap_or_default();
-    let plan = frame_plan(&at, &baked, &options.render, &options.written);
+    let plan = frame_plan(&state, &baked, &options.render, &options.written);
     if is_finished(file, &plan) {
         return Ok(Outcome::Skipped);
     }
-    let rendered = baker.render(&at, field.as_ref(), steps)?;
-    let mut scene_warnings = at
+    let rendered = baker.render(&state, field.as_ref(), steps)?;
+    let mut scene_warnings = state
         .scene
         .scene
         .warnings

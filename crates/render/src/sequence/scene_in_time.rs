@@ -1,6 +1,6 @@
-//! The scene at a time: moved as its file says, with the atlas that goes along.
+//! The scene at a time: posed by the animation of its file, with a matching atlas.
 //!
-//! Atlas and paint belong to the surface at rest: a triangle keeps its place in the atlas wherever it is, so that a texel stays on its
+//! Atlas and paint belong to the surface at rest. A triangle keeps its place in the atlas wherever it moves, so that a texel stays on its
 //! piece of surface ([`posed_atlas`]).
 
 use crate::error::RenderError;
@@ -16,15 +16,15 @@ use std::collections::HashMap;
 use std::sync::{Arc, OnceLock};
 use trace::Tracer;
 
-/// A scene as it is at a time.
+/// A scene at a time.
 pub(crate) struct SceneInTime {
     /// The scene.
     pub scene: Arc<Scene>,
-    /// A checksum of all that gives, blocks or reflects light.
+    /// A hash of everything that emits, blocks or reflects light.
     pub hash: [u8; 32],
-    /// Of each triangle the one at rest; nothing where all are in their places.
+    /// The rest triangle of each triangle; `None` if all are in place.
     at_rest: Option<Vec<Option<RestTriangle>>>,
-    /// Of each triangle at rest where it is now; found when it is asked for first.
+    /// The current triangle of each rest triangle, and whether it is flipped; computed on first use.
     now: OnceLock<HashMap<u32, (u32, bool)>>,
     lit: OnceLock<Arc<LitScene>>,
     light: LightOptions,
@@ -49,7 +49,7 @@ impl SceneInTime {
         Self { scene, hash, at_rest, now, lit, light, resources, atlas, canvas }
     }
 
-    /// The scene at a moment, its light modelled as that of `like`.
+    /// The scene at `moment`, its light modelled as that of `like`.
     pub fn moved(
         moving: &AnimatedScene,
         moment: &AnimationTime,
@@ -70,7 +70,7 @@ impl SceneInTime {
         })
     }
 
-    /// Where its triangles lie in an atlas of the scene at rest, always the same one.
+    /// The atlas of this scene, derived from the atlas of the scene at rest, which must be the same in every call.
     pub fn atlas(&self, rest: &Arc<Atlas>) -> &Arc<Atlas> {
         self.atlas.get_or_init(|| match &self.at_rest {
             None => rest.clone(),
@@ -78,7 +78,7 @@ impl SceneInTime {
         })
     }
 
-    /// Where the texels of that atlas are.
+    /// The canvas of [`Self::atlas`]: positions of its texels.
     pub fn canvas(&self, rest: &Arc<Atlas>) -> &Canvas {
         self.canvas.get_or_init(|| {
             let atlas = self.atlas(rest);
@@ -86,7 +86,7 @@ impl SceneInTime {
         })
     }
 
-    /// Where a point of the surface at rest is now; nothing where it is not shown.
+    /// The current position of a point of the surface at rest; `None` if it is hidden.
     pub fn position(&self, point: SurfacePoint) -> Option<DVec3> {
         let here = match &self.at_rest {
             None => point,
@@ -103,8 +103,8 @@ impl SceneInTime {
         here.checked_position(&self.scene)
     }
 
-    /// The focus of the scene at rest where its surface is now; `painted`, if given, is what is painted now. What was hidden at rest has
-    /// the ordinary lens's.
+    /// The focus of the scene at rest, carried over to the current surface. `painted`, if given, replaces the focus map. Surfaces that
+    /// were hidden at rest have the standard focus.
     pub fn focus(&self, rest: &Focus, painted: Option<&Arc<FocusMap>>) -> Focus {
         let now = |source: &FocusSource| match source {
             FocusSource::Atlas { atlas, map } => {
@@ -127,15 +127,15 @@ impl SceneInTime {
     }
 }
 
-/// Of each triangle at rest where it is now, and whether its corners are turned.
+/// The current triangle of each rest triangle, and whether its winding is flipped.
 fn current_triangles(at_rest: &[Option<RestTriangle>]) -> HashMap<u32, (u32, bool)> {
     let place =
         |(now, rest): (u32, &Option<RestTriangle>)| rest.map(|rest| (rest.triangle, (now, rest.is_flipped)));
     (0..).zip(at_rest).filter_map(place).collect()
 }
 
-/// The atlas of a scene in motion: its triangles where they lie in that of the scene at rest, whose name (hash) it keeps. What was hidden
-/// at rest lies in no texel.
+/// The atlas of a posed scene: its triangles have the same places as in the atlas at rest, whose hash it keeps. Triangles that were hidden
+/// at rest cover no texel.
 fn posed_atlas(rest: &Atlas, scene: &Scene, at_rest: &[Option<RestTriangle>]) -> Atlas {
     let mut charts: HashMap<(Option<u32>, u32), u32> = HashMap::new();
     let (mut corners, mut chart_of, mut part_of_chart) = (Vec::new(), Vec::new(), Vec::new());

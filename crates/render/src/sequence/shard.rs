@@ -1,36 +1,43 @@
-//! A share of the work: every N-th piece of it.
+//! Distributing work: a shard is every N-th piece of it.
 
 use std::str::FromStr;
 
-/// Share `index` of `count`.
+/// Shard `index` of `count`.
+///
+/// ```
+/// let shard: render::Shard = "2/3".parse()?;
+/// assert!(shard.contains(1) && shard.contains(4) && !shard.contains(2));
+/// # Ok::<(), String>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
-    /// Which one, from 0.
+    /// Number of the shard, from 0.
     pub index: u32,
-    /// How many there are, at least 1.
+    /// Number of shards, at least 1.
     pub count: u32,
 }
 
 impl Shard {
-    /// All of it.
+    /// The shard that contains everything.
     pub const WHOLE: Self = Self { index: 0, count: 1 };
 
-    /// Whether the piece with this number, from 0, is of this share.
+    /// Whether the piece of this number, from 0, belongs to this shard.
     pub fn contains(self, piece: usize) -> bool {
         piece as u64 % u64::from(self.count) == u64::from(self.index)
     }
 
-    /// The share that a farm gives this process, by the variables of its environment: an array of Slurm, an indexed job of Kubernetes, a
-    /// job of GNU parallel; a number that none of them has (how many there are) is `FOCUS_BRUSH_SHARDS`.
+    /// The shard that a render farm assigns to this process through environment variables: a Slurm array job, an indexed Kubernetes job or
+    /// a GNU parallel job. Where these do not give the number of shards, it is read from `FOCUS_BRUSH_SHARDS`. `variable` looks up an
+    /// environment variable.
     ///
     /// # Errors
-    /// There is none, or it makes no sense.
+    /// No farm is detected, or its variables are invalid or inconsistent.
     pub fn from_environment(variable: &dyn Fn(&str) -> Option<String>) -> Result<Self, String> {
         let number = |name: &str| -> Result<Option<i64>, String> {
             let Some(text) = variable(name).filter(|text| !text.is_empty()) else { return Ok(None) };
-            text.trim().parse().map(Some).map_err(|_| format!("{name} is {text:?}, which is no number"))
+            text.trim().parse().map(Some).map_err(|_| format!("{name} is {text:?}, which is not a number"))
         };
-        // Where each farm says which one this is, the first one, and how many there are.
+        // For each farm: variables of the index, of the first index, the default first index, and the variable of the count.
         let farms = [
             ("SLURM_ARRAY_TASK_ID", Some("SLURM_ARRAY_TASK_MIN"), 0, Some("SLURM_ARRAY_TASK_COUNT")),
             ("JOB_COMPLETION_INDEX", None, 0, None),
@@ -41,7 +48,7 @@ impl Shard {
             let own = how_many.map(number).transpose()?.flatten();
             let count = own.or(number("FOCUS_BRUSH_SHARDS")?);
             let count = count.ok_or_else(|| {
-                format!("{which} says which share this is, and nothing how many there are (set FOCUS_BRUSH_SHARDS)")
+                format!("{which} gives the number of this shard, but not how many there are (set FOCUS_BRUSH_SHARDS)")
             })?;
             let first = lowest.map(number).transpose()?.flatten().unwrap_or(first);
             let step =
@@ -50,11 +57,11 @@ impl Shard {
             let share = index.and_then(|index| {
                 Some(Self { index: u32::try_from(index / step).ok()?, count: u32::try_from(count).ok()? })
             });
-            return share
-                .filter(|share| share.index < share.count)
-                .ok_or_else(|| format!("{which} is {id}, which is none of {count} from {first} on"));
+            return share.filter(|share| share.index < share.count).ok_or_else(|| {
+                format!("{which} is {id}, which is not among {count} shards starting at {first}")
+            });
         }
-        Err("no farm says which share this is (none of SLURM_ARRAY_TASK_ID, JOB_COMPLETION_INDEX, PARALLEL_SEQ is set; give K/N)".into())
+        Err("no render farm detected (none of SLURM_ARRAY_TASK_ID, JOB_COMPLETION_INDEX, PARALLEL_SEQ is set; give K/N)".into())
     }
 }
 
@@ -67,7 +74,7 @@ impl FromStr for Shard {
             text.split_once('/').and_then(|(k, n)| Some((k.trim().parse().ok()?, n.trim().parse().ok()?)));
         match parts {
             Some((k, n)) if (1..=n).contains(&k) => Ok(Self { index: k - 1, count: n }),
-            _ => Err("K/N with K from 1 to N, or env".into()),
+            _ => Err("expected K/N with K from 1 to N, or env".into()),
         }
     }
 }
@@ -109,6 +116,6 @@ mod tests {
         assert_eq!(shard_of(&parallel), Ok(Shard { index: 2, count: 3 }));
         assert!(shard_of(&[]).unwrap_err().contains("give K/N"));
         assert!(shard_of(&parallel[..1]).unwrap_err().contains("FOCUS_BRUSH_SHARDS"));
-        assert!(shard_of(&[("PARALLEL_SEQ", "x")]).unwrap_err().contains("no number"));
+        assert!(shard_of(&[("PARALLEL_SEQ", "x")]).unwrap_err().contains("not a number"));
     }
 }

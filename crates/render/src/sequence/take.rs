@@ -1,4 +1,4 @@
-//! What a document looks like at a time: scene, camera and focus.
+//! Evaluating a document at a time: scene, camera and focus.
 
 use crate::error::RenderError;
 use crate::picture::lit_scene_of;
@@ -11,22 +11,22 @@ use progress::Progress;
 use scene::{AnimatedScene, AnimationTime, LoadOptions, SceneCamera};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// How a document is put in time.
+/// How a document is animated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TakeOptions {
-    /// Frames a second: frame 1 is at 0 s.
+    /// Frames per second. Frame 1 is at 0 s.
     pub frames_per_second: f64,
-    /// The animation of the scene's file, by name; the first where there is none.
+    /// Name of the animation in the scene's file; the first one if `None`.
     pub animation: Option<String>,
-    /// The keys of the lens; those of the project, unless others are given.
+    /// The keys of the lens.
     pub lens: LensMotion,
-    /// Whether the layers of the project make the focus, and move; not where another focus was given.
+    /// Whether the project's layers determine the focus and may be animated. False if the focus was given explicitly.
     pub has_layers: bool,
-    /// Pixels of the same picture around the frame, on each side ([`Camera::overscanned`]).
+    /// Extra pixels around the frame, on each side ([`Camera::overscanned`]).
     pub overscan: u32,
 }
 
-/// A document in time.
+/// An animated document.
 pub struct Take<'a> {
     input: &'a Input,
     camera: Camera,
@@ -34,28 +34,28 @@ pub struct Take<'a> {
     options: TakeOptions,
     layers: Option<&'a LayerStack>,
     moving: Option<AnimatedScene>,
-    /// The camera of the scene that the camera goes with.
+    /// Index of the scene camera whose animation the camera follows.
     follows: Option<usize>,
     still: Arc<SceneInTime>,
-    /// The scene that was asked for last: most often the next is the same.
+    /// The scene of the last request: the next is often the same.
     last: Mutex<Arc<SceneInTime>>,
 }
 
-/// A document at a time.
+/// A document evaluated at a time.
 pub(crate) struct FrameState {
     pub scene: Arc<SceneInTime>,
-    /// The camera, its lens included.
+    /// The camera, with its lens at that time.
     pub camera: Camera,
     pub focus: Focus,
-    /// The camera before its lens moved.
-    pub placed: Camera,
+    /// The camera before lens keys are applied.
+    pub base_camera: Camera,
 }
 
 impl<'a> Take<'a> {
-    /// Puts a document in time: `camera` and `focus` are those of the scene at rest.
+    /// Animates a document. `camera` and `focus` are those of the scene at rest.
     ///
     /// # Errors
-    /// A light field is of one moment; the scene has no such animation, or has changed.
+    /// The input is a light field (it cannot be animated), the scene has no such animation, or its file has changed.
     pub fn new(
         input: &'a Input,
         camera: Camera,
@@ -64,7 +64,8 @@ impl<'a> Take<'a> {
         steps: &dyn Steps,
     ) -> Result<Self, RenderError> {
         if input.salf.is_some() {
-            let what = "is the light field of one moment (give the scene or project it was baked from)";
+            let what =
+                "is a light field, which cannot be animated (give the scene or project it was baked from)";
             return Err(RenderError::bad_file(&input.path, what));
         }
         let moving = match InputKind::from_path(&input.scene.path) {
@@ -87,17 +88,17 @@ impl<'a> Take<'a> {
         Ok(Self { input, camera, focus, options, layers, moving, follows, still, last })
     }
 
-    /// The file that was opened.
+    /// The input file.
     pub(crate) fn path(&self) -> &std::path::Path {
         &self.input.path
     }
 
-    /// When a frame is, s.
+    /// Time of a frame, s.
     pub fn seconds(&self, frame: u32) -> f64 {
         (f64::from(frame) - 1.0) / self.options.frames_per_second
     }
 
-    /// All times at which something is keyed, ascending.
+    /// All key times, ascending and unique, s.
     fn key_times(&self) -> Vec<f64> {
         let layers = self.layers.iter().flat_map(|layers| layers.layers());
         let mut times: Vec<f64> =
@@ -107,42 +108,45 @@ impl<'a> Take<'a> {
         times
     }
 
-    /// The document at a time.
-    pub(crate) fn at(&self, seconds: f64, progress: &dyn Progress) -> Result<FrameState, RenderError> {
+    /// Evaluates the document at a time.
+    pub(crate) fn evaluate(&self, seconds: f64, progress: &dyn Progress) -> Result<FrameState, RenderError> {
         let (scene, cameras) = self.scene(seconds, progress)?;
-        let placed = self.placed(&cameras, seconds)?.overscanned(self.options.overscan);
-        Ok(self.state_at(scene, placed, seconds))
+        let base_camera = self.base_camera_at(&cameras, seconds)?.overscanned(self.options.overscan);
+        Ok(self.state_at(scene, base_camera, seconds))
     }
 
-    /// The same place with the lens and the focus of every key: what has to be known there for any of them.
-    pub(crate) fn at_keys(&self, at: &FrameState) -> Vec<(Camera, Focus)> {
+    /// Camera and focus at the time of every key, with scene and base camera of `state`.
+    pub(crate) fn lens_and_focus_at_keys(&self, state: &FrameState) -> Vec<(Camera, Focus)> {
         let keyed_lens = |seconds| {
-            let state = self.state_at(at.scene.clone(), at.placed.clone(), seconds);
-            (state.camera, state.focus)
+            let keyed = self.state_at(state.scene.clone(), state.base_camera.clone(), seconds);
+            (keyed.camera, keyed.focus)
         };
         self.key_times().into_iter().map(keyed_lens).collect()
     }
 
-    /// The camera at a place before its lens moves, with the aperture of the widest of these lenses.
-    pub(crate) fn widest_aperture_camera(&self, at: &FrameState, keyed: &[(Camera, Focus)]) -> Camera {
+    /// The base camera of `state`, with the widest aperture of all `keyed` lenses.
+    pub(crate) fn widest_aperture_camera(&self, state: &FrameState, keyed: &[(Camera, Focus)]) -> Camera {
         if self.options.lens.f_number.is_empty() {
-            return at.placed.clone();
+            return state.base_camera.clone();
         }
-        // The focal length grows with the distance that is focused on: the longest of all with the widest stop bounds all of them.
-        let cameras = || keyed.iter().map(|(camera, _)| camera).chain([&at.camera]);
+        // The longest focal length with the smallest f-number bounds all apertures: focal length grows with focus distance.
+        let cameras = || keyed.iter().map(|(camera, _)| camera).chain([&state.camera]);
         let focal = cameras().map(|camera| camera.optics().focal_length()).fold(0.0, f64::max);
         let numbers = self.options.lens.f_number.keys().iter().map(|key| key.value);
-        Camera { aperture_radius: focal / (2.0 * numbers.fold(f64::INFINITY, f64::min)), ..at.placed.clone() }
+        Camera {
+            aperture_radius: focal / (2.0 * numbers.fold(f64::INFINITY, f64::min)),
+            ..state.base_camera.clone()
+        }
     }
 
-    fn state_at(&self, scene: Arc<SceneInTime>, placed: Camera, seconds: f64) -> FrameState {
-        let camera = self.options.lens.camera_at(seconds, &placed, &|point| scene.position(point));
-        let map = self.layers.map(|layers| self.painted(layers, &scene, &placed, seconds));
+    fn state_at(&self, scene: Arc<SceneInTime>, base_camera: Camera, seconds: f64) -> FrameState {
+        let camera = self.options.lens.camera_at(seconds, &base_camera, &|point| scene.position(point));
+        let map = self.layers.map(|layers| self.painted(layers, &scene, &base_camera, seconds));
         let focus = scene.focus(self.focus, map.as_ref());
-        FrameState { scene, camera, focus, placed }
+        FrameState { scene, camera, focus, base_camera }
     }
 
-    /// The scene at a time, and its cameras then. One that is lit and stands as one before is the same.
+    /// The scene and its cameras at a time. Reuses the previous scene if its content is the same.
     fn scene(
         &self,
         seconds: f64,
@@ -162,8 +166,8 @@ impl<'a> Take<'a> {
         Ok((last.clone(), cameras))
     }
 
-    /// Where the camera stands at a time.
-    fn placed(&self, now: &[SceneCamera], seconds: f64) -> Result<Camera, RenderError> {
+    /// The camera at a time before lens keys are applied.
+    fn base_camera_at(&self, now: &[SceneCamera], seconds: f64) -> Result<Camera, RenderError> {
         let Some(index) = self.follows else { return Ok(self.camera.clone()) };
         let rest = &self.input.scene.cameras;
         let (Some(before), Some(after), true) = (rest.get(index), now.get(index), rest.len() == now.len())
@@ -179,7 +183,7 @@ impl<'a> Take<'a> {
         })
     }
 
-    /// What the layers make at a time.
+    /// The composite of the layers at a time.
     fn painted(
         &self,
         layers: &LayerStack,
@@ -191,7 +195,7 @@ impl<'a> Take<'a> {
         Arc::new(layers.at_time(seconds, atlas.map(|atlas| scene.canvas(atlas)), camera).composite())
     }
 
-    /// The atlas of the paint.
+    /// The atlas of the focus map.
     fn rest_atlas(&self) -> Option<&Arc<atlas::Atlas>> {
         self.focus.parts.iter().find_map(|source| match source {
             FocusSource::Atlas { atlas, .. } => Some(atlas),
@@ -200,7 +204,7 @@ impl<'a> Take<'a> {
     }
 }
 
-/// The first of the scene's cameras that stands where `camera` does: a pose that was saved and read again is the same to the last bit.
+/// Index of the first scene camera with exactly the pose of `camera`. Poses survive saving and loading bit for bit.
 fn camera_at_same_pose(cameras: &[SceneCamera], camera: &Camera) -> Option<usize> {
     cameras.iter().position(|other| other.camera_to_world == camera.camera_to_world)
 }

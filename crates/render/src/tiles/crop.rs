@@ -1,4 +1,4 @@
-//! A crop of a picture, drawn: the light field around it is baked square by square, and each goes into the sums.
+//! Drawing a crop of a picture: the light field around it is baked square by square, and each square is added to the sums.
 
 use crate::error::RenderError;
 use crate::mattes::{Footprints, MatteRequest, Packing, Ranking, SampleParts, Tally, Things, shares};
@@ -12,25 +12,26 @@ use scene::Scene;
 use splat::{Crop, CropError, CropOptions, CropPicture, CropSums, Integers, Kind, SETS, SplatError};
 use std::array::from_fn;
 
-/// Squares of 64 × 64 px whose light field is in memory at once.
+/// Number of squares of 64 × 64 px whose light field is in memory at once.
 const SQUARES_AT_ONCE: usize = 64;
 
-/// Mattes, of three sets each, that are summed at once.
+/// Number of mattes, of three sets each, that are summed at once.
 const MAX_MATTES_AT_ONCE: usize = 8;
 
-/// Bytes that sums of a pixel take: free and sharing, of all levels.
-const BYTES_OF_SUMS: u64 = 48;
+/// Bytes of the sums of one pixel, over all levels.
+const BYTES_PER_SUM: u64 = 48;
 
-/// Bytes that what is made of them takes.
-const BYTES_OF_NUMBERS: u64 = 56;
+/// Bytes of the resolved values of one pixel.
+const BYTES_PER_RESOLVED_PIXEL: u64 = 56;
 
-/// Bytes that all of it may take.
+/// Memory limit of a crop, bytes.
 const MAX_BYTES: u64 = 400 << 20;
 
 /// Why a crop was not drawn.
 pub(crate) enum CropFailure {
-    /// Integers of this kind do not hold it.
+    /// Integer sums of this kind overflowed.
     TooFine(Kind),
+    /// Any other error.
     Other(RenderError),
 }
 
@@ -50,21 +51,22 @@ impl<E: Into<RenderError>> From<E> for CropFailure {
     }
 }
 
-/// What was drawn.
+/// A drawn crop.
 pub(crate) struct DrawnCrop {
+    /// The sums.
     pub picture: CropPicture,
-    /// A share a pixel, if alpha was wanted.
+    /// Alpha of each pixel, if requested.
     pub alpha: Option<Vec<f32>>,
-    /// By kind of things, if they were wanted.
+    /// The mattes of each kind of things, if requested.
     pub mattes: Vec<Ranking>,
 }
 
-/// What a set of a matte is of.
+/// The content of a set of a matte.
 #[derive(Clone, Copy)]
 enum Set {
     /// All surfaces.
     Surface,
-    /// The things of a kind that have a color.
+    /// The things of a kind that share a color.
     Color { kind: usize, color: usize },
 }
 
@@ -77,6 +79,7 @@ pub(crate) struct CropDrawer<'a> {
 }
 
 impl<'a> CropDrawer<'a> {
+    /// A drawer for crops of `lit`.
     pub fn new(lit: &'a LitPicture) -> Self {
         let baker = lit.baker();
         let scene: &Scene = lit.tracer.scene();
@@ -86,7 +89,7 @@ impl<'a> CropDrawer<'a> {
         Self { lit, baker, scene, things }
     }
 
-    /// How many pixels of the finer picture are drawn at once at most.
+    /// Maximum number of pixels of the finer picture in one crop.
     pub fn max_px(&self) -> u64 {
         let mattes = match self.lit.mattes {
             None => 0,
@@ -94,10 +97,10 @@ impl<'a> CropDrawer<'a> {
             Some(MatteRequest { crypto: true }) => MAX_MATTES_AT_ONCE as u64,
         };
         let pictures = if self.baker.may_be_painted() { 2 } else { 1 };
-        MAX_BYTES / (BYTES_OF_SUMS * (pictures + mattes) + BYTES_OF_NUMBERS)
+        MAX_BYTES / (BYTES_PER_SUM * (pictures + mattes) + BYTES_PER_RESOLVED_PIXEL)
     }
 
-    /// Draws a crop of the picture, px.
+    /// Draws a crop, in pixels of the picture.
     pub fn draw(&self, crop: Crop, integers: Integers, steps: &dyn Steps) -> Result<DrawnCrop, CropFailure> {
         let LitPicture { finer, options, .. } = self.lit;
         let (cells, tolerance) = (options.cells_a_side, options.splat_tolerance);
@@ -119,8 +122,8 @@ impl<'a> CropDrawer<'a> {
         let first = IVec2::from_array(fine.corner.map(|px| px as i32));
         let window = [first, first + IVec2::from_array(fine.size.map(|side| side as i32))];
         let near = CropSums::near_px(tolerance) + CropSums::blur_px(tolerance);
-        let around = self.baker.survey_surroundings(window, near, &*steps.begin("surroundings"))?;
-        self.add_all(&mut sums, &around, group, &packings, &*steps.begin("tile"))?;
+        let surroundings = self.baker.survey_surroundings(window, near, &*steps.begin("surroundings"))?;
+        self.add_all(&mut sums, &surroundings, group, &packings, &*steps.begin("tile"))?;
         let picture = sums.picture()?;
 
         let mut alpha = None;
@@ -143,7 +146,7 @@ impl<'a> CropDrawer<'a> {
         count_mattes(&sums, group)?;
         for group in groups {
             sums.begin_mattes(group.len());
-            self.add_all(&mut sums, &around, group, &packings, &*steps.begin("mattes"))?;
+            self.add_all(&mut sums, &surroundings, group, &packings, &*steps.begin("mattes"))?;
             count_mattes(&sums, group)?;
         }
         let shown = alpha.as_deref().unwrap_or_default();
@@ -151,20 +154,20 @@ impl<'a> CropDrawer<'a> {
         Ok(DrawnCrop { picture, alpha, mattes })
     }
 
-    /// Adds all of the light field around a crop.
+    /// Bakes the light field around a crop and adds it to the sums.
     fn add_all(
         &self,
         sums: &mut CropSums,
-        around: &Surroundings,
+        surroundings: &Surroundings,
         mattes: &[&[Set]],
         packings: &[Packing],
         progress: &dyn Progress,
     ) -> Result<(), CropFailure> {
         let LitPicture { focus, options, .. } = self.lit;
-        let batches = around.squares.len().div_ceil(SQUARES_AT_ONCE) as f32;
-        for (index, squares) in around.squares.chunks(SQUARES_AT_ONCE).enumerate() {
+        let batches = surroundings.squares.len().div_ceil(SQUARES_AT_ONCE) as f32;
+        for (index, squares) in surroundings.squares.chunks(SQUARES_AT_ONCE).enumerate() {
             let stage = Stage::new(progress, index as f32 / batches, (index + 1) as f32 / batches);
-            let (salf, _) = self.baker.bake(around, squares, &Stage::new(&stage, 0.0, 0.7))?;
+            let (salf, _) = self.baker.bake(surroundings, squares, &Stage::new(&stage, 0.0, 0.7))?;
             let sample_parts = SampleParts::new(&salf, self.scene);
             let is_black = |sample: u32| sample_parts.part(sample).is_none();
             let is_black = options.is_premultiplied().then_some(&is_black as &(dyn Fn(u32) -> bool + Sync));
@@ -187,7 +190,7 @@ impl<'a> CropDrawer<'a> {
         Ok(())
     }
 
-    /// Which things of each kind are drawn together: by where their light may land, for all that triangles tell.
+    /// Which things of each kind are drawn together, from a bound on where their light may land.
     fn packings(&self, crop: Crop) -> Vec<Packing> {
         let cells = self.lit.options.cells_a_side as f32;
         let of_things = |things: &Things| {
@@ -208,7 +211,7 @@ impl<'a> CropDrawer<'a> {
     }
 }
 
-/// The sets that mattes are made of.
+/// The sets of all mattes.
 fn matte_sets(request: Option<MatteRequest>, packings: &[Packing]) -> Vec<Set> {
     let surface = request.map(|_| Set::Surface);
     let colors = packings

@@ -1,4 +1,4 @@
-//! A tile, drawn to its part.
+//! Drawing a tile into its part file.
 
 use crate::error::RenderError;
 use crate::mattes::{Ranking, Things};
@@ -19,7 +19,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use trace::{OutgoingRadiance, Radiance};
 
-/// A picture that is drawn in tiles.
+/// A picture to be drawn in tiles.
 #[derive(Clone, Copy)]
 pub(crate) struct Shot<'a> {
     pub lit: &'a Arc<LitScene>,
@@ -29,7 +29,7 @@ pub(crate) struct Shot<'a> {
 }
 
 impl Shot<'_> {
-    /// The light of the picture, and of what a pinhole sees if that is asked for.
+    /// The picture with its light, and the pinhole picture if it is requested.
     fn lit(self, steps: &dyn Steps) -> Result<(LitPicture, Option<LitPicture>), RenderError> {
         let Self { lit, camera, focus, options } = self;
         let picture = LitPicture::new(lit, camera, focus.clone(), options.clone(), steps)?;
@@ -44,7 +44,7 @@ impl Shot<'_> {
         Ok((picture, Some(pinhole)))
     }
 
-    /// Draws a tile, and puts its numbers in a part.
+    /// Draws a tile and writes its numbers to a part.
     pub fn draw(
         self,
         tile: Crop,
@@ -75,7 +75,7 @@ impl Shot<'_> {
             let pinhole_sums = match &pinhole {
                 None => None,
                 Some(drawer) => {
-                    // Nothing is painted, and no pixel covered twice: the finest integers hold it.
+                    // Nothing is painted and no pixel is covered twice, so the finest integers do not overflow.
                     let drawn = drawer.draw(crop, Integers::default(), steps).map_err(overflow_failure)?;
                     let picture = drawn.picture;
                     let sums = [part.write_floats(picture.numbers)?, part.write_floats(picture.knots)?];
@@ -95,7 +95,7 @@ impl Shot<'_> {
         Ok(drawn)
     }
 
-    /// The layers of a crop that first hits tell.
+    /// The layers of a crop that are made from first hits.
     fn layers(self, crop: Crop, steps: &dyn Steps) -> Result<Vec<Layer>, RenderError> {
         let Self { lit, camera, focus, options } = self;
         let hit_aovs: Vec<Aov> =
@@ -130,7 +130,7 @@ impl Shot<'_> {
         Ok(hit_aovs.iter().flat_map(|aov| aov.layers(&inputs)).collect())
     }
 
-    /// The things of which there are mattes, by kind.
+    /// The things of the mattes, by kind.
     pub fn things(self) -> Vec<NamedThings> {
         if !self.options.matte_request().is_some_and(|request| request.crypto) {
             return Vec::new();
@@ -143,7 +143,7 @@ impl Shot<'_> {
         vec![named(Things::objects(scene)), named(Things::materials(scene))]
     }
 
-    /// What a file that holds the layers has to say of them, as attributes.
+    /// Metadata of the layers, for the file's attributes.
     pub fn attributes(self) -> BTreeMap<String, String> {
         let things = self.things().into_iter();
         let mattes =
@@ -172,7 +172,7 @@ fn matte(part: &mut PartWriter, ranking: &Ranking) -> Result<Matte, RenderError>
     Ok(Matte { counts: counts.into(), entries: entries.into(), needed, left_out })
 }
 
-/// No light, where none is asked for.
+/// A scene without light, for hits of which only the geometry is used.
 struct Dark;
 
 impl Radiance for Dark {

@@ -1,37 +1,45 @@
-//! Where tiles lie, and the pieces that one is drawn in.
+//! The layout of tiles, and splitting a tile into pieces.
 
 use splat::Crop;
 use std::str::FromStr;
 
-/// Columns and rows of tiles.
+/// A grid of tiles.
+///
+/// ```
+/// let grid: render::TileGrid = "4x2".parse()?;
+/// let tiles = grid.tiles([1920, 1080])?;
+/// assert_eq!((tiles.len(), tiles[0].corner), (8, [0, 0]));
+/// # Ok::<(), String>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TileGrid {
-    /// How many lie beside each other.
+    /// Number of columns.
     pub columns: u32,
-    /// How many lie above each other.
+    /// Number of rows.
     pub rows: u32,
 }
 
 impl TileGrid {
-    /// The most columns, and rows.
+    /// Maximum number of columns, and of rows.
     const MAX_SIDE: u32 = 512;
 
-    /// How many tiles there are.
+    /// Number of tiles.
     pub fn count(self) -> u32 {
         self.columns * self.rows
     }
 
-    /// The tiles of a picture of this width and height, px, row by row: each begins and ends on a block, and has about as many.
+    /// The tiles of a picture of this width and height in pixels, row by row. Tiles begin and end on block boundaries and have about equal
+    /// numbers of blocks.
     ///
     /// # Errors
-    /// The picture is too small for so many.
+    /// The picture is too small for that many tiles.
     pub fn tiles(self, [width, height]: [u32; 2]) -> Result<Vec<Crop>, String> {
         let sides = |size: u32, count: u32, what: &str| {
             let blocks = size.div_ceil(Crop::ALIGNMENT);
             if count > blocks {
                 let block = Crop::ALIGNMENT;
                 return Err(format!(
-                    "{size} px are at most {blocks} {what} of tiles (they lie on blocks of {block} px)"
+                    "{size} px allow at most {blocks} {what} of tiles (tiles are made of blocks of {block} px)"
                 ));
             }
             let start = |index: u32| (index * blocks / count * Crop::ALIGNMENT).min(size);
@@ -48,7 +56,7 @@ impl TileGrid {
 impl FromStr for TileGrid {
     type Err = String;
 
-    /// `CxR`.
+    /// Parses `CxR`, columns × rows.
     fn from_str(text: &str) -> Result<Self, String> {
         let parts = text.split_once(['x', 'X', '×']);
         let parts = parts.and_then(|(c, r)| Some((c.trim().parse().ok()?, r.trim().parse().ok()?)));
@@ -57,12 +65,12 @@ impl FromStr for TileGrid {
             Some((columns, rows)) if valid.contains(&columns) && valid.contains(&rows) => {
                 Ok(Self { columns, rows })
             }
-            _ => Err(format!("CxR, columns and rows from 1 to {}, as in 4x4", Self::MAX_SIDE)),
+            _ => Err(format!("expected CxR with columns and rows from 1 to {}, as in 4x4", Self::MAX_SIDE)),
         }
     }
 }
 
-/// A tile in pieces of at most so many pixels, or of one block: halves of halves, each begins and ends on a block.
+/// Splits a tile by repeated halving into pieces of at most `max_px` pixels (but at least one block), on block boundaries.
 pub(crate) fn split_into_pieces(tile: Crop, max_px: u64) -> Vec<Crop> {
     let [width, height] = tile.size;
     let longer = usize::from(height > width);

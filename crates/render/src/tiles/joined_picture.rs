@@ -1,4 +1,4 @@
-//! The sums of all pieces of a picture, joined row by row.
+//! Joining the sums of all pieces of a picture, row by row.
 
 use crate::error::RenderError;
 use crate::tiles::part::{Part, Piece, Sums};
@@ -8,7 +8,7 @@ use project::{NumberReader, PartFile, Section};
 use splat::{CropForm, CropJoiner, CropRow, KNOT_NUMBERS};
 use std::ops::Range;
 
-/// Numbers of pieces, read row by row from the picture's top.
+/// Reads the numbers of pieces row by row, from the top of the picture.
 pub(crate) struct PieceRows<'a> {
     pieces: Vec<PieceReader<'a>>,
 }
@@ -16,16 +16,16 @@ pub(crate) struct PieceRows<'a> {
 struct PieceReader<'a> {
     file: &'a PartFile,
     section: Section,
-    /// Columns and rows of the picture.
+    /// Its columns and rows in the picture.
     columns: Range<u32>,
     rows: Range<u32>,
-    /// Numbers a row.
+    /// Numbers per row.
     length: usize,
     open: Option<NumberReader>,
 }
 
 impl<'a> PieceRows<'a> {
-    /// Of sections that `find` tells of pieces, and how many numbers a row of one has; a pixel of theirs is one of `cells` × `cells`.
+    /// A reader of the sections that `section_of` selects, with their numbers per row. Rows are those of the finer picture, `cells` per pixel.
     pub fn new(
         parts: &'a [(PartFile, Part)],
         cells: u32,
@@ -47,7 +47,7 @@ impl<'a> PieceRows<'a> {
         Self { pieces }
     }
 
-    /// The next row, which must be `y`: the numbers of each piece that it runs through, by its first column, from left to right.
+    /// Reads the next row, which must be `y`: for each piece that it crosses, from left to right, its first column and its numbers.
     pub fn next(&mut self, y: u32) -> Result<Vec<(u32, Vec<f32>)>, RenderError> {
         let mut row = Vec::new();
         for piece in self.pieces.iter_mut().filter(|piece| piece.rows.contains(&y)) {
@@ -64,7 +64,7 @@ impl<'a> PieceRows<'a> {
     }
 }
 
-/// A picture that is made of the sums of all parts.
+/// A picture that is resolved from the sums of all parts.
 pub(crate) struct JoinedPicture<'a> {
     joining: CropJoiner,
     form: CropForm,
@@ -75,7 +75,7 @@ pub(crate) struct JoinedPicture<'a> {
 }
 
 impl<'a> JoinedPicture<'a> {
-    /// Reads what its gains are made of. `find` tells which sums of a piece are meant.
+    /// Reads the knots of all parts and solves for the gains. `sums_of` selects the sums of a piece. `None` if there are none.
     pub fn new(
         parts: &'a [(PartFile, Part)],
         sums_of: impl Fn(&'a Piece) -> Option<&'a Sums> + Copy,
@@ -120,7 +120,7 @@ impl<'a> JoinedPicture<'a> {
         Ok(Some(joined))
     }
 
-    /// The next row of the finer picture, not yet joined.
+    /// Reads the next row of the finer picture, without gains applied.
     fn row(&mut self, y: u32) -> Result<CropRow, RenderError> {
         let mut row = CropRow::black(self.size[0] as usize);
         for (first, numbers) in self.rows.next(y)? {
@@ -129,7 +129,7 @@ impl<'a> JoinedPicture<'a> {
         Ok(row)
     }
 
-    /// The next rows of the picture.
+    /// Resolves the next rows of the picture.
     pub fn picture(&mut self, rows: Range<u32>) -> Result<Picture, RenderError> {
         let fine = rows.start * self.cells..rows.end * self.cells;
         let (mut radiance, mut coverage) = (Vec::new(), Vec::new());

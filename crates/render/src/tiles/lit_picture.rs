@@ -1,4 +1,4 @@
-//! What a picture in tiles is lit and baked by.
+//! The light and bake options of a tiled picture.
 
 use crate::error::RenderError;
 use crate::mattes::MatteRequest;
@@ -10,10 +10,10 @@ use salf::{BakeOptions, PartsBaker};
 use std::sync::Arc;
 use trace::{Radiance, Tracer};
 
-/// The light of a picture that is summed: the picture itself, or what a pinhole sees.
+/// A picture to be summed (the main picture or the pinhole picture), with its light.
 pub(crate) struct LitPicture {
     pub tracer: Arc<Tracer>,
-    /// Of the light field: as much finer as the options say.
+    /// Camera of the light field, finer by the options' cells per side.
     pub finer: Camera,
     pub focus: Focus,
     pub options: RenderOptions,
@@ -23,7 +23,7 @@ pub(crate) struct LitPicture {
 }
 
 impl LitPicture {
-    /// Of what a camera shows of a scene that is focused so.
+    /// Solves the light for a picture of `camera` with `focus`.
     pub fn new(
         lit: &LitScene,
         camera: &Camera,
@@ -41,7 +41,7 @@ impl LitPicture {
         Ok(Self { tracer: lit.tracer().clone(), finer, focus, options, mattes, light, bake })
     }
 
-    /// Bakes parts of its light field.
+    /// A baker of parts of its light field.
     pub fn baker(&self) -> PartsBaker<'_> {
         PartsBaker::new(&self.tracer, &*self.light, &self.finer, &self.bake, &self.focus)
     }

@@ -1,4 +1,4 @@
-//! Parts to the picture.
+//! Merging part files into the picture.
 
 use crate::error::RenderError;
 use crate::mattes::{Entry, left_out_warning, ranks_of};
@@ -14,24 +14,22 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// What was merged.
+/// A merged picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Merged {
-    /// Columns and rows of the picture.
+    /// Width and height of the picture, px.
     pub size: [u32; 2],
-    /// How many tiles it was made of.
+    /// Number of tiles.
     pub tiles: u32,
-    /// What it lacks, a sentence each.
+    /// What the picture lacks, one sentence each.
     pub warnings: Vec<String>,
 }
 
-/// Why parts were not merged.
+/// Why parts could not be merged.
 pub(crate) enum MergeFailure {
-    /// A part was summed in integers that are finer than the whole picture's.
-    TooFine {
-        part: PathBuf,
-        integers: Integers,
-    },
+    /// A part was summed with finer integers than the whole picture allows.
+    TooFine { part: PathBuf, integers: Integers },
+    /// Any other error.
     Other(RenderError),
 }
 
@@ -41,18 +39,19 @@ impl<E: Into<RenderError>> From<E> for MergeFailure {
     }
 }
 
-/// Merges the parts of a picture, one a tile in any order, to an EXR: the same bytes as the whole, rendered at once.
+/// Merges the parts of a picture, one per tile in any order, into an EXR. The bytes are the same as those of the picture rendered at
+/// once.
 ///
 /// # Errors
-/// A part is missing, twice there, not whole, of another picture, or was summed in integers that are finer than the picture's; it is
-/// named. Or the picture cannot be written.
+/// A part is missing, duplicated, incomplete, belongs to another picture, or was summed with finer integers than the picture allows; the
+/// message names it. Or the picture cannot be written.
 pub fn merge_tiles(parts: &[PathBuf], output: &Path, steps: &dyn Steps) -> Result<Merged, RenderError> {
     merge(parts, output, steps).map_err(|failure| match failure {
         MergeFailure::Other(error) => error,
         MergeFailure::TooFine { part, integers: Integers { standard, painted } } => RenderError::bad_file(
             &part,
             format!(
-                "its sums are finer than the whole picture can have them (render its tile again with --integers {standard},{painted})"
+                "its integer sums are finer than the whole picture allows (render its tile again with --integers {standard},{painted})"
             ),
         ),
     })
@@ -74,7 +73,7 @@ pub(crate) fn merge(files: &[PathBuf], output: &Path, steps: &dyn Steps) -> Resu
         return Err(RenderError::BadInput("no parts were given (name all of them)".into()).into());
     };
     let unknown_format =
-        || RenderError::bad_file(output, "nobody knows how it is written (render the tiles again)");
+        || RenderError::bad_file(output, "the parts do not describe its format (render the tiles again)");
     let options = first.output.options().ok_or_else(unknown_format)?;
     let aovs: Vec<Aov> = first.aovs.iter().filter_map(|name| Aov::named(name)).collect();
     let progress = steps.begin("gains");
@@ -104,7 +103,7 @@ pub(crate) fn merge(files: &[PathBuf], output: &Path, steps: &dyn Steps) -> Resu
     Ok(Merged { size: first.size, tiles: parts.len() as u32, warnings: warnings.collect() })
 }
 
-/// Whether all are of the plan that most are of.
+/// Checks that all parts have the same plan; reports one that differs from the most common plan.
 fn check_plan(parts: &[(PartFile, Part)]) -> Result<(), RenderError> {
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
     parts.iter().for_each(|(_, part)| *counts.entry(&part.plan).or_default() += 1);
@@ -119,7 +118,7 @@ fn check_plan(parts: &[(PartFile, Part)]) -> Result<(), RenderError> {
     }
 }
 
-/// Whether each tile is there once.
+/// Checks that each tile is present exactly once.
 fn check_tiles(parts: &[(PartFile, Part)]) -> Result<(), RenderError> {
     let mut file_of_tile: BTreeMap<u32, &Path> = BTreeMap::new();
     for (file, part) in parts {
@@ -132,7 +131,7 @@ fn check_tiles(parts: &[(PartFile, Part)]) -> Result<(), RenderError> {
     let grid = TileGrid { columns: part.tiles[0], rows: part.tiles[1] };
     let missing: Vec<u32> = (0..grid.count()).filter(|tile| !file_of_tile.contains_key(tile)).collect();
     let Some(&tile) = missing.first() else { return Ok(()) };
-    // Parts are called after the picture.
+    // Parts are named after the picture.
     let name = file.file.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let suffix = part_path(Path::new("x"), grid, part.tile).to_string_lossy()[1..].to_string();
     let stem = name.strip_suffix(&suffix).unwrap_or("*").to_string();
@@ -142,14 +141,14 @@ fn check_tiles(parts: &[(PartFile, Part)]) -> Result<(), RenderError> {
         more => format!(", and {} others", more - 1),
     };
     let what = format!(
-        "the part of tile {} of {} is missing{others} (render it with --shard, and give it, too)",
+        "the part of tile {} of {} is missing{others} (render it with --shard, and pass it too)",
         tile + 1,
         grid.count()
     );
     Err(RenderError::bad_file(&missing_part, what))
 }
 
-/// Whether all are summed in the integers of the whole picture: the finest that hold all of it.
+/// Checks that all parts are summed with the integers of the whole picture: the finest that do not overflow.
 fn check_integers(parts: &[(PartFile, Part)]) -> Result<(), MergeFailure> {
     let facts = || parts.iter().flat_map(|(_, part)| part.facts());
     let brightest = facts().map(|facts| facts.brightest).fold(1.0, f64::max);
@@ -177,7 +176,7 @@ fn check_integers(parts: &[(PartFile, Part)]) -> Result<(), MergeFailure> {
     }
 }
 
-/// The planes of all pieces, by name. Where one has none that others have, it is 0.
+/// Readers of the planes of all pieces, by name. A piece without a plane that others have counts as 0.
 fn planes(parts: &[(PartFile, Part)]) -> BTreeMap<String, PieceRows<'_>> {
     let names: BTreeSet<&String> =
         parts.iter().flat_map(|(_, part)| &part.pieces).flat_map(|piece| piece.planes.keys()).collect();
@@ -187,7 +186,7 @@ fn planes(parts: &[(PartFile, Part)]) -> BTreeMap<String, PieceRows<'_>> {
     names.into_iter().map(|name| (name.clone(), rows(name))).collect()
 }
 
-/// The mattes of a kind of things.
+/// The mattes of a kind of things, from all pieces.
 struct MergedMatte<'a> {
     things: &'a NamedThings,
     needed: usize,
@@ -222,7 +221,7 @@ fn mattes(parts: &[(PartFile, Part)]) -> Vec<MergedMatte<'_>> {
 }
 
 impl MergedMatte<'_> {
-    /// The next row, column by column.
+    /// Reads the entries of the next row, column by column.
     fn row(&mut self, y: u32) -> Result<Vec<Entry>, RenderError> {
         let mut row = Vec::new();
         for piece in self.pieces.iter_mut().filter(|piece| piece.rows.contains(&y)) {
@@ -250,7 +249,7 @@ impl MergedMatte<'_> {
         Ok(row)
     }
 
-    /// The layers of some rows.
+    /// The Cryptomatte layers of some rows.
     fn layers(&self, rows: &[Vec<Entry>], width: usize) -> Vec<Layer> {
         let ranks = ranks_of(rows.iter().map(Vec::as_slice), width, self.needed);
         let NamedThings { kind, names, .. } = self.things.clone();
@@ -258,7 +257,7 @@ impl MergedMatte<'_> {
     }
 }
 
-/// The picture and what comes along, some rows at a time.
+/// Resolves the picture and its layers, some rows at a time.
 struct Bands<'a> {
     size: [u32; 2],
     aovs: Vec<Aov>,
@@ -284,7 +283,7 @@ impl Bands<'_> {
         names
     }
 
-    /// The next rows.
+    /// Resolves the next rows.
     fn next(&mut self, rows: Range<u32>) -> Result<(Picture, Vec<Layer>), RenderError> {
         let picture = self.picture.picture(rows.clone())?;
         let width = self.size[0] as usize;

@@ -1,4 +1,4 @@
-//! What a part of a picture is.
+//! The contents of a part file.
 
 use crate::error::RenderError;
 use crate::picture::Aov;
@@ -10,29 +10,30 @@ use splat::{Crop, CropFacts, CropForm, CropJoiner, Integers, KNOT_NUMBERS};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// A tile, drawn.
+/// A drawn tile.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Part {
-    /// The checksum of all that the picture depends on, and of how it is divided.
+    /// Hex hash of everything the picture depends on, including the tile grid.
     pub plan: String,
-    /// Which tile it is, from 0, row by row.
+    /// Number of the tile, from 0, row by row.
     pub tile: u32,
     /// Columns and rows of tiles.
     pub tiles: [u32; 2],
-    /// Of the whole picture, px.
+    /// Width and height of the whole picture, px.
     pub size: [u32; 2],
-    /// A pixel is the mean of so many times so many.
+    /// Cells per side of a pixel.
     pub cells: u32,
-    /// The pictures that come along, in order.
+    /// Names of the AOVs, in order.
     pub aovs: Vec<String>,
     /// How the picture is written.
     pub output: Output,
-    /// Things of which there are mattes, by kind.
+    /// Things of the mattes, by kind.
     pub things: Vec<NamedThings>,
+    /// The pieces that the tile was drawn in.
     pub pieces: Vec<Piece>,
 }
 
-/// [`PictureOptions`].
+/// Serialized [`PictureOptions`].
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Output {
     conserves: bool,
@@ -45,9 +46,9 @@ pub(crate) struct Output {
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct NamedThings {
-    /// As Cryptomatte calls the kind.
+    /// The kind's name in Cryptomatte.
     pub kind: String,
-    /// As sentences call it.
+    /// The kind's plural name in messages.
     #[serde(rename = "said")]
     pub plural_name: String,
     pub names: Vec<String>,
@@ -62,16 +63,16 @@ pub(crate) struct Piece {
     pub size: [u32; 2],
     pub picture: Sums,
     pub pinhole: Option<Sums>,
-    /// A number a pixel each, by the channel's name.
+    /// Further channels by name, one number per pixel.
     pub planes: BTreeMap<String, NumbersAt>,
-    /// By kind.
+    /// Mattes by kind of things.
     pub mattes: Vec<Matte>,
 }
 
 /// The sums of a picture.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Sums {
-    /// Whether only the picture but for its gains is told: nothing is painted.
+    /// Whether the numbers are those of [`CropForm::Evened`]: nothing is painted.
     is_evened: bool,
     pub numbers: NumbersAt,
     pub knots: NumbersAt,
@@ -81,18 +82,18 @@ pub(crate) struct Sums {
     largest: [[i64; 2]; 2],
 }
 
-/// What each pixel shows of the things of a kind.
+/// The shares of each pixel that things of a kind cover.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Matte {
-    /// How many entries each row has.
+    /// Number of entries of each row.
     pub counts: NumbersAt,
-    /// Column, thing and share of each.
+    /// Column, thing and share of each entry.
     pub entries: NumbersAt,
     pub needed: usize,
     pub left_out: f32,
 }
 
-/// Where numbers are in the file.
+/// A section of numbers in the file.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct NumbersAt {
     first: u64,
@@ -135,7 +136,7 @@ impl Sums {
         CropFacts { integers, is_painted: self.is_painted, brightest: self.brightest, largest: self.largest }
     }
 
-    /// Whether its numbers are as many as those of a crop of this size.
+    /// Whether the sections have the right length for a crop of this size.
     fn is_valid_for(&self, size: [u32; 2]) -> bool {
         let [width, height] = size.map(u64::from);
         let knots = (CropJoiner::knot_columns(size[0]) * KNOT_NUMBERS) as u64;
@@ -164,7 +165,7 @@ impl Output {
         }
     }
 
-    /// `None` if it was written by a program that knows more.
+    /// Deserializes the options. `None` if they contain names that this version of the program does not know.
     pub fn options(&self) -> Option<PictureOptions> {
         let space = ColorSpace::ALL.iter().find(|(name, _)| *name == self.color_space)?;
         Some(PictureOptions {
@@ -179,21 +180,21 @@ impl Output {
 }
 
 impl Part {
-    /// What a file is a part of.
+    /// Opens a part file.
     ///
     /// # Errors
-    /// It is not whole, something else, or of another version of the program.
+    /// The file is incomplete, not a part, or written by another version of the program.
     pub fn open(file: &Path) -> Result<(PartFile, Self), RenderError> {
         let opened = PartFile::open(file)?;
         let part = serde_json::from_value::<Self>(opened.description.clone()).ok().filter(Self::is_valid);
         let part = part.ok_or_else(|| {
-            let what = "is a part by another version of the program (render its tile again)";
+            let what = "is a part written by another version of the program (render its tile again)";
             RenderError::bad_file(file, what)
         })?;
         Ok((opened, part))
     }
 
-    /// Whether its numbers are what they are said to be.
+    /// Whether the description is consistent.
     fn is_valid(&self) -> bool {
         let grid = TileGrid { columns: self.tiles[0], rows: self.tiles[1] };
         let is_small = self.size.iter().chain(&self.tiles).all(|side| (1..=1 << 15).contains(side));
@@ -231,7 +232,7 @@ impl Part {
     }
 }
 
-/// The part of a tile, from 0, beside a picture.
+/// The path of the part of a tile (from 0) beside a picture.
 pub(crate) fn part_path(picture: &Path, grid: TileGrid, tile: u32) -> PathBuf {
     let count = grid.count();
     let digits = count.to_string().len();

@@ -1,4 +1,4 @@
-//! Drawing tiles one after the other.
+//! Drawing tiles one after another.
 
 use crate::error::RenderError;
 use crate::picture::{RenderOptions, lit_scene_of};
@@ -18,42 +18,42 @@ use splat::{Crop, Integers};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// What is drawn in tiles, and where to.
+/// How a picture is drawn in tiles, and where it is written.
 pub struct TileOptions<'a> {
-    /// How it is rendered: by the splat, on the processor.
+    /// How it is rendered. The renderer must be the splat, on the processor.
     pub render: RenderOptions,
-    /// How it is divided.
+    /// The tile grid.
     pub grid: TileGrid,
-    /// The share of the tiles that is drawn, to parts that are merged later; none for all of them, and the picture.
+    /// The shard of tiles to draw as parts that are merged later. `None` draws all tiles and merges them.
     pub shard: Option<Shard>,
-    /// The picture: an EXR.
+    /// The picture, an EXR file.
     pub output: PathBuf,
     /// How it is written.
     pub written: PictureOptions,
-    /// How fine the integers of its sums may be.
+    /// The finest integers of its sums.
     pub integers: Integers,
-    /// Is told of every tile.
+    /// Called after each tile.
     pub on_tile: &'a dyn Fn(&TileReport),
-    /// Whether the work is to end: asked before each tile.
+    /// Checked for cancellation before each tile.
     pub progress: &'a dyn Progress,
 }
 
-/// A tile of the report.
+/// The report on one tile.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TileReport {
-    /// Its number, from 1, row by row.
+    /// Number of the tile, from 1, row by row.
     pub tile: u32,
-    /// How many there are.
+    /// Number of tiles.
     pub tile_count: u32,
-    /// Its part.
+    /// Its part file.
     pub file: PathBuf,
-    /// What became of it.
+    /// Whether it was written.
     pub outcome: Outcome,
-    /// How long it took, s.
+    /// Processing time, s.
     pub took_seconds: f64,
 }
 
-/// What was done.
+/// The report on a tiled picture.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TilesReport {
     /// The tiles, in order.
@@ -62,11 +62,12 @@ pub struct TilesReport {
     pub merged: Option<Merged>,
 }
 
-/// Draws tiles of a picture to parts, but for those that are finished; and, where all of them are asked for, merges them and removes the
-/// parts. A tile that cannot be drawn does not keep the others from it.
+/// Draws the tiles of a picture that are not yet finished as parts. If all tiles are requested, merges them and removes the parts. If a
+/// tile fails, the others are still drawn.
 ///
 /// # Errors
-/// The picture cannot be divided so, the work was cancelled, or the machine stands in the way: what is finished stays.
+/// The picture cannot be divided into this grid, the work was cancelled, or there is a temporary problem of the machine. Finished parts
+/// stay.
 pub fn render_tiles(
     input: &Input,
     camera: &Camera,
@@ -129,7 +130,7 @@ pub fn render_tiles(
         match merge(&files, &options.output, steps) {
             Ok(merged) => {
                 report.merged = Some(merged);
-                // What is left of one that cannot be removed harms nobody.
+                // A part that cannot be removed does no harm.
                 files.iter().for_each(|file| drop(std::fs::remove_file(file)));
                 return Ok(report);
             }
@@ -142,7 +143,7 @@ pub fn render_tiles(
     }
 }
 
-/// Draws a tile, unless it is finished.
+/// Draws a tile unless it is finished.
 fn draw_tile(
     shot: Shot,
     tile: Crop,
@@ -171,7 +172,7 @@ fn draw_tile(
     }
 }
 
-/// Whether the part of a tile is there, whole and by the same plan.
+/// Whether the part of a tile exists, complete and made by the same plan.
 fn is_finished(file: &Path, expected: &Part, integers: Integers) -> bool {
     let Ok((_, part)) = Part::open(file) else { return false };
     let is_coarse = part.facts().all(|facts| facts.integers == facts.integers.coarsest(integers));

@@ -1,4 +1,4 @@
-//! What a session can be asked to do, and what it tells back.
+//! Commands to a session.
 
 use crate::reference::ReferenceKind;
 use document::{CameraEdit, FillRegion, StrokePoint, SurfaceHit};
@@ -13,134 +13,133 @@ use scene::{BackFaces, World};
 use splat::Tolerance;
 use std::path::PathBuf;
 
-/// A change of the document or of what is worked on. See [`crate::Session::apply`].
+/// A command to a session. See [`crate::Session::apply`].
 #[derive(Clone, Debug)]
 pub enum Command {
     /// Opens a scene or a project in the background; the document that is open stays until the new one is ready.
     Open(PathBuf),
-    /// Opens a project as what a new document begins with: the first save asks for a file.
+    /// Opens a project as a template for a new document: the first save needs a file.
     OpenTemplate(PathBuf),
-    /// Opens a capture of which something was chosen, as [`Self::Open`].
+    /// Opens a capture with explicit choices; otherwise as [`Self::Open`].
     OpenCapture(PathBuf, CaptureChoices),
-    /// Saves to the project's own file. An error where it has none yet.
+    /// Saves to the project's file. An error if it has none yet.
     Save,
-    /// Saves to this file and keeps it as the project's own.
+    /// Saves to this file, which becomes the project's file.
     SaveAs(PathBuf),
-    /// Renders the picture at full size in the background and writes it.
+    /// Renders the picture at full size and writes it, in the background.
     ExportPicture(PathBuf),
-    /// Writes the live picture as it is on screen, if it is no longer rough.
+    /// Writes the live picture as it is on screen, unless it is still coarse.
     ExportShown(PathBuf),
-    /// Writes the focus map, EXR or 16-bit PNG by the file's extension.
+    /// Writes the focus map as EXR or 16-bit PNG, by the file's extension.
     ExportFocusMap(PathBuf),
     /// Writes the scene as GLB with the atlas as a second UV set.
     ExportScene(PathBuf),
-    /// Writes the strokes that can be undone as data that [`crate::replay`] paints again.
+    /// Writes the strokes of the undo history, for [`document::replay`].
     ExportStrokes(PathBuf),
     /// Replaces the focus map by one that was exported for this atlas.
     ImportFocusMap(PathBuf),
 
-    /// Takes back the last stroke, fill, selection, or change of lens or variant.
+    /// Undoes the last step: a stroke, fill, selection, or change of layers, lens or variant.
     Undo,
-    /// Does again what was taken back.
+    /// Redoes the last undone step.
     Redo,
-    /// Goes to where this many steps of the history are done, by undo or redo.
+    /// Undoes or redoes until this many steps of the history are done.
     GoToHistoryStep(usize),
-    /// Does a recorded step, as a step of undo. The brush stays what it is.
+    /// Applies a recorded step as an undo step. The brush does not change.
     ApplyRecordedStep(RecordedStep),
 
-    /// Changes the camera. Edits of one field in a row are one step of undo until [`Command::FinishEdit`].
+    /// Changes the camera. Consecutive edits of one field are one undo step until [`Command::FinishEdit`].
     EditCamera(CameraEdit),
-    /// Ends a run of edits (a slider was let go): the next one is a step of undo of its own.
+    /// Ends a run of edits (a slider was released): the next edit is a separate undo step.
     FinishEdit,
-    /// Shows the document at a time, s: lens and layers as their keys say. No step of undo.
+    /// Shows the document at a time, s: lens and layers follow their keys. Not an undo step.
     GoToTime(f64),
-    /// Gives the lens other keys, as a step of undo of this name.
+    /// Replaces the keys of the lens, as an undo step of this name.
     SetLensMotion(&'static str, LensMotion),
-    /// Has the lens go from one point of the surface to another.
+    /// Adds keys that move the focus from one surface point to another.
     RackFocus {
         /// The points.
         points: [SurfaceHit; 2],
-        /// When it leaves the first and when it is at the second, s.
+        /// Times at which it leaves the first point and reaches the second, s.
         seconds: [f64; 2],
-        /// How it goes.
+        /// The interpolation.
         ease: Ease,
     },
-    /// Layout and viewpoint, to be saved with the document; any JSON.
+    /// Sets layout and viewpoint, which are saved with the document: any JSON.
     SetView(serde_json::Value),
-    /// How the sum becomes the picture.
+    /// Sets the exposure: how the sum becomes the picture.
     SetExposure(Exposure),
-    /// Whether faces that are not double sided are seen from behind. Saved with the document, no step of undo.
+    /// Sets whether single-sided faces are visible from behind. Saved with the document; not an undo step.
     SetBackFaces(BackFaces),
-    /// What lies beyond all surfaces; none: what suits the scene. Saved with the document, no step of undo.
+    /// Sets what lies beyond all surfaces; `None`: a default for the scene. Saved with the document; not an undo step.
     SetWorld(Option<World>),
-    /// The same of an environment's file, .hdr or .exr, which is read in the background.
+    /// Sets the world to an environment file, .hdr or .exr, which is read in the background.
     LoadEnvironment(PathBuf),
-    /// The scene's variant, by name; none: its own materials. The scene is read again in the background; a step of undo.
+    /// Sets the scene's material variant by name; `None`: its default materials. The scene is read again in the background. An undo step.
     SetVariant(Option<String>),
-    /// How the screen shows any picture. No part of the document.
+    /// Sets the display settings. Not part of the document.
     SetDisplay(Display),
-    /// Shows the live picture through one aperture point, in [−1, 1]² (see [`lens::Aperture::sub_aperture`]), or through
-    /// all of the aperture again. No part of the document; the picture's rays are still those of the whole lens.
+    /// Shows the live picture through one aperture point, in [−1, 1]² (see [`lens::Aperture::sub_aperture`]), or through the whole
+    /// aperture again (`None`). Not part of the document; [`crate::Session::picture_ray`] still uses the whole lens.
     SetSubAperture(Option<DVec2>),
-    /// The longest side that the preview is drawn at, px; the picture's own size if that is smaller.
+    /// Sets the longest side of the preview, px; at most the picture's own size.
     SetPreviewSize(u32),
-    /// How coarse the live picture may be while one works.
+    /// Sets the tolerance of the live picture while the user works.
     SetTolerance(Tolerance),
 
-    /// The brush of the strokes to come.
+    /// Sets the brush.
     SetBrush(Brush),
-    /// Repairs the depth of a light field or picture along a stroke; the surface is made anew in the background. A step of undo.
+    /// Repairs the depth of a light field or picture along a stroke. The surface is rebuilt in the background. An undo step.
     RepairDepth(DepthStroke),
     /// Begins a stroke, with a first dab if the point is on a surface.
     BeginStroke(StrokePoint),
-    /// Moves the stroke on.
+    /// Extends the stroke.
     ExtendStroke(StrokePoint),
-    /// Draws a gradient, or another one in the place of the one being drawn.
+    /// Draws a gradient, replacing the one being drawn.
     DragGradient(Gradient),
-    /// Ends the stroke or gradient: one step of undo, or nothing if it changed nothing.
+    /// Ends the stroke or gradient: one undo step, or none if nothing changed.
     CommitStroke,
-    /// Takes the stroke or gradient back, leaving no trace.
+    /// Cancels the stroke or gradient.
     AbortStroke,
-    /// Changes the layers of focus.
+    /// Changes the layers.
     EditLayers(LayerEdit),
-    /// Paints on another layer from now on, counted from the bottom.
+    /// Makes another layer active, counted from the bottom.
     ActivateLayer(usize),
-    /// Chooses what may be painted; all else is frozen.
+    /// Selects what may be painted; everything else is frozen.
     Select(SelectionShape, CombineMode),
-    /// Chooses a whole region to be painted.
+    /// Selects a whole region.
     SelectRegion(FillRegion, CombineMode),
-    /// Lets the active layer count only where it may be painted.
+    /// Masks the active layer by the selection.
     MaskFromSelection,
-    /// Gives a whole region a focus. What lies at the images of the brush's symmetry is filled too.
+    /// Fills a whole region, and its images under the brush's symmetry, with a focus.
     Fill(FillRegion, FocusOffset),
-    /// Returns everything to the ordinary lens.
+    /// Resets all paint to the standard focus.
     ResetMap,
-    /// The focus of the background.
+    /// Sets the focus of the background.
     SetBackgroundFocus(FocusOffset),
     /// Sets the focus distance to the axial depth of a surface point.
     FocusHere(SurfaceHit),
-    /// Lets two eyes look at a surface point in stereo pictures: it has no disparity. None: at what the lens is focused on. No part of
-    /// the document.
+    /// Fixates a surface point in stereo pictures: it has no disparity. `None`: what the lens is focused on. Not part of the document.
     Fixate(Option<SurfaceHit>),
-    /// Takes the brush's focus from a surface point.
+    /// Sets the brush's focus to that of a surface point.
     Pick(SurfaceHit),
 
-    /// Bakes the light field anew.
+    /// Bakes the light field again.
     Bake,
-    /// Makes a picture to compare the live one with, in the background, at the preview's size.
+    /// Makes a reference picture, in the background, at the preview's size.
     MakeReference {
-        /// Which.
+        /// The kind.
         kind: ReferenceKind,
-        /// Rays a pixel of a ray-traced one.
+        /// Rays per pixel if it is ray traced.
         samples_per_pixel: u32,
     },
     /// Traces the rectangle between two positions of the picture ((0, 0) its upper left corner, (1, 1) its lower right),
-    /// to check the live picture there: in the background, better and better.
+    /// to verify the live picture there: in the background, with increasing quality.
     VerifyRegion([DVec2; 2]),
-    /// Stops verifying and forgets what was found.
+    /// Stops verifying and discards the result.
     EndVerification,
-    /// Stops one piece of background work.
+    /// Cancels one background job.
     Cancel(JobId),
-    /// Stops all background work.
+    /// Cancels all background work.
     CancelAll,
 }

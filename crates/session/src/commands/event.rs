@@ -1,4 +1,4 @@
-//! What a session tells back.
+//! Events of a session.
 
 use crate::reference::ReferenceKind;
 use document::DepthPolarityRequest;
@@ -6,39 +6,39 @@ use jobs::JobStatus;
 use std::ops::Range;
 use std::path::PathBuf;
 
-/// What happened since the last [`crate::Session::poll`].
+/// Something that happened since the last [`crate::Session::poll`].
 #[derive(Clone, Debug, PartialEq)]
 pub enum Event {
-    /// A document was opened; everything drawn of the old one is stale.
+    /// A document was opened; everything drawn for the old one is stale.
     Opened,
-    /// A capture does not open until somebody says which end of its depth map is near: [`crate::Command::OpenCapture`].
+    /// A capture cannot be opened until the user specifies which end of its depth map is near: see [`crate::Command::OpenCapture`].
     DepthPolarityRequired(Box<DepthPolarityRequest>),
-    /// Other faces or materials are seen than before, or in another light; what is drawn of the scene's surface is stale.
+    /// Visible faces, materials or lighting changed; what is drawn of the scene's surface is stale.
     SurfaceChanged,
     /// The camera changed (also by undo).
     CameraChanged,
-    /// Texels of the focus map changed: all lie in these rectangles, columns and rows.
+    /// Texels of the focus map changed, all within these rectangles of columns and rows.
     MapChanged(Vec<[Range<u32>; 2]>),
-    /// The layers changed (also by undo), or another one is painted on.
+    /// The layers or the active layer changed (also by undo).
     LayersChanged,
-    /// Something else may be painted than before.
+    /// The selection changed.
     SelectionChanged,
     /// The brush changed (by picking).
     BrushChanged,
-    /// The scene that was opened is so bright that the screen must show it this many stops darker, or shows nothing but white.
+    /// The opened scene is so bright that the display must be this many stops darker to show more than white.
     GlareDetected(f32),
     /// A new preview is ready: [`crate::Session::preview`].
     PreviewReady(u64),
-    /// A picture to compare with is ready: [`crate::Session::reference`].
+    /// A reference picture is ready: [`crate::Session::reference`].
     ReferenceReady(ReferenceKind),
-    /// More is known of the rectangle that is verified: [`crate::Session::verification`].
+    /// The verification has a better estimate: [`crate::Session::verification`].
     VerificationUpdated,
-    /// Background work went on.
+    /// Background work progressed.
     Progress(JobStatus),
     /// A file was written.
     FileWritten(PathBuf),
-    /// Work failed: one sentence, what it was doing first.
+    /// Work failed, with a message of one sentence.
     Failed(String),
-    /// Something the user should know: one sentence.
+    /// A notice to the user, one sentence.
     Notice(String),
 }

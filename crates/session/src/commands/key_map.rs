@@ -1,9 +1,9 @@
-//! Key maps: whose keys and mouse buttons the window obeys. Each is the command table's own keys but for some.
+//! Key maps: keys and mouse buttons of other programs. Each is the command table's keys with some exceptions.
 
 use crate::commands::table::{CommandId, Shortcut};
 use serde::{Deserialize, Serialize};
 
-/// Whose keys and mouse buttons the window obeys.
+/// The program whose keys and mouse buttons the window uses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum KeyMap {
@@ -17,10 +17,10 @@ pub enum KeyMap {
 }
 
 impl KeyMap {
-    /// All, as a menu offers them.
+    /// All key maps, in menu order.
     pub const ALL: [Self; 3] = [Self::Blender, Self::Substance, Self::Krita];
 
-    /// What it is called.
+    /// The name, for menus.
     pub fn name(self) -> &'static str {
         match self {
             Self::Blender => "Blender",
@@ -29,7 +29,7 @@ impl KeyMap {
         }
     }
 
-    /// The command that chooses it.
+    /// The command that selects it.
     pub fn command(self) -> CommandId {
         match self {
             Self::Blender => CommandId::KeysBlender,
@@ -44,7 +44,7 @@ impl KeyMap {
         entry.map_or(id.info().shortcut, |(_, shortcut)| *shortcut)
     }
 
-    /// Where it differs from the command table.
+    /// Differences from the command table.
     fn overrides(self) -> &'static [(CommandId, Option<Shortcut>)] {
         match self {
             Self::Blender => BLENDER,
@@ -103,7 +103,7 @@ mod tests {
                 let taken = keys.insert(key, info.name);
                 assert!(taken.is_none(), "{map:?}: {key} is {} and {}", info.name, taken.unwrap_or_default());
             }
-            // What everyone expects everywhere.
+            // Conventional everywhere.
             let expected = [
                 (CommandId::Save, "Ctrl+S"),
                 (CommandId::Undo, "Ctrl+Z"),

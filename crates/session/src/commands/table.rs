@@ -1,9 +1,9 @@
-//! Every command a person can invoke: one table for menus, palette, keys, documentation and tests.
+//! Every command a user can invoke: one table for menus, palette, keys, documentation and tests.
 //!
 //! Plain data: the window maps [`Shortcut`] to its own key type and [`CommandId`] to what it does (most send a
 //! [`crate::Command`], some open a dialog or change the view).
 
-/// Names a command for good: stored in key maps and scripts by [`CommandInfo::name`].
+/// A command that a user can invoke. Key maps and scripts store [`CommandInfo::name`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[allow(missing_docs, reason = "the table below says what each one does")]
 pub enum CommandId {
@@ -377,8 +377,8 @@ pub const COMMANDS: &[CommandInfo] = &[
 ];
 
 impl CommandId {
-    /// Whether running it, where it can do something, is a step of undo. All others change no document (they show things,
-    /// choose tools, set up the brush), or change it when something is clicked next, or handle whole files.
+    /// Whether running it is an undo step. All other commands do not change the document (they show things, choose tools, set up the
+    /// brush), change it only on the next click, or handle whole files.
     pub fn is_undoable(self) -> bool {
         use CommandId::*;
         matches!(

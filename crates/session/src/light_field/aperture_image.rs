@@ -1,4 +1,4 @@
-//! What of the aperture a surface point sees, and what it sends there: the light field at one point, cell by cell.
+//! The aperture as seen from a surface point, and the light sent there: the light field at one point, cell by cell.
 
 use crate::light_field::running_sum::BakedField;
 use document::{Document, SurfaceHit};
@@ -7,10 +7,10 @@ use lens::FocusOffset;
 use rayon::prelude::*;
 use salf::Visibility;
 
-/// The image of the aperture as one surface point sees it, by rays.
+/// The aperture as seen from one surface point, traced by rays.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ApertureImage {
-    /// The point, world.
+    /// World position of the point.
     pub position: DVec3,
     /// Rows and columns of cells over the square [−R, R]².
     pub side: usize,
@@ -18,33 +18,33 @@ pub struct ApertureImage {
     pub cells: Vec<ApertureCell>,
     /// Depth of the point in the shot camera.
     pub depth: f64,
-    /// The focus of the point.
+    /// Focus of the point.
     pub focus: FocusOffset,
     /// Its defocus κ: how this image is scaled where it lands in the picture.
     pub kappa: f64,
-    /// Its signed circle of confusion, px: negative lands turned by half a turn.
+    /// Signed diameter of its circle of confusion, px; if negative, the image is rotated by 180°.
     pub circle_px: f64,
-    /// What the preview's light field keeps of it; none while there is no light field, or where it has no sample.
+    /// What the preview's light field stores here; `None` without a light field or nearby sample.
     pub baked: Option<BakedVisibility>,
 }
 
-/// What the sample of the light field nearest to a point keeps of the aperture.
+/// The visibility of the light field's sample nearest to a point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BakedVisibility {
-    /// Rows and columns of cells over the square [−R, R]² of the lens that it was made for; 1 where it sees all.
+    /// Rows and columns of cells over the square [−R, R]² of the baked lens; 1 if the whole aperture is visible.
     pub side: usize,
-    /// Which of them it sees, in the order of [`ApertureImage::cells`].
+    /// Which cells are visible, in the order of [`ApertureImage::cells`].
     pub cells: Vec<bool>,
     /// Linear RGB radiance toward the aperture: one for all cells.
     pub radiance: [f32; 3],
-    /// How far from the point the sample is, scene units.
+    /// Distance of the sample from the point, scene units.
     pub distance: f64,
-    /// The aperture radius that it was made for: the cells lie in it, however far the lens is stopped down since.
+    /// The baked aperture radius, which the cells cover even if the lens has been stopped down since.
     pub aperture_radius: f64,
 }
 
 impl BakedVisibility {
-    /// The share of its cells that it sees, in [0, 1].
+    /// The share of visible cells, in [0, 1].
     pub fn visible_share(&self) -> f64 {
         self.cells.iter().filter(|is_visible| **is_visible).count() as f64 / self.cells.len().max(1) as f64
     }
@@ -53,22 +53,22 @@ impl BakedVisibility {
 /// A cell of the aperture.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ApertureCell {
-    /// How much of it the aperture's shape lets through, in [0, 1].
+    /// Transmission of the aperture's shape, in [0, 1].
     pub transmission: f32,
-    /// Whether the point sees its middle.
+    /// Whether its centre is visible from the point.
     pub is_visible: bool,
-    /// Linear RGB radiance from the point to its middle; black where it is not seen.
+    /// Linear RGB radiance from the point to its centre; black if not visible.
     pub radiance: [f32; 3],
 }
 
-/// How far the nearest sample is sought, texels.
+/// Successive search radii for the nearest sample, texels.
 const SEARCH_RADII_TEXELS: [u32; 6] = [0, 2, 8, 24, 64, 160];
 
 impl ApertureImage {
     /// Rows and columns of cells.
     pub const SIDE: usize = 32;
 
-    /// The share of the open aperture that the point sees, in [0, 1].
+    /// The share of the open aperture that is visible from the point, in [0, 1].
     pub fn visible_share(&self) -> f64 {
         let sum = |cells: &mut dyn Iterator<Item = &ApertureCell>| {
             cells.map(|cell| f64::from(cell.transmission)).sum::<f64>()
@@ -79,8 +79,8 @@ impl ApertureImage {
 }
 
 impl ApertureImage {
-    /// The aperture as a surface point of a document sees it, and what `field` keeps of that. A thousand rays: quick enough
-    /// to wait for. `None` where the aperture is a pinhole, or the point stands behind it.
+    /// Traces the aperture as seen from a surface point (about a thousand rays), and looks the point up in `field`. `None` if the
+    /// aperture is a pinhole or the point is behind it.
     pub(crate) fn trace_at(
         document: &Document,
         field: Option<&BakedField>,
@@ -115,8 +115,7 @@ impl ApertureImage {
 }
 
 impl BakedVisibility {
-    /// What a light field keeps of the aperture beside a surface point: its nearest sample, sought in ever wider squares
-    /// of the atlas.
+    /// The visibility of the sample nearest to a surface point, searched in squares of increasing size in the atlas.
     fn nearest_to(document: &Document, field: &BakedField, hit: &SurfaceHit) -> Option<Self> {
         let stage = &document.stage;
         let texel_position = stage.atlas.position_of(hit.point);

@@ -1,9 +1,9 @@
-//! What of the focus map a sum has not seen yet.
+//! Changes of the focus map that a sum does not include yet.
 
-/// Changes of more texels than these are not counted singly.
+/// Beyond this number of texels, a change counts as a change of everything.
 const MAX_TEXELS: usize = 1 << 22;
 
-/// Texels of the focus map that a sum has not seen yet.
+/// Changes of the focus map that a sum does not include yet.
 #[derive(Clone, Debug)]
 pub(crate) enum Changes {
     /// These.
@@ -24,7 +24,7 @@ impl Changes {
         matches!(self, Self::Texels(texels) if texels.is_empty())
     }
 
-    /// Takes up newer changes.
+    /// Merges newer changes.
     pub fn join(&mut self, newer: &Changes) {
         match (&mut *self, newer) {
             (Self::Texels(texels), Self::Texels(more)) if texels.len() + more.len() <= MAX_TEXELS => {

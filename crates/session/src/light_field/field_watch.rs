@@ -1,4 +1,4 @@
-//! Which light field is being made for the live picture: whoever needs the same one waits for it instead of baking it again.
+//! Tracks the light field being made for the live picture, so that others who need it can wait for it instead of baking it again.
 
 use document::Stage;
 use lens::Camera;
@@ -14,30 +14,30 @@ pub(crate) struct FieldWatch {
     changed: Condvar,
 }
 
-/// None of it is kept alive.
+/// Weak references: nothing is kept alive.
 struct LatestBake {
     stage: Weak<Stage>,
-    /// Once it is baked.
+    /// The light field, once it is baked.
     baked: Option<Weak<Salf>>,
 }
 
-/// How a light field stands that would serve.
+/// The state of a compatible light field.
 pub(crate) enum BakeState {
-    /// It is there.
+    /// It is baked.
     Baked(Arc<Salf>),
-    /// One is being made, whether or not it will serve.
+    /// A light field is being made, which may or may not be compatible.
     InProgress,
-    /// None is, that the watch knows of.
+    /// None is being made.
     Absent,
 }
 
 impl FieldWatch {
-    /// One is being made from now on.
+    /// Notes that a light field is being made.
     pub fn begin(&self, stage: &Arc<Stage>) {
         *self.lock() = Some(LatestBake { stage: Arc::downgrade(stage), baked: None });
     }
 
-    /// It is baked.
+    /// Notes that it is baked.
     pub fn set_baked(&self, salf: &Arc<Salf>) {
         if let Some(latest) = &mut *self.lock() {
             latest.baked = Some(Arc::downgrade(salf));
@@ -45,13 +45,13 @@ impl FieldWatch {
         self.changed.notify_all();
     }
 
-    /// No more is done on it, whether or not it was made.
+    /// Notes that work on it has ended, with or without success.
     pub fn end(&self) {
         self.lock().take_if(|latest| latest.baked.is_none());
         self.changed.notify_all();
     }
 
-    /// How one stands that serves `camera` in `stage`. What is under way is waited for, as long as `patience`.
+    /// The state of a light field that is compatible with `camera` in `stage`. Waits up to `timeout` for one that is being made.
     pub fn wait_for(&self, stage: &Arc<Stage>, camera: &Camera, timeout: Duration) -> BakeState {
         let is_underway =
             |latest: &mut Option<LatestBake>| latest.as_ref().is_some_and(|m| m.baked.is_none());
@@ -65,7 +65,7 @@ impl FieldWatch {
         baked.map_or(BakeState::Absent, BakeState::Baked)
     }
 
-    /// A poisoned lock only means that a panic passed by: what it guards is replaced as a whole.
+    /// Ignores poisoning: the guarded value is always replaced as a whole.
     fn lock(&self) -> MutexGuard<'_, Option<LatestBake>> {
         self.latest.lock().unwrap_or_else(PoisonError::into_inner)
     }

@@ -1,7 +1,7 @@
 //! Whether paint or lens spread light into the picture from further outside the frame than was baked.
 //!
-//! Only samples can tell, and a stroke moves few of them: whoever reaches too far is remembered, a bit a sample, and
-//! those that moved since are looked at again when it is asked for: after the stroke, not while its pictures are waited for.
+//! This has to be tested per sample, but a stroke moves few samples. The result is stored as one bit per sample; only samples that have
+//! moved since are tested again, and only after the stroke.
 
 use focus::Focus;
 use glam::DVec2;
@@ -11,17 +11,16 @@ use salf::{LARGEST_MARGIN_HEIGHTS, Salf, SampleFocus, SampleLocation};
 
 /// Which samples of a light field reach the frame with a circle of confusion that is wider than the baked margin.
 ///
-/// A surface beyond the margin that has as wide a circle is of the same paint, as a rule, as one within it: as for the
-/// margin itself (`BakeOptions::for_focus`), what is found within tells of what lies further out.
+/// As for the margin itself (`BakeOptions::for_focus`), surfaces beyond the margin are assumed to have similar paint to those within it.
 pub(crate) struct MarginReach {
-    /// A bit a sample.
+    /// One bit per sample: reaches too far.
     too_far: Vec<u64>,
-    /// Who moved since, a bit a sample.
+    /// One bit per sample: moved since it was tested.
     moved: Vec<u64>,
 }
 
 impl MarginReach {
-    /// Looks at all samples.
+    /// Tests all samples.
     pub fn survey(salf: &Salf, camera: &Camera, focus: &Focus) -> Self {
         let test = MarginTest::new(salf, camera, focus);
         let far_in_run = |run: usize| {
@@ -35,12 +34,12 @@ impl MarginReach {
         Self { moved: vec![0; too_far.len()], too_far }
     }
 
-    /// Notes who moved.
+    /// Notes samples that moved.
     pub fn note_moved(&mut self, samples: &[u32]) {
         set(&mut self.moved, samples);
     }
 
-    /// Looks again at those that moved.
+    /// Tests the samples that moved again.
     pub fn retest_moved(&mut self, salf: &Salf, camera: &Camera, focus: &Focus) {
         let test = MarginTest::new(salf, camera, focus);
         let words = self.too_far.par_iter_mut().zip(&mut self.moved).enumerate();
@@ -57,7 +56,7 @@ impl MarginReach {
         self.too_far.iter().any(|word| *word != 0)
     }
 
-    /// The margin that those would need which reach too far, px; 0 if none does.
+    /// The margin that would be needed, px; 0 if no sample reaches too far.
     pub fn needed_px(&self, salf: &Salf, camera: &Camera, focus: &Focus) -> f64 {
         let test = MarginTest::new(salf, camera, focus);
         let widest = |(word, bits): (usize, &u64)| {
@@ -70,7 +69,7 @@ impl MarginReach {
     }
 }
 
-/// Samples that a word has a bit for.
+/// Bits per word.
 const WORD: u32 = u64::BITS;
 
 /// Sets the bits of samples.
@@ -85,13 +84,13 @@ fn samples_of(word: usize, bits: u64) -> impl Iterator<Item = u32> {
     (0..WORD).filter(move |bit| bits >> bit & 1 == 1).map(move |bit| word as u32 * WORD + bit)
 }
 
-/// How a sample is looked at.
+/// The test of a sample.
 struct MarginTest<'a> {
     focus: SampleFocus<'a>,
     optics: lens::Optics,
     frame: DVec2,
     margin_px: f64,
-    /// Wider than this no margin is made.
+    /// Maximum margin, px.
     largest_px: f64,
 }
 

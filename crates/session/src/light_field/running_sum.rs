@@ -1,4 +1,4 @@
-//! A baked light field with its running sum, and what it takes to bring the sum up to date.
+//! A baked light field with its running sum, and how the sum is brought up to date.
 
 use crate::display::{PictureSource, Rectangle};
 use crate::error::SessionError;
@@ -28,39 +28,39 @@ const SMALLER_APERTURE: f64 = 0.7;
 /// When more than this share of the samples move, a whole sum is quicker: it runs on all cores, and removes nothing.
 const LARGEST_UPDATE: f64 = 0.25;
 
-/// What it takes to bring a sum up to date.
+/// How to bring a sum up to date.
 pub(crate) enum Plan {
-    /// Moving these samples.
+    /// Move these samples.
     Move(Vec<u32>),
-    /// The whole sum.
+    /// Compute the whole sum.
     Whole,
 }
 
-/// What it took to bring a sum up to date.
+/// How a sum was brought up to date.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum SumUpdate {
-    /// It was.
+    /// It was up to date.
     Unchanged,
     /// Some samples were moved: the picture changed in this rectangle.
     Region(Rectangle),
-    /// The whole sum was made.
+    /// The whole sum was computed.
     Whole,
 }
 
 /// How a light field is baked and summed.
 #[derive(Clone, Debug)]
 pub(crate) struct FieldOptions {
-    /// How far outside the frame to sample at least, px.
+    /// Minimum margin, px.
     pub least_margin_px: f64,
-    /// How coarse its sums may be.
+    /// Tolerance of its sums.
     pub tolerance: Tolerance,
-    /// What they are made on; none: the processor.
+    /// The graphics card to sum on; `None`: the processor.
     pub gpu: Option<Gpu>,
-    /// How well the scene's light is solved for.
+    /// Quality of the scene's light.
     pub light: LightQuality,
 }
 
-/// A light field to look at.
+/// A baked light field with an index of its samples.
 #[derive(Clone)]
 pub(crate) struct BakedField {
     pub salf: Arc<Salf>,
@@ -76,21 +76,21 @@ pub(crate) struct LightField {
     has_moved_carried: bool,
     /// The lens of the sum; none while there is no valid sum.
     summed_camera: Option<Camera>,
-    /// What the sum has not seen.
+    /// Changes that the sum does not include yet.
     pending_changes: Changes,
-    /// Who reaches from further outside the frame than was baked; none until it was asked for, and after a whole sum.
+    /// Which samples reach further than the margin; `None` until requested, and after a whole sum.
     reach: Option<MarginReach>,
-    /// Seconds that the last whole sum took.
+    /// Time of the last whole sum, s.
     whole_seconds: f64,
-    /// Passes that its light was refined by; 0 of light as it is kept for every camera.
+    /// Number of passes by which its light was refined; 0 for cached light.
     light_passes: u32,
 }
 
-/// Of a bake's time, where light has to be solved for.
+/// Share of a bake's progress for solving light.
 const LIGHT_SHARE: f32 = 0.3;
 
 impl LightField {
-    /// Bakes what `camera` and `focus` need: a margin of at least `least_margin_px`.
+    /// Bakes a light field for `camera` and `focus`.
     pub fn bake(
         stage: &Stage,
         camera: &Camera,
@@ -114,17 +114,17 @@ impl LightField {
         })
     }
 
-    /// The same, whose light was refined before by so many passes.
+    /// Sets the number of passes by which its light was refined.
     pub fn refined(self, light_passes: u32) -> Self {
         Self { light_passes, ..self }
     }
 
-    /// Passes that its light was refined by; 0 of light as it is kept for every camera.
+    /// Number of passes by which its light was refined; 0 for cached light.
     pub fn light_passes(&self) -> u32 {
         self.light_passes
     }
 
-    /// A light field that was baked before.
+    /// Wraps a light field that was baked before.
     pub fn from_salf(stage: &Stage, salf: Arc<Salf>, tolerance: Tolerance, gpu: Option<Gpu>) -> Self {
         let index = Arc::new(SampleIndex::new(salf.clone(), stage.atlas.clone()));
         let modelled = Modelled::with_texels(&salf, stage.tracer(), Some(&stage.texels.texels));
@@ -187,7 +187,7 @@ impl LightField {
         is_compatible(&self.splatter.salf().camera, camera)
     }
 
-    /// Whether another bake would serve better: paint or lens has come to spread light from further outside the
+    /// Whether another bake would be better: paint or lens spreads light from further outside the
     /// frame, the aperture has become much smaller than the one whose cells were looked through, or paint has come to move
     /// carried light, which was told only as finely as the ordinary lens shows it. The least margin, px, of that bake.
     ///

@@ -7,11 +7,11 @@ use std::sync::atomic::{AtomicU8, Ordering};
 pub enum PreviewActivity {
     /// Nothing to do.
     Idle,
-    /// Making a picture without blur.
+    /// Tracing a pinhole picture.
     Tracing,
-    /// Making a light field of few samples.
+    /// Baking a coarse light field.
     RoughBaking,
-    /// Making the light field.
+    /// Baking the light field.
     Baking,
     /// Summing the picture.
     Splatting,

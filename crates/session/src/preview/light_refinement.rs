@@ -16,7 +16,7 @@ use jobs::{Urgency, catch_panics, run_in_own_pool};
 use lens::{Camera, Exposure, Picture};
 use light::{LightErrors, LightQuality};
 use progress::Stage as Share;
-use render::LIGHT_PASSES;
+use render::LightFieldStore;
 use splat::Tolerance;
 use std::sync::Arc;
 use std::thread::JoinHandle;
@@ -65,7 +65,10 @@ impl LightRefinement {
     pub fn next_passes(&self, camera: &Camera, displayed_passes: u32, max_passes: u32) -> Option<u32> {
         let last = self.last.as_ref().filter(|last| last.can_show(camera));
         let done_passes = last.map_or(0, LightField::light_passes).max(displayed_passes);
-        LIGHT_PASSES.into_iter().find(|&passes| passes > done_passes).filter(|&passes| passes <= max_passes)
+        LightFieldStore::LIGHT_PASSES
+            .into_iter()
+            .find(|&passes| passes > done_passes)
+            .filter(|&passes| passes <= max_passes)
     }
 
     /// Notes changes of the focus map.

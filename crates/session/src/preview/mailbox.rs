@@ -1,4 +1,4 @@
-//! What the session and the preview's threads share: one mailbox for wishes, one for news.
+//! State shared by the session and the preview's threads: one mailbox for requests, one for results.
 
 use crate::display::Patch;
 use crate::light_field::{BakedField, FieldWatch};
@@ -14,22 +14,22 @@ use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU32, AtomicUsize, Ordering};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-/// What the threads and the session share.
+/// State shared by the session and the preview's threads.
 pub(crate) struct Shared {
     request: Mutex<PreviewRequest>,
     wake: Condvar,
-    /// Of what the thread itself does: short.
+    /// Progress of the thread's own work: short.
     pub quick: JobProgress,
-    /// Of what its helper does: long.
+    /// Progress of its helper's work: long.
     pub progress: JobProgress,
-    /// Of the exact picture.
+    /// Progress of the exact picture.
     pub refining: JobProgress,
     is_refining: AtomicBool,
-    /// Of light that is refined.
+    /// Progress of refining light.
     pub light: JobProgress,
-    /// By how many passes; 0: none is.
+    /// Number of passes by which light is being refined; 0: none.
     light_passes: AtomicU32,
-    /// Pictures that are being made for the user, which the exact one on screen waits for.
+    /// Number of exports that the exact picture on screen waits for.
     exports: AtomicUsize,
     activity: AtomicU8,
     helper: AtomicU8,
@@ -40,13 +40,13 @@ pub(crate) struct Shared {
     waker: Waker,
 }
 
-/// A poisoned lock only means that a panic passed by; what it guards is replaced as a whole.
+/// Ignores poisoning: the guarded value is always replaced as a whole.
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 impl Shared {
-    /// Nothing wished, nothing told. `gpu`: what pictures are summed on; none: the processor.
+    /// Empty mailboxes. Pictures are summed on `gpu`, or on the processor if `None`.
     pub fn new(waker: Waker, gpu: Option<Gpu>) -> Self {
         Self {
             gpu,
@@ -67,7 +67,7 @@ impl Shared {
         }
     }
 
-    /// Waits for the next wishes; none when the session goes. When there are none for as long as `patience`, that is told.
+    /// Waits for the next request; `None` when the session is dropped. After `timeout` without one, returns an idle request.
     pub fn next_request(&self, timeout: Option<Duration>) -> Option<PreviewRequest> {
         let mut request = lock(&self.request);
         self.activity.store(PreviewActivity::Idle as u8, Ordering::Relaxed);
@@ -93,7 +93,7 @@ impl Shared {
         (!request.quit).then_some(request)
     }
 
-    /// Joins what `change` wishes to what is wished already, and stops what that makes useless.
+    /// Merges a change into the pending request, and cancels work that it makes useless.
     pub fn post(&self, scope: StopScope, change: impl FnOnce(&mut PreviewRequest)) {
         let mut request = lock(&self.request);
         change(&mut request);
@@ -110,7 +110,7 @@ impl Shared {
         self.wake.notify_one();
     }
 
-    /// Notes what the thread does now, unless it was asked to stop.
+    /// Notes what the thread does now, unless it was cancelled.
     pub fn begin(&self, activity: PreviewActivity) -> Result<(), Cancelled> {
         self.quick.check()?;
         self.quick.begin_step("", 0.0, 1.0);
@@ -118,7 +118,7 @@ impl Shared {
         Ok(())
     }
 
-    /// Notes that the helper begins; false if what it would do is already known to be useless.
+    /// Notes that the helper begins; false if its work is already useless.
     pub fn begin_helper(&self) -> bool {
         let request = lock(&self.request);
         if request.is_stopping {
@@ -129,7 +129,7 @@ impl Shared {
         true
     }
 
-    /// Notes that the exact picture is begun; false if something was wished meanwhile.
+    /// Notes that the exact picture is begun; false if there is a new request.
     pub fn begin_refining(&self) -> bool {
         self.begin_if_quiet(|| {
             self.refining.reset();
@@ -137,7 +137,7 @@ impl Shared {
         })
     }
 
-    /// Notes that light is begun to be refined by so many passes; false if something was wished meanwhile.
+    /// Notes that refining light by this number of passes begins; false if there is a new request.
     pub fn begin_light(&self, passes: u32) -> bool {
         self.begin_if_quiet(|| {
             self.light.reset();
@@ -188,7 +188,7 @@ impl Shared {
         self.post(StopScope::Nothing, |request| request.interim = Some(interim));
     }
 
-    /// Shows a picture, and what is new on screen by it; its times, if it was made just now.
+    /// Publishes a picture and the patch that it changes on screen; `times`, if it was made just now.
     pub fn publish(&self, preview: Preview, patch: Option<Patch>, times: Option<PictureTimes>) {
         let mut published = lock(&self.published);
         if preview.quality > Quality::Coarse {
@@ -205,7 +205,7 @@ impl Shared {
         (self.waker)();
     }
 
-    /// What the user is to know of a card that was lost.
+    /// A message about a graphics card that was lost.
     pub fn loss_message(&self) -> Option<String> {
         let gpu = self.gpu.as_ref()?;
         let reason = gpu.why_lost()?.lines().next().unwrap_or_default();
@@ -222,18 +222,18 @@ impl Shared {
         lock(&self.published).events.field = Some((generation, field));
     }
 
-    /// Tells that a scene must be shown darker by so many stops.
+    /// Reports that a scene must be shown darker by this number of stops.
     pub fn publish_glare(&self, generation: u64, stops: f32) {
         lock(&self.published).events.glare = Some((generation, stops));
     }
 
-    /// Tells the user of what is no failure.
+    /// Reports a notice to the user.
     pub fn notice(&self, what: String) {
         lock(&self.published).events.notices.push(what);
         (self.waker)();
     }
 
-    /// Tells the user.
+    /// Reports a failure to the user.
     pub fn report_failure(&self, what: String) {
         lock(&self.published).events.failures.push(what);
         (self.waker)();
@@ -266,7 +266,7 @@ impl Shared {
         self.post(StopScope::Nothing, |_| {});
     }
 
-    /// What is going on, and how far it is.
+    /// Current activity and its progress.
     pub fn activity(&self) -> (PreviewActivity, &JobProgress) {
         match PreviewActivity::load(&self.helper) {
             PreviewActivity::Idle => (PreviewActivity::load(&self.activity), &self.quick),
@@ -286,7 +286,7 @@ impl Shared {
         (newer, std::mem::take(&mut published.events))
     }
 
-    /// Whether everything that was posted has been followed, and nothing newer than `id` waits to be taken.
+    /// Whether all requests are processed, and no picture newer than `id` waits to be taken.
     pub fn is_settled(&self, id: u64) -> bool {
         if self.is_at_work() {
             return false;

@@ -7,7 +7,7 @@ use crate::display::{
 use crate::preview::mailbox::Shared;
 use crate::preview::picture::{DrawingCosts, PictureTimes, Preview, PreviewKind, Quality};
 use lens::{Camera, Exposure, Picture};
-use render::{Modelled, Tone, ToneCurve, rectangle_to_screen, to_screen};
+use render::{Modelled, Tone, ToneCurve, to_screen};
 use salf::Salf;
 use splat::PictureOnCard;
 use std::sync::Arc;
@@ -204,13 +204,13 @@ impl Presenter {
         }
         let content = match picture {
             LivePicture::InMemory(picture) => {
-                Content::Pixels(rectangle_to_screen(picture, self.tone, rectangle.clone()))
+                Content::Pixels(self.tone.rectangle_to_screen(picture, rectangle.clone()))
             }
             LivePicture::OnCard(on_card) => match self.tone.display.curve {
                 // Those of OpenColorIO are known here.
                 ToneCurve::Ocio(_) => picture.fetch().map_or_else(
                     || Content::OnCard(on_card.clone(), self.tone),
-                    |picture| Content::Pixels(rectangle_to_screen(&picture, self.tone, rectangle.clone())),
+                    |picture| Content::Pixels(self.tone.rectangle_to_screen(&picture, rectangle.clone())),
                 ),
                 _ => Content::OnCard(on_card.clone(), self.tone),
             },

@@ -1,4 +1,4 @@
-//! What is wanted of the preview, joined until its thread looks.
+//! Requests to the preview, merged until its thread takes them.
 
 use crate::light_field::Changes;
 use crate::preview::deliveries::{ExactDelivery, FieldDelivery, InterimField, RefinedLightDelivery};
@@ -9,44 +9,44 @@ use render::Tone;
 use splat::Tolerance;
 use std::sync::Arc;
 
-/// Everything that changed since the thread last looked.
+/// Everything that was requested or delivered since the thread last took a request.
 #[derive(Default)]
 pub(crate) struct PreviewRequest {
-    /// Another scene, and which of the session's documents it is.
+    /// A new scene, and the generation of its document.
     pub stage: Option<(Arc<Stage>, u64)>,
     pub camera: Option<Camera>,
-    /// A snapshot of the map and how many changes it holds; `changed` is what is new in it.
+    /// A snapshot of the map and its number of changes; `changed` says what is new in it.
     pub map: Option<(FocusMap, u64)>,
     pub changed: Changes,
-    /// Another way to put pictures on screen.
+    /// New tone settings.
     pub tone: Option<Tone>,
-    /// How coarse pictures may be while one works.
+    /// New tolerance of pictures while the user works.
     pub tolerance: Option<Tolerance>,
-    /// Nothing was wished for a while.
+    /// Nothing was requested for a while.
     pub is_idle: bool,
-    /// The light field is to be made anew.
+    /// Bake the light field again.
     pub bake: bool,
-    /// An edit is complete: room for what takes longer.
+    /// An edit is complete, so there is time for longer work.
     pub edit_done: bool,
-    /// The user wants no more work for now.
+    /// Pause all work.
     pub pause: bool,
-    /// The light field that was made.
+    /// The finished light field.
     pub delivery: Option<FieldDelivery>,
-    /// One of fewer pixels that was made first.
+    /// An interim light field of fewer pixels.
     pub interim: Option<InterimField>,
-    /// What became of the exact picture.
+    /// The result of the exact picture.
     pub refined: Option<ExactDelivery>,
-    /// What became of light that was to be refined.
+    /// The result of refining light.
     pub refined_light: Option<RefinedLightDelivery>,
-    /// The user wants no light refined for now.
+    /// Pause refining light.
     pub pause_light: bool,
-    /// Work under way was told to stop when these were posted.
+    /// Current work was cancelled by this request.
     pub is_stopping: bool,
     pub is_posted: bool,
     pub quit: bool,
 }
 
-/// What of the work under way a wish makes useless.
+/// Which current work a request makes useless.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum StopScope {
     Nothing,

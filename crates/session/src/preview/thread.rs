@@ -1,4 +1,4 @@
-//! The session's end of the preview's thread: wishes are posted, what was made is taken.
+//! The session's handle to the preview thread: posts requests and takes results.
 
 use crate::error::SessionError;
 use crate::light_field::Changes;
@@ -17,15 +17,15 @@ use splat::{Gpu, Tolerance};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// The session's end of the preview thread.
+/// The session's handle to the preview thread.
 pub(crate) struct PreviewThread {
     shared: Arc<Shared>,
     thread: Option<std::thread::JoinHandle<()>>,
 }
 
 impl PreviewThread {
-    /// Starts the thread. `exact_after`: for how long nothing must change until the exact picture is drawn; none: never.
-    /// Then light is refined, by at most `light_passes`. `store`: where light fields are kept. `gpu`: what pictures are summed on; none: the processor.
+    /// Starts the thread. After nothing has changed for `exact_after` (`None`: never) the exact picture is drawn, and then light is refined
+    /// by at most `light_passes`. Light fields are stored in `store`. Pictures are summed on `gpu`, or on the processor if `None`.
     pub fn start(
         waker: Waker,
         exact_after: Option<Duration>,
@@ -55,7 +55,7 @@ impl PreviewThread {
         });
     }
 
-    /// Another camera, at the preview's size. `light_field_stays` where the old light field serves it.
+    /// Another camera, at the preview's size. `keeps_light_field`: the light field is compatible with it.
     pub fn set_camera(&self, camera: Camera, keeps_light_field: bool) {
         let scope = if keeps_light_field { StopScope::Refining } else { StopScope::Everything };
         self.shared.post(scope, |request| {
@@ -65,7 +65,7 @@ impl PreviewThread {
         });
     }
 
-    /// Another state of the map, with how many changes it holds; `changed` is what is new in it.
+    /// A new state of the map with its number of changes; `changed` says what is new in it.
     pub fn set_map(&self, map: (FocusMap, u64), changed: &Changes) {
         self.shared.post(StopScope::Refining, |request| {
             request.map = Some(map);
@@ -78,7 +78,7 @@ impl PreviewThread {
         self.shared.post(StopScope::Nothing, |request| request.edit_done = true);
     }
 
-    /// Makes the light field anew.
+    /// Bakes the light field again.
     pub fn bake(&self) {
         self.shared.post(StopScope::Everything, |request| {
             request.bake = true;
@@ -86,23 +86,23 @@ impl PreviewThread {
         });
     }
 
-    /// Stops what is going on; the last picture stays.
+    /// Cancels current work; the last picture stays.
     pub fn cancel(&self) {
         self.shared.post(StopScope::Everything, |request| request.pause = true);
     }
 
-    /// Refines no light until another scene or camera is looked at.
+    /// Pauses refining light until scene or camera change.
     pub fn pause_light(&self) {
         self.shared.post(StopScope::Nothing, |request| request.pause_light = true);
         self.shared.light.cancel();
     }
 
-    /// By how many passes light is being refined, and how far that is.
+    /// The number of passes by which light is being refined, and the progress.
     pub fn refining_light(&self) -> Option<(u32, &JobProgress)> {
         self.shared.refining_light()
     }
 
-    /// What is going on, and how far it is.
+    /// Current activity and its progress.
     pub fn activity(&self) -> (PreviewActivity, &JobProgress) {
         self.shared.activity()
     }
@@ -112,17 +112,17 @@ impl PreviewThread {
         self.shared.take(id)
     }
 
-    /// Puts pictures on screen in another way.
+    /// Sets the tone.
     pub fn set_tone(&self, tone: Tone) {
         self.shared.post(StopScope::Nothing, |request| request.tone = Some(tone));
     }
 
-    /// What others need of its work.
+    /// The state shared with the thread.
     pub fn shared(&self) -> Arc<Shared> {
         self.shared.clone()
     }
 
-    /// Sets how coarse pictures may be while one works.
+    /// Sets the tolerance of pictures while the user works.
     pub fn set_tolerance(&self, tolerance: Tolerance) {
         self.shared.post(StopScope::Refining, |request| {
             request.tolerance = Some(tolerance);
@@ -130,12 +130,12 @@ impl PreviewThread {
         });
     }
 
-    /// How far the exact picture is, while it is drawn.
+    /// Progress of the exact picture, while it is drawn.
     pub fn refining(&self) -> Option<f32> {
         self.shared.refining_fraction()
     }
 
-    /// Whether everything that was posted has been followed, and nothing newer than `id` waits to be taken.
+    /// Whether all requests are processed, and no picture newer than `id` waits to be taken.
     pub fn is_settled(&self, id: u64) -> bool {
         self.shared.is_settled(id)
     }

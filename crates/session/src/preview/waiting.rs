@@ -1,4 +1,4 @@
-//! How others wait for the preview's work, or have it wait for theirs.
+//! Waiting for the preview's light field, and having the preview wait for exports.
 
 use crate::light_field::BakeState;
 use crate::preview::deliveries::BAKE_SHARE;
@@ -10,19 +10,19 @@ use salf::Salf;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// How often it is looked whether the preview is still at work on a light field that others need.
+/// Interval of checks whether the preview is still making a light field.
 const POLL_INTERVAL: Duration = Duration::from_millis(50);
 
 impl Shared {
-    /// The light field that the preview makes now, if it serves `camera` in `stage`: it is waited for. None is another bake's time
-    /// to begin: the preview's own is over by then, and has the processors for itself as long as it takes.
+    /// Waits for the light field that the preview is making, and returns it if it is compatible with `camera` in `stage`. On `None` the
+    /// caller can start its own bake: the preview's has ended, so the two do not compete for the processors.
     pub fn wait_for_field(
         &self,
         stage: &Arc<Stage>,
         camera: &Camera,
         progress: &dyn Progress,
     ) -> Result<Option<Arc<Salf>>, Cancelled> {
-        // What is left of the bake when the wait begins.
+        // Progress of the bake when the wait began.
         let mut initial_fraction = None;
         loop {
             progress.check()?;
@@ -33,7 +33,7 @@ impl Shared {
                     let first = *initial_fraction.get_or_insert(baked);
                     progress.report((baked - first) / (1.0 - first).max(f32::EPSILON));
                 }
-                // What the thread does now may end in making one.
+                // The thread's current work may lead to a bake.
                 BakeState::Absent if self.is_at_work() => std::thread::sleep(POLL_INTERVAL),
                 BakeState::Absent => return Ok(None),
             }
@@ -41,12 +41,11 @@ impl Shared {
     }
 }
 
-/// While there is one, a picture is being made that the user asked for: that comes first, and the exact picture on screen, which
-/// nobody asked for, after it.
+/// A guard for an export: while it exists, the exact picture on screen waits.
 pub(crate) struct Exporting(Arc<Shared>);
 
 impl Exporting {
-    /// Begins.
+    /// Begins an export.
     pub fn new(shared: &Arc<Shared>) -> Self {
         shared.begin_export();
         Self(shared.clone())

@@ -1,4 +1,4 @@
-//! What the preview thread does with its wishes.
+//! The preview thread's work: processing requests.
 
 use super::light_refinement;
 use crate::display::PictureSource;
@@ -54,21 +54,21 @@ pub(crate) struct Worker {
     light: LightRefinement,
     /// By how many passes at most.
     light_passes: u32,
-    /// The user wants no light refined until another scene or camera is looked at.
+    /// Refining light is paused until scene or camera change.
     is_light_paused: bool,
     /// For how long nothing must change until either is done; none: never.
     exact_after: Option<Duration>,
-    /// A stroke goes on.
+    /// A stroke is in progress.
     is_painting: bool,
-    /// How coarse sums may be.
+    /// Tolerance of sums.
     tolerance: Tolerance,
-    /// Counts scenes and bakes that were asked for anew: what is of an older epoch is of no use.
+    /// Counts new scenes and requested bakes: results of an older epoch are discarded.
     epoch: u64,
     /// An edit is complete, and whether the fine light field still fits it has not been looked at.
     is_edit_done: bool,
     /// The light field is to be baked, whatever is in the store.
     bakes_anew: bool,
-    /// The user wants no more work until the next change that needs it.
+    /// Work is paused until the next change that needs it.
     is_paused: bool,
     /// The user knows that the card was lost.
     is_loss_reported: bool,
@@ -110,7 +110,7 @@ impl Worker {
         }
     }
 
-    /// Follows wishes until the session goes.
+    /// Processes requests until the session is dropped.
     pub fn run(mut self) {
         while let Some(request) = self.shared.next_request(self.exact_after.filter(|_| self.has_idle_work()))
         {
@@ -438,7 +438,7 @@ impl Worker {
     /// Makes the fine light field and sums it, on a thread of its own.
     fn make_field(&mut self, origin: FieldOrigin, stage: &Arc<Stage>, camera: &Camera, focus: Focus) {
         let (stage, camera) = (stage.clone(), camera.clone());
-        // Where a fine picture stands already, none of fewer pixels is wanted.
+        // With a fine picture already shown, an interim one would be worse.
         let interim = if self.fine.is_none() { interim_camera(&camera) } else { None };
         let (tolerance, epoch) = (self.tolerance, self.epoch);
         let order = FieldOrder { origin, stage, camera, interim, focus, tolerance, epoch };
@@ -455,7 +455,7 @@ impl Worker {
         is_viewing && is_up_to_date && is_quiet && !self.refinement.is_at_work()
     }
 
-    /// Whether there is anything to do while nothing is wished.
+    /// Whether there is work to do while there are no requests.
     fn has_idle_work(&self) -> bool {
         self.may_refine() || self.refinable_passes().is_some()
     }
@@ -471,7 +471,7 @@ impl Worker {
         self.light.next_passes(camera, fine.light_passes(), self.light_passes).filter(|_| is_allowed)
     }
 
-    /// Begins to refine the light, if nothing was wished meanwhile.
+    /// Begins to refine the light, unless there is a new request.
     fn refine_light(&mut self, passes: u32, stage: Arc<Stage>, camera: Camera, focus: Focus) {
         let (tolerance, epoch, exposure) = (self.tolerance, self.epoch, self.presenter.exposure());
         let Some(fine) = &mut self.fine else { return };
@@ -491,7 +491,7 @@ impl Worker {
         self.light.start(&self.shared, task);
     }
 
-    /// Begins to draw the exact picture, if nothing was wished meanwhile.
+    /// Begins to draw the exact picture, unless there is a new request.
     fn refine(&mut self, camera: Camera, focus: Focus) {
         let Some(fine) = &mut self.fine else { return };
         let fetched = || fine.fetch_picture().ok().cloned().map(Arc::new);

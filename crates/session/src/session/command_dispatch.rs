@@ -1,4 +1,4 @@
-//! Commands, and what each sets going.
+//! Dispatching commands.
 
 use crate::commands::{Command, Event};
 use crate::error::SessionError;
@@ -8,7 +8,11 @@ use document::CameraEdit;
 use focus::FillTarget;
 
 impl Session {
-    /// Does what `command` asks, or starts doing it.
+    /// Carries out `command`, or starts it in the background.
+    ///
+    /// # Errors
+    /// No document is open, the command's values are invalid, a file cannot be used, or no thread can be started. Errors of background work
+    /// are reported as [`Event::Failed`].
     pub fn apply(&mut self, command: Command) -> Result<(), SessionError> {
         match command {
             Command::Open(path) => self.open(path),

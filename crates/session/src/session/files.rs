@@ -172,7 +172,7 @@ impl Session {
         self.commit_stroke()?;
         let steps: Vec<_> = self.document_mut()?.undo.records().cloned().collect();
         if steps.is_empty() {
-            let what = "nothing was painted since the document was opened (paint first)";
+            let what = "nothing has been painted since the document was opened (paint first)";
             return Err(SessionError::bad_file(path, what));
         }
         project::write_strokes(path, &steps)?;

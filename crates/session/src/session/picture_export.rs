@@ -1,4 +1,4 @@
-//! Pictures as files: rendered at full size, from the light field that stands if it serves, or as they are on screen.
+//! Exporting pictures: rendered at full size, from an existing light field if one is compatible, or as they are on screen.
 
 use crate::error::SessionError;
 use crate::job_steps::JobSteps;
@@ -11,20 +11,20 @@ use focus::Focus;
 use lens::{Camera, Picture};
 use light::Steps;
 use project::{Layer, PictureOptions, write_picture, write_rgb};
-use render::{Aov, LightFieldStore, RenderOptions, Rendered, Tone, bake, is_compatible, sum_light_field};
+use render::{Aov, LightFieldStore, RenderOptions, Rendered, Tone, bake, is_compatible};
 use salf::{BakeOptions, Carried, Salf};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Whether a picture at full size needs a light field of its own.
+/// Whether there is a light field for a picture at full size.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FullSizeFieldState {
-    /// No: there is one.
+    /// There is one.
     Ready,
-    /// No: the live picture's will serve, which is being made.
+    /// The live picture's light field is being made and will be compatible.
     InProgress,
-    /// Yes.
+    /// There is none: it has to be baked.
     Missing,
 }
 
@@ -78,7 +78,7 @@ impl AvailableFields {
                 salf
             }
         };
-        Ok(sum_light_field(salf, lit, camera, focus, options, steps)?)
+        Ok(options.sum_light_field(salf, lit, camera, focus, steps)?)
     }
 }
 
@@ -95,14 +95,14 @@ impl Session {
         AvailableFields { stage, preview_field, store, preview }
     }
 
-    /// Whether a picture at full size has to wait for a light field, as far as is known without looking at the paint.
+    /// Whether a picture at full size has to wait for a light field, judged without the paint.
     pub fn full_size_field_state(&self) -> FullSizeFieldState {
         let Some(document) = &self.document else { return FullSizeFieldState::Missing };
         let is_compatible = |baked: &Camera| is_compatible(baked, &document.camera);
-        let preview_serves_export =
+        let is_preview_compatible =
             self.light_field.as_ref().is_some_and(|field| is_compatible(&field.salf.camera));
         let store = self.options.light_field_store.as_ref();
-        if preview_serves_export || store.is_some_and(|store| store.has(&document.stage, &document.camera)) {
+        if is_preview_compatible || store.is_some_and(|store| store.has(&document.stage, &document.camera)) {
             FullSizeFieldState::Ready
         } else if self.preview_camera.as_ref().is_some_and(is_compatible)
             && self.preview_thread.shared().is_at_work()
@@ -113,7 +113,10 @@ impl Session {
         }
     }
 
-    /// The live picture without tolerance; rendered now, which takes its time.
+    /// Renders the live picture without tolerance. Blocks until it is done.
+    ///
+    /// # Errors
+    /// Nothing is open, or rendering fails.
     pub fn exact_picture(&self) -> Result<Picture, SessionError> {
         let (Some(document), Some(preview)) = (self.document(), self.preview()) else {
             return Err(SessionError::NothingOpen);

@@ -1,4 +1,4 @@
-//! What can be asked of a session at any time.
+//! Queries of a session.
 
 use crate::blur_histogram::BlurHistogram;
 use crate::light_field::ApertureImage;
@@ -9,7 +9,7 @@ use lens::FocusOffset;
 use trace::Ray;
 
 impl Session {
-    /// What a ray of either view meets first.
+    /// The first hit of a ray of either view.
     pub fn pick(&self, ray: &Ray) -> Option<SurfaceHit> {
         pick(self.document.as_ref()?.stage.tracer(), ray)
     }
@@ -24,18 +24,17 @@ impl Session {
         Some(self.document.as_ref()?.focus_at(hit))
     }
 
-    /// The aperture as a surface point sees it. `None` where nothing is open, the aperture is a pinhole, or the point stands
-    /// behind it.
+    /// The aperture as seen from a surface point. `None` if nothing is open, the aperture is a pinhole, or the point is behind it.
     pub fn aperture_image(&self, hit: &SurfaceHit) -> Option<ApertureImage> {
         ApertureImage::trace_at(self.document()?, self.light_field.as_ref(), hit)
     }
 
-    /// Counts the light fields that the preview was made of: [`Self::aperture_image`] may tell more after another.
+    /// Number of light fields that the preview has had: [`Self::aperture_image`] may change with a new one.
     pub fn light_field_count(&self) -> u64 {
         self.light_field_count
     }
 
-    /// The circles of confusion of `columns` × `rows` places of the picture, by chief rays. `None` where nothing is open.
+    /// Circles of confusion at a grid of [columns, rows] positions of the picture, by chief rays. `None` if nothing is open.
     pub fn blur_histogram(&self, grid: [usize; 2]) -> Option<BlurHistogram> {
         Some(BlurHistogram::measure(self.document()?, grid))
     }

@@ -12,9 +12,7 @@ use document::{Document, depth_in_direction};
 use focus::Focus;
 use lens::{Camera, FocusOffset};
 use light::{LightQuality, Steps};
-use render::{
-    RenderOptions, Renderer, Stereo, light_of_photographs, photograph_picture, render, render_pair,
-};
+use render::{RenderOptions, Renderer, Stereo, light_of_photographs, photograph_picture, render};
 use std::sync::Arc;
 use std::time::Instant;
 use trace::truth::TruthOptions;
@@ -115,13 +113,12 @@ impl Session {
                     // The camera is focused on what they fixate.
                     let stereo = Stereo { form, eyes: EYE_SEPARATION, fixate: None, exposure };
                     let options = RenderOptions::default();
-                    render_pair(&camera, &stereo, |eye| {
-                        available_fields.render(eye, &focus, &options, &steps)
-                    })?
-                    .picture
+                    stereo
+                        .render_pair(&camera, |eye| available_fields.render(eye, &focus, &options, &steps))?
+                        .picture
                 }
                 ReferenceKind::Photograph => {
-                    let what = "the camera is that of no photograph (choose one of them as the camera)";
+                    let what = "the camera is not that of a photograph (choose a photograph as the camera)";
                     let view = photograph.ok_or_else(|| SessionError::bad_file(&stage.scene.path, what))?;
                     let light = light_of_photographs(&stage.lit, &steps)?;
                     photograph_picture(&view, &camera, stage.tracer(), light.as_deref())?.0

@@ -68,7 +68,7 @@ impl Session {
         self.commit_stroke()?;
         let document = self.document_mut()?;
         if document.scene().picture.is_none() {
-            let what = "depth can be repaired of light fields and pictures with depth alone (move the scene's surfaces in the program that made them)";
+            let what = "depth can only be repaired for light fields and pictures with depth (move surfaces in the program that made the scene)";
             return Err(SessionError::bad_file(&document.scene().path, what));
         }
         let before = document.depth_strokes.clone();

@@ -10,14 +10,13 @@ use crate::session::job_outcome::JobOutcome;
 use crate::session::recovery::Recovery;
 use crate::session::watched_file::WatchedFile;
 use crate::verification::Verification;
-use document::{ActiveEdit, Document};
-use jobs::{Job, JobId, JobProgress, JobStatus, Waker};
-use render::{Display, LightFieldStore};
-
 use atlas::UnwrapOptions;
+use document::{ActiveEdit, Document};
 use glam::{DVec2, DVec3};
+use jobs::{Job, JobId, JobProgress, JobStatus, Waker};
 use lens::Camera;
 use light::Resources;
+use render::{Display, LightFieldStore};
 use slf::PhotographLight;
 use splat::{Gpu, Tolerance};
 use std::collections::BTreeMap;
@@ -25,27 +24,26 @@ use std::ops::Range;
 use std::sync::{Arc, mpsc};
 use std::time::Duration;
 
-/// How a session works.
+/// Options of a session.
 #[derive(Clone)]
 pub struct SessionOptions {
     /// How scenes are unwrapped.
     pub unwrap: UnwrapOptions,
-    /// What work on documents may use.
+    /// Resources for work on documents: caches.
     pub resources: Resources,
-    /// The longest side that the preview is drawn at, px.
+    /// Longest side of the preview, px.
     pub preview_size: u32,
-    /// Memory that steps of undo may keep alive, in bytes; the oldest are forgotten beyond it.
+    /// Memory budget of the undo history, bytes; the oldest steps are dropped beyond it.
     pub undo_budget_bytes: usize,
-    /// How long after a change unsaved work is written to its recovery file. With the time that writing takes, it
-    /// is what a crash may cost.
+    /// Delay from a change to writing the recovery file: a crash loses at most this much work, plus the time for writing.
     pub recovery_delay: Duration,
-    /// For how long nothing must change until the exact picture is drawn; none: the one within the tolerance is enough.
+    /// Idle time before the exact picture is drawn; `None`: never.
     pub exact_delay: Option<Duration>,
-    /// By how many passes its light is refined then, at most; 0: not at all.
+    /// Maximum number of passes by which light is refined after that; 0: none.
     pub light_passes: u32,
-    /// Where light fields are kept from one run to the next; none: they are baked every time.
+    /// Storage of light fields between runs; `None`: they are baked every time.
     pub light_field_store: Option<LightFieldStore>,
-    /// The graphics card that the preview is summed on, and shown from; none: the processor sums.
+    /// The graphics card that sums and shows the preview; `None`: the processor.
     pub gpu: Option<Gpu>,
     /// Called from any thread when there is something to poll.
     pub waker: Waker,
@@ -126,7 +124,10 @@ pub struct Session {
 }
 
 impl Session {
-    /// A session with nothing open.
+    /// A session without an open document.
+    ///
+    /// # Errors
+    /// The preview thread cannot be started.
     pub fn new(options: SessionOptions) -> Result<Self, SessionError> {
         let (sender, outcomes) = mpsc::channel();
         Ok(Self {
@@ -180,12 +181,12 @@ impl Session {
         self.preview.as_ref()
     }
 
-    /// How the screen shows any picture.
+    /// The display settings.
     pub fn display(&self) -> Display {
         self.display
     }
 
-    /// How coarse the live picture may be.
+    /// Tolerance of the live picture.
     pub fn tolerance(&self) -> Tolerance {
         self.tolerance
     }
@@ -215,17 +216,17 @@ impl Session {
         self.map_serial
     }
 
-    /// What the preview is being drawn as.
+    /// What the preview is doing.
     pub fn preview_activity(&self) -> PreviewActivity {
         self.preview_thread.activity().0
     }
 
-    /// How far the exact picture is, in [0, 1], while it is drawn.
+    /// Progress of the exact picture, in [0, 1], while it is drawn.
     pub fn exact_picture_progress(&self) -> Option<f32> {
         self.preview_thread.refining()
     }
 
-    /// Whether a stroke or a gradient is going on.
+    /// Whether a stroke or gradient is in progress.
     pub fn is_painting(&self) -> bool {
         self.active_edit.is_some()
     }
@@ -235,7 +236,7 @@ impl Session {
         self.jobs.is_empty() && self.preview_thread.is_settled(self.last_preview_id)
     }
 
-    /// All background work that is going on.
+    /// All background work in progress.
     pub fn jobs(&self) -> Vec<JobStatus> {
         let (activity, progress) = self.preview_thread.activity();
         let label = match activity {
@@ -277,7 +278,7 @@ impl Session {
         self.last_job += 1;
         let (sender, waker) = (self.outcome_sender.clone(), self.options.waker.clone());
         let job = Job::start(JobId(self.last_job), label, work, move |id, outcome| {
-            // A session that is gone wants nothing.
+            // The session may have been dropped.
             let _ = sender.send((Some(id), outcome));
             waker();
         })?;

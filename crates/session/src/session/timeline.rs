@@ -2,7 +2,7 @@
 //!
 //! To go to a time is to give the camera and the layers the values that their keys have then, as animation programs do. That is no
 //! step of undo: what the keys say is kept in the keys. The scene itself is shown at rest; frames show it in motion
-//! ([`crate::render_frames`]).
+//! ([`render::render_frames`]).
 
 use crate::commands::Event;
 use crate::error::SessionError;
@@ -14,7 +14,7 @@ use scene::SurfacePoint;
 impl Session {
     pub(super) fn go_to_time(&mut self, seconds: f64) -> Result<(), SessionError> {
         if !seconds.is_finite() {
-            return Err(SessionError::BadInput(format!("{seconds} s is no time")));
+            return Err(SessionError::BadInput(format!("{seconds} s is not a valid time")));
         }
         self.document_mut()?.seconds = seconds;
         self.show_time()
@@ -54,7 +54,7 @@ impl Session {
 
     pub(super) fn set_lens_motion(&mut self, name: &str, motion: LensMotion) -> Result<(), SessionError> {
         if !motion.is_valid() {
-            let what = "keys of the lens: times must ascend, distances and f-numbers be above 0";
+            let what = "keys of the lens: times must ascend; distances and f-numbers must be above 0";
             return Err(SessionError::BadInput(what.into()));
         }
         let document = self.document_mut()?;
@@ -75,13 +75,13 @@ impl Session {
     ) -> Result<(), SessionError> {
         if seconds[0] >= seconds[1] || !seconds.iter().all(|seconds| seconds.is_finite()) {
             return Err(SessionError::BadInput(
-                "a rack focus takes some time (give it more than 0 s)".into(),
+                "a rack focus must last longer than 0 s (choose another duration)".into(),
             ));
         }
         let mut motion = self.document_mut()?.lens_motion.clone();
         for (hit, seconds) in points.into_iter().zip(seconds) {
             if !motion.focus.insert(Key { seconds, value: FocusTarget::Point(hit.point), ease }) {
-                return Err(SessionError::BadInput("the lens has too many keys (take some away)".into()));
+                return Err(SessionError::BadInput("the lens has too many keys (remove some)".into()));
             }
         }
         self.set_lens_motion("Rack focus", motion)
