@@ -25,9 +25,9 @@ mod tests {
 
     #[test]
     fn rises_and_falls_between_its_ends() {
-        for (value, expected) in [(-1.0, 0.0), (2.0, 0.0), (3.0, 0.5), (4.0, 1.0), (1e30, 1.0)] {
+        for (value, expected) in [(-1.0f32, 0.0f32), (2.0, 0.0), (3.0, 0.5), (4.0, 1.0), (1e30, 1.0)] {
             assert_eq!(smoothstep(value, [2.0f32, 4.0]), expected, "{value}");
-            assert_eq!(smoothstep(value, [4.0f64, 2.0]) as f32, 1.0 - expected as f32, "{value}");
+            assert_eq!(smoothstep(f64::from(value), [4.0, 2.0]), 1.0 - f64::from(expected), "{value}");
         }
         assert_eq!(smoothstep(f64::INFINITY, [2.0, 4.0]), 1.0);
     }
