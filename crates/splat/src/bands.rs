@@ -11,7 +11,7 @@ use std::time::Duration;
 /// Rows of a slot, which is never divided: a pixel of the coarsest level.
 const SLOT_ROWS: u32 = BLOCK_PX as u32;
 
-/// What there is to do, slot by slot from the picture's top.
+/// The work to be done, slot by slot from the picture's top.
 pub struct Work(Vec<u64>);
 
 impl Work {
@@ -59,7 +59,7 @@ fn slots(rows: &Range<u32>, count: usize) -> Range<usize> {
 pub struct Pace(Vec<f64>);
 
 impl Pace {
-    /// Nothing is known of a slot of which there was no work.
+    /// 1 for a slot that has had no work.
     fn slot_pace(&self, slot: usize) -> f64 {
         self.0.get(slot).copied().unwrap_or(1.0)
     }

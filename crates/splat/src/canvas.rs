@@ -144,7 +144,7 @@ impl Touched {
 pub struct Row<'a, W> {
     /// The differences of its columns in memory.
     pub differences: &'a [Pixel<W>],
-    /// The coverage thrown at the row.
+    /// The coverage added to the row.
     pub total: i64,
     /// Which patches of columns may be drawn on: a bit each.
     patches: u64,
@@ -201,7 +201,7 @@ impl<W: Word> Level<W> {
         self.width + 2
     }
 
-    /// A row, from −1 to its height; `None` if it was never drawn on, or there is none.
+    /// A row, from −1 to its height; `None` if it was never drawn on, or does not exist.
     pub fn row(&self, row: i32) -> Option<Row<'_, W>> {
         let place = (row + 1) as usize;
         let patches = self.touched.get(place)?.patches();
@@ -427,7 +427,7 @@ impl Run {
         Ends { whole, begun: near_part::<W>(&bits, self.start), ended: near_part::<W>(&bits, self.end) }
     }
 
-    /// Adds it to a row that it leaves. Returns the coverage thrown at the row.
+    /// Adds it to a row from which it extends. Returns the coverage added to the row.
     #[cold]
     #[inline(never)]
     fn add_beyond<W: Word>(

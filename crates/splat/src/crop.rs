@@ -6,10 +6,10 @@
 //! sums.add(&part_of_the_light_field, …)?;                 // all parts whose light may reach it, in any order
 //! let picture = sums.picture(progress)?;                  // numbers, which may go to a file
 //!
-//! let mut joining = Joining::new(size);                   // the whole picture
-//! joining.add_knots(y, …); joining.settle();              // what gains are made of, row by row
-//! joining.add_shared(y, &mut row); joining.find_rest();   // of a painted picture
-//! joining.join(y, &mut row);                              // a row of the picture
+//! let mut joiner = CropJoiner::new(size, is_painted);                   // the whole picture
+//! joiner.add_knots(y, …); joiner.find_gains();              // what gains are made of, row by row
+//! joiner.add_shared(y, &mut row); joiner.find_rest();   // of a painted picture
+//! joiner.join(y, form, &mut row);                              // a row of the picture
 //! ```
 //!
 //! Sums are integers, and nodes are drawn from their place within the whole. What a picture decides as a whole is left to who joins:

@@ -1,24 +1,24 @@
-//! Drawing a node: the aperture's image, thrown by its footprint.
+//! Drawing a node: the image of the aperture, spread over its footprint.
 //!
 //! Everything here is integer arithmetic of 32 bits ([`crate::fixed`]), so that any machine, and any graphics card, draws
 //! the same bits. A node far out of focus is a stencil of the aperture on its level, one nearly in focus a box of the same
 //! mean and variance. Levels blur what is drawn on them (a pixel's box, and the upsampling), and a footprint is itself a
 //! blur; stencils are made smaller or larger so that the variance on the picture is that of footprint and aperture together.
 
-mod boxes;
-mod image;
+pub mod boxes;
+pub mod image;
 mod large;
 mod paper;
 mod pen;
-mod sized_box;
+pub mod sized_box;
 mod small;
-mod stencilled;
-mod visible_runs;
+pub mod stencilled;
+pub mod visible_runs;
 
 pub use image::Image;
 pub use large::Large;
 pub use paper::Paper;
-pub use pen::{ALL, Form, Pen};
+pub use pen::{ALL, Form, MAX_PARTS, Pen};
 
 use crate::canvas::Word;
 use crate::fixed::mul_shift;

@@ -1,8 +1,8 @@
-// Drawing placed nodes onto the accumulators: the twin of ../draw.rs and of what lies in ../draw, term by term.
-// Read after pen.wgsl. One thread or several draw a record, each its own pixel rows. Accumulators are added to atomically;
-// integers make the order irrelevant.
+// Drawing placed nodes onto the accumulators: the twin of draw.rs and of the files in draw/, term by term. Read after
+// pen.wgsl. One thread or several draw a record, each its own pixel rows. Additions to accumulators are atomic; integers make
+// the order irrelevant.
 
-// What partly occluded nodes see, eleven words each: 16 rows of cells, share, mean, half.
+// The visibility of partly occluded nodes, PARTIAL_WORDS each: 16 rows of cells, share, mean, half width.
 @group(0) @binding(1) var<storage, read> cells: array<u32>;
 // The aperture's rows, and stencils; see `Shapes` in shapes.rs.
 @group(0) @binding(3) var<storage, read> shape: array<u32>;
@@ -10,8 +10,7 @@
 @group(0) @binding(5) var<storage, read> records: array<u32>;
 @group(0) @binding(6) var<storage, read_write> free: array<atomic<u32>>;
 @group(0) @binding(7) var<storage, read_write> sharing: array<atomic<u32>>;
-// How many records, and how many of the buffer's come before them.
-@group(0) @binding(8) var<uniform> batch: vec4<u32>;
+@group(0) @binding(8) var<uniform> batch: Batch;
 
 // Whether the accumulators hold 64 bits.
 override IS_WIDE: bool = false;
@@ -20,15 +19,11 @@ override KIND: u32 = 0u;
 // How many threads draw a record: a divisor of a workgroup's.
 override LANES: u32 = 1u;
 
-const HEIGHT_BITS: u32 = 24u;
-const LARGEST_HALF: u32 = 40960u;
-const SMALLEST_HALF: u32 = 128u;
-const LARGEST_SCALE: u32 = 4u;
-const TALLEST_ROW: u32 = 65536u;
-const SMALLEST_REACH: u32 = 256u;
-const LARGEST_REACH: u32 = 1073741824u;
-const OPEN: u32 = 0xFFFFFFFFu;
-const SLOTS: u32 = 8u;
+struct Batch {
+    // The number of records, and of those before them in the buffer.
+    count: u32,
+    first: u32,
+}
 
 struct Image {
     node: Node,
@@ -150,8 +145,8 @@ fn light_shift(image: ptr<function, Image>, bits: u32) -> u32 {
 
 fn value_of(image: ptr<function, Image>, height: u32, share: u32, shift: u32, row: i32) -> array<vec2<u32>, 4> {
     let from_center = bitcast<u32>(row - ((*image).center.y >> POSITION_BITS));
-    var hash = (*image).dither + from_center * 0x9E3779B1u;
-    hash = (hash ^ (hash >> 15u)) * 0x2C1B3C6Du;
+    var hash = (*image).dither + from_center * GOLDEN;
+    hash = (hash ^ (hash >> 15u)) * HASH_DITHER;
     var dither: vec2<u32>;
     if shift >= 32u {
         let more = shift - 32u;
@@ -205,7 +200,7 @@ fn draw_box(image: ptr<function, Image>, half_size: vec2<u32>, of_aperture: vec2
     }
 }
 
-fn draw_seen_box(image: ptr<function, Image>, through: u32) {
+fn draw_partial_box(image: ptr<function, Image>, through: u32) {
     let mean = vec2<i32>(low_half(cells[through + 9u]), high_half(cells[through + 9u]));
     shift_to(image, mean);
     (*image).share = cells[through + 8u];
@@ -244,33 +239,33 @@ fn draw_parts(image: ptr<function, Image>, depth_share: i32) {
 // Stencils: a table of (first run, runs, bits of the heights), then runs of four words.
 
 // A stencil as an image meets it.
-struct Met {
+struct PlacedStencil {
     first_run: u32,
     count: u32,
     base: i32,
     shift: u32,
-    // By how many bits what passes of a row is told more finely.
+    // Additional bits of precision for the light that passes a row.
     finer: u32,
 }
 
-fn meet(image: ptr<function, Image>, place: u32) -> Met {
+fn place_stencil(image: ptr<function, Image>, place: u32) -> PlacedStencil {
     let word = stencils[2u * place + 1u];
     let height_bits = (word >> 16u) & 63u;
     let half_step = i32(word >> 22u);
     let base = ((*image).center.y + half_step) >> POSITION_BITS;
     let finer = POSITION_BITS + height_bits - HEIGHT_BITS;
-    return Met(stencils[2u * place], word & 0xFFFFu, base, light_shift(image, height_bits), finer);
+    return PlacedStencil(stencils[2u * place], word & 0xFFFFu, base, light_shift(image, height_bits), finer);
 }
 
 fn draw_image(image: ptr<function, Image>, place: u32) {
-    let met = meet(image, place);
+    let placed = place_stencil(image, place);
     let level = pen.levels[(*image).level];
     let center = (*image).center.x;
-    for (var k = (*image).lane; k < met.count; k += LANES) {
-        let at = met.first_run + 4u * k;
-        let row = met.base + high_half(stencils[at + 3u]);
+    for (var k = (*image).lane; k < placed.count; k += LANES) {
+        let at = placed.first_run + 4u * k;
+        let row = placed.base + high_half(stencils[at + 3u]);
         if row >= -1 && row <= level.height {
-            let value = value_of(image, stencils[at + 2u], (*image).share, met.shift, row);
+            let value = value_of(image, stencils[at + 2u], (*image).share, placed.shift, row);
             let start = center + bitcast<i32>(stencils[at]);
             let end = center + bitcast<i32>(stencils[at + 1u]);
             add_run(image, row, start, end, value);
@@ -278,39 +273,39 @@ fn draw_image(image: ptr<function, Image>, place: u32) {
     }
 }
 
-// What occluders let through of this thread's rows: drawn, or only found (all rows then count, also those beyond the picture).
-fn seen_rows(image: ptr<function, Image>, place: u32, cells: u32, is_found: bool) -> u32 {
-    let met = meet(image, place);
+// What occluders let through of this thread's rows: drawn, or only summed (of all rows, also those beyond the picture).
+fn visible_rows(image: ptr<function, Image>, place: u32, cells: u32, is_counted: bool) -> u32 {
+    let placed = place_stencil(image, place);
     let level = pen.levels[(*image).level];
     let center = (*image).center.x;
-    let seen = seen_runs_of(image, cells);
+    let runs = visible_runs_of(image, cells);
     let takes_all = takes_all_rows(image);
     var passing = 0u;
-    for (var k = (*image).lane; k < met.count; k += LANES) {
-        let at = met.first_run + 4u * k;
-        let row = met.base + high_half(stencils[at + 3u]);
+    for (var k = (*image).lane; k < placed.count; k += LANES) {
+        let at = placed.first_run + 4u * k;
+        let row = placed.base + high_half(stencils[at + 3u]);
         let v = low_half(stencils[at + 3u]);
         let span = vec2<i32>(center + bitcast<i32>(stencils[at]), center + bitcast<i32>(stencils[at + 1u]));
-        if is_found || (row >= -1 && row <= level.height) {
-            let here = SeenRow(row, v, span, stencils[at + 2u], met.shift, met.finer, is_found);
-            passing += seen_row(image, seen, here, takes_all);
+        if is_counted || (row >= -1 && row <= level.height) {
+            let here = VisibleRow(row, v, span, stencils[at + 2u], placed.shift, placed.finer, is_counted);
+            passing += visible_row(image, runs, here, takes_all);
         }
     }
     return passing;
 }
 
 // Draws what occluders let through of an image, of all of whose rows `passing` passes.
-fn draw_seen(image: ptr<function, Image>, place: u32, cells: u32, share: u32, passing: u32) {
+fn draw_partial(image: ptr<function, Image>, place: u32, cells: u32, share: u32, passing: u32) {
     if cells != OPEN && passing < share / LARGEST_SCALE {
         // The few cells of a partly occluded node are missed.
-        draw_seen_box(image, cells);
+        draw_partial_box(image, cells);
         return;
     }
     (*image).share = ratio(share, passing, LARGEST_SCALE);
-    seen_rows(image, place, cells, false);
+    visible_rows(image, place, cells, false);
 }
 
-// Large images; `height`, its bits and the share were found when the list was made.
+// Large images; `height`, its bits and the share come with the record.
 
 fn draw_large(image: ptr<function, Image>, height_of_clear: u32, height_bits: u32, cells: u32) {
     let size = max(abs((*image).radius), PIXEL);
@@ -318,7 +313,7 @@ fn draw_large(image: ptr<function, Image>, height_of_clear: u32, height_bits: u3
     let per_radius = divisor_of(u32(size));
     let center = (*image).center;
     let level = pen.levels[(*image).level];
-    let seen = seen_runs_of(image, cells);
+    let runs = visible_runs_of(image, cells);
     let shift = light_shift(image, height_bits);
     let first = max((center.y - size) >> POSITION_BITS, -1);
     let last = min((center.y + size) >> POSITION_BITS, level.height);
@@ -336,7 +331,7 @@ fn draw_large(image: ptr<function, Image>, height_of_clear: u32, height_bits: u3
                 let value = value_of(image, mul_shift(height, u32(ONE), 14u), (*image).share, shift, row);
                 add_run(image, row, clamped(image, span.x), clamped(image, span.y), value);
             } else {
-                seen_row(image, seen, SeenRow(row, v, span, height, shift, 0u, false), false);
+                visible_row(image, runs, VisibleRow(row, v, span, height, shift, 0u, false), false);
             }
         }
     }
@@ -355,41 +350,41 @@ fn light_of(image: ptr<function, Image>, at: u32, gain: i32, is_coverage: bool) 
     (*image).exponent = i32(top) - 157 + gain;
 }
 
-struct Asked {
+struct DrawRecord {
     form: u32,
     // What the form needs: a stencil's number, or the share of depth.
-    of_form: u32,
+    form_argument: u32,
     first_word: u32,
-    // What it is seen through, and how much of it passes.
+    // What it is runs through, and how much of it passes.
     through: u32,
     share: u32,
     // The part of it that is drawn as a stencil, of 65536.
     far: u32,
 }
 
-fn ask(image: ptr<function, Image>, index: u32, lane: u32, slot: u32) -> Asked {
-    let words = select(4u, 8u, KIND == KIND_LARGE);
-    let record = words * (batch.y + index);
-    let at = NODE_WORDS * records[record];
-    let flags = records[record + 3u];
-    let form = flags & 7u;
+fn read_record(image: ptr<function, Image>, index: u32, lane: u32, slot: u32) -> DrawRecord {
+    let words = select(RECORD_WORDS, 2u * RECORD_WORDS, KIND == KIND_LARGE);
+    let first_word = words * (batch.first + index);
+    let at = NODE_WORDS * records[first_word];
+    let flags = records[first_word + 3u];
+    let form = flags & FORM_MASK;
 
     (*image).node = node_at(at);
-    let level = (flags >> 8u) & 7u;
-    if (flags & 64u) != 0u {
-        (*image).node = piece_of((*image).node, level, flags >> 16u);
+    let level = (flags >> LEVEL_BIT) & LEVEL_MASK;
+    if (flags & IS_PIECE) != 0u {
+        (*image).node = piece_of((*image).node, level, flags >> PIECE_BIT);
     }
     let node = (*image).node;
     (*image).level = level;
     (*image).center = node.center >> vec2<u32>(level);
-    (*image).radius = bitcast<i32>(records[record + 1u]) / (1i << level);
+    (*image).radius = bitcast<i32>(records[first_word + 1u]) / (1i << level);
     (*image).share = WHOLE;
     (*image).dither = seed(node, level);
-    (*image).is_sharing = (flags & 8u) != 0u;
-    (*image).is_removed = (flags & 16u) != 0u;
+    (*image).is_sharing = (flags & IS_SHARING) != 0u;
+    (*image).is_removed = (flags & IS_REMOVED) != 0u;
     (*image).slot = slot;
     (*image).lane = lane;
-    let is_coverage = (flags & 32u) != 0u;
+    let is_coverage = (flags & IS_COVERAGE) != 0u;
     var gain = 0;
     if !IS_WIDE {
         gain = select(pen.dim_exponent, pen.coverage_exponent, node.is_bright);
@@ -398,12 +393,12 @@ fn ask(image: ptr<function, Image>, index: u32, lane: u32, slot: u32) -> Asked {
     gain -= 2 * i32(level - node.level);
     light_of(image, at, gain, is_coverage);
 
-    let of_finest = part_drawn_as_stencil(u32(abs(bitcast<i32>(records[record + 1u]))), (*image).dither);
+    let of_finest = part_drawn_as_stencil(u32(abs(bitcast<i32>(records[first_word + 1u]))), (*image).dither);
     let far = select(of_finest, 65536u, level > 0u);
     var through = OPEN;
     var share = WHOLE;
-    if form == FORM_SEEN || form == FORM_SEEN_BOX {
-        through = 11u * node.cells;
+    if form == FORM_PARTIAL_IMAGE || form == FORM_PARTIAL_BOX {
+        through = PARTIAL_WORDS * node.cells;
         share = cells[through + 8u];
     }
     if form == FORM_TILTED {
@@ -414,22 +409,22 @@ fn ask(image: ptr<function, Image>, index: u32, lane: u32, slot: u32) -> Asked {
         (*image).share = far << 8u;
         lean(image);
     }
-    return Asked(form, records[record + 2u], record, through, share, far);
+    return DrawRecord(form, records[first_word + 2u], first_word, through, share, far);
 }
 
-fn draw_asked(image: ptr<function, Image>, asked: Asked) {
+fn draw_record(image: ptr<function, Image>, record: DrawRecord) {
     if KIND == KIND_IMAGES {
-        draw_image(image, asked.of_form);
+        draw_image(image, record.form_argument);
     } else if KIND == KIND_LARGE {
-        (*image).share = records[asked.first_word + 6u];
-        let seen_through = select(asked.through, OPEN - 1u, asked.form == FORM_IMAGE);
-        draw_large(image, records[asked.first_word + 4u], records[asked.first_word + 5u], seen_through);
-    } else if asked.form == FORM_SEEN_BOX {
-        draw_seen_box(image, asked.through);
+        (*image).share = records[record.first_word + 6u];
+        let cells_or_clear = select(record.through, OPEN - 1u, record.form == FORM_IMAGE);
+        draw_large(image, records[record.first_word + 4u], records[record.first_word + 5u], cells_or_clear);
+    } else if record.form == FORM_PARTIAL_BOX {
+        draw_partial_box(image, record.through);
     } else {
-        (*image).share = WHOLE - (asked.far << 8u);
-        if asked.form == FORM_PARTS {
-            draw_parts(image, bitcast<i32>(asked.of_form));
+        (*image).share = WHOLE - (record.far << 8u);
+        if record.form == FORM_PARTS {
+            draw_parts(image, bitcast<i32>(record.form_argument));
         } else {
             lean(image);
             shift_to(image, pen.mean);
@@ -439,37 +434,37 @@ fn draw_asked(image: ptr<function, Image>, asked: Asked) {
 }
 
 // What passes of each record, of all its rows.
-var<workgroup> passing_of: array<atomic<u32>, 64>;
+var<workgroup> passing_of: array<atomic<u32>, THREADS>;
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(THREADS)
 fn draw(
     @builtin(global_invocation_id) id: vec3<u32>,
     @builtin(workgroup_id) group: vec3<u32>,
     @builtin(local_invocation_index) thread: u32,
 ) {
     let index = id.x / LANES;
-    let is_there = index < batch.x;
+    let is_active = index < batch.count;
     var image: Image;
-    var asked: Asked;
-    if is_there {
-        asked = ask(&image, index, id.x % LANES, group.x % SLOTS);
+    var record: DrawRecord;
+    if is_active {
+        record = read_record(&image, index, id.x % LANES, group.x % SLOTS);
     }
-    if KIND != KIND_SEEN {
-        if is_there {
-            draw_asked(&image, asked);
+    if KIND != KIND_PARTIAL {
+        if is_active {
+            draw_record(&image, record);
         }
         return;
     }
     var passing = 0u;
-    if is_there {
-        passing = seen_rows(&image, asked.of_form, asked.through, true);
+    if is_active {
+        passing = visible_rows(&image, record.form_argument, record.through, true);
     }
     if LANES > 1u {
         atomicAdd(&passing_of[thread / LANES], passing);
         workgroupBarrier();
         passing = atomicLoad(&passing_of[thread / LANES]);
     }
-    if is_there {
-        draw_seen(&image, asked.of_form, asked.through, asked.share, passing);
+    if is_active {
+        draw_partial(&image, record.form_argument, record.through, record.share, passing);
     }
 }

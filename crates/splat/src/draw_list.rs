@@ -9,10 +9,10 @@ use rayon::prelude::*;
 use std::cmp::Ordering;
 use std::ops::Range;
 
-/// How many nodes ahead of the one that is looked at, or drawn, are fetched from memory.
+/// How many nodes ahead memory is prefetched.
 pub const AHEAD: usize = 24;
 
-/// What is summed: nodes as a lens sees them, and their paint.
+/// The nodes to sum, with lens and paint.
 pub struct Scene<'a> {
     pub pen: Pen<'a>,
     pub lens: &'a LensInUse,
@@ -65,7 +65,7 @@ impl Scene<'_> {
         }
     }
 
-    /// Makes `list` what is drawn of a block, painted as `paint` says.
+    /// Fills `list` with the drawn nodes of a block, painted as `paint` gives.
     pub fn list(
         &self,
         block: usize,
@@ -113,7 +113,7 @@ impl Scene<'_> {
     }
 }
 
-/// Nodes of a block that are yet to be looked at; room to work in.
+/// Nodes of a block that are still to be visited; scratch memory.
 #[derive(Default)]
 pub struct Spans(Vec<Range<u32>>);
 

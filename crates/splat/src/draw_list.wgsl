@@ -1,15 +1,16 @@
-// Which nodes of a chunk are drawn, and in which forms: the twin of `Scene::drawn`, of ../lens_in_use.rs and of records.rs.
-// Read after pen.wgsl. A thread looks at one node. It is drawn if it is a sample or may stand for all below it, and
-// no node above it is. Records are first counted, then written where each kind's have their place.
+// Which nodes of a chunk are drawn, and in which forms: the twin of draw_list.rs, lens_in_use.rs and gpu/records.rs. Read
+// after pen.wgsl. One thread handles one node. The node is drawn if it is a sample or may replace all nodes below it, and
+// no node above it is drawn. Records are counted first; a second pass writes each kind to its own range.
 //
-// A product that is added to something goes through `exact`, for compilers like to round the two as one.
+// A product that is then added to something passes through `exact`: compilers would otherwise fuse the two operations and
+// round once.
 
 struct Lens {
-    // Radii of aperture images, 1/4096 px: of what is infinitely far, what it loses for a unit of 1/z, what t = 2 adds.
+    // Radii of aperture images, 1/4096 px: at infinity; decrease per unit of 1/z; increase at t = 2.
     radius_at_infinity: f32,
     radius_per_kappa: f32,
     radius_per_offset: f32,
-    // Always 0, which no compiler knows.
+    // Always 0; unknown to the compiler.
     zero: u32,
     // Columns and rows of the picture.
     size: vec2<i32>,
@@ -17,45 +18,37 @@ struct Lens {
     one_box_radius: u32,
     even_tilt: i32,
     per_variance: u32,
-    // Half of all places of stencils, and from which on they are cut at fewer heights.
+    // Half the number of stencil places, and the places from which stencils are cut at fewer heights.
     half_places: u32,
     coarser: array<u32, 2>,
     // By level.
-    too_blurred: array<vec2<u32>, 5>,
+    too_blurred: array<vec2<u32>, LEVELS>,
     // By fineness and level.
-    smallest: array<u32, 20>,
+    smallest_radius: array<u32, FINENESSES * LEVELS>,
     // By contrast, fineness and level.
-    smallest_joint: array<u32, 140>,
+    smallest_joint_radius: array<u32, CONTRASTS * FINENESSES * LEVELS>,
 }
 
 struct Chunk {
     node_count: u32,
     is_painted: u32,
-    // Where in `found` stand its counts, and the bits of the stencils that are asked for.
+    // Offsets in `record_counts` of the chunk's counts, and of the bits that mark requested stencils.
     counts: u32,
     places: u32,
-    // Where the records of each kind begin: on ordinary accumulators, then on wide ones.
+    // The first record of each kind: for ordinary accumulators, then for wide ones.
     first: array<vec4<u32>, 2>,
 }
 
-// What is painted on the nodes, four words each: t, anchor, and how far they are apart below.
+// The focus painted on the nodes, FOCUS_WORDS each: t, anchor, and how much each varies below the node.
 @group(0) @binding(1) var<storage, read> focus: array<f32>;
 @group(0) @binding(3) var<storage, read> lens: Lens;
-@group(0) @binding(4) var<storage, read_write> found: array<atomic<u32>>;
+@group(0) @binding(4) var<storage, read_write> record_counts: array<atomic<u32>>;
 @group(0) @binding(5) var<storage, read_write> records: array<u32>;
 @group(0) @binding(6) var<uniform> chunk: Chunk;
 
-// Whether records are counted, and the stencils they ask for marked; or written.
+// Whether records are counted and their stencils marked, or written.
 override IS_COUNTING: bool = true;
 
-const FLAT: f32 = 0.3;
-const ALIKE: f32 = 0.125;
-const SHARP: u32 = 16u;
-const LEVELS: u32 = 5u;
-const LARGEST_RADIUS: f32 = 536870912.0;
-const LARGEST_DEPTH_SHARE: f32 = 131071.0;
-const LARGEST_OFFSET: f32 = 1e9;
-const NO_PARENT: u32 = 0xFFFFFFFFu;
 const NO_FORM: u32 = 0xFFFFFFFFu;
 const TOO_LARGE: u32 = 0xFFFFFFFFu;
 
@@ -81,7 +74,7 @@ fn focus_of(index: u32) -> Focus {
     if chunk.is_painted == 0u {
         return Focus(1.0, 0.0, 0.0, 0.0);
     }
-    let at = 4u * index;
+    let at = FOCUS_WORDS * index;
     return Focus(focus[at], focus[at + 1u], focus[at + 2u], focus[at + 3u]);
 }
 
@@ -89,28 +82,28 @@ fn standard_radius(at: u32) -> f32 {
     return lens.radius_at_infinity - exact(lens.radius_per_kappa * bitcast<f32>(nodes[at + 10u]));
 }
 
-// What stands in a node's word: see `words_of_node` in scene.rs.
+// Fields of a node's words: see `words_of_node` in scene.rs.
 fn level_of(at: u32) -> u32 {
-    return nodes[at + 3u] & 7u;
+    return nodes[at + 3u] & NODE_LEVEL_MASK;
 }
 
 fn is_leaf(at: u32) -> bool {
-    return (nodes[at + 3u] & 0x10u) != 0u;
+    return (nodes[at + 3u] & NODE_IS_LEAF) != 0u;
 }
 
 fn contrast_of(at: u32) -> u32 {
-    return (nodes[at + 3u] >> 8u) & 15u;
+    return (nodes[at + 3u] >> NODE_CONTRAST_BIT) & NODE_CONTRAST_MASK;
 }
 
 fn fineness_of(at: u32) -> u32 {
     let word = nodes[at + 3u];
-    if (word & 0x80u) != 0u {
+    if (word & NODE_IS_BRIGHT) != 0u {
         return 3u;
     }
-    if (word & 8u) != 0u {
+    if (word & NODE_IS_HIGHLIGHT) != 0u {
         return 2u;
     }
-    return select(1u, 0u, (word & 0x20u) != 0u);
+    return select(1u, 0u, (word & NODE_IS_OPEN) != 0u);
 }
 
 fn place(at: u32, painted: Focus) -> Placed {
@@ -121,7 +114,7 @@ fn place(at: u32, painted: Focus) -> Placed {
     let depth_share = i32(clamp(of_depth * f32(ONE), -LARGEST_DEPTH_SHARE, LARGEST_DEPTH_SHARE));
     let of_fineness = LEVELS * fineness_of(at);
     var level = 0u;
-    while level + 1u < LEVELS && u32(abs(radius)) >= lens.smallest[of_fineness + level + 1u] {
+    while level + 1u < LEVELS && u32(abs(radius)) >= lens.smallest_radius[of_fineness + level + 1u] {
         level += 1u;
     }
     return Placed(radius, depth_share, painted.t == 1.0 && painted.anchor == 0.0, level);
@@ -134,7 +127,7 @@ fn may_merge(at: u32, painted: Focus, radius: i32) -> bool {
     let size = u32(abs(radius));
     let level = level_of(at);
     let is_sharp = level == 0u && size <= SHARP;
-    if !is_sharp && size < lens.smallest_joint[LEVELS * (4u * contrast_of(at) + fineness_of(at)) + level] {
+    if !is_sharp && size < lens.smallest_joint_radius[LEVELS * (FINENESSES * contrast_of(at) + fineness_of(at)) + level] {
         return false;
     }
     let of_depth = exact(painted.t * (1.0 - painted.anchor));
@@ -149,7 +142,7 @@ fn may_merge(at: u32, painted: Focus, radius: i32) -> bool {
     return apart <= select(max(FLAT * side, ALIKE * float_of(size)), f32(SHARP), is_sharp);
 }
 
-// Whether a node above stands for it.
+// Whether a node above replaces it.
 fn is_below_drawn(at: u32) -> bool {
     var parent = nodes[at + 12u];
     while parent != NO_PARENT {
@@ -186,7 +179,7 @@ fn forms_of(node: Node, placed: Placed) -> vec2<u32> {
     let radius = u32(abs(placed.radius));
     if !node.is_open {
         let is_box = (radius >> placed.level) < lens.box_radius;
-        return vec2<u32>(select(FORM_SEEN, FORM_SEEN_BOX, is_box), NO_FORM);
+        return vec2<u32>(select(FORM_PARTIAL_IMAGE, FORM_PARTIAL_BOX, is_box), NO_FORM);
     }
     var far = 65536u;
     if placed.level == 0u {
@@ -211,9 +204,9 @@ fn third_of(x: vec2<u32>) -> vec2<u32> {
 
 fn index_of(square: u32) -> u32 {
     let size = 31u - countLeadingZeros(square | 1u);
-    let octave = size - min(size, 7u);
+    let octave = size - min(size, MANTISSA_BITS);
     let steps = (square + ((1u << octave) / 2u)) >> octave;
-    return (octave << 7u) + steps;
+    return (octave << MANTISSA_BITS) + steps;
 }
 
 // The number of the stencil of an image whose centre is at the height `y`; TOO_LARGE if it has none.
@@ -232,11 +225,11 @@ fn stencil_of(node: Node, radius: i32, level: u32, y: i32) -> u32 {
     if square.y > 16u || (square.y == 16u && square.x > 0u) {
         return TOO_LARGE;
     }
-    let index = index_of(wide_right(square, 12u).x);
-    let phase_bits = 5u - u32(index >= lens.coarser[0]) - u32(index >= lens.coarser[1]);
+    let index = index_of(wide_right(square, 2u * (POSITION_BITS - RADIUS_BITS)).x);
+    let phase_bits = PHASE_BITS - u32(index >= lens.coarser[0]) - u32(index >= lens.coarser[1]);
     let bits = POSITION_BITS - phase_bits;
     let phase = u32((y + ((1i << bits) / 2)) & (PIXEL - 1)) >> bits;
-    return ((index + select(0u, lens.half_places, radius < 0)) << 5u) + phase;
+    return ((index + select(0u, lens.half_places, radius < 0)) << PHASE_BITS) + phase;
 }
 
 fn light_center(node: Node, form: u32, radius: i32, level: u32) -> i32 {
@@ -249,11 +242,11 @@ fn light_center(node: Node, form: u32, radius: i32, level: u32) -> i32 {
 
 struct Record {
     kind: u32,
-    of_form: u32,
+    form_argument: u32,
 }
 
 fn record_of(node: Node, placed: Placed, form: u32) -> Record {
-    if form == FORM_BOX || form == FORM_SEEN_BOX {
+    if form == FORM_BOX || form == FORM_PARTIAL_BOX {
         return Record(KIND_BOXES, 0u);
     }
     if form == FORM_PARTS {
@@ -264,10 +257,10 @@ fn record_of(node: Node, placed: Placed, form: u32) -> Record {
     if stencil == TOO_LARGE {
         return Record(KIND_LARGE, 0u);
     }
-    return Record(select(KIND_SEEN, KIND_IMAGES, form == FORM_IMAGE), stencil);
+    return Record(select(KIND_PARTIAL, KIND_IMAGES, form == FORM_IMAGE), stencil);
 }
 
-// All of a node, or of a sample of a large cell one of the pieces that it is drawn in.
+// The whole node or, of a sample of a large cell, one of the pieces that it is drawn in.
 fn part_drawn(node: Node, level: u32, piece: u32) -> Node {
     if level < node.level {
         return piece_of(node, level, piece);
@@ -275,10 +268,10 @@ fn part_drawn(node: Node, level: u32, piece: u32) -> Node {
     return node;
 }
 
-// How many records of each kind the workgroup has, then where its own begin.
-var<workgroup> of_group: array<atomic<u32>, 8>;
+// The workgroup's number of records of each kind, then their first indices.
+var<workgroup> of_group: array<atomic<u32>, COUNTS>;
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(THREADS)
 fn list(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_index) thread: u32) {
     let index = id.x;
     let at = NODE_WORDS * index;
@@ -290,19 +283,19 @@ fn list(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_
         let painted = focus_of(index);
         placed = place(at, painted);
         node = node_at(at);
-        let is_seen = is_within(node.center.x, node.half_size.x, leaning_of(node, placed), placed, lens.size.x)
+        let is_in_frame = is_within(node.center.x, node.half_size.x, leaning_of(node, placed), placed, lens.size.x)
             && is_within(node.center.y, node.half_size.y, 0, placed, lens.size.y);
-        if is_seen && (is_leaf(at) || may_merge(at, painted, placed.radius)) && !is_below_drawn(at) {
+        if is_in_frame && (is_leaf(at) || may_merge(at, painted, placed.radius)) && !is_below_drawn(at) {
             piece_count = 1u;
-            flags = select(0u, 8u, placed.is_standard && !node.is_open) | (placed.level << 8u);
+            flags = select(0u, IS_SHARING, placed.is_standard && !node.is_open) | (placed.level << LEVEL_BIT);
             if placed.level < node.level {
                 let across = pieces_of(node, placed.level);
                 piece_count = across * across;
-                flags |= 64u;
+                flags |= IS_PIECE;
             }
         }
     }
-    // What is bright goes to wide accumulators, and its coverage to ordinary ones as well.
+    // Bright nodes go to wide accumulators, their coverage to ordinary ones as well.
     let width = select(0u, 1u, node.is_bright);
     var counts = vec4<u32>();
     for (var piece = 0u; piece < piece_count; piece += 1u) {
@@ -312,34 +305,34 @@ fn list(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_
             if forms[k] != NO_FORM {
                 let record = record_of(drawn, placed, forms[k]);
                 counts[record.kind] += 1u;
-                if IS_COUNTING && (record.kind == KIND_IMAGES || record.kind == KIND_SEEN) {
-                    mark(record.of_form >> 5u);
+                if IS_COUNTING && (record.kind == KIND_IMAGES || record.kind == KIND_PARTIAL) {
+                    mark(record.form_argument >> PHASE_BITS);
                 }
             }
         }
     }
-    var next: array<u32, 8>;
-    for (var kind = 0u; kind < 4u; kind += 1u) {
+    var next: array<u32, COUNTS>;
+    for (var kind = 0u; kind < KINDS; kind += 1u) {
         if counts[kind] > 0u {
-            next[4u * width + kind] = atomicAdd(&of_group[4u * width + kind], counts[kind]);
+            next[KINDS * width + kind] = atomicAdd(&of_group[KINDS * width + kind], counts[kind]);
             if width == 1u {
                 next[kind] = atomicAdd(&of_group[kind], counts[kind]);
             }
         }
     }
     workgroupBarrier();
-    if thread < 8u {
+    if thread < COUNTS {
         let count = atomicLoad(&of_group[thread]);
         if count > 0u {
-            let before = atomicAdd(&found[chunk.counts + thread], count);
-            atomicStore(&of_group[thread], before + chunk.first[thread / 4u][thread % 4u]);
+            let before = atomicAdd(&record_counts[chunk.counts + thread], count);
+            atomicStore(&of_group[thread], before + chunk.first[thread / KINDS][thread % KINDS]);
         }
     }
     if IS_COUNTING {
         return;
     }
     workgroupBarrier();
-    for (var k = 0u; k < 8u; k += 1u) {
+    for (var k = 0u; k < COUNTS; k += 1u) {
         next[k] += atomicLoad(&of_group[k]);
     }
     for (var piece = 0u; piece < piece_count; piece += 1u) {
@@ -348,11 +341,11 @@ fn list(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_
         for (var k = 0u; k < 2u; k += 1u) {
             if forms[k] != NO_FORM {
                 let record = record_of(drawn, placed, forms[k]);
-                let own = forms[k] | flags | (piece << 16u);
-                write(next[4u * width + record.kind], index, placed.radius, record.of_form, own);
-                next[4u * width + record.kind] += 1u;
+                let own = forms[k] | flags | (piece << PIECE_BIT);
+                write(next[KINDS * width + record.kind], index, placed.radius, record.form_argument, own);
+                next[KINDS * width + record.kind] += 1u;
                 if width == 1u {
-                    write(next[record.kind], index, placed.radius, record.of_form, own | 32u);
+                    write(next[record.kind], index, placed.radius, record.form_argument, own | IS_COVERAGE);
                     next[record.kind] += 1u;
                 }
             }
@@ -364,15 +357,15 @@ fn mark(stencil_place: u32) {
     let at = chunk.places + stencil_place / 32u;
     let bit = 1u << (stencil_place % 32u);
     // Most are marked already.
-    if (atomicLoad(&found[at]) & bit) == 0u {
-        atomicOr(&found[at], bit);
+    if (atomicLoad(&record_counts[at]) & bit) == 0u {
+        atomicOr(&record_counts[at], bit);
     }
 }
 
-fn write(record: u32, index: u32, radius: i32, of_form: u32, flags: u32) {
-    let at = 4u * record;
+fn write(record: u32, index: u32, radius: i32, form_argument: u32, flags: u32) {
+    let at = RECORD_WORDS * record;
     records[at] = index;
     records[at + 1u] = bitcast<u32>(radius);
-    records[at + 2u] = of_form;
+    records[at + 2u] = form_argument;
     records[at + 3u] = flags;
 }

@@ -1,13 +1,16 @@
 //! The arithmetic of the sum: what 32-bit integers, and products of two of them, can do.
 //!
 //! A shader has no wider integers. Everything between a placed node and the accumulators is made of these functions, and
-//! `gpu/fixed.wgsl` holds the same ones under the same names.
+//! `fixed.wgsl` has the same functions under the same names.
 
 /// One as a share.
 pub const ONE: i32 = 1 << 14;
 
-/// A share of 1, as shares of light are told: times 2²⁴.
+/// All of the light as a share: shares of light are multiples of 2⁻²⁴.
 pub const WHOLE: u32 = 1 << 24;
+
+/// 2³² over the golden ratio: its multiples, modulo 2³², are spread evenly.
+pub const GOLDEN: u32 = 0x9E37_79B1;
 
 /// ⌊a·b / 2^`shift`⌋, its lower 32 bits; `shift` ≤ 63.
 #[inline(always)]

@@ -21,7 +21,7 @@ impl Tolerance {
     /// As fine as the samples.
     pub const NONE: Self = Self { share_of_circle: 0.0 };
 
-    /// For pictures that are looked at while one works on them.
+    /// For interactive viewing.
     pub const VIEWING: Self = Self { share_of_circle: 0.375 };
 
     /// Nodes of `px` pixels where the circle of confusion is 16.
@@ -159,9 +159,9 @@ pub struct LensInUse {
     /// How exactly what is drawn is drawn.
     pub detail: Detail,
     /// From which |radius| on, 1/4096 px, nodes may be drawn on each level: by [`Fineness`].
-    pub smallest_radius: [[u32; LEVELS]; 4],
-    /// From which on one may stand for those below it: by its contrast.
-    pub smallest_joint_radius: [[[u32; LEVELS]; 4]; CONTRASTS],
+    pub smallest_radius: [[u32; LEVELS]; FINENESSES],
+    /// From which on a node may replace those below it: by its contrast.
+    pub smallest_joint_radius: [[[u32; LEVELS]; FINENESSES]; CONTRASTS],
 }
 
 /// How exactly nodes are drawn: as coarse as the nodes are.
@@ -185,12 +185,15 @@ impl Detail {
     }
 }
 
+/// The number of finenesses ([`Fineness`]).
+pub const FINENESSES: usize = 4;
+
 /// How fine a node is drawn.
 #[derive(Clone, Copy)]
 enum Fineness {
     Open,
     PartlyOccluded,
-    /// So that the rim of its image can be seen.
+    /// The rim of its image is visible.
     Highlight,
     /// Wide sums have one level.
     Bright,
@@ -198,7 +201,7 @@ enum Fineness {
 
 impl Fineness {
     /// How much finer than open nodes.
-    const FINER: [f64; 4] = [1.0, 1.25, 4.0, f64::INFINITY];
+    const FINER: [f64; FINENESSES] = [1.0, 1.25, 4.0, f64::INFINITY];
 
     #[inline(always)]
     fn classify(node: &SplatNode) -> Self {
@@ -284,7 +287,7 @@ impl LensInUse {
         radius.unsigned_abs() >= self.smallest_radius[fineness as usize][level as usize]
     }
 
-    /// Whether a node that was `placed` may stand for all below it.
+    /// Whether a node that was `placed` may replace all nodes below it.
     #[inline(always)]
     pub fn may_merge(&self, node: &SplatNode, focus: &NodeFocus, placed: Placed) -> bool {
         if focus.t_apart >= LARGEST_OFFSET {

@@ -1,18 +1,55 @@
 //! SALF and focus to picture: the sum of the aperture images, in integers.
 //!
-//! ```text
-//! let mut splatter = Splatter::new(salf);             // once a bake
-//! splatter.render(&camera, &focus, progress)?;        // the whole picture: first, or the lens has changed
-//! let window = splatter.update(&focus, &changed)?;      // painted: subtract and add
-//! let picture = splatter.picture();
+//! ```
+//! use glam::{Vec2, Vec3};
+//! use lens::{Camera, FocusOffset};
+//! use progress::Unwatched;
+//! use salf::{Carried, Salf, Sample, Visibility};
+//! use scene::{SurfaceField, SurfacePoint};
+//! use splat::Splatter;
+//! use std::sync::Arc;
+//!
+//! struct Unpainted;
+//! impl SurfaceField<FocusOffset> for Unpainted {
+//!     fn at(&self, _point: SurfacePoint) -> FocusOffset {
+//!         FocusOffset::STANDARD
+//!     }
+//!     fn at_infinity(&self) -> FocusOffset {
+//!         FocusOffset::STANDARD
+//!     }
+//! }
+//!
+//! // A background of radiance 1: a sample for every pixel of 16 × 16.
+//! let camera = Camera { width: 16, height: 16, ..Camera::default() };
+//! let sample = |k: u32| Sample {
+//!     center: Vec2::new((k % 16) as f32, (k / 16) as f32) + 0.5,
+//!     half_size: Vec2::splat(0.5),
+//!     inverse_depth: 1.0 / camera.focus_distance as f32,
+//!     weight: 1.0,
+//!     tilt: Vec2::ZERO,
+//!     radiance: Vec3::ONE,
+//!     surface: None,
+//!     is_carried: false,
+//!     visibility: Visibility::Open,
+//! };
+//! let samples = (0..256).map(sample).collect();
+//! let salf = Salf { camera: camera.clone(), margin_px: 0, carried: Carried::Standard, samples };
+//!
+//! let mut splatter = Splatter::new(Arc::new(salf)); // once per bake
+//! splatter.render(&camera, &Unpainted, &Unwatched)?; // the whole picture: at first, and for another lens
+//! let window = splatter.update(&Unpainted, &[7])?; // after painting: subtract and add
+//! assert_eq!(window.map(|range| range.start), [0, 0]);
+//! assert!((splatter.picture().coverage[100] - 1.0).abs() < 1e-3);
+//! # Ok::<(), splat::SplatError>(())
 //! ```
 //!
-//! Samples stand in a hierarchy ([`salf::tree`]), turned to integers once (`nodes`). A lens (`lens_in_use`) and paint
-//! (`paint`) give each node its defocus κ, and so decide which nodes are drawn (`sums`): a sample itself where it is
-//! nearly in focus, one node for many where they are far out of it. A node is drawn as the aperture's image (`draw`) of
-//! rows that were cut once for all splats of its size (`stencil`, `shape`), on the level of a pyramid of accumulators
-//! whose pixel is about its own size (`canvas`). Running sums and upsampling make the picture (`resolve`); partly
-//! occluded samples share what open ones leave of it (`partition`), which leaves the sum of light as it is (`balance`).
+//! Samples form a hierarchy ([`salf::tree`]), which is converted to integers once (`nodes`). A lens (`lens_in_use`) and paint
+//! (`paint`) give each node its defocus κ and thereby decide which nodes are drawn (`draw_list`): a sample itself where it is
+//! nearly in focus, one node for many where they are far out of focus. A node is drawn as the image of the aperture (`draw`),
+//! of rows that were cut once for all splats of its size (`aperture`), on the level of a pyramid of accumulators whose pixels
+//! are about its own size (`canvas`, `sums`). Running sums and upsampling make the picture (`resolve`): partly occluded samples
+//! share what open ones leave of a pixel (`resolve::partition`), and the sum of light is preserved (`resolve::balance`).
+//! [`Gpu`] does the same on a graphics card, bit for bit.
 //!
 //! A picture that is too large for memory is summed in crops ([`CropSums`]), from a light field in parts.
 

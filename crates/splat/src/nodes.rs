@@ -67,9 +67,9 @@ pub struct SplatNode {
     pub is_bright: bool,
     /// Below [`CONTRASTS`]: how much of its light lies to a side that is not that of the rest. See [`wider_by_contrast`].
     pub contrast: u8,
-    /// Whether its image is to be seen as such: of more than [`HIGHLIGHT`].
+    /// Whether its image is visible by itself: brighter than [`HIGHLIGHT`].
     pub is_highlight: bool,
-    /// Where it stands what it sees of the aperture; [`OPEN`] if all.
+    /// The index of its visibility; [`OPEN`] if it sees the whole aperture.
     pub cells: u32,
     /// Mean 1/z.
     pub inverse_depth: f32,
@@ -81,13 +81,13 @@ pub struct SplatNode {
     pub base: i16,
     /// See `base`.
     pub tilt: [i16; 2],
-    /// The first of the nodes that it stands for.
+    /// The first of the nodes that it replaces.
     first_child: u32,
     /// How many these are; none if it is a sample.
     child_count: u8,
 }
 
-/// How many contrasts are told apart.
+/// The number of contrast classes.
 pub const CONTRASTS: usize = 7;
 
 /// By what factor the image of a node of this contrast must be larger than that of one of a single colour for it to stand for
@@ -115,10 +115,10 @@ fn contrast(node: &Node) -> u8 {
 /// Red, green and blue.
 pub type Rgb = [f32; 3];
 
-/// What a node sees of the aperture: rows of 16 cells, row 0 at v = −1, column 0 (u = −1) the lowest bit.
+/// The visibility of a node: rows of 16 cells, row 0 at v = −1, column 0 (u = −1) the lowest bit.
 pub type Cells = [u16; 16];
 
-/// The place of the cells of a node that sees all.
+/// The index of the cells of a node that sees the whole aperture.
 pub const OPEN: u32 = u32::MAX;
 
 impl SplatNode {
@@ -134,7 +134,7 @@ impl SplatNode {
         self.child_count == 0
     }
 
-    /// The nodes that it stands for, which come after it.
+    /// The nodes that it replaces, which come after it.
     #[inline(always)]
     pub fn children(&self) -> Range<u32> {
         self.first_child..self.first_child + u32::from(self.child_count)
@@ -164,7 +164,7 @@ impl SplatNode {
 pub struct Nodes {
     /// Nodes of each block.
     pub blocks: Vec<Range<u32>>,
-    /// Those of them that no other stands for.
+    /// The nodes without a parent.
     pub roots: Vec<Range<u32>>,
     pub nodes: Vec<SplatNode>,
     cells: Vec<Cells>,
@@ -263,7 +263,7 @@ impl Nodes {
         }
         let (samples, scale) = (&self.sample_of_node, self.scale);
         blocks.into_par_iter().for_each(|(nodes, first)| {
-            // Those that a node stands for come after it.
+            // The nodes that a node replaces come after it.
             for index in (0..nodes.len()).rev() {
                 let node = nodes[index];
                 let [.., coverage] = node.light;
@@ -315,7 +315,7 @@ impl Nodes {
         &self.nodes[range.start as usize..range.end as usize]
     }
 
-    /// What a node sees of the aperture; `None` if all.
+    /// The visibility of a node; `None` if it sees the whole aperture.
     #[inline(always)]
     pub fn cells(&self, node: &SplatNode) -> Option<&Cells> {
         self.cells.get(node.cells as usize)

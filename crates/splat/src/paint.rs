@@ -75,7 +75,7 @@ impl Paint {
         updated
     }
 
-    /// The focus of the nodes of a block, looked up again at `leaves`; `None` if nothing is painted.
+    /// The focus of the nodes of a block, with `leaves` updated; `None` if nothing is painted.
     fn updated(
         &self,
         nodes: &Nodes,

@@ -39,13 +39,13 @@ impl Window {
     }
 }
 
-/// How many of any level's pixels beside those that hold a pixel of the picture are asked for it, upsampled level by level.
+/// How many pixels of a coarse level are needed beside those under the requested ones, for upsampling.
 pub const MARGIN: i32 = 4;
 
 /// Red, green, blue and coverage, each 1 for a pixel of radiance 1.
 pub type Light = [f32; 4];
 
-/// What a pixel holds that nothing was thrown at.
+/// A pixel without light.
 pub const BLACK: Light = [0.0; 4];
 
 /// The pixels of a window of a level, row by row.
@@ -75,7 +75,7 @@ impl Room {
         pixels
     }
 
-    /// Pixels that nobody needs any more.
+    /// Returns pixels for reuse.
     pub fn recycle(&mut self, pixels: Vec<Light>) {
         self.0.push(pixels);
     }
@@ -172,7 +172,7 @@ impl<'a, W: Word> LevelRows<'a, W> {
     }
 }
 
-/// Columns of a level that are asked for.
+/// Requested columns of a level.
 #[derive(Clone)]
 pub struct Columns {
     /// Where they lie in memory, behind the border.
@@ -294,7 +294,7 @@ impl<W: Word> Running<W> {
         }
     }
 
-    /// Goes on by so many columns without any difference.
+    /// Advances by columns without any difference.
     fn stay(&mut self, columns: usize) {
         for c in 0..4 {
             let covered = self.sum[c].wide().wrapping_mul(columns as i64);
@@ -364,7 +364,7 @@ fn cubic(behind: f32, near: f32, far: f32, beyond: f32) -> f32 {
 }
 
 /// Weights of four pixels.
-const CUBIC: [f32; 4] = [-7.0 / 128.0, 105.0 / 128.0, 35.0 / 128.0, -5.0 / 128.0];
+pub const CUBIC: [f32; 4] = [-7.0 / 128.0, 105.0 / 128.0, 35.0 / 128.0, -5.0 / 128.0];
 
 #[cfg(test)]
 mod tests {

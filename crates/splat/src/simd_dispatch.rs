@@ -1,4 +1,4 @@
-//! Inner loops with the widest instructions of the machine they run on, and memory asked for ahead of them.
+//! Inner loops compiled for the widest SIMD instructions of the machine, and prefetching.
 
 /// Does `work`, compiled for any machine, for those with AVX2 and for those with AVX-512. Its inner loops, and what they call,
 /// must be inlined to gain from it. Results are the same either way: they are integers, and single float operations.
@@ -20,7 +20,8 @@ pub fn with_widest_simd<R>(work: impl FnOnce() -> R) -> R {
         }
         if has!("avx2") && has!("bmi1") && has!("bmi2") && has!("lzcnt") && has!("popcnt") {
             let is_wider = has!("avx512f") && has!("avx512bw") && has!("avx512dq") && has!("avx512vl");
-            // SAFETY: the machine has what either is compiled for.
+            // SAFETY: the machine has the instructions that either is compiled for.
+            #[allow(unsafe_code, reason = "calls code compiled for instructions that were detected above")]
             return unsafe { if is_wider { with_avx512(work) } else { with_avx2(work) } };
         }
     }
@@ -37,7 +38,10 @@ pub fn prefetch<T>(item: Option<&T>) {
         // It may lie on two lines of the cache.
         for byte in [first, first.wrapping_add(size_of::<T>() - 1)] {
             // SAFETY: a hint about memory that may be read.
-            unsafe { _mm_prefetch::<_MM_HINT_T0>(byte) };
+            #[allow(unsafe_code, reason = "prefetching has no safe interface")]
+            unsafe {
+                _mm_prefetch::<_MM_HINT_T0>(byte)
+            };
         }
     }
 }

@@ -29,7 +29,7 @@ use scene::SurfaceField;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// A SALF being looked at: sums that follow the focus as it is painted.
+/// The picture of a SALF as running sums that follow the focus as it is painted.
 pub struct Splatter {
     salf: Arc<Salf>,
     /// The hierarchy, which twins share; none if a sample is too bright.
@@ -49,7 +49,7 @@ pub struct Splatter {
     changes: Changes,
     /// What makes the picture of the sums.
     resolver: Resolver,
-    /// The lens whose standard picture its shares are those of, and whether the gains that evening needs are among those found.
+    /// The lens of whose standard picture the shares are, and whether they include the gains for evening.
     shares_of: Option<(LensInUse, bool)>,
     card: Card,
 }
@@ -157,6 +157,9 @@ impl Splatter {
     /// smaller aperture radius, nothing else) and a focus.
     ///
     /// After an error the picture is that of before, but the sums are not: render again before updating.
+    ///
+    /// # Errors
+    /// [`SplatError::Cancelled`] if `progress` is cancelled; [`SplatError::Overflow`] if the picture is too bright for its integers.
     pub fn render(
         &mut self,
         camera: &Camera,
@@ -171,6 +174,9 @@ impl Splatter {
     }
 
     /// Sums the whole picture for another lens, with the focus of before.
+    ///
+    /// # Errors
+    /// [`SplatError::Cancelled`] if `progress` is cancelled; [`SplatError::Overflow`] if the picture is too bright for its integers.
     pub fn refocus(&mut self, camera: &Camera, progress: &dyn Progress) -> Result<(), SplatError> {
         self.set_lens(camera);
         let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
@@ -232,7 +238,7 @@ impl Splatter {
         })
     }
 
-    /// Whether the shares are those of the lens, and all gains that are needed are known.
+    /// Whether the shares belong to the current lens, and all needed gains have been computed.
     fn has_shares(&self) -> bool {
         let is_current = |(lens, has_gains_of_all): &(LensInUse, bool)| {
             *lens == self.lens && (*has_gains_of_all || self.finish() != Finish::Evened)
@@ -274,6 +280,9 @@ impl Splatter {
     /// outside of which nothing changed.
     ///
     /// Equal, bit for bit, to a render from scratch. Cost grows with the number of samples and the size of their splats.
+    ///
+    /// # Errors
+    /// [`SplatError::Overflow`] if the picture is too bright for its integers.
     pub fn update(
         &mut self,
         focus: &dyn SurfaceField<FocusOffset>,
@@ -306,7 +315,7 @@ impl Splatter {
         }
     }
 
-    /// Makes the changes that were found to the sums, and some rows and columns of the picture.
+    /// Applies the listed changes to the sums, and resolves some rows and columns of the picture.
     fn change(&mut self, window: [Range<u32>; 2]) -> Result<(), SplatError> {
         let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
         let pen = self.aperture.pen(nodes, &self.lens);

@@ -20,7 +20,7 @@ use std::time::Instant;
 /// A picture has no more bands of rows than one for so many: what lies at their edges is drawn twice.
 const BAND_ROWS: u32 = 64;
 
-/// How many nodes ahead what they see of the aperture is asked for: they must have come by then.
+/// How many nodes ahead visibility is prefetched: the node itself must be in the cache by then.
 const CELLS_AHEAD: usize = 4;
 
 /// How many blocks, a row or two of them, are changed before the next: what is added to one lies in memory that taking away from
@@ -189,7 +189,7 @@ impl Sums {
         [self.free.marks(rows.clone()), self.sharing.marks(rows)]
     }
 
-    /// Sets them to what the lists of all blocks say. `pace` learns how long it takes.
+    /// Replaces the sums by the lists of all blocks. `pace` learns how long it takes.
     pub fn set(
         &mut self,
         pen: &Pen,
@@ -200,7 +200,7 @@ impl Sums {
         self.draw(pen, lists, |band| band.clear(), pace, progress)
     }
 
-    /// Adds what the lists of all blocks say.
+    /// Adds the lists of all blocks.
     pub fn add(
         &mut self,
         pen: &Pen,
@@ -220,7 +220,7 @@ impl Sums {
         }
     }
 
-    /// Draws what the lists of all blocks say on what `prepare` leaves of each band.
+    /// Draws the lists of all blocks over what `prepare` leaves of each band.
     fn draw(
         &mut self,
         pen: &Pen,
@@ -283,7 +283,7 @@ impl Sums {
         self.free.dim.levels[0].height as u32
     }
 
-    /// Bands for work in so many rows: one for each thread, but few if there are few rows.
+    /// Bands for work in this many rows: one for each thread, but few if there are few rows.
     fn bands(&mut self, work: &Work, pace: &Pace, rows: u32) -> Vec<Band<'_>> {
         let count = rayon::current_num_threads().min(rows.div_ceil(BAND_ROWS) as usize).max(1);
         let starts = work.band_starts(count, pace);

@@ -1,4 +1,4 @@
-//! What partly occluded nodes see of the lens's aperture, in one number and one point.
+//! The light of partly occluded nodes through the lens's aperture: its share, mean and spread over the aperture.
 
 use crate::aperture::shape::Shape;
 use crate::fixed::{ONE, WHOLE};
@@ -63,7 +63,7 @@ pub fn aperture_moments(nodes: &Nodes, shape: &Shape, stop: f64) -> Vec<Aperture
         let first =
             DVec2::new(base * x + tilt[0] * xx + tilt[1] * xy, base * y + tilt[0] * xy + tilt[1] * yy);
         let mean = (first / share).clamp(DVec2::NEG_ONE, DVec2::ONE);
-        // The weight's change counts for little within what is seen.
+        // The change of the weight within the visible part is negligible.
         let variance = (DVec2::new(xx, yy) / m - (DVec2::new(x, y) / m).powf(2.0)).max(DVec2::ZERO);
         let half = (3.0 * variance).map(f64::sqrt);
         ApertureMoments {

@@ -19,7 +19,7 @@ pub const HEIGHT_BITS: u32 = 24;
 pub const LARGEST_RADIUS_PX: i32 = 64;
 
 /// Heights of the centre within a pixel, at most: 2 to this.
-const PHASE_BITS: u32 = 5;
+pub const PHASE_BITS: u32 = 5;
 
 /// Light in one pixel row.
 #[derive(Clone, Copy, Debug)]
@@ -104,10 +104,10 @@ pub struct StencilSize {
 }
 
 /// Bits behind the point of the radii whose squares are tabled.
-const RADIUS_BITS: u32 = 6;
+pub const RADIUS_BITS: u32 = 6;
 
 /// Bits of the tabled squares below the leading one.
-const MANTISSA_BITS: u32 = 7;
+pub const MANTISSA_BITS: u32 = 7;
 
 impl StencilSize {
     /// Of a radius squared, (1/4096 px)²; less than 0 counts as 0. `None` if it is too large for a stencil.
@@ -132,7 +132,7 @@ const fn index_of(square: u32) -> usize {
 pub const COARSER: [usize; 2] =
     [index_of((8 * 8) << (2 * RADIUS_BITS)), index_of((24 * 24) << (2 * RADIUS_BITS))];
 
-/// The radius, px, that a place of the table stands for.
+/// The radius, px, that a place of the table represents.
 fn radius_at(index: usize) -> f64 {
     let one = 1usize << MANTISSA_BITS;
     let (octave, mantissa) = if index < 2 * one { (0, index) } else { (index / one - 1, index % one + one) };
@@ -150,7 +150,7 @@ impl Stencils {
         Self { shape, parts, table: (0..Self::PLACES).map(|_| OnceLock::new()).collect() }
     }
 
-    /// Cuts the stencils of all places now, unless they are no longer wanted.
+    /// Cuts the stencils of all places now, unless cancelled.
     pub fn cut_all(&self, progress: &dyn Progress) {
         (0..Self::PLACES).into_par_iter().filter(|_| !progress.cancelled()).for_each(|index| {
             self.at_place(Place::from_table_index(index));
@@ -164,7 +164,7 @@ impl Stencils {
         (&self.at_place(place)[phase], row)
     }
 
-    /// Where in the table [`Self::at`] looks: place, phase, and the pixel row of the centre.
+    /// Where [`Self::stencil_at`] looks in the table: place, phase, and the pixel row of the centre.
     #[inline(always)]
     pub fn place(&self, size: StencilSize, y: i32) -> (Place, usize, i32) {
         let turned = if size.is_turned { Self::PLACES / 2 } else { 0 };
@@ -173,7 +173,7 @@ impl Stencils {
         (place, phase, row)
     }
 
-    /// The stencils of a place, cut when they are first asked for.
+    /// The stencils of a place, cut on first use.
     #[inline(always)]
     pub fn at_place(&self, place: Place) -> &[Stencil] {
         self.table[place.index].get_or_init(|| {

@@ -30,7 +30,7 @@ impl CropJoiner {
         }
     }
 
-    /// How many knots a row of a crop of this width, px, brings something to.
+    /// The number of knots in a row to which a crop of this width, px, contributes.
     pub fn knot_columns(width: u32) -> usize {
         Knots::new([width as usize, 1]).columns()
     }
@@ -56,12 +56,12 @@ impl CropJoiner {
         }
     }
 
-    /// Finds the gains, once all rows have told their knots.
+    /// Computes the gains, once the knots of all rows have been added.
     pub fn find_gains(&mut self) {
         self.gains = Gains::from_sums(self.knots, &self.sums);
     }
 
-    /// Adds what shares in a row of a painted picture, once the gains are known.
+    /// Adds the sharing light in a row of a painted picture, once the gains have been computed.
     pub fn add_shared(&mut self, y: u32, row: &mut CropRow) {
         let mut spans = vec![SharedSums::default(); self.knots.spans()];
         let gains = self.gains.row_gains(y as usize, Scaled::Sharing);

@@ -11,20 +11,20 @@ use lens::Picture;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// What a crop brings to the picture.
+/// The contribution of a crop to the picture.
 #[derive(Clone, Debug)]
 pub struct CropPicture {
-    /// What it tells of a pixel.
+    /// What is stored for each pixel.
     pub form: CropForm,
     /// Pixel by pixel, row by row.
     pub numbers: Vec<f32>,
-    /// What each row brings to each column of knots, [`KNOT_NUMBERS`] each, row by row.
+    /// The contribution of each row to each column of knots, [`KNOT_NUMBERS`] each, row by row.
     pub knots: Vec<f32>,
     /// What the whole is to decide.
     pub facts: CropFacts,
 }
 
-/// What a crop knows of what the whole picture decides.
+/// What a crop reports for decisions about the whole picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CropFacts {
     /// The integers that it is summed in.
@@ -199,7 +199,7 @@ fn lines(
     room: &mut Room,
     mut visit: impl FnMut(usize, Parts),
 ) -> Result<[i64; 2], Overflow> {
-    // All of each row: only then it is seen whether one of its pixels has wrapped.
+    // Whole rows: only then can it be detected whether one of their pixels has wrapped.
     let width = sums.free.dim.levels[0].width;
     let window = Window { rows: inner.rows(rows), columns: 0..width as i32 };
     let [mut free_marks, mut sharing_marks] = sums.marks(window.rows.clone());

@@ -5,7 +5,7 @@ use crate::resolve::partition::{Parts, Share};
 use crate::resolve::parts_to_pixels::Pixels;
 use crate::resolve::{BLACK, Light};
 
-/// What a crop tells of each pixel.
+/// What a crop stores for each pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CropForm {
     /// The picture but for its gains: red, green, blue and coverage. Nothing is painted.
@@ -14,7 +14,7 @@ pub enum CropForm {
     Parts,
 }
 
-/// How many numbers a crop tells of what a row brings to a knot.
+/// How many numbers a crop stores per row and knot.
 pub const KNOT_NUMBERS: usize = 16;
 
 impl CropForm {
@@ -41,7 +41,7 @@ pub struct CropRow {
 }
 
 impl CropRow {
-    /// A black one of so many pixels.
+    /// A black row of this width, px.
     pub fn black(width: usize) -> Self {
         Self {
             free: vec![BLACK; width],
@@ -75,7 +75,7 @@ impl CropRow {
     }
 }
 
-/// What a row brings to a knot, from its numbers.
+/// The contribution of a row to a knot, from its numbers.
 pub(super) fn knot_sums(numbers: &[f32]) -> KnotSums {
     let mut sums = KnotSums::default();
     sums.0.as_flattened_mut().iter_mut().zip(numbers).for_each(|(sum, number)| *sum = *number);

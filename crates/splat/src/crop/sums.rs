@@ -39,7 +39,7 @@ pub struct CropOptions<'a> {
 /// Why a crop could not be summed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CropError {
-    /// Nobody wants it any more.
+    /// The progress was cancelled.
     Cancelled,
     /// Integers of this kind do not hold it: take coarser ones.
     TooFine(Kind),
@@ -84,7 +84,7 @@ struct PictureSums {
 impl<'a> CropSums<'a> {
     /// How far around a crop sums must be complete, px: its pixels are made of coarser levels' around them.
     pub fn near_px(tolerance: Tolerance) -> i32 {
-        // Without nodes that stand for several, there is the finest level alone.
+        // Without joint nodes there is only the finest level.
         if tolerance == Tolerance::NONE { 0 } else { 5 * BLOCK_PX }
     }
 
@@ -134,13 +134,16 @@ impl<'a> CropSums<'a> {
         Sums::new(self.outer.size.map(|side| side as usize), self.has_bright)
     }
 
-    /// Goes on to so many other mattes: all parts of the light field are to be added again.
+    /// Starts another set of mattes: all parts of the light field have to be added again.
     pub fn begin_mattes(&mut self, count: usize) {
         self.mattes = (0..count).map(|_| self.empty()).collect();
     }
 
     /// Adds a part of the light field. `is_black` tells samples that send nothing, and cover what lies behind them all the same; `sets` one
     /// after the other what mattes are made of.
+    ///
+    /// # Errors
+    /// [`CropError::Cancelled`] if `progress` is cancelled.
     pub fn add(
         &mut self,
         salf: &Salf,
@@ -212,7 +215,10 @@ impl<'a> CropSums<'a> {
         Inner::new([corner[0] - self.outer.corner[0], corner[1] - self.outer.corner[1]], size)
     }
 
-    /// What the crop brings to the picture: once, when all parts of the light field were added.
+    /// The crop's contribution to the picture: once, after all parts of the light field have been added.
+    ///
+    /// # Errors
+    /// [`CropError::TooFine`] or [`CropError::TooBright`] if the integers of the sums overflow.
     pub fn picture(&mut self) -> Result<CropPicture, CropError> {
         let taken = self.picture.take();
         let sums = taken.unwrap_or_else(|| PictureSums { standard: self.empty(), painted: None });
@@ -235,6 +241,9 @@ impl<'a> CropSums<'a> {
     }
 
     /// A matte, after the picture: the coverage of its sets as red, green and blue, and that of all.
+    ///
+    /// # Errors
+    /// [`CropError::TooFine`] or [`CropError::TooBright`] if the integers of the sums overflow.
     pub fn matte(&self, index: usize) -> Result<Picture, CropError> {
         let quanta = self.options.integers.scale(Kind::Painted).quanta(self.facts.brightest);
         picture::matte(&self.mattes[index], quanta, self.inner(), &self.shares)

@@ -9,7 +9,7 @@ use crate::draw::sized_box::{HALF_PIXEL, UnsizedBox, too_blurred};
 use crate::fixed::{ONE, mul_shift};
 
 /// Half the longest side of a stretched footprint, 1/4096 px.
-const LARGEST_HALF: u32 = 10 << POSITION_BITS;
+pub const LARGEST_HALF: u32 = 10 << POSITION_BITS;
 
 /// The largest aperture's part that leaves a pixel's box a pixel: (h + 1)² is 2h + 1 more than h².
 const LARGEST_WITHIN_PIXEL: u32 = (2 * HALF_PIXEL).isqrt();

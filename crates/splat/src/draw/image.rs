@@ -1,8 +1,13 @@
 //! A node's image before it is drawn: where, how large, how bright.
 
 use crate::canvas::POSITION_BITS;
-use crate::fixed::{mul_shift, signed_mul_shift};
+use crate::fixed::{GOLDEN, mul_shift, signed_mul_shift};
 use crate::nodes::SplatNode;
+
+/// Odd multipliers of the hash that dithers.
+pub const HASH_Y: u32 = 0x85EB_CA77;
+pub const HASH_MIX: u32 = 0xC2B2_AE3D;
+pub const HASH_DITHER: u32 = 0x2C1B_3C6D;
 
 /// Red, green, blue and coverage: `mantissa`·2^`exponent` quanta. The largest mantissa has 31 bits.
 #[derive(Clone, Copy, Debug, Default)]
@@ -43,8 +48,8 @@ impl Light {
     /// the node's dither starts, and the row from its centre's.
     #[inline(always)]
     pub fn in_pixel(&self, height: u32, shift: u32, dither: u32, row: i32) -> [u64; 4] {
-        let hash = dither.wrapping_add((row as u32).wrapping_mul(0x9E37_79B1));
-        let hash = (hash ^ hash >> 15).wrapping_mul(0x2C1B_3C6D) as u64;
+        let hash = dither.wrapping_add((row as u32).wrapping_mul(GOLDEN));
+        let hash = (hash ^ hash >> 15).wrapping_mul(HASH_DITHER) as u64;
         let dither = (hash << shift.saturating_sub(32)) >> 32u32.saturating_sub(shift);
         let mut value = [0; 4];
         for (value, mantissa) in value.iter_mut().zip(self.mantissa) {
@@ -105,7 +110,7 @@ impl Image<'_> {
 #[inline(always)]
 pub fn seed(node: &SplatNode, level: u8, middle: [i32; 2]) -> u32 {
     let [x, y] = [(node.center[0] - middle[0]) as u32, (node.center[1] - middle[1]) as u32];
-    (x.wrapping_mul(0x9E37_79B1) ^ y.wrapping_mul(0x85EB_CA77) ^ level as u32).wrapping_mul(0xC2B2_AE3D)
+    (x.wrapping_mul(GOLDEN) ^ y.wrapping_mul(HASH_Y) ^ level as u32).wrapping_mul(HASH_MIX)
 }
 
 #[cfg(test)]

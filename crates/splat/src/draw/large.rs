@@ -8,7 +8,7 @@ use crate::draw::visible_runs::{Row, VisibleRuns};
 use crate::fixed::{Divisor, ONE, mul_shift, signed_mul_shift};
 use crate::nodes::Cells;
 
-/// The light of larger images, in pixel rows, is what their area says; that of smaller ones what their rows say.
+/// The light of images of more rows is distributed by their area; that of smaller ones by their rows.
 const MAX_ROWS: i32 = 1 << 12;
 
 /// How much light a large image has in a pixel.

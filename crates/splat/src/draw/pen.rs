@@ -59,6 +59,9 @@ pub struct Pen<'a> {
     pub per_stencil_radius: u32,
 }
 
+/// The aperture has at most this many parts whose images are boxes.
+pub const MAX_PARTS: usize = 16;
+
 /// A part of the aperture: its share times 2²⁴, mean and variance times 16384, √3 deviations times 65536.
 #[derive(Clone, Copy)]
 pub struct BoxPart {
@@ -68,7 +71,7 @@ pub struct BoxPart {
     pub half: [u32; 2],
 }
 
-/// What a node sees that sees all.
+/// The cells of a node that sees the whole aperture.
 pub const ALL: Cells = [u16::MAX; 16];
 
 /// A form that a node, or a part of its light, is drawn in; shares are times 2²⁴.
@@ -82,9 +85,9 @@ pub enum Form {
     Image(u32),
     /// The same where the weight changes over the aperture.
     Tilted(u32),
-    /// The box of what is seen of the aperture.
+    /// The box of the visible part of the aperture.
     PartialBox,
-    /// The image of what is seen of it.
+    /// The image of the visible part of the aperture.
     PartialImage,
 }
 
@@ -113,7 +116,7 @@ impl<'a> Pen<'a> {
         let deviations =
             |factor: f64| (factor * BOX_DEVIATION_PX / variance.sqrt() * PIXEL as f64).ceil() as u32;
         let stop = fixed(stop);
-        // To look at, one box will do until the stencils take over.
+        // For viewing, one box is sufficient until stencils take over.
         let [stencil_radius, one_box_radius] = match detail {
             Detail::Exact => [deviations(0.5), deviations(0.5)],
             Detail::Fine | Detail::Sketch => [deviations(0.3), u32::MAX],
@@ -127,7 +130,7 @@ impl<'a> Pen<'a> {
             Detail::Fine => 1.5,
             Detail::Sketch => 2.0,
         });
-        // Below 3 px one of three rows of cells, or of more, would stand for a pixel row.
+        // Below 3 px, one of three or more rows of cells would represent a pixel row.
         let all_rows_radius = match detail {
             Detail::Exact => u32::MAX,
             Detail::Fine => 3 * PIXEL as u32,
@@ -170,7 +173,7 @@ impl<'a> Pen<'a> {
         }
     }
 
-    /// What a partly occluded node sees, and its share (times 2²⁴) of the light.
+    /// The visible cells of a partly occluded node, and their share (times 2²⁴) of the light.
     #[inline(always)]
     pub fn visible_part<'n>(&'n self, node: &SplatNode) -> (&'n Cells, u32) {
         match self.nodes.cells(node) {

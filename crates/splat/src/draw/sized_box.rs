@@ -44,7 +44,7 @@ impl UnsizedBox<'_> {
     }
 }
 
-/// A box of known size.
+/// A box with its size.
 pub struct SizedBox {
     /// On its level, 1/4096 px of it.
     pub center: [i32; 2],
@@ -68,7 +68,7 @@ impl SizedBox {
         if first > last {
             return;
         }
-        // The share goes in before anything is rounded.
+        // The share is applied before rounding.
         let density = mul_shift(across.value, self.share, 26);
         let shift = self.light.shift(HEIGHT_BITS);
         let [start, end] = [center[0] - half as i32, center[0] + half as i32];

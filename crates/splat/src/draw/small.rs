@@ -8,7 +8,7 @@ use crate::fixed::{Reciprocal, floored};
 /// How many wait until they are drawn.
 const COUNT: usize = 32;
 
-/// Boxes that wait to be drawn on one level, all small (see [`UnsizedBox::is_small`]).
+/// Small boxes of one level (see [`UnsizedBox::is_small`]) that are drawn together.
 #[derive(Default)]
 pub struct SmallBoxes {
     len: usize,
@@ -69,7 +69,7 @@ impl SmallBoxes {
     }
 }
 
-/// The sizes along an axis: what [`crate::fixed::hypotenuse`] and [`Reciprocal::of`] say, several at a time.
+/// The sizes along an axis: [`crate::fixed::hypotenuse`] and [`Reciprocal::new`], several at a time.
 #[inline(always)]
 fn sizes([a, b]: &[[u32; COUNT]; 2], less: u32) -> Sizes {
     let (mut half, mut value, mut bits) = ([0; COUNT], [0; COUNT], [0; COUNT]);

@@ -11,7 +11,7 @@ use crate::nodes::Cells;
 use crate::simd_dispatch::with_widest_simd;
 
 /// What is let through of a stencil is scaled by this at most.
-const LARGEST_SCALE: u32 = 4;
+pub const LARGEST_SCALE: u32 = 4;
 
 impl Pen<'_> {
     /// The aperture's image, or what `cells` let through of it: then of the light `share` (times 2²⁴) in all.
@@ -27,7 +27,7 @@ impl Pen<'_> {
             return self.draw_large(image, cells, &mut paper.rows, sign);
         };
         let mut rows = paper.rows.borrowed();
-        // Most of what misses these rows is found out before its stencil is fetched.
+        // Most images that miss these rows are rejected before their stencil is fetched.
         let reach = image.radius.abs() + image.radius.abs() / 2 + 2 * PIXEL;
         if (image.center[1] + reach) >> POSITION_BITS < rows.first
             || (image.center[1] - reach) >> POSITION_BITS >= rows.end

@@ -3,7 +3,7 @@
 use crate::canvas::POSITION_BITS;
 use crate::draw::image::Image;
 use crate::draw::pen::Pen;
-use crate::fixed::{Divisor, ONE, signed_mul_shift};
+use crate::fixed::{Divisor, GOLDEN, ONE, signed_mul_shift};
 use crate::nodes::Cells;
 
 /// A part of a pixel row that is let through, of `height` a pixel.
@@ -33,9 +33,6 @@ fn halvings(tilt: i32) -> u32 {
     }
 }
 
-/// 2³² over the golden ratio: its multiples, wrapped, are spread out evenly.
-const GOLDEN: u32 = 0x9E37_79B1;
-
 /// ⌊x·factor / 2^`shift`⌋ for |factor| ≤ 2^`shift`, where x·factor may not fit; `shift` ≤ 15.
 #[inline(always)]
 fn scaled_floor(x: i32, factor: i32, shift: u32) -> i32 {
@@ -43,29 +40,29 @@ fn scaled_floor(x: i32, factor: i32, shift: u32) -> i32 {
 }
 
 /// The height of a pixel row in units of the image's radius, times 16384, counts as at most this.
-const TALLEST_ROW: u32 = 1 << 16;
+pub const TALLEST_ROW: u32 = 1 << 16;
 
-/// Radii of the baked aperture's image, 1/4096 px, count as at least this: so small, its cells are not told apart.
-const SMALLEST_REACH: u64 = 1 << 8;
+/// The smallest radius of the baked aperture's image, 1/4096 px: below it, cells cannot be resolved.
+pub const SMALLEST_REACH: u32 = 1 << 8;
 
 /// And as at most this.
-const LARGEST_REACH: u64 = 1 << 30;
+pub const LARGEST_REACH: u32 = 1 << 30;
 
 /// Rows of cells.
 const ROWS: usize = 16;
 
-/// Runs that one of them has at most, each in so many parts at most.
+/// The largest number of runs in a row of cells, and of parts of a run.
 const MAX_RUNS: usize = 8;
 const MAX_PARTS: usize = 4;
 
 /// Binary digits of the height of a row of cells, where the baked aperture is 2·[`ONE`] high.
-const CELL_BITS: u32 = 11;
+pub const CELL_BITS: u32 = 11;
 
 /// Binary digits behind the point of a column of cells, from the left.
-const COLUMN_BITS: u32 = 12;
+pub const COLUMN_BITS: u32 = 12;
 
 /// The right edge of a row of cells.
-const LAST_COLUMN: i32 = 16 << COLUMN_BITS;
+pub const LAST_COLUMN: i32 = 16 << COLUMN_BITS;
 
 /// A run of cells: the columns where it begins and ends, and how much of the pixel row it is in, times 16384.
 #[derive(Clone, Copy)]
@@ -107,7 +104,8 @@ impl VisibleRuns {
     #[inline(always)]
     pub fn new(pen: &Pen, image: &Image) -> Self {
         let radius = image.radius.unsigned_abs();
-        let reach = ((radius as u64 * pen.per_stop as u64) >> 14).clamp(SMALLEST_REACH, LARGEST_REACH) as u32;
+        let reach = ((radius as u64 * pen.per_stop as u64) >> 14)
+            .clamp(SMALLEST_REACH.into(), LARGEST_REACH.into()) as u32;
         let (base, tilt) = (i32::from(image.node.base), image.node.tilt.map(i32::from));
         let pixel = ((1u32 << 26) / radius.max(1)).min(TALLEST_ROW) as i32;
         let height = ((pixel * (pen.stop >> 2)) >> 12).clamp(1, 2 * ONE);
@@ -115,7 +113,7 @@ impl VisibleRuns {
         for (cell, edge) in (-8..).zip(&mut edges) {
             *edge = image.center[0].wrapping_add(scaled_floor(reach as i32, cell, 3));
         }
-        // The outermost cells hold all that the blur of the footprint throws beyond them.
+        // The outermost cells hold everything that the blur of the footprint spreads beyond them.
         (edges[0], edges[16]) = (i32::MIN, i32::MAX);
         Self {
             center: image.center,
@@ -133,7 +131,7 @@ impl VisibleRuns {
         }
     }
 
-    /// How often [`Self::of_row`] calls `emit` at most.
+    /// The largest number of calls of `emit` by [`Self::visit_row`].
     #[inline(always)]
     pub fn max_runs_of_row<const TAKES_ALL: bool>(&self) -> usize {
         // Rows of cells that a pixel row lies across.
@@ -176,7 +174,7 @@ impl VisibleRuns {
     /// Rows that let through one run each, not far from each other, are taken as one with the mean of their edges.
     #[inline(always)]
     fn visit_mean_runs(&self, cells: &Cells, middle: i32, mut emit: impl FnMut(CellRun)) {
-        // The outermost rows hold all that the blur of the footprint throws beyond them.
+        // The outermost rows hold everything that the blur of the footprint spreads beyond them.
         let lowest = middle - self.height / 2;
         let bottom = lowest.clamp(0, 2 * ONE - 1);
         let top = (lowest + self.height).clamp(bottom + 1, 2 * ONE);
@@ -266,7 +264,7 @@ fn column(cell: u32) -> i32 {
     (cell << COLUMN_BITS) as i32
 }
 
-/// The first cell that is seen of a row which sees any, and the one behind the last.
+/// The first visible cell of a row that has any, and the one behind the last.
 #[inline(always)]
 fn ends(bits: u16) -> [u32; 2] {
     let bits = u32::from(bits);
@@ -297,7 +295,7 @@ struct MeanRun {
 }
 
 impl MeanRun {
-    /// Whether a run begins and ends at most so many cells from the first, if there is one.
+    /// Whether a run begins and ends at most this many cells from the first, if there is one.
     #[inline(always)]
     fn is_near(&self, run: [i32; 2], most: i32) -> bool {
         let near = |k: usize| (run[k] - self.first[k]).abs() <= most;

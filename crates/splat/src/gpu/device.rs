@@ -11,10 +11,10 @@ use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 use wgpu::{Adapter, Device, Features, Limits, PollError, PollType, Queue, SubmissionIndex};
 
-/// For how long a device is waited for in one go: whoever shows pictures on it waits as long.
+/// The longest single wait for a device: others who show pictures on it wait as long.
 const MOMENT: Duration = Duration::from_millis(1);
 
-/// What is done is told within so many moments: ten seconds.
+/// A device that does not answer for this many moments, ten seconds, is lost.
 const MAX_MOMENTS: usize = 10_000;
 
 /// The card is gone, or refuses to work on.
@@ -44,7 +44,7 @@ impl Gpu {
     /// Takes an adapter into use.
     ///
     /// # Errors
-    /// What the driver said.
+    /// The driver's message.
     pub(super) fn new(adapter: &Adapter) -> Result<Self, String> {
         Self::with(adapter, Self::features(adapter.features()))
     }
@@ -71,7 +71,7 @@ impl Gpu {
         }
     }
 
-    /// What such a device may be asked for of what its adapter has: a clock, and sums over subgroups. Nothing depends on them.
+    /// Optional features to request from an adapter: a clock, and sums over subgroups. Results do not depend on them.
     pub fn features(available: Features) -> Features {
         available & (Features::TIMESTAMP_QUERY | Features::SUBGROUP)
     }
@@ -80,7 +80,7 @@ impl Gpu {
     /// errors are taken as its loss from then on.
     ///
     /// # Errors
-    /// What the driver said.
+    /// The driver's message.
     pub fn from_device(device: Device, queue: Queue, name: String) -> Result<Self, String> {
         let lost = Arc::new(OnceLock::new());
         let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
@@ -128,7 +128,7 @@ impl Gpu {
         self.0.lost.get().map(String::as_str)
     }
 
-    /// Gives the device back at once, as a driver does that crashes: what is summed on it goes on on the processor.
+    /// Destroys the device at once, as a driver crash would: sums continue on the processor.
     pub fn destroy(&self) {
         self.0.device.destroy();
     }
@@ -145,7 +145,7 @@ impl Gpu {
         &self.0.passes
     }
 
-    /// The largest buffer that a pass can see whole.
+    /// The largest buffer that a pass can bind.
     pub(super) fn largest_binding(&self) -> u64 {
         let limits = self.0.device.limits();
         limits.max_storage_buffer_binding_size.min(limits.max_buffer_size)

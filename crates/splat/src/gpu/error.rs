@@ -11,7 +11,7 @@ pub enum GpuError {
     Lost,
     /// A pixel holds more than its integers do.
     Overflow,
-    /// Nobody wants it any more.
+    /// The progress was cancelled.
     Cancelled,
 }
 

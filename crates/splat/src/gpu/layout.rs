@@ -28,7 +28,7 @@ pub struct Level {
 }
 
 impl Layout {
-    /// Of a picture of this size: so many levels, with pixels of so many words.
+    /// For a picture of this size, with this many levels and words per pixel.
     pub fn new([width, height]: [usize; 2], levels: usize, words_of_pixel: usize) -> Self {
         let mut layout = Self { levels: Vec::new(), words: 0, lines: 0 };
         for k in 0..levels {

@@ -1,23 +1,15 @@
 //! The list of what is drawn, made on the card.
 
 use crate::aperture::stencil::{COARSER, Place, Stencils};
-use crate::draw_list::Scene as Drawn;
+use crate::draw_list::Scene as DrawnScene;
 use crate::gpu::Gpu;
 use crate::gpu::device::Lost;
 use crate::gpu::device::commands::Commands;
-use crate::gpu::passes::KINDS;
-use crate::gpu::records;
+use crate::gpu::formats::{COUNTS, KINDS, RECORD_WORDS, THREADS};
 use crate::gpu::scene::{Chunk, Scene};
-use salf::tree::LEVELS;
+use crate::gpu::shader_structs;
 use std::ops::Range;
 use wgpu::{BindGroup, Buffer, BufferUsages};
-
-/// Kinds of records, of ordinary accumulators and of wide ones.
-const COUNTS: usize = 2 * KINDS;
-
-/// Words of `Lens` in list.wgsl before its thresholds, and of `Chunk`.
-const LENS_WORDS: usize = 14 + 2 * LEVELS;
-const CHUNK_WORDS: usize = 4 + COUNTS;
 
 /// Of how many words the bits of all places of stencils are.
 const PLACE_WORDS: usize = Stencils::PLACES.div_ceil(u32::BITS as usize);
@@ -26,9 +18,9 @@ const PLACE_WORDS: usize = Stencils::PLACES.div_ceil(u32::BITS as usize);
 pub struct Listing {
     lens: Buffer,
     /// How many records of each kind each chunk has, and how many have been written; then a bit for each place of stencils
-    /// that is asked for.
+    /// of requested stencils.
     counts: Buffer,
-    /// What list.wgsl is told of each chunk, when it counts and when it writes.
+    /// The uniforms of each chunk, for counting and for writing.
     chunks: Vec<[Buffer; 2]>,
     /// Stands for what is painted where nothing is.
     unpainted: Buffer,
@@ -39,23 +31,22 @@ pub struct Listing {
 /// How many records of each kind a scene has.
 pub struct Counts {
     of_chunks: Vec<[u32; COUNTS]>,
-    /// Stencils that they ask for.
+    /// The stencils that the records use.
     pub places: Vec<Place>,
 }
 
-/// Where the records of each kind stand: of ordinary accumulators, then of wide ones.
+/// The records of each kind, by index: for ordinary accumulators, then for wide ones.
 pub type Listed = [[Range<u32>; KINDS]; 2];
 
 impl Listing {
     pub fn new(gpu: &Gpu, scene: &Scene) -> Result<Self, Lost> {
         let storage = BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC;
-        let uniform = BufferUsages::UNIFORM | BufferUsages::COPY_DST;
         let of_chunk = |_| {
-            let buffer = || gpu.buffer("chunk", CHUNK_WORDS, uniform);
+            let buffer = || gpu.struct_buffer::<shader_structs::Chunk>("chunk", BufferUsages::UNIFORM);
             Ok([buffer()?, buffer()?])
         };
         Ok(Self {
-            lens: gpu.buffer("lens", LENS_WORDS + 10 * 4 * LEVELS, storage)?,
+            lens: gpu.struct_buffer::<shader_structs::Lens>("lens", BufferUsages::STORAGE)?,
             counts: gpu.buffer("found", 2 * COUNTS * scene.chunks.len() + PLACE_WORDS, storage)?,
             chunks: scene.chunks.iter().map(of_chunk).collect::<Result<_, Lost>>()?,
             unpainted: gpu.buffer("unpainted", 0, storage)?,
@@ -73,11 +64,11 @@ impl Listing {
         &self,
         gpu: &Gpu,
         scene: &Scene,
-        drawn: &Drawn,
+        drawn: &DrawnScene,
         pen: &Buffer,
         is_painted: bool,
     ) -> Result<Counts, Lost> {
-        gpu.write(&self.lens, &words_of_lens(drawn));
+        gpu.write_struct(&self.lens, &shader_lens(drawn));
         let words = 2 * COUNTS * scene.chunks.len() + PLACE_WORDS;
         gpu.write(&self.counts, &vec![0; words]);
         for (k, chunk) in scene.chunks.iter().enumerate() {
@@ -109,7 +100,7 @@ impl Listing {
             end = end.saturating_add(count);
             first..end
         });
-        let words = records::WORDS * end as usize;
+        let words = RECORD_WORDS * end as usize;
         if 4 * words as u64 > self.records.size() {
             // With some room, that it need not grow with every lens.
             let roomy = (words + words / 4).min((gpu.largest_binding() / 4) as usize);
@@ -133,15 +124,20 @@ impl Listing {
         let focus = chunk.focus.as_ref().filter(|_| is_painted);
         let (is_writing, counts) = (firsts.is_some(), 2 * COUNTS * index);
         let counts = counts + if is_writing { COUNTS } else { 0 };
-        let mut words = vec![chunk.shared.count, focus.is_some().into(), counts as u32];
-        words.push((2 * COUNTS * self.chunks.len()) as u32);
-        words.extend((0..COUNTS).map(|kind| firsts.map_or(0, |firsts| firsts[kind].start)));
+        let first = std::array::from_fn(|kind| firsts.map_or(0, |firsts| firsts[kind].start));
+        let of_chunk = shader_structs::Chunk {
+            node_count: chunk.shared.count,
+            is_painted: focus.is_some().into(),
+            counts: counts as u32,
+            places: (2 * COUNTS * self.chunks.len()) as u32,
+            first,
+        };
         let uniform = &self.chunks[index][usize::from(is_writing)];
-        gpu.write(uniform, &words);
+        gpu.write_struct(uniform, &of_chunk);
         let bound = self.bind_group(gpu, chunk, pen, focus, uniform);
         let pass = &gpu.passes().list[usize::from(is_writing)];
         let mut work = Commands::new(gpu);
-        work.dispatch(pass, &bound, [chunk.shared.count.div_ceil(64), 1]);
+        work.dispatch(pass, &bound, [chunk.shared.count.div_ceil(THREADS), 1]);
         work.submit();
     }
 
@@ -159,18 +155,23 @@ impl Listing {
     }
 }
 
-/// A lens as list.wgsl reads it.
-fn words_of_lens(Drawn { pen, lens, size, .. }: &Drawn) -> Vec<u32> {
-    let mut words =
-        [lens.radius_at_infinity, lens.radius_per_kappa, lens.radius_per_offset].map(f32::to_bits).to_vec();
-    words.extend([0, size[0], size[1], pen.box_radius, pen.one_box_radius, pen.even_tilt as u32]);
-    words.extend([pen.per_variance as u32, (Stencils::PLACES / 2) as u32]);
-    words.extend(COARSER.map(|place| place as u32));
-    // What follows begins at a multiple of eight bytes.
-    words.push(0);
-    words.extend(pen.too_blurred.iter().flat_map(|square| [*square as u32, (square >> 32) as u32]));
-    debug_assert_eq!(words.len(), LENS_WORDS);
-    words.extend(lens.smallest_radius.as_flattened());
-    words.extend(lens.smallest_joint_radius.as_flattened().as_flattened());
-    words
+/// A lens as draw_list.wgsl reads it.
+fn shader_lens(DrawnScene { pen, lens, size, .. }: &DrawnScene) -> shader_structs::Lens {
+    shader_structs::Lens {
+        radius_at_infinity: lens.radius_at_infinity,
+        radius_per_kappa: lens.radius_per_kappa,
+        radius_per_offset: lens.radius_per_offset,
+        zero: 0,
+        size: size.map(|side| side as i32),
+        box_radius: pen.box_radius,
+        one_box_radius: pen.one_box_radius,
+        even_tilt: pen.even_tilt,
+        per_variance: pen.per_variance as u32,
+        half_places: (Stencils::PLACES / 2) as u32,
+        coarser: COARSER.map(|place| place as u32),
+        padding: 0,
+        too_blurred: pen.too_blurred.map(|square| [square as u32, (square >> 32) as u32]),
+        smallest_radius: lens.smallest_radius,
+        smallest_joint_radius: lens.smallest_joint_radius,
+    }
 }

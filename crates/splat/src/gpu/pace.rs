@@ -1,13 +1,13 @@
-//! How many records a card is asked to draw at a time.
+//! How many records a card draws per submission.
 
 use crate::gpu::Gpu;
 use crate::gpu::device::Lost;
-use crate::gpu::passes::KINDS;
+use crate::gpu::formats::KINDS;
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 use wgpu::SubmissionIndex;
 
-/// Records at first, by kind: few enough that no card takes a second. Tests' scenes have several batches, too.
+/// Initial records by kind: few enough that no card takes a second. In tests there are several batches, too.
 const FIRST: [usize; KINDS] =
     if cfg!(test) { [1 << 7, 1 << 6, 1 << 5, 1 << 5] } else { [1 << 16, 1 << 15, 1 << 14, 1 << 9] };
 
@@ -15,8 +15,7 @@ const FIRST: [usize; KINDS] =
 const SHORT: Duration = Duration::from_millis(4);
 const LONG: Duration = Duration::from_millis(16);
 
-/// So many batches may wait on the card: others wait their turn there, too, and what nobody wants any more is soon out of
-/// their way.
+/// At most this many batches are in flight: other users of the card wait for them, and cancelled work ends soon.
 const MAX_IN_FLIGHT: usize = 4;
 
 /// Records of one kind, for one kind of accumulators.
@@ -38,17 +37,17 @@ pub struct Pace {
 }
 
 impl Pace {
-    /// Of a card that nothing is known of.
+    /// For a card without measurements.
     pub fn new() -> Self {
         Self { sizes: [FIRST; 2], in_flight: VecDeque::new(), last_done: Instant::now() }
     }
 
-    /// How many records to ask for next.
+    /// How many records to submit next.
     pub fn size(&self, width: usize, kind: usize) -> usize {
         self.sizes[width][kind]
     }
 
-    /// Notes what was asked for, and waits while too much of it is not done.
+    /// Registers a submission, and waits while too many are in flight.
     pub fn add(&mut self, gpu: &Gpu, batch: Batch, submission: SubmissionIndex) -> Result<(), Lost> {
         self.in_flight.push_back((batch, submission, Instant::now()));
         if self.in_flight.len() <= MAX_IN_FLIGHT {
@@ -62,7 +61,7 @@ impl Pace {
         Ok(())
     }
 
-    /// What was asked for is of no interest any more: others have waited for it, or nobody will.
+    /// Forgets all submissions: others have waited for them, or nobody has to.
     pub fn clear(&mut self) {
         self.in_flight.clear();
     }

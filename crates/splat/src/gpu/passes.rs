@@ -1,29 +1,9 @@
 //! The compute passes of the sum, and what they are bound to.
 
+use crate::gpu::formats::{KINDS, LANES, SCAN_THREADS};
+use crate::gpu::shader_source;
 use std::sync::OnceLock;
 use wgpu::{BindGroupLayout, BufferBindingType, ComputePipeline, Device, ShaderModule};
-
-/// Threads that draw one record where there are few: a divisor of draw.wgsl's 64.
-pub const LANES: u32 = 16;
-
-/// Kinds of records, as in pen.wgsl.
-pub const KINDS: usize = 4;
-
-const FIXED: &str = include_str!("../fixed.wgsl");
-const LIST: &str = concat!(include_str!("../draw/pen.wgsl"), "\n", include_str!("../draw_list.wgsl"));
-const DRAW: &str = concat!(
-    include_str!("../draw/pen.wgsl"),
-    "\n",
-    include_str!("../draw.wgsl"),
-    "\n",
-    include_str!("../draw/visible_runs.wgsl")
-);
-const RESOLVE: &str = include_str!("resolve.wgsl");
-const PROBE: &str = include_str!("probe.wgsl");
-/// A running sum over a workgroup: by steps that any card does, and by subgroups.
-const SCAN: [&str; 2] = [include_str!("scan.wgsl"), include_str!("scan_subgroups.wgsl")];
-/// Threads of the workgroups that do.
-const SCAN_THREADS: u32 = 256;
 
 /// All passes.
 pub struct Passes {
@@ -105,11 +85,8 @@ impl Passes {
                 source: wgpu::ShaderSource::Wgsl(source.into()),
             })
         };
-        let with_arithmetic = |source: &str| format!("{FIXED}\n{source}");
-        let (list, draw) = (module("list", with_arithmetic(LIST)), module("draw", with_arithmetic(DRAW)));
-        let by_subgroups = has_whole_subgroups(device);
-        let scan = SCAN[usize::from(by_subgroups)];
-        let resolve = module("resolve", with_arithmetic(&format!("{scan}\n{RESOLVE}")));
+        let (list, draw) = (module("list", shader_source::list()), module("draw", shader_source::draw()));
+        let resolve = module("resolve", shader_source::resolve(has_whole_subgroups(device)));
         let list_layout = layout(
             device,
             [(0, Read), (1, Read), (2, Read), (3, Read), (4, Write), (5, Write), (6, Uniform)],
@@ -131,7 +108,7 @@ impl Passes {
                 (10, Read),
             ],
         );
-        let probe = module("probe", PROBE.to_owned());
+        let probe = module("probe", shader_source::probe());
         let probe_layout = layout(device, [(0, Read), (1, Write), (2, Uniform)]);
         let of_kind = |is_wide: f64, kind: usize| {
             [1, LANES].map(|lanes| {

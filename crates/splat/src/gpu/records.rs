@@ -2,37 +2,21 @@
 
 use crate::aperture::stencil::Place;
 use crate::draw::{ALL, Form, Image, Large, Pen};
-use crate::gpu::passes::KINDS;
+use crate::gpu::formats::{
+    FORM_BOX, FORM_IMAGE, FORM_MASK, FORM_PARTIAL_BOX, FORM_PARTIAL_IMAGE, FORM_PARTS, FORM_TILTED,
+    IS_COVERAGE, IS_PIECE, IS_REMOVED, IS_SHARING, KIND_BOXES, KIND_IMAGES, KIND_LARGE, KIND_PARTIAL, KINDS,
+    LEVEL_BIT, LEVEL_MASK, PIECE_BIT, RECORD_WORDS,
+};
 use crate::lens_in_use::Placed;
 use crate::nodes::{Cells, SplatNode};
 use crate::sums::is_sharing;
 use rayon::prelude::*;
 
-/// Words of a record; of one of a large image twice as many.
-pub const WORDS: usize = 4;
-
-/// The kinds of pen.wgsl.
-const BOXES: usize = 0;
-const IMAGES: usize = 1;
-const PARTIAL: usize = 2;
-pub const LARGE: usize = 3;
-
-/// A record's form, and its flags.
-const FORM_BITS: u32 = 7;
-const IS_SHARING: u32 = 8;
-const IS_REMOVED: u32 = 16;
-const IS_COVERAGE: u32 = 32;
-const IS_PIECE: u32 = 64;
-/// Where the level stands that it is drawn on.
-const LEVEL_BIT: u32 = 8;
-/// Where stands which piece it is.
-const PIECE_BIT: u32 = 16;
-
 /// Records by kind: of ordinary accumulators, then of wide ones.
 #[derive(Clone, Debug, Default)]
 pub struct Records {
     pub words: [[Vec<u32>; KINDS]; 2],
-    /// Stencils that they ask for.
+    /// The stencils that the records use.
     pub places: Vec<Place>,
 }
 
@@ -76,22 +60,22 @@ impl Records {
         let words = &mut words[width];
         let radius = placed.radius as u32;
         pen.forms(node, placed, |form| {
-            let head = |of_form: u32| [index - first, radius, of_form, flags | number_of(form)];
+            let head = |form_argument: u32| [index - first, radius, form_argument, flags | number_of(form)];
             let Some((image, cells)) = image_of(pen, node, placed, form) else {
                 let is_parts = matches!(form, Form::Parts(_));
-                return words[BOXES].extend(head(if is_parts { placed.depth_share as u32 } else { 0 }));
+                return words[KIND_BOXES].extend(head(if is_parts { placed.depth_share as u32 } else { 0 }));
             };
             match pen.stencil_size_of(&image) {
                 Some(size) => {
                     let (place, phase, _) = pen.stencils.place(size, image.center[1]);
-                    // Blocks ask for few different ones, one after another.
+                    // Blocks use few different ones, one after another.
                     if places.last() != Some(&place) {
                         places.push(place);
                     }
-                    let kind = if cells.is_some() { PARTIAL } else { IMAGES };
+                    let kind = if cells.is_some() { KIND_PARTIAL } else { KIND_IMAGES };
                     words[kind].extend(head(place.with_phase(phase)));
                 }
-                None => words[LARGE].extend(with_large(head(0), pen.large(&image, cells))),
+                None => words[KIND_LARGE].extend(with_large(head(0), pen.large(&image, cells))),
             }
         });
     }
@@ -99,16 +83,16 @@ impl Records {
 
 /// Whole records of large images, of those that the card listed, of nodes that begin at `first`.
 pub fn complete_large(pen: &Pen, first: u32, listed: &[u32]) -> Vec<u32> {
-    let complete = |record: &[u32; WORDS]| {
+    let complete = |record: &[u32; RECORD_WORDS]| {
         let [index, radius, _, flags] = *record;
-        let level = (flags >> LEVEL_BIT & 7) as u8;
+        let level = (flags >> LEVEL_BIT & LEVEL_MASK) as u8;
         let placed = Placed { radius: radius as i32, depth_share: 0, is_standard: false, level };
         let whole_node = &pen.nodes.nodes[(first + index) as usize];
         let piece = || whole_node.pieces(level).nth((flags >> PIECE_BIT) as usize);
         let node = if flags & IS_PIECE != 0 { piece() } else { None }.unwrap_or(*whole_node);
-        let mut whole = Vec::with_capacity(2 * WORDS);
+        let mut whole = Vec::with_capacity(2 * RECORD_WORDS);
         pen.forms(&node, placed, |form| {
-            let is_it = number_of(form) == flags & FORM_BITS;
+            let is_it = number_of(form) == flags & FORM_MASK;
             if let Some((image, cells)) = image_of(pen, &node, placed, form).filter(|_| is_it) {
                 whole.extend(with_large(*record, pen.large(&image, cells)));
             }
@@ -118,23 +102,23 @@ pub fn complete_large(pen: &Pen, first: u32, listed: &[u32]) -> Vec<u32> {
     listed.as_chunks().0.par_iter().flat_map_iter(complete).collect()
 }
 
-fn with_large(record: [u32; WORDS], large: Large) -> impl Iterator<Item = u32> {
+fn with_large(record: [u32; RECORD_WORDS], large: Large) -> impl Iterator<Item = u32> {
     record.into_iter().chain([large.height, large.height_bits, large.share, 0])
 }
 
-/// The number that a form has in pen.wgsl.
+/// The number of a form.
 fn number_of(form: Form) -> u32 {
     match form {
-        Form::Box(_) => 0,
-        Form::Parts(_) => 1,
-        Form::Image(_) => 2,
-        Form::Tilted(_) => 3,
-        Form::PartialBox => 4,
-        Form::PartialImage => 5,
+        Form::Box(_) => FORM_BOX,
+        Form::Parts(_) => FORM_PARTS,
+        Form::Image(_) => FORM_IMAGE,
+        Form::Tilted(_) => FORM_TILTED,
+        Form::PartialBox => FORM_PARTIAL_BOX,
+        Form::PartialImage => FORM_PARTIAL_IMAGE,
     }
 }
 
-/// The image of a form, and what it is seen through; none of a form that is boxes.
+/// The image of a form, and the cells it is seen through; `None` for forms that are boxes.
 fn image_of<'n>(
     pen: &'n Pen,
     node: &'n SplatNode,

@@ -4,8 +4,10 @@ use crate::gpu::Gpu;
 use crate::gpu::device::Lost;
 use crate::gpu::device::commands::Commands;
 use crate::gpu::error::GpuError;
+use crate::gpu::formats::THREADS;
 use crate::gpu::layout::{Layout, Level};
 use crate::gpu::passes::Pass;
+use crate::gpu::shader_structs::{Frame, LineLevel};
 use crate::nodes::{BRIGHT, Nodes};
 use crate::resolve::balance::Gains;
 use crate::resolve::knots::{KnotSums, Knots, SharedSums};
@@ -18,7 +20,7 @@ pub struct Resolve {
     /// Of the picture.
     pub size: [usize; 2],
     levels: Vec<Level>,
-    /// What resolve.wgsl is told of each level.
+    /// The uniform of each level.
     uniforms: Vec<Buffer>,
     wide_uniform: Buffer,
     frame: Buffer,
@@ -30,9 +32,6 @@ pub struct Resolve {
     overflow: Buffer,
 }
 
-/// Words of `Level` and of `Frame` in resolve.wgsl.
-const LEVEL_WORDS: usize = 12;
-const FRAME_WORDS: usize = 12;
 /// Words of a knot's sums, and of its gains; four of the rest follow all of these.
 const KNOT_WORDS: usize = 16;
 const GAIN_WORDS: usize = 8;
@@ -40,12 +39,11 @@ const GAIN_WORDS: usize = 8;
 impl Resolve {
     pub fn new(gpu: &Gpu, size: [usize; 2], layout: &Layout) -> Result<Self, Lost> {
         let storage = BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC;
-        let uniform = BufferUsages::UNIFORM | BufferUsages::COPY_DST;
         let pixels = size[0] * size[1];
         let mut uniforms = Vec::new();
         for (k, level) in layout.levels.iter().enumerate() {
-            let buffer = gpu.buffer("level", LEVEL_WORDS, uniform)?;
-            gpu.write(&buffer, &words_of_level(k, level, layout.levels.get(k + 1)));
+            let buffer = gpu.struct_buffer::<LineLevel>("level", BufferUsages::UNIFORM)?;
+            gpu.write_struct(&buffer, &line_level(k, level, layout.levels.get(k + 1)));
             uniforms.push(buffer);
         }
         let lines = || gpu.buffer("lines", 4 * layout.lines, storage);
@@ -55,8 +53,8 @@ impl Resolve {
             size,
             levels: layout.levels.clone(),
             uniforms,
-            wide_uniform: gpu.buffer("wide level", LEVEL_WORDS, uniform)?,
-            frame: gpu.buffer("frame", FRAME_WORDS, uniform)?,
+            wide_uniform: gpu.struct_buffer::<LineLevel>("wide level", BufferUsages::UNIFORM)?,
+            frame: gpu.struct_buffer::<Frame>("frame", BufferUsages::UNIFORM)?,
             lines: [lines()?, lines()?],
             shares: gpu.buffer("shares", 2 * pixels, storage)?,
             knots: gpu.buffer("knots", KNOT_WORDS * knot_count, storage)?,
@@ -73,28 +71,24 @@ impl Resolve {
         buffers.map(|buffer| buffer.size() as usize).sum()
     }
 
-    /// Tells what is asked for.
+    /// Sets which rows are made, and how.
     pub fn begin(&self, gpu: &Gpu, nodes: &Nodes, rows: Range<u32>, is_sharing: bool, is_evened: bool) {
         let (dim, wide) = Quanta::from_nodes(nodes);
-        let largest = dim.largest_coverage.min(i32::MAX as i64) as u32;
         let wide_largest = wide.largest_coverage as u64;
-        gpu.write(
-            &self.frame,
-            &[
-                rows.start,
-                rows.end,
-                self.size[0] as u32,
-                is_evened as u32,
-                0,
-                (dim.quantum as f32).to_bits(),
-                (wide.quantum as f32).to_bits(),
-                largest,
-                wide_largest as u32,
-                (wide_largest >> 32) as u32,
-                is_sharing as u32,
-                0,
-            ],
-        );
+        let frame = Frame {
+            first: rows.start as i32,
+            end: rows.end as i32,
+            width: self.size[0] as i32,
+            is_evened: is_evened.into(),
+            zero: 0,
+            quantum: dim.quantum as f32,
+            wide_quantum: wide.quantum as f32,
+            largest: dim.largest_coverage.min(i32::MAX as i64) as i32,
+            wide_largest: [wide_largest as u32, (wide_largest >> 32) as u32],
+            is_sharing: is_sharing.into(),
+            padding: 0,
+        };
+        gpu.write_struct(&self.frame, &frame);
         gpu.write(&self.overflow, &[0]);
     }
 
@@ -103,7 +97,7 @@ impl Resolve {
         let passes = gpu.passes();
         for (k, level) in self.levels.iter().enumerate().rev() {
             let bound = self.integrate_bind_group(gpu, sums, kind, &self.uniforms[k]);
-            // The rows asked for, and what they are made of.
+            // The requested rows, and those that they are made of.
             let [first, end] = if k == 0 {
                 [rows.start as i32, rows.end as i32]
             } else {
@@ -124,7 +118,7 @@ impl Resolve {
         layout: &Layout,
         rows: &Range<u32>,
     ) -> Result<(), Lost> {
-        gpu.write(&self.wide_uniform, &words_of_level(0, layout.levels.first().ok_or(Lost)?, None));
+        gpu.write_struct(&self.wide_uniform, &line_level(0, layout.levels.first().ok_or(Lost)?, None));
         let bound = self.integrate_bind_group(gpu, sums, kind, &self.wide_uniform);
         work.dispatch(&gpu.passes().integrate_wide, &bound, [rows.len() as u32, 1]);
         Ok(())
@@ -137,20 +131,20 @@ impl Resolve {
 
     /// Makes shares or the picture of the lines.
     pub fn finish(&self, gpu: &Gpu, rows: &Range<u32>) {
-        let across = (self.size[0] as u32).div_ceil(64);
+        let across = (self.size[0] as u32).div_ceil(THREADS);
         let mut work = Commands::new(gpu);
         work.dispatch(&gpu.passes().finish, &self.finish_bind_group(gpu), [across, rows.len() as u32]);
         work.submit();
     }
 
-    /// What lines and shares bring to each knot.
+    /// The contribution of lines and shares to each knot.
     pub fn knot_sums(&self, gpu: &Gpu) -> Result<Vec<KnotSums>, GpuError> {
         let knots = Knots::new(self.size);
         let sums = self.sums(gpu, &gpu.passes().balance, [knots.columns(), knots.rows()])?;
         Ok(sums.into_iter().map(KnotSums).collect())
     }
 
-    /// What lines, shares and gains bring to each cell.
+    /// The contribution of lines, shares and gains to each cell.
     pub fn shared_sums(&self, gpu: &Gpu) -> Result<Vec<SharedSums>, GpuError> {
         let knots = Knots::new(self.size);
         let sums = self.sums(gpu, &gpu.passes().share, [knots.columns() - 1, knots.rows() - 1])?;
@@ -195,7 +189,7 @@ impl Resolve {
         gpu.bind(&gpu.passes().finish_layout, buffers)
     }
 
-    /// Whether all integers held what they were given, once all is done that was asked for.
+    /// Waits for all submitted work, and checks that no integer has overflowed.
     pub fn check(&self, gpu: &Gpu) -> Result<(), GpuError> {
         self.checked(gpu, &self.overflow, 0..4).map(|_| ())
     }
@@ -231,22 +225,17 @@ impl Quanta {
     }
 }
 
-fn words_of_level(k: usize, level: &Level, coarser: Option<&Level>) -> [u32; LEVEL_WORDS] {
-    let [coarse_lines, coarse_width, coarse_height] =
-        coarser.map_or([0; 3], |level| [level.lines, level.width as u32, level.height as u32]);
-    let (width, height) = (level.width as u32, level.height as u32);
-    [
-        width,
-        height,
-        level.pixels,
-        level.totals,
-        level.lines,
-        coarse_lines,
-        coarse_width,
-        coarse_height,
-        k as u32,
-        0,
-        0,
-        0,
-    ]
+/// A level as resolve.wgsl reads it, the `k`-th.
+fn line_level(k: usize, level: &Level, coarser: Option<&Level>) -> LineLevel {
+    LineLevel {
+        width: level.width as i32,
+        height: level.height as i32,
+        pixels: level.pixels,
+        totals: level.totals,
+        lines: level.lines,
+        coarse_lines: coarser.map_or(0, |coarser| coarser.lines),
+        coarse_width: coarser.map_or(0, |coarser| coarser.width as i32),
+        coarse_height: coarser.map_or(0, |coarser| coarser.height as i32),
+        level: k as u32,
+    }
 }

@@ -1,9 +1,10 @@
-// Accumulators to a picture: the twin of ../resolve.rs, ../partition.rs, ../parts_to_pixels.rs, ../knots.rs and ../balance.rs.
+// Accumulators to a picture: the twin of ../resolve.rs and of partition.rs, parts_to_pixels.rs, knots.rs and balance.rs in
+// ../resolve. Read after scan.wgsl or scan_subgroups.wgsl.
 //
-// Read after scan.wgsl or scan_subgroups.wgsl. Floats are added and multiplied in the same order as there. A product that is added to something goes through `exact`,
-// for compilers like to round the two as one.
+// Floats are added and multiplied in the same order as there. A product that is then added passes through `exact`: compilers
+// would otherwise fuse the two operations and round once.
 
-struct Level {
+struct LineLevel {
     width: i32,
     height: i32,
     // Words of the accumulator before its pixels, and before its totals.
@@ -19,30 +20,27 @@ struct Level {
 }
 
 struct Frame {
-    // Pixel rows that are asked for.
+    // The requested pixel rows.
     first: i32,
     end: i32,
     width: i32,
     is_evened: u32,
-    // Always 0, which no compiler knows.
+    // Always 0; unknown to the compiler.
     zero: u32,
     quantum: f32,
     wide_quantum: f32,
     // More coverage than this may be with a colour that has wrapped.
     largest: i32,
     wide_largest: vec2<u32>,
-    // Whether shares are found, or a picture is made.
+    // Whether shares are computed, or a picture is made.
     is_sharing: u32,
 }
 
 @group(0) @binding(0) var<storage, read> sums: array<u32>;
 @group(0) @binding(1) var<storage, read_write> lines: array<vec4<f32>>;
-@group(0) @binding(2) var<uniform> level: Level;
+@group(0) @binding(2) var<uniform> level: LineLevel;
 @group(0) @binding(3) var<uniform> frame: Frame;
 @group(0) @binding(4) var<storage, read_write> overflow: atomic<u32>;
-
-const THREADS: u32 = 256u;
-const SLOTS: u32 = 8u;
 
 fn exact(x: f32) -> f32 {
     return bitcast<f32>(bitcast<u32>(x) ^ frame.zero);
@@ -75,8 +73,6 @@ fn wide_float(x: vec2<u32>) -> f32 {
 
 // Cubic: a fine pixel lies a quarter of a coarse one off its centre. What lies beyond a level's border is as it is there.
 
-const MARGIN: i32 = 4;
-
 fn coarse(x: i32, y: i32) -> vec4<f32> {
     let column = clamp(x, -1, level.coarse_width) + 1;
     let row = clamp(y, -1, level.coarse_height) + 1;
@@ -89,8 +85,8 @@ fn weighted(weight: f32, light: vec4<f32>) -> vec4<f32> {
 }
 
 fn cubic(behind: vec4<f32>, near: vec4<f32>, far: vec4<f32>, beyond: vec4<f32>) -> vec4<f32> {
-    let sum = weighted(-7.0 / 128.0, behind) + weighted(105.0 / 128.0, near) + weighted(35.0 / 128.0, far);
-    return sum + weighted(-5.0 / 128.0, beyond);
+    let sum = weighted(CUBIC_BEHIND, behind) + weighted(CUBIC_NEAR, near) + weighted(CUBIC_FAR, far);
+    return sum + weighted(CUBIC_BEYOND, beyond);
 }
 
 // Between four rows of a coarse column.
@@ -141,7 +137,7 @@ fn total_of(row: i32) -> vec2<u32> {
 var<workgroup> covered_low: atomic<u32>;
 var<workgroup> covered_high: atomic<u32>;
 
-@compute @workgroup_size(THREADS)
+@compute @workgroup_size(SCAN_THREADS)
 fn integrate(@builtin(workgroup_id) group: vec3<u32>, lane: Lane) {
     let thread = place_of(lane);
     let row = row_of(group.x);
@@ -150,7 +146,7 @@ fn integrate(@builtin(workgroup_id) group: vec3<u32>, lane: Lane) {
     }
     let count = u32(level.width + 2);
     let line = level.pixels + u32(row + 1) * u32(level.width + 3) * 4u;
-    let segment = (count + THREADS - 1u) / THREADS;
+    let segment = (count + SCAN_THREADS - 1u) / SCAN_THREADS;
     let first = min(thread * segment, count);
     let end = min(first + segment, count);
     var sum = vec4<i32>();
@@ -184,7 +180,7 @@ fn integrate(@builtin(workgroup_id) group: vec3<u32>, lane: Lane) {
     }
 }
 
-var<workgroup> wide_before: array<vec2<u32>, THREADS>;
+var<workgroup> wide_before: array<vec2<u32>, SCAN_THREADS>;
 var<workgroup> all_bits: atomic<u32>;
 
 fn wide_word(line: u32, x: u32, c: u32) -> vec2<u32> {
@@ -197,7 +193,7 @@ fn is_above(a: vec2<u32>, b: vec2<u32>) -> bool {
 }
 
 // The sum of bright samples, added to the lines of the finest level.
-@compute @workgroup_size(THREADS)
+@compute @workgroup_size(SCAN_THREADS)
 fn integrate_wide(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) thread: u32) {
     let row = row_of(group.x);
     if row >= end_of_rows() {
@@ -205,10 +201,10 @@ fn integrate_wide(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invoca
     }
     let count = u32(level.width + 2);
     let line = level.pixels + u32(row + 1) * u32(level.width + 3) * 8u;
-    let segment = (count + THREADS - 1u) / THREADS;
+    let segment = (count + SCAN_THREADS - 1u) / SCAN_THREADS;
     // Few rows have any.
     var bits = 0u;
-    for (var word = thread; word < 8u * count; word += THREADS) {
+    for (var word = thread; word < 8u * count; word += SCAN_THREADS) {
         bits |= sums[line + word];
     }
     atomicOr(&all_bits, bits);
@@ -224,7 +220,7 @@ fn integrate_wide(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invoca
         let own = sum;
         workgroupBarrier();
         wide_before[thread] = sum;
-        for (var step = 1u; step < THREADS; step *= 2u) {
+        for (var step = 1u; step < SCAN_THREADS; step *= 2u) {
             workgroupBarrier();
             var more = vec2<u32>();
             if thread >= step {
@@ -253,7 +249,7 @@ fn integrate_wide(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invoca
             workgroupBarrier();
             if thread == 0u {
                 var all = vec2<u32>();
-                for (var k = 0u; k < THREADS; k += 1u) {
+                for (var k = 0u; k < SCAN_THREADS; k += 1u) {
                     all = wide_sum(all, wide_before[k]);
                 }
                 if any(all != total_of(row)) {
@@ -271,30 +267,25 @@ fn integrate_wide(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invoca
 @group(0) @binding(7) var<storage, read_write> shares: array<vec2<f32>>;
 @group(0) @binding(8) var<storage, read_write> picture: array<vec4<f32>>;
 
-const LARGEST_SHARE: u32 = 8u;
-const LEAST_PARTIAL: f32 = 1e-3;
-const RIPPLE: f32 = 0.1;
-const ONE: u32 = 4194304u;
-
 fn fixed_of(covered: f32) -> u32 {
-    return u32(clamp(covered * f32(ONE), 0.0, 67108863.0));
+    return u32(clamp(covered * f32(COVERAGE_ONE), 0.0, MAX_QUANTA));
 }
 
 fn share_of(open: f32, partial: f32) -> vec2<f32> {
     var share = 1.0;
-    if partial >= LEAST_PARTIAL {
-        let left = ONE - min(fixed_of(open), ONE);
+    if partial >= MIN_PARTIAL {
+        let left = COVERAGE_ONE - min(fixed_of(open), COVERAGE_ONE);
         share = f32(ratio(left, fixed_of(partial), LARGEST_SHARE) >> 3u) / 2097152.0;
     }
     let covered = open + exact(share * partial);
     var even = 1.0;
     if abs(covered - 1.0) <= RIPPLE {
-        even = f32(ratio(ONE, fixed_of(covered), 2u) >> 1u) / 8388608.0;
+        even = f32(ratio(COVERAGE_ONE, fixed_of(covered), 2u) >> 1u) / 8388608.0;
     }
     return vec2<f32>(share, even);
 }
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(THREADS)
 fn finish(@builtin(global_invocation_id) id: vec3<u32>) {
     let x = i32(id.x);
     let y = frame.first + i32(id.y);
@@ -328,17 +319,13 @@ fn finish(@builtin(global_invocation_id) id: vec3<u32>) {
 // Of every knot: of sharing samples, of all. The last is the rest.
 @group(0) @binding(10) var<storage, read> gains: array<vec4<f32>>;
 
-const SPACING: i32 = 32;
-const SHARING: i32 = 0;
-const ALL: i32 = 1;
-
 fn exact_all(x: vec4<f32>) -> vec4<f32> {
     return vec4<f32>(exact(x.x), exact(x.y), exact(x.z), exact(x.w));
 }
 
 // The weight at a pixel of the knot behind it.
 fn behind(pixel: i32) -> f32 {
-    return (f32(pixel % SPACING) + 0.5) * 0.03125;
+    return (f32(pixel % SPACING) + 0.5) * KNOT_STEP;
 }
 
 fn mix_of_gains(a: vec4<f32>, b: vec4<f32>, weight: f32) -> vec4<f32> {
@@ -363,7 +350,7 @@ fn rest() -> vec4<f32> {
 }
 
 // Rows that a knot's tent reaches.
-const ROWS: u32 = 64u;
+const ROWS: u32 = 2u * u32(SPACING);
 
 var<workgroup> of_rows: array<array<vec4<f32>, 4>, ROWS>;
 
@@ -396,7 +383,7 @@ fn balance(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_in
                 }
             }
             for (var k = 0u; k < 4u; k += 1u) {
-                let before = (ramps[k] - 0.5 * of_span[k]) * 0.03125;
+                let before = (ramps[k] - 0.5 * of_span[k]) * KNOT_STEP;
                 sums[k] += select(before, of_span[k] - before, span < knot.x);
             }
         }

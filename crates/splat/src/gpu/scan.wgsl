@@ -4,7 +4,7 @@ struct Lane {
     @builtin(local_invocation_index) thread: u32,
 }
 
-var<workgroup> before: array<vec4<i32>, THREADS>;
+var<workgroup> before: array<vec4<i32>, SCAN_THREADS>;
 
 // Its place among the threads.
 fn place_of(lane: Lane) -> u32 {
@@ -14,7 +14,7 @@ fn place_of(lane: Lane) -> u32 {
 // The sum of what all threads before this one have.
 fn sum_before(lane: Lane, own: vec4<i32>) -> vec4<i32> {
     before[lane.thread] = own;
-    for (var step = 1u; step < THREADS; step *= 2u) {
+    for (var step = 1u; step < SCAN_THREADS; step *= 2u) {
         workgroupBarrier();
         var more = vec4<i32>();
         if lane.thread >= step {

@@ -8,7 +8,7 @@ struct Lane {
 }
 
 // Of each subgroup; none has fewer than four threads.
-var<workgroup> of_subgroups: array<vec4<i32>, THREADS / 4u>;
+var<workgroup> of_subgroups: array<vec4<i32>, SCAN_THREADS / 4u>;
 
 // Its place among the threads.
 fn place_of(lane: Lane) -> u32 {

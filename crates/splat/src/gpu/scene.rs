@@ -3,6 +3,10 @@
 use crate::aperture::moments::ApertureMoments;
 use crate::gpu::Gpu;
 use crate::gpu::device::Lost;
+use crate::gpu::formats::{
+    FOCUS_WORDS, NO_PARENT, NODE_CONTRAST_BIT, NODE_IS_BRIGHT, NODE_IS_HIGHLIGHT, NODE_IS_LEAF, NODE_IS_OPEN,
+    NODE_WORDS, PARTIAL_WORDS,
+};
 use crate::lens_in_use::NodeFocus;
 use crate::nodes::{Nodes, SplatNode};
 use crate::paint::Paint;
@@ -15,18 +19,6 @@ use wgpu::{Buffer, BufferUsages};
 /// Tests' scenes have several, too.
 const CHUNK_NODES: u32 = if cfg!(test) { 1 << 11 } else { 1 << 21 };
 
-/// Words of a node.
-const WORDS: usize = 13;
-
-/// Words of what is painted on it.
-const FOCUS_WORDS: usize = 4;
-
-/// Stands for the node above where there is none.
-const NO_PARENT: u32 = u32::MAX;
-
-/// Words of what a partly occluded one sees.
-const PARTIAL_WORDS: usize = 11;
-
 /// A light field's nodes, in chunks of whole blocks.
 pub struct Scene {
     pub chunks: Vec<Chunk>,
@@ -37,7 +29,7 @@ pub struct Scene {
 /// Neighbouring blocks.
 pub struct Chunk {
     pub shared: Arc<NodesOfChunk>,
-    /// What its partly occluded nodes see, after [`Scene::upload_seen`].
+    /// The cells and moments of its partly occluded nodes, after [`Scene::upload_moments`].
     pub cells: Buffer,
     /// What is painted on its nodes, after [`Scene::upload_paint`]; none if nothing is.
     pub focus: Option<Buffer>,
@@ -83,7 +75,7 @@ impl Scene {
         [shared.sum::<u64>(), self.chunks.iter().map(own).sum()].map(|bytes| bytes as usize)
     }
 
-    /// Uploads what partly occluded nodes see of an aperture.
+    /// Uploads the cells and moments of partly occluded nodes.
     pub fn upload_moments(&self, gpu: &Gpu, nodes: &Nodes, moments: &[ApertureMoments]) {
         for chunk in &self.chunks {
             let partial = &chunk.shared.partial;
@@ -135,7 +127,7 @@ impl Scene {
 impl Chunk {
     fn new(gpu: &Gpu, nodes: &Nodes, blocks: Range<usize>, range: Range<u32>) -> Result<Self, Lost> {
         let of_chunk = &nodes.nodes[range.start as usize..range.end as usize];
-        let (mut words, mut partial) = (Vec::with_capacity(of_chunk.len() * WORDS), Vec::new());
+        let (mut words, mut partial) = (Vec::with_capacity(of_chunk.len() * NODE_WORDS), Vec::new());
         let mut parents = vec![NO_PARENT; of_chunk.len()];
         for (parent, node) in (0..).zip(of_chunk) {
             node.children().for_each(|child| parents[(child - range.start) as usize] = parent);
@@ -164,21 +156,21 @@ fn pack_pair(low: u16, high: u16) -> u32 {
     low as u32 | (high as u32) << 16
 }
 
-/// A node as pen.wgsl and list.wgsl read it; `cells` is its place among the partly occluded ones, `parent` that of the node
+/// A node as pen.wgsl and draw_list.wgsl read it; `cells` is its index among the partly occluded ones, `parent` that of the node
 /// above it in the chunk.
-fn words_of_node(node: &SplatNode, cells: u32, parent: u32) -> [u32; WORDS] {
+fn words_of_node(node: &SplatNode, cells: u32, parent: u32) -> [u32; NODE_WORDS] {
     let light = node.light.map(f32::to_bits);
-    let flag = |is_set: bool, bit: u32| u16::from(is_set) << bit;
-    let flags = flag(node.is_highlight, 3)
-        | flag(node.is_leaf(), 4)
-        | flag(node.is_open(), 5)
-        | flag(node.is_bright, 7)
-        | u16::from(node.contrast) << 8;
+    let flag = |is_set: bool, flag: u32| if is_set { flag } else { 0 };
+    let flags = flag(node.is_highlight, NODE_IS_HIGHLIGHT)
+        | flag(node.is_leaf(), NODE_IS_LEAF)
+        | flag(node.is_open(), NODE_IS_OPEN)
+        | flag(node.is_bright, NODE_IS_BRIGHT)
+        | u32::from(node.contrast) << NODE_CONTRAST_BIT;
     [
         node.center[0] as u32,
         node.center[1] as u32,
         pack_pair(node.half_size[0], node.half_size[1]),
-        pack_pair(u16::from(node.level) | flags, node.base as u16),
+        pack_pair((u32::from(node.level) | flags) as u16, node.base as u16),
         pack_pair(node.tilt[0] as u16, node.tilt[1] as u16),
         cells,
         light[0],

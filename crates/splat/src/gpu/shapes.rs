@@ -5,7 +5,9 @@ use crate::draw::Pen;
 use crate::gpu::Gpu;
 use crate::gpu::device::Lost;
 use crate::gpu::layout::Layout;
+use crate::gpu::shader_structs::{self, SumLevel};
 use crate::nodes::Scale;
+use bytemuck::Zeroable;
 use wgpu::{Buffer, BufferUsages};
 
 /// Words of a table's beginning: where each stencil's runs lie.
@@ -81,41 +83,40 @@ impl Shapes {
 
     /// Room for a pen.
     pub fn pen_buffer(gpu: &Gpu) -> Result<Buffer, Lost> {
-        gpu.buffer("pen", PEN_WORDS, BufferUsages::STORAGE | BufferUsages::COPY_DST)
+        gpu.struct_buffer::<shader_structs::Pen>("pen", BufferUsages::STORAGE)
     }
 
-    /// Uploads a pen, for accumulators laid out so, and light that was uploaded at `dim_bits`.
+    /// Uploads a pen, for accumulators of this layout, and for light that was uploaded at `dim_bits`.
     pub fn upload_pen(gpu: &Gpu, buffer: &Buffer, pen: &Pen, layout: &Layout, dim_bits: i32) {
         let Scale { dim_bits: now, bright_bits } = pen.nodes.scale;
-        let signed = |x: [i32; 2]| x.map(|x| x as u32);
-        let mut words = Vec::with_capacity(PEN_WORDS);
-        words.extend(signed(pen.nodes.middle));
-        words.extend([pen.stop as u32, pen.per_stop]);
-        words.extend(pen.half);
-        words.extend(signed(pen.tilt_shift));
-        words.extend(signed(pen.mean));
-        words.extend([pen.stencil_radius, pen.per_stencil_radius]);
         let rows = pen.stencils.shape.firsts.len() as u32;
-        words.extend([rows - 1, rows]);
-        words.extend([(now - dim_bits) as u32, (now - bright_bits) as u32, pen.parts.len() as u32]);
-        words.extend([pen.even_partial_tilt as u32, pen.all_rows_radius, u32::from(pen.is_exact)]);
-        for level in &layout.levels {
-            words.extend([level.width as u32, level.height as u32, level.pixels, level.totals]);
+        let mut uploaded = shader_structs::Pen {
+            middle: pen.nodes.middle,
+            stop: pen.stop,
+            per_stop: pen.per_stop,
+            half: pen.half,
+            tilt_shift: pen.tilt_shift,
+            mean: pen.mean,
+            stencil_radius: pen.stencil_radius,
+            per_stencil_radius: pen.per_stencil_radius,
+            shape_rows: rows - 1,
+            shape_runs: rows,
+            dim_exponent: now - dim_bits,
+            coverage_exponent: now - bright_bits,
+            part_count: pen.parts.len() as u32,
+            even_partial_tilt: pen.even_partial_tilt,
+            all_rows_radius: pen.all_rows_radius,
+            is_exact: pen.is_exact.into(),
+            ..shader_structs::Pen::zeroed()
+        };
+        for (to, level) in uploaded.levels.iter_mut().zip(&layout.levels) {
+            let (width, height) = (level.width as i32, level.height as i32);
+            *to = SumLevel { width, height, pixels: level.pixels, totals: level.totals };
         }
-        words.resize(FIRST_LEVEL + 4 * salf::tree::LEVELS, 0);
-        // Parts begin at a multiple of eight bytes.
-        words.resize(words.len().next_multiple_of(2), 0);
-        for part in &pen.parts {
-            words.extend([part.share, 0]);
-            words.extend(signed(part.mean));
-            words.extend(signed(part.variance));
-            words.extend(part.half);
+        for (to, part) in uploaded.parts.iter_mut().zip(&pen.parts) {
+            let (share, mean, variance, half) = (part.share, part.mean, part.variance, part.half);
+            *to = shader_structs::BoxPart { share, padding: 0, mean, variance, half };
         }
-        words.resize(PEN_WORDS, 0);
-        gpu.write(buffer, &words);
+        gpu.write_struct(buffer, &uploaded);
     }
 }
-
-/// Words of `Pen` in pen.wgsl before its levels, and in all.
-const FIRST_LEVEL: usize = 20;
-const PEN_WORDS: usize = FIRST_LEVEL + 4 * salf::tree::LEVELS + 8 * 16;

@@ -7,13 +7,14 @@ use crate::gpu::device::Lost;
 use crate::gpu::device::commands::Commands;
 use crate::gpu::device::stopwatch::Stopwatch;
 use crate::gpu::error::GpuError;
+use crate::gpu::formats::{KIND_LARGE, LANES, RECORD_WORDS, THREADS};
 use crate::gpu::layout::Layout;
 use crate::gpu::listing::{Listed, Listing};
 use crate::gpu::pace::{Batch, Pace};
-use crate::gpu::passes::LANES;
-use crate::gpu::records::{self, LARGE, Records, complete_large};
+use crate::gpu::records::{Records, complete_large};
 use crate::gpu::resolve::Resolve;
 use crate::gpu::scene::Scene as Uploaded;
+use crate::gpu::shader_structs;
 use crate::gpu::shapes::Shapes;
 use crate::nodes::Nodes;
 use crate::resolve::balance::{Gains, NO_REST};
@@ -27,14 +28,10 @@ use wgpu::{BindGroup, Buffer, BufferUsages};
 /// Words of the room for records that are listed elsewhere.
 const ROOM: usize = 1 << 18;
 
-/// Words of what draw.wgsl is told of a batch.
-const BATCH_WORDS: usize = 4;
-
 /// Fewer records than that are drawn by [`LANES`] threads each.
 const FEW: usize = if cfg!(test) { 1 << 6 } else { 1 << 14 };
 
-/// Threads of a workgroup of draw.wgsl, and how many workgroups a card is sure to take.
-const THREADS: usize = 64;
+/// The number of workgroups that every card takes.
 const MAX_GROUPS: usize = 65_535;
 
 /// Accumulators of one kind of samples' integers.
@@ -71,7 +68,7 @@ impl GpuSums {
         Self::with_scene(gpu, Uploaded::new(gpu, nodes)?, nodes.has_bright, size)
     }
 
-    /// The same of the same nodes, which are there.
+    /// Another picture of the same nodes, which are uploaded already.
     pub fn twin(&self) -> Result<Self, Lost> {
         let has_bright = self.accumulators.len() > 1;
         Self::with_scene(&self.gpu, self.scene.twin(&self.gpu)?, has_bright, self.resolve.size)
@@ -100,7 +97,7 @@ impl GpuSums {
             accumulators: all,
             pens: pens?,
             records: gpu.buffer("records", ROOM, BufferUsages::STORAGE | BufferUsages::COPY_DST)?,
-            batch: gpu.buffer("batch", BATCH_WORDS, BufferUsages::UNIFORM | BufferUsages::COPY_DST)?,
+            batch: gpu.struct_buffer::<shader_structs::Batch>("batch", BufferUsages::UNIFORM)?,
             pace: Pace::new(),
             integrated: 0..0,
             gpu: gpu.clone(),
@@ -175,12 +172,12 @@ impl GpuSums {
                 }
             }
             if !large.is_empty() {
-                let bytes = [large.start, large.end].map(|at| 4 * (records::WORDS as u64) * u64::from(at));
+                let bytes = [large.start, large.end].map(|at| 4 * (RECORD_WORDS as u64) * u64::from(at));
                 let listed = self.gpu.read(self.listing.records(), bytes[0]..bytes[1])?;
-                for listed in listed.chunks(ROOM / words_of(LARGE) * records::WORDS) {
+                for listed in listed.chunks(ROOM / words_of(KIND_LARGE) * RECORD_WORDS) {
                     progress.check()?;
                     let words = complete_large(pen, self.scene.chunks[chunk].shared.first, listed);
-                    self.draw_words([chunk, width, LARGE], &words, progress)?;
+                    self.draw_words([chunk, width, KIND_LARGE], &words, progress)?;
                 }
             }
         }
@@ -211,7 +208,7 @@ impl GpuSums {
         Ok(())
     }
 
-    /// Brings the pen to the card, and what belongs to its aperture if that is another.
+    /// Uploads the pen, and the aperture's shape and stencils if it has changed.
     fn set_aperture(&mut self, pen: &Pen) -> Result<(), Lost> {
         self.gpu.check()?;
         if self.shapes.is_none() {
@@ -262,17 +259,17 @@ impl GpuSums {
         Ok(())
     }
 
-    /// Draws records, after so many others. Returns how many: no more than a card takes at once.
+    /// Draws records from `first` on. Returns how many: no more than a card takes at once.
     fn draw_batch(&mut self, bound: &BindGroup, batch: Batch, first: u32) -> Result<u32, Lost> {
         self.gpu.check()?;
         let Batch { width, kind, count } = batch;
-        let is_few = kind == LARGE || count <= FEW;
+        let is_few = kind == KIND_LARGE || count <= FEW;
         let lanes = if is_few { LANES as usize } else { 1 };
-        let count = count.min(MAX_GROUPS * THREADS / lanes);
-        self.gpu.write(&self.batch, &[count as u32, first, 0, 0]);
+        let count = count.min(MAX_GROUPS * THREADS as usize / lanes);
+        self.gpu.write_struct(&self.batch, &shader_structs::Batch { count: count as u32, first });
         let pass = &self.gpu.passes().draw[width][kind][usize::from(is_few)];
         let mut work = Commands::new(&self.gpu);
-        work.dispatch(pass, bound, [(count * lanes).div_ceil(THREADS) as u32, 1]);
+        work.dispatch(pass, bound, [(count * lanes).div_ceil(THREADS as usize) as u32, 1]);
         let submission = work.submit();
         // Frees what was staged for batches that are through.
         self.gpu.device().poll(wgpu::PollType::Poll).map_err(|_| Lost)?;
@@ -392,5 +389,5 @@ impl GpuSums {
 
 /// Words of a record of a kind.
 fn words_of(kind: usize) -> usize {
-    if kind == LARGE { 2 * records::WORDS } else { records::WORDS }
+    if kind == KIND_LARGE { 2 * RECORD_WORDS } else { RECORD_WORDS }
 }

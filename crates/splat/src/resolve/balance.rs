@@ -40,14 +40,14 @@ pub struct Balance {
     pub gains: Gains,
     /// What all light that shares is scaled by beside its gains.
     pub rest: [f32; 3],
-    /// What each row of pixels brings to each column of knots.
+    /// The contribution of each row of pixels to each column of knots.
     pub rows: Vec<KnotSums>,
     /// What shares in each span of each row of pixels.
     pub shared: Vec<SharedSums>,
 }
 
 impl Balance {
-    /// Of a picture of this width and height, px, of which nothing is known.
+    /// For a picture of this width and height, px: no gains yet.
     pub fn neutral(size: [usize; 2]) -> Self {
         let knots = Knots::new(size);
         let rows = vec![KnotSums::default(); size[1] * knots.columns()];
@@ -89,12 +89,12 @@ pub struct Gains {
 }
 
 impl Gains {
-    /// Those of a picture of which nothing is known: 1.
+    /// Gains of 1.
     pub fn neutral(knots: Knots) -> Self {
         Self { knot_gains: vec![[[1.0; 3]; 2]; knots.columns() * knots.rows()], knots }
     }
 
-    /// Those that give back what the sums of all knots say was taken.
+    /// Gains that return the light which, by the sums of all knots, was taken.
     ///
     /// r_k stays within 5 % of 1: a knot may have next to no light, or a lamp that outshines all about it. A light field that
     /// covers the picture by 0.1 % too little or too much or more has holes or surfaces twice: what evening mends of that
@@ -187,10 +187,10 @@ impl RowGains {
         mix(self.0[knot], self.0[knot + 1], behind)
     }
 
-    /// Scales the pixels of a row: each as [`Self::at`] says, several at a time.
+    /// Scales the pixels of a row: the same as [`Self::at`], several at a time.
     #[inline(always)]
     fn scale(&self, row: &mut [[f32; 3]]) {
-        /// Colours of so many pixels fill whole registers.
+        /// The colours of this many pixels fill whole registers.
         const GROUP: usize = 8;
         let group = |[r, g, b, _]: [f32; 4]| [[r, g, b]; GROUP];
         for (knot, span) in row.chunks_mut(SPACING).enumerate() {

@@ -32,7 +32,7 @@ pub struct Share {
 }
 
 impl Share {
-    /// Nothing is known of the standard picture.
+    /// Before the standard picture has been summed.
     pub const NONE: Self = Self { partial: 1.0, even: 1.0 };
 
     /// The factors of a pixel whose standard coverage is `open` + `partial`.
@@ -41,19 +41,17 @@ impl Share {
     /// the open ones, and is not blown up.
     #[inline(always)]
     pub fn new(open: f32, partial: f32) -> Self {
-        const LARGEST: u32 = 8;
-        const MIN_PARTIAL: f32 = 1e-3;
-        const RIPPLE: f32 = 0.1;
-        // Divided in integers: graphics cards round quotients of floats in ways of their own.
-        let fixed = |covered: f32| floored((covered * (ONE as f32)).clamp(0.0, MAX_QUANTA).into());
+        // Divided in integers: graphics cards round quotients of floats differently.
+        let fixed = |covered: f32| floored((covered * (COVERAGE_ONE as f32)).clamp(0.0, MAX_QUANTA).into());
         let share = if partial < MIN_PARTIAL {
             1.0
         } else {
-            (ratio(ONE.saturating_sub(fixed(open)), fixed(partial), LARGEST) >> 3) as f32 / (1 << 21) as f32
+            (ratio(COVERAGE_ONE.saturating_sub(fixed(open)), fixed(partial), LARGEST_SHARE) >> 3) as f32
+                / (1 << 21) as f32
         };
         let covered = open + share * partial;
         let even = if (covered - 1.0).abs() <= RIPPLE {
-            (ratio(ONE, fixed(covered), 2) >> 1) as f32 / (1 << 23) as f32
+            (ratio(COVERAGE_ONE, fixed(covered), 2) >> 1) as f32 / (1 << 23) as f32
         } else {
             1.0
         };
@@ -82,11 +80,20 @@ impl Parts<'_> {
     }
 }
 
+/// The share of partial samples is at most this.
+pub const LARGEST_SHARE: u32 = 8;
+
+/// Pixels that partial samples cover by less than this keep them as they are.
+pub const MIN_PARTIAL: f32 = 1e-3;
+
+/// Coverage that differs from 1 by no more than this is evened out.
+pub const RIPPLE: f32 = 0.1;
+
 /// A coverage of 1.
-const ONE: u32 = 1 << 22;
+pub const COVERAGE_ONE: u32 = 1 << 22;
 
 /// More than any pixel is covered by a standard picture.
-const MAX_QUANTA: f32 = ((1u32 << 26) - 1) as f32;
+pub const MAX_QUANTA: f32 = ((1u32 << 26) - 1) as f32;
 
 #[cfg(test)]
 mod tests {

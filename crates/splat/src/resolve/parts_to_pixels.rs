@@ -7,7 +7,7 @@ use crate::resolve::{BLACK, Light};
 use crate::simd_dispatch::with_widest_simd;
 
 impl Parts<'_> {
-    /// Joins them to pixels, which `gains` scale if they are known; evened out if asked for: only where nothing is painted.
+    /// Joins them to pixels, scaled by `gains` if given; evened out if requested: only where nothing is painted.
     pub fn join(self, shares: &[Share], gains: Option<&RowGains>, is_evened: bool, pixels: Pixels<'_>) {
         let first = pixels.first;
         let mut row = RowToJoin { parts: self, shares, pixels, is_evened };

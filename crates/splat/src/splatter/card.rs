@@ -18,7 +18,7 @@ pub struct Card {
     /// Its sums, from the first render on.
     sums: Option<GpuSums>,
     is_lost: bool,
-    /// Whether pictures stay there until they are asked for.
+    /// Whether pictures stay on the card until they are fetched.
     pub keeps_picture: bool,
     /// The rows that are newer there.
     stale_rows: Range<u32>,
@@ -30,7 +30,7 @@ impl Card {
         *self = Self { gpu, keeps_picture: self.keeps_picture, ..Self::default() };
     }
 
-    /// The same card with other sums of the same nodes, which are there.
+    /// The same card with other sums of the same nodes, which are uploaded already.
     pub fn twin(&self) -> Self {
         // Where it has no room, the next sum finds out.
         let sums = self.sums.as_ref().and_then(|sums| sums.twin().ok());
@@ -119,7 +119,7 @@ impl Card {
         self.convert_result(gains)
     }
 
-    /// Makes pixel rows of a picture, and brings them back unless they are kept.
+    /// Makes pixel rows of a picture, and fetches them unless pictures stay on the card.
     pub fn make_picture(
         &mut self,
         nodes: &Nodes,

@@ -6,7 +6,7 @@ use progress::Cancelled;
 /// Why a picture could not be summed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SplatError {
-    /// Nobody wants it any more.
+    /// The progress was cancelled.
     #[error("cancelled")]
     Cancelled,
     /// The integer sum could overflow.

@@ -1,4 +1,4 @@
-//! Sums on a graphics card, as one asks for them.
+//! Summing on a graphics card: the public methods of [`Splatter`].
 
 use super::{SplatError, Splatter};
 use crate::gpu::{Gpu, PictureOnCard};
@@ -6,7 +6,7 @@ use crate::gpu::{Gpu, PictureOnCard};
 impl Splatter {
     /// Sums on a graphics card from the next [`Self::render`] on, or on the processor. The picture has the same bits.
     ///
-    /// Once the card is lost, or where it does not hold the picture, the processor goes on: nothing else is lost.
+    /// If the card is lost, or cannot hold the picture, the processor takes over and nothing else changes.
     pub fn use_gpu(&mut self, gpu: Option<Gpu>) {
         self.card.replace(gpu);
         self.shares_of = None;
@@ -25,6 +25,9 @@ impl Splatter {
     }
 
     /// Brings back what of the picture stayed on the card; from the processor, summed anew, if that is lost.
+    ///
+    /// # Errors
+    /// [`SplatError::Overflow`] if the picture is too bright for its integers.
     pub fn fetch_picture(&mut self) -> Result<(), SplatError> {
         let Some(fetched) = self.card.fetch(&mut self.resolver.picture) else { return Ok(()) };
         if self.drop_lost_card() { self.sum(&progress::Unwatched) } else { fetched }

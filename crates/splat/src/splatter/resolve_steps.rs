@@ -7,7 +7,7 @@ use crate::paint::{Paint, STANDARD};
 pub enum SummedPaint {
     /// All, with nothing painted.
     Standard,
-    /// The same; and the changes that make it all as it is painted are found.
+    /// The same, and the changes from it to the painted picture are listed.
     ToPaintOver,
     /// All as it is painted.
     Painted,
@@ -37,7 +37,7 @@ pub enum ResolveOutput {
     /// What each pixel is multiplied by, from the sums of the standard picture.
     Shares,
     Picture,
-    /// Both, before the gains are known.
+    /// Both, before the gains have been computed.
     SharesAndPicture,
     /// Only the light that shares, in the place of the picture; and how much it is.
     Shared,

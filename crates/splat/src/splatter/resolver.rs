@@ -23,7 +23,7 @@ pub struct Resolver {
 }
 
 impl Resolver {
-    /// Of sums of this width and height, px, of which nothing is known.
+    /// For sums of this width and height, px.
     pub fn new([width, height]: [usize; 2], sums: &Sums) -> Self {
         let rows_of_chunk = |first: usize| first as i32..(first + RESOLVE_ROWS).min(height) as i32;
         let chunks = (0..height).step_by(RESOLVE_ROWS).map(rows_of_chunk);
@@ -60,7 +60,7 @@ impl Resolver {
             self.balance.find_rest();
             return self.pass(nodes, sums, self.frame(), ResolveOutput::PictureOverShared, finish);
         }
-        // What is evened out is only multiplied by the gains, once they are known.
+        // Evened pictures are multiplied by the gains afterwards.
         self.balance.reset();
         let may_scale = output.has_picture() && finish == Finish::Evened;
         let first = if may_scale { output } else { ResolveOutput::Shares };
@@ -88,7 +88,7 @@ impl Resolver {
         finish: Finish,
     ) -> Result<(), Overflow> {
         let width = self.picture.width as usize;
-        // The same chunks whatever rows are asked for.
+        // The same chunks for any requested rows.
         let chunks = rows.start as usize / RESOLVE_ROWS..(rows.end as usize).div_ceil(RESOLVE_ROWS);
         let knots = &self.balance.knots;
         let (gains, rest) = (&self.balance.gains, self.balance.rest);

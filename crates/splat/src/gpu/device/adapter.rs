@@ -1,4 +1,4 @@
-//! Which graphics card there is, and whether it is worth using.
+//! Choosing the graphics card.
 
 use crate::gpu::Gpu;
 use wgpu::{Adapter, Backends, DeviceType, Instance};
@@ -6,7 +6,7 @@ use wgpu::{Adapter, Backends, DeviceType, Instance};
 /// What sums are to be made on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BackendChoice {
-    /// A graphics card if there is one; the processor rather than a card that is one in software.
+    /// A hardware graphics card if there is one, else the processor.
     #[default]
     Auto,
     /// The processor.
@@ -44,7 +44,7 @@ pub enum GpuAbsent {
     Unusable {
         /// What its driver calls it.
         name: String,
-        /// What it said.
+        /// The driver's message.
         why: String,
     },
 }
@@ -76,7 +76,7 @@ impl Gpu {
     /// contains it, and then also those in software.
     ///
     /// # Errors
-    /// Where a card was asked for, by choice or by name, and none can be used.
+    /// If a card was requested, by choice or by name, and none can be used.
     pub fn open(choice: BackendChoice, named: Option<&str>) -> Result<Option<Self>, GpuAbsent> {
         if choice == BackendChoice::Cpu {
             return Ok(None);

@@ -2,12 +2,13 @@
 
 use crate::gpu::Gpu;
 use crate::gpu::device::Lost;
+use bytemuck::Pod;
 use std::ops::Range;
 use std::sync::mpsc;
 use wgpu::{BindGroup, BindGroupLayout, Buffer, BufferUsages};
 
 impl Gpu {
-    /// A buffer of so many words (at least a few, for none can be bound that is empty).
+    /// A buffer of this many words (at least a few: empty buffers cannot be bound).
     pub(in crate::gpu) fn buffer(
         &self,
         label: &str,
@@ -26,6 +27,20 @@ impl Gpu {
             Some(_) => Err(Lost),
             None => Ok(buffer),
         }
+    }
+
+    /// Room for a struct that shaders read.
+    pub(in crate::gpu) fn struct_buffer<T: Pod>(
+        &self,
+        label: &str,
+        usage: BufferUsages,
+    ) -> Result<Buffer, Lost> {
+        self.buffer(label, size_of::<T>() / 4, usage | BufferUsages::COPY_DST)
+    }
+
+    /// Writes a struct that shaders read.
+    pub(in crate::gpu) fn write_struct<T: Pod>(&self, buffer: &Buffer, value: &T) {
+        self.write(buffer, bytemuck::cast_slice(std::slice::from_ref(value)));
     }
 
     /// Writes words to a buffer's beginning.

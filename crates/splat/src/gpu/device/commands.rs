@@ -1,4 +1,4 @@
-//! Passes that a card is asked for at once.
+//! Passes that are submitted together.
 
 use crate::gpu::Gpu;
 use crate::gpu::passes::Pass;
@@ -16,7 +16,7 @@ impl<'g> Commands<'g> {
         Self { gpu, encoder }
     }
 
-    /// Runs a pass in so many workgroups.
+    /// Runs a pass in this many workgroups.
     pub fn dispatch(&mut self, pass: &Pass, bound: &BindGroup, [x, y]: [u32; 2]) {
         let mut compute = self.encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
         compute.set_pipeline(pass.pipeline(self.gpu.device()));

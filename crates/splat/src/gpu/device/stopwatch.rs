@@ -1,4 +1,4 @@
-//! How long the card itself says that its work takes.
+//! Time measured by the card's own clock.
 
 use crate::gpu::Gpu;
 use crate::gpu::device::Lost;
