@@ -1,4 +1,4 @@
-//! The aperture's square in cells: where views stand, and how much light each is for.
+//! The aperture's square in cells: the positions of views, and the share of light of each.
 
 use crate::BaselineError;
 use glam::DVec2;

@@ -44,7 +44,7 @@ impl PictureSum {
         Self { width: size[0] as usize, pixels: vec![[0.0; 4]; size[0] as usize * size[1] as usize] }
     }
 
-    /// Lets every item deposit its light. `rows_of` tells which pixel rows an item may touch; the others are not asked.
+    /// Lets every item deposit its light. `rows_of` gives the pixel rows that an item may touch; it is skipped for the others.
     /// In each band the items come in their order.
     pub fn add<T: Sync>(
         &mut self,

@@ -7,7 +7,7 @@ use progress::Cancelled;
 /// Why a baseline could not make its picture.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum BaselineError {
-    /// Nobody wants it any more.
+    /// The progress was cancelled.
     #[error("cancelled")]
     Cancelled,
     /// A field of the camera is unusable.
@@ -69,7 +69,7 @@ pub(crate) fn check_hits(hits: &FirstHits, camera: &Camera) -> Result<(), Baseli
     }
 }
 
-/// An error unless something of `found` pixels has the camera's size.
+/// Checks that a size of `actual` pixels is the camera's.
 pub(crate) fn check_size(actual: [u32; 2], camera: &Camera) -> Result<(), BaselineError> {
     let camera = [camera.width, camera.height];
     if actual == camera { Ok(()) } else { Err(BaselineError::OtherCamera { actual, camera }) }

@@ -1,4 +1,4 @@
-//! What the pinhole sees: first hits along the chief rays of the pixel centres, and the pictures they give.
+//! The pinhole picture: first hits along the chief rays of the pixel centres, with depth and focus.
 
 use glam::DVec2;
 use lens::{Camera, FocusOffset, Picture};
@@ -28,6 +28,9 @@ pub struct FirstHits {
 
 impl FirstHits {
     /// Traces one ray a pixel.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if `progress` is cancelled.
     pub fn trace(
         tracer: &Tracer,
         radiance: &dyn Radiance,
@@ -39,7 +42,10 @@ impl FirstHits {
         Self::trace_part(tracer, radiance, focus, camera, whole, progress)
     }
 
-    /// The same in some columns and rows of the camera's picture alone.
+    /// The same for some columns and rows of the camera's picture.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if `progress` is cancelled.
     pub fn trace_part(
         tracer: &Tracer,
         radiance: &dyn Radiance,

@@ -1,7 +1,7 @@
 //! Blur by depth, gathered: the plainest blur of the pinhole picture.
 //!
 //! Every pixel takes the mean of the pinhole picture over its *own* circle of confusion (a gather, as image
-//! editors do it). It knows one surface a pixel, so it cannot see behind an occluder, cannot make a near
+//! editors do it). It has one surface per pixel, so it cannot see behind an occluder, cannot make a near
 //! occluder transparent, bleeds sharp edges into blurred surfaces and ends light at the frame.
 
 use crate::error::check_hits;
@@ -15,6 +15,9 @@ use std::sync::atomic::{AtomicU32, Ordering};
 const MAX_TAPS_PER_SIDE: f64 = 64.0;
 
 /// Blurs the pinhole picture `hits` by each pixel's circle of confusion, painted or not. Coverage is 1.
+///
+/// # Errors
+/// [`BaselineError`] if `hits` belong to another camera, an option is out of range, or `progress` is cancelled.
 pub fn gather_blur(
     hits: &FirstHits,
     camera: &Camera,

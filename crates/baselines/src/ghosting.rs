@@ -15,7 +15,7 @@
 //! |κ|·m·d ≤ p
 //! ```
 //!
-//! which says: on the sensor, copies are at most a pixel apart. In this form it also holds for painted points.
+//! that is, on the sensor copies are at most a pixel apart. In this form it also holds for painted points.
 
 use crate::error::{check_hits, check_option};
 use crate::views::VIEWS_A_SIDE;
@@ -39,7 +39,7 @@ use lens::Camera;
 ///
 /// Limits: where md ≤ zp a pixel is wider than the views' spacing as the point sees it, and f_max is ∞. At z = 0 the
 /// views lie on the point itself (a surface light field): no f ghosts, [−∞, ∞]. At z = ∞ every finite focus distance is an
-/// f of −∞, and the bounds are [−∞, ∞] (ask [`copies_apart_px`] there). At m = 0 all views are one: [−z, ∞]. At p = 0 only f = 0 is left. Arguments
+/// f of −∞, and the bounds are [−∞, ∞] (use [`copies_apart_px`] there). At m = 0 all views are one: [−z, ∞]. At p = 0 only f = 0 is left. Arguments
 /// outside of the ranges above, and NaN, give NaN.
 pub fn ghosting_bounds(depth: f64, pixel_size: f64, view_spacing: f64, image_distance: f64) -> [f64; 2] {
     let (z, p, m, d) = (depth, pixel_size, view_spacing, image_distance);
@@ -73,6 +73,9 @@ pub fn copies_apart_px(camera: &Camera, kappa: f64, views_a_side: u32) -> f64 {
 
 /// The pixels that [`crate::shift_and_add`] ghosts at: those whose point's copies are more than a pixel apart, a value
 /// a pixel. Painted points are judged by their painted defocus.
+///
+/// # Errors
+/// [`BaselineError`] if `hits` belong to another camera or an option is out of range.
 pub fn beyond_ghosting_bound(
     hits: &FirstHits,
     camera: &Camera,

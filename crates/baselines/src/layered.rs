@@ -7,7 +7,7 @@
 //! ```
 //!
 //! The masks keep sharp surfaces from bleeding into blurred ones, and a near layer turns transparent at its rim. What it
-//! hides is not known, though: behind a layer is a hole, and the picture's coverage falls below 1 there (normalise
+//! hides is missing, though: behind a layer is a hole, and the picture's coverage falls below 1 there (normalise
 //! exposure fills it with the colours around it). Where a surface passes from one layer to the next, two half-transparent
 //! rims meet and leave a quarter open: a seam. Light ends at the frame.
 
@@ -40,6 +40,9 @@ struct Layer {
 }
 
 /// Blurs the pinhole picture `hits` layer by layer. See the module for what its coverage means.
+///
+/// # Errors
+/// [`BaselineError`] if `hits` belong to another camera, an option is out of range, or `progress` is cancelled.
 pub fn layered_blur(
     hits: &FirstHits,
     camera: &Camera,

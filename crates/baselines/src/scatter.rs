@@ -1,6 +1,6 @@
-//! Naive scatter: every ray of the light field is thrown at the one pixel that it lands in.
+//! Naive scattering: every ray of the light field is added to the single pixel that it lands in.
 //!
-//! A ray of the SALF goes from a point of a sample's footprint through a point of the aperture that the sample sees. Of
+//! A ray of the SALF goes from a point of a sample's footprint through a point of the aperture that is visible from the sample. Of
 //! each sample, N rays are drawn (low-discrepancy points over footprint and aperture, by its share of open area), and each
 //! carries 1/N of what the sample sends there,
 //!
@@ -22,10 +22,10 @@ use salf::{Salf, Sample, SampleFocus, Visibility};
 use scene::SurfaceField;
 use std::ops::Range;
 
-/// Sets of rays that samples choose from by their index: enough that neighbours seldom share one.
+/// Sets of rays that samples choose from by their index: so many that neighbours seldom share one.
 const RAY_SETS: usize = 64;
 
-/// How many rays are thrown.
+/// The number of rays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ScatterOptions {
     /// Rays a sample, 1 to 65,536.
@@ -52,6 +52,9 @@ struct SampleRay {
 
 /// Throws the rays of `salf`. `camera` may differ from the baked one in focus distance, aperture shape and a smaller
 /// aperture radius, nothing else.
+///
+/// # Errors
+/// [`BaselineError`] if `salf` belongs to another camera, an option is out of range, or `progress` is cancelled.
 pub fn scatter_rays(
     salf: &Salf,
     camera: &Camera,
@@ -100,7 +103,7 @@ fn ray_sets(camera: &Camera, options: &ScatterOptions) -> Vec<Vec<SampleRay>> {
     (0..RAY_SETS).into_par_iter().map(set).collect()
 }
 
-/// A sample and the size at which it is thrown.
+/// A sample and the radius of its image.
 struct Thrown<'a> {
     sample: &'a Sample,
     /// Signed radius of the aperture's image.

@@ -58,6 +58,9 @@ impl Default for ViewsOptions {
 
 /// Traces the views of `camera`'s aperture and adds them, focused by `focus`. Coverage is the sum of the shifted pixels: 1
 /// everywhere without paint.
+///
+/// # Errors
+/// [`BaselineError`] if an option is out of range, or `progress` is cancelled.
 pub fn shift_and_add(
     tracer: &Tracer,
     radiance: &dyn Radiance,

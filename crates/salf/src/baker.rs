@@ -1,13 +1,14 @@
-//! Scene and camera to light field.
+//! Baking: from scene, light and camera to the light field.
 //!
 //! 1. The pinhole picture is sampled, cell by cell ([`crate::baker::layers`]), with four times the rays where an outline passes
 //!    through: the nearest surfaces, a sample each or, where their radiance varies, one a quadrant.
 //! 2. Their depths tell which of them may be partly occluded, and where hidden ones may show ([`crate::baker::occluders`]).
 //! 3. Surfaces edge-on to the aperture, and small bright ones, are sampled on the surface ([`crate::baker::surface_patches`]).
-//! 4. What may be partly occluded, and only that, is asked what of the aperture it sees ([`crate::baker::shadow_rays`]).
+//! 4. For surfaces that may be partly occluded, and only for those, the visibility of the aperture is computed
+//!    ([`crate::baker::shadow_rays`]).
 //!
-//! The samples of each block are packed as soon as they are all found ([`crate::samples`]). What the first looks found is kept until then,
-//! or, of a large picture, looked for again: [`crate::baker::parts`] bakes parts of one.
+//! The samples of each block are packed as soon as they are complete ([`crate::samples`]). Until then the surveys of step 1 are
+//! retained or, for large pictures, made again. [`crate::baker::parts`] bakes parts of a picture.
 
 pub mod block_baker;
 pub mod layers;
@@ -35,10 +36,14 @@ use std::collections::HashMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use trace::{Radiance, Tracer};
 
-/// First looks, of some 400 bytes a pixel and more, are kept of so many pixels; of a larger picture they are made twice.
+/// Surveys, of some 400 bytes a pixel and more, are retained for at most this many pixels; for larger pictures they are made twice.
 const MAX_RETAINED_PX: i64 = 1 << 23;
 
-/// Bakes the light field that `camera`'s square aperture sees. `camera` must be valid.
+/// Bakes the light field of `camera`'s square aperture. `camera` must be valid. The same input gives the same bits for any
+/// number of threads.
+///
+/// # Errors
+/// [`Cancelled`] if `progress` is cancelled.
 pub fn bake(
     tracer: &Tracer,
     radiance: &dyn Radiance,
@@ -49,7 +54,10 @@ pub fn bake(
     bake_with_outliers(tracer, radiance, camera, options, progress).map(|(salf, _)| salf)
 }
 
-/// The same, with what light of outliers was spread.
+/// The same as [`bake`], with how much light of outliers was spread.
+///
+/// # Errors
+/// [`Cancelled`] if `progress` is cancelled.
 pub fn bake_with_outliers(
     tracer: &Tracer,
     radiance: &dyn Radiance,
@@ -60,7 +68,7 @@ pub fn bake_with_outliers(
     bake_retaining(MAX_RETAINED_PX, tracer, radiance, camera, options, progress)
 }
 
-/// The same with first looks kept of a picture of at most so many pixels.
+/// The same, retaining surveys of pictures of at most this many pixels.
 fn bake_retaining(
     max_retained_px: i64,
     tracer: &Tracer,
@@ -111,7 +119,7 @@ fn bake_retaining(
     ))
 }
 
-/// The samples that are placed on the surface, of blocks that are wanted, by the corners of their blocks.
+/// The samples that are placed on surfaces, of selected blocks, by the corners of their blocks.
 pub fn patches(
     baker: &BlockBaker,
     is_selected: &(dyn Fn(IVec2) -> bool + Sync),
@@ -130,7 +138,7 @@ pub fn patches(
     Ok(of_block)
 }
 
-/// Samples that lie beside the domain, and so in no block.
+/// Samples that lie outside the domain, and so in no block.
 pub fn outside_domain(patches: HashMap<IVec2, Vec<Sample>>) -> impl Iterator<Item = Samples> {
     let mut blocks: Vec<_> = patches.into_iter().collect();
     blocks.sort_by_key(|(corner, _)| (corner.y, corner.x));

@@ -1,9 +1,9 @@
-//! How finely what is carried is told.
+//! The resolution of carried light.
 
 use lens::FocusOffset;
 use scene::SurfaceField;
 
-/// How finely carried light is told.
+/// How finely carried light is sampled over the aperture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Carried {
     /// As its picture through the ordinary lens needs it: the more coarsely the farther out of focus.

@@ -14,7 +14,7 @@ pub struct Cell {
 /// How densely the rays through a cell lie.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Density {
-    /// 4 × 4 rays, which stand for four sub-cells each.
+    /// 4 × 4 rays, which represent four sub-cells each.
     Coarse,
     /// 8 × 8 rays: one in each sub-cell.
     Fine,
@@ -34,7 +34,7 @@ impl Density {
         self.rays_per_side() * self.rays_per_side()
     }
 
-    /// The sub-cells that a ray stands for, a bit each.
+    /// The sub-cells that a ray represents, a bit each.
     pub fn sub_cells(self, ray: usize) -> u64 {
         let each = Cell::SUB_CELLS / self.rays();
         (u64::MAX >> (Cell::SUB_CELLS - each)) << (ray * each)

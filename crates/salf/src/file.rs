@@ -60,6 +60,9 @@ pub struct SalfFile {
 
 impl SalfFile {
     /// Writes the file.
+    ///
+    /// # Errors
+    /// Errors of `to`.
     pub fn write(&self, to: impl Write) -> io::Result<()> {
         let mut to = Hashing { inner: to, hash: Sha256::new() };
         to.write_all(MAGIC)?;
@@ -75,6 +78,9 @@ impl SalfFile {
     }
 
     /// Reads the file and checks it.
+    ///
+    /// # Errors
+    /// [`SalfFileError`]: what is wrong with the file, or the error of `from`.
     pub fn read(from: impl Read) -> Result<Self, SalfFileError> {
         let mut from = Hashing { inner: from, hash: Sha256::new() };
         let magic: [u8; 8] = bytes(&mut from)?;

@@ -1,11 +1,30 @@
-//! The surface-aperture light field (SALF): for a fixed camera, the image of the aperture as each surface point
-//! sees it.
+//! The surface-aperture light field (SALF): for a fixed camera, the image of the aperture as seen from each surface point.
 //!
-//! [`bake()`] samples every surface that some point of the aperture sees. Samples come from the pinhole picture
+//! [`bake()`] samples every surface that is visible from some point of the aperture. Samples come from the pinhole picture
 //! where surfaces face the aperture (their footprints are the squares of the pixel grid or quadrants of them, so that they
-//! tile the picture exactly), and from the surface itself where it is edge-on, or small and bright. A [`Sample`] knows its
-//! surface address, its weight toward every aperture point, its radiance, and what of the aperture it sees ([`Visibility`]);
-//! they are kept packed ([`Samples`]).
+//! tile the picture exactly), and from the surface itself where it is edge-on, or small and bright. A [`Sample`] has a surface
+//! address, a weight toward every aperture point, a radiance, and the visible part of the aperture ([`Visibility`]). Samples
+//! are stored packed ([`Samples`]). [`tree`] joins them to nodes for defocused regions; [`SalfFile`] is the file.
+//!
+//! ```
+//! use glam::{Vec2, Vec3};
+//! use salf::{Carried, Salf, Sample, Visibility};
+//!
+//! let sample = Sample {
+//!     center: Vec2::splat(0.5),
+//!     half_size: Vec2::splat(0.5),
+//!     inverse_depth: 0.25,
+//!     weight: 1.0,
+//!     tilt: Vec2::ZERO,
+//!     radiance: Vec3::ONE,
+//!     surface: None,
+//!     is_carried: false,
+//!     visibility: Visibility::from_words(&[0x00FF_FFFF_FFFF_FFFF]),
+//! };
+//! let samples = [sample].into_iter().collect();
+//! let salf = Salf { camera: lens::Camera::default(), margin_px: 0, carried: Carried::Standard, samples };
+//! assert_eq!((salf.statistics().open, salf.statistics().partial), (0, 1));
+//! ```
 
 mod baker;
 mod carried;

@@ -17,7 +17,7 @@ pub struct BakeOptions {
     /// this circle of confusion, samples have 8 cells a side. A pixel of a surface whose radiance varies by more
     /// than [`Self::EVEN_PER_PX`] times this is a sample a quadrant. Smaller is more exact and takes more memory.
     pub tolerance_px: f64,
-    /// How finely carried light is told.
+    /// How finely carried light is sampled over the aperture.
     pub carried: Carried,
     /// Whether samples are packed ([`crate::Samples`]). It is right unless what that loses is to be measured.
     pub packs: bool,
@@ -30,7 +30,7 @@ impl Default for BakeOptions {
 }
 
 impl BakeOptions {
-    /// The tolerance unless another one is asked for, px.
+    /// The default tolerance, px.
     pub const TOLERANCE_PX: f64 = 2.0;
 
     /// The mean radiances of the quadrants of a pixel that is one sample differ by at most this share of the largest, for
@@ -44,7 +44,7 @@ impl BakeOptions {
         Self { margin_px, carried: Carried::for_focus(focus), ..Self::default() }
     }
 
-    /// The same as all of these need that look from one place at different times: of each its lens and its focus.
+    /// The same for several lenses and focuses at one camera position, as at different times: options that suit all of them.
     pub fn for_all<'a>(
         tracer: &Tracer,
         shots: impl IntoIterator<Item = (&'a Camera, &'a dyn SurfaceField<FocusOffset>)>,

@@ -13,7 +13,7 @@ pub struct Salf {
     pub camera: Camera,
     /// How far outside the frame it was sampled, px.
     pub margin_px: u32,
-    /// How finely its carried light is told.
+    /// How finely its carried light is sampled.
     pub carried: Carried,
     /// Its samples.
     pub samples: Samples,
@@ -24,7 +24,7 @@ pub struct Salf {
 pub struct SalfStatistics {
     /// Samples that see the whole aperture.
     pub open: usize,
-    /// Samples that see part of it.
+    /// Samples that see part of the aperture.
     pub partial: usize,
     /// Samples of the background, which are among the others.
     pub background: usize,

@@ -4,7 +4,7 @@ use glam::{Vec2, Vec3};
 use lens::FocusOffset;
 use scene::{SurfaceField, SurfacePoint};
 
-/// A patch of surface as the aperture sees it.
+/// A patch of surface, as seen from the aperture.
 ///
 /// Toward the aperture point U = R·(u, v) of the baked camera it has the weight (design: `w(P, U)`, here in
 /// px² of picture area)
@@ -38,18 +38,18 @@ pub struct Sample {
     /// Whether its light is carried: mirrored or let through, so that it is focused as [`FocusOffset::of_carried`] says: by the
     /// ordinary lens, but where the paint says that gloss obeys it.
     pub is_carried: bool,
-    /// What of the aperture it sees.
+    /// The visible part of the aperture.
     pub visibility: Visibility,
 }
 
 impl Sample {
-    /// Where paint for it is looked up.
+    /// The address at which paint for it is looked up.
     pub fn address(&self) -> Address {
         Address { surface: self.surface, is_carried: self.is_carried }
     }
 }
 
-/// Where paint for a sample is looked up.
+/// The address at which paint for a sample is looked up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Address {
     /// See [`Sample::surface`].
@@ -58,22 +58,22 @@ pub struct Address {
     pub is_carried: bool,
 }
 
-/// A paint as samples are focused by it: carried light is looked up only in one that says something of it.
+/// A focus paint as it applies to samples: carried light is looked up only if the paint affects it.
 #[derive(Clone, Copy)]
 pub struct SampleFocus<'a> {
     paint: &'a dyn SurfaceField<FocusOffset>,
-    concerns_carried: bool,
+    affects_carried: bool,
 }
 
 impl<'a> SampleFocus<'a> {
     /// How a paint focuses samples.
     pub fn new(paint: &'a dyn SurfaceField<FocusOffset>) -> Self {
-        Self { paint, concerns_carried: paint.affects_carried_light() }
+        Self { paint, affects_carried: paint.affects_carried_light() }
     }
 
     /// How it focuses what is sent from an address.
     pub fn offset(&self, address: Address) -> FocusOffset {
-        if address.is_carried && !self.concerns_carried {
+        if address.is_carried && !self.affects_carried {
             return FocusOffset::STANDARD;
         }
         let painted = address.surface.map_or_else(|| self.paint.at_infinity(), |point| self.paint.at(point));
@@ -81,7 +81,7 @@ impl<'a> SampleFocus<'a> {
     }
 }
 
-/// What of the square aperture [−R, R]² a sample sees.
+/// The part of the square aperture [−R, R]² that is visible from a sample.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Visibility {
     /// All of it.
@@ -103,7 +103,7 @@ impl Visibility {
         }
     }
 
-    /// What both see; `None` if that is nothing.
+    /// The part that is visible from both; `None` if it is empty.
     pub fn intersection(&self, other: &Self) -> Option<Self> {
         let (Self::Cells { words: a }, Self::Cells { words: b }) = (self, other) else {
             return Some(if *self == Self::Open { other.clone() } else { self.clone() });

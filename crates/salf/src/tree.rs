@@ -28,9 +28,9 @@ pub struct Block {
     /// The roots, then the children of all of these, and so on. So what is drawn of a block, nodes that are about as far below
     /// the roots, lies together.
     pub nodes: Vec<Node>,
-    /// How many of them no other stands for.
+    /// How many of them have no parent.
     pub roots: u32,
-    /// What nodes see of the aperture: 16 × 16 cells, four rows a word (see [`crate::Visibility::Cells`]).
+    /// The visibility of nodes: 16 × 16 cells, four rows per word (see [`crate::Visibility::Cells`]).
     pub cells: Vec<[u64; 4]>,
 }
 
@@ -56,9 +56,9 @@ pub struct Node {
     pub dipole: f32,
     /// Its cell has a side of 2 to this, px.
     pub level: u8,
-    /// Where in [`Block::cells`] it stands what it sees of the aperture; `None` if it sees all.
+    /// The index of its visibility in [`Block::cells`]; `None` if it sees the whole aperture.
     pub cells: Option<u32>,
-    /// The nodes that it stands for, fewer than 32; none if it is a sample.
+    /// The nodes that it replaces, fewer than 32; none if it is a sample.
     pub children: Range<u32>,
     /// The number of the sample in the light field, if it is one.
     pub sample: Option<u32>,

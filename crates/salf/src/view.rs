@@ -16,11 +16,11 @@ pub struct View<'a> {
     pub eye: DVec3,
     right: DVec3,
     up: DVec3,
-    /// Splat radius in px for κ = 1: half the side of the aperture square as a point sees it.
+    /// Splat radius in px for κ = 1: half the side of the aperture square as seen from a point.
     pub radius_per_kappa_px: f64,
     /// How large a cell of a partly visible aperture may be on the picture, px.
     pub tolerance_px: f64,
-    /// How finely carried light is told.
+    /// How finely carried light is sampled.
     pub carried: Carried,
 }
 
@@ -40,7 +40,7 @@ impl<'a> View<'a> {
         }
     }
 
-    /// The same, with carried light told so finely.
+    /// The same view with this resolution of carried light.
     pub fn with_carried(self, carried: Carried) -> Self {
         Self { carried, ..self }
     }

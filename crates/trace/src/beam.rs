@@ -1,4 +1,4 @@
-//! Rays from one point, close together: what they meet first, in one walk of the hierarchy.
+//! Rays from one point, close together: their first hits in a single traversal of the hierarchy.
 
 use crate::hierarchy::Halfspaces;
 use crate::local_space::LocalSpace;
@@ -8,16 +8,16 @@ use glam::DVec3;
 /// A pyramid of rays.
 #[derive(Clone, Copy, Debug)]
 pub struct Beam {
-    /// Where all its rays start.
+    /// The common origin of its rays.
     pub origin: DVec3,
-    /// Along which their directions are all 1 long, so that t is depth; a unit vector.
+    /// A unit vector along which the directions of all rays have the length 1, so that t is depth.
     pub axis: DVec3,
     /// The directions of its four edges, in order around it.
     pub edges: [DVec3; 4],
 }
 
 impl Beam {
-    /// How many rays can be traced together.
+    /// The largest number of rays that can be traced together.
     pub const MAX_RAYS: usize = ShearedRayPacket::MAX;
 
     /// The part of the world that its rays pass through, generously, and the direction in which it widens.

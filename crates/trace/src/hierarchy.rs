@@ -45,13 +45,13 @@ struct Pending {
 
 /// What walks through a part of space.
 pub(crate) trait Visit {
-    /// Those of a node's boxes, a bit each, that are worth a visit; `reached` are those that reach into the part of space.
+    /// The boxes of a node to visit, a bit each; `overlapping` are those that overlap the half-spaces.
     #[inline(always)]
     fn select_children(&mut self, _node: &Node, overlapping: u32) -> u32 {
         overlapping
     }
 
-    /// Visits the items of a leaf; returns how far the walk goes on: −∞ ends it.
+    /// Visits the items of a leaf; returns the distance up to which the traversal continues: −∞ ends it.
     fn leaf(&mut self, items: Range<usize>) -> f32;
 }
 
@@ -93,7 +93,7 @@ impl Hierarchy {
         }
     }
 
-    /// Visits the items of every leaf whose box reaches into `space` and comes nearer than `far` (see
+    /// Visits the items of every leaf whose box overlaps `space` and begins nearer than `far` (see
     /// [`Halfspaces::height`]), nearer ones first by and large; the visit of a leaf returns the new `far`.
     pub fn walk_halfspaces(&self, space: &Halfspaces, far: f32, visit: &mut impl Visit) {
         if self.stack_size <= SHALLOW_STACK {
@@ -219,7 +219,7 @@ pub(crate) struct Halfspaces {
     /// Normal and offset: n·x + offset ≥ 0 inside.
     planes: [(Vec3, f32); Self::MAX_PLANES],
     count: usize,
-    /// What lies low along this is looked at first.
+    /// Boxes are visited in ascending order along this direction.
     toward: Vec3,
 }
 
@@ -229,7 +229,7 @@ impl Halfspaces {
     /// What f32 may be wrong by, as a share of what is summed.
     const SLACK: f64 = 1.0 / (1u32 << 20) as f64;
 
-    /// All of space; what lies low along `toward` is looked at first.
+    /// All of space; boxes are visited in ascending order along `toward`.
     pub fn toward(toward: DVec3) -> Self {
         Self { toward: toward.as_vec3(), ..Self::default() }
     }

@@ -1,10 +1,19 @@
-//! Rays: first hit, occlusion, and the ray-traced ground truth.
+//! Ray tracing: first hits, occlusion, and the ray-traced ground truth.
 //!
-//! [`Tracer`] answers what a ray meets. Its way: a ray enters the f32 space of the boxes (`local_space`),
-//! walks the tree (`hierarchy`), meets triangles in f64 (`watertight`) whose points may be cut away
-//! (`presence`). What a point sees of a whole [`Square`] takes one
-//! walk (`sight`), and so does what the rays of a [`Beam`] meet. [`truth`] sums such rays to the picture that everything
-//! else is measured against.
+//! [`Tracer`] finds what a ray hits: the ray is transformed to the f32 space of the bounding boxes (`local_space`), traverses the
+//! tree (`hierarchy`) and is intersected with triangles in f64 (`watertight`), whose points may be transparent
+//! (`transparency`). The visibility of a whole [`Square`] from a point takes a single traversal (`visibility`), as do the rays of
+//! a [`Beam`]. [`truth`] integrates such rays to the reference picture, from the light that a [`Radiance`] provides.
+//!
+//! ```
+//! use glam::DVec3;
+//! use trace::Ray;
+//!
+//! let camera = lens::Camera::default();
+//! let center = glam::DVec2::new(f64::from(camera.width), f64::from(camera.height)) / 2.0;
+//! let ray = Ray::pinhole(&camera, glam::DVec2::ZERO, center);
+//! assert!(ray.direction.normalize().distance(camera.world_direction(DVec3::Z)) < 1e-9);
+//! ```
 
 mod beam;
 mod hierarchy;

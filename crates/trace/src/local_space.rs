@@ -1,12 +1,12 @@
 //! The space of the box hierarchy, in f32, where no rounding makes a ray miss a box that it meets.
 //!
 //! Local coordinates are (world − centre of the scene)·2ᵏ so that the scene lies in [−1, 1]³: a scene far
-//! from the world's origin loses nothing. Three errors stand between the f64 ray and an f32 slab test, each
+//! from the world's origin loses nothing. Three errors separate the f64 ray from an f32 slab test, each
 //! met at its source:
 //!
 //! * Boxes are rounded outward by one ulp, and by [`BOX_PAD`] for the rounding of the f64 triangle test
-//!   itself (a few 2⁻⁵³ of the distance to the ray's origin: enough for origins up to 10⁶ scene sizes away).
-//! * The ray's origin is kept twice an axis, rounded down and up; each plane is measured from the one that
+//!   itself (a few 2⁻⁵³ of the distance to the ray's origin: sufficient for origins up to 10⁶ scene sizes away).
+//! * The ray's origin is stored twice per axis, rounded down and up; each plane is measured from the one that
 //!   makes the slab longer. An origin outside of the scene is first moved along the ray (in f64) to where the
 //!   scene begins.
 //! * The reciprocal direction and the product with it are off by at most 4u relative, u = 2⁻²⁴: far ends are

@@ -14,7 +14,7 @@ pub(crate) fn hash(words: impl IntoIterator<Item = u64>) -> u64 {
     words.into_iter().fold(0, |hash, word| mix(hash ^ word))
 }
 
-/// The number in [0, 1) that a hash stands for.
+/// Maps a hash to a number in [0, 1).
 pub(crate) fn unit(hash: u64) -> f64 {
     (hash >> 11) as f64 / (1u64 << 53) as f64
 }

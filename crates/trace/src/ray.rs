@@ -9,21 +9,21 @@ use scene::SurfacePoint;
 pub struct Ray {
     /// Where it starts.
     pub origin: DVec3,
-    /// Where it goes; t is in multiples of this.
+    /// Direction of any length; t is in multiples of it.
     pub direction: DVec3,
-    /// Hits at or before this t are not seen.
+    /// Hits at or before this t are ignored.
     pub t_min: f64,
-    /// Hits at or after this t are not seen.
+    /// Hits at or after this t are ignored.
     pub t_max: f64,
-    /// A triangle that is not seen (the one the ray starts on).
+    /// A triangle that is ignored (the one the ray starts on).
     pub skip: Option<u32>,
 }
 
 impl Ray {
-    /// The ray on which a pinhole at the aperture point `u` (scene units; zero gives the chief ray) sees the picture
+    /// The ray along which a pinhole at the aperture point `u` (scene units; zero gives the chief ray) images the picture
     /// position `pixel` (px, the frame's upper left corner at zero).
     ///
-    /// Every aperture point sees the same directions: what is infinitely far away has the same `pixel` for all of them. The
+    /// All aperture points image the same directions: an infinitely distant point has the same `pixel` for all of them. The
     /// direction has depth 1, so that t along the ray is axial depth.
     pub fn pinhole(camera: &Camera, u: DVec2, pixel: DVec2) -> Self {
         let direction = camera.q_from_pixel(pixel) * (camera.yfov / 2.0).tan();

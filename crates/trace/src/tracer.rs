@@ -13,22 +13,21 @@ use glam::DVec3;
 use scene::{AlphaMode, Scene, SurfacePoint};
 use std::sync::Arc;
 
-/// Answers what a ray meets.
+/// Finds what a ray hits.
 ///
 /// * Watertight: no ray passes between triangles that share an edge or a corner (the same f64 positions).
 /// * Deterministic: a hit depends on the ray and the scene alone. Of two triangles at equal t, the one with
 ///   the lower index is hit.
 /// * Triangles without area, or with corners that are not finite, are never hit; rays whose direction is zero
 ///   or not finite hit nothing.
-/// * An eye sees no face from behind unless it is double sided ([`scene::Scene::hides_back`]): its rays pass the backs of
-///   others. Light passes neither side. So [`Self::first_hit`], [`Self::any_hit`], [`Self::hidden`] and
-///   [`Self::sight`] say what is seen, [`Self::occluded`] says what light meets.
-/// * Points that a material's opacity takes away are not met (see
-///   [`scene::AlphaMode`]): under a mask a point is there where the opacity reaches the cutoff; under
-///   blending it is there *for a given ray* with the probability of its opacity, decided by a hash of the ray
-///   and the triangle, so that sums over many rays see the right transmittance and each ray still gives the
-///   same answer every time. Those that ask for many rays at once ([`Self::first_hits`], [`Self::all_hits`], [`Self::sight`])
-///   meet it with every ray, and are told, or ask, how much of it is there.
+/// * The eye's rays pass through the backs of faces that are not double sided ([`scene::Scene::hides_back`]); both sides of
+///   every face stop light. [`Self::first_hit`], [`Self::any_hit`], [`Self::is_hidden_from`] and
+///   [`Self::square_visibility`] follow the eye, [`Self::is_occluded`] follows light.
+/// * Transparent points are not hit (see [`scene::AlphaMode`]): under a mask a point exists where the opacity reaches the
+///   cutoff; under blending it is hit *by a given ray* with the probability of its opacity, decided by a hash of the ray
+///   and the triangle, so that sums over many rays have the right transmittance and each ray gives the same result every
+///   time. Queries for many rays at once ([`Self::first_hits`], [`Self::all_hits`], [`Self::square_visibility`]) hit it with
+///   every ray; the caller applies the opacity.
 pub struct Tracer {
     scene: Arc<Scene>,
     space: LocalSpace,
@@ -40,7 +39,7 @@ pub struct Tracer {
     has_transparency: bool,
 }
 
-/// A triangle as the inner loop wants it.
+/// A triangle prepared for the inner loop.
 struct LeafTriangle {
     corners: [DVec3; 3],
     index: u32,
@@ -48,7 +47,7 @@ struct LeafTriangle {
     hides_back: bool,
 }
 
-/// What a ray met so far.
+/// The nearest hit so far.
 #[derive(Clone, Copy)]
 struct Nearest {
     hit: Option<Hit>,
@@ -90,7 +89,7 @@ impl Tracer {
         &self.scene
     }
 
-    /// Whether any surface may be half there.
+    /// Whether any surface may be partly transparent.
     pub fn has_transparency(&self) -> bool {
         self.has_transparency
     }
@@ -102,12 +101,12 @@ impl Tracer {
             + size_of_val(self.outlines.as_slice())
     }
 
-    /// The first surface that an eye at the ray's origin sees along it.
+    /// The first surface that is visible along a ray from its origin.
     pub fn first_hit(&self, ray: &Ray) -> Option<Hit> {
         self.first_hit_with(ray, TransparencyMode::Stochastic)
     }
 
-    /// The same, where what is there in part is met.
+    /// The same, but partly transparent surfaces are always hit.
     fn first_fractional_hit(&self, ray: &Ray) -> Option<Hit> {
         self.first_hit_with(ray, TransparencyMode::Fractional)
     }
@@ -126,8 +125,8 @@ impl Tracer {
         nearest.hit
     }
 
-    /// The first surface that light from a surface point meets in a direction: from behind, too. Free of self-intersection as
-    /// [`Self::occluded`] is.
+    /// The first surface that a ray from a surface point hits, from either side. Free of self-intersection like
+    /// [`Self::is_occluded`].
     pub fn first_hit_from(&self, from: SurfacePoint, direction: DVec3) -> Option<Hit> {
         let origin = from.position(&self.scene);
         let ray = Ray { origin, direction, t_min: 0.0, t_max: f64::INFINITY, skip: Some(from.triangle) };
@@ -152,15 +151,15 @@ impl Tracer {
         nearest.hit
     }
 
-    /// Whether light from a surface point meets anything in a direction: from behind, too. Free of self-intersection as
-    /// [`Self::occluded`] is.
+    /// Whether a ray from a surface point hits anything, from either side. Free of self-intersection like
+    /// [`Self::is_occluded`].
     pub fn any_hit_from(&self, from: SurfacePoint, direction: DVec3) -> bool {
         let origin = from.position(&self.scene);
         let ray = Ray { origin, direction, t_min: 0.0, t_max: f64::INFINITY, skip: Some(from.triangle) };
         self.any_hit_where(&ray, |triangle, _| !in_plane(&triangle.corners, origin))
     }
 
-    /// Takes a triangle for the nearest that an eye sees, if it is.
+    /// Records a triangle as the nearest visible hit, if it is.
     #[inline(always)]
     fn accept_triangle(
         &self,
@@ -175,7 +174,7 @@ impl Tracer {
             && self.accept_crossing(nearest, triangle, ray, &crossing, mode)
     }
 
-    /// Takes a triangle for the nearest, if it is.
+    /// Records a triangle as the nearest hit, if it is.
     #[inline(always)]
     fn accept_crossing(
         &self,
@@ -199,7 +198,7 @@ impl Tracer {
         is_hit
     }
 
-    /// Whether light finds anything strictly between a surface point and the world position `source`.
+    /// Whether any surface lies strictly between a surface point and the world position `source`.
     ///
     /// Free of self-intersection without an offset: the point's own triangle never occludes it, and neither
     /// does any triangle in whose plane the point or `source` lies to the precision of f64 (some 3e-15 of the
@@ -210,13 +209,13 @@ impl Tracer {
         self.any_between(from, source, |_, _| true)
     }
 
-    /// Whether an eye at this world position does not see a surface point: for what lies between ([`Self::occluded`], but
-    /// for faces that show the eye a back that is not seen), or since it would see the back of the point's own face.
+    /// Whether a surface point is invisible from this world position: because of a surface in between ([`Self::is_occluded`],
+    /// except for faces whose culled back is turned to the eye), or because the point's own face is seen from its culled back.
     pub fn is_hidden_from(&self, from: SurfacePoint, eye: DVec3) -> bool {
         let shows_back =
             || self.scene.area_normal(from.triangle).dot(eye - from.position(&self.scene)) <= 0.0;
         self.scene.culls_back_face(from.triangle) && shows_back()
-            // The ray leads to the eye, which sees the other side of what the ray meets.
+            // The ray leads to the eye, which sees the other side of the faces that it hits.
             || self.any_between(from, eye, |triangle, crossing| !triangle.hides_back || !crossing.from_front)
     }
 
@@ -237,12 +236,12 @@ impl Tracer {
         })
     }
 
-    /// Whether an eye at the ray's origin sees any surface along it.
+    /// Whether any surface is visible along a ray from its origin.
     pub fn any_hit(&self, ray: &Ray) -> bool {
         self.any_hit_where(ray, |triangle, crossing| !triangle.hides_back || crossing.from_front)
     }
 
-    /// Whether a ray meets any triangle that `counts`.
+    /// Whether a ray hits any triangle that `counts`.
     #[inline(always)]
     fn any_hit_where(&self, ray: &Ray, counts: impl Fn(&LeafTriangle, &Crossing) -> bool) -> bool {
         let Some(local) = self.space.ray(ray) else { return false };

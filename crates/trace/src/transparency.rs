@@ -1,20 +1,20 @@
-//! Whether surface points are there: masks and blending.
+//! Transparency of surface points: masks and blending.
 
 use crate::Ray;
 use crate::random::{mix, unit};
 use scene::{Scene, SurfacePoint};
 
-/// How surfaces that are half there are met.
+/// How rays hit partly transparent surfaces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum TransparencyMode {
-    /// By this ray or not, by chance: the mean over many rays is right.
+    /// With the probability of their opacity: the mean over many rays is right.
     Stochastic,
-    /// By every ray, if they are there at all: whoever asks shares its light out by opacity.
+    /// Always, unless fully transparent: the caller weights the light by opacity.
     Fractional,
 }
 
 impl TransparencyMode {
-    /// Whether `point` is there for `ray`. Under a mask the opacity is 0 or 1, and both agree.
+    /// Whether `ray` hits `point`. Under a mask the opacity is 0 or 1, and both modes agree.
     pub fn is_hit(self, scene: &Scene, point: SurfacePoint, ray: &Ray) -> bool {
         let opacity = f64::from(scene.opacity(point));
         match self {

@@ -66,6 +66,9 @@ enum Rays {
 ///
 /// The camera must be valid. The picture is conserved radiance with its coverage, of the options' region; the
 /// same bits for any number of threads.
+///
+/// # Errors
+/// [`Cancelled`] if `progress` is cancelled.
 pub fn render(
     tracer: &Tracer,
     radiance: &dyn Radiance,
@@ -120,7 +123,7 @@ impl<'a> Truth<'a> {
         self.statistics.samples
     }
 
-    /// Whether it has as many samples as the options ask for. It may go on nevertheless.
+    /// Whether it has as many samples as the options request. Further passes may still be added.
     pub fn is_done(&self) -> bool {
         self.samples_per_pixel() >= self.options.samples_per_pixel.max(1)
     }
@@ -135,6 +138,9 @@ impl<'a> Truth<'a> {
 
     /// Adds a pass of [`TruthOptions::samples_of_pass`] samples a pixel (or as few as are left to do). If it is
     /// cancelled, the estimate stays as it was before.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if `progress` is cancelled.
     pub fn pass(&mut self, progress: &dyn Progress) -> Result<(), Cancelled> {
         progress.check()?;
         let retained = self.rays.take();
@@ -163,7 +169,7 @@ impl<'a> Truth<'a> {
         Ok(())
     }
 
-    /// What is known so far.
+    /// The current estimate.
     pub fn estimate(&self) -> Estimate {
         self.statistics.estimate()
     }

@@ -1,6 +1,6 @@
-//! What of a square a point sees: the shadow rays to many places of it, all at once.
+//! Visibility of a square from a point: the shadow rays to many points of it, all at once.
 //!
-//! A triangle's outline tells roughly which of the places it may hide (`projection`), its shadow tells exactly (`shadow`).
+//! A triangle's outline bounds which of the points it may hide (`projection`); its shadow decides exactly (`shadow`).
 
 mod point_set;
 mod projection;
@@ -23,22 +23,23 @@ pub use target_points::TargetPoints;
 pub(crate) use viewpoint::Eye;
 pub use viewpoint::Viewpoint;
 
-/// What a viewpoint sees of places on a square.
+/// The visibility of points on a square from a viewpoint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SquareVisibility {
-    /// The places that it does not see.
+    /// The points that are not visible.
     pub hidden: PointSet,
-    /// How much of each it sees past what is half there, in (0, 1], whether hidden or not; none where there is no such thing.
+    /// The transmittance toward each point through partly transparent surfaces, in (0, 1], whether hidden or not; `None` if there are
+    /// no such surfaces in between.
     pub shares: Option<Box<[f32; PointSet::MAX]>>,
 }
 
 impl SquareVisibility {
-    /// All but what is hidden.
+    /// All points visible except the hidden ones.
     pub(crate) fn from_hidden(hidden: PointSet) -> Self {
         Self { hidden, shares: None }
     }
 
-    /// Looks at a place past something of an opacity.
+    /// Attenuates a point by an opacity.
     pub(crate) fn attenuate(&mut self, place: usize, opacity: f32) {
         if opacity >= 1.0 {
             self.hidden |= std::iter::once(place).collect();
@@ -49,7 +50,7 @@ impl SquareVisibility {
     }
 }
 
-/// A viewpoint and the square it looks at.
+/// A viewpoint and the square whose visibility is computed.
 pub(crate) struct VisibilityQuery<'a> {
     eye: Eye,
     square: &'a Square,
@@ -70,7 +71,7 @@ impl<'a> VisibilityQuery<'a> {
         Self { eye, square, points, axis, projection: Projection::new(eye, square, axis, space) }
     }
 
-    /// The part of the world between the two, generously, and the direction in which it widens.
+    /// A conservative bound of the space between the two, and the direction in which it widens.
     pub fn shaft(&self, space: &LocalSpace) -> Halfspaces {
         let corners = self.square.corners().map(|corner| space.position(corner));
         let center = space.position(self.square.center);
@@ -90,7 +91,7 @@ impl<'a> VisibilityQuery<'a> {
         shaft
     }
 
-    /// The ray to a place of the square.
+    /// The ray to a point of the square.
     pub fn ray(&self, place: DVec2) -> Ray {
         let place = self.square.world_position(place);
         match self.eye {
@@ -111,7 +112,7 @@ impl<'a> VisibilityQuery<'a> {
         }
     }
 
-    /// Calls `visit` with the index of each triangle that may hide some of the places, those of them, and some that it does not.
+    /// Calls `visit` with the index of each triangle that may hide points, and a superset of those points.
     #[inline(always)]
     pub fn visit_near_triangles(&self, outlines: &[Outline], mut visit: impl FnMut(usize, PointSet)) {
         for (chunk, outlines) in outlines.chunks(Boxes::MAX).enumerate() {
@@ -126,7 +127,7 @@ impl<'a> VisibilityQuery<'a> {
         }
     }
 
-    /// Those of a node's boxes, of the `reached` ones, in which triangles may hide more of the places than are `hidden`.
+    /// Those of a node's `reached` boxes in which triangles may hide points that are not yet `hidden`.
     #[inline(always)]
     pub fn may_hide_more(&self, node: &Node, reached: u32, hidden: PointSet) -> u32 {
         let boxes = self.projection.node_boxes(node);
@@ -144,7 +145,7 @@ impl<'a> VisibilityQuery<'a> {
         candidates
     }
 
-    /// Those of the places `near` it that a triangle hides.
+    /// The points among `near` that a triangle hides.
     #[inline(always)]
     pub fn newly_hidden(&self, corners: &[DVec3; 3], near: PointSet) -> PointSet {
         let Some(shadow) = Shadow::cast(corners, self.eye, self.square) else { return PointSet::default() };

@@ -1,7 +1,7 @@
 //! The watertight ray–triangle test, in f64.
 //!
 //! Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013. Corners are moved to the
-//! ray's origin and sheared so that the ray becomes the z axis; then the signs of three edge functions say
+//! ray's origin and sheared so that the ray becomes the z axis; then the signs of three edge functions decide
 //! whether the origin of that plane lies in the triangle. A corner's sheared position depends on the ray and
 //! the corner alone, an edge function fl(x₁y₂) − fl(y₁x₂) changes exactly its sign when its corners are
 //! swapped, and rounding is monotonic, so it never has the wrong sign (at worst it is 0, which counts as
@@ -92,7 +92,7 @@ impl ShearedRayPacket {
         rays.iter().all(|ray| ray.axes == axes).then_some(Self { origin, axes, shear })
     }
 
-    /// A bit for each ray whose line does not pass beside the triangle: the signs that [`ShearedRay::cross`] looks at.
+    /// A bit for each ray whose line does not pass beside the triangle: the signs that [`ShearedRay::cross`] tests.
     #[inline(always)]
     pub fn may_hit(&self, corners: &[DVec3; 3]) -> u32 {
         let [x, y, z] = self.axes;
@@ -123,7 +123,7 @@ pub(crate) fn has_area([a, b, c]: &[DVec3; 3]) -> bool {
     doubled_area > 4.0 * f64::EPSILON * longest && longest < f64::INFINITY
 }
 
-/// Whether `point` lies in the triangle's plane as far as f64 can tell.
+/// Whether `point` lies in the triangle's plane to the precision of f64.
 ///
 /// With C the corner opposite the longest side, e and g the sides that meet there, n = e × g and r = P − C,
 /// the distance n·r/|n| is 0 within the rounding of P (a sum of three products, so off by up to 3u in each

@@ -1,4 +1,4 @@
-//! How a block of the picture is baked: its cells are looked at twice.
+//! Bakes blocks of the picture: each of its cells is traced twice.
 
 use crate::baker::layers::{Group, Layers, Tile, trace_cell};
 use crate::baker::occluders::{Depths, Footprint, Occluders};
@@ -18,22 +18,22 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 use trace::{IncidentLight, Radiance, Tracer, Viewpoint};
 
-/// So many cells are looked at together where nothing is told of more at once: what they take is given back, and taken again by the
-/// next ones, from the few pieces of memory that a thread has at hand.
+/// The number of cells that are traced together unless light is computed for more at once: few, so that the allocator reuses the
+/// same memory for the next ones.
 const BATCH_CELLS: usize = 4;
 
-/// A surface of a cell, before it is known what it sees of the aperture.
+/// A surface of a cell whose visibility has not been computed yet.
 struct Candidate {
     center: DVec2,
     inverse_depth: f64,
     slope: DVec2,
-    /// From where it is asked what it sees.
+    /// Where its visibility is computed from.
     viewpoint: Viewpoint,
     /// Whether no other surface of its own cell is in front of it.
     is_in_front: bool,
 }
 
-/// What the first look at a cell found.
+/// The result of tracing a cell's nearest surfaces.
 pub struct CellSurvey {
     pub cell: Cell,
     density: Density,
@@ -82,7 +82,7 @@ impl<'a> BlockBaker<'a> {
         Self { tracer, radiance, view, placement, patterns: Patterns::new(), domain, packs }
     }
 
-    /// The samples of a block that was looked at, and of the surface patches in it.
+    /// The samples of a block from the surveys of its cells, and of the surface patches in it.
     pub fn bake_block(
         &self,
         occluders: &Occluders,
@@ -101,7 +101,7 @@ impl<'a> BlockBaker<'a> {
         (pack_samples(block_corner(first.cell.corner), baked, self.packs), outliers)
     }
 
-    /// How many cells of a block are looked at together.
+    /// The number of cells of a block that are traced together.
     fn batch_cells(&self) -> usize {
         if self.radiance.supports_batches() { usize::MAX } else { BATCH_CELLS }
     }
@@ -119,7 +119,7 @@ impl<'a> BlockBaker<'a> {
         (Density::Coarse, layers)
     }
 
-    /// What the chief rays of a cell tell of the depths around it: as [`Self::first_looks`] does, and no more.
+    /// The depths around a cell as its chief rays find them: the same as those of [`Self::survey_cells`].
     pub fn depths(&self, cell: Cell) -> Depths {
         self.trace_nearest(cell).1.depths(cell)
     }
@@ -131,7 +131,7 @@ impl<'a> BlockBaker<'a> {
         surveys
     }
 
-    /// Looks at some of them, of which light is told together.
+    /// Surveys cells whose light is computed together.
     fn survey_batch(&self, cells: &[Cell]) -> impl Iterator<Item = CellSurvey> {
         let of_cell = |&cell: &Cell| {
             let (density, layers) = self.trace_nearest(cell);
@@ -171,7 +171,7 @@ impl<'a> BlockBaker<'a> {
         groups.iter().zip(incident).zip(shared).map(samples).collect()
     }
 
-    /// The carried light that surfaces share with their neighbours ([`Group::tile`]), where what is own of them is told.
+    /// The carried light that surfaces share with their neighbours ([`Group::tile`]), where their own light is interpolated.
     fn shared_carried(
         &self,
         groups: &[(Cell, &Group)],
@@ -215,7 +215,7 @@ impl<'a> BlockBaker<'a> {
         }
     }
 
-    /// What the looks at a block's cells found, with what it sees of the aperture, and what else is found there.
+    /// The samples of a block's cells with their visibility: those of the surveys, and those of surfaces behind them.
     fn sample_visible(&self, occluders: &Occluders, surveys: &[CellSurvey]) -> Vec<BakedSample> {
         let is_pinhole = self.view.optics.aperture_radius == 0.0;
         let may_show = |survey: &CellSurvey| {
@@ -239,7 +239,7 @@ impl<'a> BlockBaker<'a> {
             .flat_map(|(survey, groups)| groups.iter().flatten().map(|(group, _)| (survey.cell, group)));
         let mut sampled = self.sample_groups(&groups.collect::<Vec<_>>()).into_iter();
         let mut samples = Vec::new();
-        // The quadrants of a cell see about the same: they are not asked one by one.
+        // The quadrants of a cell have nearly the same visibility: it is computed once.
         let mut push = |parts: &[VisiblePart], baked: &[BakedSample]| {
             samples.extend(
                 baked.iter().flat_map(|sample| parts.iter().filter_map(|part| occluded(sample, part))),
@@ -258,7 +258,7 @@ impl<'a> BlockBaker<'a> {
         samples
     }
 
-    /// What a cell's `index`-th surface sees.
+    /// The visible parts of the aperture from a cell's `index`-th surface.
     fn visible_parts(
         &self,
         occluders: &Occluders,

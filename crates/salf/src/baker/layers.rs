@@ -15,24 +15,24 @@ use scene::{Scene, SurfacePoint};
 use std::ops::Range;
 use trace::{Beam, Hit, IncidentLight, OutgoingRadiance, Radiance, ShadingPoint, Tracer, Viewpoint};
 
-/// Surfaces along one chief ray beyond which nothing is looked for.
+/// Surfaces along one chief ray beyond which the trace ends.
 const MAX_LAYERS: usize = 12;
 
 /// The same where some of them may be half there, and let others show.
 const MAX_PANE_LAYERS: usize = 48;
 
 /// Parallax, px, up to which what a nearer surface hides of a cell and what it does not are samples of their own: the outline
-/// is nearly sharp on them, and few rays from either would not tell how much of both together it hides.
+/// is nearly sharp on them, and few rays from either would not resolve how much both together hide.
 const JUST_BEHIND_PX: f64 = 1.0;
 
 /// What panes leave of a cell's rays may differ by so much within one sample: along the edge of a pane that is in focus, what lies
 /// behind it and what lies beside it are samples of their own.
 const SAME_PANES: f32 = 0.05;
 
-/// Where a chief ray of a cell meets a surface, or goes to infinity.
+/// Where a chief ray of a cell hits a surface, or goes to infinity.
 #[derive(Clone, Copy, Debug)]
 pub struct Member {
-    /// The sub-cells that it stands for, a bit each.
+    /// The sub-cells that it represents, a bit each.
     pub sub_cells: u64,
     /// Where it is in the pinhole picture, px.
     pub pixel: DVec2,
@@ -42,7 +42,7 @@ pub struct Member {
     pub inverse_depth: f64,
 }
 
-/// A member that is looked for a group.
+/// A hit that is to be added to a group.
 struct HitMember {
     member: Member,
     /// How much of it counts, in [0, 1].
@@ -75,7 +75,7 @@ pub struct Group {
     pub slope: DVec2,
 }
 
-/// A square of the picture where a surface's carried light is told at once.
+/// A square of the picture on which a surface's carried light is computed once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Tile {
     part: u32,
@@ -83,7 +83,7 @@ pub struct Tile {
     pub corner: [i32; 2],
     /// px.
     tile_side: i32,
-    /// Cells of the aperture that it is told on, a side.
+    /// The number of aperture cells per side on which it is computed.
     pub side: usize,
 }
 
@@ -95,7 +95,7 @@ pub struct Layers {
     pub depth_range: [f32; 2],
     /// Whether a nearest surface is sampled elsewhere and so not among the groups.
     pub has_gap: bool,
-    /// Whether a nearest surface is there in part, so that others show behind it.
+    /// Whether a nearest surface is partly transparent, so that others show behind it.
     pub has_pane: bool,
 }
 
@@ -195,7 +195,7 @@ impl Layers {
         }
     }
 
-    /// Adds a member to the group it belongs to, or to one of its own.
+    /// Adds a hit to the group of its surface, or to a new group.
     fn add(&mut self, tracer: &Tracer, view: &View, met: HitMember) {
         let HitMember { member, share, panes, is_nearest, nearest } = met;
         let parallax_px = view.radius_per_kappa_px;
@@ -231,7 +231,7 @@ impl Layers {
         self.groups.push(Group { members, shares, panes, is_nearest, is_just_behind, part, tilt, slope });
     }
 
-    /// What they tell of the depths around their cell.
+    /// The depths around the cell.
     pub fn depths(&self, cell: Cell) -> Depths {
         let [nearest, farthest] = self.depth_range;
         let slants = self.groups.iter().map(|group| group.slope.abs().element_sum());
@@ -263,8 +263,8 @@ impl Group {
         cell.part(sub_cells_of(&self.members)).center
     }
 
-    /// From where to ask what it sees of the aperture: its member nearest to its centre. Asked from elsewhere in the cell, the
-    /// image of an occluder in focus would not be where the occluder is; its very centre may lie beyond an edge of it.
+    /// The viewpoint of its visibility: the member nearest to its centre. From elsewhere in the cell, the image of an
+    /// occluder in focus would be displaced; the exact centre may lie beyond an edge of the surface.
     pub fn viewpoint(&self, view: &View, cell: Cell) -> Viewpoint {
         let member = nearest(&self.members, self.center(cell));
         match member.point {
@@ -273,8 +273,8 @@ impl Group {
         }
     }
 
-    /// What stands for it where light is told of many at once; `None` of the background, and where it is folded so that one point
-    /// does not tell of all.
+    /// The point that represents it where light is computed in batches; `None` for the background, and where the surface is so
+    /// folded that one point does not represent it.
     pub fn shading_point(&self, scene: &Scene, cell: Cell) -> Option<ShadingPoint> {
         const FLAT: f64 = 0.95;
         let member = nearest(&self.members, self.center(cell));
@@ -288,10 +288,10 @@ impl Group {
         self.members.iter().all(is_alike).then_some(ShadingPoint { point, pixel: member.pixel })
     }
 
-    /// Its samples, as if nothing hid the aperture: one with its mean radiance over its share of the cell; where that
-    /// varies, one a quadrant; where it changes over the aperture, one a part of that. Where it sends carried light, too, that has
-    /// its own ([`Outgoing`]). None if the aperture is a point that sees nothing of it. `received` is what its spot receives, where
-    /// that is known, `shared` the carried light that it has in common with its neighbours.
+    /// Its samples, as if nothing hid the aperture: one with its mean radiance over its share of the cell; one per quadrant where
+    /// that varies; one per part of the aperture where it changes over the aperture. Carried light has samples of its own
+    /// ([`LightComponent`]). None if the aperture is a point from which it is invisible. `incident` is the interpolated light at
+    /// its shading point, `shared` the carried light that it has in common with its neighbours.
     pub fn baked_samples(
         &self,
         radiance: &dyn Radiance,
@@ -304,7 +304,7 @@ impl Group {
             return Vec::new();
         }
         let seed = cell.corner.as_uvec2().to_array();
-        // Where all that is own is told, the rest keeps its focus.
+        // Where all own light is interpolated, the rest keeps its focus.
         let is_own_interpolated = incident.is_some_and(|incident| incident.gloss.is_some());
         let blurred =
             if is_own_interpolated { outgoing::blurred_px(view, self.mean_inverse_depth()) } else { 1 };
@@ -332,10 +332,10 @@ impl Group {
         let mean = |rays: &Range<usize>| mean(&sent[rays.clone()], &self.shares[rays.clone()]);
         let change =
             middle.and_then(|point| OwnLightChange::sample(&query, point, self.mean_inverse_depth()));
-        // Few paths tell what a quadrant carries: it may differ by more.
+        // Few paths sample what a quadrant carries: it may differ by more.
         let even = if width.is_some() { 2.0 } else { 1.0 } * BakeOptions::EVEN_PER_PX * view.tolerance_px;
         let parts = self.parts(cell, even as f32, |rays| mean(rays).total());
-        // Looks are kept for the whole picture, most with one sample: no room for more.
+        // Surveys are retained for the whole picture, most with one sample: no spare capacity.
         let mut baked = Vec::with_capacity(parts.len());
         for rays in parts {
             let mut add = |kind| baked.push(self.sample(cell, rays.clone(), kind));
@@ -354,7 +354,7 @@ impl Group {
         nearest(&self.members, self.center(cell)).point
     }
 
-    /// Whom it may share its carried light with: those of the same answer. `None` where it sends none, or has to tell it by itself.
+    /// The tile on which it may share its carried light with groups of the same tile. `None` where it has none, or has to compute it alone.
     pub fn tile(&self, radiance: &dyn Radiance, view: &View, cell: Cell) -> Option<Tile> {
         let depth = self.mean_inverse_depth();
         let tile_side = outgoing::tile_side(view, depth);
@@ -373,8 +373,8 @@ impl Group {
         self.members.iter().zip(&self.shares).filter_map(|(member, share)| Some((member.point?, *share)))
     }
 
-    /// What each member sends to the aperture's middle. Where only light tells one from the next, a few of them stand for all: two
-    /// that lie apart, or if these differ one of every four.
+    /// What each member sends to the aperture's middle. On surfaces that are uniform but for their light, a few represent all: two
+    /// that lie apart or, if these differ, one of every four.
     fn toward_middle(&self, query: &RadianceQuery) -> Vec<OutgoingRadiance> {
         const TOGETHER: usize = 4;
         const ALIKE: f32 = 0.02;
@@ -408,7 +408,7 @@ impl Group {
         (0..groups).flat_map(|group| vec![between(group); TOGETHER.min(count - group * TOGETHER)]).collect()
     }
 
-    /// The same where carried light is told on cells of the aperture: it is one for all members.
+    /// The same where carried light is computed on cells of the aperture: it is common to all members.
     fn glossy_samples(&self, cell: Cell, radiance: &ApertureRadiance) -> Vec<BakedSample> {
         let all = 0..self.members.len();
         let own = radiance.all.components().filter(|kind| !kind.is_carried);
@@ -461,7 +461,7 @@ impl Group {
     }
 }
 
-/// What some rays of these shares send in the mean. Where none of them is there, they count alike.
+/// The mean of what rays of these shares send. If all shares are 0, the rays count equally.
 fn mean(sent: &[OutgoingRadiance], shares: &[f32]) -> MeanRadiance {
     let is_there = shares.iter().any(|&share| share > 0.0);
     MeanRadiance::mean(
@@ -475,7 +475,7 @@ fn nearest(members: &[Member], pixel: DVec2) -> &Member {
     members.iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).expect("a group has members")
 }
 
-/// The sub-cells that members stand for, a bit each.
+/// The sub-cells that members represent, a bit each.
 fn sub_cells_of(members: &[Member]) -> u64 {
     members.iter().fold(0, |all, member| all | member.sub_cells)
 }
@@ -485,7 +485,7 @@ fn mean_inverse_depth(members: &[Member]) -> f64 {
     members.iter().map(|m| m.inverse_depth).sum::<f64>() / members.len() as f64
 }
 
-/// What a member sends to the aperture's middle, the `index`-th of `count` that are asked.
+/// What a member sends to the aperture's middle: the `index`-th of `count` queries.
 fn member_to_middle(query: &RadianceQuery, member: &Member, index: usize, count: usize) -> OutgoingRadiance {
     let RadianceQuery { radiance, view, .. } = *query;
     match member.point {

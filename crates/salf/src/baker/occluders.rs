@@ -1,4 +1,4 @@
-//! The nearest surfaces of the pinhole picture, asked what may stand between a surface point and the aperture.
+//! Depths of the nearest surfaces of the pinhole picture: what may occlude a surface point from the aperture.
 //!
 //! In the pinhole picture a ray from a point at x with inverse depth p to the aperture point R·u passes the
 //! position x + (w − p)·C·u on its way from inverse depth p to w, C = R·(H/2)/tanθ. A surface of inverse depth m
@@ -10,7 +10,7 @@ use glam::{DVec2, IVec2};
 
 /// The largest inverse depth of each pixel, and of ever larger squares of them.
 pub struct Occluders {
-    /// The upper left corner of the part of the picture that they are known in, px, …
+    /// The upper left corner of the part of the picture that is covered, px, …
     corner: IVec2,
     /// … and its size.
     extent: IVec2,
@@ -24,14 +24,14 @@ pub struct Occluders {
     step_distance: Vec<f32>,
 }
 
-/// What the chief rays of a cell tell of the depths around it.
+/// The depths that the chief rays of a cell find around it.
 #[derive(Clone, Copy, Debug)]
 pub struct Depths {
     /// 1/z of the nearest and of the farthest of its nearest surfaces.
     pub nearest: f32,
     /// See `nearest`.
     pub farthest: f32,
-    /// By how much 1/z changes over the cell by the slant of its surfaces; infinite where that is not known.
+    /// The change of 1/z over the cell due to the slant of its surfaces; infinite where it is unresolved.
     pub relief: f32,
 }
 
@@ -39,7 +39,7 @@ pub struct Depths {
 pub struct Footprint {
     /// Centre, px.
     pub center: DVec2,
-    /// The cell it lies in: what else lies in there is not asked.
+    /// The cell it lies in: occluders within it are ignored.
     pub cell: Cell,
     /// 1/z at the centre.
     pub inverse_depth: f64,
@@ -48,7 +48,7 @@ pub struct Footprint {
 }
 
 impl Occluders {
-    /// Parallax that is too small to tell two surfaces apart, px.
+    /// Parallax too small to separate two surfaces, px.
     pub const SAME_SURFACE_PX: f64 = 0.25;
 
     /// From the depths of every cell of a part of the picture, its upper left corner and its size.

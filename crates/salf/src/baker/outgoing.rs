@@ -1,8 +1,9 @@
-//! What a surface sends toward the aperture, in the least form that tells it.
+//! The light that a surface sends toward the aperture, in the most compact form.
 //!
-//! Own light changes little over the aperture, and is one radiance, but where views of a light field told otherwise
-//! (`own_light_change`). Carried light of a lobe of width ω, as seen from the whole aperture, which spans the angle δ there, needs about 6 δ/ω radiances a side; where it is thrown as an image of c px, no more
-//! than c over the tolerance can be told apart. It is asked for on so many cells, which are joined again where they are alike.
+//! Own light changes little over the aperture and is one radiance, unless views of a light field show otherwise
+//! (`own_light_change`). Carried light of a lobe of width ω, over an aperture that subtends the angle δ at the surface, needs
+//! about 6 δ/ω radiances per side; in an aperture image of c px, no more than c over the tolerance can be resolved. It is
+//! sampled on that many cells, which are merged again where they are alike.
 //!
 //! Own and carried light share the weight of their patch, as they share its coverage, so each is divided by its share.
 
@@ -19,13 +20,13 @@ use scene::SurfacePoint;
 use std::f64::consts::FRAC_PI_4;
 use trace::{IncidentLight, OutgoingRadiance, Radiance, SampleSlot};
 
-/// Cells that a lobe as wide as the aperture is seen needs, a side.
+/// Cells per side for a lobe as wide as the aperture appears.
 const CELLS_A_WIDTH: f64 = 6.0;
 
 /// Cells are joined whose light differs from their mean by at most this share of all the light that is sent.
 pub const ALIKE: f32 = 0.05;
 
-/// Shares of coverage are told in steps of one over this: few of them, so that few planes differ, and exact in 11 bits.
+/// Shares of coverage are multiples of one over this: few values, so that few planes differ, and exact in 11 bits.
 const STEPS: f32 = 128.0;
 
 /// Light toward the aperture, and what of the weight of its patch it has.
@@ -34,7 +35,7 @@ pub struct LightComponent {
     pub radiance: Vec3,
     pub share: f32,
     pub is_carried: bool,
-    /// What of the radiance was found by chance ([`Leaving::by_chance`]).
+    /// The noisy part of the radiance ([`OutgoingRadiance::noisy`]).
     pub noisy: Vec3,
     /// The part of the aperture that it is sent toward.
     pub toward: Visibility,
@@ -82,7 +83,7 @@ impl MeanRadiance {
         self.own + self.carried
     }
 
-    /// The share of carried light, in steps; neither none nor all where there is both.
+    /// The share of carried light, quantised; neither 0 nor 1 where there are both kinds.
     fn share(&self) -> f32 {
         let share = (self.carried_share * STEPS).round() / STEPS;
         let least = if self.carried_share > 0.0 { 1.0 / STEPS } else { 0.0 };
@@ -106,12 +107,12 @@ impl MeanRadiance {
     }
 }
 
-/// Light that is told by paths which correct what was known may come out below 0, and is then nearer to the truth at 0.
+/// Paths that correct an estimate may make light negative; 0 is then closer to the true value.
 fn clamped(light: Vec3) -> Vec3 {
     light.max(Vec3::ZERO)
 }
 
-/// How many cells a side the carried light of a point of inverse depth `inverse_depth` is asked for on, whose narrowest lobe is
+/// The number of cells per side on which carried light is sampled, of a point of inverse depth `inverse_depth` whose narrowest lobe is
 /// `width` rad wide.
 pub fn cells_per_side(view: &View, inverse_depth: f64, width: f64) -> usize {
     let circle_px = view.circle_px(inverse_depth);
@@ -120,7 +121,7 @@ pub fn cells_per_side(view: &View, inverse_depth: f64, width: f64) -> usize {
         Carried::Standard => (circle_px / view.tolerance_px).min(of_lobe),
         Carried::Painted => of_lobe,
     };
-    // Without an aperture there is nothing to tell apart, 0/0.
+    // Without an aperture nothing can be resolved: 0/0.
     if cells > 1.0 { (cells.min(MAX_CELLS as f64).ceil() as usize).next_power_of_two() } else { 1 }
 }
 
@@ -129,7 +130,7 @@ pub fn cells_of_lobe(view: &View, inverse_depth: f64, width: f64) -> f64 {
     CELLS_A_WIDTH * 2.0 * view.optics.aperture_radius * inverse_depth / width
 }
 
-/// Who is asked what the points of a cell send, from where, and what is known of it.
+/// A query for the light of a cell's points: the light model, the view, and what has been computed already.
 #[derive(Clone, Copy)]
 pub struct RadianceQuery<'a> {
     pub radiance: &'a dyn Radiance,
@@ -138,14 +139,14 @@ pub struct RadianceQuery<'a> {
     pub seed: [u32; 2],
     /// What its points receive.
     pub incident: Option<IncidentLight>,
-    /// Whether only what is own is wanted.
+    /// Whether only own light is needed.
     pub own_only: bool,
     /// How many cells the picture takes the mean of, wherever it is focused.
     pub blurred: usize,
 }
 
 impl RadianceQuery<'_> {
-    /// What a point sends toward a world position, the `index`-th of `count` that are asked.
+    /// What a point sends toward a world position: the `index`-th of `count` queries.
     pub fn outgoing(&self, point: SurfacePoint, eye: DVec3, index: usize, count: usize) -> OutgoingRadiance {
         let seed = u64::from(self.seed[0]) << 32 | u64::from(self.seed[1]);
         let count = count * self.blurred;
@@ -174,8 +175,8 @@ pub fn toward_aperture_points(query: &RadianceQuery, points: &[SurfacePoint]) ->
     points.iter().enumerate().map(sent).collect()
 }
 
-/// How large a square of the picture may be, px, whose carried light is told at once: where it is thrown as a wide image, nobody sees
-/// from where exactly. 1 where every cell is told by itself.
+/// The side of the largest square of the picture, px, on which carried light is computed once: in a wide aperture image, its exact
+/// origin is invisible. 1 where every cell has its own.
 pub fn tile_side(view: &View, inverse_depth: f64) -> i32 {
     /// Its share of the image.
     const SHARE: f64 = 0.25;
@@ -188,7 +189,7 @@ pub fn tile_side(view: &View, inverse_depth: f64) -> i32 {
     1 << (side as u32).ilog2()
 }
 
-/// Over how many pixels light is thrown that has the standard focus.
+/// The number of pixels over which light of standard focus is spread.
 pub fn blurred_px(view: &View, inverse_depth: f64) -> usize {
     if view.carried == Carried::Painted {
         return 1;
@@ -204,13 +205,13 @@ pub struct ApertureRadiance {
     side: usize,
     /// Carried light of all points toward each cell, row by row from v = −1.
     carried: Vec<Vec3>,
-    /// What of it was found by chance.
+    /// The noisy part of it.
     noisy: Vec<Vec3>,
 }
 
 impl ApertureRadiance {
-    /// Asks points of these weights, or many of them, toward `side` × `side` cells: each cell is asked by as many points, neighbours
-    /// ask for cells apart.
+    /// Samples the light of weighted points, or of a subset, toward `side` × `side` cells: every cell has as many samples, and
+    /// neighbouring points sample distant cells.
     pub fn gather(query: &RadianceQuery, points: &[(SurfacePoint, f32)], side: usize) -> Self {
         let RadianceQuery { view, seed, .. } = *query;
         let cells = side * side;
@@ -249,7 +250,7 @@ impl ApertureRadiance {
         Self { all, side: self.side, carried: self.carried.clone(), noisy: self.noisy.clone() }
     }
 
-    /// Carried light on as few parts of the aperture as tell it.
+    /// Carried light on as few parts of the aperture as possible.
     pub fn carried(&self) -> Vec<LightComponent> {
         let differs = ALIKE * self.all.total().max_element();
         let cells = ApertureCells { side: self.side, light: &self.carried, noisy: &self.noisy };

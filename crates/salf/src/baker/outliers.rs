@@ -1,9 +1,9 @@
-//! Single paths that found far more light than those around them.
+//! Outliers: single paths that found far more light than the paths around them.
 //!
-//! A path that comes to a lamp by way of two glossy surfaces tells much light of a few directions. Its sample would be thrown as a
+//! A path that reaches a lamp by way of two glossy surfaces samples much light of a few directions. Its sample would appear as a
 //! disc of bokeh that is not there. In a block of the picture, among the samples of one surface and kind of light, what such a
 //! sample has beyond its neighbours is therefore given to all of them alike: no light is taken away, so that the mean stays right.
-//! Only light that was found by chance counts ([`trace::Leaving::by_chance`]): lamps, their direct light and sharp mirrors are exact.
+//! Only noisy light counts ([`trace::OutgoingRadiance::noisy`]): lamps, their direct light and sharp mirrors are exact.
 
 use crate::sample::{Sample, Visibility};
 use crate::samples::BakedSample;
@@ -38,13 +38,13 @@ impl Outliers {
     }
 }
 
-/// Among fewer samples there is none that is known to be unlike them.
+/// In smaller groups no sample counts as an outlier.
 const MIN_GROUP_SAMPLES: usize = 12;
 
-/// A sample has too much if it is so many times as bright as its neighbours in the mean …
+/// An outlier is at least this many times as bright as its neighbours in the mean …
 const ISOLATED_RATIO: f32 = 5.0;
 
-/// … and as the median of all samples with their spread, so many times over.
+/// … and exceeds the median of all samples by more than this many spreads.
 const OUTLIER_DEVIATIONS: f32 = 8.0;
 
 /// Neighbours are at most so far apart, px.
@@ -97,7 +97,7 @@ fn spread_in_group(samples: &mut [BakedSample], group: &[usize]) -> Outliers {
     let mut all = Vec3::ZERO;
     for (index, light) in &taken {
         let sample = &mut samples[*index].sample;
-        // What chance found is part of what the sample has, but for rounding.
+        // The noisy part is contained in the radiance, but for rounding.
         sample.radiance = (sample.radiance - *light).max(Vec3::ZERO);
         all += *light * visible_weight(sample);
     }
@@ -105,7 +105,7 @@ fn spread_in_group(samples: &mut [BakedSample], group: &[usize]) -> Outliers {
     Outliers { samples: taken.len(), spread_light: f64::from(all.max_element()), total_light: 0.0 }
 }
 
-/// What a sample counts for: its weight, over what it sees of the aperture.
+/// The weight of a sample: its own, times the visible share of the aperture.
 fn visible_weight(sample: &Sample) -> f32 {
     let visible = match &sample.visibility {
         Visibility::Open => 1.0,

@@ -1,8 +1,8 @@
 //! A light field in parts, each as it is in the whole: what a part of a picture needs is baked square by square, and need not be in
 //! memory at once.
 //!
-//! Samples depend on their own block of the picture, and on the depths of what stands around it as far as that may hide or reveal something.
-//! So a part of the picture is surveyed first, with as much around it ([`PartsBaker::around`]); then its squares are baked, some at
+//! Samples depend on their own block of the picture, and on the depths around it as far as those may hide or reveal something.
+//! A part of the picture is therefore surveyed first, with as much around it ([`PartsBaker::around`]); then its squares are baked, some at
 //! a time. The parts of a light field have its camera, its blocks and its hierarchy.
 
 use crate::baker::block_baker::BlockBaker;
@@ -30,7 +30,7 @@ pub struct PartsBaker<'a> {
     reach: Reach,
 }
 
-/// What stands around a part of the picture.
+/// The surroundings of a part of the picture.
 pub struct Surroundings {
     /// The squares whose light may reach it, by column and row; row by row.
     pub squares: Vec<IVec2>,
@@ -60,8 +60,11 @@ impl<'a> PartsBaker<'a> {
         self.reach.may_be_painted
     }
 
-    /// Surveys what stands around some pixels of the picture, first and end: the squares whose light may come within `near_px` of
+    /// Surveys the surroundings of some pixels of the picture, first and end: the squares whose light may come within `near_px` of
     /// them, and of the squares that lie outside of the picture those that are nearest to them.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if `progress` is cancelled.
     pub fn survey_surroundings(
         &self,
         [first, end]: [IVec2; 2],
@@ -96,10 +99,10 @@ impl<'a> PartsBaker<'a> {
     fn survey(&self, needed: &[(IVec2, Bound)], progress: &dyn Progress) -> Result<Occluders, Cancelled> {
         let domain = &self.baker.domain;
         let parallax_px = self.baker.view.radius_per_kappa_px;
-        /// Beside what parallax tells: cells are up to a block wide.
+        /// In addition to the parallax: cells are up to a block wide.
         const ROOM: f64 = 3.0 * Domain::BLOCK as f64;
         let size = self.reach.size;
-        // The squares within the parallax of what stands in one.
+        // The squares within the parallax of a square.
         let near = |square: IVec2, bound: Bound| {
             let px = f64::from(bound.inverse_depth) * parallax_px + ROOM;
             let far = (px / f64::from(SQUARE_PX)).ceil().min(f64::from(size.max_element())) as i32;
@@ -142,6 +145,9 @@ impl<'a> PartsBaker<'a> {
     }
 
     /// Bakes some of the squares around a part of the picture.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if `progress` is cancelled.
     pub fn bake(
         &self,
         around: &Surroundings,

@@ -1,4 +1,4 @@
-//! How far what stands in a part of the picture may reach, before anything is baked: bounds from the triangles alone.
+//! How far the light of surfaces in a part of the picture may reach, before anything is baked: bounds from the triangles alone.
 //!
 //! The picture and its margin are cut into squares. On the plane of a triangle 1/z is linear over the pinhole picture, so that its range
 //! over a square is that of the square's corners. Where the focus is known to a range, too, the defocus
@@ -65,7 +65,7 @@ impl FocusRange {
 /// Side of a square, px: some blocks.
 pub const SQUARE_PX: i32 = 4 * Domain::BLOCK;
 
-/// Bounds of what stands in a square.
+/// Bounds of the surfaces in a square.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Bound {
     /// The largest 1/z.
@@ -89,7 +89,7 @@ pub struct Reach {
     pub size: IVec2,
     corner: IVec2,
     bounds: Vec<Bound>,
-    /// Of each part of the scene, where it may stand: the largest radius there, px, by the number of the square.
+    /// For each part of the scene and each square where it may lie, by number: the largest radius there, px.
     parts: HashMap<(u32, u32), f32>,
     /// Whether anything may be painted.
     pub may_be_painted: bool,
@@ -159,7 +159,7 @@ impl Reach {
         self.bounds.iter().enumerate().map(move |(number, bound)| (place(number), *bound))
     }
 
-    /// Each part in each square where it may stand, with the largest radius of its images there, px.
+    /// Each part in each square where it may lie, with the largest radius of its images there, px.
     pub fn parts(&self) -> impl Iterator<Item = (u32, IVec2, f32)> {
         let width = self.size.x;
         self.parts.iter().map(move |((part, square), radius)| {
@@ -186,7 +186,7 @@ impl Squares {
         Self { size: (domain.blocks() + side - 1) / side, corner: IVec2::splat(-domain.margin) }
     }
 
-    /// Calls `found` with the number of each square that a triangle may stand in, and the range of 1/z there.
+    /// Calls `visit_square` with the number of each square in which a triangle may lie, and the range of 1/z there.
     fn visit(
         &self,
         scene: &Scene,
@@ -235,7 +235,7 @@ impl Squares {
                     Some(plane) => {
                         let first = (self.corner + IVec2::new(x, y) * SQUARE_PX).as_dvec2();
                         let [least, most] = plane.range(view, first, f64::from(SQUARE_PX));
-                        // Rounding must not lose what only just stands there.
+                        // Rounding must not lose a triangle that barely reaches the square.
                         let slack = 1e-6 * most.abs().max(least.abs());
                         [(least - slack).max(own[0]), (most + slack).min(own[1])]
                     }
@@ -252,7 +252,7 @@ impl Squares {
 struct Plane(DVec3);
 
 impl Plane {
-    /// `None` where it passes the aperture's centre so closely that 1/z is not told by it.
+    /// `None` where it passes so close to the aperture's centre that it does not determine 1/z.
     fn through([a, b, c]: [DVec3; 3]) -> Option<Self> {
         const GRAZING: f64 = 1e-7;
         let normal = (b - a).cross(c - a);

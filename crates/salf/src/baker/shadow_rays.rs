@@ -1,4 +1,4 @@
-//! What of the aperture a point of a surface sees: a shadow ray a cell of the aperture, all of them at once.
+//! The visibility of the aperture from a surface point: a shadow ray per cell of the aperture, all of them at once.
 
 use crate::domain::Cell;
 use crate::jitter::{Net, jitter};
@@ -9,15 +9,15 @@ use trace::{PointSet, SquareVisibility, TargetPoints, Tracer, Viewpoint};
 
 /// How much of its cell, along each axis, the places of a ray are spread over, of 16 cells a side.
 ///
-/// Rays that go anywhere through their cells tell most exactly how much is seen. Where the cells are larger than pixels they blur
+/// Rays anywhere in their cells measure visibility best. Where cells are larger than pixels they blur
 /// the image of an edge, though, which those through their middles do half as much; that the edges of many samples together lie
-/// anywhere in their cells is enough then.
+/// anywhere in their cells is then sufficient.
 const SPREADS: [f64; 5] = [1.0, 0.75, 0.5, 0.375, 0.25];
 
-/// Rays are spread over so many px of the picture at least, as the standard lens shows it, where that is within their cells.
+/// Rays are spread over at least this many px of the picture, as the standard lens shows it, where that is within their cells.
 const SPREAD_PX: f64 = 0.5;
 
-/// How a point's view of the aperture is told.
+/// The resolution of visibility.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fineness {
     /// 8 cells a side.
@@ -55,7 +55,7 @@ pub struct Patterns {
 }
 
 impl Patterns {
-    /// Binary digits of the coordinates that tell a pixel's pattern.
+    /// Binary digits of the coordinates that select a pixel's pattern.
     const DIGITS: u32 = 3;
 
     /// How many there are of each.
@@ -98,13 +98,13 @@ impl Patterns {
     }
 }
 
-/// A part of the aperture that a point sees, and how much of it: less than 1 past what is half there.
+/// A visible part of the aperture and its transmittance: less than 1 through partly transparent surfaces.
 pub type VisiblePart = (Visibility, f32);
 
 /// The cells of the aperture that a point sees, by how much of it: one ray each, of the pattern of a `number`. None if it sees
 /// none.
 ///
-/// `is_on_side` tells which aperture points lie on the side of the surface that the point stands for.
+/// `is_on_side` decides which aperture points lie on the side of the surface that the point represents.
 pub fn visible_parts(
     tracer: &Tracer,
     view: &View,
@@ -134,10 +134,10 @@ pub fn visible_parts(
 /// Shares that differ by no more than this part of them are one.
 const SAME_SHARE: f32 = 1.0 / 1024.0;
 
-/// So many different shares are told; of more, only so many steps between the least and the largest.
+/// At most this many different shares are kept; if there are more, steps between the least and the largest.
 const MAX_SHARES: usize = 16;
 
-/// Cells by how much is seen of them. The mean stays what it is, however few levels tell it.
+/// Cells by transmittance. The mean is kept, however few the levels.
 fn levels(mut cells: Vec<(f32, usize)>) -> Vec<(f32, Vec<usize>)> {
     cells.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     let Some((&(least, _), &(largest, _))) = cells.first().zip(cells.last()) else { return Vec::new() };

@@ -73,7 +73,7 @@ impl Piece {
 
 /// The samples of one triangle.
 ///
-/// `is_wanted` tells of the corner of a block whether what lies there is.
+/// `is_selected` decides by the corner of a block whether its patches are made.
 pub fn samples(baker: &BlockBaker, triangle: u32, is_selected: &dyn Fn(IVec2) -> bool) -> Vec<Sample> {
     let BlockBaker { view, domain, .. } = baker;
     let scene = baker.tracer.scene();
@@ -158,7 +158,7 @@ fn patch(baker: &BlockBaker, point: SurfacePoint, piece: Piece, normal: DVec3) -
 /// Cuts a triangle by its longest projected side until every piece is about a pixel, or an eighth of its own circle of
 /// confusion; drops what lies behind the aperture or outside the domain.
 ///
-/// Pieces of such a `brightness` that the image of one could be told are cut further.
+/// Pieces of such a `brightness` that a single image would be visible are cut further.
 fn split(whole: Piece, view: &View, domain: &Domain, brightness: f64) -> Vec<Piece> {
     let mut pieces = Vec::new();
     let mut pending = vec![(whole, 0)];

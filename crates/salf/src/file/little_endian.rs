@@ -1,4 +1,4 @@
-//! Numbers and texts as they stand in a `.salf` file.
+//! Numbers and texts in a `.salf` file.
 
 use super::SalfFileError;
 use std::io::{self, Read, Write};

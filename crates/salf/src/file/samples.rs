@@ -9,7 +9,7 @@ use scene::SurfacePoint;
 use std::io::{self, Read, Write};
 
 const BACKGROUND: u32 = u32::MAX;
-/// Beside how many words tell the visibility: that the light is carried.
+/// Added to the number of words of visibility: the light is carried.
 const CARRIED: u8 = 0x80;
 
 pub fn write_samples(to: &mut impl Write, samples: &Samples) -> io::Result<()> {

@@ -48,7 +48,7 @@ impl Samples {
         self.records.len() + self.loose.len()
     }
 
-    /// Whether there is none.
+    /// Whether there are no samples.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -73,7 +73,7 @@ impl Samples {
         [all, shared_partial + partial * Record::BYTES + self.codes.len() + loose_partial]
     }
 
-    /// How many see the whole aperture, how many part of it, and how many of all are of the background, and carried.
+    /// The numbers of samples that see the whole aperture, that see part of it, that are background, and that are carried.
     pub(crate) fn counts(&self) -> [usize; 4] {
         let partial = self.records.iter().filter(|record| record.is_partial()).count()
             + self.loose.iter().filter(|sample| sample.visibility != Visibility::Open).count();

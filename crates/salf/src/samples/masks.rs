@@ -1,30 +1,30 @@
-//! What partly occluded samples see of the aperture, coded: about 4 bytes for 8 × 8 or 16 × 16 cells.
+//! Entropy coding of partial visibility: about 4 bytes for 8 × 8 or 16 × 16 cells.
 //!
-//! The cells of one sample resemble each other, and those of the sample before it, whose occluder is the same as a rule. So
-//! of each row it is told whether it is that of the sample before; if not, each cell is foretold from six that were coded
-//! before it and five around its place in the sample before: for each of these patterns it is counted how often a cell was
-//! seen (as in JBIG, ITU-T T.82), and an arithmetic coder spends as few bits on a cell as it was certain. Counts begin anew
-//! with every chunk of samples, which can so be read alone.
+//! The cells of one sample resemble each other, and those of the previous sample, which usually has the same occluder. A
+//! flag per row says whether the row equals that of the previous sample; if not, each cell is predicted from six cells coded
+//! before it and five around its place in the previous sample: for each of these contexts an adaptive model estimates how
+//! often a cell is visible (as in JBIG, ITU-T T.82), and an arithmetic coder codes the cell accordingly. Models are reset
+//! with every chunk of samples, so that a chunk can be read alone.
 
 use crate::sample::Visibility;
 
-/// How likely a bit is 0 (a cell is hidden), as far as is known.
+/// The estimated probability that a bit is 0 (a cell is hidden).
 #[derive(Clone, Copy)]
 struct BitModel {
     /// In 1/65536.
     hidden: u16,
-    /// How many cells tell it, at most [`Chance::MEMORY`].
+    /// The number of cells it is estimated from, at most [`BitModel::MEMORY`].
     observations: u8,
 }
 
 impl BitModel {
     const EVEN: Self = Self { hidden: 1 << 15, observations: 0 };
-    /// The last so many cells count.
+    /// Only this many recent cells count.
     const MEMORY: usize = 60;
     /// No chance is 0 or 1.
     const LEAST: i64 = 24;
 
-    /// What share of the way to certainty a cell moves it, in 1/65536.
+    /// The step by which a cell moves the probability, as a share of the distance, in 1/65536.
     const STEPS: [i64; Self::MEMORY + 1] = {
         let mut steps = [0; Self::MEMORY + 1];
         let mut observations = 0;
@@ -67,8 +67,7 @@ impl Model {
         }
     }
 
-    /// Goes through the rows and cells of a field: `code` is given how likely each bit is and what it is, and tells what it
-    /// is.
+    /// Passes the rows and cells of a field to `code`, which takes the model of each bit and its value and returns the value.
     #[inline(always)]
     fn pass(&mut self, rows: &mut [u16; 16], side: usize, mut code: impl FnMut(&mut BitModel, bool) -> bool) {
         // A row with two cells more on either side, like its outermost ones.
@@ -154,7 +153,7 @@ impl MaskWriter {
     /// The codes of all fields.
     pub fn finish(mut self) -> Vec<u8> {
         if !self.is_empty {
-            // The range holds a multiple of its least width: one byte tells it, as zeros follow.
+            // The range contains a multiple of its least width: one byte identifies it, as zeros follow.
             let up = self.low.wrapping_neg() & (NARROW - 1);
             raise(&mut self.low, up, &mut self.codes);
             self.codes.push((self.low >> 24) as u8);
@@ -166,7 +165,7 @@ impl MaskWriter {
     }
 }
 
-/// Adds to the low end of the range; what it carries over goes to the codes.
+/// Adds to the low end of the range; a carry propagates into the codes.
 #[inline(always)]
 fn raise(low: &mut u32, by: u32, codes: &mut [u8]) {
     let carries;

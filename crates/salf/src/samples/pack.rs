@@ -12,13 +12,13 @@ use glam::{DVec2, IVec2, Vec2, Vec3};
 use half::f16;
 use std::collections::HashMap;
 
-/// A sample, and how it was found.
+/// A sample and its origin.
 #[derive(Clone, Debug)]
 pub struct BakedSample {
     pub sample: Sample,
     /// The cell that it is a part of, and which sub-cells (a bit each); none for a patch of surface.
     pub part_of: Option<(Cell, u64)>,
-    /// What of its radiance was found by chance ([`trace::Leaving::by_chance`]).
+    /// The noisy part of its radiance ([`trace::OutgoingRadiance::noisy`]).
     pub noisy: Vec3,
 }
 
@@ -73,7 +73,7 @@ impl Packer {
         self.finished.push(part);
     }
 
-    /// `None` if what it is made of is beyond what packed samples can tell.
+    /// `None` if a value is out of the range of packed samples.
     fn pack(&mut self, baked: &BakedSample) -> Option<()> {
         let BakedSample { sample, part_of, .. } = baked;
         let (pixel, level) = match part_of {

@@ -14,7 +14,7 @@ pub(crate) struct Plane {
 
 impl Plane {
     pub const BYTES: usize = size_of::<Self>();
-    /// The triangle of what lies on none: the background, seen past something that is half there.
+    /// The triangle number of the background, seen through partly transparent surfaces.
     pub const NO_TRIANGLE: u32 = u32::MAX;
 
     pub fn to_bytes(self) -> [u8; Self::BYTES] {

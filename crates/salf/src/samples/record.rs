@@ -8,7 +8,7 @@ use glam::{DVec2, IVec2, Vec2};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct Record {
-    /// Where in the chunk's block it is and what kind of sample: see [`Kind`].
+    /// Position in the chunk's block and kind of sample: see [`Kind`].
     place: u16,
     /// Which of the chunk's planes it lies on; [`Record::BACKGROUND`] for none.
     pub plane: u16,
@@ -25,16 +25,16 @@ pub struct Record {
 pub enum Shape {
     /// A whole cell.
     WholeCell,
-    /// Some sub-cells of a cell: which they are is told beside the record, in four words.
+    /// Some sub-cells of a cell, listed beside the record in four words.
     PartOfCell,
-    /// Some sub-cells of this quadrant of a cell of one pixel: which they are is told beside the record, in a word.
+    /// Some sub-cells of this quadrant of a cell of one pixel, listed beside the record in a word.
     PartOfQuadrant(u8),
-    /// A patch of surface: its size is told beside the record, as a [`Patch`].
+    /// A patch of surface, whose size is stored beside the record as a [`Patch`].
     Patch,
 }
 
 impl Shape {
-    /// How many words beside the record tell which sub-cells it is.
+    /// The number of words beside the record that list its sub-cells.
     pub fn words(self) -> usize {
         match self {
             Self::WholeCell | Self::Patch => 0,
@@ -44,7 +44,7 @@ impl Shape {
     }
 }
 
-/// What a record's place says.
+/// The decoded place of a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Kind {
     /// The pixel in its block: of the cell's corner, or of the patch's centre.
@@ -52,7 +52,7 @@ pub struct Kind {
     /// The cell's side is 2 to this, px.
     pub level: u8,
     pub shape: Shape,
-    /// Cells a side of its visibility; none if it sees the whole aperture.
+    /// Cells per side of its visibility; `None` if it sees the whole aperture.
     pub cells: Option<u8>,
     pub is_carried: bool,
 }
@@ -121,7 +121,7 @@ impl Record {
         Kind::from_place(self.place).expect("a record that was read was checked")
     }
 
-    /// Whether it sees but a part of the aperture.
+    /// Whether it sees only part of the aperture.
     #[inline]
     pub fn is_partial(&self) -> bool {
         self.place >> 13 & 3 != 0
@@ -181,7 +181,7 @@ pub struct Patch {
 impl Patch {
     pub const BYTES: usize = size_of::<Self>();
 
-    /// `None` if it is larger than what can be told.
+    /// `None` if it is out of range.
     pub fn new(fraction: Vec2, half_size: Vec2, largest: Float24) -> Option<Self> {
         let fixed = |px: f32| (px * 4096.0).round();
         let [x, y] = fraction.to_array().map(|px| fixed(px).clamp(0.0, 4095.0) as u32);

@@ -70,7 +70,7 @@ impl<'a> Run<'a> {
         self.chunk.map(|chunk| self.samples.chunks[chunk].corner)
     }
 
-    /// Where its samples are, in order; what they see is not decoded.
+    /// The locations of its samples, in order; visibility is not decoded.
     pub fn locations(&self) -> impl Iterator<Item = SampleLocation> + use<'a> {
         let mut decoder = self.chunk.map(|chunk| Decoder::new(self.samples, chunk));
         let packed = self.records().iter().filter_map(move |record| {
@@ -173,7 +173,7 @@ impl Samples {
         Self::from(samples)
     }
 
-    /// A sample. What others its visibility was coded with are decoded, too: for many samples ask for their runs.
+    /// A sample. Decodes the visibility of samples before it, too: to read many, use runs.
     pub fn get(&self, index: u32) -> Sample {
         self.run(self.run_of(index)).sample(index).expect("the run that holds it")
     }
@@ -205,7 +205,7 @@ impl Samples {
 struct Decoder<'a> {
     samples: &'a Samples,
     chunk: usize,
-    /// Where the next record finds what is told beside it.
+    /// The position of the next record's data beside it.
     sub_cells: usize,
     patches: usize,
 }

@@ -42,13 +42,13 @@ struct Growing {
     node: Node,
     /// The mean of its radiance times the distance from its centre along x and y, px.
     moments: [Vec3; 2],
-    /// What it sees; all if `None`.
+    /// Its visibility; everything if `None`.
     cells: Option<Cells>,
-    /// Where they stand in [`Builder::children`].
+    /// Their range in [`Builder::children`].
     children: Range<usize>,
 }
 
-/// What a node sees: 16 × 16 cells.
+/// The visibility of a node: 16 × 16 cells.
 #[derive(Clone, Copy)]
 struct Cells([u64; 4]);
 
@@ -158,7 +158,7 @@ impl Builder<'_> {
             }
     }
 
-    /// The node that stands for `children`; `None` for a single one, and if it would send another light than they do.
+    /// The node that replaces `children`; `None` for a single one, and if it would send different light than they do.
     fn parent(&mut self, level: u8, children: &[OpenEnded]) -> Option<usize> {
         if children.len() == 1 {
             return None;
@@ -250,7 +250,7 @@ fn leaf(sample: &Sample, index: u32, level: u8) -> Growing {
     Growing { node, moments: [Vec3::ZERO; 2], cells, children: 0..0 }
 }
 
-/// The node that stands for `nodes`.
+/// The node that replaces `nodes`.
 fn mean<'a, I: Iterator<Item = &'a Node>>(level: u8, nodes: impl Fn() -> I) -> Node {
     let total: f32 = nodes().map(largest_weight).sum();
     let center = nodes().map(|node| largest_weight(node) * node.center).sum::<Vec2>() / total;
@@ -276,7 +276,7 @@ fn mean<'a, I: Iterator<Item = &'a Node>>(level: u8, nodes: impl Fn() -> I) -> N
     }
 }
 
-/// See [`Growing::moments`]: those of the `members` that a node stands for, about its centre.
+/// See [`Growing::moments`]: those of the `members` that a node replaces, about its centre.
 fn moments<'a, I: Iterator<Item = &'a Growing>>(node: &Node, members: impl Fn() -> I) -> [Vec3; 2] {
     let weight = |member: &Growing| largest_weight(&member.node);
     let total: f32 = members().map(weight).sum();
@@ -289,7 +289,7 @@ fn moments<'a, I: Iterator<Item = &'a Growing>>(node: &Node, members: impl Fn() 
     })
 }
 
-/// What most of those see whose cells `seen` are; where they are even, every other cell.
+/// The cells that most members see; where they are even, every other cell.
 fn majority<'a, I: Iterator<Item = &'a Cells>>(members: impl Fn() -> I) -> Cells {
     const CHECKERS: u64 = 0x5555_AAAA_5555_AAAA;
     let number = members().count();
@@ -347,7 +347,7 @@ impl Cells {
         (0..256).filter(is_visible).map(|k| (node.weight + node.tilt.dot(cell(k))).max(0.0)).sum()
     }
 
-    /// Whether there are cells that both see.
+    /// Whether any cell is visible to both.
     fn overlaps(&self, other: &Self) -> bool {
         self.0.iter().zip(other.0).any(|(a, b)| a & b != 0)
     }

@@ -1,4 +1,4 @@
-//! What the rays of a beam meet.
+//! Hits of the rays of a beam.
 
 use super::{LeafTriangle, Nearest, Tracer};
 use crate::transparency::TransparencyMode;
@@ -15,7 +15,7 @@ struct RayPacket<'a> {
 }
 
 impl<'a> RayPacket<'a> {
-    /// `None` of rays that are to be traced one by one.
+    /// `None` for rays that have to be traced one by one.
     fn new(rays: &'a [Ray]) -> Option<Self> {
         assert!(rays.len() <= Beam::MAX_RAYS, "more rays than a beam has");
         let is_usable = |ray: &Ray| ray.direction.is_finite() && ray.direction != DVec3::ZERO;
@@ -30,12 +30,12 @@ impl<'a> RayPacket<'a> {
         Some(Self { rays, sheared, sheared_packet })
     }
 
-    /// A ray; the last one beyond the end.
+    /// The ray at an index; the last one beyond the end.
     fn ray(&self, at: usize) -> &Ray {
         &self.rays[at.min(self.rays.len() - 1)]
     }
 
-    /// Calls `visit` with each ray that does not pass beside a triangle.
+    /// Calls `visit` with each ray that may hit a triangle.
     #[inline(always)]
     fn visit_near_rays(&self, triangle: &LeafTriangle, mut visit: impl FnMut(usize, &Ray, &ShearedRay)) {
         let mut near = self.sheared_packet.may_hit(&triangle.corners) & (u32::MAX >> (32 - self.rays.len()));
@@ -48,8 +48,8 @@ impl<'a> RayPacket<'a> {
 }
 
 impl Tracer {
-    /// What each ray of a beam meets first: the same as [`Self::first_hit`] says, for the cost of a few; but what is there in
-    /// part is met by all. At most
+    /// The first hit of each ray of a beam: the same as [`Self::first_hit`] at a lower cost, except that partly transparent
+    /// surfaces are hit by all rays. At most
     /// [`Beam::MAX_RAYS`] rays; all start at the beam's origin and lie between its edges.
     pub fn first_hits(&self, beam: &Beam, rays: &[Ray]) -> [Option<Hit>; Beam::MAX_RAYS] {
         let Some(packet) = RayPacket::new(rays) else {
@@ -84,8 +84,8 @@ impl Tracer {
         nearest.map(|nearest| nearest.hit)
     }
 
-    /// All that the rays of a beam meet, one behind the other, at most `most` on each: what [`Self::first_hits`] says of
-    /// the ray, of the ray behind that hit, and so on. Pairs of a ray's index and a hit, ray by ray; rays as those of
+    /// All hits of the rays of a beam, in order, at most `max_hits` per ray: what [`Self::first_hits`] finds for
+    /// the ray, for the ray behind that hit, and so on. Pairs of a ray's index and a hit, ray by ray; rays as those of
     /// [`Self::first_hits`].
     pub fn all_hits(&self, beam: &Beam, rays: &[Ray], max_hits: usize) -> Vec<(usize, Hit)> {
         let Some(packet) = RayPacket::new(rays) else { return self.all_hits_per_ray(rays, max_hits) };
@@ -100,7 +100,7 @@ impl Tracer {
             }
             f32::INFINITY
         });
-        // Of several at one t only the first triangle is met.
+        // Of several hits at one t only the first triangle counts.
         let key = |(at, hit): &(usize, Hit)| (*at, hit.t, hit.point.triangle);
         hits.sort_unstable_by(|a, b| key(a).partial_cmp(&key(b)).expect("t is a number"));
         hits.dedup_by_key(|(at, hit)| (*at, hit.t));

@@ -1,4 +1,4 @@
-//! What viewpoints see of squares.
+//! Visibility of squares from viewpoints.
 
 use super::{LeafTriangle, Tracer};
 use crate::hierarchy::{Node, Visit};
@@ -9,9 +9,9 @@ use scene::SurfacePoint;
 use std::ops::Range;
 
 impl Tracer {
-    /// What a viewpoint sees of the `places` of a square: of each what [`Self::hidden`] (or, from infinity, [`Self::any_hit`])
-    /// says of the ray to it, to the precision of f32 in u and v, for the cost of a few; but what is half there hides by its
-    /// share.
+    /// The visibility of `points` on a square from a viewpoint. For each point it equals [`Self::is_hidden_from`] (or, from
+    /// infinity, [`Self::any_hit`]) along the ray to it, to the precision of f32 in u and v, at a much lower cost; partly
+    /// transparent occluders attenuate by their opacity.
     pub fn square_visibility(
         &self,
         from: Viewpoint,
@@ -30,7 +30,7 @@ impl Tracer {
         visibility
     }
 
-    /// Those of the places of a square that the back of the viewpoint's own face would be seen from.
+    /// The points of a square from which only the back of the viewpoint's own face is visible.
     fn behind_own_face(&self, from: Viewpoint, square: &Square, points: &TargetPoints) -> PointSet {
         let Viewpoint::Surface(point) = from else { return PointSet::default() };
         if !self.scene.culls_back_face(point.triangle) {
@@ -48,7 +48,7 @@ impl Tracer {
             .collect()
     }
 
-    /// Takes from the sight of some places what a triangle in between takes: its opacity where their rays meet it.
+    /// Attenuates points by a triangle in between: by its opacity where their rays hit it.
     #[cold]
     fn attenuate(
         &self,
@@ -69,7 +69,7 @@ impl Tracer {
     }
 }
 
-/// A walk from a viewpoint to a square.
+/// A traversal from a viewpoint to a square.
 struct VisibilityVisitor<'a> {
     tracer: &'a Tracer,
     query: &'a VisibilityQuery<'a>,
@@ -80,7 +80,7 @@ struct VisibilityVisitor<'a> {
 }
 
 impl Visit for VisibilityVisitor<'_> {
-    /// Without what could hide only what is hidden.
+    /// Skips boxes that could hide only points that are hidden already.
     #[inline(always)]
     fn select_children(&mut self, node: &Node, reached: u32) -> u32 {
         match self.visibility.hidden.is_empty() {
@@ -92,9 +92,9 @@ impl Visit for VisibilityVisitor<'_> {
     #[inline(always)]
     fn leaf(&mut self, items: Range<usize>) -> f32 {
         let triangles = &self.tracer.triangles[items.clone()];
-        let Self { tracer, query: looking, visibility: sight, .. } = self;
-        looking.visit_near_triangles(&tracer.outlines[items], |at, near| {
-            let near = near - sight.hidden;
+        let Self { tracer, query, visibility, .. } = self;
+        query.visit_near_triangles(&tracer.outlines[items], |at, near| {
+            let near = near - visibility.hidden;
             if near.is_empty() {
                 return;
             }
@@ -102,15 +102,15 @@ impl Visit for VisibilityVisitor<'_> {
             if self.skip == Some(triangle.index) {
                 return;
             }
-            let mut new = looking.newly_hidden(&triangle.corners, near);
-            // The places lie on its other side than the viewpoint.
-            if triangle.hides_back && !new.is_empty() && looking.is_in_front_of(&triangle.corners) {
+            let mut new = query.newly_hidden(&triangle.corners, near);
+            // The triangle is culled: the viewpoint is in front of it, the points are behind.
+            if triangle.hides_back && !new.is_empty() && query.is_in_front_of(&triangle.corners) {
                 new = PointSet::default();
             }
             if triangle.may_be_transparent && !new.is_empty() {
-                tracer.attenuate(sight, triangle, looking, self.points, new);
+                tracer.attenuate(visibility, triangle, query, self.points, new);
             } else {
-                sight.hidden |= new;
+                visibility.hidden |= new;
             }
         });
         if self.visibility.hidden == self.points.all() { f32::NEG_INFINITY } else { f32::INFINITY }

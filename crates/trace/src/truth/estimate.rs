@@ -1,4 +1,4 @@
-//! What a render knows so far: the picture, and how far off it may be.
+//! The current state of a render: the picture and its standard error.
 
 use lens::{Exposure, Picture};
 use numerics::luminance;

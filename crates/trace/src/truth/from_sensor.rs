@@ -44,14 +44,14 @@ pub(super) struct FromSensor {
     aperture: ApertureSampler,
     options: TruthOptions,
     seed: u64,
-    /// Which samples suit which pixel, and those samples; known from the first pass on.
+    /// The survey that assigns sequences to pixels, and the sequences; made in the first pass.
     fitted: OnceLock<(Survey, Sheared)>,
 }
 
-/// Tells the seed of the rays that are looked at in advance from the samples'.
+/// Separates the seed of the survey's rays from that of the samples.
 const SURVEY: u64 = 0x5375_7276;
 
-/// What a ray found.
+/// A ray through the aperture, traced.
 struct TracedRay {
     /// The surface point, `None` for the background.
     point: Option<SurfacePoint>,
@@ -197,7 +197,7 @@ impl Exposure<'_> {
             let seed = hash([self.estimator.seed, x as u64, y as u64]);
             self.estimator.pixel_samples(self.view, seed, &self.passed).iter().for_each(&mut expose);
         } else {
-            // What is seen from outside of the region goes elsewhere.
+            // Light from outside of the region lands elsewhere.
             let suited = self.estimator.fitted.get().zip(self.sensor.pixel(corner));
             let choice = suited.map_or(survey::MOVED, |((survey, _), pixel)| survey.choices[pixel]);
             self.shared[usize::from(choice)].iter().for_each(&mut expose);

@@ -134,7 +134,7 @@ fn infinity(view: &View, window: [DVec2; 2]) -> impl Iterator<Item = Source> {
     })
 }
 
-/// The share of a box that lies in the window, but at least [`LEAST_SHARE`].
+/// The share of a box that lies in the window, but at least [`MIN_SHARE`].
 fn share_inside(box_px: [DVec2; 2], window: [DVec2; 2]) -> f64 {
     let inside = box_px[1].min(window[1]) - box_px[0].max(window[0]);
     let share = inside / (box_px[1] - box_px[0]);

@@ -94,8 +94,8 @@ fn largest(values: impl Iterator<Item = f64>) -> f64 {
     values.fold(0.0, |largest, value| largest.max(value.abs()))
 }
 
-/// Bounds of a field that does not know its own: from looking at the corners and within, and a share of the
-/// range that was seen beyond.
+/// Bounds of a field that has none of its own: those of samples at the corners and inside, widened by a share of
+/// their range.
 fn sampled_bounds(focus: &dyn SurfaceField<FocusOffset>, triangle: u32) -> [FocusOffset; 2] {
     const SAMPLES: u64 = 29;
     const BEYOND: f64 = 0.25;

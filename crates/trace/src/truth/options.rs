@@ -72,7 +72,7 @@ pub struct TruthOptions {
     pub filter: ReconstructionFilter,
     /// Which pixels to render; `None` is the frame.
     pub region: Option<Region>,
-    /// Whether a few rays are looked at in advance, so that samples suit the light that they bring. Without, pictures of one camera and
+    /// Whether a few rays per pixel are traced in advance to choose sample sequences. Without, pictures of one camera and
     /// focus are made of the same rays, whatever the light.
     pub surveys_light: bool,
 }

@@ -1,4 +1,4 @@
-//! Which samples suit which pixel: a few rays looked at in advance.
+//! Chooses the sample sequence of each pixel from a few rays that are traced in advance.
 //!
 //! [`super::sheared`] has samples for every radius of the circle of confusion; this chooses a pixel's. Where its rays
 //! meet one depth, its texture lies there. Where they meet two, of one light each, the edge between them belongs to
@@ -43,8 +43,8 @@ pub(super) const PLAIN: u16 = 1;
 /// Of those of the first level.
 pub(super) const FIRST_LEVEL: u16 = 2;
 
-/// How many rays a pixel are looked at: an eighth of what the render will have, and none where that is too few to
-/// tell anything.
+/// The number of survey rays per pixel: an eighth of the render's samples, and none where that is too few to
+/// classify a pixel.
 pub(super) fn rays_per_pixel(options: &TruthOptions) -> u32 {
     match options.samples_per_pixel / 8 {
         _ if !options.surveys_light => 0,
@@ -59,7 +59,10 @@ const MAX_RAYS: u32 = 32;
 const SMOOTHER: f32 = 0.8;
 
 impl Survey {
-    /// Of a region's pixels. `look` tells what the ray of a pixel with this upper left corner meets.
+    /// Surveys a region's pixels. `trace_hit` traces a ray of the pixel with this upper left corner.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if `progress` is cancelled.
     pub fn run(
         region: Region,
         rays: &[PixelSample],
@@ -104,10 +107,10 @@ impl Survey {
     }
 }
 
-/// What a pixel's own rays say.
+/// The classification of a pixel by its own rays.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Finding {
-    /// All see the same: its samples may be any.
+    /// All hits have the same radiance: any sequence will do.
     Nothing,
     /// No order helps.
     Plain,

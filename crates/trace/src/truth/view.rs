@@ -1,4 +1,4 @@
-//! What a render looks at: the scene, its focus, the camera. The one place where focus becomes κ.
+//! The scene, focus and camera of a render. The only place where focus becomes κ.
 
 use super::ray_focus::RayFocus;
 use crate::Tracer;
@@ -19,9 +19,9 @@ pub(super) struct View<'a> {
 /// How the light of a ray is focused: by whose it is.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Blurs {
-    /// That of what it found.
+    /// That of own light.
     pub own: Blur,
-    /// What it found mirrors or lets through.
+    /// That of carried light.
     pub carried: Blur,
 }
 

@@ -1,17 +1,17 @@
-//! Some of the places on a square.
+//! Sets of points on a square.
 
 use std::ops::{BitAnd, BitOrAssign, Sub};
 
-/// Some of up to 256 places, a bit each.
+/// A set of up to 256 points, a bit each.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PointSet([u64; Self::WORDS]);
 
 impl PointSet {
     const WORDS: usize = 4;
-    /// How many places there can be.
+    /// The largest number of points.
     pub const MAX: usize = 64 * Self::WORDS;
 
-    /// The bits of 64 places after another.
+    /// The bits, 64 points per word.
     #[inline(always)]
     pub fn words(&self) -> &[u64; Self::WORDS] {
         &self.0
@@ -22,19 +22,19 @@ impl PointSet {
         &mut self.0
     }
 
-    /// Whether it has none.
+    /// Whether the set is empty.
     #[inline(always)]
     pub fn is_empty(&self) -> bool {
         // Together, not compared: that would send the words through memory.
         self.0.iter().fold(0, |all, word| all | word) == 0
     }
 
-    /// Whether it has a place.
+    /// Whether a point is in the set.
     pub fn contains(&self, place: usize) -> bool {
         self.0[place / 64] >> (place % 64) & 1 == 1
     }
 
-    /// Those that it has, in order.
+    /// The points of the set, in ascending order.
     pub fn iter(self) -> impl Iterator<Item = usize> {
         self.0.into_iter().enumerate().flat_map(|(word, mut left)| {
             std::iter::from_fn(move || {

@@ -1,4 +1,4 @@
-//! Where triangles lie on the square as a viewpoint sees them, quickly: in f32, generously.
+//! Conservative projection of triangles from a viewpoint onto the square, in f32.
 
 use crate::hierarchy::Node;
 use crate::local_space::LocalSpace;
@@ -19,7 +19,7 @@ impl Outline {
 
 /// The projection from a viewpoint onto the square, of local space.
 ///
-/// A point at c, seen from o, is at u = right·(c − o)/depth − middle.x, depth = toward·(c − o) being 1 on the square; v
+/// A point at c, projected from o, is at u = right·(c − o)/depth − middle.x, depth = toward·(c − o) being 1 on the square; v
 /// likewise. From infinity, depth is 1 everywhere.
 pub(super) struct Projection {
     origin: Vec3,
@@ -67,7 +67,7 @@ impl Projection {
         }
     }
 
-    /// The boxes around some triangles, at most [`Boxes::MOST`] and at least one.
+    /// The boxes around some triangles, at most [`Boxes::MAX`] and at least one.
     #[inline(always)]
     pub fn boxes(&self, outlines: &[Outline]) -> Boxes {
         let last = outlines.len() - 1;
@@ -145,20 +145,20 @@ impl Projection {
 pub(super) struct Boxes {
     low: [[f32; Self::MAX]; 2],
     high: [[f32; Self::MAX]; 2],
-    /// A bit for each that is known: of others a corner is nearly beside the viewpoint, or behind it.
+    /// A bit for each box with finite bounds; the others have a corner beside the viewpoint, or behind it.
     bounded: u32,
-    /// A bit for each that has something of the square, as far as is known.
+    /// A bit for each box that may overlap the square.
     pub reaching: u32,
 }
 
 impl Boxes {
-    /// So many are found at once.
+    /// The number of boxes that are computed at once.
     pub const MAX: usize = 4;
 
     /// From their ends, `some` of them, a bit each.
     #[inline(always)]
     fn new(low: [Vec4; 2], high: [Vec4; 2], is_bounded: BVec4A, some: u32) -> Self {
-        // Of a square without sides nothing is known.
+        // A square without extent gives no bounds.
         let is_bounded = is_bounded & low[0].cmple(high[0]) & low[1].cmple(high[1]);
         let is_outside = (low[0].cmpgt(Vec4::ONE) | high[0].cmplt(Vec4::NEG_ONE))
             | (low[1].cmpgt(Vec4::ONE) | high[1].cmplt(Vec4::NEG_ONE));
@@ -170,7 +170,7 @@ impl Boxes {
         }
     }
 
-    /// One of them, if it is known.
+    /// The bounds of one box, if they are finite.
     #[inline(always)]
     pub fn get(&self, index: usize) -> Option<Bounds> {
         let is_bounded = self.bounded >> index & 1 == 1;

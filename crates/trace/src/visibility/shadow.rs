@@ -34,7 +34,7 @@ impl Linear {
         (a * u + b * v) + c
     }
 
-    /// What [`Self::of`] is at most on the square: it is rounded likewise.
+    /// An upper bound of [`Self::evaluate`] on the square, rounded likewise.
     #[inline(always)]
     fn max_on_square(self) -> f32 {
         let [a, b, c] = self.0;
@@ -49,7 +49,7 @@ pub(super) struct Shadow {
 }
 
 impl Shadow {
-    /// Of the triangle with these corners on a square that is looked at from `eye`; `None` if it throws none there: it is seen
+    /// The shadow that a triangle casts on a square from `eye`; `None` if it throws none there: it is seen
     /// along its plane, or the whole square lies before that plane or beside an edge.
     #[inline(always)]
     pub fn cast(corners: &[DVec3; 3], eye: Eye, square: &Square) -> Option<Self> {

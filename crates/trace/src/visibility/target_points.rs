@@ -1,10 +1,10 @@
-//! Places on a square.
+//! Points on a square.
 
 use crate::visibility::PointSet;
 use crate::visibility::shadow::Shadow;
 use glam::{DVec2, Vec4};
 
-/// Places on a square, up to [`PlaceSet::MOST`].
+/// Points on a square, up to [`PointSet::MAX`].
 #[derive(Clone, Debug, Default)]
 pub struct TargetPoints {
     /// By fours; what the last four do not use is at the square's middle.
@@ -37,9 +37,9 @@ impl TargetPoints {
     /// From their coordinates in [−1, 1].
     ///
     /// # Panics
-    /// If there are more than [`PlaceSet::MOST`].
+    /// If there are more than [`PointSet::MAX`].
     pub fn new(places: &[DVec2]) -> Self {
-        assert!(places.len() <= PointSet::MAX, "at most {} places", PointSet::MAX);
+        assert!(places.len() <= PointSet::MAX, "at most {} points", PointSet::MAX);
         let four = |four: &[DVec2]| {
             let of = |axis: usize| {
                 Vec4::from_array(std::array::from_fn(|k| four.get(k).map_or(0.0, |p| p[axis] as f32)))

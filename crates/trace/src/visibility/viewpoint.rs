@@ -1,9 +1,9 @@
-//! Where a square is looked at from.
+//! Where visibility is computed from.
 
 use glam::DVec3;
 use scene::SurfacePoint;
 
-/// Where a square is looked at from.
+/// Where the visibility of a square is computed from.
 #[derive(Clone, Copy, Debug)]
 pub enum Viewpoint {
     /// A point on a surface, which does not hide the square itself.

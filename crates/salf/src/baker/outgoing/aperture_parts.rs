@@ -1,21 +1,21 @@
-//! Light that differs over the aperture, on as few parts of it as tell it.
+//! Light that varies over the aperture, merged into as few parts of it as possible.
 
 use glam::Vec3;
 
-/// Cells a side at most that light is told on.
+/// The largest number of cells per side on which light is sampled.
 pub const MAX_CELLS: usize = 8;
 
 /// A part of the aperture, and what is sent toward it in the mean.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AperturePart {
     pub light: Vec3,
-    /// What of it was found by chance.
+    /// The noisy part of it.
     pub noisy: Vec3,
     /// The part, on 8 × 8 cells.
     pub cells: u64,
 }
 
-/// Light toward each of `side` × `side` cells, row by row from v = −1, and what of it was found by chance.
+/// Light toward each of `side` × `side` cells, row by row from v = −1, and the noisy part of it.
 pub struct ApertureCells<'a> {
     pub side: usize,
     pub light: &'a [Vec3],

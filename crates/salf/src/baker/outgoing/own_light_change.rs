@@ -13,8 +13,8 @@ pub struct OwnLightChange {
 }
 
 impl OwnLightChange {
-    /// Of a point of inverse depth `inverse_depth`; none where it sends the same toward all of the aperture. It is told as finely for what
-    /// is in focus: who looks through a part of the aperture sees it there, too.
+    /// For a point of inverse depth `inverse_depth`; `None` where it sends the same toward all of the aperture. Surfaces in focus are
+    /// sampled as finely: views through a part of the aperture show the change there, too.
     pub fn sample(query: &RadianceQuery, point: SurfacePoint, inverse_depth: f64) -> Option<Self> {
         let RadianceQuery { view, radiance, .. } = *query;
         let cells = cells_of_lobe(view, inverse_depth, radiance.own_lobe_width(point)?);

@@ -12,7 +12,7 @@ const AGREEING: f64 = 0.9;
 /// What there is to decide in a pixel whose light paint moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Paint {
-    /// All see the same.
+    /// All hits have the same radiance.
     Nothing,
     /// Several circles of confusion, or light that moves unlike.
     Mixed,

@@ -1,15 +1,15 @@
-//! What the rays of a pixel meet: one depth or two, one light or many.
+//! Hits of a pixel's survey rays: at one depth or two, of one radiance or several.
 
 use glam::Vec3;
 
-/// What a ray meets.
+/// The hit of a survey ray.
 #[derive(Clone, Copy, Debug)]
 pub struct SurveyHit {
     /// The signed radius of its circle of confusion under the standard lens, px.
     pub radius_px: f64,
     /// What paint adds to it, px.
     pub moved_px: f64,
-    /// The light that it brings.
+    /// Its radiance.
     pub light: Vec3,
 }
 
@@ -19,12 +19,12 @@ pub const WITHIN: f32 = 0.01;
 /// Radii farther apart than this, relative (absolute below 1 px), are two depths.
 const APART: f64 = 0.1;
 
-/// Whether all bring the same light.
+/// Whether all have the same radiance.
 pub fn is_uniform(hits: &[SurveyHit]) -> bool {
     hits.windows(2).all(|pair| pair[0].light == pair[1].light)
 }
 
-/// How many of those looks, in the order of their radii, lie in front of the widest gap between depths; all if there
+/// The number of hits, in the order of their radii, that lie in front of the widest gap between depths; all if there
 /// is one depth.
 pub fn widest_gap(by_radius: &[SurveyHit]) -> usize {
     let radius = |k: usize| by_radius[k].radius_px;
