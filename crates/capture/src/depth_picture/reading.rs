@@ -313,10 +313,10 @@ impl Opening<'_> {
             return Ok(None);
         };
         let embedded = embedded.map_err(|why| self.malformed("XMP", why))?;
-        self.from_embedded(embedded, container).map(Some)
+        self.embedded_picture(embedded, container).map(Some)
     }
 
-    fn from_embedded(
+    fn embedded_picture(
         &self,
         embedded: Embedded,
         container: DepthContainer,
