@@ -1,9 +1,10 @@
-//! What of the shot camera adjustment layers depend on.
+//! The properties of the shot camera that adjustment layers depend on.
 
 use glam::{DMat4, DVec2};
 use lens::Camera;
 
-/// Pose, angle of view, sensor height and where its frame lies: where things stand before the camera, and what a blur means as an offset.
+/// The properties of the shot camera that adjustment layers depend on: pose, angle of view and shift, which decide where things are in camera
+/// space, and sensor height, which relates blur to focus offset.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AdjustmentView {
     camera_to_world: DMat4,
@@ -13,7 +14,7 @@ pub struct AdjustmentView {
 }
 
 impl AdjustmentView {
-    /// That of a camera.
+    /// The properties of `camera`.
     pub fn from_camera(camera: &Camera) -> Self {
         let &Camera { camera_to_world, yfov, sensor_height, shift, .. } = camera;
         Self { camera_to_world, yfov, sensor_height, shift }

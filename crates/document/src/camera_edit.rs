@@ -1,37 +1,37 @@
-//! A change of one thing of the camera.
+//! A change of one property of the camera.
 
 use glam::{DMat4, DVec2};
 use lens::{Aperture, Camera};
 
-/// A change of one thing of the camera.
+/// A change of one property of the camera.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CameraEdit {
     /// Axial distance of the focus plane, > 0; may be infinite.
     FocusDistance(f64),
     /// R, ≥ 0.
     ApertureRadius(f64),
-    /// f/(2R), > 0: sets R. At infinity it closes the aperture to a pinhole.
+    /// f/(2R), > 0: sets R. Infinity closes the aperture to a pinhole.
     FNumber(f64),
-    /// Shape and ratio.
+    /// Shape and aspect ratio.
     Aperture(Aperture),
     /// Full vertical angle of view, rad.
     YFov(f64),
     /// Height of the sensor.
     SensorHeight(f64),
-    /// How far the sensor is moved right and up, picture heights.
+    /// Sensor shift to the right and up, in picture heights.
     Shift(DVec2),
-    /// Linear radiance where no surface is, or none of its own.
+    /// Linear radiance where no surface is; `None` for that of the scene's world.
     Background(Option<[f64; 3]>),
     /// Picture width and height, px.
     Size(u32, u32),
-    /// Pose, glTF axes.
+    /// Pose, with glTF's axes.
     Pose(DMat4),
-    /// Everything at once (a camera of the scene, a preset).
+    /// All properties at once: a camera of the scene, a preset.
     Whole(Camera),
 }
 
 impl CameraEdit {
-    /// Its name in the undo list, and the changed camera, which may be invalid.
+    /// The edit's name in the undo list, and the changed camera, which may be invalid.
     pub fn applied_to(self, camera: &Camera) -> (&'static str, Camera) {
         let mut after = camera.clone();
         let name = match self {
@@ -89,7 +89,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_f_number_comes_back() {
+    fn an_f_number_round_trips() {
         let (_, camera) = CameraEdit::FNumber(1.4).applied_to(&Camera::default());
         assert!((camera.f_number() - 1.4).abs() < 1e-12);
         let (_, pinhole) = CameraEdit::FNumber(f64::INFINITY).applied_to(&camera);

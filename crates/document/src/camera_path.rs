@@ -1,23 +1,22 @@
-//! From one camera to another, around what both look at.
+//! The path from one camera to another, around the place that both look at.
 //!
-//! Cameras of photographs stand around a place. A straight line between two of them comes nearer to it, so the path is an arc: about the point
-//! p that is nearest to both axes, the directions from it and the distances interpolated.
+//! Photographs are usually taken from around a place. A straight line between two of their cameras would come nearer to it, so the path is
+//! an arc about the point p nearest to both optical axes: directions from p and distances to it are interpolated.
 //!
 //! ```text
 //! c(s) = p + |r(s)|·slerp(r₀/|r₀|, r₁/|r₁|; s)        rᵢ = cᵢ − p        |r(s)| = (1 − s)|r₀| + s|r₁|
 //! ```
 //!
-//! Where axes are parallel, or meet behind a camera, p is infinitely far or of no use, and the path is the straight line, which the arc
-//! becomes as p moves away.
+//! If the axes are parallel or meet behind a camera, the path is the straight line, which is the limit of the arc as p moves to infinity.
 
 use glam::{DMat3, DMat4, DQuat, DVec3};
 use lens::Camera;
 
-/// sin² of the angle between axes below which they are parallel: from there on the arc is less than 10⁻⁴ of its chord off the line.
+/// sin² of the angle between axes below which they count as parallel: the arc is then within 10⁻⁴ of its chord of the straight line.
 const PARALLEL_SINE_SQUARED: f64 = 1e-7;
 
-/// The camera at a share (0: `from`, 1: `to`, exactly) of the way. Pose, angle of view (its tangent, geometrically) and focus distance (its
-/// inverse) change steadily; size and lens are those of `from`.
+/// The camera at a `share` of the path in [0, 1]; 0 is exactly `from`, 1 exactly the pose, framing and focus of `to`. The tangent of the
+/// angle of view is interpolated geometrically, the inverse of the focus distance linearly; size and lens are those of `from`.
 pub fn camera_between(from: &Camera, to: &Camera, share: f64) -> Camera {
     if share <= 0.0 {
         return from.clone();
@@ -58,7 +57,7 @@ fn position_between(from: &Camera, to: &Camera, share: f64) -> DVec3 {
     pivot + DQuat::IDENTITY.slerp(rotation, share) * r.normalize() * distance
 }
 
-/// The point nearest to two axes, if it lies before both cameras.
+/// The point nearest to two axes, if it lies in front of both cameras.
 fn nearest_point_to_axes([a, b]: [DVec3; 2], [f, g]: [DVec3; 2]) -> Option<DVec3> {
     let cosine = f.dot(g);
     let sine_squared = f.cross(g).length_squared();
@@ -94,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn around_a_ring_the_distance_stays_and_the_middle_is_looked_at() {
+    fn around_a_ring_the_distance_is_constant_and_the_centre_stays_in_view() {
         let at = DVec3::new(1.0, 0.5, -2.0);
         let around = |angle: f64| looking(at + 3.0 * DVec3::new(angle.cos(), 0.0, angle.sin()), at);
         let (a, b) = (around(0.3), around(1.5));
@@ -116,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn parallel_axes_give_a_line_and_nearly_parallel_ones_nearly_that() {
+    fn parallel_axes_give_a_line_and_nearly_parallel_axes_nearly_a_line() {
         let a = looking(DVec3::ZERO, -DVec3::Z);
         for turned in [0.0, 1e-9, 3.2e-4, 1e-3, 1e-2] {
             let b = looking(DVec3::X, DVec3::new(1.0 - turned, 0.0, -1.0));

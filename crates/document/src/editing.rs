@@ -1,7 +1,7 @@
-//! What painting does to a document.
+//! Edits of a document's paint.
 //!
-//! Strokes, fills, gradients, selections and layers, each a step of undo that can be recorded and done again. Nothing here
-//! knows of pictures: what changed is returned.
+//! Strokes, fills, gradients, selections and layers. Each is an undo step that can be recorded and replayed. Nothing here knows of rendered
+//! pictures: functions return what they changed.
 
 mod active_edit;
 mod active_gradient;

@@ -1,28 +1,28 @@
-//! What can go wrong with a document, by what the user can do about it.
+//! Errors of documents, by what the user can do about them.
 
 use light::LightError;
 use progress::Cancelled;
 use std::io::Error;
 use std::path::{Path, PathBuf};
 
-/// Why something was not opened, saved or edited. Its text is one line: `FILE: what is wrong (what to do)`.
+/// Why something could not be opened, saved or edited. The text is one line: `FILE: what is wrong (what to do)`.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum DocumentError {
-    /// A file or a value cannot be used; the text names it, what is wrong and what to do.
+    /// A file or a value cannot be used. The text says which, what is wrong and what to do.
     #[error("{0}")]
     BadInput(String),
-    /// A capture's depth map does not say which end is near; the text says how to tell.
+    /// A capture's depth map does not say which end is near. The text says how to specify it.
     #[error("{text}")]
     NearUnknown {
-        /// The map.
+        /// The depth map.
         map: PathBuf,
-        /// What is wrong and what to do.
+        /// The message.
         text: String,
     },
-    /// The machine, not the input, stands in the way for now: a full disk, a locked file.
+    /// The machine, not the input, prevents it for now: a full disk, a locked file.
     #[error("{0}")]
     TryAgain(String),
-    /// The user stopped it, or a newer request took its place.
+    /// The user cancelled it, or a newer request replaced it.
     #[error("cancelled")]
     Cancelled,
     /// A fault of the program itself.
@@ -53,12 +53,12 @@ impl From<IoFault> for DocumentError {
 }
 
 impl DocumentError {
-    /// Bad input in `file`.
-    pub fn bad_file(file: &Path, what: impl std::fmt::Display) -> Self {
-        Self::BadInput(format!("{}: {what}", file.display()))
+    /// [`Self::BadInput`] about `file`.
+    pub fn bad_file(file: &Path, message: impl std::fmt::Display) -> Self {
+        Self::BadInput(format!("{}: {message}", file.display()))
     }
 
-    /// What an I/O error on `file` means: bad input, or worth another try.
+    /// The error for an I/O error on `file`: [`Self::TryAgain`] if it is temporary, otherwise [`Self::BadInput`].
     pub fn io(file: &Path, error: &Error) -> Self {
         IoFault::new(file, error).into()
     }
@@ -69,18 +69,18 @@ impl DocumentError {
 pub struct IoFault {
     /// One line: `FILE: what is wrong (what to do)`.
     pub text: String,
-    /// Whether the machine stands in the way for now, not the input.
+    /// Whether the machine, not the input, prevents it for now.
     pub is_temporary: bool,
 }
 
 impl IoFault {
-    /// What `error` on `file` means.
+    /// The fault for `error` on `file`.
     pub fn new(file: &Path, error: &Error) -> Self {
         use std::io::ErrorKind::{
             Deadlock, Interrupted, NotFound, OutOfMemory, PermissionDenied, QuotaExceeded, ResourceBusy,
             StorageFull, TimedOut, WouldBlock,
         };
-        let (cure, is_temporary) = match error.kind() {
+        let (remedy, is_temporary) = match error.kind() {
             StorageFull | QuotaExceeded => ("free some disk space and try again", true),
             ResourceBusy | Deadlock | TimedOut | WouldBlock | Interrupted | OutOfMemory => {
                 ("try again", true)
@@ -89,17 +89,17 @@ impl IoFault {
             PermissionDenied => ("check the permissions", false),
             _ => ("check the path and the disk", false),
         };
-        Self { text: format!("{}: {} ({cure})", file.display(), without_number(error)), is_temporary }
+        Self { text: format!("{}: {} ({remedy})", file.display(), without_error_number(error)), is_temporary }
     }
 }
 
-/// The operating system's sentence without its error number.
-fn without_number(error: &Error) -> String {
+/// The operating system's message without its error number.
+fn without_error_number(error: &Error) -> String {
     let text = error.to_string();
     text.split(" (os error").next().unwrap_or(&text).to_lowercase()
 }
 
-/// The file of a document as people call it.
+/// The name of a document's file, as shown to people.
 pub fn file_name(path: &Path) -> String {
     path.file_name().map_or_else(|| PathBuf::from(path).display().to_string(), |n| n.to_string_lossy().into())
 }

@@ -1,4 +1,4 @@
-//! What can be opened: a scene, a project or a light field, as the renderers need it.
+//! Files that can be opened: scenes, projects, light fields and captures, as the renderers need them.
 
 mod capture_scene;
 mod depth_polarity;
@@ -12,29 +12,24 @@ mod picture_surface;
 mod picture_views;
 mod variant_choice;
 
-pub(crate) use picture_scene::picture_atlas;
 pub(crate) use capture_scene::load_capture;
 pub use capture_scene::{camera_from_photograph, find_photograph, is_capture};
 pub use depth_polarity::DepthPolarityRequest;
 pub use disparity_error::DisparityError;
+pub(crate) use picture_scene::picture_atlas;
 pub use variant_choice::VariantChoice;
 
-use crate::input::capture_scene::CaptureScene;
-use crate::input::capture_scene::PHOTOGRAPH_PREFIX;
-use crate::input::capture_scene::capture_disparity_error;
-use crate::input::capture_scene::parse_photograph_camera;
-use light::{LightOptions, LitScene, Resources, load_or_unwrap_atlas};
-use crate::scene_camera::shot_camera_from;
-use crate::scene_camera::shot_camera_in_any_unit;
-use crate::stage::Stage;
-use crate::stage::atlas_error;
-use crate::stage::load_variant;
-use crate::paint_transfer::TransferredPaint;
 use crate::error::DocumentError;
-use light::Steps;
+use crate::input::capture_scene::{
+    CaptureScene, PHOTOGRAPH_PREFIX, capture_disparity_error, parse_photograph_camera,
+};
+use crate::paint_transfer::TransferredPaint;
+use crate::scene_camera::{shot_camera_from, shot_camera_in_any_unit};
+use crate::scene_file::{atlas_error, load_variant};
 use atlas::{Atlas, AtlasError, UnwrapOptions};
 use focus::{Focus, FocusMap, FocusRecipe, RecipeEntry};
 use lens::{Camera, Exposure, FocusOffset};
+use light::{LightOptions, LitScene, Resources, Steps, load_or_unwrap_atlas};
 use progress::Progress;
 use project::{CaptureChoices, FocusFile, ProjectError, ProjectFile, SceneState, read_camera, read_focus};
 use salf::{Salf, SalfFile};
@@ -67,36 +62,36 @@ pub struct Input {
     pub path: PathBuf,
     /// The scene: its own, the project's, or the one that the light field was baked from.
     pub scene: Arc<Scene>,
-    /// The camera that it is shown with unless another one is asked for.
+    /// The camera to show it with, unless another one is requested.
     pub camera: Camera,
-    /// Of a project: everything else that it says.
+    /// If the file is a project: everything else in it.
     pub project: Option<ProjectFile>,
-    /// Of a light field: the light field.
+    /// If the file is a light field: the light field.
     pub salf: Option<Arc<Salf>>,
-    /// Of a capture that was opened as such: what of it was chosen.
+    /// If the file is a capture: the choices it was opened with.
     pub capture: Option<CaptureChoices>,
-    /// What is odd but does no harm, a sentence each.
+    /// Anything unusual but harmless about the files, a sentence each.
     pub warnings: Vec<String>,
-    /// Whether something is missing that the file speaks of: photographs of a capture.
+    /// Whether something that the file refers to is missing, such as photographs of a capture.
     pub is_incomplete: bool,
-    /// How the project's paint came onto this surface, where it was painted on another.
+    /// How the project's paint was transferred to this surface, if it was painted on another.
     pub paint_transfer: Option<TransferredPaint>,
-    /// How its light is modelled.
+    /// How light is modelled.
     pub light: LightOptions,
-    /// What work on it may use.
+    /// The disk cache and threads that work on it may use.
     pub resources: Resources,
 }
 
-/// A camera, as asked for.
+/// A requested camera.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CameraChoice {
-    /// A camera file; what it lacks is as in the input's own camera.
+    /// A camera file; properties that it lacks are those of the input's own camera.
     File(PathBuf),
     /// The camera of this name in the scene or project.
     Named(String),
 }
 
-/// What a file seems to be, by its extension.
+/// The kind of a file, by its extension.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum InputKind {
     /// `.glb` or `.gltf`.
@@ -105,12 +100,15 @@ pub enum InputKind {
     Project,
     /// `.salf`.
     LightField,
-    /// The folder of a capture, or a picture that is one.
+    /// The folder of a capture, or a picture file that is one.
     Capture,
 }
 
 impl InputKind {
-    /// What `path` seems to be; an error for a file that is none of them.
+    /// The kind of the file or folder at `path`.
+    ///
+    /// # Errors
+    /// There is no such file, or it is of none of these kinds.
     pub fn from_path(path: &Path) -> Result<Self, DocumentError> {
         let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
         if path.is_dir() {
@@ -126,7 +124,7 @@ impl InputKind {
                 let extensions = format!(".glb, .gltf, .{} or .salf", ProjectFile::EXTENSION);
                 Err(DocumentError::bad_file(
                     path,
-                    format!("neither scene, project nor light field (give a {extensions} file)"),
+                    format!("is not a scene, project or light field (choose a {extensions} file)"),
                 ))
             }
         }
@@ -134,12 +132,18 @@ impl InputKind {
 }
 
 impl Input {
-    /// Opens `path`.
+    /// Opens the file or folder at `path`.
+    ///
+    /// # Errors
+    /// The file, or one that it refers to, cannot be read or used, or the work was cancelled.
     pub fn open(path: &Path, resources: &Resources, steps: &dyn Steps) -> Result<Self, DocumentError> {
         Self::open_variant(path, &VariantChoice::AsSaved, resources, steps)
     }
 
-    /// Opens `path` in a variant of its scene.
+    /// Opens the file or folder at `path`, in a variant of its scene.
+    ///
+    /// # Errors
+    /// Those of [`Self::open`]; or the scene has no such variant.
     pub fn open_variant(
         path: &Path,
         variant: &VariantChoice,
@@ -148,13 +152,18 @@ impl Input {
     ) -> Result<Self, DocumentError> {
         match InputKind::from_path(path)? {
             InputKind::Scene => Self::open_scene(path, variant, resources, steps),
-            InputKind::Project => Self::open_project(path, ProjectFile::load(path)?, variant, resources, steps),
+            InputKind::Project => {
+                Self::open_project(path, ProjectFile::load(path)?, variant, resources, steps)
+            }
             InputKind::LightField => Self::open_light_field(path, variant, resources, steps),
             InputKind::Capture => Self::open_capture(path, CaptureChoices::default(), resources, steps),
         }
     }
 
-    /// Opens the capture in a folder.
+    /// Opens the capture at `path`.
+    ///
+    /// # Errors
+    /// The capture, or a file that `choices` names, cannot be read or used, or the work was cancelled.
     pub fn open_capture(
         path: &Path,
         choices: CaptureChoices,
@@ -169,19 +178,21 @@ impl Input {
         Ok(Self { capture: Some(choices), is_incomplete, ..input })
     }
 
-    /// How far the disparities that the views of a light field tell by themselves are from those that came with them; none where none did.
+    /// The error of disparities estimated from the views of a light field, against those that came with it; `None` if none came with it.
     ///
     /// # Errors
-    /// The views cannot be read, or `progress` says to stop.
+    /// The views cannot be read, or `progress` was cancelled.
     pub fn disparity_error(&self, progress: &dyn Progress) -> Result<Option<DisparityError>, DocumentError> {
         let project_choices = self.project.as_ref().and_then(|project| project.capture.as_ref());
         match (self.capture.as_ref().or(project_choices), &self.scene.picture) {
-            (Some(choices), Some(_)) => capture_disparity_error(&self.scene.path, choices, &self.resources.cache, progress),
+            (Some(choices), Some(_)) => {
+                capture_disparity_error(&self.scene.path, choices, &self.resources.cache, progress)
+            }
             _ => Ok(None),
         }
     }
 
-    /// Neither project nor light field nor capture, and complete.
+    /// A complete input that is no project, light field or capture.
     fn new(
         path: &Path,
         scene: Arc<Scene>,
@@ -216,7 +227,7 @@ impl Input {
         Ok(Self::new(path, scene, camera, warnings, resources))
     }
 
-    /// Opens what `project` says, which was read from `path`.
+    /// Opens the scene of `project`, which was read from `path`.
     pub(crate) fn open_project(
         path: &Path,
         project: ProjectFile,
@@ -228,27 +239,30 @@ impl Input {
         match project.scene_state() {
             SceneState::Same => {}
             SceneState::Changed => warnings.push(format!(
-                "{}: its scene {} has changed since (look at the paint before saving)",
+                "{}: its scene {} has changed since it was saved (check the paint before saving again)",
                 path.display(),
                 project.scene.display()
             )),
             SceneState::Missing => {
-                let what = format!("its scene {} is missing (put it back)", project.scene.display());
-                return Err(DocumentError::bad_file(path, what));
+                let message = format!("its scene {} is missing (restore that file)", project.scene.display());
+                return Err(DocumentError::bad_file(path, message));
             }
         }
         if let Some(choices) = &project.capture {
             let loaded = load_capture(&project.scene, choices, &resources.cache, steps)?;
             warnings.extend(loaded.remarks);
             let is_incomplete = loaded.is_incomplete;
-            return Ok(Self { is_incomplete, ..Self::from_project(path, project, loaded.scene, warnings, resources) });
+            return Ok(Self {
+                is_incomplete,
+                ..Self::from_project(path, project, loaded.scene, warnings, resources)
+            });
         }
         let load_scene_variant = |variant| load_variant(&project.scene, variant, &*steps.begin("reading"));
         let scene = match load_scene_variant(variant.name(project.variant.as_deref())) {
             Err(SceneError::Bad { file, fault: fault @ Fault::NoVariant { .. } })
                 if *variant == VariantChoice::AsSaved =>
             {
-                let instead = "it has its own materials instead, choose a variant before saving";
+                let instead = "its own materials are shown instead (choose a variant before saving)";
                 warnings.push(format!("{}: {fault}; {instead}", file.display()));
                 load_scene_variant(None)?
             }
@@ -257,7 +271,7 @@ impl Input {
         Ok(Self::from_project(path, project, scene, warnings, resources))
     }
 
-    /// A project whose scene was read.
+    /// The input of a project whose scene was read.
     fn from_project(
         path: &Path,
         project: ProjectFile,
@@ -268,27 +282,28 @@ impl Input {
         warnings.extend(prefix_with_path(&project.scene, &scene.warnings));
         let camera = project.cameras[project.active_camera].camera.clone();
         let (back_faces, world) = (project.back_faces, project.world.clone());
-        let mut input = Self { project: Some(project), ..Self::new(path, scene, camera, warnings, resources) };
+        let mut input =
+            Self { project: Some(project), ..Self::new(path, scene, camera, warnings, resources) };
         input.set_back_faces(back_faces);
         match world.map(|world| world.load(&input.scene)).transpose() {
             Ok(world) => input.set_world(world),
             Err(error) => {
-                input
-                    .warnings
-                    .push(format!("{error}; the scene has its own world (choose one before saving)"));
+                input.warnings.push(format!(
+                    "{error}; the scene's own world is shown instead (choose one before saving)"
+                ));
             }
         }
         input
     }
 
-    /// Has faces seen from behind, or not, whatever the project says.
+    /// Sets whether back faces are shown, overriding the project.
     pub fn set_back_faces(&mut self, back_faces: BackFaces) {
         if back_faces != self.scene.back_faces {
             Arc::make_mut(&mut self.scene).back_faces = back_faces;
         }
     }
 
-    /// Gives the scene a world, whatever the project says; none: its own.
+    /// Sets the scene's world, overriding the project; `None` for the scene's own.
     pub fn set_world(&mut self, world: Option<World>) {
         if world != self.scene.world {
             Arc::make_mut(&mut self.scene).world = world;
@@ -306,27 +321,32 @@ impl Input {
             SalfFile::read(BufReader::new(file)).map_err(|error| DocumentError::bad_file(path, error))?;
         let source_path = path.parent().unwrap_or(Path::new("")).join(&source);
         if InputKind::from_path(&source_path).ok() == Some(InputKind::LightField) || !source_path.exists() {
-            let what =
-                format!("the scene it was baked from, {}, is missing (put it back)", source_path.display());
-            return Err(DocumentError::bad_file(path, what));
+            let message = format!(
+                "the scene it was baked from, {}, is missing (restore that file)",
+                source_path.display()
+            );
+            return Err(DocumentError::bad_file(path, message));
         }
         let baked_from = Self::open_variant(&source_path, variant, resources, steps)?;
         if baked_from.scene.triangles.len() != triangles as usize {
-            let what = format!(
+            let message = format!(
                 "the scene it was baked from, {}, has changed since (bake again)",
                 source_path.display()
             );
-            return Err(DocumentError::bad_file(path, what));
+            return Err(DocumentError::bad_file(path, message));
         }
         Ok(Self { path: path.into(), camera: salf.camera.clone(), salf: Some(salf), ..baked_from })
     }
 
-    /// The camera to show it with. Where none is asked for: the project's, else the scene's first.
+    /// The requested camera; by default the project's, or else the scene's first.
+    ///
+    /// # Errors
+    /// The camera file cannot be read, or there is no camera or photograph of that name.
     pub fn camera(&self, choice: Option<&CameraChoice>) -> Result<Camera, DocumentError> {
         match choice {
             None => Ok(self.camera.clone()),
             Some(CameraChoice::File(file)) => {
-                // A framing that was made up for a scene without a camera is nothing that a camera file counts on.
+                // A camera file does not refer to the default framing of a scene without cameras.
                 let is_invented =
                     self.project.is_none() && self.salf.is_none() && self.scene.has_default_camera;
                 let defaults = if is_invented { &Camera::default() } else { &self.camera };
@@ -337,7 +357,7 @@ impl Input {
                 let mut saved = saved.filter(|named| named.name == *name).map(|named| named.camera.clone());
                 if let Some(name) = name.strip_prefix(PHOTOGRAPH_PREFIX) {
                     let camera = parse_photograph_camera(&self.scene, name, &self.camera);
-                    return camera.map_err(|what| DocumentError::bad_file(&self.path, what));
+                    return camera.map_err(|message| DocumentError::bad_file(&self.path, message));
                 }
                 let in_scene = || self.scene.cameras.iter().find(|camera| camera.name == *name);
                 saved.next().or_else(|| in_scene().map(|c| shot_camera_from(c, &self.camera))).ok_or_else(
@@ -345,7 +365,7 @@ impl Input {
                         let names: Vec<_> =
                             self.scene.cameras.iter().map(|c| format!("\"{}\"", c.name)).collect();
                         let available =
-                            format!("there are {}; a camera file ends in .json", names.join(", "));
+                            format!("available: {}; a camera file ends in .json", names.join(", "));
                         DocumentError::bad_file(
                             &self.path,
                             format!("no camera is called \"{name}\" ({available})"),
@@ -356,13 +376,16 @@ impl Input {
         }
     }
 
-    /// How the sum becomes the picture unless asked otherwise.
+    /// The project's exposure mode; by default [`Exposure::Normalise`].
     pub fn exposure(&self) -> Exposure {
         self.project.as_ref().map_or(Exposure::Normalise, |project| project.exposure)
     }
 
-    /// The focus that `file` gives (a recipe or a map), or without one that of the project; the ordinary lens for
-    /// a scene. The scene is unwrapped only for a map that needs it.
+    /// The focus in `file` (a recipe or a focus map); without a file, the focus of the project, or the ordinary lens for a scene. The scene is
+    /// unwrapped only for a map that needs its atlas.
+    ///
+    /// # Errors
+    /// The file or the project's map cannot be read or does not fit, the scene cannot be unwrapped, or the work was cancelled.
     pub fn focus(
         &self,
         file: Option<&Path>,
@@ -407,20 +430,24 @@ impl Input {
         }
     }
 
-    fn check_map_size(&self, map: &FocusMap, atlas: &Atlas) -> Result<(), DocumentError> {
+    /// Checks that the project's focus map has the size of the atlas.
+    pub(crate) fn check_map_size(&self, map: &FocusMap, atlas: &Atlas) -> Result<(), DocumentError> {
         if map.size() == [atlas.width, atlas.height] {
             return Ok(());
         }
         Err(DocumentError::bad_file(
             &self.path,
-            "its focus map does not fit its atlas (restore the file from a copy)",
+            "its focus map does not fit its atlas (restore the file from a backup)",
         ))
     }
 
-    /// The atlas: the project's, or the scene unwrapped.
+    /// The project's atlas, or else that of the scene, which is unwrapped.
+    ///
+    /// # Errors
+    /// The project's atlas is damaged, the scene cannot be unwrapped, or the work was cancelled.
     pub fn atlas(&self, unwrap: &UnwrapOptions, steps: &dyn Steps) -> Result<Arc<Atlas>, DocumentError> {
         let stored = self.project.as_ref().and_then(|project| project.atlas.as_ref());
-        // That of a picture follows from it, however its depth was repaired since.
+        // The atlas of a picture's surface is always derived from it: its depth may have been repaired since.
         let stored = stored.filter(|_| self.scene.picture.is_none());
         let atlas = match stored {
             Some(bytes) => Atlas::from_bytes(bytes, &self.scene),
@@ -429,7 +456,7 @@ impl Input {
         Ok(Arc::new(atlas.map_err(|error| atlas_error(&self.path, error))?))
     }
 
-    /// The atlas of the scene as it is: that of its picture, or the scene unwrapped, now or before.
+    /// The atlas of the current scene: that of its picture, or the scene unwrapped or read from the cache.
     pub(crate) fn unwrap_scene(
         &self,
         unwrap: &UnwrapOptions,
@@ -444,7 +471,7 @@ impl Input {
         }
     }
 
-    /// The scene ready for rays, whose light from photographs is kept at the texels of the project's atlas, if it has one.
+    /// The scene ready for ray tracing. Light from photographs is stored at the texels of the project's atlas, if it has one.
     ///
     /// # Errors
     /// The project's atlas is damaged.
@@ -459,45 +486,9 @@ impl Input {
         }
         Ok(lit)
     }
-
-    /// Everything that painting needs, and the focus map.
-    pub(crate) fn prepare_stage(
-        &self,
-        unwrap: &UnwrapOptions,
-        steps: &dyn Steps,
-    ) -> Result<(Stage, FocusMap), DocumentError> {
-        let lit = LitScene::new(Arc::new(Tracer::new(self.scene.clone())), self.light, &self.resources);
-        let project = self.project.as_ref();
-        let is_large = self.scene.triangles.len() >= LARGE_SCENE_TRIANGLES;
-        let is_unwrapped = project.is_some_and(|project| project.atlas.is_some());
-        if is_large && !is_unwrapped {
-            steps.scene_ready(&lit, &self.camera);
-        }
-        let atlas = self.atlas(unwrap, steps)?;
-        if is_large && is_unwrapped {
-            lit.set_atlas(&atlas);
-            steps.scene_ready(&lit, &self.camera);
-        }
-        let map = match project.and_then(|project| project.focus_map.clone()) {
-            Some(map) => map,
-            None => {
-                let mut map = FocusMap::new(atlas.width, atlas.height, FocusOffset::STANDARD);
-                map.background = project.map_or(FocusOffset::STANDARD, |project| project.background_focus);
-                map
-            }
-        };
-        self.check_map_size(&map, &atlas)?;
-        let mut stage = Stage::new(lit, atlas, &*steps.begin("preparing"))?;
-        let choices = project.and_then(|project| project.capture.as_ref()).or(self.capture.as_ref());
-        stage.depth_strokes = choices.map(|choices| choices.depth_strokes.clone()).unwrap_or_default().into();
-        Ok((stage, map))
-    }
 }
 
-/// So many are unwrapped in a second or two.
-const LARGE_SCENE_TRIANGLES: usize = 50_000;
-
-/// Warnings that say whose they are.
+/// Puts the path before each warning.
 pub(crate) fn prefix_with_path(path: &Path, warnings: &[String]) -> Vec<String> {
     warnings.iter().map(|warning| format!("{}: {warning}", path.display())).collect()
 }

@@ -1,101 +1,97 @@
-//! What is open: the scene, its focus and its camera.
+//! An open document: the scene, its focus and its camera.
 
 use crate::adjustment_view::AdjustmentView;
-use crate::input::camera_from_photograph;
-use crate::input::CameraChoice;
-use crate::input::Input;
-use crate::input::InputKind;
-use crate::input::prefix_with_path;
+use crate::error::{DocumentError, file_name};
+use crate::input::{CameraChoice, Input, InputKind, VariantChoice, camera_from_photograph, prefix_with_path};
+use crate::paint_transfer::TransferredPaint;
 use crate::picking::SurfaceHit;
 use crate::scene_camera::shot_camera_from;
 use crate::stage::Stage;
-use crate::undo::HistoryStep;
-use crate::undo::UndoHistory;
-use crate::input::VariantChoice;
-use crate::paint_transfer::TransferredPaint;
-use crate::error::DocumentError;
-use crate::error::file_name;
-use light::{Resources, Steps};
+use crate::undo::{HistoryStep, UndoHistory};
 use atlas::UnwrapOptions;
 use focus::{
     Brush, ChangedTexels, EditThumbnail, FocusMap, FocusRecipe, LayerStack, LensMotion, RecipeEntry,
     Selection, SelectionResult,
 };
 use lens::{Camera, Exposure, FocusOffset};
+use light::{Resources, Steps};
 use project::{CaptureChoices, FocusFile, NamedCamera, ProjectFile, TexelSet, WorldFile};
 use relief::DepthStroke;
 use scene::{Scene, View};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// What a new document begins with.
+/// What a new document starts with.
 #[derive(Clone, Debug, Default)]
 pub struct NewDocumentOptions<'a> {
-    /// The camera; without one the scene's first.
+    /// The camera; by default the scene's first.
     pub camera: Option<&'a CameraChoice>,
-    /// A recipe or a focus map; without one the ordinary lens.
+    /// A recipe or a focus map; by default the ordinary lens.
     pub focus: Option<&'a Path>,
-    /// A project whose paint is carried over by surface.
+    /// A project whose paint is transferred by surface.
     pub paint_from: Option<&'a Path>,
-    /// The scene's variant.
+    /// The variant of the scene's materials.
     pub variant: VariantChoice,
 }
 
-/// An open document. Focus map, camera and the scene's variant are saved and can be undone. The selection can be undone and is
-/// saved with them, but is no change of theirs; brush, exposure and view are saved, too, and are not part of the history.
+/// An open document. Focus map, camera and the scene's variant are saved, and their changes can be undone. The selection is saved and can be
+/// undone, too, but changing it does not make the document unsaved. Brush, exposure and view are saved, but are not part of the history.
 pub struct Document {
-    /// Scene, atlas and what works on them.
+    /// The scene, its atlas, and what rays and dabs work on.
     pub stage: Arc<Stage>,
     /// The layers of focus.
     pub layers: LayerStack,
-    /// What the layers make together: the focus as it is rendered and exported.
+    /// The composite of the layers: the focus that is rendered and exported.
     pub map: FocusMap,
     /// The shot camera.
     pub camera: Camera,
-    /// How the lens moves over time; how layers do, they know themselves.
+    /// How the lens moves over time. The motion of layers is stored in the layers.
     pub lens_motion: LensMotion,
-    /// The time that is shown, s: camera and layers are as their keys say then. Neither saved nor undone.
+    /// The time shown, s: camera and layers have the values of their keys at this time. Neither saved nor undone.
     pub seconds: f64,
-    /// How the sum becomes the picture.
+    /// How the rendered sum becomes the picture.
     pub exposure: Exposure,
-    /// The brush of the strokes to come.
+    /// The brush of the next strokes.
     pub brush: Brush,
-    /// What may be painted; everything where there is none.
+    /// The texels that may be painted; `None` for all.
     pub selection: Option<Selection>,
-    /// The strokes that repair depth, in their order; the stage may still be made without the latest.
+    /// The strokes that repair depth, in order. The stage may not include the latest yet.
     pub depth_strokes: Arc<Vec<DepthStroke>>,
-    /// Layout and viewpoint as the window wants them, any JSON.
+    /// Layout and viewpoint of the window, any JSON.
     pub view: serde_json::Value,
-    /// The project file; none before the first save.
+    /// The project file; `None` before the first save.
     pub path: Option<PathBuf>,
-    /// What is odd about its files but does no harm, a sentence each.
+    /// Anything unusual but harmless about its files, a sentence each.
     pub warnings: Vec<String>,
-    /// How the paint came onto this surface, where it was painted on another. The step can be taken back; the project that it comes
-    /// from stays as it is.
+    /// How the paint was transferred to this surface, if it was painted on another. The step can be undone; the project that it comes from is
+    /// not changed.
     pub paint_transfer: Option<TransferredPaint>,
     /// The view that the adjustment layers were evaluated for.
     pub adjustment_view: AdjustmentView,
-    /// What is saved beside the fields above.
+    /// Everything saved besides the fields above.
     template: ProjectFile,
-    /// Steps of undo and redo.
+    /// The undo history.
     pub undo: UndoHistory,
-    /// The map after the latest step.
+    /// The map after the latest step, which the next thumbnail is compared with.
     thumbnail_base: FocusMap,
-    /// Counts changes of what is saved.
+    /// Incremented by every change that is saved.
     pub revision: u64,
-    /// The revision that the project file holds.
+    /// The revision in the project file.
     pub saved_revision: u64,
 }
 
-/// What the saved camera of a new document is called.
+/// The name of the saved camera of a new document.
 const SHOT_CAMERA_NAME: &str = "shot";
 
 impl Document {
-    /// Memory that steps of undo may keep alive unless told otherwise.
+    /// The default memory budget of the undo history, bytes.
     pub const UNDO_BUDGET_BYTES: usize = 256 << 20;
 
-    /// Opens a scene or a project. Work that was not saved when the program last ended is restored: the document
-    /// is then unsaved, and its warnings say so.
+    /// Opens a scene or a project. Work that was unsaved when the program last ended is restored: the document is then unsaved, and its warnings
+    /// say so.
+    ///
+    /// # Errors
+    /// The file is a light field; it, or a file that it refers to, cannot be read or used; or the work was cancelled.
     pub fn open(
         path: &Path,
         unwrap: &UnwrapOptions,
@@ -104,9 +100,9 @@ impl Document {
     ) -> Result<Self, DocumentError> {
         let kind = InputKind::from_path(path)?;
         if kind == InputKind::LightField {
-            let what =
+            let message =
                 "a light field has no surface to paint on (open the scene or project it was baked from)";
-            return Err(DocumentError::bad_file(path, what));
+            return Err(DocumentError::bad_file(path, message));
         }
         let is_project = kind == InputKind::Project;
         let recovery = recovery_path(path, is_project);
@@ -124,8 +120,11 @@ impl Document {
         Ok(document)
     }
 
-    /// Opens a project as what a new document begins with: it has no file of its own until it is saved as one.
-    /// Unsaved work on the same scene is restored as by [`Self::open`].
+    /// Opens a project as a template for a new document, which has no file until it is saved. Unsaved work on the same scene is restored as by
+    /// [`Self::open`].
+    ///
+    /// # Errors
+    /// The project, or a file that it refers to, cannot be read or used, or the work was cancelled.
     pub fn open_template(
         path: &Path,
         unwrap: &UnwrapOptions,
@@ -135,7 +134,13 @@ impl Document {
         let template = ProjectFile::load(path)?;
         let recovered = project::find_recovery(&recovery_path(&template.scene, false), None);
         let is_recovered = recovered.is_some();
-        let input = Input::open_project(path, recovered.unwrap_or(template), &VariantChoice::AsSaved, resources, steps)?;
+        let input = Input::open_project(
+            path,
+            recovered.unwrap_or(template),
+            &VariantChoice::AsSaved,
+            resources,
+            steps,
+        )?;
         let mut document = Self::from_input(input, unwrap, steps)?;
         if is_recovered {
             document.note_recovery(path);
@@ -143,19 +148,26 @@ impl Document {
         Ok(document)
     }
 
-    /// Opens a project as it was saved, whatever was left unsaved.
+    /// Opens a project as it was saved, ignoring unsaved work.
+    ///
+    /// # Errors
+    /// The project, or a file that it refers to, cannot be read or used, or the work was cancelled.
     pub fn open_saved(
         path: &Path,
         unwrap: &UnwrapOptions,
         resources: &Resources,
         steps: &dyn Steps,
     ) -> Result<Self, DocumentError> {
-        let input = Input::open_project(path, ProjectFile::load(path)?, &VariantChoice::AsSaved, resources, steps)?;
+        let input =
+            Input::open_project(path, ProjectFile::load(path)?, &VariantChoice::AsSaved, resources, steps)?;
         let document = Self::from_input(input, unwrap, steps)?;
         Ok(Self { path: document.paint_transfer.is_none().then(|| path.into()), ..document })
     }
 
-    /// Begins a document of a scene.
+    /// Creates a document of a scene.
+    ///
+    /// # Errors
+    /// `scene` is not a scene; it, or a file that `options` names, cannot be read or used; or the work was cancelled.
     pub fn create(
         scene: &Path,
         options: &NewDocumentOptions<'_>,
@@ -164,7 +176,7 @@ impl Document {
         steps: &dyn Steps,
     ) -> Result<Self, DocumentError> {
         if InputKind::from_path(scene)? != InputKind::Scene {
-            return Err(DocumentError::bad_file(scene, "is no scene (give a .glb or .gltf)"));
+            return Err(DocumentError::bad_file(scene, "is not a scene (choose a .glb or .gltf file)"));
         }
         let mut input = Input::open_variant(scene, &options.variant, resources, steps)?;
         if let Some(project) = options.paint_from {
@@ -173,7 +185,10 @@ impl Document {
         Self::create_from_input(input, options, unwrap, steps)
     }
 
-    /// Begins a document of a scene or capture that was read.
+    /// Creates a document of a scene or capture that was read.
+    ///
+    /// # Errors
+    /// Camera or focus of `options` cannot be read or used, the scene cannot be unwrapped, or the work was cancelled.
     pub fn create_from_input(
         input: Input,
         options: &NewDocumentOptions<'_>,
@@ -190,7 +205,10 @@ impl Document {
         Ok(document)
     }
 
-    /// The focus map that a recipe or a focus map gives this document.
+    /// Reads a recipe or a focus map, as a focus map of this document.
+    ///
+    /// # Errors
+    /// The file cannot be read, or does not fit the scene or its atlas.
     pub fn load_focus_file(&self, path: &Path) -> Result<FocusMap, DocumentError> {
         let stage = &self.stage;
         let recipe = match project::read_focus(path)? {
@@ -208,7 +226,7 @@ impl Document {
         Ok(focus.bake(&stage.texels))
     }
 
-    /// Takes up what is odd about another variant of the scene; returns what is told for the first time.
+    /// Adds the warnings of another variant of the scene; returns those that are new.
     pub fn add_warnings_of(&mut self, scene: &Scene) -> Vec<String> {
         let mut new_warnings = prefix_with_path(&scene.path, &scene.warnings);
         new_warnings.retain(|warning| !self.warnings.contains(warning));
@@ -218,17 +236,18 @@ impl Document {
 
     fn note_recovery(&mut self, path: &Path) {
         self.revision += 1;
-        let what = "unsaved work from last time was restored (save it to keep it)";
-        self.warnings.push(format!("{}: {what}", path.display()));
+        let message = "unsaved work from the last session was restored (save it to keep it)";
+        self.warnings.push(format!("{}: {message}", path.display()));
     }
 
-    pub fn from_input(
+    /// The document of an input. Paint is transferred if the project's scene has changed.
+    pub(crate) fn from_input(
         mut input: Input,
         unwrap: &UnwrapOptions,
         steps: &dyn Steps,
     ) -> Result<Self, DocumentError> {
         input.transfer_paint_if_changed(unwrap, steps)?;
-        let (stage, map) = input.prepare_stage(unwrap, steps)?;
+        let (stage, map) = Stage::from_input(&input, unwrap, steps)?;
         let stored = input.project.as_ref().and_then(|project| project.layers.clone());
         let (layers, map) = match stored {
             Some(mut layers) => {
@@ -246,7 +265,7 @@ impl Document {
                 let radius = brush_radius(&input.camera, (high - low).length());
                 let mut brush = Brush { radius, ..Brush::default() };
                 if input.scene.picture.is_some() {
-                    // The normals of a surface that was made from depth are as rough as that.
+                    // The normals of a surface made from depth are as noisy as the depth.
                     brush.normal_limit_degrees = 180.0;
                 }
                 let capture = input.capture.clone();
@@ -285,7 +304,7 @@ impl Document {
         })
     }
 
-    /// The document as it is saved now.
+    /// The document as a project, as it would be saved now.
     pub fn to_project(&self) -> ProjectFile {
         let scene = &self.stage.scene;
         let mut project = self.template.clone();
@@ -298,7 +317,7 @@ impl Document {
         project.brush = self.brush.clone();
         project.view = self.view.clone();
         project.capture = self.capture_choices();
-        // That of a picture follows from it, and its depth may be repaired further than the stage's.
+        // The atlas of a picture's surface is derived from it, and its depth may have been repaired since the stage was made.
         project.atlas = scene.picture.is_none().then(|| self.stage.atlas.to_bytes());
         project.surface = scene.picture.is_none().then(|| self.stage.surface_bytes().to_vec());
         project.background_focus = self.map.background;
@@ -309,13 +328,13 @@ impl Document {
         project
     }
 
-    /// Of a capture, what of it was chosen.
+    /// If the document is of a capture, the choices it was opened with, and its depth strokes.
     pub fn capture_choices(&self) -> Option<CaptureChoices> {
         let choices = self.template.capture.clone();
         choices.map(|choices| CaptureChoices { depth_strokes: (*self.depth_strokes).clone(), ..choices })
     }
 
-    /// Takes up another surface in the same atlas, on which paint and selections stay where they are.
+    /// Replaces the stage by another surface in the same atlas; paint and selections stay where they are.
     pub fn replace_surface(&mut self, stage: Stage) {
         let before = std::mem::replace(&mut self.stage, Arc::new(stage));
         let after = self.stage.clone();
@@ -331,8 +350,8 @@ impl Document {
         self.evaluate_adjustments();
     }
 
-    /// Brings the map up to date after `changed` texels of any layer have changed, or after any change (`None`).
-    /// Returns what changed in the map, and whether the background's focus did.
+    /// Updates the composite after the `changed` texels of any layer, or after any change (`None`). Returns what changed in the map, and whether
+    /// the background's focus changed.
     pub fn recomposite(&mut self, changed: Option<&ChangedTexels>) -> (ChangedTexels, bool) {
         let background = self.map.background;
         let changed = match changed {
@@ -342,7 +361,7 @@ impl Document {
         (changed, background != self.map.background)
     }
 
-    /// Where unsaved work is kept.
+    /// The recovery file for unsaved work.
     pub fn recovery_path(&self) -> PathBuf {
         let file = self.path.as_deref().unwrap_or(&self.stage.scene.path);
         recovery_path(file, self.path.is_some())
@@ -358,59 +377,59 @@ impl Document {
         self.map.sample(self.stage.atlas.position_of(hit.point))
     }
 
-    /// Whether the project file (or, before the first save, the scene as opened) differs from what is open.
+    /// Whether the document differs from its project file, or before the first save, from the scene as it was opened.
     pub fn is_unsaved(&self) -> bool {
         self.revision != self.saved_revision
     }
 
-    /// What to call it: the project's file name, else the scene's.
+    /// The document's name: the project's file name, or else the scene's.
     pub fn name(&self) -> String {
         file_name(self.path.as_deref().unwrap_or(&self.stage.scene.path))
     }
 
-    /// What undo would take back.
+    /// The name of the step that undo would revert.
     pub fn undo_name(&self) -> Option<&str> {
         self.undo.undo_name()
     }
 
-    /// What redo would do again.
+    /// The name of the step that redo would repeat.
     pub fn redo_name(&self) -> Option<&str> {
         self.undo.redo_name()
     }
 
-    /// The history, oldest step first: what is done, then what was taken back and can be done again.
+    /// The history, oldest step first: the steps that are done, then those that were undone and can be redone.
     pub fn history(&self) -> impl Iterator<Item = HistoryStep<'_>> {
         self.undo.steps()
     }
 
-    /// Adds a picture of what it changed to the step that was just taken, if it was of paint.
+    /// Adds a thumbnail of what changed in the map to the latest step.
     pub fn add_step_thumbnail(&mut self) {
         self.undo.set_thumbnail(EditThumbnail::from_difference(&self.thumbnail_base, &self.map));
         self.thumbnail_base = self.map.clone();
     }
 
-    /// Brings adjustment layers up to date with the shot camera.
+    /// Evaluates adjustment layers for the current shot camera.
     pub fn evaluate_adjustments(&mut self) {
         self.adjustment_view = AdjustmentView::from_camera(&self.camera);
         self.layers.evaluate(&self.stage.canvas, &self.camera);
     }
 
-    /// A step was taken back, or done again.
+    /// Compares the next thumbnail with the current map: called after undo and redo.
     pub fn reset_thumbnail_base(&mut self) {
         self.thumbnail_base = self.map.clone();
     }
 
-    /// All that can be undone, oldest first.
+    /// The names of all steps that can be undone, oldest first.
     pub fn undo_names(&self) -> impl Iterator<Item = &str> {
         self.undo.names()
     }
 
-    /// Memory that the undo steps keep alive, and how much they may, in bytes.
+    /// Memory used by the undo history, and its budget, bytes.
     pub fn undo_bytes(&self) -> [usize; 2] {
         self.undo.bytes()
     }
 
-    /// The cameras of the scene by name, as shot cameras: with the lens of the current one. Those of its photographs follow.
+    /// The cameras of the scene by name, as shot cameras with the current lens, followed by those of its photographs.
     pub fn scene_cameras(&self) -> impl Iterator<Item = (&str, Camera)> {
         let scene = &self.stage.scene;
         let cameras = scene.cameras.iter();
@@ -419,8 +438,7 @@ impl Document {
         cameras.chain(names.zip(self.photograph_cameras()))
     }
 
-    /// The cameras of the scene's photographs, first of those that its light is made from, then of those left out, with the current
-    /// aperture.
+    /// The cameras of the scene's photographs, with the current aperture: first of those that light the scene, then of those left out.
     pub fn photograph_cameras(&self) -> impl Iterator<Item = Camera> {
         let scene = &self.stage.scene;
         scene.all_views().map(|view| Camera {
@@ -429,7 +447,7 @@ impl Document {
         })
     }
 
-    /// The photograph that the camera looks through, if it is that of one.
+    /// The photograph whose pose the camera has, if any.
     pub fn photograph(&self) -> Option<&View> {
         let scene = &self.stage.scene;
         let mut views = scene.all_views();
@@ -437,14 +455,14 @@ impl Document {
     }
 }
 
-/// A selection by the places of its texels.
+/// A selection as the atlas coordinates of its texels.
 fn selection_to_texels(stage: &Stage, selection: &Selection) -> TexelSet {
     let texels = stage.canvas.texels().iter().enumerate();
     let selected = texels.filter(|(index, _)| selection.contains(*index));
     TexelSet::new([stage.atlas.width, stage.atlas.height], selected.map(|(_, texel)| [texel.x, texel.y]))
 }
 
-/// The selection that a project kept; none where it chose nothing, or everything.
+/// The selection stored in a project; `None` if it contains nothing or everything.
 fn selection_from_texels(stage: &Stage, saved: &TexelSet) -> Option<Selection> {
     match Selection::from_predicate(&stage.canvas, |texel| saved.contains([texel.x, texel.y])) {
         SelectionResult::Some(selection) => Some(selection),
@@ -456,8 +474,8 @@ fn recovery_path(file: &Path, is_project: bool) -> PathBuf {
     if is_project { project::recovery_path_for(file) } else { project::unsaved_recovery_path(file) }
 }
 
-/// An eighth of half the picture's height where the lens focuses, but at most a twentieth of the scene; the brush's
-/// default for a scene that is a point.
+/// The initial brush radius: an eighth of half the picture's height in the focus plane, but at most a twentieth of the scene's diagonal; the
+/// brush's default for a scene without extent.
 fn brush_radius(camera: &Camera, diagonal: f64) -> f64 {
     let half_height_share = camera.focus_distance * (camera.yfov / 2.0).tan() / 8.0;
     let radius = half_height_share.min(diagonal / 20.0);

@@ -1,11 +1,11 @@
-//! Paint that follows the surface when the scene's file is another: moved vertices, new UVs, another mesh of the same thing.
+//! Transfers paint when the scene's surface has changed: moved vertices, new UVs, another mesh of the same object.
 //!
 //! ```text
-//! the surface that was painted ─▶ OldSurface (a node's triangles in a tree)
-//!   a texel of the new atlas ─▶ alignment (where the node was) ─▶ nearest point with a like normal ─▶ the old atlas ─▶ its paint
+//! the painted surface ─▶ OldSurface (a node's triangles in a tree)
+//!   a texel of the new atlas ─▶ alignment (where the node was) ─▶ nearest point with a similar normal ─▶ old atlas ─▶ its paint
 //! ```
 //!
-//! What finds no partner keeps the ordinary lens, and is listed by node.
+//! Texels without a corresponding point keep the ordinary lens, and are listed by node.
 
 mod alignment;
 mod correspondences;

@@ -1,4 +1,4 @@
-//! From a pointer to a surface: rays of the shot camera, and what they meet.
+//! Picking: rays through a pointer's position, and the surfaces that they hit.
 
 use focus::ViewFrame;
 use glam::{DVec2, DVec3};
@@ -6,20 +6,20 @@ use lens::Camera;
 use scene::{Scene, SurfacePoint};
 use trace::{Ray, Tracer};
 
-/// A point on a surface, as a view picked it.
+/// A picked point on a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceHit {
-    /// Its address.
+    /// Its triangle and barycentric coordinates.
     pub point: SurfacePoint,
-    /// Its place in the world.
+    /// Its position in world space.
     pub position: DVec3,
-    /// Unit normal of its triangle, turned toward where the ray came from.
+    /// Unit normal of its triangle, facing the ray's origin.
     pub normal: DVec3,
-    /// World distance along the ray.
+    /// Distance along the ray, in scene units.
     pub distance: f64,
 }
 
-/// What `ray` meets first.
+/// The first hit of `ray`.
 pub fn pick(tracer: &Tracer, ray: &Ray) -> Option<SurfaceHit> {
     let hit = tracer.first_hit(ray)?;
     let scene: &Scene = tracer.scene();
@@ -32,7 +32,7 @@ pub fn pick(tracer: &Tracer, ray: &Ray) -> Option<SurfaceHit> {
     })
 }
 
-/// How far ahead of a camera is what it sees in the direction of a place in the world; none where no surface is.
+/// The depth of the surface that a camera sees in the direction of a world position; `None` where it sees none.
 pub fn depth_in_direction(tracer: &Tracer, camera: &Camera, position: DVec3) -> Option<f64> {
     let camera_space = camera.camera_from_world(position);
     if camera_space.z <= 0.0 {
@@ -43,14 +43,14 @@ pub fn depth_in_direction(tracer: &Tracer, camera: &Camera, position: DVec3) -> 
     Some(camera.camera_from_world(hit.point.position(tracer.scene())).z)
 }
 
-/// The chief ray of a picture position: (0, 0) the upper left corner, (1, 1) the lower right, whatever the
-/// resolution. Its direction has depth 1, so that t along it is axial depth.
+/// The chief ray of a picture position: (0, 0) is the upper left corner, (1, 1) the lower right, at any resolution. The depth of its
+/// direction is 1, so that t along it is axial depth.
 pub fn chief_ray(camera: &Camera, position: DVec2) -> Ray {
     let size = DVec2::new(camera.width as f64, camera.height as f64);
     Ray::pinhole(camera, DVec2::ZERO, position * size)
 }
 
-/// The ray of a position in a view: (0, 0) the upper left corner, (1, 1) the lower right. Its direction has depth 1.
+/// The ray of a position in a view: (0, 0) is the upper left corner, (1, 1) the lower right. The depth of its direction is 1.
 pub fn view_ray(view: &ViewFrame, position: DVec2) -> Ray {
     let (origin, direction) = view.ray(position);
     Ray { origin, direction, t_min: 0.0, t_max: f64::INFINITY, skip: None }
@@ -61,7 +61,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_picture_seen_as_a_view_has_the_same_rays() {
+    fn the_view_of_the_shot_camera_has_the_same_rays() {
         let camera = Camera { width: 321, height: 200, yfov: 0.9, ..Camera::default() };
         let view = ViewFrame::from_camera(&camera);
         for position in [DVec2::ZERO, DVec2::new(0.3, 0.9), DVec2::ONE] {
@@ -71,7 +71,7 @@ mod tests {
     }
 
     #[test]
-    fn the_middle_looks_ahead_and_corners_land_where_the_lens_says() {
+    fn the_centre_ray_points_forward_and_rays_project_to_their_positions() {
         let camera = Camera { width: 320, height: 200, ..Camera::default() };
         assert!(chief_ray(&camera, DVec2::splat(0.5)).direction.distance(DVec3::NEG_Z) < 1e-12);
         for position in [DVec2::ZERO, DVec2::new(1.0, 0.25)] {

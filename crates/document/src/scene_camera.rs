@@ -1,13 +1,13 @@
-//! A camera of the scene as the shot camera.
+//! Cameras of the scene as shot cameras.
 
 use glam::DVec2;
 use lens::Camera;
 use scene::SceneCamera;
 
-/// A camera of the scene with the size, lens and background of `lens`, as far as the file says nothing of them.
+/// A camera of the scene, with the size, lens and background of `lens` where the file does not specify them.
 ///
-/// Where the camera says its aspect, the width follows it. The lens keeps its numbers: they are lengths of a
-/// real camera, whatever the scene.
+/// If the camera has an aspect ratio, the width follows from it. Lengths of the lens are not scaled: they are those of a real camera,
+/// independent of the scene.
 pub fn shot_camera_from(camera: &SceneCamera, lens: &Camera) -> Camera {
     let width = camera.aspect.map_or(lens.width, |aspect| {
         (lens.height as f64 * aspect).round().clamp(1.0, Camera::LARGEST_SIDE_PX as f64) as u32
@@ -22,8 +22,8 @@ pub fn shot_camera_from(camera: &SceneCamera, lens: &Camera) -> Camera {
     })
 }
 
-/// A camera of a scene whose unit may be any, as that of a reconstruction is: its lens and sensor as large as the default camera's are before
-/// something 0.75 away, so that what lies before and behind is blurred.
+/// A camera of a scene of unknown scale, such as a reconstruction: lens and sensor are scaled with the focus distance, so that blur is that of
+/// the default camera focused at a distance of 0.75.
 pub(crate) fn shot_camera_in_any_unit(camera: &SceneCamera) -> Camera {
     const REFERENCE_DISTANCE: f64 = 0.75;
     let lens = Camera::default();
@@ -39,7 +39,7 @@ mod tests {
     use scene::CameraLens;
 
     #[test]
-    fn a_scene_in_another_unit_is_blurred_alike() {
+    fn blur_does_not_depend_on_the_unit_of_the_scene() {
         let shot_in_unit = |unit: f64| {
             let camera = SceneCamera {
                 name: "framing".into(),

@@ -1,24 +1,21 @@
-//! Paint on a scene that is another by now: written again by another program, before the document was opened or while it is open.
+//! Paint on a scene whose file another program has changed, before the document was opened or while it is open.
 
-use crate::input::Input;
-use light::Resources;
-use crate::open_document::Document;
-use crate::scene_camera::shot_camera_from;
-use crate::stage::atlas_error;
-use crate::stage::load_variant;
-use crate::input::VariantChoice;
-use crate::paint_transfer::transfer_paint;
 use crate::error::DocumentError;
-use light::Steps;
+use crate::input::{Input, VariantChoice};
+use crate::open_document::Document;
+use crate::paint_transfer::transfer_paint;
+use crate::scene_camera::shot_camera_from;
+use crate::scene_file::{atlas_error, load_variant};
 use atlas::UnwrapOptions;
 use lens::Camera;
+use light::{Resources, Steps};
 use project::{ProjectFile, SceneState, surface_from_bytes, surface_to_bytes};
 use scene::{Scene, SceneCamera};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 impl Input {
-    /// Has the paint of a project follow the surface, if the project's scene is another one by now.
+    /// Transfers the paint of a project to the current surface, if the project's scene has changed.
     ///
     /// # Errors
     /// The project is damaged, the scene cannot be unwrapped, or the work was cancelled.
@@ -38,16 +35,16 @@ impl Input {
         }
         let old = surface_from_bytes(surface);
         let old = old.ok_or_else(|| {
-            DocumentError::bad_file(&self.path, "surface.bin is damaged (restore the file from a copy)")
+            DocumentError::bad_file(&self.path, "surface.bin is damaged (restore the file from a backup)")
         })?;
         self.transfer_paint_from(&project.clone(), &old, unwrap, steps)
     }
 
-    /// Takes over what is painted in a project, which may be on another surface; its world and brush come along.
+    /// Takes over the paint of a project, which may be on another surface, together with its world, brush and back faces.
     ///
     /// # Errors
-    /// The project cannot be read, or its surface is not known any more.
-    pub fn import_paint_from(
+    /// The project cannot be read, the surface that it was painted on is unknown, or those of [`Self::transfer_paint_if_changed`].
+    pub(crate) fn import_paint_from(
         &mut self,
         file: &Path,
         unwrap: &UnwrapOptions,
@@ -60,9 +57,9 @@ impl Input {
                 Arc::unwrap_or_clone(load_variant(&project.scene, None, &*steps.begin("reading"))?)
             }
             _ => {
-                let what =
-                    "what it was painted on is not known any more (save it once with its scene as it was)";
-                return Err(DocumentError::bad_file(file, what));
+                let message =
+                    "the surface it was painted on is unknown (save it once with its original scene)";
+                return Err(DocumentError::bad_file(file, message));
             }
         };
         let world = project.world.as_ref().map(|world| world.load(&self.scene)).transpose()?;
@@ -73,7 +70,7 @@ impl Input {
         self.transfer_paint_from(&project, &old, unwrap, steps)
     }
 
-    /// Gives the scene the paint of a project that was painted on `old`.
+    /// Transfers the paint of a project from the surface of `old` to the scene.
     fn transfer_paint_from(
         &mut self,
         project: &ProjectFile,
@@ -91,8 +88,8 @@ impl Input {
 }
 
 impl Document {
-    /// What was open, as `project`, on the scene as it is now; the paint follows the surface, and the shot camera the camera of the scene
-    /// that it was, of those in `before`, unless it was changed here. `path` is the document's own file.
+    /// The open document, given as `project`, on the scene as its file is now: paint is transferred to the new surface. If the shot camera is
+    /// an unchanged camera of the scene, of those in `previous_cameras`, it follows that camera. `path` is the document's own file.
     ///
     /// # Errors
     /// The scene cannot be read or unwrapped, or the work was cancelled.
@@ -104,7 +101,8 @@ impl Document {
         steps: &dyn Steps,
     ) -> Result<Self, DocumentError> {
         let display_path = path.clone().unwrap_or_else(|| project.scene.clone());
-        let mut input = Input::open_project(&display_path, project, &VariantChoice::AsSaved, resources, steps)?;
+        let mut input =
+            Input::open_project(&display_path, project, &VariantChoice::AsSaved, resources, steps)?;
         let shot = &input.camera;
         let previous = previous_cameras.iter().find(|camera| matches_scene_camera(shot, camera));
         let current = previous
@@ -118,10 +116,10 @@ impl Document {
     }
 }
 
-/// Whether a shot camera is as the scene's camera has it.
+/// Whether a shot camera is an unchanged camera of the scene.
 fn matches_scene_camera(shot: &Camera, camera: &SceneCamera) -> bool {
     let from_scene = shot_camera_from(camera, shot);
-    // The focus distance of a camera without one is a proposal.
+    // The focus distance of a camera whose file does not specify one is only a default.
     Camera { focus_distance: shot.focus_distance, ..from_scene.clone() } == *shot
         && camera.lens.focus_distance.is_none_or(|distance| distance == shot.focus_distance)
 }

@@ -1,76 +1,45 @@
-//! What stays while a document is open: the scene, its atlas and what answers rays and dabs on it.
+//! The stage: a scene with its atlas, ready for rays and dabs.
 
-use crate::input::load_capture;
-use crate::picking::SurfaceHit;
-use crate::input::picture_atlas;
-use light::{LitScene, light_hash};
 use crate::error::DocumentError;
-use light::Steps;
-use atlas::{Atlas, AtlasError, TexelMap};
-use focus::Canvas;
+use crate::input::{Input, load_capture, picture_atlas};
+use crate::picking::SurfaceHit;
+use crate::scene_file::load_variant;
+use atlas::{Atlas, TexelMap, UnwrapOptions};
+use focus::{Canvas, FocusMap};
 use glam::{DVec2, DVec3};
+use lens::FocusOffset;
+use light::{LitScene, Steps, light_hash};
 use progress::Progress;
 use project::{CaptureChoices, surface_to_bytes};
 use relief::DepthStroke;
-use scene::{BackFaces, LoadOptions, Scene, SceneError, World};
-use std::path::Path;
+use scene::{BackFaces, Scene, World};
 use std::sync::{Arc, OnceLock};
 use trace::Tracer;
+
+/// Scenes of at least this many triangles take a second or more to unwrap, and are announced before they can be painted on.
+const LARGE_SCENE_TRIANGLES: usize = 50_000;
 
 /// A scene that can be painted on.
 pub struct Stage {
     /// The scene.
     pub scene: Arc<Scene>,
-    /// Lowest and highest corner of its box.
+    /// Lowest and highest corner of the scene's bounding box.
     pub bounds: (DVec3, DVec3),
-    /// Where its triangles lie in the focus map.
+    /// The atlas: where triangles lie in the focus map.
     pub atlas: Arc<Atlas>,
-    /// What answers rays, with its light.
+    /// The scene ready for ray tracing, with its light.
     pub lit: Arc<LitScene>,
-    /// The way back from texels to the surface.
+    /// The map from texels back to the surface.
     pub texels: Arc<TexelMap>,
-    /// What dabs are painted on.
+    /// The canvas that dabs are painted on.
     pub canvas: Arc<Canvas>,
-    /// The strokes that repaired the depth that the surface was made from.
+    /// The strokes that repaired the depth from which the surface was made.
     pub depth_strokes: Arc<Vec<DepthStroke>>,
     light_hash: OnceLock<[u8; 32]>,
     surface_bytes: OnceLock<Vec<u8>>,
 }
 
-impl From<SceneError> for DocumentError {
-    fn from(error: SceneError) -> Self {
-        match error {
-            SceneError::Cancelled(_) => Self::Cancelled,
-            other => Self::BadInput(other.to_string()),
-        }
-    }
-}
-
-/// What an error about the atlas of the scene at `path` means.
-pub fn atlas_error(path: &Path, error: AtlasError) -> DocumentError {
-    match error {
-        AtlasError::Cancelled => DocumentError::Cancelled,
-        AtlasError::Write { path, source } => DocumentError::io(&path, &source),
-        other => DocumentError::bad_file(path, other),
-    }
-}
-
-/// Reads a scene within the usual limits.
-pub fn load_scene(path: &Path, progress: &dyn Progress) -> Result<Arc<Scene>, DocumentError> {
-    Ok(load_variant(path, None, progress)?)
-}
-
-/// The same in one of its variants; none: in its own materials.
-pub(crate) fn load_variant(
-    path: &Path,
-    variant: Option<&str>,
-    progress: &dyn Progress,
-) -> Result<Arc<Scene>, SceneError> {
-    let options = LoadOptions { variant: variant.map(String::from), ..LoadOptions::default() };
-    Ok(Arc::new(scene::load(path, &options, progress)?))
-}
-
-/// Whether what is painted on one scene fits the other: the same triangles in the same order, of the same nodes.
+/// Whether paint on one scene fits the other: the same triangles in the same order, of the same nodes.
 fn is_same_surface(a: &Scene, b: &Scene) -> bool {
     let part_key = |part: &scene::Part| (part.node, part.triangles.clone());
     a.positions == b.positions
@@ -86,8 +55,8 @@ pub fn build_canvas(scene: &Scene, atlas: &Atlas, texels: &TexelMap) -> Canvas {
 }
 
 impl Stage {
-    /// The surface at a position in the atlas laid flat, (0, 0) its upper left corner, (1, 1) its lower right: the middle
-    /// of what the texel there covers.
+    /// The surface at a position in the atlas, (0, 0) its upper left corner, (1, 1) its lower right: the centroid of the texel there. `None`
+    /// where the atlas is empty.
     pub fn surface_at(&self, position: DVec2) -> Option<SurfaceHit> {
         let texel = position * DVec2::new(self.atlas.width.into(), self.atlas.height.into());
         let inside = texel.cmpge(DVec2::ZERO).all();
@@ -97,17 +66,20 @@ impl Stage {
         Some(SurfaceHit { point: texel.centroid, position, normal, distance: 0.0 })
     }
 
-    /// A checksum of everything in the scene that gives, blocks or reflects light; the first call takes a while.
+    /// A checksum of everything in the scene that emits, blocks or reflects light. The first call takes a while.
     pub fn light_hash(&self) -> &[u8; 32] {
         self.light_hash.get_or_init(|| light_hash(&self.scene, self.lit.options()))
     }
 
-    /// The surface as a project holds it.
-    pub fn surface_bytes(&self) -> &[u8] {
+    /// The surface as stored in a project.
+    pub(crate) fn surface_bytes(&self) -> &[u8] {
         self.surface_bytes.get_or_init(|| surface_to_bytes(&self.scene))
     }
 
-    /// The same with faces seen from behind, or not.
+    /// The stage with back faces shown or not.
+    ///
+    /// # Errors
+    /// `progress` was cancelled.
     pub fn with_back_faces(
         &self,
         back_faces: BackFaces,
@@ -116,13 +88,23 @@ impl Stage {
         self.with_scene(Scene { back_faces, ..(*self.scene).clone() }, progress)
     }
 
-    /// The same in another world; none: the scene's own.
+    /// The stage in another world; `None` for the scene's own.
+    ///
+    /// # Errors
+    /// `progress` was cancelled.
     pub fn with_world(&self, world: Option<World>, progress: &dyn Progress) -> Result<Self, DocumentError> {
         self.with_scene(Scene { world, ..(*self.scene).clone() }, progress)
     }
 
-    /// The same in another variant of its file, which is read again; none: in its own materials. Atlas and paint still fit.
-    pub fn with_variant(&self, variant: Option<&str>, progress: &dyn Progress) -> Result<Self, DocumentError> {
+    /// The stage in another variant of its file, which is read again; `None` for its own materials. Atlas and paint still fit.
+    ///
+    /// # Errors
+    /// The file cannot be read, has no such variant or has changed, or `progress` was cancelled.
+    pub fn with_variant(
+        &self,
+        variant: Option<&str>,
+        progress: &dyn Progress,
+    ) -> Result<Self, DocumentError> {
         let before = &self.scene;
         let reloaded = load_variant(&before.path, variant, progress)?;
         if !is_same_surface(before, &reloaded) {
@@ -141,7 +123,11 @@ impl Stage {
         Ok(Self { canvas, ..self.with_scene(scene, progress)? })
     }
 
-    /// The surface made anew from the picture and its depth, which are read again, with other strokes. Paint still fits.
+    /// The stage with its surface made anew from the picture and its depth, which are read again, with the depth strokes of `choices`. Paint
+    /// still fits.
+    ///
+    /// # Errors
+    /// The files cannot be read or have changed, or the work was cancelled.
     pub fn with_depth_repaired(
         &self,
         choices: &CaptureChoices,
@@ -166,12 +152,12 @@ impl Stage {
         Ok(Self { depth_strokes: Arc::new(choices.depth_strokes.clone()), ..stage })
     }
 
-    /// Another scene with its light modelled in the same way.
+    /// Another scene with light modelled in the same way.
     fn relit(&self, scene: Arc<Scene>) -> Arc<LitScene> {
         LitScene::new(Arc::new(Tracer::new(scene)), self.lit.options(), self.lit.resources())
     }
 
-    /// The same surface, seen or lit in another way.
+    /// The same surface with another appearance or light.
     fn with_scene(&self, scene: Scene, progress: &dyn Progress) -> Result<Self, DocumentError> {
         progress.check()?;
         let scene = Arc::new(scene);
@@ -185,10 +171,10 @@ impl Stage {
         Ok(Self { scene, bounds, atlas, lit, texels, canvas, depth_strokes, light_hash, surface_bytes })
     }
 
-    /// Prepares a scene whose atlas is known, and whose depth is as it was found.
+    /// Prepares a scene with its atlas, without depth strokes.
     ///
     /// # Errors
-    /// `progress` says to stop.
+    /// `progress` was cancelled.
     pub fn new(
         lit: Arc<LitScene>,
         atlas: Arc<Atlas>,
@@ -207,7 +193,40 @@ impl Stage {
         Ok(Self { bounds, scene, atlas, lit, texels, canvas, depth_strokes, light_hash, surface_bytes })
     }
 
-    /// What answers rays.
+    /// The stage of an input, and its focus map. A large scene is announced to `steps` before it can be painted on.
+    pub(crate) fn from_input(
+        input: &Input,
+        unwrap: &UnwrapOptions,
+        steps: &dyn Steps,
+    ) -> Result<(Self, FocusMap), DocumentError> {
+        let lit = LitScene::new(Arc::new(Tracer::new(input.scene.clone())), input.light, &input.resources);
+        let project = input.project.as_ref();
+        let is_large = input.scene.triangles.len() >= LARGE_SCENE_TRIANGLES;
+        let is_unwrapped = project.is_some_and(|project| project.atlas.is_some());
+        if is_large && !is_unwrapped {
+            steps.scene_ready(&lit, &input.camera);
+        }
+        let atlas = input.atlas(unwrap, steps)?;
+        if is_large && is_unwrapped {
+            lit.set_atlas(&atlas);
+            steps.scene_ready(&lit, &input.camera);
+        }
+        let map = match project.and_then(|project| project.focus_map.clone()) {
+            Some(map) => map,
+            None => {
+                let mut map = FocusMap::new(atlas.width, atlas.height, FocusOffset::STANDARD);
+                map.background = project.map_or(FocusOffset::STANDARD, |project| project.background_focus);
+                map
+            }
+        };
+        input.check_map_size(&map, &atlas)?;
+        let mut stage = Self::new(lit, atlas, &*steps.begin("preparing"))?;
+        let choices = project.and_then(|project| project.capture.as_ref()).or(input.capture.as_ref());
+        stage.depth_strokes = choices.map(|choices| choices.depth_strokes.clone()).unwrap_or_default().into();
+        Ok((stage, map))
+    }
+
+    /// Traces rays in the scene.
     pub fn tracer(&self) -> &Arc<Tracer> {
         self.lit.tracer()
     }

@@ -1,4 +1,4 @@
-//! Undo and redo of paint, selection, lens, repaired depth and the scene's variant in the order in which they happened.
+//! Undo and redo of paint, selection, lens, depth repair and the scene's variant, in chronological order.
 
 use focus::{Edit, EditThumbnail, LayerStack, LensMotion, Selection};
 use lens::Camera;
@@ -7,22 +7,22 @@ use relief::DepthStroke;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-/// What a step changed, and both its ends.
+/// What a step changed, before and after.
 #[derive(Clone, Debug)]
 enum Change {
     /// The map of one layer.
     Paint { layer: usize, edit: Edit },
-    /// The layers themselves.
+    /// The stack of layers.
     Layers { before: Box<LayerStack>, after: Box<LayerStack> },
     /// The camera.
     Camera { before: Box<Camera>, after: Box<Camera> },
     /// The keys of the lens.
     LensMotion { before: Box<LensMotion>, after: Box<LensMotion> },
-    /// What may be painted.
+    /// The selection.
     Selection { before: Option<Selection>, after: Option<Selection> },
-    /// The scene's variant, by name. Who takes such a step back reads the scene again.
+    /// The scene's variant, by name. Undoing it requires the caller to read the scene again.
     Variant { before: Option<String>, after: Option<String> },
-    /// The strokes that repair depth. Who takes such a step back makes the surface anew.
+    /// The strokes that repair depth. Undoing it requires the caller to make the surface anew.
     Depth { before: Arc<Vec<DepthStroke>>, after: Arc<Vec<DepthStroke>> },
 }
 
@@ -37,7 +37,7 @@ impl Change {
                 [before, after].into_iter().map(|motion| motion.bytes()).sum()
             }
             Self::Selection { before, after } => selection_bytes(before) + selection_bytes(after),
-            // Each list has a stroke more than the one before it.
+            // Each list has one stroke more than the previous, so that only `after` is counted.
             Self::Depth { after, .. } => after.iter().map(depth_stroke_bytes).sum(),
             Self::Variant { before, after } => [before, after].into_iter().flatten().map(String::len).sum(),
         }
@@ -48,16 +48,16 @@ fn depth_stroke_bytes(stroke: &DepthStroke) -> usize {
     size_of::<DepthStroke>() + size_of_val(&*stroke.path)
 }
 
-/// One step.
+/// An undo step.
 #[derive(Clone, Debug)]
 struct Step {
     name: String,
     change: Change,
-    /// What was done, as data, where it can be done again.
+    /// The step as data, if it can be recorded and replayed.
     record: Option<Box<RecordedStep>>,
-    /// What it changed, where that is paint.
+    /// What it changed in the map, if anything.
     thumbnail: Option<EditThumbnail>,
-    /// Memory that it keeps alive.
+    /// Memory used.
     bytes: usize,
 }
 
@@ -69,33 +69,38 @@ impl Step {
     }
 }
 
-/// What a step of undo or redo changed.
+/// What an undo or redo changed.
 #[derive(Clone, Debug, PartialEq)]
 pub enum StepEffect {
-    /// These texels of a layer, and perhaps its background.
-    Paint { texels: Vec<[u32; 2]>, changes_background: bool },
-    /// The layers, in whatever way.
+    /// The map of a layer.
+    Paint {
+        /// The atlas coordinates of the changed texels.
+        texels: Vec<[u32; 2]>,
+        /// Whether the background's focus changed, too.
+        changes_background: bool,
+    },
+    /// The layers, in any way.
     Layers,
     /// The camera.
     Camera,
     /// The keys of the lens.
     LensMotion,
-    /// What may be painted.
+    /// The selection.
     Selection,
-    /// The variant that the scene is to have now, by name.
+    /// The variant that the scene must have now, by name.
     Variant(Option<String>),
     /// The strokes that repair depth.
     Depth,
 }
 
-/// A step of the history, as a list shows it.
+/// A step of the history, as shown in a list.
 #[derive(Clone, Copy, Debug)]
 pub struct HistoryStep<'a> {
-    /// What was done.
+    /// Its name.
     pub name: &'a str,
-    /// What it changed of the focus map, if anything.
+    /// What it changed in the focus map, if anything.
     pub thumbnail: Option<&'a EditThumbnail>,
-    /// Whether it is done, or was taken back and can be done again.
+    /// Whether it is done; otherwise it was undone and can be redone.
     pub is_done: bool,
 }
 
@@ -105,47 +110,52 @@ impl<'a> HistoryStep<'a> {
     }
 }
 
-/// What the steps change.
+/// The state that undo and redo change.
 pub struct UndoState<'a> {
+    /// The layers of focus.
     pub layers: &'a mut LayerStack,
+    /// The shot camera.
     pub camera: &'a mut Camera,
+    /// The keys of the lens.
     pub lens_motion: &'a mut LensMotion,
+    /// The texels that may be painted; `None` for all.
     pub selection: &'a mut Option<Selection>,
+    /// The strokes that repair depth.
     pub depth_strokes: &'a mut Arc<Vec<DepthStroke>>,
 }
 
-/// The steps that can be taken back, and those that can be done again.
+/// The undo history: steps that can be undone, and those that can be redone.
 #[derive(Clone, Debug)]
 pub struct UndoHistory {
     done: VecDeque<Step>,
     undone: Vec<Step>,
-    /// Whether the next edit of the same name joins the latest step.
+    /// Whether the next edit of the same kind joins the latest step.
     is_run_open: bool,
-    /// Memory that the steps may keep alive; the oldest are forgotten beyond it.
+    /// Memory that the steps may use; beyond it, the oldest are dropped.
     budget_bytes: usize,
     bytes: usize,
 }
 
 impl UndoHistory {
-    /// No steps yet.
-    pub fn new(budget_bytes: usize) -> Self {
+    /// A history without steps.
+    pub(crate) fn new(budget_bytes: usize) -> Self {
         Self { done: VecDeque::new(), undone: Vec::new(), is_run_open: false, budget_bytes, bytes: 0 }
     }
 
-    /// Sets the memory that the steps may keep alive.
+    /// Sets the memory budget, bytes; the oldest steps beyond it are dropped.
     pub fn set_budget(&mut self, budget_bytes: usize) {
         self.budget_bytes = budget_bytes;
         self.forget_beyond_budget();
     }
 
-    /// Takes up a change of the map of a layer.
-    pub fn push_paint(&mut self, layer: usize, edit: Edit, record: Option<RecordedStep>) {
+    /// Adds a change of the map of a layer.
+    pub(crate) fn push_paint(&mut self, layer: usize, edit: Edit, record: Option<RecordedStep>) {
         self.push(Step::new(edit.name().into(), Change::Paint { layer, edit }, record));
         self.is_run_open = false;
     }
 
-    /// Takes up a change of what may be painted.
-    pub fn push_selection(
+    /// Adds a change of the selection.
+    pub(crate) fn push_selection(
         &mut self,
         name: &str,
         before: Option<Selection>,
@@ -156,27 +166,27 @@ impl UndoHistory {
         self.is_run_open = false;
     }
 
-    /// Takes up a change of the keys of the lens.
+    /// Adds a change of the keys of the lens.
     pub fn push_lens_motion(&mut self, name: &str, before: LensMotion, after: LensMotion) {
         let change = Change::LensMotion { before: before.into(), after: after.into() };
         self.push(Step::new(name.into(), change, None));
         self.is_run_open = false;
     }
 
-    /// Takes up a change of the scene's variant.
+    /// Adds a change of the scene's variant.
     pub fn push_variant(&mut self, before: Option<String>, after: Option<String>) {
         self.push(Step::new("Variant".into(), Change::Variant { before, after }, None));
         self.is_run_open = false;
     }
 
-    /// Takes up a change of the strokes that repair depth.
+    /// Adds a change of the strokes that repair depth.
     pub fn push_depth(&mut self, name: &str, before: Arc<Vec<DepthStroke>>, after: Arc<Vec<DepthStroke>>) {
         self.push(Step::new(name.into(), Change::Depth { before, after }, None));
         self.is_run_open = false;
     }
 
-    /// Exchanges all selections, because the texels that may be selected are others now.
-    pub fn map_selections(&mut self, remap: impl Fn(&Selection) -> Option<Selection>) {
+    /// Replaces all selections in the history, after the texels of the canvas have changed.
+    pub(crate) fn map_selections(&mut self, remap: impl Fn(&Selection) -> Option<Selection>) {
         for step in self.done.iter_mut().chain(&mut self.undone) {
             if let Change::Selection { before, after } = &mut step.change {
                 *before = before.as_ref().and_then(&remap);
@@ -185,14 +195,14 @@ impl UndoHistory {
         }
     }
 
-    /// What was done and can be taken back, as data, oldest first.
+    /// The records of the steps that can be undone, oldest first.
     pub fn records(&self) -> impl Iterator<Item = &RecordedStep> {
         self.done.iter().filter_map(|step| step.record.as_deref())
     }
 
-    /// Takes up a change of the layers; edits of one thing in a row, as a dragged slider makes them, are one step. The values
-    /// of adjustment layers are not kept: who takes a step back evaluates them again.
-    pub fn push_layers(
+    /// Adds a change of the layers. Consecutive edits of one property, as when a slider is dragged, are one step. The values of adjustment layers
+    /// are not stored: after an undo, the caller evaluates them again.
+    pub(crate) fn push_layers(
         &mut self,
         name: &str,
         before: LayerStack,
@@ -214,7 +224,7 @@ impl UndoHistory {
         self.is_run_open = dragged.is_some();
     }
 
-    /// Takes up a change of the camera; edits of one name in a row are one step.
+    /// Adds a change of the camera; consecutive edits of one name are one step.
     pub fn push_camera(&mut self, name: &str, before: Camera, after: Camera) {
         let before = match self.pop_if_continued(|last| last.name == name) {
             Some(Step { change: Change::Camera { before, .. }, .. }) => before,
@@ -224,7 +234,7 @@ impl UndoHistory {
         self.is_run_open = true;
     }
 
-    /// Takes the latest step away, if the run of edits that it belongs to goes on.
+    /// Removes the latest step, if the run of edits that it belongs to continues.
     fn pop_if_continued(&mut self, continues_run: impl Fn(&Step) -> bool) -> Option<Step> {
         let is_run_open = self.is_run_open;
         let last = self.done.pop_back_if(|last| is_run_open && continues_run(last))?;
@@ -232,7 +242,7 @@ impl UndoHistory {
         Some(last)
     }
 
-    /// Ends a run of edits.
+    /// Ends a run of edits: the next edit is a step of its own.
     pub fn finish_run(&mut self) {
         self.is_run_open = false;
     }
@@ -250,8 +260,8 @@ impl UndoHistory {
         }
     }
 
-    /// Adds a picture to the latest step.
-    pub fn set_thumbnail(&mut self, thumbnail: EditThumbnail) {
+    /// Adds a thumbnail to the latest step.
+    pub(crate) fn set_thumbnail(&mut self, thumbnail: EditThumbnail) {
         if let Some(step) = self.done.back_mut() {
             let before = step.thumbnail.as_ref().map_or(0, EditThumbnail::bytes);
             step.bytes = step.bytes - before + thumbnail.bytes();
@@ -261,7 +271,7 @@ impl UndoHistory {
         }
     }
 
-    /// Takes the latest step back.
+    /// Undoes the latest step; `None` if there is none.
     pub fn undo(&mut self, state: UndoState<'_>) -> Option<StepEffect> {
         let step = self.done.pop_back()?;
         self.is_run_open = false;
@@ -297,7 +307,7 @@ impl UndoHistory {
         Some(effect)
     }
 
-    /// Makes the step again that was taken back last.
+    /// Redoes the step that was undone last; `None` if there is none.
     pub fn redo(&mut self, state: UndoState<'_>) -> Option<StepEffect> {
         let step = self.undone.pop()?;
         self.is_run_open = false;
@@ -333,27 +343,29 @@ impl UndoHistory {
         Some(effect)
     }
 
-    pub fn undo_name(&self) -> Option<&str> {
+    /// The name of the step that undo would revert.
+    pub(crate) fn undo_name(&self) -> Option<&str> {
         self.done.back().map(|step| &*step.name)
     }
 
-    pub fn redo_name(&self) -> Option<&str> {
+    /// The name of the step that redo would repeat.
+    pub(crate) fn redo_name(&self) -> Option<&str> {
         self.undone.last().map(|step| &*step.name)
     }
 
-    /// All steps that can be taken back, oldest first.
+    /// The names of the steps that can be undone, oldest first.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.done.iter().map(|step| &*step.name)
     }
 
-    /// All steps, oldest first: what they are called, what they changed, and whether they are done.
-    pub fn steps(&self) -> impl Iterator<Item = HistoryStep<'_>> {
+    /// All steps, oldest first, the undone ones last.
+    pub(crate) fn steps(&self) -> impl Iterator<Item = HistoryStep<'_>> {
         let done = self.done.iter().map(|step| HistoryStep::from_step(step, true));
         done.chain(self.undone.iter().rev().map(|step| HistoryStep::from_step(step, false)))
     }
 
-    /// Memory that the steps keep alive, and how much they may.
-    pub fn bytes(&self) -> [usize; 2] {
+    /// Memory used by the steps, and the budget, bytes.
+    pub(crate) fn bytes(&self) -> [usize; 2] {
         [self.bytes, self.budget_bytes]
     }
 }
@@ -364,7 +376,7 @@ mod tests {
     use focus::{FocusLayer, FocusMap, LayerEdit};
     use lens::FocusOffset;
 
-    /// What a document has to be undone.
+    /// The state of a document that can be undone.
     struct State {
         undo: UndoHistory,
         layers: LayerStack,
@@ -424,7 +436,7 @@ mod tests {
     }
 
     #[test]
-    fn the_oldest_steps_are_forgotten_first() {
+    fn the_oldest_steps_are_dropped_first() {
         let mut state = State::new();
         state.set_focus(4.0);
         let [one, _] = state.undo.bytes();
@@ -435,7 +447,7 @@ mod tests {
         }
         assert_eq!(state.undo.bytes(), [5 * one, 5 * one + one / 2]);
         state.undo();
-        assert_eq!(state.undo.bytes()[0], 5 * one, "what can be done again counts too");
+        assert_eq!(state.undo.bytes()[0], 5 * one, "steps that can be redone count, too");
         state.set_focus(20.0);
         assert_eq!(state.undo.bytes()[0], 5 * one);
         while state.undo().is_some() {}
@@ -469,11 +481,11 @@ mod tests {
         state.redo();
         assert_eq!(state.layers, two);
         state.set_focus(6.0);
-        assert_eq!(state.undo.redo_name(), None, "a new step forgets what was undone");
+        assert_eq!(state.undo.redo_name(), None, "a new step drops the undone ones");
     }
 
     #[test]
-    fn a_dragged_opacity_is_one_step_and_another_layer_s_is_another() {
+    fn a_dragged_opacity_is_one_step_per_layer() {
         let mut state = State::new();
         assert!(state.layers.insert(FocusLayer::from_map("Layer 1", FocusMap::transparent(4, 4))));
         let first = state.layers.clone();

@@ -1,17 +1,17 @@
-//! Where work runs that goes on beside its caller.
+//! Where background work runs.
 
-/// Where work runs that goes on beside its caller: passed to whoever may start some, so that no library starts a thread by itself.
+/// Where background work runs. It is passed to everything that may start some, so that no library starts a thread of its own accord.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Background {
-    /// On a thread of its own.
+    /// Each task on a thread of its own.
     #[default]
     Threads,
-    /// In its caller, which waits: for programs that must not start threads, and for tests that count what was done.
+    /// On the caller's thread, before the call returns: for programs that must not start threads, and for tests that count what was done.
     Inline,
 }
 
 impl Background {
-    /// Starts `work` on a thread called `name`, or does it at once. Returns whether it was started: the system may refuse a thread.
+    /// Starts `work` on a thread named `name`, or runs it at once. Returns whether it was started: the system may refuse a thread.
     pub(crate) fn start(self, name: &str, work: impl FnOnce() + Send + 'static) -> bool {
         match self {
             Self::Threads => std::thread::Builder::new().name(name.into()).spawn(work).is_ok(),

@@ -1,14 +1,14 @@
-//! Asking work to stop.
+//! Requests to stop work.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Asks work to stop: clones share one request, which is never taken back.
+/// A request to stop work. Clones share one request, which is never withdrawn.
 #[derive(Clone, Debug, Default)]
 pub struct CancelToken(Arc<AtomicBool>);
 
 impl CancelToken {
-    /// Asks all work that was started with this token, or a clone of it, to stop.
+    /// Requests that all work started with this token, or a clone of it, stop.
     pub fn cancel(&self) {
         self.0.store(true, Ordering::Relaxed);
     }

@@ -1,28 +1,28 @@
-//! Why work in the background came to nothing.
+//! Why background work failed.
 
-/// Why work in the background came to nothing, apart from errors of its own.
+/// Why background work failed, other than by an error of its own.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum JobError {
-    /// The system gave no thread for it.
+    /// The system refused a thread.
     #[error("{task}: no thread could be started: {reason} (try again)")]
     NoThread {
-        /// What was to be done.
+        /// The task that was to run.
         task: String,
-        /// What the system says.
+        /// The system's message.
         reason: String,
     },
-    /// It panicked: a fault of the program.
+    /// The work panicked: a fault of the program.
     #[error("{task}: stopped by a fault of the program: {message} (please report this)")]
     Panicked {
-        /// What was being done.
+        /// The task that was running.
         task: String,
-        /// What the panic says.
+        /// The first line of the panic's message.
         message: String,
     },
 }
 
 impl JobError {
-    /// What a panic of `task` means, by its payload.
+    /// The error for a panic of `task` with this payload.
     pub(crate) fn from_panic(task: &str, payload: &(dyn std::any::Any + Send)) -> Self {
         let message = payload.downcast_ref::<&str>().copied();
         let message = message.or_else(|| payload.downcast_ref::<String>().map(String::as_str));

@@ -1,4 +1,4 @@
-//! Background work: a named thread with progress, cancel and a result; its panics become errors.
+//! Background work: a named thread with progress, cancellation and a result. Panics become errors.
 
 use crate::error::JobError;
 use crate::job_progress::JobProgress;
@@ -6,45 +6,45 @@ use crate::threads::{STACK_BYTES, Urgency, catch_panics, run_in_own_pool};
 use progress::Progress;
 use std::sync::Arc;
 
-/// Names one piece of background work.
+/// Identifies one job.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct JobId(pub u64);
 
-/// How background work stands, for the status line.
+/// The state of a job, for the status line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JobStatus {
-    /// Which.
+    /// The job.
     pub id: JobId,
-    /// What it does: "opening house.glb".
+    /// What it does, such as "opening house.glb".
     pub label: String,
-    /// Which step of it goes on: "unwrapping"; empty where it has but one.
+    /// The current step, such as "unwrapping"; empty if the job has only one.
     pub step: String,
     /// The share done, in [0, 1].
     pub fraction: f32,
-    /// Seconds until the step is done, as far as can be told from how long the share that is done has taken.
+    /// Estimated seconds until the step is done, from the time that its finished share has taken; `None` until there is an estimate.
     pub seconds_left: Option<u32>,
-    /// Whether a command can stop it.
+    /// Whether it can still be cancelled.
     pub can_cancel: bool,
 }
 
-/// Calls the window back when there is something to poll.
+/// Wakes the window when there is something to poll.
 pub type Waker = Arc<dyn Fn() + Send + Sync>;
 
-/// Work in the background.
+/// A running job.
 pub struct Job {
-    /// Which.
+    /// Identifies it.
     pub id: JobId,
     /// What it does.
     pub label: String,
-    /// How far it is; cancels it.
+    /// Its progress, through which it is also cancelled.
     pub progress: Arc<JobProgress>,
 }
 
 impl Job {
-    /// Starts `work` on a thread of its own and hands its result, or what its panic means, to `deliver`.
+    /// Starts `work` on a thread of its own and passes its result to `deliver`; a panic becomes [`JobError::Panicked`].
     ///
     /// # Errors
-    /// [`JobError::NoThread`]: the system gave none.
+    /// [`JobError::NoThread`]: the system refused a thread.
     pub fn start<T: Send + 'static, E: From<JobError> + Send + 'static>(
         id: JobId,
         label: String,
@@ -63,7 +63,7 @@ impl Job {
         Ok(Self { id, label, progress })
     }
 
-    /// How it stands.
+    /// Its current state.
     pub fn status(&self) -> JobStatus {
         let (step, seconds_left) = self.progress.step_status();
         JobStatus {
@@ -102,7 +102,7 @@ mod tests {
         }
     }
 
-    /// More than any machine takes.
+    /// Longer than any machine takes.
     const PATIENCE: Duration = Duration::from_secs(120);
 
     #[test]
@@ -113,14 +113,16 @@ mod tests {
         Job::start(JobId(1), "testing".into(), panics, move |id, r| deliver.send((id, r)).unwrap()).unwrap();
         let (id, result) = receive.recv_timeout(PATIENCE).unwrap();
         assert_eq!(id, JobId(1));
-        assert!(matches!(result, Err(TestError::Job(JobError::Panicked { message, .. })) if message.contains("index out of bounds")));
+        assert!(
+            matches!(result, Err(TestError::Job(JobError::Panicked { message, .. })) if message.contains("index out of bounds"))
+        );
 
         Job::start(JobId(2), "testing".into(), |_| Ok(7), move |id, r| send.send((id, r)).unwrap()).unwrap();
         assert_eq!(receive.recv_timeout(PATIENCE).unwrap(), (JobId(2), Ok(7)));
     }
 
     #[test]
-    fn what_is_quick_does_not_wait_for_long_work() {
+    fn quick_work_does_not_wait_for_long_work() {
         use rayon::prelude::*;
         let (send, receive) = mpsc::channel();
         let (begun, has_begun) = mpsc::channel();
@@ -129,7 +131,7 @@ mod tests {
             JobId(1),
             "working".into(),
             move |progress| {
-                // More pieces than threads, none of which ends by itself.
+                // More items than threads, none of which ends by itself.
                 (0..everybody).into_par_iter().for_each(|_| {
                     begun.send(()).unwrap();
                     while !progress.cancelled() {

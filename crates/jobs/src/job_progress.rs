@@ -1,22 +1,22 @@
-//! Progress and cancellation of background work, shared between it and its watchers.
+//! Progress and cancellation of background work, shared between the work and its observers.
 
 use progress::{Part, Progress};
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Progress and cancellation shared between a job and its watchers.
+/// Progress and cancellation, shared between a job and its observers.
 pub struct JobProgress {
     fraction: AtomicU32,
     cancelled: AtomicBool,
     step: Mutex<Step>,
 }
 
-/// A part of a job.
+/// A step of a job.
 struct Step {
     label: String,
     start: Instant,
-    /// Shares of the whole, before and after it.
+    /// The share of the whole job that is done before and after it.
     shares: [f32; 2],
 }
 
@@ -32,7 +32,7 @@ impl Default for JobProgress {
     }
 }
 
-/// Before a step has gone on for this long, and is done to this share, nobody can tell how long it takes.
+/// The remaining time is estimated once a step has run for this long and this share of it is done.
 const ESTIMATE_AFTER: (Duration, f32) = (Duration::from_secs(1), 0.02);
 
 impl JobProgress {
@@ -52,27 +52,27 @@ impl JobProgress {
         self.begin_step("", 0.0, 1.0);
     }
 
-    /// A part begins that takes the bar from one share of the whole to another.
+    /// Begins a step that takes the progress bar from one share of the whole to another.
     pub fn begin_step(&self, label: &str, from: f32, to: f32) {
         let mut step = self.step();
         self.fraction.store(from.to_bits(), Ordering::Relaxed);
         *step = Step { label: label.into(), start: Instant::now(), shares: [from, to] };
     }
 
-    /// What the part that goes on is called, and how many seconds it will take.
+    /// The current step's name, and the estimated seconds until it is done.
     pub fn step_status(&self) -> (String, Option<u32>) {
         let step = self.step();
         (step.label.clone(), step.seconds_left(self.fraction(), step.start.elapsed()))
     }
 
-    /// A poisoned lock only means that a panic passed by: what it guards is replaced as a whole.
+    /// Ignores poisoning: the guarded value is only ever replaced as a whole.
     fn step(&self) -> MutexGuard<'_, Step> {
         self.step.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
 impl Step {
-    /// Seconds that it will take when it has come to this share of the whole in this time.
+    /// Estimated seconds until the step is done, if after `elapsed` the whole job is done to the share `fraction`.
     fn seconds_left(&self, fraction: f32, elapsed: Duration) -> Option<u32> {
         let [from, to] = self.shares;
         let step_share = (fraction - from) / (to - from);
@@ -100,7 +100,7 @@ mod tests {
     use progress::Stage;
 
     #[test]
-    fn what_is_left_follows_from_what_is_done() {
+    fn the_remaining_time_follows_from_the_share_done() {
         let step = Step { shares: [0.5, 0.9], ..Step::default() };
         let after = |seconds, fraction| step.seconds_left(fraction, Duration::from_secs(seconds));
         assert_eq!(after(10, 0.6), Some(30), "a quarter in ten seconds");

@@ -1,7 +1,7 @@
-//! Work in the background: threads, progress, cancellation.
+//! Background work: threads, progress, cancellation.
 //!
-//! The one crate below the window that starts threads and reads the clock. Whoever may start work gets a [`Background`] passed in and
-//! hands it a [`SharedTask`]; a [`Job`] is work of the window's with a name, a progress bar and a result.
+//! This is the only crate below the window that starts threads and reads the clock. Code that may start work is passed a [`Background`]
+//! and starts a [`SharedTask`] on it. A [`Job`] is work for the window, with a name, a progress bar and a result.
 //!
 //! ```
 //! use jobs::{Background, CancelToken, SharedTask};

@@ -1,4 +1,4 @@
-//! Work that several callers wait for, and that goes on whoever stops waiting.
+//! Work that several callers can wait for, and that continues when any of them stops waiting.
 
 use crate::background::Background;
 use crate::cancel_token::CancelToken;
@@ -8,27 +8,32 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-/// How often a waiting caller looks whether the result is there.
+/// How often a waiting caller checks for the result.
 const POLL_INTERVAL: Duration = Duration::from_millis(5);
 
-/// Work that several callers wait for. It goes on whoever stops waiting, until its [`CancelToken`] is cancelled.
+/// Work that several callers can wait for. It continues when any of them stops waiting, until its [`CancelToken`] is cancelled.
 pub struct SharedTask {
-    /// The share done: bits of an f32.
+    /// The share done in [0, 1], as the bits of an `f32`.
     fraction: AtomicU32,
-    /// The part of the work that goes on.
+    /// The current part of the work.
     part: Mutex<Option<Part>>,
     has_ended: AtomicBool,
     cancel: CancelToken,
 }
 
 impl SharedTask {
-    /// Work that has not begun, which `cancel` stops.
+    /// A task that has not begun and is stopped by `cancel`.
     pub fn new(cancel: CancelToken) -> Self {
-        Self { fraction: AtomicU32::new(0), part: Mutex::new(None), has_ended: AtomicBool::new(false), cancel }
+        Self {
+            fraction: AtomicU32::new(0),
+            part: Mutex::new(None),
+            has_ended: AtomicBool::new(false),
+            cancel,
+        }
     }
 
-    /// Starts the work. Its result is stored by the work itself, where the `poll` of [`Self::wait`] finds it. A panic ends it like
-    /// anything else: whoever waits finds nothing.
+    /// Starts the work, which stores its result where the `poll` function of [`Self::wait`] can read it. If the work panics, or no thread
+    /// can be started, callers that wait receive `None`.
     pub fn start(
         self: &Arc<Self>,
         background: Background,
@@ -45,11 +50,11 @@ impl SharedTask {
         }
     }
 
-    /// What `poll` returns as soon as it returns something; `None` if the work ended without. Progress of the work is passed on to
+    /// Waits until `poll` returns a value, and returns it; `None` if the work ended without one. The work's progress is passed on to
     /// `progress`.
     ///
     /// # Errors
-    /// `progress` says to stop waiting. The work goes on.
+    /// `progress` was cancelled while waiting. The work continues.
     pub fn wait<T>(
         &self,
         progress: &dyn Progress,
@@ -57,7 +62,7 @@ impl SharedTask {
     ) -> Result<Option<T>, Cancelled> {
         let mut reported_part = None;
         loop {
-            // Read first: a result that was stored before the end is there by then.
+            // Read before polling: a result stored before the end is then visible to `poll`.
             let has_ended = self.has_ended.load(Ordering::Acquire);
             if let Some(result) = poll() {
                 return Ok(Some(result));
@@ -76,7 +81,7 @@ impl SharedTask {
         }
     }
 
-    /// A poisoned lock only means that a panic passed by: what it guards is replaced as a whole.
+    /// Ignores poisoning: the guarded value is only ever replaced as a whole.
     fn part(&self) -> MutexGuard<'_, Option<Part>> {
         self.part.lock().unwrap_or_else(PoisonError::into_inner)
     }

@@ -1,44 +1,44 @@
-//! Threads of background work: how soon it is needed, and what its panics mean.
+//! Threads of background work: their priority, and errors from panics.
 
 use crate::error::JobError;
 use std::panic::AssertUnwindSafe;
 
-/// Stack of a job's thread: imports and unwrapping may recurse over a scene's hierarchy.
+/// Stack size of a job's thread: import and unwrapping may recurse over a scene's hierarchy.
 pub(crate) const STACK_BYTES: usize = 16 << 20;
 
 /// How soon work is needed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Urgency {
-    /// Somebody looks on.
+    /// A person is waiting for it.
     Interactive,
-    /// When there is time: it stands back behind the pictures that one paints on.
+    /// Whenever there is time: the pictures being painted on take precedence.
     Background,
 }
 
-/// By how much the threads of work that has time stand back.
+/// By how much the niceness of threads of background work is raised.
 #[cfg(target_os = "linux")]
 const NICE_INCREMENT: i32 = 5;
 
 impl Urgency {
-    /// Says so to the system, for the thread that calls.
+    /// Sets the priority of the calling thread.
     #[cfg(target_os = "linux")]
     fn declare(self) {
         if self == Self::Background {
-            // Where that is not allowed, it does not stand back.
+            // If this is not permitted, the thread keeps its priority.
             let _ = rustix::process::nice(NICE_INCREMENT);
         }
     }
 
-    /// Elsewhere only whole processes have a say.
+    /// Other systems only let whole processes lower their priority.
     #[cfg(not(target_os = "linux"))]
     fn declare(self) {}
 }
 
-/// Rayon threads for work that takes its time: in the common ones, what the window needs at once would wait for its long
-/// pieces. The system shares the processors out.
+/// A Rayon pool for long work. In the global pool, work that the window needs at once would wait behind its long items; with separate
+/// pools, the system divides the processors between them.
 ///
 /// # Errors
-/// [`JobError::NoThread`]: the system gave none.
+/// [`JobError::NoThread`]: the system refused a thread.
 pub fn build_thread_pool(urgency: Urgency) -> Result<rayon::ThreadPool, JobError> {
     let pool = rayon::ThreadPoolBuilder::new()
         .stack_size(STACK_BYTES)
@@ -47,7 +47,7 @@ pub fn build_thread_pool(urgency: Urgency) -> Result<rayon::ThreadPool, JobError
     pool.map_err(|error| JobError::NoThread { task: "working".into(), reason: error.to_string() })
 }
 
-/// Runs `work` with threads of its own.
+/// Runs `work` in a thread pool of its own.
 ///
 /// # Errors
 /// Those of `work`, and [`JobError::NoThread`].
@@ -62,10 +62,7 @@ pub fn run_in_own_pool<T: Send, E: From<JobError> + Send>(
 ///
 /// # Errors
 /// Those of `work`, and [`JobError::Panicked`].
-pub fn catch_panics<T, E: From<JobError>>(
-    task: &str,
-    work: impl FnOnce() -> Result<T, E>,
-) -> Result<T, E> {
+pub fn catch_panics<T, E: From<JobError>>(task: &str, work: impl FnOnce() -> Result<T, E>) -> Result<T, E> {
     std::panic::catch_unwind(AssertUnwindSafe(work))
         .unwrap_or_else(|payload| Err(JobError::from_panic(task, payload.as_ref()).into()))
 }

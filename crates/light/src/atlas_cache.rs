@@ -1,4 +1,4 @@
-//! Atlases kept from one run of the program to the next: a scene of many triangles is not unwrapped anew each time it is opened.
+//! Atlases cached on disk, so that a scene of many triangles is not unwrapped each time it is opened.
 
 use crate::disk_cache::{CacheSection, DiskCache};
 use crate::scene_hashes::surface_hash;
@@ -7,13 +7,13 @@ use progress::Progress;
 use scene::Scene;
 use sha2::Digest;
 
-/// 28 bytes a triangle each.
+/// An atlas takes 28 bytes per triangle.
 const SECTION: CacheSection = CacheSection { name: "atlas", budget_bytes: 512 << 20 };
 
-/// Scenes of fewer triangles, which are unwrapped in about a second, are unwrapped again.
+/// Scenes of fewer triangles unwrap in about a second and are not cached.
 const MIN_CACHED_TRIANGLES: usize = 8_000;
 
-/// The atlas of a scene: the cached one, or the scene unwrapped.
+/// The atlas of a scene: read from the cache, or else unwrapped.
 ///
 /// # Errors
 /// Those of [`Atlas::unwrap`].
@@ -33,8 +33,10 @@ pub fn load_or_unwrap_atlas(
         return Ok(atlas);
     }
     let atlas = Atlas::unwrap(scene, options, progress)?;
-    // One that did not go as requested may go another time, and is not stored.
-    if let Some(entry) = entry.filter(|_| scene.triangles.len() >= MIN_CACHED_TRIANGLES && atlas.notes.is_empty()) {
+    // An atlas that was not made as requested might be another time, and is not stored.
+    if let Some(entry) =
+        entry.filter(|_| scene.triangles.len() >= MIN_CACHED_TRIANGLES && atlas.notes.is_empty())
+    {
         entry.write(&atlas.to_bytes());
     }
     Ok(atlas)

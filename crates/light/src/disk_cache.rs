@@ -1,8 +1,8 @@
-//! Results that are not computed again: files of our own in a cache folder.
+//! Results cached as files in a folder, so that they are not computed again.
 //!
-//! A file is named by a checksum of all that it was made from and of the very build of the program; its contents stand before a checksum
-//! of their own. One that cannot be read is as good as none, and that one cannot be written only costs time later. Where the files of
-//! a section take too much, those go that were not read for the longest.
+//! A file's name is a checksum of all its inputs and of the build of the program; its contents are followed by a checksum of their own. A
+//! file that cannot be read counts as missing, and a failed write only costs time later. If the files of a section exceed its budget, the
+//! least recently used are removed.
 
 use atomic_write_file::AtomicWriteFile;
 use sha2::{Digest, Sha256};
@@ -12,22 +12,22 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::SystemTime;
 
-/// A folder for results that outlive the program, or none. Clones share it.
+/// A cache of results on disk, or none. Clones share its folder.
 #[derive(Clone, Debug, Default)]
 pub struct DiskCache {
     folder: Option<Arc<Path>>,
 }
 
-/// Files of one kind.
+/// A section of the cache: files of one kind.
 #[derive(Clone, Copy, Debug)]
 pub struct CacheSection {
-    /// Their folder in the cache folder, and their extension.
+    /// The name of its folder in the cache folder, and the extension of its files.
     pub name: &'static str,
-    /// Bytes that they may take together.
+    /// The total size that its files may have, bytes.
     pub budget_bytes: u64,
 }
 
-/// The file of one result, whether or not it exists.
+/// The file of one result, which may not exist yet.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CacheEntry {
     path: PathBuf,
@@ -36,16 +36,16 @@ pub struct CacheEntry {
 }
 
 impl DiskCache {
-    /// A cache in `folder`, which is made when there is a result to keep.
+    /// A cache in `folder`, which is created when the first result is written.
     pub fn in_folder(folder: &Path) -> Self {
         Self { folder: Some(folder.into()) }
     }
 
-    /// No cache: nothing is kept, nothing is found.
+    /// No cache: nothing is stored.
     pub const DISABLED: Self = Self { folder: None };
 
-    /// The entry of what is made from the inputs that `add_inputs` hashes; none where nothing is kept or builds of the program cannot be
-    /// told apart.
+    /// The entry of the result whose inputs `add_inputs` hashes; `None` if the cache is disabled, or the build of the program cannot be
+    /// identified.
     pub fn entry(&self, section: CacheSection, add_inputs: impl FnOnce(&mut Sha256)) -> Option<CacheEntry> {
         let folder = self.folder.as_ref()?;
         let mut hash = Sha256::new();
@@ -59,12 +59,12 @@ impl DiskCache {
 }
 
 impl CacheEntry {
-    /// Whether there is a file, whole or not.
+    /// Whether the file exists; it may be damaged.
     pub fn exists(&self) -> bool {
         self.path.exists()
     }
 
-    /// What the file holds, if it is whole. It counts as used now.
+    /// Reads the file's contents, if it exists and is undamaged, and marks it as used now.
     pub fn read(&self) -> Option<Vec<u8>> {
         if std::fs::metadata(&self.path).ok()?.len() > self.budget_bytes {
             return None;
@@ -75,13 +75,13 @@ impl CacheEntry {
             return None;
         }
         bytes.truncate(content_len);
-        // Where the use cannot be noted, the file goes by when it was written.
+        // If this fails, the file keeps the time of its last use or of its writing.
         let file = File::options().write(true).open(&self.path);
         let _ = file.and_then(|file| file.set_modified(SystemTime::now()));
         Some(bytes)
     }
 
-    /// Keeps bytes, and removes the files of the section that lie beyond its budget.
+    /// Writes `bytes` to the file, and removes the least recently used files of its section beyond the budget. A failed write is ignored.
     pub fn write(&self, bytes: &[u8]) {
         let Some(folder) = self.path.parent() else { return };
         let written = std::fs::create_dir_all(folder).and_then(|()| {
@@ -98,7 +98,7 @@ impl CacheEntry {
 
 const CHECKSUM_BYTES: usize = 32;
 
-/// Removes the files of an extension that were not looked for the longest, as many as lie beyond a budget, but not the `newest`.
+/// Removes the least recently used files of an extension in `folder`, until the rest fit `budget_bytes`. The `newest` always stays.
 pub fn evict_oldest(folder: &Path, extension: &str, budget_bytes: u64, newest: &Path) {
     let Ok(listing) = std::fs::read_dir(folder) else { return };
     let has_extension =
@@ -122,7 +122,7 @@ pub fn evict_oldest(folder: &Path, extension: &str, budget_bytes: u64, newest: &
     }
 }
 
-/// Tells this build of the program from others, which may work otherwise.
+/// Identifies this build of the program, by the size and modification time of its file: another build may compute other results.
 pub fn build_id() -> Option<String> {
     let program = std::env::current_exe().and_then(std::fs::metadata).ok()?;
     let modified = program.modified().ok()?.duration_since(SystemTime::UNIX_EPOCH).ok()?;
@@ -135,7 +135,7 @@ mod tests {
     use std::time::Duration;
 
     #[test]
-    fn what_was_not_looked_for_the_longest_goes_first() {
+    fn the_least_recently_used_files_are_removed_first() {
         let folder = tempfile::tempdir().unwrap();
         let write = |name: &str, age: u64| {
             let path = folder.path().join(name);

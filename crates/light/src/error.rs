@@ -1,15 +1,15 @@
-//! What can go wrong when light is solved for.
+//! Errors of solving for light.
 
 use progress::Cancelled;
 use slf::PhotographError;
 
-/// Why there is no light.
+/// Why light could not be solved for.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LightError {
-    /// Photographs cannot be used; the text names the file, what is wrong and what to do.
+    /// Photographs cannot be used. The text says which file, what is wrong and what to do.
     #[error("{0}")]
     BadInput(String),
-    /// The user stopped it, or a newer request took its place.
+    /// The user cancelled it, or a newer request replaced it.
     #[error("cancelled")]
     Cancelled,
     /// A fault of the program itself.

@@ -1,6 +1,6 @@
-//! Irradiance of a scene, by world: no camera traces its bounces again.
+//! Irradiance of a scene, cached by world: no camera traces its bounces again.
 //!
-//! It is solved in the background and goes on whoever stops waiting: roughly first, for the pictures that come at once, then well.
+//! It is solved in the background, which continues when a caller stops waiting: first roughly, for immediate pictures, then finely.
 
 use crate::disk_cache::DiskCache;
 use crate::irradiance_file;
@@ -13,13 +13,13 @@ use slf::{Irradiance, IrradianceOptions, Transport, TransportOptions};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use trace::Tracer;
 
-/// Worlds whose irradiance is kept: the one that is shown, and those that one turns back to.
+/// Worlds whose irradiance is cached: the one shown, and those that the user may return to.
 const MAX_WORLDS: usize = 3;
 
-/// Light of few patches and rays: in a fraction of a second.
+/// Few patches and rays: solved in a fraction of a second.
 const ROUGH_OPTIONS: IrradianceOptions = IrradianceOptions { patches: 6_000, rays: 32 };
 
-/// The irradiance of one scene, by world; the world that was used last stands last.
+/// The irradiance of one scene, by world, the most recently used last.
 #[derive(Default)]
 pub(crate) struct IrradianceCache {
     worlds: Mutex<Vec<Arc<WorldIrradiance>>>,
@@ -40,23 +40,23 @@ impl WorldIrradiance {
     }
 }
 
-/// What irradiance is solved from beside the world.
+/// What irradiance is solved from, besides the world.
 pub(crate) struct IrradianceInputs<'a> {
     pub tracer: &'a Arc<Tracer>,
     pub options: LightOptions,
     pub resources: &'a Resources,
-    /// Stops work in the background.
+    /// Stops background work.
     pub cancel: &'a CancelToken,
 }
 
 impl IrradianceCache {
-    /// The irradiance in `world`, if it is there.
+    /// The irradiance in `world`, if it is solved.
     pub fn available(&self, world: &World) -> Option<Arc<Irradiance>> {
         let worlds = self.lock();
         worlds.iter().find(|entry| entry.world == *world)?.available(LightQuality::Rough).cloned()
     }
 
-    /// The irradiance in `world` as soon as it is there, of at least `quality`.
+    /// Waits for the irradiance in `world`, of at least `quality`.
     pub fn wait(
         &self,
         world: &World,
@@ -67,7 +67,7 @@ impl IrradianceCache {
         let entry = self.get_or_start(world, inputs);
         match entry.task.wait(progress, || entry.available(quality).cloned())? {
             Some(irradiance) => Ok(irradiance),
-            // Its thread is gone: here it is solved once more.
+            // Its thread failed: it is solved here instead.
             None => {
                 let is_rough = quality == LightQuality::Rough;
                 let options = if is_rough { ROUGH_OPTIONS } else { IrradianceOptions::default() };
@@ -77,7 +77,7 @@ impl IrradianceCache {
         }
     }
 
-    /// The irradiance in `world`, which is solved from now on if it was not before.
+    /// The irradiance in `world`; the solution is started if it was not before.
     fn get_or_start(&self, world: &World, inputs: &IrradianceInputs) -> Arc<WorldIrradiance> {
         let mut worlds = self.lock();
         if let Some(index) = worlds.iter().position(|entry| entry.world == *world) {
@@ -100,21 +100,21 @@ impl IrradianceCache {
             let (entry, tracer, options) = (entry.clone(), inputs.tracer.clone(), inputs.options);
             let cache = inputs.resources.cache.clone();
             move |progress: &dyn Progress| {
-                // Whoever waits learns that it ended without.
-                let _ = solve(&entry, &tracer, options, &cache, progress);
+                // Cancelled: the task ends without a result, which callers notice.
+                let _ = solve_world(&entry, &tracer, options, &cache, progress);
             }
         };
         entry.task.start(inputs.resources.background, "light", work);
         entry
     }
 
-    /// A poisoned lock only means that a panic passed by: what it guards is always whole.
+    /// Ignores poisoning: the guarded value is always consistent.
     fn lock(&self) -> MutexGuard<'_, Vec<Arc<WorldIrradiance>>> {
         self.worlds.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-fn solve(
+fn solve_world(
     entry: &WorldIrradiance,
     tracer: &Arc<Tracer>,
     light: LightOptions,
@@ -133,11 +133,11 @@ fn solve(
         return Ok(());
     }
     let transport = transport_without_cache(tracer, entry.world.clone(), light, 1, 1);
-    // The rough light comes first and is soon there.
+    // The rough light is quick to solve and comes first.
     let rough = Irradiance::solve(&transport, ROUGH_OPTIONS, &Stage::new(progress, 0.0, 0.0))?;
     let _ = entry.rough.set(Arc::new(rough));
     if !scene.views.is_empty() {
-        // Photographs light it as soon as theirs is there: the bare surface is not looked at for long.
+        // Light from photographs replaces it as soon as it is solved: the bare surface is not shown for long.
         return Ok(());
     }
     let fine = Irradiance::solve(&transport, options, progress)?;
@@ -148,7 +148,7 @@ fn solve(
     Ok(())
 }
 
-/// Light of a scene in a world whose irradiance is not used: this many paths and light samples a point.
+/// Light of a scene in a world without cached irradiance, with this many paths and light samples per point.
 pub(crate) fn transport_without_cache(
     tracer: &Arc<Tracer>,
     world: World,

@@ -1,7 +1,7 @@
-//! Irradiance kept from one run of the program to the next: light that was solved for once is not solved for again.
+//! Irradiance cached on disk, so that it is not solved for again.
 //!
-//! A file is of a scene (all of it that gives, blocks or scatters light) in a world, and holds a number for each patch and colour, direct
-//! and indirect, f32 little endian.
+//! A file belongs to a scene (everything in it that emits, blocks or scatters light) in a world. It holds linear RGB per patch, first all
+//! direct, then all indirect, as little-endian `f32`.
 
 use crate::disk_cache::CacheSection;
 use crate::options::LightOptions;
@@ -11,10 +11,10 @@ use scene::{Environment, Scene, World};
 use sha2::{Digest, Sha256};
 use slf::{Irradiance, IrradianceOptions};
 
-/// A megabyte a scene and world.
+/// A file takes about a megabyte.
 pub(super) const SECTION: CacheSection = CacheSection { name: "light", budget_bytes: 256 << 20 };
 
-/// What the irradiance of a scene in a world is made from.
+/// Hashes everything that the irradiance of a scene in a world depends on.
 pub(super) fn hash_inputs(
     hash: &mut Sha256,
     scene: &Scene,
@@ -29,7 +29,7 @@ pub(super) fn hash_inputs(
     }
 }
 
-/// The irradiance of a scene from the bytes of a file; none if they are of another number of patches.
+/// The irradiance of a scene from the bytes of a file; `None` if the number of patches differs.
 pub(super) fn from_bytes(
     bytes: &[u8],
     scene: &Scene,
@@ -45,7 +45,7 @@ pub(super) fn from_bytes(
     Irradiance::from_values(scene, world, options, [direct.to_vec(), indirect.to_vec()])
 }
 
-/// The bytes of a file.
+/// The bytes of the file.
 pub(super) fn to_bytes(irradiance: &Irradiance) -> Vec<u8> {
     let numbers = irradiance.values().into_iter().flatten().flat_map(|value| value.to_array());
     numbers.flat_map(f32::to_le_bytes).collect()
@@ -73,13 +73,13 @@ mod tests {
     }
 
     #[test]
-    fn light_comes_back_bit_by_bit_and_no_other_does() {
+    fn irradiance_round_trips_bit_for_bit_and_other_options_are_rejected() {
         let world = World::uniform(Vec3::ONE);
         let (scene, irradiance) = solved(&world);
         let bytes = to_bytes(&irradiance);
         let again = from_bytes(&bytes, &scene, &world, OPTIONS).unwrap();
         assert_eq!(again.values(), irradiance.values());
-        // Of other options it has another number of patches.
+        // With other options, the number of patches differs.
         assert!(from_bytes(&bytes, &scene, &world, IrradianceOptions { patches: 5, rays: 8 }).is_none());
         let origin = |world: &World| {
             let mut hash = Sha256::new();

@@ -1,10 +1,10 @@
 //! The light of a scene as a value.
 //!
-//! A [`LitScene`] is a scene that is ready for rays together with the light that was solved for in it: irradiance by world
-//! (`irradiance_cache`), light from photographs (`photograph_light_cache`). Whoever holds one shares what it knows; when the last one
-//! goes, work that still goes on for it stops. Results outlive the program in a [`DiskCache`], if one is passed in.
+//! A [`LitScene`] is a scene ready for ray tracing, together with the light solved for in it: irradiance by world (`irradiance_cache`), and
+//! light from photographs (`photograph_light_cache`). Its owners share the results; when the last owner drops it, its background work
+//! stops. With a [`DiskCache`], results outlive the program.
 //!
-//! Where radiance comes from is chosen in `lit_scene.rs`, here and nowhere else.
+//! The source of radiance is chosen in `lit_scene.rs`, and nowhere else.
 //!
 //! ```
 //! use light::{LightOptions, LightQuality, LitScene, Resources};
@@ -32,6 +32,7 @@ mod scene_hashes;
 mod steps;
 #[cfg(test)]
 #[path = "../../session/tests/tiny_glb/mod.rs"]
+#[allow(dead_code, reason = "shared with other tests, which use all of it")]
 mod tiny_glb;
 
 pub use atlas_cache::load_or_unwrap_atlas;
@@ -40,7 +41,7 @@ pub use error::LightError;
 pub use light_errors::LightErrors;
 pub use lit_scene::{LitScene, SceneLight};
 pub use options::{LightOptions, LightQuality, PhotoLookup};
-pub use slf::{PhotographLight, Scattering};
 pub use resources::Resources;
 pub use scene_hashes::{content_hash, light_hash};
+pub use slf::{PhotographLight, Scattering};
 pub use steps::Steps;

@@ -1,21 +1,21 @@
-//! How far light is off, as far as refined light tells it.
+//! Estimated errors of light, by comparison with refined light.
 
-/// How far pictures are from what refined light comes to in the end, the mean square of linear values.
+/// Estimated errors of two pictures against the limit of refined light: mean squares of linear values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightErrors {
-    /// The one whose light was refined, by the noise of paths.
+    /// The error of the picture of refined light: the noise of its paths.
     pub refined: f64,
-    /// The one that stands.
+    /// The error of the picture that is displayed.
     pub displayed: f64,
 }
 
-/// Noise of four times as many paths over that of as many, as mean squares: a quarter, but for single paths that carry much, of which many
-/// are needed to see any; so it is taken for more.
+/// Mean squared noise after four times as many paths, relative to that before. In theory it is a quarter; rare paths that carry much light,
+/// which few paths may miss altogether, make it larger.
 const NEXT_NOISE_RATIO: f64 = 0.5;
 
 impl LightErrors {
-    /// By the mean squares of how far a picture of refined light is from one of a quarter of its passes, and from one that stands: errors
-    /// that have nothing to do with each other add as squares.
+    /// Estimates the errors from two mean squared differences of the picture of refined light: `from_last`, from the picture after a quarter
+    /// of its passes, and `from_displayed`, from the picture displayed. Squares of independent errors add.
     pub fn from_mean_squares(from_last: f64, from_displayed: f64) -> Self {
         let refined = from_last * NEXT_NOISE_RATIO / (1.0 + NEXT_NOISE_RATIO);
         Self { refined, displayed: (from_displayed - refined).max(0.0) }
@@ -27,8 +27,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn noise_is_told_from_what_is_off() {
-        // Light of 4 passes has a noise of 4, of 16 one of 2; what stands is 8 off, or hardly.
+    fn noise_is_separated_from_the_displayed_error() {
+        // Light of 4 passes has a noise of 4, of 16 passes one of 2; the displayed picture is off by 8, or hardly.
         let errors = LightErrors::from_mean_squares(6.0, 10.0);
         assert!((errors.refined - 2.0).abs() < 1e-12 && (errors.displayed - 8.0).abs() < 1e-12, "{errors:?}");
         let errors = LightErrors::from_mean_squares(6.0, 2.4);

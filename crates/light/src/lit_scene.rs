@@ -1,4 +1,4 @@
-//! A scene that is ready for rays, with its light: the one place that chooses where radiance comes from.
+//! A scene ready for ray tracing, with its light: the one place that chooses the source of radiance.
 
 use crate::error::LightError;
 use crate::irradiance_cache::{IrradianceCache, IrradianceInputs, transport_without_cache};
@@ -15,24 +15,25 @@ use slf::{PhotographLight, Transport};
 use std::sync::Arc;
 use trace::{Radiance, Tracer};
 
-/// Light that leaves a scene.
+/// The radiance that leaves a scene.
 pub type SceneLight = Arc<dyn Radiance + Send + Sync>;
 
-/// Paths and light samples of a point of the light field, where irradiance is cached: a sample has several points.
+/// Paths per point of the light field, where irradiance is cached. A sample has several points.
 const PATHS: u32 = 2;
+/// Light samples per point of the light field.
 const LIGHT_SAMPLES: u32 = 16;
 
-/// Light samples of a point of a picture that is soon replaced.
+/// Light samples per point of a picture that is soon replaced.
 const ROUGH_LIGHT_SAMPLES: u32 = 4;
 
-/// A scene that is ready for rays, and all light that was solved for in it. Shared by reference count: work that goes on in the background
-/// stops when the last owner is gone.
+/// A scene ready for ray tracing, and all light solved for in it. It is shared by reference count: background work stops when the last
+/// owner drops it.
 pub struct LitScene {
     tracer: Arc<Tracer>,
     options: LightOptions,
     resources: Resources,
     irradiance: IrradianceCache,
-    /// Where photographs light the scene.
+    /// `Some` if photographs light the scene.
     photographs: Option<PhotographLightCache>,
     cancel: CancelToken,
 }
@@ -44,7 +45,7 @@ impl Drop for LitScene {
 }
 
 impl LitScene {
-    /// The scene in `tracer`, of whose light nothing is known yet.
+    /// The scene in `tracer`, with no light solved for yet.
     pub fn new(tracer: Arc<Tracer>, options: LightOptions, resources: &Resources) -> Arc<Self> {
         let cancel = CancelToken::default();
         let photographs = !tracer.scene().views.is_empty();
@@ -54,7 +55,7 @@ impl LitScene {
         Arc::new(Self { tracer, options, resources, irradiance, photographs, cancel })
     }
 
-    /// What answers rays.
+    /// Traces rays in the scene.
     pub fn tracer(&self) -> &Arc<Tracer> {
         &self.tracer
     }
@@ -74,12 +75,11 @@ impl LitScene {
         &self.resources
     }
 
-    /// The light that leaves the scene, for a camera: that of its photographs, if it has any. The first time in a world it is solved for,
-    /// which `progress` watches; then it serves every camera. Rough light of photographs is that of the bare surface as long as theirs is
-    /// not there.
+    /// The light that leaves the scene, for a camera; light from photographs, if the scene has any. It is solved for once per world, reporting
+    /// to `progress`, and then serves every camera. As long as light from photographs is not solved, rough light is that of the bare surface.
     ///
     /// # Errors
-    /// Photographs cannot be used, or `progress` says to stop.
+    /// Photographs cannot be used, or `progress` was cancelled.
     pub fn solve(
         &self,
         camera: &Camera,
@@ -112,7 +112,7 @@ impl LitScene {
         }))
     }
 
-    /// The light as far as it is there now: without irradiance, where that is not solved for yet, it is unbiased and noisy.
+    /// The light that is available now. Where irradiance is not solved yet, it is unbiased and noisy.
     pub fn available(&self, camera: &Camera) -> SceneLight {
         let photographs = self.photographs.as_ref();
         if let Some(light) = photographs.and_then(PhotographLightCache::available_lookup) {
@@ -125,8 +125,8 @@ impl LitScene {
         })
     }
 
-    /// Light for a first picture: of photographs, if theirs is on disk; else that of the bare surface, with nothing solved and nothing
-    /// begun: unbiased and noisy.
+    /// Light for a first picture: from photographs, if that is cached on disk; otherwise the unbiased, noisy light of the bare surface, for
+    /// which nothing has to be solved or started.
     pub fn quick(&self, camera: &Camera, progress: &dyn Progress) -> SceneLight {
         if let Some(photographs) = self.photographs.as_ref().filter(|photographs| photographs.is_on_disk())
             && let Ok(light) = photographs.wait_for_lookup(progress)
@@ -136,11 +136,11 @@ impl LitScene {
         Arc::new(self.transport(camera, 4 * PATHS, ROUGH_LIGHT_SAMPLES))
     }
 
-    /// Light for the ground truth: whole paths, without cached irradiance; of photographs what they show. The ground truth shades many
-    /// points a pixel, so that a path each suffices.
+    /// Light for the ground truth: complete paths without cached irradiance, or light from photographs. The ground truth shades many points
+    /// per pixel, so that one path per point suffices.
     ///
     /// # Errors
-    /// Photographs cannot be used, or `progress` says to stop.
+    /// Photographs cannot be used, or `progress` was cancelled.
     pub fn ground_truth(&self, camera: &Camera, progress: &dyn Progress) -> Result<SceneLight, LightError> {
         match &self.photographs {
             Some(photographs) => photographs.wait_for_lookup(progress),
@@ -153,22 +153,23 @@ impl LitScene {
         self.photographs.is_some()
     }
 
-    /// Whether light can be refined: some surface scatters it, and no photographs show it.
+    /// Whether light can be refined: some surface scatters light, and no photographs supply it.
     pub fn can_be_refined(&self) -> bool {
         !self.is_photographed() && self.has_lit_surfaces()
     }
 
-    /// Has light from photographs kept at the texels of an atlas; without one the scene is unwrapped for it. The first atlas counts.
+    /// Sets the atlas at whose texels light from photographs is stored. Only the first call has an effect; without one, the scene is
+    /// unwrapped.
     pub fn set_atlas(&self, atlas: &Arc<Atlas>) {
         if let Some(photographs) = &self.photographs {
             photographs.set_atlas(atlas);
         }
     }
 
-    /// Light from photographs as soon as it is there; `None` for a scene without.
+    /// Waits for the light from photographs; `None` for a scene without photographs.
     ///
     /// # Errors
-    /// Photographs cannot be used, or `progress` says to stop.
+    /// Photographs cannot be used, or `progress` was cancelled.
     pub fn photograph_light(
         &self,
         progress: &dyn Progress,
@@ -176,12 +177,12 @@ impl LitScene {
         self.photographs.as_ref().map(|photographs| photographs.wait(progress)).transpose()
     }
 
-    /// Light from photographs, if it is there; nothing is begun.
+    /// The light from photographs, if it is solved; nothing is started.
     pub fn solved_photograph_light(&self) -> Option<Arc<PhotographLight>> {
         self.photographs.as_ref()?.if_solved()
     }
 
-    /// Whether any surface scatters light at all.
+    /// Whether any surface scatters light.
     fn has_lit_surfaces(&self) -> bool {
         let scene = self.scene();
         scene.parts.iter().any(|part| !scene.materials[part.material as usize].unlit)
@@ -237,7 +238,7 @@ mod tests {
         let dusk = Camera { background: Some([0.1, 0.0, 0.2]), ..camera };
         first.solve(&dusk, LightQuality::Fine, &Unwatched).unwrap();
         assert_eq!((files_in(one.path()), files_in(other.path())), (2, 1));
-        // Nobody keeps anything without a folder.
+        // Without a folder, nothing is stored.
         let none = LitScene::new(tracer(), LightOptions::default(), &Resources::default());
         none.solve(&dusk, LightQuality::Fine, &Unwatched).unwrap();
     }

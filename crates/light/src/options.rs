@@ -1,22 +1,22 @@
-//! How light is solved for and looked up: what a scene's file does not say.
+//! How light is solved for and looked up: settings that a scene's file does not have.
 
 use slf::Scattering;
 
-/// Where the light of photographs is sampled.
+/// Where light from photographs is sampled.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PhotoLookup {
-    /// At the texels of an atlas, to which the photographs were resampled.
+    /// At the texels of an atlas, to which the photographs are resampled.
     #[default]
     Texels,
-    /// In the photographs themselves, for each point.
+    /// In the photographs themselves, separately for each point.
     Direct,
 }
 
 impl PhotoLookup {
-    /// All, with their names.
+    /// All variants with their names.
     pub const ALL: [(&str, Self); 2] = [("texels", Self::Texels), ("direct", Self::Direct)];
 
-    /// The one of this name.
+    /// The variant of this name.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.iter().find(|(candidate, _)| *candidate == name).map(|(_, lookup)| *lookup)
     }
@@ -27,21 +27,21 @@ impl PhotoLookup {
 pub struct LightOptions {
     /// How often rough gloss scatters within a surface.
     pub scattering: Scattering,
-    /// Where the light of photographs is looked up.
+    /// Where light from photographs is looked up.
     pub photo_lookup: PhotoLookup,
 }
 
-/// How well light is to be solved for.
+/// How accurately light is to be solved for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LightQuality {
-    /// Well enough for a picture that is soon replaced; better, if better light is cached.
+    /// Accurately enough for a picture that is soon replaced; cached light may be better.
     Rough,
-    /// As well as the cache tells it for every camera: at once, with the bias of what is cached.
+    /// From the irradiance that is cached for every camera: fast, with the cache's bias.
     #[default]
     Fine,
-    /// By paths that use what is cached as a control variate: unbiased, with noise that falls with the root of their number.
+    /// By paths with the cached irradiance as a control variate: unbiased, with noise that falls with the square root of their number.
     Refined {
-        /// Each is a path for a surface point that is shaded alone, four a pixel.
+        /// Paths per surface point; a pixel shades four points.
         passes: u32,
     },
 }

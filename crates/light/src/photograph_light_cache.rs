@@ -1,4 +1,4 @@
-//! Light of a scene from its photographs: solved once, and kept from one run of the program to the next.
+//! Light of a scene from its photographs: solved once, and cached on disk.
 
 use crate::atlas_cache::load_or_unwrap_atlas;
 use crate::disk_cache::{CacheEntry, CacheSection, DiskCache};
@@ -14,41 +14,42 @@ use slf::{DirectPhotographs, PhotographLight, PhotographOptions};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use trace::{Radiance, Tracer};
 
-/// Tens of megabytes each: some four bytes a texel and photograph that sees it.
+/// A file takes tens of megabytes: about four bytes per texel and photograph in which the texel is visible.
 const SECTION: CacheSection = CacheSection { name: "photographs", budget_bytes: 2 << 30 };
 
-/// Light as it is looked up.
+/// Light from photographs, as it is looked up.
 type PhotographRadiance = Arc<dyn Radiance + Send + Sync>;
 
 /// The light of one scene from its photographs.
 pub(crate) struct PhotographLightCache {
-    entry: Arc<Entry>,
+    shared: Arc<SharedState>,
     tracer: Arc<Tracer>,
     lookup: PhotoLookup,
     resources: Resources,
 }
 
-struct Entry {
-    /// An atlas of the scene, if there is one by the time that it is needed.
+/// State shared by the cache and its background task.
+struct SharedState {
+    /// An atlas of the scene, if one was set before it is needed.
     atlas: OnceLock<Arc<Atlas>>,
     has_begun: OnceLock<()>,
     file: OnceLock<Option<CacheEntry>>,
-    /// An error as it is shown.
+    /// The light, or the error message to show.
     solved: OnceLock<Result<Arc<PhotographLight>, String>>,
-    /// The same, looked up in the photographs, once that was requested.
+    /// The light looked up in the photographs, once it was requested.
     direct: Mutex<Option<Arc<DirectPhotographs>>>,
     task: Arc<SharedTask>,
 }
 
 impl PhotographLightCache {
-    /// The light of the scene in `tracer`; nothing is begun. `cancel` stops work in the background.
+    /// The light of the scene in `tracer`; nothing is started yet. `cancel` stops background work.
     pub fn new(
         tracer: &Arc<Tracer>,
         options: LightOptions,
         resources: &Resources,
         cancel: &CancelToken,
     ) -> Self {
-        let entry = Entry {
+        let shared = SharedState {
             atlas: OnceLock::new(),
             has_begun: OnceLock::new(),
             file: OnceLock::new(),
@@ -56,37 +57,37 @@ impl PhotographLightCache {
             direct: Mutex::new(None),
             task: Arc::new(SharedTask::new(cancel.clone())),
         };
-        let (entry, tracer) = (Arc::new(entry), tracer.clone());
-        Self { entry, tracer, lookup: options.photo_lookup, resources: resources.clone() }
+        let (shared, tracer) = (Arc::new(shared), tracer.clone());
+        Self { shared, tracer, lookup: options.photo_lookup, resources: resources.clone() }
     }
 
-    /// Has the light kept at the texels of an atlas; without one the scene is unwrapped for it.
+    /// Sets the atlas at whose texels the light is stored; without one, the scene is unwrapped.
     pub fn set_atlas(&self, atlas: &Arc<Atlas>) {
-        let _ = self.entry.atlas.set(atlas.clone());
+        let _ = self.shared.atlas.set(atlas.clone());
     }
 
-    /// The light, if it is there; nothing is begun.
+    /// The light, if it is solved; nothing is started.
     pub fn if_solved(&self) -> Option<Arc<PhotographLight>> {
-        self.entry.solved.get()?.as_ref().ok().cloned()
+        self.shared.solved.get()?.as_ref().ok().cloned()
     }
 
-    /// The light as it is to be looked up, if it is there; begun, if not.
+    /// The light as it is to be looked up, if it is solved; otherwise the solution is started.
     pub fn available_lookup(&self) -> Option<PhotographRadiance> {
         self.start();
-        let light = self.entry.solved.get()?.as_ref().ok()?.clone();
+        let light = self.shared.solved.get()?.as_ref().ok()?.clone();
         match self.lookup {
             PhotoLookup::Texels => Some(light),
-            PhotoLookup::Direct => Some(self.entry.direct().clone()?),
+            PhotoLookup::Direct => Some(self.shared.direct().clone()?),
         }
     }
 
-    /// The light as it is to be looked up, as soon as it is there.
+    /// Waits for the light as it is to be looked up.
     pub fn wait_for_lookup(&self, progress: &dyn Progress) -> Result<PhotographRadiance, LightError> {
         let light = self.wait(progress)?;
         match self.lookup {
             PhotoLookup::Texels => Ok(light),
             PhotoLookup::Direct => {
-                let mut direct = self.entry.direct();
+                let mut direct = self.shared.direct();
                 if let Some(direct) = &*direct {
                     return Ok(direct.clone());
                 }
@@ -96,37 +97,38 @@ impl PhotographLightCache {
         }
     }
 
-    /// The light as soon as it is there.
+    /// Waits for the light.
     pub fn wait(&self, progress: &dyn Progress) -> Result<Arc<PhotographLight>, LightError> {
         self.start();
-        let entry = &self.entry;
+        let shared = &self.shared;
         let failed = || {
-            "light from photographs could not be made: a fault of the program (open the capture again)".into()
+            "light from photographs could not be computed: a fault of the program (open the capture again)"
+                .into()
         };
-        let solved = entry.task.wait(progress, || entry.solved.get().cloned())?;
+        let solved = shared.task.wait(progress, || shared.solved.get().cloned())?;
         solved.unwrap_or_else(|| Err(failed())).map_err(LightError::BadInput)
     }
 
-    /// Whether the light, kept at the texels of an atlas that is known, only has to be read.
+    /// Whether the atlas is set and the light at its texels only has to be read from disk.
     pub fn is_on_disk(&self) -> bool {
-        self.entry.atlas.get().is_some()
-            && self.entry.file(&self.tracer, &self.resources.cache).is_some_and(CacheEntry::exists)
+        self.shared.atlas.get().is_some()
+            && self.shared.file(&self.tracer, &self.resources.cache).is_some_and(CacheEntry::exists)
     }
 
     fn start(&self) {
-        if self.entry.has_begun.set(()).is_ok() {
-            let (entry, tracer, cache) =
-                (self.entry.clone(), self.tracer.clone(), self.resources.cache.clone());
+        if self.shared.has_begun.set(()).is_ok() {
+            let (shared, tracer, cache) =
+                (self.shared.clone(), self.tracer.clone(), self.resources.cache.clone());
             let work = move |progress: &dyn Progress| {
-                let _ = entry.solved.set(entry.solve(&tracer, &cache, progress));
+                let _ = shared.solved.set(shared.solve(&tracer, &cache, progress));
             };
-            self.entry.task.start(self.resources.background, "photographs", work);
+            self.shared.task.start(self.resources.background, "photographs", work);
         }
     }
 }
 
-impl Entry {
-    /// Where the light is kept, of the atlas that is known by now.
+impl SharedState {
+    /// The cache entry of the light at the texels of the atlas, as far as one is set.
     fn file(&self, tracer: &Tracer, cache: &DiskCache) -> Option<&CacheEntry> {
         let entry = || {
             cache.entry(SECTION, |hash| {
@@ -138,7 +140,7 @@ impl Entry {
         self.file.get_or_init(entry).as_ref()
     }
 
-    /// A poisoned lock only means that a panic passed by: what it guards is replaced as a whole.
+    /// Ignores poisoning: the guarded value is only ever replaced as a whole.
     fn direct(&self) -> MutexGuard<'_, Option<Arc<DirectPhotographs>>> {
         self.direct.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -155,7 +157,7 @@ impl Entry {
         if let Some(light) = cached_bytes.and_then(|bytes| PhotographLight::from_bytes(&bytes, tracer)) {
             return Ok(Arc::new(light));
         }
-        // The share of unwrapping, where that is left to do.
+        // The share of the progress that unwrapping takes, if it is still to be done.
         let (atlas, unwrapping) = match self.atlas.get() {
             Some(atlas) => (atlas.clone(), 0.0),
             None => {

@@ -1,19 +1,19 @@
-//! What work on a scene may use beside the processor.
+//! What work on a scene may use: a disk cache and threads.
 
 use crate::disk_cache::DiskCache;
 use jobs::Background;
 
-/// What work on a scene may use: a place for results that outlive the program, and threads.
+/// What work on a scene may use: a disk cache and threads.
 #[derive(Clone, Debug, Default)]
 pub struct Resources {
-    /// Where results are kept from one run of the program to the next.
+    /// Where results are stored between runs of the program.
     pub cache: DiskCache,
-    /// Where work runs that goes on beside its caller.
+    /// Where background work runs.
     pub background: Background,
 }
 
 impl Resources {
-    /// Results in `cache`, and threads.
+    /// Uses `cache`, and threads for background work.
     pub fn with_cache(cache: DiskCache) -> Self {
         Self { cache, ..Self::default() }
     }

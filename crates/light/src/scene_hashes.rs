@@ -1,4 +1,4 @@
-//! Checksums of parts of a scene: of what an atlas is made from, of what photographs' light is made from, and of all that gives light.
+//! SHA-256 checksums of parts of a scene: of the inputs of an atlas, of light from photographs, and of all light.
 
 use crate::options::LightOptions;
 use glam::Vec3;
@@ -7,7 +7,7 @@ use sha2::{Digest, Sha256};
 use slf::Scattering;
 use std::path::Path;
 
-/// Lists that do not run into each other.
+/// A checksum of byte strings in which each is preceded by its length, so that moving bytes from one to the next changes it.
 struct LengthPrefixedHash(Sha256);
 
 impl LengthPrefixedHash {
@@ -27,7 +27,7 @@ impl LengthPrefixedHash {
     }
 
     fn add_views(&mut self, views: &[View]) {
-        // A picture is taken for the same where file, size and time of change are.
+        // Pictures count as equal if their path, size and modification time are.
         let file_stamp = |path: &Path| {
             std::fs::metadata(path).map(|metadata| (metadata.len(), metadata.modified().ok())).ok()
         };
@@ -37,7 +37,7 @@ impl LengthPrefixedHash {
         }
     }
 
-    /// The same by what is in the pictures, wherever they lie and whenever they were written.
+    /// Adds views by the contents of their pictures, regardless of path and modification time.
     fn add_view_contents(&mut self, views: &[View]) {
         for view in views {
             let View { name, orientation, exif_orientation, lens, camera_to_world, exposure_hint, .. } = view;
@@ -46,7 +46,7 @@ impl LengthPrefixedHash {
             );
             self.add(description.as_bytes());
             for file in [Some(&view.picture), view.mask.as_ref()].into_iter().flatten() {
-                // One that cannot be read stops the picture, too.
+                // A file that cannot be read is an error later, when the light is solved for.
                 self.add(&std::fs::read(file).unwrap_or_default());
             }
         }
@@ -57,7 +57,7 @@ impl LengthPrefixedHash {
     }
 }
 
-/// A checksum of the triangles of a scene, where they lie and belong.
+/// A checksum of the triangles of a scene: their geometry and parts.
 pub(crate) fn surface_hash(scene: &Scene) -> [u8; 32] {
     let mut hash = LengthPrefixedHash(Sha256::new());
     hash.add_surface(scene);
@@ -72,23 +72,23 @@ pub(crate) fn photographs_hash(scene: &Scene) -> [u8; 32] {
     hash.finish()
 }
 
-/// A checksum of everything in a scene that gives, blocks or reflects light, and of how light is modelled: two scenes of the same one are
-/// lit, block and reflect light alike.
+/// A checksum of everything in a scene that emits, blocks or reflects light, and of how light is modelled: scenes with equal checksums
+/// have the same light.
 pub fn light_hash(scene: &Scene, options: LightOptions) -> [u8; 32] {
     let mut hash = LengthPrefixedHash(Sha256::new());
-    hash.add_lit(scene, options);
+    hash.add_lit_scene(scene, options);
     hash.add_views(&scene.views);
     hash.add(format!("{:?} {:?}", scene.embedded_world, scene.world).as_bytes());
     hash.finish()
 }
 
-/// The checksum of [`light_hash`] by contents alone: wherever the files lie, whenever they were written, on whatever machine.
+/// Like [`light_hash`], but from file contents alone, regardless of paths and modification times: the same on every machine.
 pub fn content_hash(scene: &Scene, options: LightOptions) -> [u8; 32] {
     let mut hash = LengthPrefixedHash(Sha256::new());
-    hash.add_lit(scene, options);
+    hash.add_lit_scene(scene, options);
     hash.add_view_contents(&scene.views);
     for world in [&scene.embedded_world, &scene.world] {
-        // The texels of a map are added already, and what it is called makes no light.
+        // The texels of a map are added already, and its name does not matter.
         let without_texels = world.clone().map(|world| match world.environment {
             Environment::Map(_) => World { environment: Environment::Uniform(Vec3::ZERO), ..world },
             Environment::Uniform(_) => world,
@@ -99,8 +99,8 @@ pub fn content_hash(scene: &Scene, options: LightOptions) -> [u8; 32] {
 }
 
 impl LengthPrefixedHash {
-    /// All but photographs, and the settings of worlds.
-    fn add_lit(&mut self, scene: &Scene, options: LightOptions) {
+    /// Adds everything except photographs and the settings of worlds.
+    fn add_lit_scene(&mut self, scene: &Scene, options: LightOptions) {
         let hash = self;
         hash.add_surface(scene);
         hash.add(bytemuck::cast_slice(&scene.colors));
@@ -127,7 +127,7 @@ impl LengthPrefixedHash {
             hash.add(bytemuck::cast_slice(gloss.polynomials.as_flattened()));
         }
         hash.add(format!("{:?}", options.photo_lookup).as_bytes());
-        // Written out, numbers are as exact as they are.
+        // Debug formatting writes numbers exactly.
         let is_single = options.scattering == Scattering::Single;
         hash.add(
             format!("{:?} {:?} {:?} {is_single:?}", scene.materials, scene.lights, scene.back_faces)
@@ -150,12 +150,12 @@ mod tests {
     }
 
     #[test]
-    fn a_scene_in_another_light_is_another() {
+    fn the_light_hash_depends_on_everything_that_affects_light() {
         let mut scene = Scene::default();
         let dark = light_hash(&scene);
         assert_eq!(light_hash(&scene.clone()), dark);
         scene.path = "elsewhere.glb".into();
-        assert_eq!(light_hash(&scene), dark, "wherever it lies");
+        assert_eq!(light_hash(&scene), dark, "the path does not matter");
         scene.positions.push(glam::DVec3::X);
         let moved = light_hash(&scene);
         assert_ne!(moved, dark);
@@ -175,7 +175,7 @@ mod tests {
             light_hash(&Scene { embedded_world: Some(own), ..Scene::default() })
         };
         assert!(hash_with_light(1.0) != dark && hash_with_light(1.0) != hash_with_light(2.0));
-        // Materials that are seen in another variant.
+        // Another variant has other materials.
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("varied.glb");
         std::fs::write(&file, crate::tiny_glb::varied(&crate::tiny_glb::QUADS)).unwrap();
@@ -190,7 +190,7 @@ mod tests {
         assert_eq!(
             hash_of_variant(None),
             hash_of_variant(Some("As painted")),
-            "what looks alike has the same light"
+            "the same appearance has the same light"
         );
         let single = LightOptions { scattering: Scattering::Single, ..LightOptions::default() };
         assert_ne!(super::light_hash(&Scene::default(), single), light_hash(&Scene::default()));
@@ -199,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn photographs_are_others_where_a_file_or_a_camera_is() {
+    fn the_photographs_hash_depends_on_files_and_cameras() {
         let folder = tempfile::tempdir().unwrap();
         let picture = folder.path().join("a.jpg");
         std::fs::write(&picture, "one").unwrap();
@@ -224,7 +224,7 @@ mod tests {
         std::fs::write(&picture, "another").unwrap();
         assert_ne!(photographs_hash(&scene), before);
         assert_eq!(surface_hash(&scene), surface_hash(&Scene::default()));
-        // Of contents it counts what is in the file, not when it was written, or where.
+        // For the content hash, only the file's contents count.
         let content = content_hash(&scene);
         let elsewhere = folder.path().join("copy.jpg");
         std::fs::copy(&picture, &elsewhere).unwrap();

@@ -1,26 +1,26 @@
-//! Long work in named steps, for whoever watches it.
+//! Long work in named steps, and its observers.
 
 use crate::lit_scene::LitScene;
 use lens::{Camera, Picture};
 use progress::{Progress, Unwatched};
 use std::sync::Arc;
 
-/// Who watches a piece of work that has several steps.
+/// Observes work that has several steps.
 pub trait Steps: Sync {
-    /// The next step begins; its progress goes to what is returned.
+    /// The next step begins; it reports its progress to the returned object.
     fn begin(&self, label: &str) -> Box<dyn Progress + '_>;
 
-    /// A step found something worth a sentence.
+    /// A step has a message for the user, one sentence.
     fn notice(&self, _sentence: &str) {}
 
-    /// The scene can be seen through `camera`, though it takes a while until it can be painted on.
+    /// The scene can be shown through `camera`, though it cannot be painted on yet.
     fn scene_ready(&self, _scene: &Arc<LitScene>, _camera: &Camera) {}
 
-    /// The picture of what is being opened is there, though it takes a while until it has a surface.
+    /// The picture of what is being opened can be shown, though it has no surface yet.
     fn picture_ready(&self, _picture: &Picture) {}
 }
 
-/// Nobody watches.
+/// Without an observer.
 impl Steps for Unwatched {
     fn begin(&self, _label: &str) -> Box<dyn Progress + '_> {
         Box::new(Unwatched)

@@ -1,9 +1,9 @@
-//! What is being painted and is no step of undo yet.
+//! An edit in progress.
 
 use crate::editing::active_gradient::ActiveGradient;
 use crate::editing::painter::Painter;
 
-/// What is being painted and is no step of undo yet.
+/// An edit in progress, which is no undo step yet.
 pub enum ActiveEdit {
     /// A stroke.
     Stroke(Box<Painter>),

@@ -1,12 +1,12 @@
-//! Strokes over a surface as strokes over the picture that it was made from.
+//! Depth strokes: strokes on a surface, projected to the picture that it was made from.
 
 use crate::open_document::Document;
 use crate::picking::SurfaceHit;
 use relief::{DepthRepair, DepthStroke};
 
 impl Document {
-    /// The stroke that repairs depth along places of the surface, as wide there as the brush is where it begins; none where nothing was hit, or
-    /// the surface is of no picture.
+    /// The depth stroke along points of the surface, with the brush's size at the first point; `None` if there are no points, or the surface was
+    /// not made from a picture.
     pub fn depth_stroke(&self, repair: DepthRepair, hits: &[SurfaceHit]) -> Option<DepthStroke> {
         let stage = &self.stage;
         let picture = stage.scene.picture.as_ref()?;

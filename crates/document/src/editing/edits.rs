@@ -1,12 +1,12 @@
-//! What painting does to a document beside strokes: fills, gradients, selections, layers. Each is a step of undo and, as
-//! data, of the recording; nothing is left of one that changed nothing.
+//! Edits other than strokes: fills, gradients, selections and layers. Each is an undo step with a record for replay, unless it changes
+//! nothing.
 
+use crate::adjustment_view::AdjustmentView;
 use crate::editing::paintable::paintable_channels;
 use crate::editing::selection_shapes::select_texels;
 use crate::editing::stroke_point::FillRegion;
-use crate::adjustment_view::AdjustmentView;
-use crate::open_document::Document;
 use crate::error::DocumentError;
+use crate::open_document::Document;
 use focus::{
     ChangedTexels, Channels, CombineMode, Edit, FillTarget, FocusError, FocusMap, Gradient, LayerEdit,
     LayerStack, SelectionResult, draw_gradient, fill_selected,
@@ -21,7 +21,7 @@ impl From<FocusError> for DocumentError {
 }
 
 impl Document {
-    /// What a region covers. What lies at the images of the brush's symmetry belongs to it too.
+    /// The targets that a region covers, including those at its mirror images under the brush's symmetry.
     pub fn fill_targets(&self, region: FillRegion) -> Vec<FillTarget> {
         let hit = match region {
             FillRegion::Node(hit)
@@ -32,7 +32,7 @@ impl Document {
         };
         let stage = &self.stage;
         let target = |part: u32, chart: u32| match region {
-            // A picture is one object: what hangs together in depth stands for those that it shows.
+            // A picture is a single node: regions that are connected in depth serve as its objects.
             FillRegion::Node(_) if stage.scene.picture.is_some() => FillTarget::Chart(chart),
             FillRegion::Node(_) => FillTarget::Node(stage.scene.parts[part as usize].node),
             FillRegion::Material(_) => FillTarget::Material(stage.scene.parts[part as usize].material),
@@ -52,7 +52,10 @@ impl Document {
         targets
     }
 
-    /// Gives targets of the active layer a focus. What changed in the layer.
+    /// Fills targets of the active layer with a focus offset. Returns what changed in the layer.
+    ///
+    /// # Errors
+    /// The layer cannot be painted on, or the focus offset is invalid.
     pub fn fill(
         &mut self,
         targets: Vec<FillTarget>,
@@ -78,13 +81,11 @@ impl Document {
         Ok(changed)
     }
 
-    /// Draws a gradient over the active layer, which was `before` when it was begun. What changed is not told: a
-    /// gradient in the making is drawn again and again.
-    pub fn draw_gradient(
-        &mut self,
-        before: &FocusMap,
-        gradient: &Gradient,
-    ) -> Result<(), DocumentError> {
+    /// Draws a gradient in progress over `before`, the active layer's original map.
+    ///
+    /// # Errors
+    /// The layer cannot be painted on, or the gradient is invalid.
+    pub fn draw_gradient(&mut self, before: &FocusMap, gradient: &Gradient) -> Result<(), DocumentError> {
         let channels = paintable_channels(self.layers.active(), self.brush.channels)?;
         let (canvas, selection) = (self.stage.canvas.clone(), self.selection.clone());
         let map = &mut self.layers.active_mut().map;
@@ -93,14 +94,14 @@ impl Document {
         Ok(())
     }
 
-    /// Ends a gradient.
-    pub fn finish_gradient(&mut self, before: &FocusMap, gradient: Gradient) -> bool {
+    /// Ends a gradient as an undo step. Returns whether it changed anything.
+    pub(crate) fn finish_gradient(&mut self, before: &FocusMap, gradient: Gradient) -> bool {
         let layer = self.layers.active().name.clone();
         let record = RecordedGradient { layer, gradient };
         self.push_paint("Gradient", before, RecordedStep::Gradient(record))
     }
 
-    /// Notes a change of the active layer's map, if there is one.
+    /// Adds a change of the active layer's map to the history, if there is one. Returns whether there is.
     fn push_paint(&mut self, name: &str, before: &FocusMap, record: RecordedStep) -> bool {
         let index = self.layers.active_index();
         let Some(edit) = Edit::from_difference(name, before, &self.layers.active().map) else { return false };
@@ -109,21 +110,20 @@ impl Document {
         true
     }
 
-    /// Chooses what may be painted. Whether that is something else than before.
-    pub fn select(
-        &mut self,
-        shape: SelectionShape,
-        combine: CombineMode,
-    ) -> Result<bool, DocumentError> {
+    /// Changes the selection: the texels that may be painted. Returns whether it changed.
+    ///
+    /// # Errors
+    /// The shape is invalid, or nothing would be selected.
+    pub fn select(&mut self, shape: SelectionShape, combine: CombineMode) -> Result<bool, DocumentError> {
         if !shape.is_valid() {
-            return Err(DocumentError::BadInput("selection: the shape cannot be used".into()));
+            return Err(DocumentError::BadInput("selection: the shape is invalid (choose another)".into()));
         }
         let before = self.selection.as_ref();
         let matches = select_texels(&self.stage, &shape, before);
         let after = match matches.combine_with(before, combine, self.stage.canvas.texels().len()) {
             SelectionResult::Nothing => {
-                let what = "selection: nothing would be left to paint on (choose something else)";
-                return Err(DocumentError::BadInput(what.into()));
+                let message = "selection: nothing would be selected (choose another shape)";
+                return Err(DocumentError::BadInput(message.into()));
             }
             SelectionResult::Everything => None,
             SelectionResult::Some(selection) => Some(selection),
@@ -138,7 +138,10 @@ impl Document {
         Ok(true)
     }
 
-    /// Changes the layers. Whether anything changed.
+    /// Edits the layers. Returns whether anything changed.
+    ///
+    /// # Errors
+    /// The edit does not apply to these layers.
     pub fn edit_layers(&mut self, edit: LayerEdit) -> Result<bool, DocumentError> {
         let (name, record) = (edit.name(), RecordedStep::Layers(edit.clone()));
         self.change_layers(name, Some(record), |layers, document| {
@@ -146,11 +149,14 @@ impl Document {
         })
     }
 
-    /// Lets the active layer count only where it may be painted. Whether that changed anything.
+    /// Sets the active layer's mask from the selection. Returns whether anything changed.
+    ///
+    /// # Errors
+    /// There is no selection.
     pub fn mask_selected(&mut self) -> Result<bool, DocumentError> {
         let Some(selection) = self.selection.clone() else {
-            let what = "selection: everything may be painted (choose what the layer is to count on first)";
-            return Err(DocumentError::BadInput(what.into()));
+            let message = "selection: everything is selected (select what the mask is to cover first)";
+            return Err(DocumentError::BadInput(message.into()));
         };
         self.change_layers("Mask from selection", Some(RecordedStep::Mask), |layers, document| {
             layers.active_mut().map.set_mask_from_selection(&document.stage.canvas, &selection);
@@ -158,7 +164,10 @@ impl Document {
         })
     }
 
-    /// Takes all paint and all layers away. Whether there was any.
+    /// Removes all paint and all layers. Returns whether anything changed.
+    ///
+    /// # Errors
+    /// None in practice; the result is that of [`Self::change_layers`].
     pub fn reset_map(&mut self) -> Result<bool, DocumentError> {
         let [width, height] = self.map.size();
         let blank = LayerStack::from_map(FocusMap::new(width, height, FocusOffset::STANDARD));
@@ -168,7 +177,10 @@ impl Document {
         })
     }
 
-    /// Changes the layers as one step of undo. A change that fails, or changes nothing, leaves no trace.
+    /// Changes the layers as one undo step. If `change` fails or changes nothing, the document is unaffected. Returns whether anything changed.
+    ///
+    /// # Errors
+    /// Those of `change`.
     pub fn change_layers(
         &mut self,
         name: &str,

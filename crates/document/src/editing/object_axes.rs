@@ -1,30 +1,30 @@
-//! Symmetry of an object: along its own axes, about its own middle.
+//! Symmetry of an object: along its own axes, about its own centre.
 
 use crate::open_document::Document;
-use crate::stage::Stage;
 use crate::picking::SurfaceHit;
+use crate::stage::Stage;
 use focus::{Brush, Symmetry, WORLD_AXES};
 use glam::{DMat3, DMat4, DVec3};
 
-/// Axes shorter than this share of the longest say nothing: the object is flattened.
+/// Axes shorter than this share of the longest have no usable direction: the transform flattens the object.
 const SHORTEST_AXIS: f64 = 1e-9;
 
 impl Document {
-    /// The brush as it paints from what begins at `hit`: where it is mirrored by objects, about the one there.
-    pub fn brush_at(&self, hit: Option<&SurfaceHit>) -> Brush {
+    /// The brush for a stroke that begins at `hit`: a brush that mirrors by object is mirrored about the object there.
+    pub(crate) fn brush_at(&self, hit: Option<&SurfaceHit>) -> Brush {
         let Some(hit) = hit.filter(|_| self.brush.mirror_by_object) else { return self.brush.clone() };
         let (mirror_center, mirror_axes) = object_frame(&self.stage, hit);
         Brush { mirror_center, mirror_axes, mirror_by_object: false, ..self.brush.clone() }
     }
 
-    /// The symmetry of what begins at `hit`.
+    /// The symmetry of a stroke that begins at `hit`.
     pub fn symmetry_at(&self, hit: Option<&SurfaceHit>) -> Symmetry {
         self.brush_at(hit).symmetry()
     }
 }
 
-/// What the object at `hit` is symmetrical about: its own origin where that lies within its box, else the middle of the
-/// box; and its axes, at right angles.
+/// Centre and axes of symmetry of the object at `hit`. The centre is the object's origin if that lies in its bounding box, otherwise the box's
+/// centre; the axes are orthonormal.
 fn object_frame(stage: &Stage, hit: &SurfaceHit) -> ([f64; 3], [[f64; 3]; 3]) {
     let scene = &stage.scene;
     let node = scene.part_of(hit.point.triangle).node;
@@ -42,7 +42,7 @@ fn object_frame(stage: &Stage, hit: &SurfaceHit) -> ([f64; 3], [[f64; 3]; 3]) {
     ((object_from_world.transpose() * center).to_array(), axes)
 }
 
-/// The directions of a transform's axes, at right angles: x is kept, y as well as it goes. The world's where it is flat.
+/// The axes of a transform, orthonormalised (Gram–Schmidt from x, then y); the world's axes if the transform is degenerate.
 fn orthonormal_axes(world: DMat4) -> [[f64; 3]; 3] {
     let columns = [world.x_axis, world.y_axis].map(|column| column.truncate());
     let longest = columns[0].length().max(columns[1].length());
@@ -60,7 +60,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn axes_are_at_right_angles_whatever_the_transform() {
+    fn axes_are_orthonormal_for_any_transform() {
         let turned = DMat4::from_rotation_y(0.7) * DMat4::from_scale(DVec3::new(2.0, 0.5, -3.0));
         let sheared = DMat4::from_cols_array_2d(&[
             [1.0, 0.0, 0.0, 0.0],

@@ -1,14 +1,14 @@
-//! What of a layer a brush may touch.
+//! The channels of a layer that can be painted.
 
 use crate::error::DocumentError;
 use focus::{Channels, FocusLayer};
 
-/// What a brush with these channels touches of a layer: of an adjustment layer only its mask can be painted.
+/// The channels of a layer that a brush with `channels` paints: only the mask of an adjustment layer can be painted.
 pub(crate) fn paintable_channels(layer: &FocusLayer, channels: Channels) -> Result<Channels, DocumentError> {
-    let bad_layer = |what: String| Err(DocumentError::BadInput(what));
+    let bad_layer = |message: String| Err(DocumentError::BadInput(message));
     let name = &layer.name;
     if !layer.is_visible {
-        return bad_layer(format!("{name}: the layer is hidden (show it, or choose another one)"));
+        return bad_layer(format!("{name}: the layer is hidden (show it, or choose another layer)"));
     }
     let channels = if layer.adjustment.is_some() { Channels::Mask } else { channels };
     if channels == Channels::Mask && !layer.map.has_mask() {

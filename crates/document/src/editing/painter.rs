@@ -1,27 +1,27 @@
-//! A stroke being painted on a document, live or from a recording.
+//! A stroke in progress on a document, live or from a recording.
 
 use crate::editing::paintable::paintable_channels;
-use crate::editing::stroke_point::StrokePoint;
-use crate::editing::stroke_point::StrokeTarget;
-use crate::open_document::Document;
-use crate::picking::SurfaceHit;
-use crate::picking::pick;
-use crate::picking::view_ray;
+use crate::editing::stroke_point::{StrokePoint, StrokeTarget};
 use crate::error::DocumentError;
+use crate::open_document::Document;
+use crate::picking::{SurfaceHit, pick, view_ray};
 use focus::{Brush, ChangedTexels, PenSample, Stroke, ViewFrame};
 use glam::DVec2;
 use project::{RecordedStep, RecordedStroke, StrokeView};
 
-/// A stroke and its record.
+/// A stroke in progress and its record.
 pub struct Painter {
     stroke: Stroke,
     record: RecordedStroke,
-    /// Whether all of it was painted in the record's view: else there is nothing to record.
+    /// Whether the whole stroke was painted in the record's view; otherwise it is not recorded.
     is_recordable: bool,
 }
 
 impl Painter {
     /// Begins a stroke with the document's brush on its active layer. Nothing is painted yet.
+    ///
+    /// # Errors
+    /// The layer cannot be painted on, or the brush is invalid.
     pub fn begin(document: &Document, point: &StrokePoint) -> Result<Self, DocumentError> {
         let layer = document.layers.active();
         let channels = paintable_channels(layer, document.brush.channels)?;
@@ -32,7 +32,7 @@ impl Painter {
         let view = match point.target {
             StrokeTarget::View(view, _) => Some(StrokeView::Scene(view)),
             StrokeTarget::Atlas(_) => Some(StrokeView::Atlas { atlas: document.stage.atlas.hash.clone() }),
-            StrokeTarget::Ray(_) | StrokeTarget::Surface(_) => None,
+            StrokeTarget::Ray(_) => None,
         };
         let is_recordable = view.is_some();
         let shot_camera = &document.camera;
@@ -46,7 +46,7 @@ impl Painter {
         Ok(Self { stroke, record, is_recordable })
     }
 
-    /// Draws on to the next point. What changed in the layer.
+    /// Continues the stroke to the next point. Returns what changed in the layer.
     pub fn extend(&mut self, document: &mut Document, point: &StrokePoint) -> ChangedTexels {
         let hit = surface_under(document, point);
         match (point.target, &self.record.view) {
@@ -72,7 +72,7 @@ impl Painter {
         self.record.points.push([position.x, position.y, point.pressure as f64]);
     }
 
-    /// Ends the stroke: one step of undo, or nothing if it changed nothing. Whether it changed anything.
+    /// Ends the stroke as one undo step, unless nothing changed. Returns whether anything changed.
     pub fn commit(self, document: &mut Document) -> bool {
         let Some(edit) = self.stroke.commit(&document.layers.active().map) else { return false };
         let record = self.is_recordable.then_some(RecordedStep::Stroke(self.record));
@@ -81,17 +81,16 @@ impl Painter {
         true
     }
 
-    /// Takes the stroke back. What changed in the layer.
+    /// Cancels the stroke and restores the layer. Returns what changed in the layer.
     pub fn abort(self, document: &mut Document) -> ChangedTexels {
         self.stroke.abort(&mut document.layers.active_mut().map)
     }
 }
 
-/// The surface under a point of a stroke.
+/// The surface under a point of a stroke, if any.
 fn surface_under(document: &Document, point: &StrokePoint) -> Option<SurfaceHit> {
     let tracer = document.stage.tracer();
     match point.target {
-        StrokeTarget::Surface(hit) => Some(hit),
         StrokeTarget::Ray(ray) => pick(tracer, &ray),
         StrokeTarget::View(view, position) => pick(tracer, &view_ray(&view, position)),
         StrokeTarget::Atlas(position) => document.stage.surface_at(position),

@@ -1,14 +1,17 @@
-//! Recorded steps, done again.
+//! Replay of recorded steps.
 
 use crate::editing::active_gradient::ActiveGradient;
 use crate::editing::painter::Painter;
 use crate::editing::stroke_point::StrokePoint;
-use crate::open_document::Document;
 use crate::error::DocumentError;
+use crate::open_document::Document;
 use project::{RecordedStep, RecordedStroke, StrokeView};
 
-/// Does recorded steps on a document, each on the layer of its name, as steps of undo. The document's brush stays
-/// what it was. Returns how many changed anything.
+/// Replays recorded steps on a document as undo steps, each on the layer of its name. The document's brush is unchanged afterwards. Returns the
+/// number of steps that changed anything.
+///
+/// # Errors
+/// Those of [`apply_recorded_step`], with the number of the step. The steps before it stay applied.
 pub fn replay(document: &mut Document, steps: &[RecordedStep]) -> Result<usize, DocumentError> {
     let brush = document.brush.clone();
     let mut changed_count = 0;
@@ -21,11 +24,11 @@ pub fn replay(document: &mut Document, steps: &[RecordedStep]) -> Result<usize, 
     Ok(changed_count)
 }
 
-/// Does one recorded step. Whether it changed anything.
-pub fn apply_recorded_step(
-    document: &mut Document,
-    step: &RecordedStep,
-) -> Result<bool, DocumentError> {
+/// Replays one recorded step. Returns whether it changed anything.
+///
+/// # Errors
+/// The step does not apply to this document: a layer is missing or cannot be painted on, or a stroke was painted in another atlas.
+pub fn apply_recorded_step(document: &mut Document, step: &RecordedStep) -> Result<bool, DocumentError> {
     let undo_count = document.undo.names().count();
     match step {
         RecordedStep::Stroke(stroke) => {
@@ -57,26 +60,26 @@ pub fn apply_recorded_step(
     Ok(document.undo.names().count() != undo_count)
 }
 
-/// Paints on the layer of this name from now on.
+/// Makes the layer of this name the active one.
 fn activate_layer(document: &mut Document, name: &str) -> Result<(), DocumentError> {
     let layers = document.layers.layers();
     let Some(layer) = layers.iter().position(|layer| layer.name == name) else {
         let names: Vec<_> = layers.iter().map(|layer| format!("\"{}\"", layer.name)).collect();
         let available = names.join(", ");
-        let what = format!("no layer is called \"{name}\" (there are {available})");
-        return Err(DocumentError::BadInput(what));
+        let message = format!("no layer is called \"{name}\" (available: {available})");
+        return Err(DocumentError::BadInput(message));
     };
     document.layers.activate(layer);
     Ok(())
 }
 
-/// Paints a recorded stroke on the active layer. Whether it changed anything.
+/// Replays a recorded stroke on the active layer. Returns whether it changed anything.
 fn replay_stroke(document: &mut Document, stroke: &RecordedStroke) -> Result<bool, DocumentError> {
     if let StrokeView::Atlas { atlas } = &stroke.view
         && *atlas != document.stage.atlas.hash
     {
-        let what = "the stroke was painted in another atlas (replay it on the project it was recorded on)";
-        return Err(DocumentError::BadInput(what.into()));
+        let message = "the stroke was painted in another atlas (replay it on the project it was recorded on)";
+        return Err(DocumentError::BadInput(message.into()));
     }
     document.brush = stroke.brush.clone();
     let mut points = stroke.points.iter().map(|point| StrokePoint::from_recorded(&stroke.view, point));

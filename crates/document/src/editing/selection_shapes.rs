@@ -1,4 +1,4 @@
-//! From a shape to the texels that may be painted.
+//! The texels that a selection's shape covers.
 
 use crate::stage::Stage;
 use focus::{Selection, SelectionResult, ViewFrame};
@@ -6,7 +6,7 @@ use glam::DVec2;
 use project::SelectionShape;
 use rayon::prelude::*;
 
-/// The texels of a shape; `before` is what is selected now.
+/// The texels of a shape; `before` is the current selection.
 pub(crate) fn select_texels(
     stage: &Stage,
     shape: &SelectionShape,
@@ -47,7 +47,7 @@ pub(crate) fn select_texels(
     }
 }
 
-/// The outline of the rectangle between two positions of a view.
+/// The outline of the rectangle with two opposite corners in a view. `through` also selects hidden surfaces.
 pub fn rectangle_outline(view: ViewFrame, [a, b]: [DVec2; 2], through: bool) -> SelectionShape {
     let points = vec![a, DVec2::new(b.x, a.y), b, DVec2::new(a.x, b.y)];
     SelectionShape::Outline { view, points, through }
@@ -72,7 +72,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn inside_is_inside_also_of_what_is_not_convex() {
+    fn points_are_inside_concave_outlines() {
         let arrow = [[0.0, 0.0], [1.0, 0.5], [0.0, 1.0], [0.3, 0.5]].map(DVec2::from_array);
         assert!(is_inside_outline(&arrow, DVec2::new(0.5, 0.5)));
         assert!(is_inside_outline(&arrow, DVec2::new(0.1, 0.1)));

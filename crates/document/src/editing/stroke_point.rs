@@ -1,4 +1,4 @@
-//! Where a stroke goes, and what a fill covers, as either view points at it.
+//! Points of strokes and regions of fills, as picked in either view.
 
 use crate::picking::SurfaceHit;
 use focus::ViewFrame;
@@ -6,27 +6,24 @@ use glam::DVec2;
 use project::StrokeView;
 use trace::Ray;
 
-/// Where the pointer is during a stroke.
+/// A point of a stroke.
 #[derive(Clone, Copy, Debug)]
 pub struct StrokePoint {
-    /// Where.
+    /// What the pointer is over.
     pub target: StrokeTarget,
     /// Pen pressure in [0, 1]; 1 for a mouse.
     pub pressure: f32,
 }
 
-/// A stroke's place, from either view.
+/// What the pointer is over during a stroke, in either view.
 #[derive(Clone, Copy, Debug)]
 pub enum StrokeTarget {
-    /// A ray from a view; what it meets is painted. A ray that meets nothing interrupts the stroke.
+    /// A ray of a view: its first hit is painted. A ray without a hit interrupts the stroke.
     Ray(Ray),
-    /// A position in a view ((0, 0) upper left, (1, 1) lower right), as [`Self::Ray`]. Such strokes are recorded.
+    /// A position in a view, (0, 0) upper left, (1, 1) lower right, used like [`Self::Ray`]. Such strokes are recorded.
     View(ViewFrame, DVec2),
-    /// A position in the atlas laid flat ((0, 0) upper left, (1, 1) lower right); where no surface is, the stroke is
-    /// interrupted. Such strokes are recorded.
+    /// A position in the atlas, (0, 0) upper left, (1, 1) lower right; empty places interrupt the stroke. Such strokes are recorded.
     Atlas(DVec2),
-    /// A point that was picked already.
-    Surface(SurfaceHit),
 }
 
 impl StrokePoint {
@@ -40,27 +37,22 @@ impl StrokePoint {
         Self { target, pressure: pressure as f32 }
     }
 
-    /// A mouse position, as a ray of a view.
+    /// A mouse position, as a ray of a view, with full pressure.
     pub fn from_ray(ray: Ray) -> Self {
         Self { target: StrokeTarget::Ray(ray), pressure: 1.0 }
     }
-
-    /// A picked surface point.
-    pub fn from_surface(hit: SurfaceHit) -> Self {
-        Self { target: StrokeTarget::Surface(hit), pressure: 1.0 }
-    }
 }
 
-/// What a fill or a selection covers, named by a point on it.
+/// The region that a fill or a selection covers, identified by a point on it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FillRegion {
     /// The object: every part of the point's node.
     Node(SurfaceHit),
-    /// The primitive of the point's node.
+    /// The part: one primitive of the point's node.
     Part(SurfaceHit),
-    /// Everything of the point's material.
+    /// Everything with the point's material.
     Material(SurfaceHit),
-    /// The connected piece of the atlas.
+    /// The point's chart of the atlas.
     Chart(SurfaceHit),
     /// All surfaces.
     All,

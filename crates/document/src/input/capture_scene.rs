@@ -1,27 +1,25 @@
-//! A capture as a scene that its photographs light.
+//! Captures as scenes.
 
-use light::DiskCache;
 use crate::camera_path::camera_between;
+use crate::error::DocumentError;
 use crate::input::depth_scene::load_depth_picture;
-use crate::input::disparity_error::DisparityError;
-use crate::input::disparity_error::disparity_error;
+use crate::input::disparity_error::{DisparityError, disparity_error};
 use crate::input::light_field_scene::load_light_field;
 use crate::input::picture_surface::PictureSurface;
-use crate::error::DocumentError;
-use light::Steps;
 use capture::{
     Capture, CaptureError, CaptureKind, CaptureOptions, DepthPictureOptions, DepthQuantity,
     LightFieldOptions, NearEnd,
 };
 use glam::{DVec2, DVec3};
 use lens::{Camera, Intrinsics};
+use light::{DiskCache, Steps};
 use progress::{Progress, Stage};
 use project::CaptureChoices;
 use scene::{LoadOptions, Scene, View};
 use std::path::Path;
 use std::sync::Arc;
 
-/// What cameras of photographs are called: this, and the photograph's name.
+/// Names of photographs' cameras consist of this prefix and the photograph's name.
 pub(crate) const PHOTOGRAPH_PREFIX: &str = "photo:";
 
 impl From<CaptureError> for DocumentError {
@@ -36,24 +34,24 @@ impl From<CaptureError> for DocumentError {
     }
 }
 
-/// A capture that was opened.
+/// An opened capture.
 pub(crate) struct CaptureScene {
     pub scene: Arc<Scene>,
-    /// The camera to begin with, if not the scene's first.
+    /// The initial camera, if it is not the scene's first.
     pub camera: Option<Camera>,
-    /// What is good to know, or missing, a sentence each.
+    /// Anything missing or worth knowing, a sentence each.
     pub remarks: Vec<String>,
-    /// Whether something is missing that the capture speaks of.
+    /// Whether something that the capture refers to is missing.
     pub is_incomplete: bool,
 }
 
-/// Whether a file or folder is a capture that can be opened: of a picture, whether it has depth.
+/// Whether a file or folder is a capture that can be opened. A picture is one if it has depth.
 pub fn is_capture(path: &Path) -> bool {
     capture::detect_capture_kind(path).is_ok()
 }
 
-/// How far the disparities that the views of a light field tell are from those that came with them; none of other captures, and where
-/// none came.
+/// The error of disparities estimated from the views of a light field, against those that came with it; `None` if none came with it, or the
+/// capture is no light field.
 pub(crate) fn capture_disparity_error(
     path: &Path,
     choices: &CaptureChoices,
@@ -70,7 +68,7 @@ pub(crate) fn capture_disparity_error(
     disparity_error(&field, &options.load, cache, &Stage::new(progress, 0.1, 1.0))
 }
 
-/// Reads a capture: a folder of photographs, of views of a light field, or a picture with its depth.
+/// Reads a capture: a folder of photographs, a light field, or a picture with its depth.
 pub(crate) fn load_capture(
     path: &Path,
     choices: &CaptureChoices,
@@ -81,17 +79,17 @@ pub(crate) fn load_capture(
         Some(name) => CaptureKind::from_name(name).ok_or_else(|| {
             DocumentError::bad_file(
                 path,
-                format!("cannot be taken for \"{name}\" (photographs, lightfield or depth)"),
+                format!("\"{name}\" is no kind of capture (use photographs, lightfield or depth)"),
             )
         })?,
-        // A picture that somebody gives depth to needs none of its own.
+        // A picture whose depth is specified separately needs none of its own.
         None if !path.is_dir() && (choices.depth.is_some() || choices.disparity.is_some()) => {
             CaptureKind::Depth
         }
         None => capture::detect_capture_kind(path)?,
     };
     let near = choices.near.as_ref().map(|near| near.parse::<NearEnd>());
-    let near = near.transpose().map_err(|what| DocumentError::BadInput(format!("--near {what}")))?;
+    let near = near.transpose().map_err(|message| DocumentError::BadInput(format!("--near {message}")))?;
     let load = LoadOptions::default();
     let surface = match kind {
         CaptureKind::Photographs => return load_photographs(path, choices, &*steps.begin("reading")),
@@ -111,7 +109,7 @@ pub(crate) fn load_capture(
     Ok(CaptureScene { scene: Arc::new(scene), camera: Some(camera), remarks, is_incomplete })
 }
 
-/// Reads the photographs in a folder, and the mesh of what they show.
+/// Reads the photographs in a folder, and the mesh of the scene that they show.
 fn load_photographs(
     folder: &Path,
     choices: &CaptureChoices,
@@ -128,7 +126,7 @@ fn load_photographs(
     let is_left_out = |view: &View| choices.leave_out.contains(&view.name);
     let (left_out, views): (Vec<View>, Vec<View>) = views.into_iter().partition(is_left_out);
     if views.is_empty() {
-        return Err(DocumentError::bad_file(folder, "all photographs are left out (leave some in)"));
+        return Err(DocumentError::bad_file(folder, "all photographs are left out (leave out fewer)"));
     }
     scene.path = folder.into();
     (scene.views, scene.excluded_views) = (views, left_out);
@@ -137,7 +135,8 @@ fn load_photographs(
     Ok(CaptureScene { scene: Arc::new(scene), camera: None, remarks, is_incomplete })
 }
 
-/// The camera that a name after [`PHOTOGRAPH`] means, that of a photograph or `A..B@SHARE`, one between two of them; else what is wrong.
+/// The camera for a name after [`PHOTOGRAPH_PREFIX`]: that of a photograph, or for `A..B@SHARE` one between two photographs; otherwise the
+/// error message.
 pub(crate) fn parse_photograph_camera(
     scene: &Scene,
     name: &str,
@@ -158,7 +157,10 @@ pub(crate) fn parse_photograph_camera(
     }
 }
 
-/// The photograph of a name, left out or not; else what is wrong with it.
+/// The photograph of this name, whether left out or not.
+///
+/// # Errors
+/// There is none. The message lists the names of photographs.
 pub fn find_photograph<'a>(scene: &'a Scene, name: &str) -> Result<&'a View, String> {
     let mut views = scene.all_views();
     let view = views.find(|view| view.name == name);
@@ -171,13 +173,13 @@ fn list_names<'a>(views: impl Iterator<Item = &'a View>) -> String {
     let listed: Vec<&str> = names.by_ref().take(MAX_LISTED).collect();
     let more = if names.next().is_some() { ", …" } else { "" };
     match listed.is_empty() {
-        true => "it is no capture, or all are left out".into(),
+        true => "there are no photographs".into(),
         false => format!("there are {}{more}", listed.join(", ")),
     }
 }
 
-/// The camera of a photograph without its lens's distortion: a pinhole, its sensor shifted as far as the lens's axis meets the picture beside
-/// its middle. Sensor height and background are those of `like`. `bounds` are the scene's, lowest and highest corner.
+/// The camera of a photograph without lens distortion: a pinhole, with the sensor shifted by the offset of the principal point from the
+/// picture's centre. Sensor height and background are those of `template_camera`. `bounds` are the lowest and highest corner of the scene.
 pub fn camera_from_photograph(bounds: (DVec3, DVec3), view: &View, template_camera: &Camera) -> Camera {
     let [width, height] = view.lens.size_px();
     let Intrinsics { focal_px: [_, focal_px], principal_px: [x, y], .. } = *view.lens.intrinsics();

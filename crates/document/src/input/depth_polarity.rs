@@ -1,28 +1,31 @@
-//! What a person is asked where a depth map does not say which end is near.
+//! The question to the user if a depth map does not say which end is near.
 
 use crate::error::DocumentError;
 use capture::{NearEnd, read_depth_map};
 use scene::LoadOptions;
 use std::path::PathBuf;
 
-/// The longer side of the map as it is shown, px, at most.
+/// Maximum length of the longer side of the map as it is shown, px.
 const SIDE_PX: usize = 240;
 
-/// A depth map that does not say which end is near, to be shown with either.
+/// A depth map that does not say which end is near, prepared to be shown in both ways.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DepthPolarityRequest {
-    /// The capture that was to be opened.
+    /// The capture to open.
     pub capture: PathBuf,
-    /// The map.
+    /// The file of the depth map.
     pub map: PathBuf,
     /// Columns and rows of the map as it is shown.
     pub size: [usize; 2],
-    /// How near everything is if white, or what is greater, is near, in [0, 1], row by row.
+    /// Nearness in [0, 1] if white, or greater values, are near, row by row.
     pub nearness: Vec<f32>,
 }
 
 impl DepthPolarityRequest {
-    /// Reads the map again, for `capture`.
+    /// Reads the depth map `map` of `capture`.
+    ///
+    /// # Errors
+    /// The map cannot be read.
     pub fn from_map(capture: PathBuf, map: PathBuf) -> Result<Self, DocumentError> {
         let depth_map = read_depth_map(&map, None, Some(NearEnd::White), &LoadOptions::default())?;
         let [width, height] = [depth_map.width, depth_map.height].map(|side| side as usize);

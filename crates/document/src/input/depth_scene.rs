@@ -1,42 +1,34 @@
-//! A picture and its depth as a scene.
+//! Pictures with depth as scenes.
 
-use crate::input::picture_surface::PictureSurface;
-use crate::input::picture_surface::check_size;
-use crate::input::picture_surface::default_focal_px;
-use crate::input::picture_surface::finite_range;
-use crate::input::picture_surface::margin_px;
-use crate::input::picture_surface::relief_error;
-use crate::input::picture_surface::show_early_picture;
-use crate::input::picture_scene::PictureSpace;
-use crate::input::picture_scene::SourcePicture;
-use crate::input::picture_scene::SurfaceSource;
-use crate::input::picture_scene::picture_camera;
-use crate::input::picture_scene::picture_scene;
-use crate::input::picture_scene::uncalibrated_space;
+use crate::error::{DocumentError, file_name};
+use crate::input::picture_scene::{
+    PictureSpace, SourcePicture, SurfaceSource, picture_camera, picture_scene, uncalibrated_space,
+};
+use crate::input::picture_surface::{
+    PictureSurface, check_size, default_focal_px, finite_range, margin_px, relief_error, show_early_picture,
+};
 use crate::input::picture_views::picture_view;
-use crate::error::DocumentError;
-use crate::error::file_name;
-use light::Steps;
 use capture::{CaptureError, DepthMeaning, DepthPictureOptions};
 use glam::DVec2;
 use lens::Camera;
+use light::Steps;
 use progress::Stage;
 use relief::{DepthStroke, Relief, ReliefOptions, apply_depth_strokes, fill_unknown_disparity, upsample};
 use std::path::Path;
 
-/// What is infinitely far, or as good as, is put at so many times the nearest distance.
+/// Distances, which may be infinite, are limited to this multiple of the nearest.
 const MAX_DISTANCE_RATIO: f32 = 1000.0;
-/// A surface of more cells than this is made coarser than its picture, which stays as fine as it is.
+/// Maximum number of cells of a surface; beyond it, the surface is coarser than its picture, whose resolution is kept.
 const MAX_CELLS: u64 = 4_200_000;
-/// The f-number that the surface is made for: behind what stands before something it goes on as far as this aperture looks.
+/// The f-number that the surface is made for: behind occluders, it is continued as far as this aperture sees.
 const WIDEST_F_NUMBER: f64 = 1.0;
 
-/// Cells of so many pixels each way.
+/// The number of cells with sides of `cell_px` pixels.
 fn cell_count([width, height]: [u32; 2], cell_px: u32) -> u64 {
     u64::from(width.div_ceil(cell_px)) * u64::from(height.div_ceil(cell_px))
 }
 
-/// Opens a picture with its depth and makes its surface.
+/// Opens a picture with its depth, repairs the depth by `strokes`, and makes its surface.
 pub(crate) fn load_depth_picture(
     path: &Path,
     options: &DepthPictureOptions,
@@ -59,7 +51,7 @@ pub(crate) fn load_depth_picture(
     if disparity.first().is_none_or(|value| value.is_nan()) {
         return Err(DocumentError::bad_file(
             &depth_picture.depth_file,
-            "says of no pixel how far it is (give another map)",
+            "contains no depth (choose another depth map)",
         ));
     }
     let focal_px =
@@ -68,8 +60,8 @@ pub(crate) fn load_depth_picture(
         DepthMeaning::Distance => {
             let nearest = disparity.iter().copied().fold(0.0, f32::max);
             if !(nearest > 0.0 && nearest.is_finite()) {
-                let what = "says of no pixel how far it is in metres (give another map)";
-                return Err(DocumentError::bad_file(&depth_picture.depth_file, what));
+                let message = "contains no distance in metres (choose another depth map)";
+                return Err(DocumentError::bad_file(&depth_picture.depth_file, message));
             }
             disparity.iter_mut().for_each(|value| *value = value.max(nearest / MAX_DISTANCE_RATIO));
             PictureSpace { focal_px, offset: 0.0, scale: 1.0 }
@@ -108,7 +100,7 @@ pub(crate) fn load_depth_picture(
         cell_px: cell_px as usize,
     };
     let mut scene = picture_scene(&relief, &source_picture, &space, &source, f64::from(center_disparity));
-    // Seen as fine as it is, though the surface may be coarser.
+    // The picture has its full resolution here, though the surface may be coarser.
     let full_space = PictureSpace { focal_px: space.focal_px * f64::from(cell_px), ..space };
     scene.excluded_views.extend(picture_view(
         &depth_picture.name,
@@ -117,7 +109,7 @@ pub(crate) fn load_depth_picture(
         depth_picture.size,
         &full_space,
     ));
-    // At first half as wide as it may be.
+    // The initial aperture is half as wide as the surface allows.
     let camera = picture_camera(&scene, depth_picture.size, &space, reach_steps / 2.0);
     let is_incomplete = depth_picture.remarks.iter().any(|remark| remark.is_incomplete);
     let remarks = depth_picture.remarks.into_iter().map(|remark| remark.text).collect();

@@ -1,24 +1,24 @@
-//! How far disparities that the views of a light field tell are from those that came with them.
+//! The error of disparities estimated from a light field, against those that came with it.
 
-use light::DiskCache;
-use crate::input::disparity_estimate::estimate_disparity;
 use crate::error::DocumentError;
+use crate::input::disparity_estimate::estimate_disparity;
 use capture::LightField;
+use light::DiskCache;
 use progress::Progress;
 use scene::LoadOptions;
 
-/// How far found disparities are from given ones, over all pixels that have one (Honauer et al., ACCV 2016).
+/// The error of estimated disparities, over all pixels with a reference disparity (Honauer et al., ACCV 2016).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DisparityError {
-    /// The share of pixels that are off by more than 0.07 px a step, in [0, 1].
+    /// The share of pixels with an error of more than 0.07 px per step between views, in [0, 1].
     pub bad_007: f64,
-    /// By more than 0.03.
+    /// The share of pixels with an error of more than 0.03 px per step, in [0, 1].
     pub bad_003: f64,
-    /// The mean squared error, px² a step².
+    /// The mean squared error, px² per step².
     pub mean_square: f64,
 }
 
-/// Of a light field whose middle view came with disparities; none of others. The views alone are asked.
+/// The error for a light field whose centre view came with disparities; `None` for others. The estimate uses the views alone.
 pub(crate) fn disparity_error(
     field: &LightField,
     load: &LoadOptions,
@@ -32,7 +32,7 @@ pub(crate) fn disparity_error(
     let estimated = estimate_disparity(field, load, cache, progress)?;
     let [columns, rows] = [provided.map.width, provided.map.height].map(|side| side as usize);
     let [width, height] = field.size.map(|side| side as usize);
-    // The view's pixel at the middle of a pixel of the map.
+    // The pixel of the view at the centre of a pixel of the map.
     let rescale_index =
         |index: usize, from_len: usize, to_len: usize| (2 * index + 1) * to_len / (2 * from_len);
     let estimate_at = |pixel: usize| {
@@ -45,7 +45,7 @@ pub(crate) fn disparity_error(
     Ok(summarize_errors(valid_pixels.map(|(pixel, truth)| estimate_at(pixel) - f64::from(*truth))))
 }
 
-/// None of no pixels.
+/// Summarises errors per pixel; `None` without pixels.
 fn summarize_errors(errors: impl Iterator<Item = f64>) -> Option<DisparityError> {
     let (mut count, mut bad, mut squares) = (0.0f64, [0.0; 2], 0.0);
     for error in errors {
@@ -63,7 +63,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn pixels_count_alike() {
+    fn all_pixels_have_equal_weight() {
         let error = summarize_errors([0.0, -0.05, 0.1, 0.02].into_iter()).expect("there are pixels");
         assert_eq!((error.bad_007, error.bad_003), (0.25, 0.5));
         assert!((error.mean_square - 0.0129 / 4.0).abs() < 1e-12);

@@ -1,37 +1,37 @@
-//! Disparities of a light field that came without: found in its views; or with a map that is coded by colour: decoded by them.
+//! Disparities of a light field that came without: estimated from its views, or decoded from a colour-coded map with their help.
 
 use crate::error::DocumentError;
-use light::{CacheSection, DiskCache};
 use ::disparity::colour_coded::{Sample, decode};
 use ::disparity::{DisparityError, DisparityRequest, Picture, View};
 use capture::{LightField, PictureSource};
 use glam::DVec2;
+use light::{CacheSection, DiskCache};
 use progress::{Progress, Stage};
 use scene::{LoadOptions, Photograph, srgb_from_linear};
 use sha2::Digest;
 use std::path::Path;
 
-/// Pixels of all views together that are looked at: some 12 bytes each as they are read, and about as much in work. Of more, views are
+/// Maximum number of pixels of all views together, which take 12 bytes each when read, and about as much again in work. Views beyond it are
 /// left out.
 const MAX_TOTAL_PIXELS: usize = 24_000_000;
-/// So many views are looked at, however large they are.
+/// Minimum number of views used, however large they are.
 const MIN_VIEWS: usize = 5;
 
-/// Pixels of a map that is coded by colour are told where the views tell their disparity this surely.
+/// Minimum confidence of estimated disparities that are used as samples to decode a colour-coded map.
 const MIN_CONFIDENCE: f32 = 0.5;
-/// As many of them are enough, spread over the picture.
+/// Maximum number of samples, spread over the picture.
 const MAX_SAMPLES: usize = 4000;
 
-/// Eight bytes a pixel: disparities, then how surely each is told.
+/// Eight bytes per pixel: all disparities, then all confidences.
 const SECTION: CacheSection = CacheSection { name: "disparities", budget_bytes: 512 << 20 };
 
-/// Disparities of the middle view, and how surely each is told, in [0, 1].
+/// Disparities of the centre view, with their confidences in [0, 1].
 struct DisparityEstimate {
     disparity: Vec<f32>,
     confidence: Vec<f32>,
 }
 
-/// The disparities of the middle view.
+/// Estimates the disparities of the centre view, px per step, row by row.
 pub(crate) fn estimate_disparity(
     field: &LightField,
     load: &LoadOptions,
@@ -47,7 +47,7 @@ pub(crate) fn estimate_disparity(
     }
 }
 
-/// A map that is coded by colour, decoded by what the views tell surely; at the size of the views.
+/// Decodes a colour-coded map with the help of confident estimates; the result has the size of the views.
 fn decode_colour_coded(
     field: &LightField,
     coded: &Photograph,
@@ -59,7 +59,7 @@ fn decode_colour_coded(
     let rgb: Vec<[f32; 3]> = coded.pixels.iter().map(|rgb| rgb.map(encode_for_display)).collect();
     let confident_pixels: Vec<usize> =
         (0..width * height).filter(|&pixel| estimate.confidence[pixel] >= MIN_CONFIDENCE).collect();
-    // The pixel of the map at a pixel's middle.
+    // The pixel of the map at a pixel's centre.
     let map_pixel = |pixel: usize| {
         let rescale_index =
             |index: usize, from_len: usize, to_len: usize| (2 * index + 1) * to_len / (2 * from_len);
@@ -73,7 +73,7 @@ fn decode_colour_coded(
     let map = Picture { width: columns, height: rows, rgb: &rgb };
     let decoded = decode(&map, &samples.collect::<Vec<_>>(), progress);
     let file = field.coded_disparity.as_ref().map_or(field.path.as_path(), PictureSource::file);
-    let decoded = decoded.map_err(|error| session_error(file, error))?;
+    let decoded = decoded.map_err(|error| disparity_failure(file, error))?;
     let disparity_at = |pixel: usize| {
         let [x, y] = map_pixel(pixel);
         decoded.disparity[y * columns + x]
@@ -81,19 +81,19 @@ fn decode_colour_coded(
     Ok((0..width * height).map(disparity_at).collect())
 }
 
-fn session_error(file: &Path, error: DisparityError) -> DocumentError {
+fn disparity_failure(file: &Path, error: DisparityError) -> DocumentError {
     match error {
         DisparityError::Cancelled(_) => DocumentError::Cancelled,
-        other => DocumentError::bad_file(file, format!("tells no disparities: {other}")),
+        other => DocumentError::bad_file(file, format!("disparities cannot be computed: {other}")),
     }
 }
 
-/// As a screen shows it, up to white.
+/// A linear value in sRGB encoding, clamped to [0, 1].
 fn encode_for_display(linear: f32) -> f32 {
     srgb_from_linear(linear.clamp(0.0, 1.0))
 }
 
-/// What the views tell: found before, or now.
+/// The estimate from the views: read from the cache, or computed.
 fn load_or_estimate(
     field: &LightField,
     load: &LoadOptions,
@@ -107,7 +107,7 @@ fn load_or_estimate(
     let entry = cache.entry(SECTION, |hash| {
         for &number in &selected {
             let view = &field.views[number];
-            // A picture is taken for the same where file, size and time of change are.
+            // Pictures count as equal if their path, size and modification time are.
             let file_stamp = std::fs::metadata(view.picture.file())
                 .map(|metadata| (metadata.len(), metadata.modified().ok()));
             hash.update(format!("{:?} {} {:?}", view.picture, view.position, file_stamp.ok()));
@@ -141,7 +141,7 @@ fn load_or_estimate(
     let range = field.optics.disparity_range.map(|[low, high]| (low as f32, high as f32));
     let request = DisparityRequest { reference, range, ..DisparityRequest::default() };
     let result = ::disparity::estimate_disparities(&views, &request, &Stage::new(progress, 0.3, 1.0));
-    let result = result.map_err(|error| session_error(&field.path, error))?.swap_remove(0);
+    let result = result.map_err(|error| disparity_failure(&field.path, error))?.swap_remove(0);
     if let Some(entry) = entry {
         let numbers = result.disparity.iter().chain(&result.confidence);
         entry.write(&numbers.flat_map(|number| number.to_le_bytes()).collect::<Vec<_>>());
@@ -149,7 +149,7 @@ fn load_or_estimate(
     Ok(DisparityEstimate { disparity: result.disparity, confidence: result.confidence })
 }
 
-/// At most so many of the places, the first that of `start`, then always the one farthest from those that were chosen.
+/// Selects at most `max_count` well-spread positions by farthest-point sampling from `start`. Returns sorted indices.
 fn select_spread_views(positions: &[DVec2], start: usize, max_count: usize) -> Vec<usize> {
     let mut distances_squared: Vec<f64> =
         positions.iter().map(|position| position.distance_squared(positions[start])).collect();
@@ -175,7 +175,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn views_that_are_looked_at_are_spread() {
+    fn selected_views_are_spread() {
         let places: Vec<DVec2> =
             (0..25).map(|k| DVec2::new((k % 5) as f64 - 2.0, (k / 5) as f64 - 2.0)).collect();
         assert_eq!(select_spread_views(&places, 12, 100), (0..25).collect::<Vec<_>>());

@@ -1,25 +1,16 @@
-//! A light field as a scene: its middle view, a surface from disparities, and behind it what the other views see.
+//! Light fields as scenes: the centre view on a surface made from disparities, and behind it what the other views see.
 
-use light::DiskCache;
+use crate::error::{DocumentError, file_name};
 use crate::input::disparity_estimate::estimate_disparity;
-use crate::input::picture_surface::PictureSurface;
-use crate::input::picture_surface::check_size;
-use crate::input::picture_surface::default_focal_px;
-use crate::input::picture_surface::finite_range;
-use crate::input::picture_surface::margin_px;
-use crate::input::picture_surface::relief_error;
-use crate::input::picture_surface::show_early_picture;
-use crate::input::picture_scene::PictureSpace;
-use crate::input::picture_scene::SourcePicture;
-use crate::input::picture_scene::SurfaceSource;
-use crate::input::picture_scene::picture_camera;
-use crate::input::picture_scene::picture_scene;
-use crate::input::picture_scene::uncalibrated_space;
+use crate::input::picture_scene::{
+    PictureSpace, SourcePicture, SurfaceSource, picture_camera, picture_scene, uncalibrated_space,
+};
+use crate::input::picture_surface::{
+    PictureSurface, check_size, default_focal_px, finite_range, margin_px, relief_error, show_early_picture,
+};
 use crate::input::picture_views::picture_view;
-use crate::error::DocumentError;
-use crate::error::file_name;
-use light::Steps;
 use capture::{CaptureError, LightField, LightFieldOptions, Optics, ViewDisparity};
+use light::{DiskCache, Steps};
 use progress::Stage;
 use relief::{
     DepthStroke, OtherView, Relief, ReliefOptions, apply_depth_strokes, fill_unknown_disparity,
@@ -27,12 +18,12 @@ use relief::{
 };
 use std::path::Path;
 
-/// Cameras may stand, and apertures reach, so many times as far from the middle view as the farthest view.
+/// Cameras and apertures may reach this multiple of the farthest view's distance from the centre view.
 const CAMERA_REACH_FACTOR: f64 = 1.6;
-/// Disparities are even that are rougher by no more than this, as a parallax, px: they have smaller jumps, which noise has not made.
+/// Disparities with less roughness than this, as parallax in px, are smooth: small jumps in them are not noise.
 const SMOOTH_PX: f32 = 0.03;
 
-/// Opens a light field and makes its surface, the depth of which is repaired by `strokes`.
+/// Opens a light field, repairs its depth by `strokes`, and makes its surface.
 pub(crate) fn load_light_field(
     path: &Path,
     options: &LightFieldOptions,
@@ -47,8 +38,7 @@ pub(crate) fn load_light_field(
     let photograph = check_size(field.views[field.reference].picture.photograph(load)?, field.size, path)?;
     show_early_picture(&photograph, steps);
     let middle_pixels = photograph.pixels;
-    let disparity =
-        match provided_disparity(&field) {
+    let disparity = match provided_disparity(&field) {
         Some(provided) => dense_disparity(provided, size, &middle_pixels),
         None => estimate_disparity(&field, load, cache, &Stage::new(progress, 0.1, 0.5))?,
     };
@@ -62,8 +52,8 @@ pub(crate) fn load_light_field(
         beyond: CAMERA_REACH_FACTOR as f32,
         offset: space.offset as f32,
         jump_px: if roughness_px < SMOOTH_PX { 0.5 } else { ReliefOptions::default().jump_px },
-        // Blur reaches as far as parallax does against what is focused on; a camera that moves sees beside the picture as far as what is
-        // nearest moves.
+        // Blur reaches as far as the parallax relative to the focus plane; a camera that moves sees beyond the picture's edges by the parallax of
+        // the nearest point.
         margin_px: margin_px(
             size,
             CAMERA_REACH_FACTOR * reach * (range[1] - range[0]).max(range[1] + space.offset),
@@ -80,18 +70,18 @@ pub(crate) fn load_light_field(
     let stage = Stage::new(progress, 0.5, 1.0);
     let relief = Relief::build(size, &disparity, &middle_pixels, &other_views, &surface, &stage)
         .map_err(relief_error)?;
-    // What has disparity 0 is where the views agree: the camera that took them was focused there.
+    // The views agree at disparity 0: the camera that took them was focused there.
     let focus = if (range[0]..=range[1]).contains(&0.0) { 0.0 } else { 0.5 * (range[0] + range[1]) };
     let source_picture = SourcePicture { pixels: &middle_pixels, size, cell_px: 1 };
     let disparity_origin = match provided_disparity(&field) {
         Some(provided) => format!("of {}", file_name(&provided.file)),
         None if field.coded_disparity.is_some() => "decoded from their colours".into(),
-        None => "found in them".into(),
+        None => "estimated from them".into(),
     };
     let ([width, height], [low, high]) = (size, range);
     let views = field.views.len();
     let origin = format!(
-        "{views} views of {width} × {height} px, disparities {low:.2} to {high:.2} px a step, {disparity_origin}"
+        "{views} views of {width} × {height} px, disparities {low:.2} to {high:.2} px per step, {disparity_origin}"
     );
     let source = SurfaceSource { name: &field.name, path, origin };
     let mut scene = picture_scene(&relief, &source_picture, &space, &source, focus);
@@ -109,19 +99,19 @@ pub(crate) fn load_light_field(
     Ok(PictureSurface { scene, camera, remarks, is_incomplete })
 }
 
-/// The disparities of the middle view that came along.
+/// The disparities of the centre view that came with the light field.
 fn provided_disparity(field: &LightField) -> Option<&ViewDisparity> {
     field.disparity.as_ref().filter(|disparity| disparity.view == field.reference)
 }
 
-/// A disparity for each pixel of the middle view, whose size and pixels are these, from a map that may be smaller and have gaps.
+/// A disparity for each pixel of the centre view, from a map that may be smaller and have gaps.
 fn dense_disparity(provided: &ViewDisparity, size: [usize; 2], middle_pixels: &[[f32; 3]]) -> Vec<f32> {
     let map_size = [provided.map.width as usize, provided.map.height as usize];
     let sparse_disparity = upsample(map_size, &provided.map.inverse_depth(), size, middle_pixels);
     fill_unknown_disparity(size, sparse_disparity)
 }
 
-/// How disparities become distances: as the files say, if all of them are then ahead of the camera.
+/// How disparities become distances: by the optics in the files, if that puts all points in front of the camera.
 fn picture_space(optics: &Optics, size: [u32; 2], range: [f64; 2]) -> PictureSpace {
     let longer = f64::from(size[0].max(size[1]));
     let focal_px = optics.focal_length_mm.zip(optics.sensor_size_mm).map(|(f, s)| f * longer / s);

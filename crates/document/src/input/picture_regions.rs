@@ -1,17 +1,17 @@
-//! What of a picture hangs together in depth: regions that are filled and selected whole, as objects of a scene are.
+//! Regions of a picture that are connected in depth: they are filled and selected as objects of a scene are.
 //!
-//! The surface is cut where depth jumps, and continued behind what stands before it. What shares corners hangs together, also the picture
-//! with what is hidden in it. Specks, which noise in the depth cuts off, belong to the region that they lie in.
+//! The surface is cut where depth jumps, and continued behind occluders. Triangles that share corners are connected, including those of visible
+//! and hidden surface. Specks, which noise in the depth cuts off, are merged with the region around them.
 
 use glam::DVec3;
 use scene::Scene;
 use std::collections::HashMap;
 
-/// A region of fewer texels is a speck.
+/// Regions with a smaller area than this, in texels, are specks.
 const SPECK_PX: f32 = 64.0;
 
-/// The region of each triangle, counted from 0 in order of the first triangle of each; and how many there are. `corners`: of triangles, in
-/// pixels of the texture.
+/// The region of each triangle, numbered from 0 in order of their first triangles, and the number of regions. `corners` are those of the
+/// triangles in texels.
 pub(crate) fn triangle_regions(scene: &Scene, corners: &[[glam::Vec2; 3]]) -> (Vec<u32>, usize) {
     let mut sets = DisjointSets::new(scene.positions.len());
     let mut vertex_at_position: HashMap<[u64; 3], usize> = HashMap::with_capacity(scene.positions.len());
@@ -36,19 +36,19 @@ pub(crate) fn triangle_regions(scene: &Scene, corners: &[[glam::Vec2; 3]]) -> (V
     (regions, numbers.len())
 }
 
-/// Positions that are the same, bit for bit, but for the sign of zero.
+/// A key that is equal for equal positions, bit for bit except for the sign of zero.
 fn position_key(position: DVec3) -> [u64; 3] {
     position.to_array().map(|x| (x + 0.0).to_bits())
 }
 
-/// Gives specks the region that most of what is around them in the picture has.
+/// Merges specks with the region that is most frequent around them in the picture.
 fn absorb_specks(regions: &mut [usize], corners: &[[glam::Vec2; 3]]) {
     let mut area: HashMap<usize, f32> = HashMap::new();
     for (region, [a, b, c]) in regions.iter().zip(corners) {
         *area.entry(*region).or_default() += 0.5 * (*b - *a).perp_dot(*c - *a).abs();
     }
     let is_speck = |region: &usize| area[region] < SPECK_PX;
-    // Cells of the picture that large regions have a corner in: where specks look around themselves.
+    // The region of each cell in which a large region has a corner.
     let cell = |corner: &glam::Vec2| [corner.x.round() as i32, corner.y.round() as i32];
     let mut region_at_cell: HashMap<[i32; 2], usize> = HashMap::new();
     for (region, corners) in regions.iter().zip(corners).filter(|(region, _)| !is_speck(region)) {
@@ -76,7 +76,7 @@ fn absorb_specks(regions: &mut [usize], corners: &[[glam::Vec2; 3]]) {
     }
 }
 
-/// Disjoint sets of numbers (union by the least, paths halved).
+/// Disjoint sets of numbers (the least element is the root; path halving).
 struct DisjointSets(Vec<usize>);
 
 impl DisjointSets {

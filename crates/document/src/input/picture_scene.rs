@@ -1,4 +1,4 @@
-//! A surface in a picture's space as a scene: with the picture as its texture, and its atlas.
+//! The surface of a picture as a scene, with the picture as its texture, and its atlas.
 //!
 //! ```text
 //! 1/z = (d + o)/s        x = z·(p_x − c_x)/f        y = −z·(p_y − c_y)/f
@@ -6,9 +6,9 @@
 //!
 //! | symbol | meaning | unit |
 //! | --- | --- | --- |
-//! | d, o | disparity, and the offset that makes all 1/z > 0 | px a step |
-//! | s | disparity of a distance of 1, without offset: f·b, b the distance between views | px a step |
-//! | p, c | place in the picture, its middle | px |
+//! | d, o | disparity, and the offset that makes all 1/z > 0 | px per step |
+//! | s | disparity at distance 1, without offset: f·b, where b is the distance between views | px per step |
+//! | p, c | position in the picture, and its centre | px |
 //! | f | focal length | px |
 //! | x, y, z | position to the right, upward, ahead of the camera | scene units |
 
@@ -25,34 +25,35 @@ use scene::{
 use std::path::Path;
 use std::sync::Arc;
 
-/// How disparities become distances, and pixels directions.
+/// The mapping from disparities to distances, and from pixels to directions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct PictureSpace {
-    /// f.
+    /// Focal length f, px.
     pub focal_px: f64,
-    /// o.
+    /// Disparity offset o, px per step.
     pub offset: f64,
-    /// s, > 0.
+    /// Disparity at distance 1, s > 0, px per step.
     pub scale: f64,
 }
 
 impl PictureSpace {
-    /// 1/z of a disparity.
+    /// The inverse depth 1/z of a disparity.
     pub fn inverse_depth(&self, disparity: f64) -> f64 {
         (disparity + self.offset) / self.scale
     }
 
-    /// b.
+    /// The distance b between neighbouring views.
     pub fn baseline(&self) -> f64 {
         self.scale / self.focal_px
     }
 }
 
-/// Distances where nothing is known of them: what is nearest is one unit away, what is farthest five.
-pub(crate) const NEAREST_DISTANCE: f64 = 1.0;
+/// Depth of the nearest point if distances are unknown.
+const NEAREST_DISTANCE: f64 = 1.0;
+/// Depth of the farthest point if distances are unknown.
 const FARTHEST_DISTANCE: f64 = 5.0;
 
-/// The space of disparities in a range, low to high, of which neither scale nor offset is known.
+/// The space for disparities in a range, low to high, with unknown scale and offset.
 pub(crate) fn uncalibrated_space([low, high]: [f64; 2], focal_px: f64) -> PictureSpace {
     // A picture of one depth is a plane at the nearest distance.
     let range = if high > low { high - low } else { 1.0 };
@@ -60,7 +61,7 @@ pub(crate) fn uncalibrated_space([low, high]: [f64; 2], focal_px: f64) -> Pictur
     PictureSpace { focal_px, scale, offset: scale / NEAREST_DISTANCE - high }
 }
 
-/// What a surface is called, and what it is from.
+/// Name and origin of a surface.
 pub(crate) struct SurfaceSource<'a> {
     pub name: &'a str,
     pub path: &'a Path,
@@ -68,13 +69,13 @@ pub(crate) struct SurfaceSource<'a> {
     pub origin: String,
 }
 
-/// The picture that a surface was made from, which it may be coarser than.
+/// The picture that a surface was made from, which may be finer than the surface.
 pub(crate) struct SourcePicture<'a> {
     /// Linear RGB, row by row.
     pub pixels: &'a [[f32; 3]],
     /// Columns and rows.
     pub size: [usize; 2],
-    /// Pixels that a cell of the surface is wide and high; the last ones may reach beyond the picture.
+    /// Side of a cell of the surface, px; the last cells may extend beyond the picture.
     pub cell_px: usize,
 }
 
@@ -85,7 +86,7 @@ impl SourcePicture<'_> {
     }
 }
 
-/// The scene of a surface, `space` in its cells. `focus` is the disparity that the camera focuses on.
+/// The scene of a surface. Pixels of `space` are cells of the surface; the camera focuses on `focus_disparity`.
 pub(crate) fn picture_scene(
     relief: &Relief,
     source_picture: &SourcePicture<'_>,
@@ -116,7 +117,7 @@ pub(crate) fn picture_scene(
         uv_set: 0,
         transform: Mat3::IDENTITY,
         wrap: [Wrap::Clamp; 2],
-        // A pixel of the picture is what it shows all over: averaged over a pixel it is the picture again.
+        // Pixels are constant over their area: averaged over a pixel, the texture is the picture again.
         nearest: true,
     };
     let material = Material {
@@ -128,7 +129,7 @@ pub(crate) fn picture_scene(
     };
     let translucent = Material { alpha: AlphaMode::Blend, ..material.clone() };
     let (mut triangles, mut parts) = (Vec::new(), Vec::new());
-    // What is there in part has a material of its own: nothing else is asked for its opacity.
+    // Translucent triangles have a material of their own, so that the opacity of others need not be looked up.
     for (material_index, triangle_vertices) in
         [&relief.triangles, &relief.translucent].into_iter().enumerate()
     {
@@ -180,7 +181,7 @@ pub(crate) fn picture_scene(
     }
 }
 
-/// The camera of the picture: as many pixels, an aperture of `radius` in steps between views.
+/// The camera of the picture, of `size` pixels, with an aperture radius of `radius` steps between views.
 pub(crate) fn picture_camera(scene: &Scene, size: [u32; 2], space: &PictureSpace, radius: f64) -> Camera {
     let SceneCamera { camera_to_world, yfov, focus_distance, .. } = scene.cameras[0];
     Camera {
@@ -194,7 +195,7 @@ pub(crate) fn picture_camera(scene: &Scene, size: [u32; 2], space: &PictureSpace
     }
 }
 
-/// The atlas that the texture of a surface from a picture is, if it is one. Its charts are what hangs together in depth.
+/// The atlas of a picture's surface, which is its texture; `None` for other scenes. Its charts are the regions that are connected in depth.
 pub(crate) fn picture_atlas(scene: &Scene) -> Option<Atlas> {
     let picture = scene.picture.as_ref()?;
     let size = Vec2::new(picture.size[0] as f32, picture.size[1] as f32);
@@ -204,14 +205,14 @@ pub(crate) fn picture_atlas(scene: &Scene) -> Option<Atlas> {
         .map(|triangle| triangle.vertices.map(|v| scene.uv[0][v as usize] * size))
         .collect();
     let (chart_of, count) = triangle_regions(scene, &corners);
-    // Texels a unit of length, where one is at the distance that the camera focuses on.
+    // Texels per unit of length at the focus distance.
     let camera = scene.cameras.first()?;
     let height = 2.0 * camera.focus_distance * (0.5 * camera.yfov).tan();
     let density = f64::from(picture.picture_size()[1]) / height;
     Some(Atlas::new(picture.size, corners, chart_of, &vec![0; count], density))
 }
 
-/// The gloss of a surface in the scene's units.
+/// The gloss of a surface, in the scene's units.
 fn gloss_in_scene_units(gloss: &Gloss, space: &PictureSpace) -> PictureGloss {
     const { assert!(GLOSS_TERMS == PictureGloss::TERMS && Gloss::NONE == PictureGloss::NO_POLYNOMIAL) };
     PictureGloss {
@@ -223,7 +224,7 @@ fn gloss_in_scene_units(gloss: &Gloss, space: &PictureSpace) -> PictureGloss {
     }
 }
 
-/// What layers say a texel, row by row of the whole texture; rows between them say `between`.
+/// Values per texel of all layers, row by row of the whole texture; rows between layers have `gap_value`.
 fn stack_layers<T: Copy>(
     layers: &[T],
     [width, height]: [usize; 2],
@@ -239,8 +240,8 @@ fn stack_layers<T: Copy>(
     stacked
 }
 
-/// The texture in sRGB's encoding, divided by what its brightest value is above white: the picture as fine as it is, what is around and
-/// behind it as the surface has it.
+/// The texture, sRGB-encoded and divided by its brightest value, if that is above white; returned with that value. The picture has its full
+/// resolution, the surface around and behind it that of the cells.
 fn texture_image(
     relief: &Relief,
     source_picture: &SourcePicture<'_>,
@@ -266,7 +267,7 @@ fn texture_image(
             let is_picture = relief.is_matted.get(cell).is_some_and(|is_separated| !is_separated);
             let color = match picture_pixel {
                 Some((x, y)) if is_picture => source_picture.pixels[y * source_picture.size[0] + x],
-                // Cells may be coarser than the picture: over what is behind them they are the picture again.
+                // Cells may be coarser than the picture: composited over the layer behind them, they are the picture again.
                 Some((x, y)) if cell_px > 1 && opacity < 1.0 => {
                     let (all, back) = (
                         source_picture.pixels[y * source_picture.size[0] + x],
@@ -297,7 +298,7 @@ mod tests {
     use std::convert::Infallible;
 
     #[test]
-    fn a_picture_is_where_its_camera_sees_it() {
+    fn vertices_project_to_their_pixels() {
         let size = [24, 16];
         let disparity: Vec<f32> = (0..size[0] * size[1]).map(|cell| (cell % 24) as f32 * 0.02).collect();
         let picture: Vec<[f32; 3]> =
@@ -319,20 +320,21 @@ mod tests {
             let place = Vec2::new(12.0 + (projected.x * half) as f32, 8.0 - (projected.y * half) as f32);
             assert!(place.distance(vertex.place) < 1e-4, "{place} {}", vertex.place);
         }
-        // A step aside moves what has disparity d by d pixels.
+        // A step to the side moves points of disparity d by d pixels.
         let near = 1.0 / space.inverse_depth(0.4);
         let far = 1.0 / space.inverse_depth(0.1);
         let parallax = |z: f64| space.focal_px * space.baseline() / z;
         assert!((parallax(near) - parallax(far) - 0.3).abs() < 1e-9);
         let atlas = picture_atlas(&scene).unwrap();
         assert_eq!([atlas.width, atlas.height], [30, 48]);
-        // HDR survives.
+        // Values above white are preserved.
         assert_eq!(scene.materials[0].base_color.x, 1.8000001);
     }
+
     #[test]
-    fn what_hangs_together_in_depth_is_a_chart_and_specks_belong_to_what_they_lie_in() {
+    fn regions_connected_in_depth_are_charts_and_specks_join_the_region_around_them() {
         let size = [40, 30];
-        // A card before a wall, and a speck on the card.
+        // A card in front of a wall, and a speck on the card.
         let disparity = |x: usize, y: usize| match (x, y) {
             (18..=19, 14..=15) => 5.0,
             (10..30, 8..22) => 3.0,

@@ -1,31 +1,31 @@
-//! What surfaces of light fields and of pictures with depth have in common.
+//! Common parts of surfaces made from light fields and from pictures with depth.
 
 use crate::error::DocumentError;
-use light::Steps;
 use capture::CaptureError;
 use lens::{Camera, Picture};
+use light::Steps;
 use relief::ReliefError;
 use scene::{Photograph, Scene};
 use std::path::Path;
 
-/// The angle of view across a picture's longer side where no file tells it: that of a lens of 50 mm on a frame of 36.
+/// The angle of view across a picture's longer side if no file specifies it, rad: that of a 50 mm lens on a 36 mm frame.
 const DEFAULT_LONGER_ANGLE: f64 = 0.6911;
 
-/// A surface made from one picture, or several of one place.
+/// A surface made from one picture, or from several of one place.
 pub(crate) struct PictureSurface {
     pub scene: Scene,
     /// The camera of the picture.
     pub camera: Camera,
-    /// What is good to know, a sentence each.
+    /// Anything missing or worth knowing, a sentence each.
     pub remarks: Vec<String>,
-    /// Whether something is missing.
+    /// Whether something that the capture refers to is missing.
     pub is_incomplete: bool,
 }
 
-/// The longest side of a picture that is shown before it has a surface, px.
+/// Maximum side of a picture that is shown before it has a surface, px.
 const MAX_EARLY_PICTURE_PX: u32 = 1000;
 
-/// Shows a picture while its surface is made.
+/// Passes a picture to `steps`, to be shown while its surface is made.
 pub(crate) fn show_early_picture(picture: &Photograph, steps: &dyn Steps) {
     let longer = picture.width.max(picture.height);
     let Photograph { width, height, pixels } = picture.downsampled(longer.div_ceil(MAX_EARLY_PICTURE_PX));
@@ -33,7 +33,7 @@ pub(crate) fn show_early_picture(picture: &Photograph, steps: &dyn Steps) {
     steps.picture_ready(&Picture { width, height, radiance: pixels, coverage });
 }
 
-/// A picture, if it is still of the size that its file had a moment ago.
+/// Checks that a picture still has the size that its file had when it was opened.
 pub(crate) fn check_size(
     photograph: Photograph,
     size: [u32; 2],
@@ -42,22 +42,22 @@ pub(crate) fn check_size(
     if [photograph.width, photograph.height] == size {
         return Ok(photograph);
     }
-    let what = format!(
-        "has changed while it was opened: {} × {} px became {} × {} (open it again)",
+    let message = format!(
+        "changed while it was being opened: {} × {} px became {} × {} (open it again)",
         size[0], size[1], photograph.width, photograph.height
     );
-    Err(DocumentError::bad_file(path, what))
+    Err(DocumentError::bad_file(path, message))
 }
 
-/// How far the surface goes on around the picture for blur of at most this radius, px.
+/// The margin by which the surface is continued around the picture, for blur up to this radius, px.
 pub(crate) fn margin_px(size: [usize; 2], largest_px: f64) -> usize {
-    /// Of the shorter side: more would rather be seen as what it is, invented.
+    /// As a share of the shorter side: a wider margin would visibly be invented.
     const MAX_SHARE: f64 = 0.2;
     let max_px = MAX_SHARE * size[0].min(size[1]) as f64;
     largest_px.min(max_px).ceil() as usize
 }
 
-/// The least and the greatest.
+/// The least and the greatest finite value; zeros if there is none.
 pub(crate) fn finite_range(values: &[f32]) -> [f64; 2] {
     let finite = values.iter().copied().filter(|value| value.is_finite());
     let [low, high] = finite
@@ -65,12 +65,12 @@ pub(crate) fn finite_range(values: &[f32]) -> [f64; 2] {
     if low <= high { [low, high].map(f64::from) } else { [0.0; 2] }
 }
 
-/// Focal length in pixels where nothing is known of the lens.
+/// The focal length if the lens is unknown, px.
 pub(crate) fn default_focal_px(size: [u32; 2]) -> f64 {
     0.5 * f64::from(size[0].max(size[1])) / (0.5 * DEFAULT_LONGER_ANGLE).tan()
 }
 
-/// Why there is no surface, as it is shown.
+/// The document error for a failed surface.
 pub(crate) fn relief_error(error: ReliefError<CaptureError>) -> DocumentError {
     match error {
         ReliefError::Cancelled(_) => DocumentError::Cancelled,

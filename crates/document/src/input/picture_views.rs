@@ -1,4 +1,4 @@
-//! The pictures that a surface was made from as photographs of it: looked through, and compared with.
+//! The pictures that a surface was made from, as photographs of it: to look through, and to compare with.
 
 use crate::input::picture_scene::PictureSpace;
 use capture::PictureSource;
@@ -6,8 +6,8 @@ use glam::{DMat4, DVec2, DVec3};
 use lens::{CalibratedLens, Distortion, Intrinsics, Projection};
 use scene::View;
 
-/// A picture as a photograph, from where in the aperture it was taken (steps to the right and downward): what has disparity 0 is where the
-/// middle picture has it. None of a picture that is no file of its own.
+/// A picture as a photograph, taken from `position` in the aperture (steps to the right and downward). Points of disparity 0 are where the
+/// centre picture has them. `None` if the picture is not a file of its own.
 pub(crate) fn picture_view(
     name: &str,
     picture: &PictureSource,
@@ -41,12 +41,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn views_see_a_disparity_where_it_is_said_to_be() {
+    fn disparities_project_to_their_shifted_positions() {
         let space = PictureSpace { focal_px: 120.0, offset: 1.5, scale: 4.0 };
         let picture = PictureSource::File { file: "a.png".into(), orientation: 1 };
         let view = |position| picture_view("a", &picture, position, [80, 60], &space).unwrap();
         for disparity in [-1.0, 0.0, 2.0] {
-            // What the middle picture shows at (50, 20).
+            // The point that the centre picture shows at (50, 20).
             let z = 1.0 / space.inverse_depth(disparity);
             let point = DVec3::new(10.0, 10.0, -120.0) * (z / 120.0);
             assert!(view(DVec2::ZERO).project(point).unwrap().distance(DVec2::new(50.0, 20.0)) < 1e-9);

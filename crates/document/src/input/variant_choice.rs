@@ -1,19 +1,19 @@
-//! Which variant of a scene is asked for.
+//! The requested variant of a scene.
 
-/// A variant of a scene (KHR_materials_variants), as asked for.
+/// The requested variant of a scene (KHR_materials_variants).
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum VariantChoice {
-    /// That of the project; a scene's own materials.
+    /// The project's variant; for a scene, its own materials.
     #[default]
     AsSaved,
-    /// The scene's own materials, whatever a project says.
+    /// The scene's own materials, overriding a project.
     Own,
-    /// The one of this name, whatever a project says.
+    /// The variant of this name, overriding a project.
     Named(String),
 }
 
 impl VariantChoice {
-    /// The name of the variant where the project, if there is one, says `saved`; none: the scene's own materials.
+    /// The name of the variant, if the project's is `saved`; `None` for the scene's own materials.
     pub(crate) fn name<'a>(&'a self, saved: Option<&'a str>) -> Option<&'a str> {
         match self {
             Self::AsSaved => saved,

@@ -1,32 +1,32 @@
-//! Where a node was: the motion that brings its new surface onto its old one.
+//! Alignment: the rigid motion from a node's new surface to its old one.
 //!
-//! A file may tell a motion by the node's transform, or by the vertices, or not at all. Each is tried, and that is taken after which the
-//! surfaces lie closest; where two are as close, the simpler one.
+//! An object may have been moved by its node's transform or by its vertices, or not at all. All candidates are tried, and the one that brings
+//! the surfaces closest is used; a simpler motion is preferred unless another is clearly closer.
 
 use crate::paint_transfer::old_surface::OldSurface;
 use glam::{DMat3, DMat4, DQuat, DVec3};
 
-/// Points that are asked how close the surfaces lie.
-pub const SAMPLE_COUNT: usize = 256;
+/// Number of points at which the distance of the surfaces is measured.
+pub(crate) const SAMPLE_COUNT: usize = 256;
 
-/// A motion has to bring the surfaces this much closer to be preferred to a simpler one.
+/// A motion is preferred to a simpler one only if the distance of the surfaces is less than this share of that of the simpler one.
 const MAX_DISTANCE_RATIO: f64 = 0.5;
 
-/// Surfaces that lie closer than this share of their extent lie on each other.
+/// Surfaces closer than this share of their extent coincide.
 const COINCIDENT_SHARE: f64 = 1e-5;
 
-/// Surfaces that lie this close, in shares of the extent, are the same one in another mesh.
+/// Surfaces within this share of their extent are the same surface in another mesh.
 const ALIGNED_SHARE: f64 = 0.01;
 
-/// Rounds in which a motion is bettered by the pairs of nearest points that it makes.
+/// Maximum number of iterations of ICP.
 const MAX_ICP_ITERATIONS: usize = 60;
 
-/// Points of a surface: where they are and which way they look.
-pub type OrientedPoints = [(DVec3, DVec3)];
+/// Points of a surface: positions and unit normals.
+pub(crate) type OrientedPoints = [(DVec3, DVec3)];
 
-/// The motion, old world from new, among the identity, those of `proposed`, in this order, and what follows from the extents. `middles` are
-/// those of the old and the new surface, `extent` is the length of the old one's diagonal.
-pub fn align(
+/// The motion from the new to the old world space. Tried are, in this order, the identity, the `candidates`, the shift between the `centers` of
+/// the old and the new surface, and rotations about them, refined by ICP. `extent` is the length of the old surface's diagonal.
+pub(crate) fn align(
     old: &OldSurface,
     new: &OrientedPoints,
     candidates: &[DMat4],
@@ -44,7 +44,7 @@ pub fn align(
     if best.1 <= ALIGNED_SHARE * extent {
         return best.0;
     }
-    // Turned about the middle: by quarters, as where axes were exchanged, each bettered.
+    // Rotations about the centre by multiples of 90°, as when axes were exchanged, each refined.
     let rotations = axis_rotations().map(|rotation| {
         DMat4::from_translation(centers[0])
             * DMat4::from_mat3(rotation)
@@ -53,7 +53,7 @@ pub fn align(
     rotations.map(|rotation| refine_icp(old, new, rotation, extent)).fold(best, keep_closer).0
 }
 
-/// The mean distance of the moved points from the old surface; a point without a partner counts as the extent.
+/// The mean distance of the moved points from the old surface; a point without a corresponding one counts with the extent.
 fn mean_distance(old: &OldSurface, new: &OrientedPoints, motion: &DMat4, extent: f64) -> f64 {
     let distance = |(position, normal): &(DVec3, DVec3)| {
         let normal = motion.transform_vector3(*normal).normalize_or_zero();
@@ -63,14 +63,15 @@ fn mean_distance(old: &OldSurface, new: &OrientedPoints, motion: &DMat4, extent:
     new.iter().map(distance).sum::<f64>() / new.len().max(1) as f64
 }
 
-/// The 24 rotations that bring axes onto axes.
+/// The 24 rotations that map coordinate axes to coordinate axes.
 fn axis_rotations() -> impl Iterator<Item = DMat3> {
     let axes = [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z];
     let pairs = axes.into_iter().flat_map(move |x| axes.into_iter().map(move |y| (x, y)));
     pairs.filter(|(x, y)| x.dot(*y) == 0.0).map(|(x, y)| DMat3::from_cols(x, y, x.cross(y)))
 }
 
-/// A motion bettered by pairs of nearest points (Besl and McKay 1992), the best turn of each round by quaternions (Horn 1987).
+/// Refines a motion by the iterative closest point algorithm (Besl and McKay 1992), with the best rotation of each iteration from quaternions
+/// (Horn 1987).
 fn refine_icp(old: &OldSurface, new: &OrientedPoints, mut motion: DMat4, extent: f64) -> DMat4 {
     for _ in 0..MAX_ICP_ITERATIONS {
         let pair = |(position, normal): &(DVec3, DVec3)| {
@@ -90,7 +91,7 @@ fn refine_icp(old: &OldSurface, new: &OrientedPoints, mut motion: DMat4, extent:
     motion
 }
 
-/// The rigid motion that brings points closest to their partners; `None` of fewer than 3.
+/// The rigid motion that minimises the squared distances of pairs of points (Horn 1987); `None` for fewer than 3 pairs.
 fn best_rigid_motion(pairs: &[[DVec3; 2]]) -> Option<DMat4> {
     let count = pairs.len() as f64;
     let centroid = |k: usize| pairs.iter().map(|pair| pair[k]).sum::<DVec3>() / count;
@@ -112,7 +113,7 @@ fn best_rigid_motion(pairs: &[[DVec3; 2]]) -> Option<DMat4> {
             n[i + 1][j + 1] = entry(i, j) + entry(j, i) - if i == j { trace } else { 0.0 };
         }
     }
-    // The eigenvector of the largest eigenvalue, by powers of the matrix made positive.
+    // The eigenvector of the largest eigenvalue, by power iteration of the matrix shifted to be positive.
     let norm: f64 = n.iter().flatten().map(|x| x * x).sum::<f64>().sqrt();
     if pairs.len() < 3 || norm == 0.0 || !norm.is_finite() {
         return None;
@@ -134,7 +135,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_best_motion_of_moved_points_is_how_they_were_moved() {
+    fn the_rigid_motion_of_moved_points_is_recovered() {
         let motion = DMat4::from_rotation_translation(
             DQuat::from_euler(glam::EulerRot::XYZ, 0.3, -0.4, 0.2),
             DVec3::new(3.0, -1.0, 0.5),
@@ -146,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn there_are_24_ways_to_lay_axes_on_axes() {
+    fn there_are_24_axis_rotations() {
         assert_eq!(axis_rotations().filter(|rotation| rotation.determinant() == 1.0).count(), 24);
     }
 }

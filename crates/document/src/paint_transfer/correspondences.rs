@@ -1,7 +1,6 @@
-//! For every texel of a new atlas, the place of the old one that it takes its paint from.
+//! Correspondences: for every texel of a new atlas, the position in the old atlas that it takes its paint from.
 
-use crate::paint_transfer::alignment::SAMPLE_COUNT;
-use crate::paint_transfer::alignment::align;
+use crate::paint_transfer::alignment::{SAMPLE_COUNT, align};
 use crate::paint_transfer::old_surface::OldSurface;
 use atlas::{Atlas, TexelMap};
 use glam::{DMat4, DVec2, DVec3};
@@ -9,21 +8,21 @@ use rayon::prelude::*;
 use scene::Scene;
 use std::collections::{BTreeMap, HashMap};
 
-/// How far a partner may be, as a share of the diagonal of what is called the same: coarse remeshing moves a surface by less.
+/// Maximum distance of corresponding points, as a share of the diagonal of the nodes of one name: coarse remeshing moves a surface by less.
 const MAX_DISTANCE_SHARE: f64 = 0.03;
 
-/// Of all of a scene a node is asked at no fewer points than these.
+/// Minimum number of samples per node when the whole scene is aligned.
 const MIN_SAMPLES_PER_NODE: usize = 8;
 
-/// What was painted under a name.
-struct Group {
+/// The painted surface of all nodes of one name.
+struct NodeGroup {
     surface: OldSurface,
     bounds: (DVec3, DVec3),
-    /// Where its nodes were, in their order.
+    /// World transforms of its nodes, in order.
     worlds: Vec<DMat4>,
 }
 
-impl Group {
+impl NodeGroup {
     fn new(old: &Scene, triangles: Vec<u32>, worlds: Vec<DMat4>) -> Self {
         let corners = triangles.iter().flat_map(|&triangle| old.corners(triangle));
         let bounds = bounding_box(corners);
@@ -34,7 +33,7 @@ impl Group {
         (self.bounds.1 - self.bounds.0).length()
     }
 
-    /// The motion, old world from new, of a surface that has `bounds` and these points.
+    /// The motion from the new to the old world space, for a new surface with `bounds` and these points.
     fn motion(&self, points: &[(DVec3, DVec3)], bounds: (DVec3, DVec3), candidates: &[DMat4]) -> DMat4 {
         let centers = [self.bounds, bounds].map(|(low, high)| 0.5 * (low + high));
         align(&self.surface, points, candidates, centers, self.extent())
@@ -45,9 +44,9 @@ fn bounding_box(points: impl Iterator<Item = DVec3>) -> (DVec3, DVec3) {
     points.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)))
 }
 
-/// The places in the old atlas, in the order of the new texels; `None` where there is no partner. Nodes are the same by name; where no
-/// name is the same, all of one scene is the same as all of the other.
-pub fn find_correspondences(
+/// For every new texel, in order, its position in the old atlas; `None` without a corresponding point. Nodes are matched by name; if no name
+/// matches, the scenes are matched as a whole.
+pub(crate) fn find_correspondences(
     old: &Scene,
     old_atlas: &Atlas,
     new: &Scene,
@@ -73,7 +72,7 @@ pub fn find_correspondences(
     for (node, texel_indices) in node_texels {
         let name = group_name(new, node);
         let Some(group) = old_groups.get(&name) else { continue };
-        // Of several nodes of one name the same one is that of the same number.
+        // Several nodes of one name are matched in order.
         let rank = (0..node).filter(|&earlier| group_name(new, earlier) == name).count();
         let node_motion =
             group.worlds.get(rank).map(|old_world| *old_world * new.nodes[node as usize].world.inverse());
@@ -100,8 +99,8 @@ pub fn find_correspondences(
     source_positions
 }
 
-/// What was painted, by the name of its node.
-fn group_by_node_name(old: &Scene, group_name: &dyn Fn(&Scene, u32) -> String) -> HashMap<String, Group> {
+/// The painted surface, by the name of its nodes.
+fn group_by_node_name(old: &Scene, group_name: &dyn Fn(&Scene, u32) -> String) -> HashMap<String, NodeGroup> {
     let mut contents_by_name: HashMap<String, (Vec<u32>, Vec<DMat4>)> = HashMap::new();
     for node in 0..old.nodes.len() as u32 {
         contents_by_name.entry(group_name(old, node)).or_default().1.push(old.nodes[node as usize].world);
@@ -110,12 +109,12 @@ fn group_by_node_name(old: &Scene, group_name: &dyn Fn(&Scene, u32) -> String) -
         contents_by_name.entry(group_name(old, part.node)).or_default().0.extend(part.triangles.clone());
     }
     let with_surface = contents_by_name.into_iter().filter(|(_, (triangles, _))| !triangles.is_empty());
-    with_surface.map(|(name, (triangles, worlds))| (name, Group::new(old, triangles, worlds))).collect()
+    with_surface.map(|(name, (triangles, worlds))| (name, NodeGroup::new(old, triangles, worlds))).collect()
 }
 
-/// The motion of all that has partners, as one: it tells how what is round or flat was turned.
+/// The motion of all matched nodes together: it determines the rotation of round or flat objects, which their own shape does not.
 fn estimate_scene_motion(old: &Scene, texels: &TexelMap, node_texels: &[(u32, Vec<usize>)]) -> DMat4 {
-    let group = Group::new(old, (0..old.triangles.len() as u32).collect(), Vec::new());
+    let group = NodeGroup::new(old, (0..old.triangles.len() as u32).collect(), Vec::new());
     let samples_per_node = (SAMPLE_COUNT / node_texels.len().max(1)).max(MIN_SAMPLES_PER_NODE);
     let points: Vec<_> = node_texels
         .iter()
@@ -125,7 +124,7 @@ fn estimate_scene_motion(old: &Scene, texels: &TexelMap, node_texels: &[(u32, Ve
     group.motion(&points, bounding_box(all_texels.map(|&texel| texels.positions[texel])), &[])
 }
 
-/// Points of a node, about `asked` of them, and which way they look.
+/// About `sample_count` points of a node, with their normals.
 fn sample_points(texels: &TexelMap, texel_indices: &[usize], sample_count: usize) -> Vec<(DVec3, DVec3)> {
     let step = texel_indices.len().div_ceil(sample_count).max(1);
     let selected = texel_indices.iter().step_by(step);

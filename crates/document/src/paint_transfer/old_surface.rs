@@ -1,17 +1,17 @@
-//! Triangles in a tree that knows the one nearest to a point.
+//! The painted surface: triangles in a tree for nearest-point queries.
 
 use glam::{DVec2, DVec3};
 use rstar::{AABB, PointDistance, RTree, RTreeObject};
 use scene::{Scene, SurfacePoint};
 
-/// Cosine of the angle up to which two normals are alike: an edge that a remesher has rounded still finds both of its faces.
+/// Minimum cosine of the angle between corresponding normals: an edge that a remesher has rounded still matches both of its faces.
 const MIN_NORMAL_COSINE: f64 = 0.5;
 
-/// Triangles nearer than the limit that may have unlike normals before a point has no partner: those of a crumpled place.
+/// Maximum number of nearest triangles that are tried for a similar normal, as in a crumpled place.
 const MAX_CANDIDATES: usize = 256;
 
-/// The surface that was painted, or a part of it.
-pub struct OldSurface(RTree<IndexedTriangle>);
+/// The painted surface, or a part of it.
+pub(crate) struct OldSurface(RTree<IndexedTriangle>);
 
 /// A triangle of the scene.
 struct IndexedTriangle {
@@ -20,17 +20,17 @@ struct IndexedTriangle {
     normal: DVec3,
 }
 
-/// A point of the surface, and how far away it is.
+/// The nearest point of the surface, and its distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Nearest {
+pub(crate) struct Nearest {
     pub point: SurfacePoint,
-    /// In the world.
+    /// In world space.
     pub position: DVec3,
     pub distance: f64,
 }
 
 impl OldSurface {
-    /// The triangles of a scene; those without area are left out.
+    /// The surface of some triangles of a scene; those without area are left out.
     pub fn new(scene: &Scene, triangles: impl Iterator<Item = u32>) -> Self {
         let indexed = triangles.filter_map(|index| {
             let normal = scene.area_normal(index).try_normalize()?;
@@ -39,7 +39,7 @@ impl OldSurface {
         Self(RTree::bulk_load(indexed.collect()))
     }
 
-    /// The point nearest to `position` of a triangle that looks the same way, no farther than `limit`.
+    /// The point nearest to `position` on a triangle with a similar normal, within the distance `limit`.
     pub fn nearest(&self, position: DVec3, normal: DVec3, limit: f64) -> Option<Nearest> {
         let mut candidates = self.0.nearest_neighbor_iter(&position.to_array()).take(MAX_CANDIDATES);
         let triangle = candidates.find(|triangle| triangle.normal.dot(normal) >= MIN_NORMAL_COSINE)?;
@@ -66,8 +66,8 @@ impl PointDistance for IndexedTriangle {
     }
 }
 
-/// The point of a triangle nearest to `p`: barycentrics of its second and third corner, and the point (Ericson, Real-Time Collision
-/// Detection, 2005, 5.1.5).
+/// The point of a triangle nearest to `p`: its barycentric coordinates of the second and third corner, and its position (Ericson, Real-Time
+/// Collision Detection, 2005, 5.1.5).
 fn closest_point_on_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> (DVec2, DVec3) {
     let (ab, ac) = (b - a, c - a);
     let point_at = |v: f64, w: f64| (DVec2::new(v, w), a + ab * v + ac * w);
@@ -106,7 +106,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_closest_point_is_none_farther_than_any_other() {
+    fn no_point_of_a_triangle_is_closer_than_the_closest_point() {
         let corners = [DVec3::new(0.0, 0.0, 0.0), DVec3::new(2.0, 0.1, 0.3), DVec3::new(0.4, 1.5, -0.6)];
         for k in 0..400 {
             let turn = |prime: f64| (f64::from(k) * prime).fract() * 6.0 - 3.0;

@@ -1,7 +1,7 @@
-//! A project's paint on another surface.
+//! Transfer of a project's paint to another surface.
 
-use crate::paint_transfer::correspondences::find_correspondences;
 use crate::error::DocumentError;
+use crate::paint_transfer::correspondences::find_correspondences;
 use atlas::{Atlas, TexelMap};
 use focus::{FocusLayer, FocusMap, LayerStack};
 use glam::DVec2;
@@ -10,26 +10,26 @@ use project::{ProjectFile, TexelSet, surface_to_bytes};
 use scene::Scene;
 use std::path::Path;
 
-/// How paint came onto another surface.
+/// The result of a transfer of paint to another surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TransferredPaint {
-    /// Nodes of which something found no partner, most of them first.
+    /// Nodes with texels that have no corresponding point, in descending order of their share.
     pub unmatched_nodes: Vec<UnmatchedNode>,
-    /// The share of the whole surface that found one.
+    /// The share of the whole surface that has corresponding points, in [0, 1].
     pub matched_share: f64,
 }
 
-/// What of a node found no partner.
+/// A node with texels that have no corresponding point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UnmatchedNode {
     /// Its name.
     pub name: String,
-    /// The share of its surface without a partner, in (0, 1].
+    /// The share of its surface without corresponding points, in (0, 1].
     pub unmatched_share: f64,
 }
 
 impl TransferredPaint {
-    /// A sentence about the file at `scene`.
+    /// A sentence that describes the transfer to the scene in the file `scene`.
     pub fn summary(&self, scene: &Path) -> String {
         const MAX_LISTED: usize = 8;
         let percent =
@@ -39,23 +39,26 @@ impl TransferredPaint {
             .collect();
         let more = self.unmatched_nodes.len().saturating_sub(MAX_LISTED);
         let more = if more > 0 { format!(" and parts of {more} more nodes") } else { String::new() };
-        let what = match listed.is_empty() {
-            true => "all of it found its partner".into(),
-            false => format!("no partner has {}{more}, which keeps the ordinary lens", listed.join(", ")),
+        let message = match listed.is_empty() {
+            true => "all of it was matched".into(),
+            false => format!("not matched, with the ordinary lens: {}{more}", listed.join(", ")),
         };
-        format!("{}: is another surface now, and the paint was carried over to it: {what}", scene.display())
+        format!(
+            "{}: its surface has changed, and the paint was carried over to it: {message}",
+            scene.display()
+        )
     }
 }
 
-/// The project with its paint on the surface of `new`, whose atlas is `atlas`; it lay on that of `old`, in the project's own atlas. The
-/// scene of the project is the new one then.
+/// Transfers the paint of a project from the surface of `old`, in the project's own atlas, to that of `new`, in `atlas`. The returned project
+/// refers to the new scene.
 pub(crate) fn transfer_paint(
     project: &ProjectFile,
     old: &Scene,
     new: &Scene,
     atlas: &Atlas,
 ) -> Result<(ProjectFile, TransferredPaint), DocumentError> {
-    let bad_scene = |what: String| DocumentError::bad_file(&project.scene, what);
+    let bad_scene = |message: String| DocumentError::bad_file(&project.scene, message);
     let stored =
         project.atlas.as_ref().ok_or_else(|| bad_scene("its project has no atlas (paint it anew)".into()))?;
     let old_atlas = Atlas::from_bytes(stored, old).map_err(|error| bad_scene(error.to_string()))?;
@@ -84,7 +87,7 @@ pub(crate) fn transfer_paint(
     Ok((project, transfer.report(new)))
 }
 
-/// The way onto the new texels.
+/// The sources of the new texels' paint.
 struct PaintTransfer<'a> {
     atlas: &'a Atlas,
     texels: &'a TexelMap,
@@ -121,7 +124,7 @@ impl PaintTransfer<'_> {
         map
     }
 
-    /// Texels without a partner as a selection; none where all have one.
+    /// The texels without a corresponding point, as a selection; `None` if there are none.
     fn unmatched_texels(&self) -> Option<TexelSet> {
         let unmatched = self
             .texels
