@@ -98,8 +98,8 @@ impl SalfFile {
         let margin_px = u32::from_le_bytes(bytes(&mut from)?);
         let samples = read_samples(&mut from, triangles)?;
         let expected = from.hash.clone().finalize();
-        let found: [u8; 32] = bytes(&mut from)?;
-        if found[..] != expected[..] {
+        let stored: [u8; 32] = bytes(&mut from)?;
+        if stored[..] != expected[..] {
             return Err(SalfFileError::Damaged("the checksum does not match".into()));
         }
         Ok(Self {

@@ -10,16 +10,16 @@ use trace::Tracer;
 /// How the light field is sampled.
 #[derive(Clone, Copy, Debug)]
 pub struct BakeOptions {
-    /// How far outside the frame to sample at least, px: the radius of the largest circle of confusion that paint
-    /// may give. What the standard picture needs is always sampled.
+    /// The least margin around the frame to sample, px: the radius of the largest circle of confusion that paint may
+    /// cause. The margin of the standard picture is always sampled.
     pub margin_px: f64,
-    /// How large a cell of a partly visible aperture may be on the picture, px, where 16 cells a side allow it: up to
-    /// this circle of confusion, samples have 8 cells a side. A pixel of a surface whose radiance varies by more
-    /// than [`Self::EVEN_PER_PX`] times this is a sample a quadrant. Smaller is more exact and takes more memory.
+    /// The largest cell of a partly visible aperture in the picture, px, as far as 16 cells per side allow: up to this
+    /// circle of confusion, samples have 8 cells per side. Pixels whose radiance varies by more than
+    /// [`Self::EVEN_PER_PX`] times this have a sample per quadrant. Smaller values are more exact and take more memory.
     pub tolerance_px: f64,
     /// How finely carried light is sampled over the aperture.
     pub carried: Carried,
-    /// Whether samples are packed ([`crate::Samples`]). It is right unless what that loses is to be measured.
+    /// Whether samples are packed ([`crate::Samples`]): always, except to measure the loss.
     pub packs: bool,
 }
 
@@ -37,7 +37,7 @@ impl BakeOptions {
     /// each px of tolerance.
     pub const EVEN_PER_PX: f64 = 0.05;
 
-    /// Sampled as far outside the frame, and as finely, as `focus` needs.
+    /// Options whose margin and resolution suit `focus`.
     pub fn for_focus(tracer: &Tracer, camera: &Camera, focus: &dyn SurfaceField<FocusOffset>) -> Self {
         let view = View::new(camera, Self::TOLERANCE_PX);
         let margin_px = painted_margin_px(tracer, &view, focus);

@@ -1,6 +1,6 @@
 //! The samples of a light field, packed.
 //!
-//! A [`Sample`] takes a hundred bytes and more. Packed, a cell of the picture, or a part of one, takes 16 bytes: which cell
+//! A [`Sample`](crate::Sample) takes a hundred bytes and more. Packed, a cell of the picture, or a part of one, takes 16 bytes: which cell
 //! of which block, the plane it lies on (a number among those of its block), its surface address, depth and radiance. Where
 //! its footprint is and what it weighs follows from the cell and its sub-cells ([`crate::Cell::part`]), how its weight changes over the
 //! aperture from the plane. A patch of surface takes 10 bytes more, a partly visible aperture about 4 ([`masks`]). What does

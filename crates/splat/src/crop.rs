@@ -1,20 +1,20 @@
-//! A picture in crops: each is summed by itself, from parts of the light field one after the other, and all of them join to the picture of
-//! the whole, bit for bit.
+//! A picture in crops: each is summed by itself, from parts of the light field one after the other; joined, they are the whole
+//! picture, bit for bit.
 //!
 //! ```text
 //! let mut sums = CropSums::new(&options);                 // a crop of the picture
 //! sums.add(&part_of_the_light_field, …)?;                 // all parts whose light may reach it, in any order
 //! let picture = sums.picture(progress)?;                  // numbers, which may go to a file
 //!
-//! let mut joiner = CropJoiner::new(size, is_painted);                   // the whole picture
-//! joiner.add_knots(y, …); joiner.find_gains();              // what gains are made of, row by row
-//! joiner.add_shared(y, &mut row); joiner.find_rest();   // of a painted picture
-//! joiner.join(y, form, &mut row);                              // a row of the picture
+//! let mut joiner = CropJoiner::new(size, is_painted);     // the whole picture
+//! joiner.add_knots(y, …); joiner.find_gains();            // gains are computed from knots, row by row
+//! joiner.add_shared(y, &mut row); joiner.find_rest();     // of a painted picture
+//! joiner.join(y, form, &mut row);                         // a row of the picture
 //! ```
 //!
-//! Sums are integers, and nodes are drawn from their place within the whole. What a picture decides as a whole is left to who joins:
-//! gains, for which crops tell what each of their rows brings to the knots ([`crate::resolve::knots`]); whether anything is painted; and
-//! whether its integers are the finest that hold it ([`Integers`]).
+//! Sums are integers, and nodes are drawn at their position in the whole picture. Decisions about the whole picture are left to the
+//! joiner: gains, for which crops store the contribution of each of their rows to the knots ([`crate::resolve::knots`]); whether
+//! anything is painted; and whether its integers are the finest that hold it ([`Integers`]).
 
 mod integers;
 mod joiner;
@@ -40,7 +40,7 @@ pub struct Crop {
 }
 
 impl Crop {
-    /// Where crops may meet, px: knots of gains lie so far apart.
+    /// Crops meet at multiples of this, px: the distance of the knots of gains.
     pub const ALIGNMENT: u32 = SPACING as u32;
 }
 

@@ -1,4 +1,4 @@
-//! The lens that a picture is summed with, and what it makes of each node.
+//! The lens that a picture is summed with, and where it places each node.
 
 use crate::aperture::shape::Shape;
 use crate::canvas::POSITION_BITS;
@@ -12,8 +12,8 @@ use std::ops::Range;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance {
     /// A node may be drawn as one where its side is at most this share of the diameter of a 16 px circle of confusion
-    /// (of larger ones a smaller share, so that the cost a pixel stays). 0: every sample is drawn, but those of a pixel that
-    /// is sharp as one.
+    /// (a smaller share of larger circles, so that the cost per pixel is constant). 0: every sample is drawn, except that the
+    /// samples of a sharp pixel are drawn as one.
     pub share_of_circle: f64,
 }
 

@@ -62,8 +62,8 @@ impl Splatter {
         Self::with_nodes(salf, nodes, Arc::new(aperture))
     }
 
-    /// Another one of the same light field, with sums of its own: quick to make, since the hierarchy is shared. It renders as
-    /// one that is new, on the same card.
+    /// Another splatter of the same light field, with sums of its own: quick to make, since the hierarchy is shared. It starts like a
+    /// new one, on the same card.
     pub fn twin(&self) -> Self {
         let mut twin = Self::with_nodes(self.salf.clone(), self.nodes.clone(), self.aperture.clone());
         twin.card = self.card.twin();
@@ -106,17 +106,18 @@ impl Splatter {
         self.tolerance = tolerance;
     }
 
-    /// Sets whether pictures are live (no, by default): paint then changes what it moves and nothing else, so that an update
-    /// makes no more of the picture than that.
+    /// Sets whether pictures are live (no, by default): a stroke then changes only the pixels that it moves light from or to, so
+    /// that an update resolves no more of the picture than that.
     ///
-    /// Others are finished: of one without any paint the coverage is evened out, to 1 but for holes; of one that is painted
-    /// what shares is scaled until the light is all that was thrown at it. The two differ by the ripple of finite samples; once divided
-    /// by their coverage, by nothing but how they give light back (`balance`). From the next [`Self::render`] on.
+    /// Pictures that are not live are finished: without any paint, the coverage is evened out to 1 (except in holes); with paint, the
+    /// light of sharing samples is scaled so that the total light is preserved. Live and finished pictures differ by the ripple
+    /// of finite samples; divided by their coverage, only by how light is balanced (`balance`). Takes effect at the next
+    /// [`Self::render`].
     pub fn set_live(&mut self, is_live: bool) {
         self.is_live = is_live;
     }
 
-    /// What is made of the light that shares, beside its shares.
+    /// How the light of sharing samples is finished.
     fn finish(&self) -> Finish {
         match self.is_live {
             true => Finish::Live,
@@ -125,8 +126,8 @@ impl Splatter {
         }
     }
 
-    /// What cuts the aperture's image in all sizes that paint may give it, on any thread, while this goes on. Otherwise a size
-    /// is cut when it is first seen, a third of a millisecond each: the first dabs would wait for that.
+    /// Returns a task that cuts the aperture's images in all sizes, to be run on any thread meanwhile. Otherwise a size is cut when it
+    /// is first used, a third of a millisecond each, and the first dabs wait for it.
     pub fn prepare(&self) -> impl FnOnce(&dyn Progress) + Send + use<> {
         let aperture = self.aperture.clone();
         move |progress| aperture.stencils.cut_all(progress)
@@ -137,13 +138,12 @@ impl Splatter {
         &self.salf
     }
 
-    /// The picture as it now is, or was when it was [fetched](Self::fetch) last.
+    /// The current picture or, if it stays on a card, the one that was [fetched](Self::fetch_picture) last.
     pub fn picture(&self) -> &Picture {
         &self.resolver.picture
     }
 
-    /// Bytes of the hierarchy and of the sums, a card's and the lists of what is drawn among them; the light field's own
-    /// are not.
+    /// Bytes of the hierarchy and of the sums, including those on a card and the lists of drawn nodes, without the light field.
     pub fn bytes(&self) -> [usize; 2] {
         let [nodes, sums] = self.card.bytes();
         let lists: usize = self.lists.iter().map(BlockList::bytes).sum();
@@ -156,7 +156,7 @@ impl Splatter {
     /// Sums the whole picture for a lens (`camera` may differ from the baked one in focus distance, aperture shape and a
     /// smaller aperture radius, nothing else) and a focus.
     ///
-    /// After an error the picture is that of before, but the sums are not: render again before updating.
+    /// After an error the picture is unchanged, but the sums are not: render again before updating.
     ///
     /// # Errors
     /// [`SplatError::Cancelled`] if `progress` is cancelled; [`SplatError::Overflow`] if the picture is too bright for its integers.

@@ -20,7 +20,7 @@ use std::sync::Arc;
 ///   the lower index is hit.
 /// * Triangles without area, or with corners that are not finite, are never hit; rays whose direction is zero
 ///   or not finite hit nothing.
-/// * The eye's rays pass through the backs of faces that are not double sided ([`scene::Scene::hides_back`]); both sides of
+/// * The eye's rays pass through the backs of faces that are not double sided ([`scene::Scene::culls_back_face`]); both sides of
 ///   every face stop light. [`Self::first_hit`], [`Self::any_hit`], [`Self::is_hidden_from`] and
 ///   [`Self::square_visibility`] follow the eye, [`Self::is_occluded`] follows light.
 /// * Transparent points are not hit (see [`scene::AlphaMode`]): under a mask a point exists where the opacity reaches the
@@ -44,7 +44,7 @@ struct LeafTriangle {
     corners: [DVec3; 3],
     index: u32,
     may_be_transparent: bool,
-    hides_back: bool,
+    culls_back: bool,
 }
 
 /// The nearest hit so far.
@@ -75,8 +75,8 @@ impl Tracer {
             .map(|place| {
                 let index = with_area[place as usize];
                 let may_be_transparent = scene.material_of(index).may_be_transparent();
-                let hides_back = scene.culls_back_face(index);
-                LeafTriangle { corners: scene.corners(index), index, may_be_transparent, hides_back }
+                let culls_back = scene.culls_back_face(index);
+                LeafTriangle { corners: scene.corners(index), index, may_be_transparent, culls_back }
             })
             .collect();
         let outlines = triangles.iter().map(|triangle| Outline::new(&triangle.corners, &space)).collect();
@@ -170,7 +170,7 @@ impl Tracer {
         mode: TransparencyMode,
     ) -> bool {
         let Some(crossing) = sheared.cross(&triangle.corners) else { return false };
-        (crossing.from_front || !triangle.hides_back)
+        (crossing.from_front || !triangle.culls_back)
             && self.accept_crossing(nearest, triangle, ray, &crossing, mode)
     }
 
@@ -216,7 +216,7 @@ impl Tracer {
             || self.scene.area_normal(from.triangle).dot(eye - from.position(&self.scene)) <= 0.0;
         self.scene.culls_back_face(from.triangle) && shows_back()
             // The ray leads to the eye, which sees the other side of the faces that it hits.
-            || self.any_between(from, eye, |triangle, crossing| !triangle.hides_back || !crossing.from_front)
+            || self.any_between(from, eye, |triangle, crossing| !triangle.culls_back || !crossing.from_front)
     }
 
     /// Whether anything that `counts` lies strictly between a surface point and a world position.
@@ -238,7 +238,7 @@ impl Tracer {
 
     /// Whether any surface is visible along a ray from its origin.
     pub fn any_hit(&self, ray: &Ray) -> bool {
-        self.any_hit_where(ray, |triangle, crossing| !triangle.hides_back || crossing.from_front)
+        self.any_hit_where(ray, |triangle, crossing| !triangle.culls_back || crossing.from_front)
     }
 
     /// Whether a ray hits any triangle that `counts`.

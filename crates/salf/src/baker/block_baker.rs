@@ -158,12 +158,14 @@ impl<'a> BlockBaker<'a> {
             };
             return groups.iter().map(of_group).collect();
         }
-        let spots: Vec<_> =
+        let points_of_groups: Vec<_> =
             groups.iter().map(|(cell, group)| group.shading_point(self.tracer.scene(), *cell)).collect();
-        let queries: Vec<_> = spots.iter().copied().flatten().collect();
+        let queries: Vec<_> = points_of_groups.iter().copied().flatten().collect();
         let mut incident_lights = self.radiance.incident_batch(&queries, self.view.eye).into_iter();
-        let incident: Vec<_> =
-            spots.iter().map(|spot| spot.and_then(|_| incident_lights.next().flatten())).collect();
+        let incident: Vec<_> = points_of_groups
+            .iter()
+            .map(|point| point.and_then(|_| incident_lights.next().flatten()))
+            .collect();
         let shared = self.shared_carried(groups, &incident);
         let samples = |((&(cell, group), received), shared): ((&(Cell, &Group), _), Option<Rc<_>>)| {
             group.baked_samples(self.radiance, &self.view, cell, received, shared.as_deref())

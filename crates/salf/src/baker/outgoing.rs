@@ -55,11 +55,11 @@ impl MeanRadiance {
     /// Of points of these weights.
     pub fn mean(of: impl IntoIterator<Item = (OutgoingRadiance, f32)>) -> Self {
         let mut sum = Self::default();
-        for (OutgoingRadiance { own, carried, carried_share, noisy: by_chance }, weight) in of {
+        for (OutgoingRadiance { own, carried, carried_share, noisy }, weight) in of {
             sum.own += own * weight;
             sum.carried += carried * weight;
             sum.carried_share += carried_share * weight;
-            (0..2).for_each(|kind| sum.noisy[kind] += by_chance[kind] * weight);
+            (0..2).for_each(|kind| sum.noisy[kind] += noisy[kind] * weight);
             sum.weight += weight;
         }
         let by = 1.0 / sum.weight;
@@ -72,10 +72,10 @@ impl MeanRadiance {
         }
     }
 
-    /// As of one point.
-    pub fn to_outgoing(&self) -> OutgoingRadiance {
-        let Self { own, carried, carried_share, noisy: by_chance, .. } = *self;
-        OutgoingRadiance { own, carried, carried_share, noisy: by_chance }
+    /// The mean as the radiance of one point.
+    pub fn to_outgoing(self) -> OutgoingRadiance {
+        let Self { own, carried, carried_share, noisy, .. } = self;
+        OutgoingRadiance { own, carried, carried_share, noisy }
     }
 
     /// All light, own and carried.
@@ -95,12 +95,12 @@ impl MeanRadiance {
     pub fn components(&self) -> impl Iterator<Item = LightComponent> + use<> {
         let share = self.share();
         let kinds = [(self.own, 1.0 - share, false), (self.carried, share, true)].into_iter().zip(self.noisy);
-        kinds.filter(|((_, share, _), _)| *share > 0.0).map(|((light, share, is_carried), by_chance)| {
+        kinds.filter(|((_, share, _), _)| *share > 0.0).map(|((light, share, is_carried), noisy)| {
             LightComponent {
                 radiance: clamped(light / share),
                 share,
                 is_carried,
-                noisy: by_chance / share,
+                noisy: noisy / share,
                 toward: Visibility::Open,
             }
         })
@@ -255,11 +255,11 @@ impl ApertureRadiance {
         let differs = ALIKE * self.all.total().max_element();
         let cells = ApertureCells { side: self.side, light: &self.carried, noisy: &self.noisy };
         let share = self.all.share();
-        let part = |AperturePart { light, noisy: by_chance, cells }| LightComponent {
+        let part = |AperturePart { light, noisy, cells }| LightComponent {
             radiance: clamped(light / share),
             share,
             is_carried: true,
-            noisy: by_chance / share,
+            noisy: noisy / share,
             toward: Visibility::from_words(&[cells]),
         };
         cells.parts(differs).into_iter().map(part).collect()
@@ -302,8 +302,8 @@ mod tests {
             own_only: false,
             blurred: 1,
         };
-        let asked = ApertureRadiance::gather(&of, &points, 4);
-        let parts = asked.carried();
+        let gathered = ApertureRadiance::gather(&of, &points, 4);
+        let parts = gathered.carried();
         // The left half as two quarters, and the right one cell by cell: three quarters of it are bright.
         assert_eq!(parts.len(), 2 + 8, "{parts:?}");
         let mut seen = 0;
@@ -322,7 +322,7 @@ mod tests {
         let expected = 0.75 * 0.5 + 0.25 * 8.0;
         assert!((sum - expected).abs() < 0.8, "{sum} for {expected}: cells on the edge are either");
         // What is the same toward all is one.
-        let even = ApertureRadiance { carried: vec![Vec3::ONE; 16], ..asked };
+        let even = ApertureRadiance { carried: vec![Vec3::ONE; 16], ..gathered };
         assert_eq!(even.carried().len(), 1);
         assert_eq!(even.carried()[0].toward, Visibility::Open);
     }

@@ -2,7 +2,7 @@
 //! memory at once.
 //!
 //! Samples depend on their own block of the picture, and on the depths around it as far as those may hide or reveal something.
-//! A part of the picture is therefore surveyed first, with as much around it ([`PartsBaker::around`]); then its squares are baked, some at
+//! A part of the picture is therefore surveyed first, with as much around it ([`PartsBaker::survey_surroundings`]); then its squares are baked, some at
 //! a time. The parts of a light field have its camera, its blocks and its hierarchy.
 
 use crate::baker::block_baker::BlockBaker;

@@ -307,7 +307,7 @@ fn majority<'a, I: Iterator<Item = &'a Cells>>(members: impl Fn() -> I) -> Cells
     }))
 }
 
-/// Bits of the counts of [`most`].
+/// Bits of the counts of [`majority`].
 const COUNTER_BITS: usize = 5;
 
 /// Nodes that are joined at most.

@@ -274,8 +274,8 @@ impl WeightedRun {
             bin += count;
         }
         let middle = |run: &Self| (run.start + run.end) / 2.0;
-        let found: f64 = binned.iter().map(|run| run.light * middle(run)).sum::<f64>() / self.light;
-        let shift = middle(self) - found;
+        let binned_mean: f64 = binned.iter().map(|run| run.light * middle(run)).sum::<f64>() / self.light;
+        let shift = middle(self) - binned_mean;
         binned.into_iter().map(|run| Self { start: run.start + shift, end: run.end + shift, ..run }).collect()
     }
 

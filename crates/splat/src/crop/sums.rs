@@ -19,7 +19,7 @@ use salf::Salf;
 use salf::tree::BLOCK_PX;
 use scene::SurfaceField;
 
-/// What is summed.
+/// The crop to sum, and how.
 #[derive(Clone, Copy)]
 pub struct CropOptions<'a> {
     /// The camera of the whole picture: the one that the light field is baked for.
@@ -30,9 +30,9 @@ pub struct CropOptions<'a> {
     pub tolerance: Tolerance,
     /// How fine its integers may be.
     pub integers: Integers,
-    /// Whether anything of the whole may be painted. Otherwise nothing is, and the crop's numbers are fewer.
+    /// Whether anything in the whole picture may be painted. Otherwise the crop stores fewer numbers.
     pub may_be_painted: bool,
-    /// How many mattes are drawn at first, [`SETS`] sets of samples each.
+    /// The number of mattes to draw first, of [`SETS`] sets of samples each.
     pub mattes: usize,
 }
 
@@ -53,10 +53,10 @@ impl From<Cancelled> for CropError {
     }
 }
 
-/// Tells the sets of a matte that a sample is in, by its number in its part of the light field.
+/// The sets of a matte that a sample belongs to, by its index in its part of the light field.
 pub type SetsOfSample<'a> = dyn Fn(u32) -> [bool; SETS] + Sync + 'a;
 
-/// The sums of a crop of a picture, that parts of its light field are added to.
+/// The sums of a crop of a picture, to which parts of its light field are added.
 pub struct CropSums<'a> {
     options: CropOptions<'a>,
     /// The crop and what is summed around it.
@@ -139,8 +139,8 @@ impl<'a> CropSums<'a> {
         self.mattes = (0..count).map(|_| self.empty()).collect();
     }
 
-    /// Adds a part of the light field. `is_black` tells samples that send nothing, and cover what lies behind them all the same; `sets` one
-    /// after the other what mattes are made of.
+    /// Adds a part of the light field. `is_black` selects samples that send no light but still cover what lies behind them; `sets` are
+    /// the sets of each matte in turn.
     ///
     /// # Errors
     /// [`CropError::Cancelled`] if `progress` is cancelled.

@@ -95,7 +95,7 @@ impl Gpu {
             Ok(false) => {
                 return Err("it does not round as IEEE 754 says, and would not draw the same picture".into());
             }
-            Err(Lost) => return Err("it gives up when it is first asked for something".into()),
+            Err(Lost) => return Err("it fails at its first task".into()),
         }
         // Whatever it does not do, the processor does. The first reason counts.
         let by_error = lost.clone();

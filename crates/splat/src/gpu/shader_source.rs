@@ -1,6 +1,6 @@
 //! The WGSL source of each shader module: constants from Rust, then the files of the module.
 //!
-//! A constant that both Rust and WGSL need is written in Rust only. [`declarations`] turns it into a `const` of WGSL under the same
+//! A constant that both Rust and WGSL need is written in Rust only. The macro `declarations` turns it into a `const` of WGSL under the same
 //! name.
 
 use crate::aperture::stencil::{HEIGHT_BITS, MANTISSA_BITS, PHASE_BITS, RADIUS_BITS};

@@ -63,7 +63,7 @@ shader_structs! {
         totals: u32,
     }
 
-    /// A part of the aperture whose image is a box: [`crate::draw::BoxPart`] (pen.wgsl).
+    /// A part of the aperture whose image is a box: the twin of that of the pen (pen.wgsl).
     BoxPart {
         share: u32,
         padding: u32,

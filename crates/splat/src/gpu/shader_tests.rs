@@ -115,8 +115,8 @@ fn a_moved_field_is_found_out() {
 fn constants_keep_their_values() {
     let module = parsed("list", &shader_source::list());
     let value = |name: &str| {
-        let constant = module.constants.iter().map(|(_, constant)| constant);
-        let constant = constant.filter(|constant| constant.name.as_deref() == Some(name)).next();
+        let mut constants = module.constants.iter().map(|(_, constant)| constant);
+        let constant = constants.find(|constant| constant.name.as_deref() == Some(name));
         module.global_expressions[constant.unwrap_or_else(|| panic!("{name}")).init].clone()
     };
     let literal = |literal| naga::Expression::Literal(literal);

@@ -12,21 +12,21 @@ use progress::{Progress, Stage};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// How many sets of samples are drawn at once: red, green and blue.
+/// The number of sets of samples that are drawn at once: red, green and blue.
 pub const SETS: usize = 3;
 
-/// Mattes of a picture that was rendered.
+/// Draws mattes of a picture that was rendered.
 pub struct Mattes(Splatter);
 
 impl Splatter {
-    /// Takes the light of samples away, before the first [`Self::render`]: they cover what lies behind them, and are black.
+    /// Makes samples black, before the first [`Self::render`]: they still cover what lies behind them.
     pub fn blacken(&mut self, is_black: impl Fn(u32) -> bool + Sync) {
         if let Some(nodes) = &mut self.nodes {
             Arc::make_mut(nodes).relight(&|sample, rgb| if is_black(sample) { [0.0; 3] } else { rgb });
         }
     }
 
-    /// Goes on to the mattes of what was rendered. They are summed on the processor.
+    /// Converts to mattes of what was rendered. They are summed on the processor.
     pub fn into_mattes(mut self) -> Mattes {
         if self.card.has_sums() {
             self.shares_of = None;
@@ -38,8 +38,11 @@ impl Splatter {
 }
 
 impl Mattes {
-    /// Draws [`SETS`] mattes at once, as the red, green and blue of a picture: the coverage that the samples have of which `in_sets`
-    /// tells that they are in the first, the second, the third set. The picture's coverage is that of all.
+    /// Draws [`SETS`] mattes at once, as the red, green and blue of a picture: the coverage of the samples that `in_sets` assigns to
+    /// the first, the second and the third set. The picture's coverage is that of all samples.
+    ///
+    /// # Errors
+    /// [`SplatError::Cancelled`] if `progress` is cancelled; [`SplatError::Overflow`] if the integers overflow.
     pub fn draw(
         &mut self,
         in_sets: &(impl Fn(u32) -> [bool; SETS] + Sync),

@@ -13,7 +13,7 @@ impl Splatter {
     }
 
     /// Sets whether pictures stay on the card (no, by default): they are shown from there ([`Self::picture_on_card`]), and
-    /// [`Self::picture`] is that of the last [`Self::fetch`].
+    /// [`Self::picture`] is that of the last [`Self::fetch_picture`].
     pub fn keep_on_card(&mut self, keeps: bool) {
         self.card.keeps_picture = keeps;
     }

@@ -104,7 +104,7 @@ impl Visit for VisibilityVisitor<'_> {
             }
             let mut new = query.newly_hidden(&triangle.corners, near);
             // The triangle is culled: the viewpoint is in front of it, the points are behind.
-            if triangle.hides_back && !new.is_empty() && query.is_in_front_of(&triangle.corners) {
+            if triangle.culls_back && !new.is_empty() && query.is_in_front_of(&triangle.corners) {
                 new = PointSet::default();
             }
             if triangle.may_be_transparent && !new.is_empty() {

@@ -36,8 +36,8 @@ impl OwnLightChange {
         let light = |more: &Vec3| (sent.radiance + *more / sent.share).max(Vec3::ZERO);
         let light: Vec<Vec3> = self.more.iter().map(light).collect();
         let mean = light.iter().sum::<Vec3>() / light.len() as f32;
-        let by_chance = vec![sent.noisy; light.len()];
-        let cells = ApertureCells { side: self.side, light: &light, noisy: &by_chance };
+        let noisy = vec![sent.noisy; light.len()];
+        let cells = ApertureCells { side: self.side, light: &light, noisy: &noisy };
         let parts = cells.parts(ALIKE * mean.max_element()).into_iter();
         let part = |AperturePart { light, cells, .. }| LightComponent {
             radiance: light,
@@ -75,7 +75,7 @@ mod tests {
     fn own_light_is_told_on_parts_of_the_aperture_and_keeps_its_mean() {
         let camera = Camera { width: 64, height: 64, aperture_radius: 0.25, ..Camera::default() };
         let view = View::new(&camera, 2.0);
-        let asked = |triangle: u32, view: &View| {
+        let change_of = |triangle: u32, view: &View| {
             let point = SurfacePoint { triangle, barycentric: DVec2::ZERO };
             let of = RadianceQuery {
                 radiance: &Glossy,
@@ -94,7 +94,7 @@ mod tests {
             noisy: Vec3::ZERO,
             toward: Visibility::Open,
         };
-        let parts = asked(0, &view).unwrap().parts(&sent);
+        let parts = change_of(0, &view).unwrap().parts(&sent);
         let (mut seen, mut sum) = (0, 0.0);
         for part in &parts {
             let Visibility::Cells { words } = &part.toward else { panic!("a part: {part:?}") };
@@ -108,9 +108,9 @@ mod tests {
             assert!((part.radiance.x - expected).abs() < 1e-5 && !part.is_carried, "{part:?}");
         }
         assert!(seen == u64::MAX && (sum - 0.6).abs() < 1e-6 && parts.len() > 4, "{sum} {}", parts.len());
-        // Of another point, and through a pinhole, nothing is asked.
-        assert!(asked(1, &view).is_none());
+        // Of another point, and through a pinhole, nothing is change_of.
+        assert!(change_of(1, &view).is_none());
         let pinhole = Camera { aperture_radius: 0.0, ..camera.clone() };
-        assert!(asked(0, &View::new(&pinhole, 2.0)).is_none());
+        assert!(change_of(0, &View::new(&pinhole, 2.0)).is_none());
     }
 }
