@@ -11,7 +11,7 @@
 //!
 //! The stages for photographs: `cameras::layout` (which cameras lie where) → `cameras` (`colmap`, `nerfstudio`, `bundler`, `nvm`,
 //! `metashape`; each yields `shot`s: name, lens, pose) → `pictures::picture_folder`, `picture_names` (which file is whose) → `pictures`,
-//! `picture_header` (size, EXIF, masks: views) → `mesh` (`ply`, `obj`: the surface) → `open`. The up direction of COLMAP's world is
+//! `files::picture_header` (size, EXIF, masks: views) → `mesh` (`ply`, `obj`: the surface) → `open`. The up direction of COLMAP's world is
 //! estimated from the cameras (`upright`) and reported, not applied.
 //!
 //! ```

@@ -1,15 +1,13 @@
 //! From the photographs in a file of cameras to views, with remarks on what is incomplete.
 
-pub(crate) mod exif;
 pub(crate) mod exr_channels;
 pub(crate) mod picture_folder;
-pub(crate) mod picture_header;
 pub(crate) mod picture_names;
 pub(crate) mod picture_source;
 
 use crate::cameras::shot::{Shot, Shots};
+use crate::files::picture_header::{fit_lens, read_header};
 use crate::pictures::picture_folder::{PictureFolder, PictureSearch, masks};
-use crate::pictures::picture_header::{fit_lens, read_header};
 use crate::{CaptureError, Remark};
 use progress::Progress;
 use scene::View;

@@ -47,8 +47,11 @@ pub enum FocusError {
         problem: &'static str,
     },
     /// The stack already has the maximum number of layers.
-    #[error("layers: there are {} already (remove one first)", crate::LayerStack::MAX_LAYERS)]
-    TooManyLayers,
+    #[error("layers: there are {limit} already (remove one first)")]
+    TooManyLayers {
+        /// The maximum number.
+        limit: usize,
+    },
     /// The map belongs to another atlas.
     #[error("the focus map has {}×{} texels, the atlas {}×{} (bake the focus again for this atlas)", map[0], map[1], canvas[0], canvas[1])]
     SizesDiffer {

@@ -1,6 +1,5 @@
 //! One focus offset for each texel of the atlas and, for a layer, its mask.
 
-mod bake;
 mod changed_texels;
 mod edit;
 mod edit_thumbnail;

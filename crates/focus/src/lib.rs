@@ -26,6 +26,7 @@
 //! assert_eq!(before.at(3, 4), FocusOffset::STANDARD);
 //! ```
 
+mod bake;
 mod canvas;
 mod curve;
 mod error;

@@ -27,6 +27,7 @@
 //! ```
 
 mod camera;
+mod color_space;
 mod disk;
 mod error;
 mod focus_files;
@@ -37,9 +38,11 @@ mod pictures;
 mod presets;
 mod project_file;
 mod replacement;
+mod scene_path;
 mod world_file;
 
 pub use camera::{camera_from_json, camera_to_json, read_aperture_mask, read_camera, write_camera};
+pub use color_space::ColorSpace;
 pub use error::ProjectError;
 pub use focus_files::{
     FocusFile, FocusMapFile, RecordedFill, RecordedGradient, RecordedSelection, RecordedStep, RecordedStroke,
@@ -49,9 +52,9 @@ pub use focus_files::{
 pub use openexr::Compression;
 pub use part_file::{NumberReader, PartFile, PartWriter, Section};
 pub use pictures::{
-    ColorSpace, Comparison, Cryptomatte, ErrorMaps, Layer, LinearPicture, PictureOptions, RankedCoverage,
-    ZAgreement, compare, error_maps, false_color_error_map, is_finished, psnr, read_picture, seal_picture,
-    texture_png, write_error_map, write_picture, write_picture_in_bands, write_rgb, z_test,
+    Comparison, Cryptomatte, ErrorMaps, Layer, LinearPicture, PictureOptions, RankedCoverage, ZAgreement,
+    compare, error_maps, false_color_error_map, is_finished, psnr, read_picture, seal_picture, texture_png,
+    write_error_map, write_picture, write_picture_in_bands, write_rgb, z_test,
 };
 pub use presets::{LensPreset, LibraryEntry, Preset, PresetContent, PresetKind, PresetLibrary};
 pub use project_file::{

@@ -1,6 +1,5 @@
-//! Pictures: reading, writing and sealing them, their layers and colour spaces, and comparing two of them.
+//! Pictures: reading, writing and sealing them, their layers, and comparing two of them.
 
-pub(crate) mod color_space;
 pub(crate) mod compare;
 pub(crate) mod cryptomatte;
 pub(crate) mod error_map;
@@ -11,7 +10,6 @@ pub(crate) mod png_file;
 pub(crate) mod seal;
 pub(crate) mod z_agreement;
 
-pub use color_space::ColorSpace;
 pub use compare::{Comparison, ErrorMaps, compare, error_maps, psnr};
 pub use cryptomatte::{Cryptomatte, RankedCoverage};
 pub use error_map::{false_color_error_map, write_error_map};

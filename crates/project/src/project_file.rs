@@ -24,7 +24,6 @@ mod layer_rows;
 pub(crate) mod manifest;
 mod recovery;
 mod scene_checksum;
-pub(crate) mod scene_path;
 mod surface_file;
 mod texel_bytes;
 mod texel_set;
@@ -38,12 +37,12 @@ pub use thumbnail::Thumbnail;
 
 use crate::camera::{camera_from_json, camera_to_json};
 use crate::disk::{read_bytes, write_verified};
+use crate::scene_path::ScenePath;
 use capture_choices::CaptureEntry;
 use container::{Container, DAMAGED_CURE, pack};
 
 use manifest::{CameraEntry, MANIFEST, Manifest, MapEntry, SceneReference, sha256_hex};
 use scene_checksum::scene_checksum;
-use scene_path::ScenePath;
 use texel_bytes::{bytes_from_floats, floats_from_bytes, pairs_from_bytes};
 
 use crate::{ProjectError, WorldFile};

@@ -11,6 +11,7 @@
 use crate::ProjectError;
 use crate::json::{Field, Fields, Json};
 use crate::pictures::linear_picture::read_picture;
+use crate::scene_path::ScenePath;
 use glam::Vec3;
 use scene::{Backdrop, Environment, EnvironmentMap, Scene, World};
 use serde_json::{Value, json};
@@ -140,7 +141,7 @@ impl WorldFile {
             EnvironmentChoice::Scene => json!("scene"),
             EnvironmentChoice::Uniform(color) => json!(color.to_array()),
             EnvironmentChoice::File(file) => {
-                json!(crate::project_file::scene_path::ScenePath::new(file, from).path)
+                json!(ScenePath::new(file, from).path)
             }
         };
         let mut json = json!({

@@ -4,4 +4,3 @@ pub(crate) mod covers;
 pub(crate) mod jumps;
 pub(crate) mod matte;
 pub(crate) mod outline;
-pub(crate) mod snapping;

@@ -3,7 +3,7 @@
 //! Where depth jumps, the farther side is continued behind the nearer one, as far as the rim of the aperture can see behind it: behind a
 //! cell of disparity d, a surface of disparity d′ by a parallax of d − d′.
 
-use crate::mesh::cells::{Grid, Links, Side};
+use crate::mesh::cells::{Grid, Links, side_index};
 use std::collections::VecDeque;
 
 /// Cells beyond those that are visible through the aperture, so that resampling there has neighbours.
@@ -20,16 +20,6 @@ pub(crate) struct HiddenLayer {
     pub onward: Vec<[bool; 4]>,
     /// The cells, from the jumps inward.
     pub order: Vec<usize>,
-}
-
-/// The index of a side in [`HiddenLayer::onward`].
-pub(crate) fn side_index(side: Side) -> usize {
-    match side {
-        Side::Left => 0,
-        Side::Right => 1,
-        Side::Above => 2,
-        Side::Below => 3,
-    }
 }
 
 /// Continues what lies behind jumps. `reach` is the aperture's radius (disparity times it is a parallax, px), `jump` the least step of

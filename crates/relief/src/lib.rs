@@ -41,6 +41,7 @@ mod mesh;
 mod other_view;
 mod relief;
 mod resampling;
+mod snapping;
 mod texture;
 
 pub use depth_map::filling::fill_unknown_disparity;

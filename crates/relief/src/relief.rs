@@ -3,7 +3,6 @@
 use crate::depth_map::rounding;
 use crate::edges::covers::MattedLayer;
 use crate::edges::matte::{MixedPixel, unmix};
-use crate::edges::snapping::snap_edges;
 use crate::edges::{jumps, matte, outline};
 use crate::error::ReliefError;
 use crate::frame::Frame;
@@ -14,6 +13,7 @@ use crate::mesh::corners::Corner;
 use crate::mesh::triangulation::{Metric, Triangulation};
 use crate::other_view::OtherView;
 use crate::resampling::{FrontLayer, TexelQuery};
+use crate::snapping::snap_edges;
 use crate::texture::{Texture, build_texture};
 use glam::Vec2;
 use progress::{Progress, Stage};

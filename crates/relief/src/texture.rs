@@ -5,8 +5,8 @@ mod fading;
 
 use crate::color_stats::ColorStats;
 use crate::edges::matte::{MixedPixel, unmix};
-use crate::hidden::{HiddenLayer, side_index};
-use crate::mesh::cells::Grid;
+use crate::hidden::HiddenLayer;
+use crate::mesh::cells::{Grid, side_index};
 use crate::texture::fading::fade;
 use rayon::prelude::*;
 

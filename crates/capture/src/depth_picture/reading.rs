@@ -7,11 +7,11 @@ use super::jpeg::{Segments, is_jpeg};
 use super::sibling_depth::{depth_files, pictures};
 use super::xmp::XmpTexts;
 use crate::depth_map::{DepthMap, DepthMeaning, DepthQuantity, NearEnd, quantity_from_name, read_depth_map};
+use crate::files::exif::Exif;
 use crate::files::folder::extension;
+use crate::files::picture_header::read_header;
 use crate::files::whole_file::{head, whole_file};
-use crate::pictures::exif::Exif;
 use crate::pictures::exr_channels::{color_channels, depth_channel, exr_names};
-use crate::pictures::picture_header::read_header;
 use crate::pictures::picture_source::PictureSource;
 use crate::unsupported_format::unsupported_format_error;
 use crate::{CaptureError, Remark};
@@ -329,7 +329,7 @@ impl Opening<'_> {
         let mut remarks: Vec<Remark> = notes.into_iter().map(note).collect();
         let (picture, stored, picture_orientation) = match original {
             Some(bytes) => {
-                let (stored, own) = crate::pictures::picture_header::header_of_bytes(&bytes)
+                let (stored, own) = crate::files::picture_header::header_of_bytes(&bytes)
                     .map_err(|why| self.malformed("original picture", why))?;
                 remarks.push(note("contains the picture before it was blurred, which is used".into()));
                 // It is stored as the picture is, or upright.

@@ -2,7 +2,7 @@
 
 use super::png_rows::PngRows;
 use crate::CaptureError;
-use crate::pictures::picture_header::read_header;
+use crate::files::picture_header::read_header;
 use image::{DynamicImage, ImageBuffer};
 use scene::{LoadOptions, Photograph, PictureError};
 use std::fmt;

@@ -216,7 +216,8 @@ fn insert_adjustment_layer(
 }
 
 fn insert_layer(layers: &mut LayerStack, layer: FocusLayer) -> Result<(), FocusError> {
-    if layers.insert(layer) { Ok(()) } else { Err(FocusError::TooManyLayers) }
+    let limit = LayerStack::MAX_LAYERS;
+    if layers.insert(layer) { Ok(()) } else { Err(FocusError::TooManyLayers { limit }) }
 }
 
 /// `base_name` with the first number that no layer uses yet.

@@ -1,11 +1,11 @@
 //! OpenEXR files as named channels of floats.
 
 use crate::ProjectError;
+use crate::color_space::Chromaticities;
 use crate::disk::{read_bytes, write_bytes};
 use crate::openexr::header;
 use crate::openexr::options::{ExrOptions, from_stored_chromaticities, to_half, to_stored_chromaticities};
 use crate::openexr::window::Window;
-use crate::pictures::color_space::Chromaticities;
 use exr::meta::attribute::{AttributeValue, Text};
 use exr::prelude as ox;
 use exr::prelude::{ReadChannels, ReadLayers, WritableImage};

@@ -1,6 +1,6 @@
 //! Options of writing an OpenEXR file: compression, which channels are half, windows, colour space.
 
-use crate::pictures::color_space::{Chromaticities, ColorSpace};
+use crate::color_space::{Chromaticities, ColorSpace};
 use exr::meta::attribute::Chromaticities as StoredChromaticities;
 use exr::prelude as ox;
 use glam::DVec2;

@@ -1,9 +1,9 @@
 //! Reading pictures.
 
 use crate::ProjectError;
+use crate::color_space::{ColorSpace, transform_colors};
 use crate::disk::extension;
 use crate::openexr::image::{ExrAttribute, ExrImage, read_exr};
-use crate::pictures::color_space::{ColorSpace, transform_colors};
 use crate::pictures::cryptomatte::is_cryptomatte;
 use crate::pictures::output::{EXPOSURE, EXPOSURES};
 use crate::pictures::png_file::read_image;

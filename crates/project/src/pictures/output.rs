@@ -8,11 +8,11 @@
 //! separate EXR, `STEM.LAYER.exr`.
 
 use crate::ProjectError;
+use crate::color_space::{ColorSpace, transform_colors};
 use crate::disk::{extension, write_bytes};
 use crate::openexr::bands::{ExrHead, write_exr_in_bands};
 use crate::openexr::image::{ExrAttribute, ExrImage, write_exr};
 use crate::openexr::options::{Compression, ExrOptions, ExrSamples};
-use crate::pictures::color_space::{ColorSpace, transform_colors};
 use crate::pictures::cryptomatte::{is_cryptomatte, is_cryptomatte_metadata};
 use crate::pictures::layer::{Layer, color_channels};
 use crate::pictures::png_file::encode_8bit;

@@ -1,6 +1,6 @@
 //! The user's choices for a capture: its kind, its mesh or depth, and which photographs are excluded.
 
-use crate::project_file::scene_path::ScenePath;
+use crate::scene_path::ScenePath;
 use relief::DepthStroke;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};

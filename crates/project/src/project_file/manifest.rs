@@ -4,7 +4,7 @@ use crate::ProjectError;
 use crate::project_file::capture_choices::CaptureEntry;
 use crate::project_file::container::{Container, DAMAGED_CURE};
 use crate::project_file::layer_rows::{LayerEntries, LayerEntry, is_zero};
-use crate::project_file::scene_path::ScenePath;
+use crate::scene_path::ScenePath;
 use focus::{Brush, LensMotion};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;

@@ -41,6 +41,16 @@ pub(crate) enum Side {
     Below,
 }
 
+/// The index of a side where there is a value for each: left, right, above, below.
+pub(crate) fn side_index(side: Side) -> usize {
+    match side {
+        Side::Left => 0,
+        Side::Right => 1,
+        Side::Above => 2,
+        Side::Below => 3,
+    }
+}
+
 /// Connectivity: whether a cell is connected to the one right of it, and to the one below.
 #[derive(Clone, Debug)]
 pub(crate) struct Links {

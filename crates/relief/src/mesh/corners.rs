@@ -3,8 +3,7 @@
 //! Around a corner of the grid lie up to four cells per layer. Those that are connected, within a layer or between layers, share one
 //! point there; its disparity is the mean of their extrapolations, each by its own slope.
 
-use crate::hidden::side_index;
-use crate::mesh::cells::{Cells, LAYERS, Side};
+use crate::mesh::cells::{Cells, LAYERS, Side, side_index};
 
 /// The cells around a corner of the grid: upper left, upper right, lower left, lower right; first those of the first layer.
 const AROUND: usize = 4 * LAYERS;

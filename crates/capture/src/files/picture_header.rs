@@ -3,7 +3,7 @@
 //! A picture is rotated by its EXIF orientation only if its camera's width and height are then those of the picture, and not those of the
 //! stored pixels: programs differ in whether they rotate pictures, and the cameras show which they did.
 
-use crate::pictures::exif::Exif;
+use crate::files::exif::Exif;
 use image::{ImageDecoder, ImageReader};
 use lens::CalibratedLens;
 use std::fs::File;
