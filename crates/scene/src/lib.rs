@@ -17,9 +17,8 @@
 //! written as floats are legal, and a fault in something the picture does not need must not keep the rest from
 //! opening.
 //!
-//! The steps of reading a file, in `gltf/`: `container` (GLB chunks, JSON text, compressed meshes) → `repair` (typed
-//! by the
-//! `gltf` crate) → `document` → `geometry` (`hierarchy`: which nodes, where; `primitive`: checked `accessor`s to
+//! The steps of reading a file, in `gltf/`: `container` (GLB chunks, JSON text) → `repair` (typed by the
+//! `gltf` crate) → `document` → `compressed` → `geometry` (`hierarchy`: which nodes, where; `primitive`: checked `accessor`s to
 //! triangles,
 //! morphed; `assembly`: instances and skins to world space) → `materials` (variants, textures, images) →
 //! `scene_cameras`,
@@ -44,20 +43,23 @@ mod gltf;
 mod load_options;
 mod model;
 mod photographs;
+mod queries;
+mod surface_mesh;
 mod texture;
 mod world;
 
 pub use self::gltf::{
-    AnimatedScene, Animation, AnimationTime, CameraLens, EXTRAS_KEY, EXTRAS_VERSION, GltfSource, Inspection,
-    PartSource, PosedScene, RestTriangle, StoredElements, inspect, load, with_source,
+    AnimatedScene, Animation, AnimationTime, EXTRAS_KEY, EXTRAS_VERSION, GltfSource, Inspection, PartSource,
+    PosedScene, RestTriangle, StoredElements, inspect, load, with_source,
 };
 pub use error::{Fault, SceneError};
 pub use load_options::LoadOptions;
 pub use model::{
-    AlphaMode, Anisotropy, BackFaces, Clearcoat, DiffuseTransmission, Iridescence, Light, LightKind,
-    Material, MeshHealth, Node, NormalMap, Part, Scalar, Scene, SceneCamera, Sheen, SurfaceField,
-    SurfaceMesh, SurfacePoint, Tint, Triangle, Volume, Workflow,
+    AlphaMode, Anisotropy, BackFaces, CameraLens, Clearcoat, DiffuseTransmission, Iridescence, Light,
+    LightKind, Material, MeshHealth, Node, NormalMap, Part, Scalar, Scene, SceneCamera, Sheen, SurfaceField,
+    SurfacePoint, Tint, Triangle, Volume, Workflow,
 };
 pub use photographs::{Mask, Photograph, PictureError, PictureGloss, PictureTexture, View};
+pub use surface_mesh::SurfaceMesh;
 pub use texture::{Image, ImageLevel, TextureRef, Wrap, linear_from_srgb, srgb_from_linear};
 pub use world::{Backdrop, Environment, EnvironmentMap, World};

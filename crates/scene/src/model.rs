@@ -1,23 +1,22 @@
 //! The scene in memory: flat, world space, triangles only.
 
 mod back_faces;
+mod camera_lens;
 mod inverted_faces;
 mod material;
 mod mesh_health;
-mod surface_color;
-mod surface_mesh;
 mod surface_point;
 
 pub use back_faces::BackFaces;
+pub use camera_lens::CameraLens;
 pub use material::{
     AlphaMode, Anisotropy, Clearcoat, DiffuseTransmission, Iridescence, Material, NormalMap, Scalar, Sheen,
     Tint, Volume, Workflow,
 };
 pub use mesh_health::MeshHealth;
-pub use surface_mesh::SurfaceMesh;
 pub use surface_point::{SurfaceField, SurfacePoint};
 
-use crate::{CameraLens, Image, PictureTexture, View, World};
+use crate::{Image, PictureTexture, View, World};
 use glam::{DMat4, DVec3, Vec2, Vec3, Vec4};
 use std::ops::Range;
 use std::path::PathBuf;

@@ -1,12 +1,10 @@
 //! Photographs: views with their pixels and masks, and surfaces made from pictures.
 
-mod gloss_lookup;
 mod linear_conversion;
 mod mask;
 mod photograph;
 mod picture_gloss;
 mod picture_texture;
-mod scene_photographs;
 mod view;
 
 pub use mask::Mask;

@@ -2,7 +2,6 @@
 
 mod cube_map;
 mod environment_map;
-mod scene_world;
 mod studio;
 
 pub(crate) use cube_map::CubeMap;

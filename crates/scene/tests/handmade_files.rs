@@ -187,7 +187,7 @@ fn a_camera_focuses_on_what_is_ahead() {
 fn loops_and_shared_children() {
     let mut glb = Glb::triangle();
     glb.json["nodes"][0]["children"] = json!([0]);
-    assert!(glb.error().contains("/nodes/0: is a part of a loop"));
+    assert!(glb.error().contains("/nodes/0: is part of a cycle"));
     glb.json["nodes"] = json!([{"children": [2]}, {"children": [2]}, {"mesh": 0}]);
     glb.json["scenes"][0]["nodes"] = json!([0, 1]);
     let scene = glb.load().unwrap();

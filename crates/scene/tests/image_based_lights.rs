@@ -160,8 +160,8 @@ fn texels_are_srgb_over_their_opacity_times_the_intensity() {
 fn what_cannot_be_a_light_is_an_error_that_names_its_place() {
     let lights = "/extensions/EXT_lights_image_based/lights/0";
     for (key, wrong, place) in [
-        ("rotation", json!([0, 0, 0, 0]), "rotation: [0.0, 0.0, 0.0, 0.0] is no rotation"),
-        ("rotation", json!([1e200, 0, 0, 1e200]), "is no rotation"),
+        ("rotation", json!([0, 0, 0, 0]), "rotation: [0.0, 0.0, 0.0, 0.0] is not a rotation"),
+        ("rotation", json!([1e200, 0, 0, 1e200]), "is not a rotation"),
         ("rotation", json!([0, 0, 1]), "rotation: is not an array of 4 numbers"),
         ("intensity", json!(-1), "intensity: -1 is negative"),
         ("intensity", json!(1e38), "more than can be computed with"),

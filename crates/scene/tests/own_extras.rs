@@ -45,11 +45,11 @@ fn a_faulty_lens_is_reported_and_left_out() {
     for (lens, place) in [
         (json!(7), "extras/focus_brush"),
         (json!({"aperture_radius": 0.1}), "version: is missing"),
-        (json!({"version": 2, "aperture_radius": 0.1}), "version: 2 is not known"),
+        (json!({"version": 2, "aperture_radius": 0.1}), "version: 2 is not supported"),
         (json!({"version": 1, "aperture_radius": "wide"}), "aperture_radius: is not a number"),
         (json!({"version": 1, "shift": [1]}), "shift: is not an array of 2 numbers"),
         (json!({"version": 1, "focus_distance": -1}), "focus_distance: it must be above 0"),
-        (json!({"version": 1, "aperture": {"shape": "star"}}), "star is no disc"),
+        (json!({"version": 1, "aperture": {"shape": "star"}}), "star is not a disc"),
         (json!({"version": 1, "aperture": {"shape": "polygon", "blades": 1e9}}), "it must be"),
         (json!({"version": 1, "width": 99999999, "height": 1}), "width: it must be 1 to 16384"),
     ] {
@@ -101,7 +101,7 @@ fn a_picture_of_radiance_lies_in_the_scenes_folder_or_is_left_out() {
         (json!({"uri": "../light.exr"}), "light.exr"),
         (json!({"uri": "/etc/passwd"}), "passwd"),
         (json!({"uri": "none.exr"}), "is missing"),
-        (json!({"uri": "scene.glb"}), "no readable EXR"),
+        (json!({"uri": "scene.glb"}), "not a readable EXR"),
         (json!({"texCoord": 0}), "uri: is missing"),
         (json!("light.exr"), "radiance"),
     ] {

@@ -89,7 +89,7 @@ fn names_that_are_missing_or_alike_are_made_up() {
     assert_eq!(scene.variants, ["Red", "variant 1", "Red (2)", "variant 3", "variant 4"]);
     for flaw in [
         "/variants/1: its name is missing",
-        "/variants/2/name: \"Red\" is another's",
+        "/variants/2/name: \"Red\" is already taken",
         "/variants/4: is not an object",
     ] {
         assert!(scene.warnings.iter().any(|warning| warning.contains(flaw)), "{flaw}: {:?}", scene.warnings);

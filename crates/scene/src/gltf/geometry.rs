@@ -2,7 +2,6 @@
 
 pub(crate) mod accessor;
 pub(crate) mod assembly;
-pub(crate) mod attribute_name;
 pub(crate) mod hierarchy;
 pub(crate) mod instancing;
 pub(crate) mod primitive;

@@ -3,7 +3,7 @@
 use crate::error::{Fault, Stop};
 use crate::gltf::animation::pose::{PosedScene, RestParts};
 use crate::gltf::animation::{self, Animation, AnimationTime};
-use crate::gltf::container::compressed;
+use crate::gltf::compressed;
 use crate::gltf::document::{Document, nonempty_name};
 use crate::gltf::extension;
 use crate::gltf::geometry::assembly::{Placement, append_primitive};

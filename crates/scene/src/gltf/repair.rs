@@ -8,8 +8,8 @@
 
 use crate::error::Fault;
 use crate::gltf::budget::Budget;
+use crate::gltf::container::attribute_name::AttributeName;
 use crate::gltf::container::json_object::as_whole_number;
-use crate::gltf::geometry::attribute_name::AttributeName;
 use crate::gltf::schema::{PropertyKind, ROOT, Spec};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;

@@ -5,8 +5,8 @@
 //! texels over an area average them.
 
 use super::srgb::linear_from_srgb;
-use crate::{Image, ImageLevel, Scene, TextureRef, Wrap};
-use glam::{Vec2, Vec3, Vec4};
+use crate::{Image, ImageLevel, Wrap};
+use glam::{Vec2, Vec4};
 use std::sync::LazyLock;
 
 /// sRGB decoding of 8-bit values.
@@ -130,16 +130,6 @@ fn color<T: Copy + Into<f32> + Into<usize>>(texel: &[T], linear: &[f32], max_val
 #[inline]
 fn numbers<T: Copy + Into<f32>>(texel: &[T], max_value: f32) -> Vec4 {
     Vec4::new(texel[0].into(), texel[1].into(), texel[2].into(), texel[3].into()) * (1.0 / max_value)
-}
-
-impl Scene {
-    /// RGBA of a texture (colours linear) at the mesh's texture coordinates (its transform is applied here).
-    #[inline]
-    pub fn sample_texture(&self, texture: &TextureRef, uv: Vec2) -> Vec4 {
-        let image = &self.images[texture.image as usize];
-        let uv = (texture.transform * Vec3::new(uv.x, uv.y, 1.0)).truncate();
-        image.sample(uv, texture.wrap, texture.nearest, texture.is_color)
-    }
 }
 
 #[cfg(test)]

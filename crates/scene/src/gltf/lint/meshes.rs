@@ -1,11 +1,11 @@
 //! Meshes: names, formats and numbers of attributes, indices, morph targets, and what their materials require.
 
 use super::vertex_data;
+use crate::gltf::container::attribute_name::AttributeName;
 use crate::gltf::container::json_object::Object;
 use crate::gltf::document::Document;
 use crate::gltf::extension;
 use crate::gltf::geometry::accessor::{Accessor, Component, component_from_code};
-use crate::gltf::geometry::attribute_name::AttributeName;
 use crate::gltf::materials::variants;
 use std::collections::{HashMap, HashSet};
 

@@ -29,6 +29,14 @@ impl Scene {
         a * wa + b * wb + c * wc
     }
 
+    /// RGBA of a texture (colours linear) at the mesh's texture coordinates (its transform is applied here).
+    #[inline]
+    pub fn sample_texture(&self, texture: &TextureRef, uv: Vec2) -> Vec4 {
+        let image = &self.images[texture.image as usize];
+        let uv = (texture.transform * Vec3::new(uv.x, uv.y, 1.0)).truncate();
+        image.sample(uv, texture.wrap, texture.nearest, texture.is_color)
+    }
+
     /// A texture's linear RGBA at a point of the surface.
     #[inline]
     pub fn sample_texture_at(&self, texture: &TextureRef, point: SurfacePoint) -> Vec4 {
