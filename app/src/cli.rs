@@ -7,6 +7,7 @@
 //! * `console`: progress on stderr, results on stdout. `failure`: errors and exit codes.
 
 mod arguments;
+mod camera_presets;
 mod commands;
 mod console;
 mod failure;
@@ -14,6 +15,7 @@ mod input;
 mod termination;
 
 use crate::window;
+use ::render::LightFieldStore;
 use arguments::{Arguments, Subcommand};
 use clap::Parser;
 use clap::error::ErrorKind;
@@ -22,9 +24,8 @@ use commands::{
     thumbnail, unwrap,
 };
 use console::Console;
-use failure::Failure;
 use document::InputKind;
-use ::render::LightFieldStore;
+use failure::Failure;
 use light::{DiskCache, Resources};
 use std::process::ExitCode;
 use std::sync::Mutex;

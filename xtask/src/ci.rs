@@ -2,7 +2,9 @@
 
 use crate::chore::{Failure, cargo, execute};
 use crate::packages::{TO_BUILD, TO_RUN, install_missing};
-use crate::{architecture_paths, crate_directions, figures, licences, module_circles, shared_build, spelling};
+use crate::{
+    architecture_paths, crate_directions, figures, licences, module_circles, shared_build, spelling,
+};
 
 /// Runs every check and all tests, and stops at the first that fails.
 ///

@@ -13,12 +13,12 @@ use parsers::{
 pub use sequence::{KeysArguments, SequenceArguments};
 
 use clap::{Args, Parser};
-use project::{ColorSpace, Compression};
-use light::{LightOptions, PhotoLookup, Scattering};
-use scene::BackFaces;
 use document::{CameraChoice, VariantChoice};
 use light::LightQuality;
+use light::{LightOptions, PhotoLookup, Scattering};
+use project::{ColorSpace, Compression};
 use render::{Aov, CocConvention, Renderer, TileGrid};
+use scene::BackFaces;
 use splat::Integers;
 use std::ffi::OsString;
 use std::path::PathBuf;

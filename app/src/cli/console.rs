@@ -3,9 +3,9 @@
 use super::arguments::ProgressName;
 use super::termination;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use light::{Resources, Steps};
 use progress::{Part, Progress};
 use serde_json::{Value, json};
-use light::{Resources, Steps};
 use std::borrow::Cow;
 use std::io::{IsTerminal, Write};
 use std::path::Path;

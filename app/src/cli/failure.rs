@@ -2,8 +2,8 @@
 
 use document::DocumentError;
 use jobs::JobError;
-use render::RenderError;
 use project::ProjectError;
+use render::RenderError;
 use session::SessionError;
 use std::path::Path;
 

@@ -1,15 +1,15 @@
 //! Opens what the arguments describe: the scene with its appearance, its camera and its focus.
 
 use super::arguments::{AppearanceArguments, AtlasArguments, ShotArguments};
-use super::commands::presets::with_presets;
+use super::camera_presets::with_presets;
 use super::console::Console;
 use super::failure::Failure;
 use atlas::{Density, UnwrapOptions, UvPolicy};
+use document::Input;
 use focus::Focus;
 use lens::Camera;
-use project::WorldFile;
-use document::Input;
 use light::{Resources, Steps};
+use project::WorldFile;
 use std::path::Path;
 
 /// The options for unwrapping; the engines run in child processes of this program.

@@ -1,8 +1,8 @@
 //! Requests of panels and views. They read the document and emit actions; the shell performs them.
 
 use super::layout::Pane;
-use project::Preset;
 use document::SurfaceHit;
+use project::Preset;
 use session::{Command, CommandId};
 use std::path::PathBuf;
 

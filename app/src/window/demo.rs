@@ -20,8 +20,8 @@ pub fn demo_project() -> Option<PathBuf> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use progress::Unwatched;
     use document::{Input, Stage};
+    use progress::Unwatched;
 
     #[test]
     fn the_demo_is_painted_and_fits_its_scene() {
@@ -29,9 +29,7 @@ mod tests {
         let input = Input::open(&file, &Default::default(), &Unwatched).unwrap();
         assert_eq!(input.warnings, Vec::<String>::new(), "made for the scene beside it");
         let atlas = input.atlas(&Default::default(), &Unwatched).unwrap();
-        let stage =
-            Stage::new(input.lit_scene().unwrap(), atlas, &Unwatched)
-                .unwrap();
+        let stage = Stage::new(input.lit_scene().unwrap(), atlas, &Unwatched).unwrap();
         let map = input.project.unwrap().focus_map.expect("it is painted");
         let sharp = stage.canvas.texels().iter().filter(|t| map.at(t.x, t.y) == lens::FocusOffset::SHARP);
         let share = sharp.count() as f64 / stage.canvas.texels().len() as f64;

@@ -8,8 +8,8 @@
 //! collected as [`Action`]s and performed at the end.
 
 mod commands;
-mod open_file;
 mod keying;
+mod open_file;
 mod presets;
 mod views;
 
@@ -37,10 +37,10 @@ use super::views::inspector::Inspector;
 use super::views::paint_view::PaintView;
 use super::views::picture_view::{DisplayedPicture, PictureView};
 use super::{Action, Tool, ViewSettings};
+use document::{CameraEdit, SurfaceHit};
 use eframe::{CreationContext, Frame, Storage};
 use egui::{CentralPanel, Context, Panel, Ui, ViewportCommand};
 use project::{Preset, PresetLibrary};
-use document::{CameraEdit, SurfaceHit};
 use session::{Command, CommandId, Event, ReferenceKind, Session, SessionError, SessionOptions};
 use std::path::PathBuf;
 use std::sync::Arc;

@@ -5,10 +5,10 @@
 //! its breakdown; the time from when the point fell due, which includes waiting for the window; and the time
 //! between frames.
 
+use document::StrokePoint;
 use numerics::upper_quantile_of_sorted;
 use project::{LinearPicture, RecordedStep, compare};
 use serde_json::{Value, json};
-use document::StrokePoint;
 use session::{Command, PictureTimes, Session, SessionError};
 use std::time::{Duration, Instant};
 

@@ -2,8 +2,8 @@
 
 use super::tools::tool_settings::ToolSettings;
 use super::views::paint_view::SurfaceAppearance;
-use serde::{Deserialize, Serialize};
 use render::{Display, ToneCurve};
+use serde::{Deserialize, Serialize};
 use session::KeyMap;
 use splat::Tolerance;
 use std::path::{Path, PathBuf};

@@ -1,11 +1,11 @@
 //! A simulated user of the window: opens files, waits, drags, presses keys, inspects the screen.
 
+use document::Document;
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use focus_brush::window::{Severity, Shell, WindowOptions};
 use lens::Picture;
-use document::Document;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};

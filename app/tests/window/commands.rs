@@ -3,11 +3,11 @@
 
 use crate::acting::Person;
 use crate::small_scene;
+use document::FillRegion;
 use egui::{Key, Modifiers};
 use focus::{CombineMode, LayerEdit, LayerStack, Selection};
 use lens::{Camera, FocusOffset};
 use project::SelectionShape;
-use document::FillRegion;
 use session::{COMMANDS, Command, CommandId};
 
 /// The state covered by undo.

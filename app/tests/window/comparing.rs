@@ -2,9 +2,9 @@
 
 use crate::acting::{Person, at, color_at};
 use crate::small_scene;
+use document::FillRegion;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
-use document::FillRegion;
 use session::{Command, ReferenceKind};
 
 #[test]

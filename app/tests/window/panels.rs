@@ -2,13 +2,13 @@
 
 use crate::acting::{Person, at, color_at};
 use crate::small_scene::{self, opened};
+use document::FillRegion;
 use egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use focus_brush::window::{Shell, WindowOptions};
 use lens::FocusOffset;
 use project::{RecordedFill, RecordedStep, RecordedStroke};
-use document::FillRegion;
 use session::{Command, CommandId};
 
 impl Person {
@@ -101,8 +101,14 @@ fn the_atlas_is_painted_on_in_2d() {
     let mut steps = project::read_strokes(&strokes).unwrap();
     let begun = || {
         let scene = folder.path().join("wall.glb");
-        document::Document::create(&scene, &Default::default(), &Default::default(), &Default::default(), &progress::Unwatched)
-            .unwrap()
+        document::Document::create(
+            &scene,
+            &Default::default(),
+            &Default::default(),
+            &Default::default(),
+            &progress::Unwatched,
+        )
+        .unwrap()
     };
     let mut again = begun();
     assert_eq!(document::replay(&mut again, &steps).unwrap(), 1);

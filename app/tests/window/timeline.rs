@@ -2,11 +2,11 @@
 
 use crate::acting::{Person, at, difference};
 use crate::small_scene::opened;
+use document::CameraEdit;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use focus::FocusTarget;
 use focus_brush::window::Tool;
-use document::CameraEdit;
 use session::{Command, CommandId};
 
 impl Person {

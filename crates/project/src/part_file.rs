@@ -124,7 +124,7 @@ impl PartFile {
     pub fn open(file: &Path) -> Result<Self, ProjectError> {
         let error = |source| ProjectError::Read { file: file.to_owned(), source };
         let damaged = || {
-            let problem = "is truncated or damaged";
+            let problem = "is cut short or damaged";
             ProjectError::content(file, problem, "render its tile again, or take another copy")
         };
         let mut from = File::open(file).map_err(error)?;

@@ -78,7 +78,7 @@ fn strokes_round_trip_to_the_bit_and_errors_are_reported() {
         ("\"version\":3", "\"version\":9", "update the program"),
         ("\"yfov\":0.7", "\"yfov\":-0.7", "step 1: its view"),
         ("\"hardness\":0.5", "\"hardness\":7", "step 1: brush: hardness"),
-        ("\"points\":[[", "\"points\":[[\"a\",", "understood"),
+        ("\"points\":[[", "\"points\":[[\"a\",", "is not a valid strokes file"),
     ];
     for (from, to, expected) in cases {
         assert!(text.contains(from), "{from}");

@@ -17,11 +17,30 @@
 //! preview, left-out photographs, views of light fields and light refinement; `store` saves every finished
 //! measurement immediately, so that an interrupted run resumes; `findings` draws conclusions; `output` writes
 //! page, tables and plots.
+//!
+//! ```
+//! use report::ReportOptions;
+//!
+//! let folder = tempfile::tempdir()?;
+//! let options = ReportOptions {
+//!     size: None,
+//!     reference_spp: ReportOptions::QUICK_REFERENCE_SPP,
+//!     is_quick: true,
+//!     with_hard_cases: false,
+//!     build: "example".into(),
+//!     unwrap: atlas::UnwrapOptions::default(),
+//!     resources: light::Resources::default(),
+//! };
+//! let report = report::run(&[], &options, folder.path(), &progress::Unwatched, &|line| println!("{line}"))?;
+//! assert!(report.files.iter().any(|file| file.ends_with("report.html")));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod engine;
 mod findings;
 mod fingerprint;
 mod measurement;
+mod number_text;
 mod options;
 mod output;
 mod plan;

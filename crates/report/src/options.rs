@@ -1,9 +1,9 @@
 //! Options of a report.
 
-use project::WorldFile;
-use scene::BackFaces;
 use document::{CameraChoice, VariantChoice};
 use light::{LightOptions, Resources};
+use project::WorldFile;
+use scene::BackFaces;
 use std::path::PathBuf;
 
 /// A scene to measure on.

@@ -2,8 +2,8 @@
 
 use crate::measurement::contender::Contender;
 use crate::measurement::record::Series;
+use crate::number_text::significant;
 use crate::options::ReportOptions;
-use crate::output::plot::significant;
 use crate::subject::Subject;
 use lens::Camera;
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};

@@ -21,13 +21,13 @@ use crate::subject::subdivision::subdivide;
 use crate::subject::{Subject, trace_first_hits};
 use crate::summary::{FocusSummary, ModelledScene, Reference, SceneSummary};
 use focus::Focus;
+use light::LitScene;
+use light::Steps;
 use numerics::quantile;
 use progress::Progress;
 use project::{LinearPicture, compare, read_picture, write_error_map, write_rgb};
-use salf::Salf;
-use light::LitScene;
-use light::Steps;
 use render::{Modelled, RenderOptions, bake, bake_unpacked};
+use salf::Salf;
 use session::SessionError;
 use splat::Splatter;
 use std::path::{Path, PathBuf};
@@ -135,8 +135,9 @@ impl ReportRunner<'_> {
                             Some(reference) => reference,
                             None => reference.insert(self.reference(&place)?),
                         };
-                        let band = band
-                            .get_or_insert_with(|| OutlineBand::from_scene(subject.lit.tracer(), &setting.camera));
+                        let band = band.get_or_insert_with(|| {
+                            OutlineBand::from_scene(subject.lit.tracer(), &setting.camera)
+                        });
                         let (error, coc_px) = (reference_summary.error, reference_summary.circles_px[2]);
                         let against = Comparison { picture, error, coc_px, band: band.clone() };
                         let lit = self.cut_scene(&place, &mut cut)?;

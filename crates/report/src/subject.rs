@@ -5,15 +5,15 @@ mod generic_focus;
 pub mod subdivision;
 
 use crate::options::{ReportOptions, SceneRequest};
+use baselines::FirstHits;
 use default_lens::open_aperture;
+use document::{Input, InputKind};
 use focus::Focus;
 use generic_focus::generic_recipe;
 use lens::{Camera, FocusOffset};
-use scene::Scene;
-use baselines::FirstHits;
-use document::{Input, InputKind};
 use light::LitScene;
 use light::Steps;
+use scene::Scene;
 use session::SessionError;
 use std::path::PathBuf;
 use std::sync::Arc;

@@ -6,8 +6,8 @@ use crate::studies::light_field_views::Views;
 use crate::studies::live_preview::ShownPicture;
 use crate::studies::refined_light::RefinedLight;
 use lens::Camera;
-use serde::{Deserialize, Serialize};
 use render::Modelled;
+use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
 /// A scene of the report.

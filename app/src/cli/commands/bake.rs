@@ -4,9 +4,9 @@ use crate::cli::arguments::BakeArguments;
 use crate::cli::console::{Console, path_text, print_json};
 use crate::cli::failure::Failure;
 use crate::cli::input::{camera_and_focus, check_folder, open_input};
-use serde_json::json;
 use document::InputKind;
 use render::{RenderOptions, write_salf};
+use serde_json::json;
 use std::sync::Arc;
 use std::time::Instant;
 

@@ -4,10 +4,10 @@ use crate::cli::arguments::ExportArguments;
 use crate::cli::console::Console;
 use crate::cli::failure::Failure;
 use crate::cli::input::{check_folder, unwrap_options};
+use document::{Input, InputKind};
 use focus::FocusMap;
 use lens::{FocusOffset, Picture};
 use project::{FocusMapFile, Layer, PictureOptions, write_focus_map, write_picture};
-use document::{Input, InputKind};
 use render::{Aov, RenderOptions, Rendered, render_input};
 use std::path::Path;
 

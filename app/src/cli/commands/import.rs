@@ -5,8 +5,8 @@ use crate::cli::arguments::ImportArguments;
 use crate::cli::console::Console;
 use crate::cli::failure::Failure;
 use crate::cli::input::{check_folder, unwrap_options};
-use project::CaptureChoices;
 use document::{Document, Input, InputKind, NewDocumentOptions};
+use project::CaptureChoices;
 
 /// Makes a project from a capture. Missing parts are reported and the rest is imported; the command then ends
 /// as partly done.

@@ -4,15 +4,15 @@ use crate::cli::arguments::InfoArguments;
 use crate::cli::console::{Console, path_text, print_json, print_line};
 use crate::cli::failure::Failure;
 use crate::cli::input::{open_input, unwrap_options};
+use document::{Input, InputKind};
 use lens::Camera;
 use progress::Unwatched;
 use project::{ProjectFile, camera_to_json};
+use render::{Modelled, RenderOptions};
 use scene::{
     Animation, EXTRAS_KEY, Environment, Inspection, LoadOptions, MeshHealth, Scene, SceneCamera, View,
 };
 use serde_json::{Value, json};
-use document::{Input, InputKind};
-use render::{Modelled, RenderOptions};
 use std::sync::Arc;
 
 /// Prints what a file contains.

@@ -5,11 +5,11 @@ use crate::cli::arguments::KeysArguments;
 use crate::cli::console::{Console, print_json};
 use crate::cli::failure::Failure;
 use crate::cli::input::check_folder;
+use document::{Input, chief_ray, pick};
 use focus::{FocusTarget, Key, LayerStack, LensMotion};
 use glam::DVec2;
 use project::{ProjectFile, read_keys};
 use serde_json::json;
-use document::{Input, chief_ray, pick};
 use std::path::Path;
 use trace::Tracer;
 

@@ -5,8 +5,8 @@ use crate::cli::console::{Console, path_text, print_json};
 use crate::cli::failure::Failure;
 use crate::cli::input::check_folder;
 use crate::cli::termination;
-use serde_json::json;
 use render::{Merged, merge_tiles};
+use serde_json::json;
 use std::time::Instant;
 
 /// Merges the parts of a picture.

@@ -4,8 +4,8 @@ use crate::cli::arguments::NewArguments;
 use crate::cli::console::Console;
 use crate::cli::failure::Failure;
 use crate::cli::input::{check_folder, read_world, unwrap_options};
-use project::ProjectFile;
 use document::{Document, NewDocumentOptions};
+use project::ProjectFile;
 use std::path::Path;
 
 /// Makes a project from a scene.
@@ -22,7 +22,8 @@ pub fn run(arguments: &NewArguments, console: &Console) -> Result<(), Failure> {
         paint_from: arguments.paint_from.as_deref(),
         variant: arguments.appearance.variant(),
     };
-    let document = Document::create(&arguments.scene, &beginning, &unwrap_options(None), console.resources(), console)?;
+    let document =
+        Document::create(&arguments.scene, &beginning, &unwrap_options(None), console.resources(), console)?;
     console.warn(&document.warnings);
     let mut project = document.to_project();
     project.back_faces = arguments.appearance.back_faces.unwrap_or(project.back_faces);

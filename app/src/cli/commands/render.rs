@@ -7,12 +7,12 @@ use crate::cli::arguments::{BackendName, EstimatorName, ExposureName, RenderArgu
 use crate::cli::console::{Console, path_text, path_texts, print_json};
 use crate::cli::failure::Failure;
 use crate::cli::input::{camera_and_focus, check_picture_output, open_input};
-use lens::Exposure;
-use project::{ColorSpace, Compression, PictureOptions, write_picture};
-use serde_json::json;
 use ::render::{LayeredOptions, ScatterOptions, ViewsOptions};
 use document::Input;
+use lens::Exposure;
+use project::{ColorSpace, Compression, PictureOptions, write_picture};
 use render::{Aov, RenderOptions, Rendered, Renderer, Stereo, render_input, render_stereo};
+use serde_json::json;
 use session::SessionError;
 use splat::Gpu;
 use std::time::Instant;

@@ -5,9 +5,9 @@ use crate::cli::arguments::ReplayArguments;
 use crate::cli::console::{Console, path_text, print_json};
 use crate::cli::failure::Failure;
 use crate::cli::input::{check_folder, unwrap_options};
+use document::{Document, InputKind, replay};
 use project::RecordedStep;
 use serde_json::json;
-use document::{Document, InputKind, replay};
 use std::time::Instant;
 
 /// Applies recorded steps to a project or a scene and saves the result as a project.
@@ -20,7 +20,9 @@ pub fn run(arguments: &ReplayArguments, console: &Console) -> Result<(), Failure
     let steps = project::read_strokes(&arguments.strokes)?;
     let unwrap = unwrap_options(None);
     let mut document = match InputKind::from_path(&arguments.file)? {
-        InputKind::Scene => Document::create(&arguments.file, &Default::default(), &unwrap, console.resources(), console)?,
+        InputKind::Scene => {
+            Document::create(&arguments.file, &Default::default(), &unwrap, console.resources(), console)?
+        }
         _ => Document::open_saved(&arguments.file, &unwrap, console.resources(), console)?,
     };
     console.warn(&document.warnings);

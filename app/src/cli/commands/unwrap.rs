@@ -4,9 +4,9 @@ use crate::cli::arguments::UnwrapArguments;
 use crate::cli::console::{Console, path_text, print_json};
 use crate::cli::failure::Failure;
 use crate::cli::input::{check_folder, unwrap_options};
-use serde_json::json;
 use document::{Input, InputKind};
 use render::write_unwrapped;
+use serde_json::json;
 use std::time::Instant;
 
 /// Unwraps a scene and writes it with the atlas.

@@ -3,8 +3,8 @@
 use super::keys;
 use crate::window::views::inspector::is_layer_command_possible;
 use crate::window::{Action, ViewSettings};
-use egui::{Button, Ui};
 use document::Document;
+use egui::{Button, Ui};
 use session::{COMMANDS, CommandId, CommandInfo, Menu};
 
 /// Height of the menu bar and of the frame of an open menu, points.

@@ -3,10 +3,10 @@
 use super::focus_slider::focus_slider;
 use super::{controls, keys};
 use crate::window::{Action, Tool};
+use document::Document;
 use egui::{Button, Ui};
 use focus::Brush;
 use lens::{FocusOffset, Optics};
-use document::Document;
 use session::Command;
 
 /// Draws the tool bar.

@@ -1,8 +1,8 @@
 //! The dialog that asks which end of a depth map is near, with a preview of both answers.
 
 use crate::window::views::false_colour::nearness_color;
-use egui::{Button, ColorImage, Context, Id, Image, TextureHandle, TextureOptions, vec2};
 use document::DepthPolarityRequest;
+use egui::{Button, ColorImage, Context, Id, Image, TextureHandle, TextureOptions, vec2};
 
 /// Width of a preview, points.
 const WIDTH: f32 = 240.0;

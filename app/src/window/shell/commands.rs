@@ -9,11 +9,11 @@ use crate::window::tools::brush_gesture::BrushParameter;
 use crate::window::views::paint_view::PaintView;
 use crate::window::views::picture_view::TRUTH_SAMPLES;
 use crate::window::{Tool, ViewSettings};
+use document::{CameraEdit, FillRegion};
 use egui::{Context, ViewportCommand};
 use focus::{Brush, BrushMode, CombineMode, LayerEdit};
 use lens::{Exposure, FocusOffset};
 use project::{PresetKind, SelectionShape};
-use document::{CameraEdit, FillRegion};
 use session::{Command, CommandId, KeyMap, ReferenceKind};
 use std::path::Path;
 

@@ -1,8 +1,8 @@
 //! Sets and removes keys of the timeline.
 
 use super::Shell;
-use focus::{FocusTarget, Key, Keys, LayerEdit};
 use document::SurfaceHit;
+use focus::{FocusTarget, Key, Keys, LayerEdit};
 use session::Command;
 
 impl Shell {

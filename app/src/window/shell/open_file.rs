@@ -5,9 +5,9 @@ use crate::window::dialogs::file_dialog::Purpose;
 use crate::window::dialogs::unsaved_changes_dialog::{Answer, PendingAction};
 use crate::window::layout::Pane;
 use crate::window::{Tool, demo};
+use document::{DepthPolarityRequest, is_capture};
 use egui::{Context, ViewportCommand};
 use project::CaptureChoices;
-use document::{DepthPolarityRequest, is_capture};
 use session::{Command, FullSizeFieldState};
 use std::path::{Path, PathBuf};
 

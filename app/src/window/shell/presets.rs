@@ -4,9 +4,9 @@ use super::Shell;
 use crate::window::action::PresetAction;
 use crate::window::dialogs::file_dialog::Purpose;
 use crate::window::dialogs::preset_name_dialog::PresetNaming;
+use document::CameraEdit;
 use egui::Context;
 use project::{LensPreset, Preset, PresetContent, PresetKind};
-use document::CameraEdit;
 use session::Command;
 use std::path::{Path, PathBuf};
 

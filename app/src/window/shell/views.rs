@@ -12,9 +12,9 @@ use crate::window::views::inspector::{Inspected, Inspector};
 use crate::window::views::paint_view::PaintView;
 use crate::window::views::picture_view::PictureView;
 use crate::window::{Action, Tool, ViewSettings};
+use document::SurfaceHit;
 use egui::{Context, Ui};
 use project::PresetLibrary;
-use document::SurfaceHit;
 use session::{PreviewActivity, Session};
 
 /// Shorter work is not reported in the status line.

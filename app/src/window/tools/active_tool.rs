@@ -4,11 +4,11 @@ use super::brush_ring::BrushRing;
 use super::drag_tool::DragView;
 use super::tool_settings::ToolSettings;
 use crate::window::{Action, Tool};
+use document::{FillRegion, SurfaceHit, view_ray};
 use egui::{Pos2, Vec2};
 use focus::{CombineMode, FillTarget};
 use lens::FocusOffset;
 use project::SelectionShape;
-use document::{FillRegion, SurfaceHit, view_ray};
 use session::{Command, Session};
 
 /// Radii around the pointer within which thin objects are still hit, points; the smaller one first.

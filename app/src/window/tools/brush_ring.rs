@@ -2,9 +2,9 @@
 //! plane.
 
 use crate::window::views::false_colour;
+use document::SurfaceHit;
 use egui::{Color32, Painter, Pos2, Shape, Stroke};
 use glam::DVec3;
-use document::SurfaceHit;
 
 /// Segments of the ring.
 const CORNERS: usize = 72;

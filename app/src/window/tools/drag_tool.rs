@@ -2,11 +2,11 @@
 
 use super::tool_settings::ToolSettings;
 use crate::window::{Action, Tool};
+use document::{SurfaceHit, rectangle_outline, view_ray};
 use egui::{Color32, Modifiers, Painter, Pos2, Shape, Stroke};
 use focus::{CombineMode, Gradient, GradientLine, ViewFrame};
 use glam::DVec2;
 use project::SelectionShape;
-use document::{SurfaceHit, rectangle_outline, view_ray};
 use session::{Command, Session};
 
 /// A shorter movement is a click, not a drag, points.

@@ -2,9 +2,9 @@
 
 use super::drag_tool::DragView;
 use crate::window::Action;
+use document::{Document, view_ray};
 use egui::{Color32, Painter, Pos2, Stroke};
 use focus::{Adjustment, FocalPlane, LayerEdit};
-use document::{Document, view_ray};
 use session::{Command, Session};
 
 /// Distance within which the pointer grabs a point, points.

@@ -3,11 +3,11 @@
 //! A grid of rays is traced once the view is still; testing them against a region is then a lookup. The outline
 //! runs midway between rays inside and outside the region (marching squares).
 
+use document::{Document, view_ray};
 use egui::{Color32, Pos2, Rect, Stroke, Ui, Vec2, pos2, vec2};
 use focus::{FillTarget, ViewFrame};
 use glam::DVec2;
 use rayon::prelude::*;
-use document::{Document, view_ray};
 
 /// Spacing of the rays, points.
 const RAY_SPACING_POINTS: f32 = 3.0;

@@ -8,11 +8,11 @@ use super::drag_tool::{Drag, DragView, combine};
 use super::navigation;
 use super::plane_tool::{self, PlaneTool};
 use crate::window::{Action, Tool};
+use document::{StrokePoint, StrokeTarget};
 use egui::{Event, Modifiers, PointerButton, Pos2, Response, Ui};
 use focus::ViewFrame;
 use glam::DVec3;
 use project::SelectionShape;
-use document::{StrokePoint, StrokeTarget};
 use session::{Command, Session};
 
 /// Distance between the points of a straight line, screen points.

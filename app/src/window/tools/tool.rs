@@ -1,8 +1,8 @@
 //! The tools: what the left button does in the views.
 
+use document::DepthRepair;
 use focus::{Brush, BrushMode};
 use lens::FocusOffset;
-use document::DepthRepair;
 use session::CommandId;
 
 /// A tool. Not part of the document.

@@ -13,10 +13,10 @@ use crate::window::layout::Pane;
 use crate::window::tools::active_tool::ActiveTool;
 use aperture_view::ApertureView;
 use atlas_view::AtlasView;
+use document::SurfaceHit;
 use egui::Ui;
 use histogram_view::HistogramView;
 use photograph_strip::PhotographStrip;
-use document::SurfaceHit;
 use session::Session;
 use timeline::Timeline;
 

@@ -20,9 +20,9 @@ pub use layers_panel::is_layer_command_possible;
 pub use tool_panel::selection_summary;
 
 use crate::window::{Action, Tool, ViewSettings};
+use document::SurfaceHit;
 use egui::{CollapsingHeader, ScrollArea, Ui};
 use project::PresetLibrary;
-use document::SurfaceHit;
 use session::Session;
 
 /// State of the inspector between frames.

@@ -5,9 +5,9 @@ use crate::measurement::band::OutlineBand;
 use crate::measurement::contender::{Contender, Shot};
 use crate::measurement::reference::{ReferenceError, conserved_picture, trace_reference};
 use lens::Picture;
+use light::Steps;
 use project::{LinearPicture, compare};
 use serde::Serialize;
-use light::Steps;
 use session::SessionError;
 
 /// Measured numbers of rays per pixel, in addition to those of the reference.

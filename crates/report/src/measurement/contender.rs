@@ -4,11 +4,11 @@ use super::stopwatch::{Timed, measure_time};
 use baselines::scatter_rays;
 use focus::Focus;
 use lens::{Camera, Picture};
-use salf::Salf;
 use light::LitScene;
 use light::Steps;
-use render::{RenderOptions, Renderer, render};
 use render::RenderError;
+use render::{RenderOptions, Renderer, render};
+use salf::Salf;
 use session::SessionError;
 use splat::Splatter;
 use std::sync::Arc;
@@ -193,7 +193,8 @@ fn draw_from_scratch(
     bytes: usize,
     steps: &dyn Steps,
 ) -> Result<DrawnPicture, SessionError> {
-    let drawn = measure_time(|| Ok::<_, SessionError>(render(shot.lit, shot.camera, shot.focus, options, steps)?))?;
+    let drawn =
+        measure_time(|| Ok::<_, SessionError>(render(shot.lit, shot.camera, shot.focus, options, steps)?))?;
     Ok(DrawnPicture {
         picture: drawn.value.picture,
         bake_seconds: None,
@@ -237,7 +238,8 @@ fn bake_light_field(
     options: &RenderOptions,
     steps: &dyn Steps,
 ) -> Result<(f64, Arc<Salf>), SessionError> {
-    let baked = measure_time(|| Ok::<_, SessionError>(options.bake(shot.lit, shot.camera, shot.focus, steps)?))?;
+    let baked =
+        measure_time(|| Ok::<_, SessionError>(options.bake(shot.lit, shot.camera, shot.focus, steps)?))?;
     Ok((baked.seconds, Arc::new(baked.value)))
 }
 

@@ -5,8 +5,8 @@ use super::contender::{Contender, Shot};
 use super::memory::PeakMemory;
 use super::record::{Record, Series};
 use super::reference::{ReferenceError, conserved_picture};
-use project::{LinearPicture, compare};
 use light::Steps;
+use project::{LinearPicture, compare};
 use session::SessionError;
 
 /// What the picture of a contender is compared with.

@@ -13,10 +13,10 @@
 
 use super::contender::Shot;
 use lens::{Exposure, Picture};
-use project::{LinearPicture, compare};
-use serde::{Deserialize, Serialize};
 use light::Steps;
+use project::{LinearPicture, compare};
 use render::{RenderOptions, Renderer, render};
+use serde::{Deserialize, Serialize};
 use session::SessionError;
 use trace::truth::TruthOptions;
 

@@ -6,9 +6,9 @@ use baselines::ghosting_bounds;
 use glam::DVec3;
 use numerics::upper_median;
 use project::{LinearPicture, write_rgb};
+use render::LeftOut;
 use scene::{Photograph, Scene, View};
 use serde::{Deserialize, Serialize};
-use render::LeftOut;
 use session::SessionError;
 use std::path::PathBuf;
 

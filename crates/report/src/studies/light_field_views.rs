@@ -2,9 +2,9 @@
 //! light field.
 
 use super::left_out_photographs::SparseLightField;
-use serde::{Deserialize, Serialize};
 use document::{DisparityError, Input};
 use light::Steps;
+use serde::{Deserialize, Serialize};
 use session::SessionError;
 
 /// Measurements of the views of a light field.

@@ -3,12 +3,12 @@
 use crate::measurement::reference::conserved_picture;
 use crate::options::SceneRequest;
 use crate::subject::Subject;
+use document::{CameraEdit, VariantChoice};
 use glam::DMat4;
 use lens::Camera;
 use progress::Progress;
 use project::{LinearPicture, compare};
 use serde::{Deserialize, Serialize};
-use document::{CameraEdit, VariantChoice};
 use session::{Command, Event, Preview, PreviewKind, Quality, Session, SessionError, SessionOptions};
 use std::time::{Duration, Instant};
 

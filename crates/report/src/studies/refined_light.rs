@@ -3,11 +3,11 @@
 use crate::measurement::reference::conserved_picture;
 use focus::Focus;
 use lens::Camera;
-use project::{LinearPicture, compare};
-use serde::{Deserialize, Serialize};
 use light::LitScene;
 use light::{LightErrors, LightQuality, Steps};
+use project::{LinearPicture, compare};
 use render::{RenderOptions, render};
+use serde::{Deserialize, Serialize};
 use session::SessionError;
 use std::sync::Arc;
 

@@ -1,8 +1,8 @@
 //! A lens for scenes that come without one.
 
+use baselines::FirstHits;
 use lens::Camera;
 use numerics::quantile;
-use baselines::FirstHits;
 
 /// Upper bound of the circle of confusion for most pixels of a scene without a lens, in picture heights: enough
 /// blur to compare, with content still visible.

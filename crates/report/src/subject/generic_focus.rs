@@ -1,10 +1,10 @@
 //! A painted focus for scenes that come without one, covering the range of what paint can do.
 
+use document::chief_ray;
 use focus::{FocusRecipe, RecipeEntry};
 use glam::DVec2;
 use lens::{Camera, FocusOffset};
 use scene::Scene;
-use document::chief_ray;
 use std::collections::BTreeMap;
 use trace::Tracer;
 

@@ -8,9 +8,12 @@ use crate::cli::input::{camera_and_focus, open_input};
 use crate::cli::termination;
 use focus::LensMotion;
 use project::{PictureOptions, read_keys, seal_picture, write_picture};
-use serde_json::json;
-use render::{Baking, FrameFiles, FrameList, FrameReport, Outcome, Rendered, SequenceOptions, SequenceReport, Shard, Take, TakeOptions, render_frames};
 use render::RenderError;
+use render::{
+    Baking, FrameFiles, FrameList, FrameReport, Outcome, Rendered, SequenceOptions, SequenceReport, Shard,
+    Take, TakeOptions, render_frames,
+};
+use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 

@@ -6,8 +6,8 @@ use crate::cli::console::{Console, path_text, print_json};
 use crate::cli::failure::Failure;
 use crate::cli::input::{camera_and_focus, open_input};
 use crate::cli::termination;
-use serde_json::json;
 use render::{Outcome, Renderer, TileGrid, TileOptions, TileReport, TilesReport, render_tiles};
+use serde_json::json;
 use std::path::Path;
 use std::time::Instant;
 

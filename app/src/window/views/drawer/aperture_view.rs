@@ -5,10 +5,10 @@ use super::aperture_pad::{APERTURE_TIP, aperture_pad};
 use crate::window::Action;
 use crate::window::chrome::controls::{self, row, rows};
 use crate::window::chrome::keys;
+use document::SurfaceHit;
 use egui::{Color32, Mesh, Rect, Response, Sense, Shape, Stroke, Ui, pos2, vec2};
 use glam::{DVec2, DVec3};
 use lens::Aperture;
-use document::SurfaceHit;
 use session::{ApertureImage, BakedVisibility, CommandId, Session};
 
 /// The grey of a closed aperture.

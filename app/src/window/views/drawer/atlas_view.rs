@@ -4,11 +4,11 @@ use crate::window::Action;
 use crate::window::chrome::controls;
 use crate::window::tools::active_tool::ActiveTool;
 use crate::window::views::false_colour;
+use document::{Document, StrokePoint, StrokeTarget};
 use egui::{Color32, ColorImage, Pos2, Rect, Sense, TextureHandle, TextureOptions, Ui, pos2, vec2};
 use focus::FocusMap;
 use glam::DVec2;
 use rayon::prelude::*;
-use document::{Document, StrokePoint, StrokeTarget};
 use session::{Command, Session};
 
 /// Longest side of the drawn atlas, px: larger maps are subsampled.

@@ -3,10 +3,10 @@
 
 use crate::window::Action;
 use crate::window::chrome::controls;
+use document::{CameraEdit, Document, camera_between};
 use egui::{
     Color32, ColorImage, CornerRadius, Rect, ScrollArea, Sense, Slider, Stroke, TextureHandle, Ui, pos2, vec2,
 };
-use document::{CameraEdit, Document, camera_between};
 use session::{Command, Session, Thumbnails};
 use std::collections::HashMap;
 

@@ -3,9 +3,9 @@
 
 use crate::window::Action;
 use crate::window::chrome::{controls, keys};
+use document::Document;
 use egui::{Align2, Color32, DragValue, FontId, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, pos2, vec2};
 use focus::{Keys, LayerEdit};
-use document::Document;
 use session::{Command, CommandId, Session};
 
 /// Frame rate of the displayed frame numbers; times snap to these frames.

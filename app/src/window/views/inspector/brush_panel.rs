@@ -7,10 +7,10 @@ use crate::window::chrome::tool_bar::{
     HARDNESS_TIP, SIZE_TIP, STRENGTH_TIP, largest_radius, push_brush_change,
 };
 use crate::window::{Action, ViewSettings};
+use document::{Document, SurfaceHit};
 use egui::{ComboBox, DragValue, Slider, Ui};
 use focus::{Brush, BrushMode, Channels};
 use project::{PresetKind, PresetLibrary};
-use document::{Document, SurfaceHit};
 
 /// Size, strength, hardness, spacing, mode and limits.
 pub fn brush_panel(

@@ -4,12 +4,12 @@ use crate::window::Action;
 use crate::window::chrome::controls::{self, finish_edit, format_number, proportional_value};
 use crate::window::chrome::tool_bar::signed_circle_px;
 use crate::window::views::false_colour;
+use document::Document;
 use egui::{
     Align2, Color32, DragValue, FontId, PointerButton, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2,
 };
 use focus::{Curve, DepthCurve, LayerEdit};
 use lens::Optics;
-use document::Document;
 use session::Command;
 
 /// Height of the drawing, points.

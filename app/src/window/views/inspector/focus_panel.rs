@@ -3,9 +3,9 @@
 use crate::window::Action;
 use crate::window::chrome::controls::{self, format_number, proportional_value, row, rows};
 use crate::window::chrome::tool_bar::{push_brush_change, signed_circle_px, target_slider};
+use document::Document;
 use egui::{Button, Checkbox, DragValue, RichText, Ui};
 use lens::FocusOffset;
-use document::Document;
 use session::{Command, CommandId};
 
 /// The brush's focus, its anchor and gloss, and buttons to fill with it.

@@ -5,10 +5,10 @@ use crate::window::chrome::controls;
 use crate::window::chrome::keys;
 use crate::window::chrome::tool_bar::signed_circle_px;
 use crate::window::views::false_colour;
+use document::{Document, HistoryStep};
 use egui::{Color32, Rect, RichText, ScrollArea, Sense, Ui, pos2, vec2};
 use focus::EditThumbnail;
 use lens::Optics;
-use document::{Document, HistoryStep};
 use session::{Command, CommandId};
 
 /// Side of a step's thumbnail, points.

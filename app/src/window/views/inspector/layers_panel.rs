@@ -5,9 +5,9 @@ use super::plane_editor::plane_editor;
 use crate::window::Action;
 use crate::window::chrome::controls::{self, finish_edit, row, rows};
 use crate::window::chrome::keys;
+use document::Document;
 use egui::{Button, ComboBox, Slider, TextEdit, Ui};
 use focus::{Adjustment, BlendMode, FocusLayer, LayerEdit};
-use document::Document;
 use session::{Command, CommandId};
 
 /// The list of layers, and the settings of the active one.

@@ -5,10 +5,10 @@ use super::shape_panel::shape_panel;
 use crate::window::chrome::controls::{self, finish_edit, format_number, proportional_value, row, rows};
 use crate::window::view_settings::LARGEST_TOLERANCE_PX;
 use crate::window::{Action, ViewSettings};
+use document::{CameraEdit, Document};
 use egui::{Button, ComboBox, DragValue, Slider, Ui};
 use lens::{Camera, Exposure};
 use project::{PresetKind, PresetLibrary};
-use document::{CameraEdit, Document};
 use render::{OcioViews, ToneCurve};
 use session::{Command, CommandId, Session};
 

@@ -1,8 +1,8 @@
 //! What the light field contains; the same table as in `info` and `report`.
 
 use crate::window::chrome::controls::{bytes_text, count_text, row, rows, seconds_text};
-use egui::{RichText, Ui};
 use document::Document;
+use egui::{RichText, Ui};
 use render::Modelled;
 use session::{LivePicture, Session};
 

@@ -3,9 +3,9 @@
 use crate::window::Action;
 use crate::window::chrome::controls::{finish_edit, format_number, row, rows};
 use crate::window::chrome::keys;
+use document::Document;
 use egui::{DragValue, Slider, SliderClamping, Ui};
 use focus::{FocalPlane, LayerEdit};
-use document::Document;
 use session::{Command, CommandId};
 
 /// Range of the sliders to either side, degrees; larger angles can be typed.

@@ -1,10 +1,10 @@
 //! The objects and materials of the scene, each with a button to fill it.
 
 use crate::window::Action;
+use document::{Document, FillRegion, SurfaceHit};
 use egui::{ScrollArea, Ui};
 use glam::DVec2;
 use scene::{BackFaces, Scene, SurfacePoint};
-use document::{Document, FillRegion, SurfaceHit};
 use session::Command;
 
 /// State of the list.

@@ -2,9 +2,9 @@
 
 use crate::window::Action;
 use crate::window::chrome::controls::{finish_edit, row};
+use document::CameraEdit;
 use egui::{ComboBox, DragValue, Ui};
 use lens::{Aperture, ApertureShape, Camera};
-use document::CameraEdit;
 use session::Command;
 
 /// Initial number of blades of a polygon.

@@ -4,9 +4,9 @@ use crate::window::chrome::controls::{self, row, rows};
 use crate::window::chrome::keys;
 use crate::window::tools::tool_settings::{GradientEnd, ToolSettings};
 use crate::window::{Action, Tool};
+use document::Document;
 use egui::{Button, ComboBox, DragValue, Ui};
 use focus::{Ease, GradientShape};
-use document::Document;
 use session::CommandId;
 
 /// Whether the tool has settings in this panel.

@@ -2,8 +2,8 @@
 
 use crate::window::Action;
 use crate::window::chrome::controls::{row, rows};
-use egui::{ComboBox, Ui};
 use document::Document;
+use egui::{ComboBox, Ui};
 use session::Command;
 
 /// Name of the scene's default materials in the list.

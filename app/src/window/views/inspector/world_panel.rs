@@ -2,10 +2,10 @@
 
 use crate::window::Action;
 use crate::window::chrome::controls::{proportional_value, row, rows};
+use document::Document;
 use egui::{Button, ComboBox, DragValue, Ui};
 use glam::{DVec3, Vec3};
 use scene::{Backdrop, Environment, Scene, World};
-use document::Document;
 use session::Command;
 use std::sync::Arc;
 

@@ -1,8 +1,8 @@
 //! The focus map on the graphics card, updated rectangle by rectangle.
 
 use super::device_errors::{GraphicsError, catch_device_errors};
-use focus::FocusMap;
 use document::Document;
+use focus::FocusMap;
 use std::ops::Range;
 
 /// Offset added to the anchor of frozen texels. Must equal the shader's constant.

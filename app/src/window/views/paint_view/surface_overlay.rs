@@ -3,12 +3,12 @@
 
 use crate::window::views::false_colour::nearness_color;
 use atlas::TexelMap;
+use document::Stage;
 use egui::ecolor::gamma_u8_from_linear_f32;
 use glam::{DVec3, Vec3};
+use light::PhotographLight;
 use rayon::prelude::*;
 use scene::SurfacePoint;
-use document::Stage;
-use light::PhotographLight;
 
 /// What the surface shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -16,12 +16,12 @@ use crate::window::tools::drag_tool::DragView;
 use crate::window::tools::navigation::{self, Motion};
 use crate::window::tools::region_highlight::RegionHighlight;
 use crate::window::tools::stroke_input::StrokeInput;
+use document::{Document, SurfaceHit};
 use egui::{Color32, Pos2, Rect, Response, Sense, Stroke, Ui, pos2, vec2};
 use glam::{DVec2, DVec3};
 use lens::Camera;
-use document::{Document, SurfaceHit};
-use session::Session;
 use light::PhotographLight;
+use session::Session;
 use std::ops::Range;
 use std::sync::{Arc, mpsc};
 

@@ -2,8 +2,8 @@
 
 use super::tone_mapper::ToneMapper;
 use crate::window::graphics::blit::{Blitter, Drawable};
-use lens::Picture;
 use document::Document;
+use lens::Picture;
 use render::{StereoForm, Tone, to_screen};
 use session::{ReferenceKind, Screen, Session};
 use splat::PictureOnCard;
