@@ -67,6 +67,7 @@ pub fn forward_substitute<R: AsRef<[f64]>, const C: usize>(triangle: &[R], right
 /// # Panics
 /// There are fewer rows, or a row is too short.
 #[inline]
+#[allow(clippy::needless_range_loop, reason = "the column also indexes the rows that are solved already")]
 pub fn back_substitute<R: AsRef<[f64]>, const C: usize>(triangle: &[R], right: &mut [[f64; C]]) {
     let count = right.len();
     for i in (0..count).rev() {
