@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// Where the pixels of a picture come from.
 #[derive(Clone, PartialEq)]
 pub enum PictureSource {
-    /// A picture file, as [`scene::View::photograph`] reads them.
+    /// A picture file, as [`scene::View::read_photograph`] reads them.
     File {
         /// The file.
         file: PathBuf,
