@@ -211,7 +211,7 @@ fn keys_are_set_on_a_project_and_followed() {
         ("--distance 0@1", "above 0"),
         ("--point 900,900@0", "no surface is visible"),
         ("--opacity Sky=0.5@0", "single layer"),
-        ("--set camera.json", "no keys"),
+        ("--set camera.json", "not a valid file of lens keys"),
     ] {
         let output = run(folder.path(), &format!("keys still.fbrush -o other.fbrush {wrong}"));
         let text = String::from_utf8_lossy(&output.stderr);
