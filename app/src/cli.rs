@@ -1,4 +1,4 @@
-//! The command line: a thin layer over the `session` crate.
+//! The command line: a thin layer over the `render` crate; exit codes follow `session::SessionError`, which all errors become.
 //!
 //! * `arguments`: the arguments and their parsers. `commands`: one file per subcommand; below `render`, its
 //!   variants for frames and tiles.

@@ -1,4 +1,4 @@
-//! Focus Brush: the window and the command line, both thin layers over the `session` crate.
+//! Focus Brush: the window, a thin layer over the `session` crate, and the command line, one over `render`.
 //!
 //! [`cli::run`] is the whole program: it parses the arguments of the process and opens the window
 //! ([`window::run`]) or runs a subcommand. [`window::Shell`] is the application; [`window::ViewSettings`] and

@@ -5,7 +5,7 @@
 //! can still be read.
 //!
 //! The parent polls its children and sleeps in between, because the standard library has no way to wait for a process
-//! *with a deadline and cancellation*. This is the one place below `session` that reads a clock.
+//! *with a deadline and cancellation*. This is the one place below `render` that waits by the clock.
 
 use crate::unwrap::engine::Engine;
 use crate::unwrap::surface_patch::{FlattenedPatch, SurfacePatch};
