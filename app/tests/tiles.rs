@@ -203,7 +203,7 @@ fn what_has_no_tiles_is_refused() {
     done(folder.path(), "bake scene.glb --camera camera.json -o baked.salf");
     let (shot, tiles) = ("scene.glb --camera camera.json", "--tiles 2x2 -o a.exr");
     for (arguments, said) in [
-        (format!("render {shot} --renderer truth {tiles}"), "--renderer truth draws no tiles"),
+        (format!("render {shot} --renderer truth {tiles}"), "--renderer truth does not support tiles"),
         (format!("render {shot} --backend gpu {tiles}"), "summed on the processor"),
         (format!("render {shot} --tiles 2x2 -o a.png"), "name an .exr"),
         (format!("render {shot} --stereo anaglyph {tiles}"), "--stereo"),
