@@ -195,7 +195,7 @@ fn a_focal_plane_runs_through_three_places_that_are_clicked() {
     person.presses(Modifiers::NONE, Key::PageDown);
     person.clicks(at(rect, 0.3, 0.3));
     assert!(
-        person.complaints().iter().any(|text| text.contains("no focal plane")),
+        person.complaints().iter().any(|text| text.contains("is not a focal plane")),
         "{:?}",
         person.complaints()
     );

@@ -10,11 +10,12 @@
 //! use light::{LightOptions, LightQuality, LitScene, Resources};
 //! use progress::Unwatched;
 //! use std::sync::Arc;
+//! use trace::Radiance;
 //!
 //! let tracer = Arc::new(trace::Tracer::new(Arc::new(scene::Scene::default())));
 //! let lit = LitScene::new(tracer, LightOptions::default(), &Resources::default());
 //! let radiance = lit.solve(&lens::Camera::default(), LightQuality::Fine, &Unwatched)?;
-//! assert!(radiance.from_infinity(glam::DVec3::Z).is_finite());
+//! assert!(radiance.environment(glam::DVec3::Z).is_finite());
 //! # Ok::<(), light::LightError>(())
 //! ```
 

@@ -6,6 +6,7 @@ use crate::cli::console::{Console, path_texts, print_json};
 use crate::cli::failure::Failure;
 use crate::cli::input::{read_world, unwrap_options};
 use crate::window::demo;
+use document::InputKind;
 use report::{ReportOptions, SceneRequest};
 use serde_json::json;
 use sha2::{Digest, Sha256};
@@ -123,6 +124,7 @@ fn scene_requests(arguments: &ReportArguments) -> Result<Vec<SceneRequest>, Fail
         light: shot.appearance.light(),
     };
     if !arguments.scenes.is_empty() {
+        arguments.scenes.iter().try_for_each(check_scene)?;
         return Ok(arguments.scenes.iter().map(request).collect());
     }
     if arguments.hard {
@@ -131,6 +133,15 @@ fn scene_requests(arguments: &ReportArguments) -> Result<Vec<SceneRequest>, Fail
     let demo = demo::demo_project()
         .ok_or_else(|| Failure::bad_input("assets/demo: the demo is not installed (name a scene)"))?;
     Ok(vec![request(&demo)])
+}
+
+/// Refuses a file that is no scene before anything is measured.
+fn check_scene(file: &PathBuf) -> Result<(), Failure> {
+    if !file.exists() {
+        return Err(Failure::bad_input(format!("{}: no such file (check the path)", file.display())));
+    }
+    InputKind::from_path(file)?;
+    Ok(())
 }
 
 /// Identifies this build of the program: the SHA-256 checksum of its executable.

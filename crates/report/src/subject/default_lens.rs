@@ -57,6 +57,6 @@ mod tests {
         let mut camera = Camera::default();
         let sentence = open_aperture(&mut camera, &FirstHits::background(4, 4));
         assert_eq!(camera, Camera::default());
-        assert!(sentence.contains("nothing in sight"));
+        assert!(sentence.contains("nothing is in sight"));
     }
 }
