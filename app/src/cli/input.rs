@@ -45,8 +45,9 @@ pub fn open_input(
         input.set_back_faces(back_faces);
     }
     if let Some(world) = world {
-        let world = world.load(&input.scene)?;
+        let (world, faults) = world.load(&input.scene)?;
         input.set_world(Some(world));
+        input.warnings.extend(faults);
     }
     input.light = appearance.light();
     Ok(input)

@@ -286,7 +286,11 @@ impl Input {
             Self { project: Some(project), ..Self::new(path, scene, camera, warnings, resources) };
         input.set_back_faces(back_faces);
         match world.map(|world| world.load(&input.scene)).transpose() {
-            Ok(world) => input.set_world(world),
+            Ok(loaded) => {
+                let (world, faults) = loaded.unzip();
+                input.set_world(world);
+                input.warnings.extend(faults.into_iter().flatten());
+            }
             Err(error) => {
                 input.warnings.push(format!(
                     "{error}; the scene's own world is shown instead (choose one before saving)"
