@@ -4,6 +4,7 @@ mod obj;
 mod ply;
 mod polygon_fan;
 
+mod triangle_strip;
 use crate::files::folder::{EntryKind, Folder, extension};
 use crate::{CaptureError, Remark};
 use progress::Progress;
