@@ -126,6 +126,44 @@ fn nerfstudio_by_an_angle_without_extensions() {
 }
 
 #[test]
+fn nerfstudio_with_zeros_for_what_is_unknown() {
+    let angle = "1.0808390005411683";
+    let known = r#""fl_x": 50, "fl_y": 50, "cx": 30, "cy": 20, "w": 60, "h": 40"#;
+    for lens in [
+        format!(r#"{known}, "camera_angle_x": 0, "camera_angle_y": 0"#),
+        format!(r#"{known}, "camera_angle_x": 3.5, "camera_angle_y": -1.0"#),
+        format!(r#""fl_x": 50, "fl_y": 0, "cx": 0, "cy": 0, "w": 60, "h": 40"#),
+        format!(r#""fl_x": 0, "fl_y": 0, "camera_angle_x": {angle}, "w": 60, "h": 40"#),
+        format!(r#""fl_x": 0.0, "fl_y": 50, "cx": 30, "cy": 20, "w": 0, "h": 0, "camera_angle_x": 0"#),
+        format!(r#""w": 0, "h": 0, "fl_x": "0", "camera_angle_x": {angle}"#),
+    ] {
+        same_cameras(CameraFormat::Nerfstudio, |folder, cameras| {
+            transforms(folder, cameras, &lens, |name| format!("images/{name}"));
+        });
+    }
+}
+
+#[test]
+fn nerfstudio_with_zeros_in_a_frame() {
+    let folder = tempfile::tempdir().unwrap();
+    pictures_and_mesh(folder.path(), &cameras(&["a.jpg"]));
+    let pose = "[[1,0,0,0],[0,1,0,0],[0,0,1,5],[0,0,0,1]]";
+    let read = |of_frame: &str, of_file: &str| {
+        let frame = format!(r#"{{"file_path": "images/a.jpg", "transform_matrix": {pose}, {of_frame}}}"#);
+        write(folder.path().join("transforms.json"), format!(r#"{{{of_file}, "frames": [{frame}]}}"#))
+            .unwrap();
+        *open(folder.path()).unwrap().views[0].lens.intrinsics()
+    };
+    let focal = |of_frame: &str, of_file: &str| read(of_frame, of_file).focal_px;
+    let file = r#""fl_x": 50, "fl_y": 51, "w": 60, "h": 40, "camera_angle_x": 0"#;
+    assert_eq!(focal(r#""fl_x": 0, "fl_y": 0, "w": 0"#, file), [50.0, 51.0]);
+    assert_eq!(focal(r#""fl_x": 40, "fl_y": 41, "camera_angle_x": 0"#, file), [40.0, 41.0]);
+    assert_eq!(focal(r#""fl_x": 40, "fl_y": 41"#, r#""fl_x": 0, "fl_y": 0, "w": 0, "h": 0"#), [40.0, 41.0]);
+    let off_centre = read(r#""fl_x": 40, "cx": 28.5"#, r#""cx": 0, "cy": 0"#);
+    assert_eq!(off_centre.principal_px, [28.5, 20.0]);
+}
+
+#[test]
 fn nerfstudio_with_a_lens_and_a_mask_for_each() {
     let folder = tempfile::tempdir().unwrap();
     pictures_and_mesh(folder.path(), &cameras(&["a.jpg"]));
@@ -339,6 +377,16 @@ fn malformed_files_are_reported_with_the_place() {
         "line 3: does not have the name, focal length",
     );
     assert_refused("c.xml", "<document><chunk>\n</document>", "its XML is invalid");
+    assert_refused(
+        "transforms.json",
+        &format!("{{\"fl_x\": 0, \"camera_angle_x\": 0, \"w\": 60, \"h\": 40, {frame}}}"),
+        "neither fl_x nor camera_angle_x gives its focal length (0 counts as missing)",
+    );
+    assert_refused(
+        "transforms.json",
+        &format!("{{\"camera_angle_x\": 4, {frame}}}"),
+        "camera_angle_x is not an angle between 0 and π",
+    );
     let camera =
         "<cameras><camera label=\"a\" sensor_id=\"0\">\n<transform>1 2</transform></camera></cameras>";
     assert_refused(
