@@ -66,7 +66,7 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure
 }
 
 /// The output files, and the frame numbers of this share.
-fn files_and_frames(arguments: &RenderArguments) -> Result<(FrameFiles, Vec<u32>), Failure> {
+fn files_and_frames(arguments: &RenderArguments) -> Result<(FrameFiles, Vec<i32>), Failure> {
     let sequence_arguments = &arguments.sequence;
     let frames = sequence_arguments.frames.clone().or(sequence_arguments.frame.map(FrameList::single));
     let frames = frames.as_ref().map_or(&[][..], FrameList::numbers);
