@@ -25,6 +25,22 @@ pub enum CaptureError {
         /// The folder.
         folder: PathBuf,
     },
+    /// A picture has no such layer.
+    #[error("{}: has no layer {layer} with a picture and its depth (choose among {layers})", file.display())]
+    NoLayer {
+        /// The picture.
+        file: PathBuf,
+        /// The requested layer, in quotes.
+        layer: String,
+        /// Those that it has, in quotes.
+        layers: String,
+    },
+    /// A picture cannot have layers.
+    #[error("{}: is no EXR with several layers (leave out --layer)", file.display())]
+    Unlayered {
+        /// The picture.
+        file: PathBuf,
+    },
     /// The content of a file is invalid.
     #[error("{}: {place}: {what} (correct the file or export it again)", file.display())]
     Malformed {

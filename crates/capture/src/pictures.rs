@@ -1,6 +1,7 @@
 //! From the photographs in a file of cameras to views, with remarks on what is incomplete.
 
 pub(crate) mod exr_channels;
+pub(crate) mod exr_layers;
 pub(crate) mod picture_folder;
 pub(crate) mod picture_names;
 pub(crate) mod picture_source;

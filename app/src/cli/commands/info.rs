@@ -34,7 +34,8 @@ pub fn run(arguments: &InfoArguments, console: &Console) -> Result<(), Failure> 
         let note = format!("{}: no triangle, so there is nothing to render", file.display());
         return report_empty_scene(arguments, inspection, &note, console);
     }
-    let input = open_input(file, &arguments.appearance, console.resources(), &Unwatched)?;
+    let input =
+        open_input(file, &arguments.appearance, arguments.layer.as_deref(), console.resources(), &Unwatched)?;
     console.warn(&input.warnings);
     let health = MeshHealth::measure(&input.scene);
     let modelled = count_modelled(&input, arguments.bake, console)?;

@@ -18,6 +18,9 @@ use std::path::Path;
 /// The largest width and height of a window.
 const LARGEST_SIDE: usize = 32768;
 
+/// Layers that are the whole picture.
+const PICTURES: [&str; 6] = ["combined", "image", "rgba", "rgb", "beauty", "composite"];
+
 /// Channels of an image.
 pub(crate) struct ExrChannels {
     pub size: [u32; 2],
@@ -27,8 +30,20 @@ pub(crate) struct ExrChannels {
 
 /// The names of the channels of an EXR.
 pub(crate) fn exr_names(file: &Path, options: &LoadOptions) -> Result<Vec<String>, CaptureError> {
+    Ok(exr_names_and_root(file, options)?.0)
+}
+
+/// The same, and the name of the first part, whose channels bear none; it may have none.
+pub(crate) fn exr_names_and_root(
+    file: &Path,
+    options: &LoadOptions,
+) -> Result<(Vec<String>, String), CaptureError> {
     let bytes = whole_file(file, options.max_memory / 2)?;
-    guarded(file, || Ok(names(&meta(&bytes)?)))
+    guarded(file, || {
+        let meta = meta(&bytes)?;
+        let root = meta.headers[0].own_attributes.layer_name.as_ref();
+        Ok((names(&meta), root.map(ToString::to_string).unwrap_or_default()))
+    })
 }
 
 /// Reads the channels of these names, all of which must exist.
@@ -59,21 +74,30 @@ fn meta(bytes: &[u8]) -> Result<MetaData, String> {
 fn names(meta: &MetaData) -> Vec<String> {
     let of_part = |(part, header): (usize, &Header)| {
         let names = header.channels.list.iter();
-        names.map(|channel| full_name(part, header, &channel.name.to_string())).collect::<Vec<_>>()
+        names.map(|channel| full_name(part, meta, &channel.name.to_string())).collect::<Vec<_>>()
     };
     meta.headers.iter().enumerate().flat_map(of_part).collect()
 }
 
-/// The name of a part's channel among those of all parts.
-fn full_name(part: usize, header: &Header, channel: &str) -> String {
-    match &header.own_attributes.layer_name {
-        Some(layer)
-            if !channel.contains('.') && (part > 0 || layer.to_string().to_lowercase().contains("depth")) =>
-        {
-            format!("{layer}.{channel}")
+/// The name of a part's channel among those of all parts. Channels of the first part keep their own, unless the part is named as a pass of a
+/// layer (`ViewLayer.Combined`) or as depth; those of other parts too if they begin with the part's name, or if no part before has them.
+fn full_name(part: usize, meta: &MetaData, channel: &str) -> String {
+    let Some(layer) = &meta.headers[part].own_attributes.layer_name else { return channel.into() };
+    let layer = layer.to_string();
+    let is_prefixed = match (channel.contains('.'), part) {
+        (false, 0) => {
+            let pass = layer.rsplit_once('.').map(|(_, pass)| pass.to_lowercase());
+            pass.is_some_and(|pass| PICTURES.contains(&pass.as_str()))
+                || layer.to_lowercase().contains("depth")
         }
-        _ => channel.into(),
-    }
+        (false, _) => true,
+        (true, _) => {
+            let has_it = |header: &Header| header.channels.list.iter().any(|other| other.name.eq(channel));
+            let begins_so = channel.strip_prefix(&layer).is_some_and(|rest| rest.starts_with('.'));
+            !begins_so && meta.headers[..part].iter().any(has_it)
+        }
+    };
+    if is_prefixed { format!("{layer}.{channel}") } else { channel.into() }
 }
 
 fn decode(bytes: &[u8], channel_names: &[&str], options: &LoadOptions) -> Result<ExrChannels, String> {
@@ -97,7 +121,7 @@ fn decode(bytes: &[u8], channel_names: &[&str], options: &LoadOptions) -> Result
     for name in channel_names {
         let location = meta.headers.iter().enumerate().find_map(|(part, header)| {
             let of_name = |channel: &exr::meta::attribute::ChannelDescription| {
-                full_name(part, header, &channel.name.to_string()) == *name
+                full_name(part, &meta, &channel.name.to_string()) == *name
             };
             header.channels.list.iter().position(of_name).map(|channel| (part, channel))
         });
@@ -147,8 +171,6 @@ fn decode(bytes: &[u8], channel_names: &[&str], options: &LoadOptions) -> Result
 /// The colour channels, red first: those without a layer, or of the layer that is the picture; `None` if there are
 /// none.
 pub(crate) fn color_channels(names: &[String]) -> Option<[String; 3]> {
-    /// Layers that are the whole picture.
-    const PICTURES: [&str; 6] = ["combined", "image", "rgba", "rgb", "beauty", "composite"];
     let layer = |name: &str| {
         let (layer, channel) = name.rsplit_once('.').unwrap_or(("", name));
         channel.eq_ignore_ascii_case("r").then(|| layer.to_owned())

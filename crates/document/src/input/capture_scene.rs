@@ -90,6 +90,10 @@ pub(crate) fn load_capture(
     };
     let near = choices.near.as_ref().map(|near| near.parse::<NearEnd>());
     let near = near.transpose().map_err(|message| DocumentError::BadInput(format!("--near {message}")))?;
+    if choices.layer.is_some() && kind != CaptureKind::Depth {
+        let what = "has no layers to choose from: it is not a picture with depth (leave out --layer)";
+        return Err(DocumentError::bad_file(path, what));
+    }
     let load = LoadOptions::default();
     let surface = match kind {
         CaptureKind::Photographs => return load_photographs(path, choices, &*steps.begin("reading")),
@@ -101,7 +105,7 @@ pub(crate) fn load_capture(
         CaptureKind::Depth => {
             let disparity = choices.disparity.clone().map(|file| (file, DepthQuantity::Disparity));
             let depth = choices.depth.clone().map(|file| (file, DepthQuantity::Depth)).or(disparity);
-            let options = DepthPictureOptions { depth, near, load };
+            let options = DepthPictureOptions { depth, layer: choices.layer.clone(), near, load };
             load_depth_picture(path, &options, &choices.depth_strokes, steps)?
         }
     };
