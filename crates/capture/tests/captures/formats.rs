@@ -310,6 +310,37 @@ fn metashape_lenses_are_those_of_its_manual() {
 }
 
 #[test]
+fn pictures_that_were_not_aligned_are_told_in_good_english() {
+    let row = "1 0 0\n0 1 0\n0 0 1\n0 0 -5\n";
+    for (not_aligned, told) in [
+        (
+            1,
+            "bundle.out: sub/b.jpg has no camera: it was not aligned by the program that wrote the file (align it there",
+        ),
+        (
+            2,
+            "bundle.out: sub/b.jpg, sub/c.jpg have no camera: they were not aligned by the program that wrote the file (align them there",
+        ),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        pictures_and_mesh(folder.path(), &cameras(&NAMES));
+        write(folder.path().join("list.txt"), NAMES[..1 + not_aligned].join("\n")).unwrap();
+        let unknown = "0 0 0\n".repeat(5 * not_aligned);
+        let bundle = format!("# Bundle file v0.3\n{} 0\n50 0 0\n{row}{unknown}", 1 + not_aligned);
+        write(folder.path().join("bundle.out"), bundle).unwrap();
+        let remarks: Vec<String> =
+            open(folder.path()).unwrap().remarks.into_iter().map(|remark| remark.text).collect();
+        assert!(remarks.iter().any(|text| text.contains(told)), "{remarks:?}");
+        // A picture that the file does not list is another matter.
+        let unlisted = remarks.iter().find(|text| text.contains("ignored"));
+        match not_aligned {
+            1 => assert!(unlisted.unwrap().contains("sub/c.jpg has no camera in"), "{remarks:?}"),
+            _ => assert_eq!(unlisted, None, "{remarks:?}"),
+        }
+    }
+}
+
+#[test]
 fn a_kind_may_be_chosen() {
     let folder = crate::made::colmap(&NAMES);
     transforms(folder.path(), &cameras(&NAMES[..2]), "\"fl_x\": 50", |name| format!("images/{name}"));
@@ -348,6 +379,16 @@ fn malformed_files_are_reported_with_the_place() {
     );
     assert_refused(
         "transforms.json",
+        &format!("{{\"fl_x\": 0, \"camera_angle_x\": 0, \"w\": 60, \"h\": 40, {frame}}}"),
+        "neither fl_x nor camera_angle_x gives its focal length (0 counts as missing)",
+    );
+    assert_refused(
+        "transforms.json",
+        &format!("{{\"camera_angle_x\": 4, {frame}}}"),
+        "camera_angle_x is not an angle between 0 and π",
+    );
+    assert_refused(
+        "transforms.json",
         &format!("{{\"fl_x\": -2, \"w\": 60, \"h\": 40, {frame}}}"),
         "focal length must be above 0",
     );
@@ -377,16 +418,6 @@ fn malformed_files_are_reported_with_the_place() {
         "line 3: does not have the name, focal length",
     );
     assert_refused("c.xml", "<document><chunk>\n</document>", "its XML is invalid");
-    assert_refused(
-        "transforms.json",
-        &format!("{{\"fl_x\": 0, \"camera_angle_x\": 0, \"w\": 60, \"h\": 40, {frame}}}"),
-        "neither fl_x nor camera_angle_x gives its focal length (0 counts as missing)",
-    );
-    assert_refused(
-        "transforms.json",
-        &format!("{{\"camera_angle_x\": 4, {frame}}}"),
-        "camera_angle_x is not an angle between 0 and π",
-    );
     let camera =
         "<cameras><camera label=\"a\" sensor_id=\"0\">\n<transform>1 2</transform></camera></cameras>";
     assert_refused(
