@@ -12,5 +12,6 @@ mod mosaics;
 mod mutants;
 #[path = "../../../scene/tests/mutation/mod.rs"]
 mod mutation;
+mod rigs;
 mod skull;
 mod traps;
