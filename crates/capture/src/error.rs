@@ -111,6 +111,17 @@ pub enum CaptureError {
         /// What is wrong, as a continuation of the sentence.
         detail: String,
     },
+    /// Nothing says how many columns and rows a light field has.
+    #[error(
+        "{}: {what} (put a parameters.cfg beside them with the lines num_cams_x = COLUMNS and num_cams_y = ROWS, or list them in views.json)",
+        folder.display()
+    )]
+    GridUnknown {
+        /// The folder of the views.
+        folder: PathBuf,
+        /// What is known.
+        what: String,
+    },
     /// There is no depth of a picture.
     #[error(
         "{}: no depth{detail} (put it next to the picture as NAME_depth.png, .pfm or .exr, or name its file)",
