@@ -98,7 +98,9 @@ fn capture_json(input: &Input) -> Option<Value> {
         })
     };
     let all = |views: &[View]| views.iter().map(photograph).collect::<Vec<_>>();
-    (!views.is_empty()).then(|| json!({ "photographs": all(views), "left_out": all(left_out) }))
+    let fit = input.mesh_fit.map(|fit| json!({ "agreement": fit.agreement, "patches": fit.patches }));
+    (!views.is_empty())
+        .then(|| json!({ "photographs": all(views), "left_out": all(left_out), "mesh_fit": fit }))
 }
 
 fn print_capture(input: &Input) {
@@ -112,6 +114,9 @@ fn print_capture(input: &Input) {
         views.len(),
         left_out.len()
     ));
+    if let Some(fit) = &input.mesh_fit {
+        print_line(format!("  mesh fit     {fit}"));
+    }
 }
 
 /// Reports a file without triangles: its contents and a note.

@@ -172,6 +172,22 @@ fn numbered_views_without_parameters_are_a_square() {
 }
 
 #[test]
+fn the_numbered_views_of_the_shared_cases_are_where_those_named_by_row_and_column_are() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../../../shared/cases/field2/20-light-fields-by-other-names");
+    if !folder.is_dir() {
+        println!("SKIPPED: there is no {}", folder.display());
+        return;
+    }
+    let [numbered, named] = ["hci25", "base"].map(|name| opened(&folder.join(name)));
+    assert_eq!((numbered.grid, numbered.views.len()), (Some([5, 5]), 25));
+    for (a, b) in numbered.views.iter().zip(&named.views) {
+        let pixels = [a, b].map(|view| std::fs::read(view.picture.file()).unwrap());
+        assert!(a.position == b.position && pixels[0] == pixels[1], "{} and {}", a.name, b.name);
+    }
+}
+
+#[test]
 fn numbered_views_that_could_be_several_grids_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     grid(folder.path(), 5, 3, |x, y| format!("input_Cam{:03}.png", y * 5 + x));

@@ -7,6 +7,7 @@ mod light_fields;
 mod light_mutants;
 mod made;
 mod made_light;
+mod mesh_fits;
 mod meshes;
 mod mosaics;
 mod mutants;
