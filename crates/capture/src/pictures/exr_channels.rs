@@ -8,9 +8,9 @@ use crate::files::whole_file::whole_file;
 use exr::block::reader::ChunksReader;
 use exr::meta::MetaData;
 use exr::meta::attribute::SampleType;
-use exr::meta::header::Header;
 use exr::prelude::{Vec2, f16};
 use scene::LoadOptions;
+use std::collections::HashSet;
 use std::io::Cursor;
 use std::panic::AssertUnwindSafe;
 use std::path::Path;
@@ -72,32 +72,39 @@ fn meta(bytes: &[u8]) -> Result<MetaData, String> {
 }
 
 fn names(meta: &MetaData) -> Vec<String> {
-    let of_part = |(part, header): (usize, &Header)| {
-        let names = header.channels.list.iter();
-        names.map(|channel| full_name(part, meta, &channel.name.to_string())).collect::<Vec<_>>()
-    };
-    meta.headers.iter().enumerate().flat_map(of_part).collect()
+    names_by_part(meta).concat()
 }
 
-/// The name of a part's channel among those of all parts. Channels of the first part keep their own, unless the part is named as a pass of a
-/// layer (`ViewLayer.Combined`) or as depth; those of other parts too if they begin with the part's name, or if no part before has them.
-fn full_name(part: usize, meta: &MetaData, channel: &str) -> String {
-    let Some(layer) = &meta.headers[part].own_attributes.layer_name else { return channel.into() };
-    let layer = layer.to_string();
-    let is_prefixed = match (channel.contains('.'), part) {
-        (false, 0) => {
-            let pass = layer.rsplit_once('.').map(|(_, pass)| pass.to_lowercase());
-            pass.is_some_and(|pass| PICTURES.contains(&pass.as_str()))
-                || layer.to_lowercase().contains("depth")
-        }
-        (false, _) => true,
-        (true, _) => {
-            let has_it = |header: &Header| header.channels.list.iter().any(|other| other.name.eq(channel));
-            let begins_so = channel.strip_prefix(&layer).is_some_and(|rest| rest.starts_with('.'));
-            !begins_so && meta.headers[..part].iter().any(has_it)
-        }
-    };
-    if is_prefixed { format!("{layer}.{channel}") } else { channel.into() }
+/// The names of the channels of each part among those of all parts. Channels of the first part keep their own, unless the part is named as a
+/// pass of a layer (`ViewLayer.Combined`) or as depth. Those of other parts bear the part's name, unless they begin with it, or are in a layer
+/// that no part before has.
+fn names_by_part(meta: &MetaData) -> Vec<Vec<String>> {
+    let mut earlier = HashSet::new();
+    let mut all = Vec::new();
+    for (part, header) in meta.headers.iter().enumerate() {
+        let own: Vec<String> = header.channels.list.iter().map(|channel| channel.name.to_string()).collect();
+        let layer = header.own_attributes.layer_name.as_ref().map(ToString::to_string);
+        let is_prefixed = |layer: &str, channel: &str| match (channel.contains('.'), part) {
+            (false, 0) => is_picture_pass(layer) || layer.to_lowercase().contains("depth"),
+            (false, _) => true,
+            (true, _) => {
+                let begins_so = channel.strip_prefix(layer).is_some_and(|rest| rest.starts_with('.'));
+                !begins_so && earlier.contains(channel)
+            }
+        };
+        let full = |channel: &String| match &layer {
+            Some(layer) if is_prefixed(layer, channel) => format!("{layer}.{channel}"),
+            _ => channel.clone(),
+        };
+        all.push(own.iter().map(full).collect());
+        earlier.extend(own);
+    }
+    all
+}
+
+/// Whether a part is named as the picture of a layer.
+fn is_picture_pass(part: &str) -> bool {
+    part.rsplit_once('.').is_some_and(|(_, pass)| PICTURES.contains(&pass.to_lowercase().as_str()))
 }
 
 fn decode(bytes: &[u8], channel_names: &[&str], options: &LoadOptions) -> Result<ExrChannels, String> {
@@ -117,13 +124,10 @@ fn decode(bytes: &[u8], channel_names: &[&str], options: &LoadOptions) -> Result
         return Err(format!("is of {width} × {height} px; there must be at least one, and at most {limit}"));
     }
     // The position of each requested channel: its part, and its index in the part.
-    let mut places = Vec::new();
+    let (all_names, mut places) = (names_by_part(&meta), Vec::new());
     for name in channel_names {
-        let location = meta.headers.iter().enumerate().find_map(|(part, header)| {
-            let of_name = |channel: &exr::meta::attribute::ChannelDescription| {
-                full_name(part, &meta, &channel.name.to_string()) == *name
-            };
-            header.channels.list.iter().position(of_name).map(|channel| (part, channel))
+        let location = all_names.iter().enumerate().find_map(|(part, names)| {
+            names.iter().position(|other| other == name).map(|channel| (part, channel))
         });
         let (part, channel) = location.ok_or_else(|| format!("has no channel {name}"))?;
         if meta.headers[part].channels.list[channel].sampling != Vec2(1, 1) {
