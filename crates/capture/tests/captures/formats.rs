@@ -132,9 +132,9 @@ fn nerfstudio_with_zeros_for_what_is_unknown() {
     for lens in [
         format!(r#"{known}, "camera_angle_x": 0, "camera_angle_y": 0"#),
         format!(r#"{known}, "camera_angle_x": 3.5, "camera_angle_y": -1.0"#),
-        format!(r#""fl_x": 50, "fl_y": 0, "cx": 0, "cy": 0, "w": 60, "h": 40"#),
+        r#""fl_x": 50, "fl_y": 0, "cx": 0, "cy": 0, "w": 60, "h": 40"#.into(),
         format!(r#""fl_x": 0, "fl_y": 0, "camera_angle_x": {angle}, "w": 60, "h": 40"#),
-        format!(r#""fl_x": 0.0, "fl_y": 50, "cx": 30, "cy": 20, "w": 0, "h": 0, "camera_angle_x": 0"#),
+        r#""fl_x": 0.0, "fl_y": 50, "cx": 30, "cy": 20, "w": 0, "h": 0, "camera_angle_x": 0"#.into(),
         format!(r#""w": 0, "h": 0, "fl_x": "0", "camera_angle_x": {angle}"#),
     ] {
         same_cameras(CameraFormat::Nerfstudio, |folder, cameras| {
