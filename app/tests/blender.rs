@@ -57,6 +57,11 @@ fn a_scene_goes_over_and_comes_back() {
 }
 
 #[test]
+fn what_a_render_shows_goes_over() {
+    passes("test_shown.py");
+}
+
+#[test]
 fn the_light_of_cycles_comes_over() {
     passes("test_cycles_light.py");
 }

@@ -18,6 +18,9 @@ fn a_photograph_left_out_is_what_the_others_tell() {
     let info: Value = serde_json::from_str(&done(folder, "info wall.fbrush --json")).unwrap();
     assert_eq!(info["capture"]["photographs"].as_array().unwrap().len(), 5);
     assert_eq!(info["capture"]["left_out"][0]["name"], "2.png");
+    let agreement = info["capture"]["mesh_fit"]["agreement"].as_f64().unwrap();
+    assert!((0.6..=1.0).contains(&agreement), "{agreement}");
+    assert!(done(folder, "info wall").contains("patches look alike in two photographs"));
     assert_eq!(info["project"]["scene_state"], "same");
 
     // Through the camera of a present photograph and of the missing one.

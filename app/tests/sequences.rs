@@ -85,6 +85,24 @@ fn a_frame_alone_is_that_of_the_sequence_and_finished_ones_stay() {
 }
 
 #[test]
+fn frames_below_0_are_before_the_first_key() {
+    let folder = folder();
+    let text = done(folder.path(), &format!("render {SHOT} --frames -3--1:2,1 -o f.##.png --json"));
+    let numbers: Vec<i64> = report(&text)["frames"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|frame| frame["frame"].as_i64().unwrap())
+        .collect();
+    assert_eq!(numbers, [-3, -1, 1]);
+    let frames = pictures(folder.path());
+    assert_eq!(frames.keys().collect::<Vec<_>>(), ["f.-01.png", "f.-03.png", "f.01.png"]);
+    assert!(frames["f.-01.png"] == frames["f.-03.png"], "an animation holds still before its first key");
+    let alone = done(folder.path(), &format!("render {SHOT} --frame -1 -o f.##.png --json"));
+    assert_eq!(report(&alone)["skipped"], 1);
+}
+
+#[test]
 fn shares_make_the_whole_in_any_order() {
     let (whole, shared) = (folder(), folder());
     done(whole.path(), &format!("render {SHOT} --frames 1-7x2,6 -o f.#.png --aov depth"));

@@ -2,9 +2,11 @@
 
 Everything goes through files and the command line. The road, a file a step:
 
-    camera_lens       what a lens is, there and here (also the hook of the glTF exporter)
+    camera_lens       what a lens is, there and here
     area_lights       area lights as quads that shine
     world_light       the world as a picture
+    shown             what a render shows, and the scene reduced to it
+    gltf_hooks        what the exporter asks
     handover          all of it into a folder, with a manifest for the way back
     program           the program: where it is, what it is asked
     cycles_light      what Cycles sees, baked into the scene's atlas
@@ -17,7 +19,7 @@ The modules below `settings` know no operators, panels or preferences, and work 
 """
 
 from . import live, operators, settings, sidebar
-from .camera_lens import glTF2ExportUserExtension  # noqa: F401  (the glTF exporter looks for it here)
+from .gltf_hooks import glTF2ExportUserExtension  # noqa: F401  (the glTF exporter looks for it here)
 
 
 def register():

@@ -68,50 +68,47 @@ def told_of(light_object):
     return told
 
 
-def _quad(light_object):
+def quad(light_object, matrix):
+    """The mesh of a quad that shines as an area light at a place does, and its material."""
     light = light_object.data
     corners = outline(light)
     mesh = bpy.data.meshes.new(light_object.name)
     mesh.from_pydata([(x, y, 0) for x, y in corners], [], [list(range(len(corners)))])
-    material = bpy.data.materials.new(f"{light_object.name} (light)")
+    material = emitting(f"{light_object.name} (light)", radiance(light, area(corners, matrix)))
+    mesh.materials.append(material)
+    return mesh, material
+
+
+def emitting(name, shine):
+    """A new material that sends a radiance from its front, and reflects nothing."""
+    material = bpy.data.materials.new(name)
     material.use_nodes = True
     material.use_backface_culling = True
     shader = material.node_tree.nodes.get("Principled BSDF")
-    shine = radiance(light, area(corners, light_object.matrix_world))
     strength = max(shine)
     shader.inputs["Base Color"].default_value = (0, 0, 0, 1)
     shader.inputs["Specular IOR Level"].default_value = 0
     shader.inputs["Roughness"].default_value = 1
     shader.inputs["Emission Color"].default_value = (*((channel / strength for channel in shine) if strength > 0 else (0, 0, 0)), 1)
     shader.inputs["Emission Strength"].default_value = strength
-    mesh.materials.append(material)
-    quad = bpy.data.objects.new(f"{light_object.name} (light)", mesh)
-    quad.parent = light_object
-    return quad
-
-
-def _is_lit(each, only_seen):
-    return each.type == "LIGHT" and each.data.type == "AREA" and not each.hide_render and (each.visible_camera or not only_seen)
+    return material
 
 
 @contextmanager
-def as_quads(scene, only_seen=False):
-    """Within, every area light of the scene that is rendered (or those that the camera sees) has a quad that shines as it does;
-    afterwards nothing is left of them. Gives what does not come along."""
-    quads, told = [], []
+def as_quads(lights):
+    """Within, every one of these area lights has a quad below it that shines as it does; afterwards nothing is left of them. Gives what
+    does not come along."""
+    made, told = [], []
     try:
-        for light in [each for each in scene.objects if _is_lit(each, only_seen)]:
-            quad = _quad(light)
-            quads.append(quad)
+        for light in lights:
+            mesh, material = quad(light, light.matrix_world)
+            below = bpy.data.objects.new(f"{light.name} (light)", mesh)
+            made += [below, mesh, material]
+            below.parent = light
             for collection in light.users_collection:
-                collection.objects.link(quad)
+                collection.objects.link(below)
             told += told_of(light)
         bpy.context.view_layer.update()
         yield told
     finally:
-        for quad in quads:
-            mesh, materials = quad.data, list(quad.data.materials)
-            bpy.data.objects.remove(quad)
-            bpy.data.meshes.remove(mesh)
-            for material in materials:
-                bpy.data.materials.remove(material)
+        bpy.data.batch_remove(made)

@@ -59,9 +59,16 @@ def focus_distance(camera, depsgraph):
     return max(abs(axis.dot(place.translation - pose.translation)), NEAREST)
 
 
+def is_mirrored(matrix):
+    """Whether a camera at a place mirrors its picture, as Blender's do below a negative scale. A lens of ours does not: it stands there
+    without the mirror, and what it sees on the left is on the right here."""
+    return matrix.determinant() < 0
+
+
 def lens_of(camera, scene, depsgraph):
     """The lens of a perspective camera object, as it stands in `extras`."""
     data = camera.data
+    mirrored = is_mirrored(camera.evaluated_get(depsgraph).matrix_world)
     dof = data.dof
     frame = Frame(data, scene.render)
     ratio = dof.aperture_ratio
@@ -70,14 +77,15 @@ def lens_of(camera, scene, depsgraph):
     if dof.aperture_blades >= 3:
         aperture["shape"] = "polygon"
         aperture["blades"] = dof.aperture_blades
-        aperture["rotation"] = dof.aperture_rotation + math.pi / dof.aperture_blades
+        turn = dof.aperture_rotation + math.pi / dof.aperture_blades
+        aperture["rotation"] = math.pi - turn if mirrored else turn
     return extras(
         width=frame.width,
         height=frame.height,
         focus_distance=focus_distance(camera, depsgraph),
         aperture_radius=radius,
         sensor_height=frame.sensor_height,
-        shift=[data.shift_x * frame.shift_scale, data.shift_y * frame.shift_scale],
+        shift=[(-1 if mirrored else 1) * data.shift_x * frame.shift_scale, data.shift_y * frame.shift_scale],
         aperture=aperture,
     )
 
@@ -87,11 +95,13 @@ def cameras_of(data, scene):
     return [each for each in scene.objects if each.type == "CAMERA" and each.data == data]
 
 
-def told_of(camera, scene):
-    """What of a camera does not come along, a sentence each."""
+def told_of(camera, scene, matrix):
+    """What of a camera at a place does not come along, a sentence each."""
     data, told = camera.data, []
     if data.type != "PERSP":
         return [f"{camera.name}: is {data.type.lower()}, and only perspective cameras have a lens (it stays behind)"]
+    if is_mirrored(matrix):
+        told.append(f"{camera.name}: mirrors its picture here (it has a negative scale, or hangs below one), and does not there")
     render = scene.render
     if render.pixel_aspect_x != render.pixel_aspect_y:
         told.append(f"{camera.name}: pixels that are not square come over as square ones")
@@ -103,29 +113,6 @@ def told_of(camera, scene):
     return told
 
 
-class glTF2ExportUserExtension:
-    """What the glTF exporter asks: lenses into cameras, names of objects into nodes."""
-
-    def gather_camera_hook(self, gltf2_camera, blender_camera, export_settings):
-        scene = bpy.context.scene
-        users = cameras_of(blender_camera, scene)
-        if not users or gltf2_camera.perspective is None:
-            return
-        lens = lens_of(users[0], scene, bpy.context.evaluated_depsgraph_get())
-        frame = Frame(blender_camera, scene.render)
-        gltf2_camera.perspective.yfov = frame.yfov(blender_camera)
-        gltf2_camera.perspective.aspect_ratio = frame.width / frame.height
-        gltf2_camera.extras = {**(gltf2_camera.extras or {}), KEY: lens}
-
-    def gather_node_hook(self, gltf2_node, blender_object, export_settings):
-        # Quads of area lights are ours, and hang below an object that is.
-        is_object = isinstance(blender_object, bpy.types.Object) and gltf2_node.mesh is not None
-        if is_object and not (blender_object.parent and blender_object.parent.type == "LIGHT"):
-            library = blender_object.library.filepath if blender_object.library else None
-            names = {"object": blender_object.name} | ({"library": library} if library else {})
-            gltf2_node.extras = {**(gltf2_node.extras or {}), KEY: extras(**names)}
-
-
 def set_lens(camera, lens, yfov, scene):
     """Gives a camera object the lens that came back. Its sensor stays; its focal length follows the angle of view."""
     data, dof = camera.data, camera.data.dof
@@ -135,7 +122,8 @@ def set_lens(camera, lens, yfov, scene):
     frame = Frame(data, render)
     data.lens_unit = "MILLIMETERS"
     data.lens = 1e3 * frame.sensor_height / (2 * math.tan(yfov / 2))
-    shift = lens.get("shift", [0, 0])
+    mirrored = is_mirrored(camera.matrix_world)
+    shift = [(-1 if mirrored else 1) * lens.get("shift", [0, 0])[0], lens.get("shift", [0, 0])[1]]
     data.shift_x, data.shift_y = (value / frame.shift_scale for value in shift)
     aperture = lens.get("aperture", {})
     shape = aperture.get("shape", "disc")
@@ -145,6 +133,7 @@ def set_lens(camera, lens, yfov, scene):
     blades = {"disc": 0, "square": 4}.get(shape, aperture.get("blades", 6))
     # Ours: the square [-R, R]², all of it. A Cycles polygon of four has its corners on the circle.
     turn = math.pi / 4 if shape == "square" else aperture.get("rotation", 0)
+    turn = math.pi - turn if mirrored else turn
     widened = math.sqrt(2) if shape == "square" else 1
     dof.aperture_blades = blades
     dof.aperture_rotation = turn - math.pi / blades if blades else 0
@@ -162,4 +151,5 @@ def set_lens(camera, lens, yfov, scene):
 def set_pose(camera, pose):
     """Gives a camera object its pose: rows of a matrix with glTF's axes, in the world."""
     to_blender = Matrix(((1, 0, 0, 0), (0, 0, -1, 0), (0, 1, 0, 0), (0, 0, 0, 1)))
-    camera.matrix_world = to_blender @ Matrix(pose)
+    mirror = Matrix.Diagonal((-1 if is_mirrored(camera.matrix_world) else 1, 1, 1, 1))
+    camera.matrix_world = to_blender @ Matrix(pose) @ mirror

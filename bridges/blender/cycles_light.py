@@ -16,6 +16,7 @@ import numpy as np
 from . import handover, meshes_back, program, world_light
 from .glb_file import Glb, atlas_set
 from .names import KEY, BridgeError, extras, of_extras
+from .shown import as_rendered, real_meshes, rendered
 
 ATLAS = "Focus Brush atlas"
 # How far above a surface the bake begins, in shares of the scene: well above the rounding of 32-bit floats, below all that is modelled.
@@ -28,15 +29,16 @@ def bake(scene, found, folder, side=2048, samples=256, project="scene.fbrush"):
     """Bakes the scene's light and writes the handover of a scene that has it; gives the manifest. The open scene is changed."""
     handover.check(scene)
     folder = Path(folder)
-    if bpy.context.window is not None:
-        bpy.context.window.scene = scene
+    window = bpy.context.window
+    window.scene, window.view_layer = scene, rendered.layer_of(scene)
     raw, unwrapped = folder / "unlit.glb", folder / "unwrapped.glb"
     told = handover.export_glb(scene, raw, only_seen_lights=True)
     program.run(found, "unwrap", raw, "--side", side, "-o", unwrapped)
-    shading = _real_meshes(scene)
-    target = _atlas_object(scene, unwrapped)
-    image = _image_of(target, unwrapped, side)
-    _bake(scene, target, shading, samples)
+    with as_rendered.aligned(scene):
+        shading = real_meshes.of(scene)
+        target = _atlas_object(scene, unwrapped)
+        image = _image_of(target, unwrapped, side)
+        _bake(scene, target, shading, samples)
     _save(scene, image, folder / "light.exr")
     bpy.data.objects.remove(target)
     light_named(unwrapped, "light.exr").write(folder / "scene.glb")
@@ -82,23 +84,6 @@ def _shining_material(glb, index, uv_set, picture):
         }
     )
     return len(materials) - 1
-
-
-def _real_meshes(scene):
-    """Makes instances real and everything a mesh; gives the objects that a render shows."""
-    layer = bpy.context.view_layer
-    for each in scene.objects:
-        each.hide_set(False)
-    bpy.ops.object.select_all(action="SELECT")
-    bpy.ops.object.duplicates_make_real()
-    curves = [each for each in scene.objects if each.type in {"CURVE", "FONT", "SURFACE", "META"} and not each.hide_render]
-    if curves:
-        bpy.ops.object.select_all(action="DESELECT")
-        for each in curves:
-            each.select_set(True)
-        layer.objects.active = curves[0]
-        bpy.ops.object.convert(target="MESH")
-    return [each for each in scene.objects if each.type == "MESH" and not each.hide_render and each.visible_camera]
 
 
 def _atlas_object(scene, path):

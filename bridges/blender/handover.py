@@ -11,8 +11,9 @@ from pathlib import Path
 
 import bpy
 
-from . import area_lights, camera_lens, program, world_light
+from . import camera_lens, program, world_light
 from .names import BridgeError
+from .shown import as_rendered, shown_scene
 
 MANIFEST = "focus-brush.json"
 FORMAT = "focus-brush handover"
@@ -34,30 +35,40 @@ def folder_of(chosen):
 
 def export_glb(scene, path, animation=False, only_seen_lights=False):
     """Writes what a render of the scene shows. Gives what does not come along, a sentence each."""
-    told = []
-    for each in scene.objects:
-        if each.type == "CAMERA":
-            told += camera_lens.told_of(each, scene)
-    with area_lights.as_quads(scene, only_seen_lights) as of_lights:
-        told += of_lights
-        done = bpy.ops.export_scene.gltf(
-            filepath=str(path),
-            check_existing=False,
-            export_format="GLB",
-            use_active_scene=True,
-            use_renderable=True,
-            export_apply=True,
-            export_gn_mesh=True,
-            export_yup=True,
-            export_cameras=True,
-            export_lights=True,
-            export_import_convert_lighting_mode="COMPAT",
-            export_animations=animation,
-            export_current_frame=not animation,
-        )
+    if animation:
+        with as_rendered.tagged(scene) as going:
+            # One animation of all that moves, as the scene plays it; its first frame is at 0 s.
+            _export(
+                path,
+                use_renderable=False,
+                export_animations=True,
+                export_animation_mode="SCENE",
+                export_anim_scene_split_object=False,
+                export_anim_slide_to_zero=True,
+                export_current_frame=False,
+            )
+    else:
+        with shown_scene.of(scene, only_seen_lights) as going:
+            _export(path, export_animations=False, export_current_frame=True)
+    return going.told
+
+
+def _export(path, **chosen):
+    done = bpy.ops.export_scene.gltf(
+        filepath=str(path),
+        check_existing=False,
+        export_format="GLB",
+        use_active_scene=True,
+        export_apply=True,
+        export_gn_mesh=True,
+        export_yup=True,
+        export_cameras=True,
+        export_lights=True,
+        export_import_convert_lighting_mode="COMPAT",
+        **chosen,
+    )
     if done != {"FINISHED"} or not Path(path).is_file():
         raise BridgeError(f"{path}: the glTF exporter wrote nothing (its reason stands in the system console)")
-    return told
 
 
 def check(scene):
@@ -65,7 +76,7 @@ def check(scene):
     if scene.camera is None:
         raise BridgeError(f"{scene.name}: has no active camera (make one the scene's camera)")
     if scene.camera.data.type != "PERSP":
-        raise BridgeError(camera_lens.told_of(scene.camera, scene)[0])
+        raise BridgeError(camera_lens.told_of(scene.camera, scene, scene.camera.matrix_world)[0])
 
 
 def write(scene, folder, project="scene.fbrush", animation=False):

@@ -157,6 +157,9 @@ impl AppearanceArguments {
 pub struct InfoArguments {
     /// A scene (.glb, .gltf), a project (.fbrush), a light field (.salf) or the folder of a capture
     pub file: PathBuf,
+    /// For a picture with depth: the layer of an EXR with several, by name (default: the first one with depth)
+    #[arg(long, value_name = "NAME")]
+    pub layer: Option<String>,
     /// Bake the light field of a small picture and count which parts of the scene are modelled
     #[arg(long)]
     pub bake: bool,
@@ -216,6 +219,9 @@ pub struct ImportArguments {
     /// The depth map of a picture (.pfm, .exr, .png) (default: the one in it or beside it)
     #[arg(long, value_name = "FILE")]
     pub depth: Option<PathBuf>,
+    /// The layer of an EXR with several pictures and their depths, by name (default: the first one with depth)
+    #[arg(long, value_name = "NAME")]
+    pub layer: Option<String>,
     /// Which end of a relative depth map is near, or the distances of black and white in metres
     #[arg(long, value_name = "white|black|LOW,HIGH")]
     pub near: Option<String>,
@@ -318,6 +324,9 @@ pub struct RenderArguments {
     /// Where to write the picture; EXR is linear, PNG is sRGB
     #[arg(short, long, value_name = "OUT.exr|png")]
     pub output: PathBuf,
+    /// For a picture with depth: the layer of an EXR with several, by name (default: the first one with depth)
+    #[arg(long, value_name = "NAME")]
+    pub layer: Option<String>,
     #[command(flatten)]
     pub shot: ShotArguments,
     #[command(flatten)]

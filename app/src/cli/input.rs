@@ -5,11 +5,11 @@ use super::camera_presets::with_presets;
 use super::console::Console;
 use super::failure::Failure;
 use atlas::{Density, UnwrapOptions, UvPolicy};
-use document::Input;
+use document::{Input, InputKind};
 use focus::Focus;
 use lens::Camera;
 use light::{Resources, Steps};
-use project::WorldFile;
+use project::{CaptureChoices, WorldFile};
 use std::path::Path;
 
 /// The options for unwrapping; the engines run in child processes of this program.
@@ -28,25 +28,37 @@ pub fn unwrap_options(arguments: Option<&AtlasArguments>) -> UnwrapOptions {
     }
 }
 
-/// Opens a file with the requested appearance.
+/// Opens a file with the requested appearance, of a picture with depth the requested layer.
 ///
 /// # Errors
 /// The file cannot be opened, or an option of its appearance is invalid.
 pub fn open_input(
     file: &Path,
     appearance: &AppearanceArguments,
+    layer: Option<&str>,
     resources: &Resources,
     steps: &dyn Steps,
 ) -> Result<Input, Failure> {
     let world = read_world(appearance)?;
-    let mut input = Input::open_variant(file, &appearance.variant(), resources, steps)?;
+    let mut input = match layer {
+        None => Input::open_variant(file, &appearance.variant(), resources, steps)?,
+        Some(_) if InputKind::from_path(file)? != InputKind::Capture => {
+            let what = "has no layers to choose from: it is not a picture with depth (leave out --layer)";
+            return Err(Failure::bad_input(format!("{}: {what}", file.display())));
+        }
+        Some(layer) => {
+            let choices = CaptureChoices { layer: Some(layer.into()), ..CaptureChoices::default() };
+            Input::open_capture(file, choices, resources, steps)?
+        }
+    };
     input.transfer_paint_if_changed(&unwrap_options(None), steps)?;
     if let Some(back_faces) = appearance.back_faces {
         input.set_back_faces(back_faces);
     }
     if let Some(world) = world {
-        let world = world.load(&input.scene)?;
+        let (world, faults) = world.load(&input.scene)?;
         input.set_world(Some(world));
+        input.warnings.extend(faults);
     }
     input.light = appearance.light();
     Ok(input)

@@ -82,6 +82,48 @@ fn a_scene_is_lit_by_what_it_brings_unless_a_world_is_given() {
 }
 
 #[test]
+fn a_sky_is_the_same_however_it_is_coded() {
+    let place = Workplace::new();
+    // Halves of other colours, the upper one with a bright texel, uncoded.
+    let pixel =
+        |x: usize, y: usize| [200, 100 + 100 * (y / 8) as u8, 2, if (x, y) == (20, 3) { 134 } else { 129 }];
+    let sky = |head: &str, rows: &mut dyn Iterator<Item = usize>| -> Vec<u8> {
+        head.bytes().chain(rows.flat_map(|y| (0..32).flat_map(move |x| pixel(x, y)))).collect()
+    };
+    let write = |name: &str, bytes: Vec<u8>| std::fs::write(place.path(name), bytes).unwrap();
+    write("base.hdr", sky("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 16 +X 32\n", &mut (0..16)));
+    write("rgbe.hdr", sky("#?RGBE\r\nGAMMA=1\r\n\r\n-Y 16 +X 32\r\n", &mut (0..16)));
+    write("up.hdr", sky("#?RADIANCE\nEXPOSURE=1.0\n\n+Y 16 +X 32\n", &mut (0..16).rev()));
+    let picture = |sky: &str| {
+        place.done(&format!("render quads.glb --camera camera.json --world {sky} -o out.exr"));
+        std::fs::read(place.path("out.exr")).unwrap()
+    };
+    let base = picture("base.hdr");
+    assert!(picture("rgbe.hdr") == base && picture("up.hdr") == base);
+    write("cut.hdr", sky("#?RADIANCE\n\n-Y 16 +X 32\n", &mut (0..15)));
+    place.fails("render quads.glb --world cut.hdr -o x.exr", 3, &["cut.hdr", "scanline 16 of 16 is cut off"]);
+}
+
+#[test]
+fn faults_of_a_sky_are_told() {
+    let place = Workplace::new();
+    let skies = concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/cases/field2/14-exr-skies-with-faults");
+    if !std::path::Path::new(skies).exists() {
+        eprintln!("SKIPPED: {skies} is not there");
+        return;
+    }
+    for (sky, told) in [("inf", "as 65504, the largest half"), ("nan", "not a number"), ("neg", "negative")] {
+        let output =
+            place.run(&format!("render quads.glb --camera camera.json --world {skies}/{sky}.exr -o out.exr"));
+        let errors = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{errors}");
+        let warnings: Vec<_> = errors.lines().filter(|line| line.starts_with("warning: ")).collect();
+        assert!(warnings.len() == 1 && warnings[0].contains(told), "{sky}: {errors}");
+        assert!(warnings[0].contains(&format!("{sky}.exr: ")), "{errors}");
+    }
+}
+
+#[test]
 fn splat_and_truth_agree_and_the_blur_by_depth_does_not() {
     let place = Workplace::new();
     let report = place.json(&format!("render quads.glb {SHOT} -o splat.exr --json"));

@@ -13,6 +13,7 @@ mod pfm;
 mod raw_floats;
 mod stored;
 
+pub(crate) use depth_file::read_depth_channel;
 pub use depth_file::read_depth_map;
 pub(crate) use levels::{is_coded_by_color, levels_of};
 pub use map::{DepthMap, DepthMeaning};

@@ -25,6 +25,22 @@ pub enum CaptureError {
         /// The folder.
         folder: PathBuf,
     },
+    /// A picture has no such layer.
+    #[error("{}: has no layer {layer} with a picture and its depth (choose among {layers})", file.display())]
+    NoLayer {
+        /// The picture.
+        file: PathBuf,
+        /// The requested layer, in quotes.
+        layer: String,
+        /// Those that it has, in quotes.
+        layers: String,
+    },
+    /// A picture cannot have layers.
+    #[error("{}: is no EXR with several layers (leave out --layer)", file.display())]
+    Unlayered {
+        /// The picture.
+        file: PathBuf,
+    },
     /// The content of a file is invalid.
     #[error("{}: {place}: {what} (correct the file or export it again)", file.display())]
     Malformed {
@@ -94,6 +110,17 @@ pub enum CaptureError {
         path: PathBuf,
         /// What is wrong, as a continuation of the sentence.
         detail: String,
+    },
+    /// Nothing says how many columns and rows a light field has.
+    #[error(
+        "{}: {what} (put a parameters.cfg beside them with the lines num_cams_x = COLUMNS and num_cams_y = ROWS, or list them in views.json)",
+        folder.display()
+    )]
+    GridUnknown {
+        /// The folder of the views.
+        folder: PathBuf,
+        /// What is known.
+        what: String,
     },
     /// There is no depth of a picture.
     #[error(

@@ -11,7 +11,8 @@
 //!
 //! The stages for photographs: `cameras::layout` (which cameras lie where) → `cameras` (`colmap`, `nerfstudio`, `bundler`, `nvm`,
 //! `metashape`; each yields `shot`s: name, lens, pose) → `pictures::picture_folder`, `picture_names` (which file is whose) → `pictures`,
-//! `files::picture_header` (size, EXIF, masks: views) → `mesh` (`ply`, `obj`: the surface) → `open`. The up direction of COLMAP's world is
+//! `files::picture_header` (size, EXIF, masks: views) → `mesh` (`ply`, `obj`: the surface) → `mesh_fit` (whether it fits the photographs),
+//! `mesh_place` (whether it has to be moved first) → `open`. The up direction of COLMAP's world is
 //! estimated from the cameras (`upright`) and reported, not applied.
 //!
 //! ```
@@ -34,6 +35,8 @@ mod error;
 mod files;
 mod light_field;
 mod mesh;
+mod mesh_fit;
+mod mesh_place;
 mod mosaic;
 mod open;
 mod pictures;
@@ -50,6 +53,7 @@ pub use light_field::{
     GridTurn, GridTurnEstimate, LightField, LightFieldOptions, Optics, SubAperture, ViewDisparity,
     ViewLayout, estimate_grid_turn, open_light_field,
 };
+pub use mesh_fit::MeshFit;
 pub use mosaic::{Mosaic, micro_images};
 pub use open::{Capture, CaptureOptions, open};
 pub use pictures::picture_source::PictureSource;

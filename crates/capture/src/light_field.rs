@@ -9,6 +9,7 @@ mod attributes;
 mod disparity;
 mod hexagon;
 mod light_field_type;
+mod numbered_grid;
 mod numbered_name;
 mod optics;
 mod parallax;

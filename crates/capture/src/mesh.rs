@@ -1,8 +1,10 @@
 //! The mesh of a capture: finding its file, and reading it.
 
 mod obj;
+pub(crate) mod placement;
 mod ply;
 mod polygon_fan;
+mod triangle_strip;
 
 use crate::files::folder::{EntryKind, Folder, extension};
 use crate::{CaptureError, Remark};

@@ -3,11 +3,13 @@
 use crate::cameras::layout::Cameras;
 use crate::cameras::upright::estimate_upright;
 use crate::files::folder::Folder;
+use crate::mesh_fit::MeshFit;
+use crate::mesh_place::MeshPlace;
 use crate::pictures::picture_folder::PictureSearch;
 use crate::{CameraFormat, CaptureError, Remark, mesh, pictures};
-use glam::{DQuat, DVec2};
+use glam::DQuat;
 use progress::{Progress, Stage};
-use scene::{LoadOptions, Scene, SurfacePoint, View};
+use scene::{LoadOptions, Scene, View};
 use std::path::{Path, PathBuf};
 
 /// Options for reading a capture.
@@ -42,6 +44,8 @@ pub struct Capture {
     /// The rotation that would make +y up, estimated from how the cameras were held: the worlds of most programs have no up direction, or
     /// another one. It is for viewing the scene; neither surface nor cameras are rotated by it.
     pub upright: DQuat,
+    /// How well the surface fits the photographs; `None` if they do not tell, as those of blank walls do not.
+    pub fit: Option<MeshFit>,
     /// What was incomplete, or is good to know.
     pub remarks: Vec<Remark>,
 }
@@ -75,11 +79,12 @@ pub fn open(path: &Path, options: &CaptureOptions, progress: &dyn Progress) -> R
         Some(mesh) => mesh.clone(),
         None => mesh::find_mesh(&folder, &mut remarks)?,
     };
-    let reading = Stage::named(progress, "surface", 0.5, 1.0);
+    let reading = Stage::named(progress, "surface", 0.5, 0.8);
     let mut scene = mesh::read_mesh(&mesh, &options.load, &reading, &mut remarks)?;
     let upright = estimate_upright(&views);
+    let search = MeshPlace { folder: &folder, mesh: &mesh, options: &options.load };
+    let fit = search.fit_mesh(&mut scene, &views, &Stage::named(progress, "fit", 0.8, 1.0), &mut remarks)?;
     scene.set_upright(upright);
-    remarks.extend(remark_if_invisible(&scene, &views, &mesh));
     progress.report(1.0);
     Ok(Capture {
         camera_format: cameras.format(),
@@ -88,6 +93,7 @@ pub fn open(path: &Path, options: &CaptureOptions, progress: &dyn Progress) -> R
         views,
         scene,
         upright,
+        fit,
         remarks,
     })
 }
@@ -137,32 +143,4 @@ fn first_usable_views<'a>(
         }
     }
     Err(failed.unwrap_or_else(|| CaptureError::NoCameras { folder: folder.shown.clone() }))
-}
-
-/// A remark if no picture shows anything of the mesh: its world is not that of the cameras.
-fn remark_if_invisible(scene: &Scene, views: &[View], mesh: &Path) -> Option<Remark> {
-    /// The number of points that are tested, spread over its triangles.
-    const SAMPLES: usize = 500;
-    let triangles = scene.triangles.len();
-    let (step, each) = (triangles.div_ceil(SAMPLES).max(1), SAMPLES.div_ceil(triangles.max(1)));
-    // Roberts's sequence, folded into the triangle.
-    let barycentric = |k: usize| {
-        let at = (DVec2::new(0.754_877_666_246_692_8, 0.569_840_290_998_053_3) * (k + 1) as f64).fract();
-        if at.element_sum() > 1.0 { 1.0 - at } else { at }
-    };
-    let of_triangle = |triangle: usize| {
-        (0..each).map(move |k| SurfacePoint { triangle: triangle as u32, barycentric: barycentric(k) })
-    };
-    let mut samples = (0..triangles).step_by(step).flat_map(of_triangle);
-    let is_visible =
-        |view: &View, point| view.project(point).is_some_and(|pixel| view.lens.is_in_picture(pixel));
-    let is_unseen = samples.all(|point| !views.iter().any(|view| is_visible(view, point.position(scene))));
-    is_unseen.then(|| Remark {
-        text: format!(
-            "{}: no picture shows anything of it (its axes or scale are not those of the cameras; export both from one program)",
-            mesh.display()
-        ),
-        names: vec![mesh.display().to_string()],
-        is_incomplete: true,
-    })
 }

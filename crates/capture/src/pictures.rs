@@ -1,6 +1,7 @@
 //! From the photographs in a file of cameras to views, with remarks on what is incomplete.
 
 pub(crate) mod exr_channels;
+pub(crate) mod exr_layers;
 pub(crate) mod picture_folder;
 pub(crate) mod picture_names;
 pub(crate) mod picture_source;
@@ -23,8 +24,13 @@ pub(crate) fn views(
     let file = source.cameras.display();
     let Shots { shots, notes, without_camera } = shots;
     remarks.extend(notes.into_iter().map(|note| Remark::note(format!("{file}: {note}"))));
-    remarks.extend(Remark::about(without_camera, false, |names| {
-        format!("{file}: no camera for {names} (they are ignored)")
+    let [has, were, them] =
+        number_of(&without_camera, ["has", "it was", "it"], ["have", "they were", "them"]);
+    remarks.extend(Remark::about(without_camera.clone(), false, |names| {
+        format!(
+            "{file}: {names} {has} no camera: {were} not aligned by the program that wrote the file (align {them} there and export again, \
+             or do without)"
+        )
     }));
     let names: Vec<String> = shots.iter().map(|shot| shot.name.clone()).collect();
     let place = PictureFolder::find(source, &names)?;
@@ -61,9 +67,10 @@ pub(crate) fn views(
         return Err(CaptureError::NoPictures { file: source.cameras.into(), cameras: shots.len(), why });
     }
     let (count, all) = (missing.len(), shots.len());
+    let [are, them] = number_of(&missing, ["is", "it"], ["are", "them"]);
     remarks.extend(Remark::about(missing, true, |names| {
         format!(
-            "{file}: {count} of {all} pictures are missing: {names} (put them into {})",
+            "{file}: {count} of {all} pictures {are} missing: {names} (put {them} into {})",
             place.base.display()
         )
     }));
@@ -75,11 +82,30 @@ pub(crate) fn views(
     remarks.extend(Remark::about(resized, false, |names| {
         format!("{file}: their size differs from that of their cameras, which are scaled to it: {names}")
     }));
-    remarks.extend(Remark::about(place.unused(), false, |names| {
-        format!("{}: pictures without a camera: {names} (they are ignored)", place.base.display())
+    // Those that the file lists were told above.
+    let is_listed = |name: &String| without_camera.iter().any(|listed| stem(listed) == stem(name));
+    let unused: Vec<String> = place.unused().into_iter().filter(|name| !is_listed(name)).collect();
+    let [has, are] = number_of(&unused, ["has", "is"], ["have", "are"]);
+    remarks.extend(Remark::about(unused, false, |names| {
+        format!("{}: {names} {has} no camera in {file} and {are} ignored", place.base.display())
     }));
     views.sort_by(|a, b| a.name.cmp(&b.name));
     Ok(views)
+}
+
+/// A picture's name without folders and extension; programs write names with more or less of them.
+fn stem(name: &str) -> &str {
+    let file = name.rsplit(['/', '\\']).next().unwrap_or(name);
+    file.rsplit_once('.').map_or(file, |(stem, _)| stem)
+}
+
+/// The words of a sentence about one name, or about several.
+fn number_of<const N: usize>(
+    names: &[String],
+    one: [&'static str; N],
+    several: [&'static str; N],
+) -> [&'static str; N] {
+    if names.len() == 1 { one } else { several }
 }
 
 /// The view of a shot whose picture is this file, called `name`.

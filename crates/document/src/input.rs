@@ -74,6 +74,8 @@ pub struct Input {
     pub warnings: Vec<String>,
     /// Whether something that the file refers to is missing, such as photographs of a capture.
     pub is_incomplete: bool,
+    /// How well the mesh of photographs fits them, if they tell.
+    pub mesh_fit: Option<capture::MeshFit>,
     /// How the project's paint was transferred to this surface, if it was painted on another.
     pub paint_transfer: Option<TransferredPaint>,
     /// How light is modelled.
@@ -171,11 +173,11 @@ impl Input {
         steps: &dyn Steps,
     ) -> Result<Self, DocumentError> {
         let loaded = load_capture(path, &choices, &resources.cache, steps)?;
-        let CaptureScene { scene, camera, remarks: mut warnings, is_incomplete } = loaded;
+        let CaptureScene { scene, camera, remarks: mut warnings, is_incomplete, mesh_fit } = loaded;
         warnings.extend(prefix_with_path(path, &scene.warnings));
         let camera = camera.unwrap_or_else(|| shot_camera_in_any_unit(&scene.cameras[0]));
         let input = Self::new(path, scene, camera, warnings, resources);
-        Ok(Self { capture: Some(choices), is_incomplete, ..input })
+        Ok(Self { capture: Some(choices), is_incomplete, mesh_fit, ..input })
     }
 
     /// The error of disparities estimated from the views of a light field, against those that came with it; `None` if none came with it.
@@ -209,6 +211,7 @@ impl Input {
             capture: None,
             warnings,
             is_incomplete: false,
+            mesh_fit: None,
             paint_transfer: None,
             light: LightOptions::default(),
             resources: resources.clone(),
@@ -251,9 +254,10 @@ impl Input {
         if let Some(choices) = &project.capture {
             let loaded = load_capture(&project.scene, choices, &resources.cache, steps)?;
             warnings.extend(loaded.remarks);
-            let is_incomplete = loaded.is_incomplete;
+            let (is_incomplete, mesh_fit) = (loaded.is_incomplete, loaded.mesh_fit);
             return Ok(Self {
                 is_incomplete,
+                mesh_fit,
                 ..Self::from_project(path, project, loaded.scene, warnings, resources)
             });
         }
@@ -286,7 +290,11 @@ impl Input {
             Self { project: Some(project), ..Self::new(path, scene, camera, warnings, resources) };
         input.set_back_faces(back_faces);
         match world.map(|world| world.load(&input.scene)).transpose() {
-            Ok(world) => input.set_world(world),
+            Ok(loaded) => {
+                let (world, faults) = loaded.unzip();
+                input.set_world(world);
+                input.warnings.extend(faults.into_iter().flatten());
+            }
             Err(error) => {
                 input.warnings.push(format!(
                     "{error}; the scene's own world is shown instead (choose one before saving)"

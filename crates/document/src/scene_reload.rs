@@ -63,7 +63,9 @@ impl Input {
             }
         };
         let world = project.world.as_ref().map(|world| world.load(&self.scene)).transpose()?;
+        let (world, faults) = world.unzip();
         self.set_world(world);
+        self.warnings.extend(faults.into_iter().flatten());
         self.set_back_faces(project.back_faces);
         let active = project.active_camera;
         project.cameras[active].camera = self.camera.clone();

@@ -29,6 +29,7 @@
 mod camera;
 mod color_space;
 mod disk;
+mod environment_file;
 mod error;
 mod focus_files;
 mod json;

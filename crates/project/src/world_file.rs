@@ -9,11 +9,11 @@
 //! relative to the folder of the file that names it.
 
 use crate::ProjectError;
+use crate::environment_file::read_environment;
 use crate::json::{Field, Fields, Json};
-use crate::pictures::linear_picture::read_picture;
 use crate::scene_path::ScenePath;
 use glam::Vec3;
-use scene::{Backdrop, Environment, EnvironmentMap, Scene, World};
+use scene::{Backdrop, Environment, Scene, World};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -158,11 +158,12 @@ impl WorldFile {
         json
     }
 
-    /// Loads the environment and returns the world of `scene`.
+    /// Loads the environment and returns the world of `scene`, and warnings about the environment's file.
     ///
     /// # Errors
     /// The environment's file cannot be used, or the scene has no embedded world.
-    pub fn load(&self, scene: &Scene) -> Result<World, ProjectError> {
+    pub fn load(&self, scene: &Scene) -> Result<(World, Vec<String>), ProjectError> {
+        let mut warnings = Vec::new();
         let (environment, default_backdrop) = match &self.environment {
             EnvironmentChoice::Studio => {
                 let studio = World::studio();
@@ -178,16 +179,19 @@ impl WorldFile {
             },
             EnvironmentChoice::Uniform(color) => (Environment::Uniform(*color), Backdrop::Environment),
             EnvironmentChoice::File(file) => {
-                (Environment::Map(Arc::new(read_environment(file)?)), Backdrop::Environment)
+                let (map, faults) = read_environment(file)?;
+                warnings = faults;
+                (Environment::Map(Arc::new(map)), Backdrop::Environment)
             }
         };
-        Ok(World {
+        let world = World {
             environment,
             rotation: self.rotation,
             strength: self.strength,
             backdrop: self.backdrop.unwrap_or(default_backdrop),
             bounces: self.bounces,
-        })
+        };
+        Ok((world, warnings))
     }
 }
 
@@ -199,38 +203,10 @@ fn radiance(field: &Field<'_>) -> Result<Vec3, ProjectError> {
         .ok_or_else(|| field.error("is not a radiance", "give three numbers of 0 or more"))
 }
 
-/// Reads an equirectangular picture: .hdr or .exr.
-///
-/// # Errors
-/// It is not a picture, has another format, or is not about twice as wide as high.
-fn read_environment(file: &Path) -> Result<EnvironmentMap, ProjectError> {
-    let extension = file.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
-    if !["hdr", "exr"].contains(&extension.as_str()) {
-        let cure = "give an equirectangular .hdr or .exr";
-        return Err(ProjectError::content(file, "is not an environment", cure));
-    }
-    let picture = read_picture(file)?;
-    let aspect = f64::from(picture.width) / f64::from(picture.height.max(1));
-    if !(1.9..=2.1).contains(&aspect) {
-        let problem = format!(
-            "has {} × {} pixels, an equirectangular picture is twice as wide as high",
-            picture.width, picture.height
-        );
-        return Err(ProjectError::content(file, problem, "give one that shows all directions"));
-    }
-    // NaN and negative values count as 0.
-    let sane = |channel: f32| if channel.is_finite() { channel.max(0.0) } else { 0.0 };
-    Ok(EnvironmentMap {
-        name: file.to_string_lossy().into_owned(),
-        width: picture.width,
-        height: picture.height,
-        texels: picture.rgb.into_iter().map(|texel| texel.map(sane)).collect(),
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use scene::EnvironmentMap;
     use std::fs;
 
     fn read(text: &str) -> Result<WorldFile, ProjectError> {
@@ -243,16 +219,13 @@ mod tests {
     #[test]
     fn missing_fields_have_defaults() {
         assert_eq!(read("{}").unwrap(), WorldFile::default());
-        let world = read("{}").unwrap().load(&Scene::default()).unwrap();
+        let load = |text| read(text).unwrap().load(&Scene::default()).unwrap().0;
+        let world = load("{}");
         assert_eq!(world, World::studio());
-        let sky = read(r#"{"environment": [1, 2, 3], "strength": 0.5, "bounces": 2}"#)
-            .unwrap()
-            .load(&Scene::default())
-            .unwrap();
+        let sky = load(r#"{"environment": [1, 2, 3], "strength": 0.5, "bounces": 2}"#);
         assert_eq!((sky.radiance(glam::DVec3::X), sky.bounces), (Vec3::new(0.5, 1.0, 1.5), Some(2)));
         assert_eq!(sky.backdrop_radiance(glam::DVec3::X), sky.radiance(glam::DVec3::X));
-        let before_red =
-            read(r#"{"backdrop": [1, 0, 0], "bounces": null}"#).unwrap().load(&Scene::default()).unwrap();
+        let before_red = load(r#"{"backdrop": [1, 0, 0], "bounces": null}"#);
         assert_eq!((before_red.backdrop_radiance(glam::DVec3::X), before_red.bounces), (Vec3::X, None));
     }
 
@@ -306,7 +279,7 @@ mod tests {
         let own = World { environment: Environment::Map(Arc::new(map)), ..World::uniform(Vec3::ZERO) };
         let scene = Scene { embedded_world: Some(own.clone()), path: "lit.glb".into(), ..Scene::default() };
         let world_file = read(r#"{"environment": "scene", "strength": 3}"#).unwrap();
-        let world = world_file.load(&scene).unwrap();
+        let (world, _) = world_file.load(&scene).unwrap();
         assert_eq!(world, World { strength: 3.0, ..own });
         assert_eq!(
             WorldFile::from_world(&world, &scene).to_json(Path::new("x.fbrush"))["environment"],
@@ -316,32 +289,5 @@ mod tests {
         let without = Scene { path: "dark.glb".into(), ..Scene::default() };
         let error = world_file.load(&without).unwrap_err().to_string();
         assert!(error.contains("dark.glb") && error.contains("EXT_lights_image_based"), "{error}");
-    }
-
-    #[test]
-    fn environments_are_read_row_by_row() {
-        let folder = tempfile::tempdir().unwrap();
-        let file = folder.path().join("sky.exr");
-        let mut picture = lens::Picture::black(4, 2);
-        picture.radiance =
-            (0..8).map(|k| [k as f32, 0.5, if k == 3 { f32::INFINITY } else { 1.0 }]).collect();
-        let channels = ["R", "G", "B"]
-            .into_iter()
-            .enumerate()
-            .map(|(c, name)| (name.to_string(), picture.radiance.iter().map(|texel| texel[c]).collect()));
-        let exr = crate::openexr::image::ExrImage {
-            width: 4,
-            height: 2,
-            channels: channels.collect(),
-            ..Default::default()
-        };
-        crate::openexr::image::write_exr(&file, exr, crate::openexr::options::ExrOptions::default()).unwrap();
-        let World { environment: Environment::Map(map), .. } =
-            WorldFile::from_environment_file(&file).load(&Scene::default()).unwrap()
-        else {
-            panic!("no map")
-        };
-        assert_eq!((map.width, map.height, map.texels[5]), (4, 2, [5.0, 0.5, 1.0]));
-        assert_eq!(map.texels[3][2], 0.0, "what is not finite does not shine");
     }
 }

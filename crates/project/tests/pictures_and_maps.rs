@@ -7,10 +7,13 @@ use damage::{damage, is_one_line};
 use focus::{FocusImage, FocusMap};
 use lens::{Exposure, FocusOffset, Picture};
 use project::{
-    FocusMapFile, Layer, LinearPicture, PictureOptions, compare, error_maps, read_picture, write_error_map,
-    write_focus_map, write_picture, write_rgb,
+    FocusMapFile, Layer, LinearPicture, PictureOptions, WorldFile, compare, error_maps, read_picture,
+    write_error_map, write_focus_map, write_picture, write_rgb,
 };
+use scene::{Environment, EnvironmentMap, Scene};
 use shared_data::shared;
+use std::path::Path;
+use std::sync::Arc;
 use tempfile::TempDir;
 
 /// Deterministic numbers in [0, 1).
@@ -300,5 +303,48 @@ fn reference_pictures_are_read() {
         let sky = read_picture(&folder.join("royal_esplanade_1k.hdr")).unwrap();
         assert_eq!([sky.width, sky.height], [1024, 512]);
         assert!(sky.rgb.iter().flatten().any(|&c| c > 1.0));
+    }
+}
+
+/// The map of an environment's file, and the warnings about it.
+fn environment(file: &Path) -> (Arc<EnvironmentMap>, Vec<String>) {
+    let (world, warnings) = WorldFile::from_environment_file(file).load(&Scene::default()).unwrap();
+    match world.environment {
+        Environment::Map(map) => (map, warnings),
+        Environment::Uniform(_) => panic!("no map"),
+    }
+}
+
+#[test]
+fn skies_are_the_same_however_they_are_coded() {
+    let Some(folder) = shared("cases/field2/13-hdr-heads-and-codings") else { return };
+    let (base, _) = environment(&folder.join("base.hdr"));
+    for sky in ["rgbe.hdr", "plusy.hdr"] {
+        let (map, warnings) = environment(&folder.join(sky));
+        assert!(map.texels == base.texels && warnings.is_empty(), "{sky}: {warnings:?}");
+    }
+    let (map, _) = environment(&folder.join("flat22.hdr"));
+    let differ: Vec<usize> = (0..base.texels.len()).filter(|k| map.texels[*k] != base.texels[*k]).collect();
+    assert!(differ.len() <= 1, "only the pixel that looks like a coding may differ: {differ:?}");
+}
+
+#[test]
+fn skies_with_faults_shine_all_the_same() {
+    let Some(folder) = shared("cases/field2/14-exr-skies-with-faults") else { return };
+    let (base, warnings) = environment(&folder.join("base.exr"));
+    assert!(warnings.is_empty(), "{warnings:?}");
+    for (sky, value, told) in [
+        ("inf.exr", 65504.0, "as 65504, the largest half"),
+        ("nan.exr", 0.0, "not a number"),
+        ("neg.exr", 0.0, "negative"),
+    ] {
+        let (map, warnings) = environment(&folder.join(sky));
+        assert!(warnings.len() == 1 && warnings[0].contains(told), "{sky}: {warnings:?}");
+        let is_near = |a: f32, b: f32| (a - b).abs() <= 2e-3 * b.abs();
+        let differ =
+            map.texels.iter().flatten().zip(base.texels.iter().flatten()).filter(|(a, b)| !is_near(**a, **b));
+        let differ: Vec<_> = differ.map(|(a, _)| *a).collect();
+        assert!(differ.iter().all(|channel| *channel == value), "{sky}: {differ:?}");
+        assert!(map.texels.iter().flatten().any(|channel| *channel == value), "{sky}");
     }
 }

@@ -303,6 +303,17 @@ fn repaired_depth_is_saved_and_raises_the_version() {
 }
 
 #[test]
+fn a_chosen_layer_is_saved_and_raises_the_version() {
+    let folder = TempDir::new().unwrap();
+    let file = folder.path().join("work.fbrush");
+    let choices = CaptureChoices { layer: Some("ViewLayer_001".into()), ..CaptureChoices::default() };
+    let project = ProjectFile { capture: Some(choices.clone()), ..document(folder.path()) };
+    project.save(&file).unwrap();
+    assert_eq!(manifest(&file)["version"], 8);
+    assert_eq!(ProjectFile::load(&file).unwrap().capture, Some(choices));
+}
+
+#[test]
 fn wrong_content_is_reported_with_its_entry() {
     let folder = TempDir::new().unwrap();
     let file = folder.path().join("work.fbrush");
@@ -323,7 +334,7 @@ fn wrong_content_is_reported_with_its_entry() {
     };
     assert!(load(&|_, bytes| bytes).is_ok());
     let cases: [(Change<'_>, &str); 8] = [
-        (&in_manifest("\"version\": 1", "\"version\": 8"), "update the program"),
+        (&in_manifest("\"version\": 1", "\"version\": 9"), "update the program"),
         (&in_manifest("focus-brush project", "shopping list"), "shopping list"),
         (&in_manifest("\"active_camera\": 1", "\"active_camera\": 2"), "camera 2 of 2"),
         (&in_manifest("\"width\": 130", "\"width\": 131"), "focus.f32"),

@@ -75,8 +75,9 @@ impl Subject {
             input.set_back_faces(back_faces);
         }
         if let Some(world) = &request.world {
-            let world = world.load(&input.scene)?;
+            let (world, faults) = world.load(&input.scene)?;
             input.set_world(Some(world));
+            input.warnings.extend(faults);
         }
         input.light = request.light;
         let mut camera = input.camera(request.camera.as_ref())?;

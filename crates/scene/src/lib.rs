@@ -9,7 +9,7 @@
 //! * [`Material`]: the material of a surface. [`World`]: environment and backdrop.
 //! * [`SurfaceField`]: anything that has a value at every surface point (focus, radiance).
 //! * [`MeshHealth`]: defects of the triangles.
-//! * [`View`]: a photograph with the camera that took it; its pixels are read on demand.
+//! * [`View`]: a photograph with the camera that took it; its pixels are read on demand. [`open_picture`] decodes any picture.
 //!
 //! Files come from anywhere, so the reader trusts none: every index and byte range is checked before it is used,
 //! memory, triangles and time are accounted for before they are taken, and only files inside the scene's
@@ -43,6 +43,7 @@ mod gltf;
 mod load_options;
 mod model;
 mod photographs;
+mod picture_decoder;
 mod queries;
 mod surface_mesh;
 mod texture;
@@ -60,6 +61,7 @@ pub use model::{
     SurfacePoint, Tint, Triangle, Volume, Workflow,
 };
 pub use photographs::{Mask, Photograph, PictureError, PictureGloss, PictureTexture, View};
+pub use picture_decoder::open_picture;
 pub use surface_mesh::SurfaceMesh;
 pub use texture::{Image, ImageLevel, TextureRef, Wrap, linear_from_srgb, srgb_from_linear};
 pub use world::{Backdrop, Environment, EnvironmentMap, World};

@@ -9,12 +9,12 @@ use std::path::PathBuf;
 /// Which frames of a sequence to render, and their timing.
 #[derive(Debug, Args)]
 pub struct SequenceArguments {
-    /// Render a single frame of the animation. Frame 1 is at 0 s
-    #[arg(long, value_name = "N", conflicts_with_all = ["frames", "shard", "stereo"])]
-    pub frame: Option<u32>,
-    /// Render these frames to -o out.####.exr: 1-100, 1-100x2 (every second), 1-3,5,7-10:2. Frames already
-    /// rendered with the same settings are skipped
-    #[arg(long, value_name = "LIST", conflicts_with = "stereo")]
+    /// Render a single frame of the animation. Frame 1 is at 0 s, earlier ones are before
+    #[arg(long, value_name = "N", allow_negative_numbers = true, conflicts_with_all = ["frames", "shard", "stereo"])]
+    pub frame: Option<i32>,
+    /// Render these frames to -o out.####.exr: 1-100, 1-100x2 (every second), 1-3,5,7-10:2, -10--5. Frames
+    /// already rendered with the same settings are skipped
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true, conflicts_with = "stereo")]
     pub frames: Option<FrameList>,
     /// Frames per second
     #[arg(long, value_name = "N", default_value_t = 24.0, value_parser = parse_positive)]

@@ -21,7 +21,7 @@ pub fn run(arguments: &BakeArguments, console: &Console) -> Result<(), Failure> 
     }
     check_folder(&arguments.output)?;
     let start = Instant::now();
-    let input = open_input(&arguments.file, &arguments.shot.appearance, console.resources(), console)?;
+    let input = open_input(&arguments.file, &arguments.shot.appearance, None, console.resources(), console)?;
     console.warn(&input.warnings);
     let (camera, focus) = camera_and_focus(&input, &arguments.shot, console)?;
     let open_seconds = start.elapsed().as_secs_f64();

@@ -14,7 +14,7 @@ use project::CaptureChoices;
 /// # Errors
 /// The capture cannot be read or its type not detected, the project cannot be written, or parts are missing (partly done).
 pub fn run(arguments: &ImportArguments, console: &Console) -> Result<(), Failure> {
-    let ImportArguments { capture, output, mesh, leave_out, kind, disparity, depth, near } = arguments;
+    let ImportArguments { capture, output, mesh, leave_out, kind, disparity, depth, layer, near } = arguments;
     check_project_name(output)?;
     check_folder(output)?;
     if InputKind::from_path(capture)? != InputKind::Capture {
@@ -28,6 +28,7 @@ pub fn run(arguments: &ImportArguments, console: &Console) -> Result<(), Failure
         kind: kind.map(|kind| kind.name().into()),
         disparity: disparity.clone(),
         depth: depth.clone(),
+        layer: layer.clone(),
         near: near.clone(),
     };
     let input = Input::open_capture(capture, choices, console.resources(), console)?;

@@ -34,7 +34,8 @@ pub fn run(arguments: &InfoArguments, console: &Console) -> Result<(), Failure> 
         let note = format!("{}: no triangle, so there is nothing to render", file.display());
         return report_empty_scene(arguments, inspection, &note, console);
     }
-    let input = open_input(file, &arguments.appearance, console.resources(), &Unwatched)?;
+    let input =
+        open_input(file, &arguments.appearance, arguments.layer.as_deref(), console.resources(), &Unwatched)?;
     console.warn(&input.warnings);
     let health = MeshHealth::measure(&input.scene);
     let modelled = count_modelled(&input, arguments.bake, console)?;
@@ -97,7 +98,9 @@ fn capture_json(input: &Input) -> Option<Value> {
         })
     };
     let all = |views: &[View]| views.iter().map(photograph).collect::<Vec<_>>();
-    (!views.is_empty()).then(|| json!({ "photographs": all(views), "left_out": all(left_out) }))
+    let fit = input.mesh_fit.map(|fit| json!({ "agreement": fit.agreement, "patches": fit.patches }));
+    (!views.is_empty())
+        .then(|| json!({ "photographs": all(views), "left_out": all(left_out), "mesh_fit": fit }))
 }
 
 fn print_capture(input: &Input) {
@@ -111,6 +114,9 @@ fn print_capture(input: &Input) {
         views.len(),
         left_out.len()
     ));
+    if let Some(fit) = &input.mesh_fit {
+        print_line(format!("  mesh fit     {fit}"));
+    }
 }
 
 /// Reports a file without triangles: its contents and a note.

@@ -29,7 +29,13 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure
     check_options(arguments)?;
 
     let start = Instant::now();
-    let input = open_input(&arguments.file, &arguments.shot.appearance, console.resources(), console)?;
+    let input = open_input(
+        &arguments.file,
+        &arguments.shot.appearance,
+        arguments.layer.as_deref(),
+        console.resources(),
+        console,
+    )?;
     console.warn(&input.warnings);
     let (camera, focus) = camera_and_focus(&input, &arguments.shot, console)?;
     let open_seconds = start.elapsed().as_secs_f64();

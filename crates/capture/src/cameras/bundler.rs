@@ -46,9 +46,9 @@ pub(crate) fn read(bundle: &Path, list: &Path) -> Result<Shots, CaptureError> {
         let Some(camera_to_world) = from_camera_to_world(camera_to_world, Axes::Gltf) else {
             return Err(lines.malformed(format!("picture {name:?}: its R is not a rotation")));
         };
-        let focal = Focal::Pixels(focal);
+        let focal = Focal::Pixels([focal; 2]);
         let (projection, distortion) = (Projection::Perspective, Distortion::radial(&[k1, k2]));
-        let lens = ShotLens::Centred { focal, projection, distortion };
+        let lens = ShotLens::OfAnySize { focal, principal_px: [None; 2], projection, distortion };
         shots.shots.push(Shot { name, place, lens, camera_to_world, mask: None });
     }
     Ok(shots)

@@ -6,14 +6,20 @@
 //! ```
 //!
 //! (Metashape Pro's manual, appendix D; the centre of the upper left pixel is (0.5, 0.5).) A camera's matrix maps from its axes (computer
-//! vision's) to its chunk's, and that of the chunk, or of its component, to the world, in which meshes are exported, too.
+//! vision's) to its chunk's, and that of the chunk, or of its component, to the world, in which meshes are exported, too. A camera without
+//! a matrix may be the slave of a `rig`.
+
+mod elements;
+mod rig;
 
 use crate::CaptureError;
 use crate::cameras::pose::{Axes, from_camera_to_world};
 use crate::cameras::shot::{Shot, ShotLens, Shots};
-use crate::files::text::{number, quoted};
+use crate::files::text::quoted;
+use elements::{below, child, values};
 use glam::{DMat3, DMat4, DVec3};
 use lens::{CalibratedLens, Distortion, Intrinsics, Projection};
+use rig::{Rigs, sensor_to_rig};
 use roxmltree::{Document, Node, ParsingOptions};
 use std::collections::HashMap;
 use std::path::Path;
@@ -91,10 +97,16 @@ impl Reader<'_> {
         let mut lenses = HashMap::new();
         let mut shots = Shots::default();
         // Cameras may be in groups.
-        for camera in below(chunk, "cameras").filter(|node| node.has_tag_name("camera")) {
+        let cameras: Vec<_> = below(chunk, "cameras").filter(|node| node.has_tag_name("camera")).collect();
+        let rigs = Rigs::new(cameras.iter().copied());
+        let mut without_master = 0;
+        for &camera in &cameras {
             let label = camera.attribute("label").unwrap_or_default();
             let is_enabled = !matches!(camera.attribute("enabled"), Some("0" | "false"));
-            let Some(transform) = child(camera, "transform").filter(|_| is_enabled) else {
+            let posed = rigs.posed(camera).filter(|_| is_enabled);
+            let Some((posed, transform)) = posed.and_then(|posed| Some((posed, child(posed, "transform")?)))
+            else {
+                without_master += usize::from(is_enabled && Rigs::is_slave(camera));
                 shots.without_camera.push(label.into());
                 continue;
             };
@@ -102,8 +114,14 @@ impl Reader<'_> {
             if label.is_empty() {
                 return Err(wrong("it has no label, which names its picture"));
             }
-            let id = camera.attribute("sensor_id").ok_or_else(|| wrong("it has no sensor_id"))?;
-            let sensor = *sensors.get(id).ok_or_else(|| wrong("its sensor is not in the file"))?;
+            let sensor_of = |camera: Node<'_, '_>| {
+                let id = camera.attribute("sensor_id").ok_or_else(|| wrong("it has no sensor_id"))?;
+                let sensor = sensors.get_key_value(id);
+                sensor
+                    .map(|(id, sensor)| (*id, *sensor))
+                    .ok_or_else(|| wrong("its sensor is not in the file"))
+            };
+            let (id, sensor) = sensor_of(camera)?;
             let lens = match lenses.get(id) {
                 Some(lens) => *lens,
                 None => {
@@ -114,14 +132,27 @@ impl Reader<'_> {
             };
             let rows: [f64; 16] =
                 values(transform).ok_or_else(|| wrong("its transform is not 16 numbers"))?;
-            let to_chunk = DMat4::from_cols_array(&rows).transpose();
-            let of_component = camera.attribute("component_id").and_then(|id| components.get(id)).copied();
+            let mut to_chunk = DMat4::from_cols_array(&rows).transpose();
+            if posed != camera {
+                let to_rig = |sensor| {
+                    sensor_to_rig(sensor).map_err(|what| self.malformed(sensor, of_sensor(sensor, what)))
+                };
+                to_chunk = to_chunk * to_rig(sensor_of(posed)?.1)?.inverse() * to_rig(sensor)?;
+            }
+            let component = [camera, posed].into_iter().find_map(|camera| camera.attribute("component_id"));
+            let of_component = component.and_then(|id| components.get(id)).copied();
             let to_world = of_chunk.or(of_component).unwrap_or(DMat4::IDENTITY);
             let pose = from_camera_to_world(to_world * to_chunk, Axes::Vision);
             let camera_to_world = pose.ok_or_else(|| wrong("its transform is not a rigid motion"))?;
             let place = format!("camera {}", quoted(label));
             let lens = ShotLens::Calibrated(lens);
             shots.shots.push(Shot { name: label.into(), place, lens, camera_to_world, mask: None });
+        }
+        if without_master > 0 {
+            let of_rig = if without_master == 1 { "slave of a rig has" } else { "slaves of a rig have" };
+            shots.notes.push(format!(
+                "{without_master} {of_rig} no pose, because the master is not aligned (align it and export the cameras again)"
+            ));
         }
         Ok(shots)
     }
@@ -147,10 +178,7 @@ impl Reader<'_> {
     }
 
     fn lens(&self, sensor: Node<'_, '_>) -> Result<CalibratedLens, CaptureError> {
-        let wrong = |what: &str| {
-            let label = quoted(sensor.attribute("label").unwrap_or_default());
-            self.malformed(sensor, format!("sensor {label}: {what}"))
-        };
+        let wrong = |what: &str| self.malformed(sensor, of_sensor(sensor, what));
         // The adjusted calibration comes last.
         let calibration = sensor.children().rev().find(|node| node.has_tag_name("calibration"));
         let calibration = calibration.ok_or_else(|| wrong("it has no calibration"))?;
@@ -202,22 +230,7 @@ impl Reader<'_> {
     }
 }
 
-fn child<'a, 'b>(node: Node<'a, 'b>, name: &str) -> Option<Node<'a, 'b>> {
-    node.children().find(|child| child.has_tag_name(name))
-}
-
-/// All elements within the children of this name.
-fn below<'a, 'b>(node: Node<'a, 'b>, name: &'static str) -> impl Iterator<Item = Node<'a, 'b>> {
-    node.children().filter(move |child| child.has_tag_name(name)).flat_map(|child| child.descendants())
-}
-
-/// The numbers in an element's text, if there are N.
-fn values<const N: usize>(node: Node<'_, '_>) -> Option<[f64; N]> {
-    let fields: Vec<&str> = node.text()?.split_whitespace().take(N + 1).collect();
-    (fields.len() == N).then_some(())?;
-    let mut values = [0.0; N];
-    for (value, field) in values.iter_mut().zip(fields) {
-        *value = number(field)?;
-    }
-    Some(values)
+/// A sentence about a sensor.
+fn of_sensor(sensor: Node<'_, '_>, what: &str) -> String {
+    format!("sensor {}: {what}", quoted(sensor.attribute("label").unwrap_or_default()))
 }

@@ -5,7 +5,7 @@ use crate::CaptureError;
 use crate::cameras::pose::{Axes, from_camera_to_world};
 use crate::cameras::shot::{Focal, Shot, ShotLens, Shots};
 use crate::files::text::quoted;
-use glam::DMat4;
+use glam::{DMat4, DVec3};
 use lens::{CalibratedLens, CameraError, Distortion, Intrinsics, Projection};
 use serde_json::{Map, Value};
 use std::io::Read;
@@ -97,7 +97,7 @@ pub(crate) fn read(file: &Path) -> Result<Shots, CaptureError> {
     }
     if root.contains_key("applied_transform") {
         shots.notes.push(
-            "its world is COLMAP's, transformed by applied_transform; a mesh has to be in that world, too, as nerfstudio exports it".into(),
+            "its world is that of the program that solved the cameras, moved by applied_transform".into(),
         );
     }
     let is_unknown =
@@ -131,8 +131,26 @@ fn parsed(file: &Path) -> Result<Value, CaptureError> {
     })
 }
 
+/// The motion that was applied to the cameras of a file, with its scale: from the world of the program that solved them.
+pub(crate) fn applied_transform(file: &Path) -> Result<Option<DMat4>, CaptureError> {
+    let root = parsed(file)?;
+    let Some(applied) = root.get("applied_transform").filter(|applied| !applied.is_null()) else {
+        return Ok(None);
+    };
+    let motion = matrix(applied).filter(|motion| motion.determinant().abs() > f64::MIN_POSITIVE);
+    let motion = motion.ok_or_else(|| {
+        CaptureError::malformed(
+            file,
+            "/applied_transform",
+            "is not an invertible matrix of 3 rows of 4 numbers",
+        )
+    })?;
+    let scale = root.get("applied_scale").and_then(Value::as_f64).filter(|scale| *scale > 0.0).unwrap_or(1.0);
+    Ok(Some(DMat4::from_scale(DVec3::splat(scale)) * motion))
+}
+
 /// A matrix of 4 rows (or 3), as nested lists or as one.
-fn matrix(value: &Value) -> Option<DMat4> {
+pub(crate) fn matrix(value: &Value) -> Option<DMat4> {
     let rows = value.as_array()?;
     let mut entries = Vec::with_capacity(16);
     for row in rows.iter().take(16) {
@@ -163,14 +181,27 @@ impl Properties<'_> {
 
     /// A number, or text that is one.
     fn number(&self, key: &str) -> Result<Option<f64>, String> {
-        let Some(value) = self.value(key) else { return Ok(None) };
-        let number = value.as_f64().or_else(|| value.as_str().and_then(crate::files::text::number));
-        number.filter(|number| number.is_finite()).map(Some).ok_or_else(|| format!("{key} is not a number"))
+        self.number_if(key, |_| true)
+    }
+
+    /// The same of the frame, or else of the file, if it is a usable one. Programs write 0 for what they do not know.
+    fn number_if(&self, key: &str, is_usable: impl Fn(f64) -> bool) -> Result<Option<f64>, String> {
+        for properties in [self.frame, self.root] {
+            let Some(value) = properties.get(key).filter(|value| !value.is_null()) else { continue };
+            let number = value.as_f64().or_else(|| value.as_str().and_then(crate::files::text::number));
+            let number = number.filter(|number| number.is_finite());
+            let number = number.ok_or_else(|| format!("{key} is not a number"))?;
+            if is_usable(number) {
+                return Ok(Some(number));
+            }
+        }
+        Ok(None)
     }
 
     fn lens(&self) -> Result<ShotLens, String> {
         let (projection, distortion) = self.projection_and_distortion()?;
-        let size = match (self.number("w")?, self.number("h")?) {
+        let not_0 = |key: &str| self.number_if(key, |number| number != 0.0);
+        let size = match (not_0("w")?, not_0("h")?) {
             (Some(width), Some(height)) => {
                 let side =
                     |side: f64| (side >= 1.0 && side <= f64::from(u32::MAX)).then_some(side.round() as u32);
@@ -185,30 +216,31 @@ impl Properties<'_> {
             let size = size.ok_or("a panorama needs w and h")?;
             return CalibratedLens::panorama(size).map(ShotLens::Calibrated).map_err(message);
         }
+        let [focal_x, focal_y] = [not_0("fl_x")?, not_0("fl_y")?];
         let angle = |key: &str| -> Result<Option<f64>, String> {
-            let angle = self.number(key)?;
-            let is_angle = angle.is_none_or(|angle| angle > 0.0 && angle < std::f64::consts::PI);
-            is_angle.then_some(angle).ok_or_else(|| format!("{key} is not an angle between 0 and π"))
+            let angle = self.number_if(key, |angle| angle > 0.0 && angle < std::f64::consts::PI)?;
+            // Beside a focal length angles are not needed.
+            let is_wrong = angle.is_none() && focal_x.or(focal_y).is_none() && not_0(key)?.is_some();
+            (!is_wrong).then_some(angle).ok_or_else(|| format!("{key} is not an angle between 0 and π"))
         };
         let [across, down] = [angle("camera_angle_x")?, angle("camera_angle_y")?];
-        let [focal_x, focal_y] = [self.number("fl_x")?, self.number("fl_y")?];
+        let principal_px = [not_0("cx")?, not_0("cy")?];
+        let unknown = "neither fl_x nor camera_angle_x gives its focal length (0 counts as missing)";
         let Some(size_px) = size else {
-            let focal = match (focal_x, across) {
-                (Some(focal), _) => Focal::Pixels(focal),
+            let focal = match (focal_x.or(focal_y), across) {
+                (Some(focal), _) => Focal::Pixels([focal_x.unwrap_or(focal), focal_y.unwrap_or(focal)]),
                 (None, Some(angle)) => Focal::AngleAcross(angle),
-                (None, None) => {
-                    return Err("neither fl_x nor camera_angle_x gives its focal length".into());
-                }
+                (None, None) => return Err(unknown.into()),
             };
-            return Ok(ShotLens::Centred { focal, projection, distortion });
+            return Ok(ShotLens::OfAnySize { focal, principal_px, projection, distortion });
         };
         let [width, height] = size_px.map(f64::from);
         let by_angle = |angle: Option<f64>, side: f64| angle.map(|angle| 0.5 * side / (0.5 * angle).tan());
         let focal_x = focal_x.or(by_angle(across, width)).or(focal_y).or(by_angle(down, height));
-        let focal_x = focal_x.ok_or("neither fl_x nor camera_angle_x gives its focal length")?;
+        let focal_x = focal_x.ok_or(unknown)?;
         let focal_y = focal_y.or(by_angle(down, height)).unwrap_or(focal_x);
-        let principal_px =
-            [self.number("cx")?.unwrap_or(0.5 * width), self.number("cy")?.unwrap_or(0.5 * height)];
+        let [x, y] = principal_px;
+        let principal_px = [x.unwrap_or(0.5 * width), y.unwrap_or(0.5 * height)];
         let intrinsics = Intrinsics { size_px, focal_px: [focal_x, focal_y], skew_px: 0.0, principal_px };
         CalibratedLens::new(intrinsics, projection, distortion).map(ShotLens::Calibrated).map_err(message)
     }

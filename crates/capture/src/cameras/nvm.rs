@@ -71,7 +71,8 @@ fn shot(lines: &Lines, line: &str) -> Result<Shot, CaptureError> {
             lines.malformed(format!("picture {}: its rotation is not a unit quaternion", quoted(&name)))
         );
     };
-    let (focal, projection) = (Focal::Pixels(focal), Projection::MeasuredRadial { r });
-    let lens = ShotLens::Centred { focal, projection, distortion: Distortion::default() };
+    let (focal, projection) = (Focal::Pixels([focal; 2]), Projection::MeasuredRadial { r });
+    let lens =
+        ShotLens::OfAnySize { focal, principal_px: [None; 2], projection, distortion: Distortion::default() };
     Ok(Shot { name, place: format!("line {}", lines.number), lens, camera_to_world, mask: None })
 }

@@ -21,15 +21,21 @@ pub(crate) struct Shot {
 pub(crate) enum ShotLens {
     /// Completely.
     Calibrated(CalibratedLens),
-    /// Except for the size of the picture, in whose middle its axis is.
-    Centred { focal: Focal, projection: Projection, distortion: Distortion },
+    /// Except for the size of the picture.
+    OfAnySize {
+        focal: Focal,
+        /// Where its axis meets the picture, px, across and down; none: in the middle.
+        principal_px: [Option<f64>; 2],
+        projection: Projection,
+        distortion: Distortion,
+    },
 }
 
 /// The focal length of a lens.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Focal {
-    /// px.
-    Pixels(f64),
+    /// px, across and down.
+    Pixels([f64; 2]),
     /// By its full horizontal angle of view, rad.
     AngleAcross(f64),
 }
@@ -39,7 +45,7 @@ impl ShotLens {
     pub fn size_px(&self) -> Option<[u32; 2]> {
         match self {
             Self::Calibrated(lens) => Some(lens.size_px()),
-            Self::Centred { .. } => None,
+            Self::OfAnySize { .. } => None,
         }
     }
 
@@ -47,14 +53,15 @@ impl ShotLens {
     pub fn for_size(&self, size_px: [u32; 2]) -> Result<CalibratedLens, CameraError> {
         match *self {
             Self::Calibrated(lens) => Ok(lens),
-            Self::Centred { focal, projection, distortion } => {
+            Self::OfAnySize { focal, principal_px, projection, distortion } => {
                 let [width, height] = size_px.map(f64::from);
-                let focal = match focal {
+                let focal_px = match focal {
                     Focal::Pixels(focal) => focal,
-                    Focal::AngleAcross(angle) => 0.5 * width / (0.5 * angle).tan(),
+                    Focal::AngleAcross(angle) => [0.5 * width / (0.5 * angle).tan(); 2],
                 };
-                let principal_px = [0.5 * width, 0.5 * height];
-                let intrinsics = Intrinsics { size_px, focal_px: [focal; 2], skew_px: 0.0, principal_px };
+                let [x, y] = principal_px;
+                let principal_px = [x.unwrap_or(0.5 * width), y.unwrap_or(0.5 * height)];
+                let intrinsics = Intrinsics { size_px, focal_px, skew_px: 0.0, principal_px };
                 CalibratedLens::new(intrinsics, projection, distortion)
             }
         }

@@ -1,6 +1,6 @@
 //! Reading a depth map, in any of its file formats.
 
-use super::exr_depth::read_exr_depth;
+use super::exr_depth::{read_exr_channel, read_exr_depth};
 use super::levels::levels_of;
 use super::map::DepthMap;
 use super::meaning::{DepthHint, DepthQuantity};
@@ -46,4 +46,18 @@ pub fn read_depth_map(
         }
     };
     stored.into_depth_map(file, hint)
+}
+
+/// Reads the depth map in a channel of an EXR: distances, unless `near` is given.
+///
+/// # Errors
+/// As [`read_depth_map`]; or there is no such channel.
+pub(crate) fn read_depth_channel(
+    file: &Path,
+    channel: &str,
+    near: Option<NearEnd>,
+    options: &LoadOptions,
+) -> Result<DepthMap, CaptureError> {
+    let hint = DepthHint { quantity: Some(DepthQuantity::Depth), near };
+    read_exr_channel(file, channel, options)?.into_depth_map(file, hint)
 }

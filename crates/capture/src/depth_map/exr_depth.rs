@@ -23,8 +23,17 @@ pub(crate) fn read_exr_depth(file: &Path, options: &LoadOptions) -> Result<(Stor
         );
         return Err(CaptureError::malformed(file, "EXR", what.chars().take(300).collect::<String>()));
     };
-    let read = read_exr(file, &[&name], options)?;
+    Ok((read_exr_channel(file, &name, options)?, is_named))
+}
+
+/// Reads the numbers of a channel.
+pub(crate) fn read_exr_channel(
+    file: &Path,
+    channel: &str,
+    options: &LoadOptions,
+) -> Result<Stored, CaptureError> {
+    let read = read_exr(file, &[channel], options)?;
     let [width, height] = read.size;
     let values = read.channels.into_iter().next().unwrap_or_default();
-    Ok((Stored { width, height, values, numbers: Numbers::Floats }, is_named))
+    Ok(Stored { width, height, values, numbers: Numbers::Floats })
 }

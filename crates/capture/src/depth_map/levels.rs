@@ -3,7 +3,7 @@
 use super::stored::{Numbers, Stored};
 use crate::files::folder::extension;
 use crate::files::whole_file::whole_file;
-use image::{ColorType, DynamicImage, ImageDecoder, ImageReader, Limits};
+use image::{ColorType, DynamicImage, ImageDecoder, Limits};
 use scene::LoadOptions;
 use std::io::Cursor;
 use std::path::Path;
@@ -23,13 +23,9 @@ pub(crate) fn is_coded_by_color(file: &Path, options: &LoadOptions) -> bool {
 /// which is an error.
 pub(crate) fn levels_of(bytes: &[u8], options: &LoadOptions) -> Result<Stored, String> {
     let text = |error: image::ImageError| format!("cannot be decoded: {error}");
-    let mut reader = ImageReader::new(Cursor::new(bytes))
-        .with_guessed_format()
-        .map_err(|error| format!("cannot be decoded: {error}"))?;
     let mut limits = Limits::default();
     limits.max_alloc = Some(options.max_memory / 2);
-    reader.limits(limits);
-    let decoder = reader.into_decoder().map_err(text)?;
+    let decoder = scene::open_picture(Cursor::new(bytes), limits).map_err(text)?;
     let (width, height) = decoder.dimensions();
     let (pixels, limit) =
         (u64::from(width) * u64::from(height), options.max_texels.min(options.max_memory / 16));

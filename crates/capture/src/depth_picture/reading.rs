@@ -6,12 +6,16 @@ use super::gdepth::read_gdepth;
 use super::jpeg::{Segments, is_jpeg};
 use super::sibling_depth::{depth_files, pictures};
 use super::xmp::XmpTexts;
-use crate::depth_map::{DepthMap, DepthMeaning, DepthQuantity, NearEnd, quantity_from_name, read_depth_map};
+use crate::depth_map::{
+    DepthMap, DepthMeaning, DepthQuantity, NearEnd, quantity_from_name, read_depth_channel, read_depth_map,
+};
 use crate::files::exif::Exif;
 use crate::files::folder::extension;
 use crate::files::picture_header::read_header;
+use crate::files::text::quoted;
 use crate::files::whole_file::{head, whole_file};
-use crate::pictures::exr_channels::{color_channels, depth_channel, exr_names};
+use crate::pictures::exr_channels::{color_channels, depth_channel, exr_names_and_root};
+use crate::pictures::exr_layers::{ExrLayer, exr_layers};
 use crate::pictures::picture_source::PictureSource;
 use crate::unsupported_format::unsupported_format_error;
 use crate::{CaptureError, Remark};
@@ -24,6 +28,8 @@ use std::sync::Arc;
 pub struct DepthPictureOptions {
     /// The file of its depth, and the quantity that it holds; `None`: looked for in the picture and next to it.
     pub depth: Option<(PathBuf, DepthQuantity)>,
+    /// The layer of an EXR with several pictures, by name; `None`: the first one with depth.
+    pub layer: Option<String>,
     /// The near end of a relative map.
     pub near: Option<NearEnd>,
     /// Limits on memory and size.
@@ -90,6 +96,9 @@ pub fn open_depth_picture(path: &Path, options: &DepthPictureOptions) -> Result<
         return Err(error);
     }
     let opening = Opening { file: path, options };
+    if options.layer.is_some() && extension(path) != "exr" {
+        return Err(CaptureError::Unlayered { file: path.into() });
+    }
     if let Some((depth, quantity)) = &options.depth {
         return opening.with_file(depth, Some(*quantity), Vec::new());
     }
@@ -118,9 +127,11 @@ pub fn open_depth_picture(path: &Path, options: &DepthPictureOptions) -> Result<
 /// Whether a file is a picture with depth, by its name, its neighbours' and its header.
 pub(crate) fn has_depth(file: &Path, options: &LoadOptions) -> bool {
     if extension(file) == "exr" {
-        let names = exr_names(file, options).unwrap_or_default();
-        return color_channels(&names).is_some()
-            && (depth_channel(&names).is_some() || !depth_files(file).is_empty());
+        let (names, root) = exr_names_and_root(file, options).unwrap_or_default();
+        let layers = exr_layers(&names, &root);
+        let has_picture = color_channels(&names).is_some();
+        return layers.iter().any(|layer| layer.depth.is_some())
+            || has_picture && !depth_files(file).is_empty();
     }
     if !depth_files(file).is_empty() {
         return true;
@@ -206,8 +217,10 @@ impl Opening<'_> {
     /// An EXR with a depth channel, or with a depth file next to it.
     fn exr(&self) -> Result<DepthPicture, CaptureError> {
         let load = &self.options.load;
-        let names = exr_names(self.file, load)?;
-        if depth_channel(&names).is_none() {
+        let (names, root) = exr_names_and_root(self.file, load)?;
+        let layers: Vec<ExrLayer> =
+            exr_layers(&names, &root).into_iter().filter(|layer| layer.depth.is_some()).collect();
+        if layers.is_empty() && depth_channel(&names).is_none() {
             return match depth_files(self.file).first() {
                 Some(depth) => self.with_file(depth, None, Vec::new()),
                 None => Err(CaptureError::NoDepth {
@@ -217,22 +230,42 @@ impl Opening<'_> {
                 }),
             };
         }
-        // Depth in the picture's own file means distances, unless the near end is specified.
-        let depth = read_depth_map(self.file, Some(DepthQuantity::Depth), self.options.near, load)?;
-        let Some(channels) = color_channels(&names) else {
+        if layers.is_empty() {
             return Err(self
                 .malformed("EXR", "has a depth channel, but no picture (R, G, B; ViewLayer.Combined.R …)"));
-        };
+        }
+        let ExrLayer { name, color: channels, depth } = self.chosen_layer(&layers)?;
+        let others = layers.iter().filter(|layer| layer.name != *name).map(|layer| layer.name.clone());
+        let others = if self.options.layer.is_some() { Vec::new() } else { others.collect() };
+        let remark = Remark::about(others, false, |names| {
+            format!(
+                "{}: its layer {} is used; there are also {names} (choose one with --layer)",
+                self.file.display(),
+                quoted(name)
+            )
+        });
+        // Depth in the picture's own file means distances, unless the near end is specified.
+        let depth = depth.as_deref().unwrap_or_default();
+        let depth = read_depth_channel(self.file, depth, self.options.near, load)?;
         Ok(DepthPicture {
             name: self.name(),
-            picture: PictureSource::Exr { file: self.file.into(), channels },
+            picture: PictureSource::Exr { file: self.file.into(), channels: channels.clone() },
             size: [depth.width, depth.height],
             depth,
             depth_file: self.file.into(),
             container: DepthContainer::Exr,
             near_far_m: None,
             focal_px: None,
-            remarks: Vec::new(),
+            remarks: remark.into_iter().collect(),
+        })
+    }
+
+    /// The layer that is asked for, by its name; else the first.
+    fn chosen_layer<'b>(&self, layers: &'b [ExrLayer]) -> Result<&'b ExrLayer, CaptureError> {
+        let Some(name) = &self.options.layer else { return Ok(&layers[0]) };
+        layers.iter().find(|layer| layer.name == *name).ok_or_else(|| {
+            let layers: Vec<String> = layers.iter().map(|layer| quoted(&layer.name)).collect();
+            CaptureError::NoLayer { file: self.file.into(), layer: quoted(name), layers: layers.join(", ") }
         })
     }
 
@@ -256,8 +289,12 @@ impl Opening<'_> {
             )));
         }
         let (picture, size, depth, focal_px) = if extension(file) == "exr" {
-            let names = exr_names(file, &options.load)?;
-            let channels = color_channels(&names)
+            let (names, root) = exr_names_and_root(file, &options.load)?;
+            let channels = match &options.layer {
+                Some(_) => Some(self.chosen_layer(&exr_layers(&names, &root))?.color.clone()),
+                None => color_channels(&names),
+            };
+            let channels = channels
                 .ok_or_else(|| self.malformed("EXR", "has no picture (R, G, B; ViewLayer.Combined.R …)"))?;
             let size = crate::pictures::exr_channels::read_exr(file, &[&channels[0]], &options.load)?.size;
             (PictureSource::Exr { file: file.into(), channels }, size, depth, None)

@@ -4,7 +4,7 @@
 //! stored pixels: programs differ in whether they rotate pictures, and the cameras show which they did.
 
 use crate::files::exif::Exif;
-use image::{ImageDecoder, ImageReader};
+use image::{ImageDecoder, Limits};
 use lens::CalibratedLens;
 use std::fs::File;
 use std::io::{Cursor, Read};
@@ -33,8 +33,7 @@ pub(crate) fn header_of_bytes(bytes: &[u8]) -> Result<([u32; 2], Exif), String> 
 }
 
 fn header_of(bytes: &[u8]) -> Result<([u32; 2], Exif), image::ImageError> {
-    let reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format()?;
-    let mut decoder = reader.into_decoder()?;
+    let mut decoder = scene::open_picture(Cursor::new(bytes), Limits::default())?;
     let (width, height) = decoder.dimensions();
     let exif = decoder.exif_metadata().ok().flatten();
     Ok(([width, height], exif.map_or_else(Exif::default, |data| Exif::parse(&data))))

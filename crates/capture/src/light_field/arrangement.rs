@@ -8,7 +8,7 @@ use std::path::PathBuf;
 pub enum ViewLayout {
     /// A grid, numbered row by row: `input_Cam000.png` … of the 4D Light Field Benchmark.
     Numbered,
-    /// A grid, numbered row by row: `input_Cam000.png` … of the 4D Light Field Benchmark.
+    /// A grid, named by row and column: `03_04.png` and the like.
     RowColumn,
     /// A grid, whose names have positions, too: `out_RR_CC_Y_X.png` of the Stanford archive.
     Positions,
@@ -40,6 +40,8 @@ pub(crate) struct Arrangement {
     pub views: Vec<Placed>,
     /// Columns and rows of the grid.
     pub grid: Option<[u32; 2]>,
+    /// The number of the first view of a numbered grid; otherwise 0.
+    pub first_number: u32,
     /// The view that a list declares as the middle one.
     pub reference: Option<usize>,
     /// The disparity map that a list names.

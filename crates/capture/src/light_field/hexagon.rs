@@ -63,6 +63,7 @@ pub(super) fn arrange_hexagon(folder: &Path, files: &[PathBuf]) -> Option<Arrang
         folder: folder.into(),
         views: views.collect(),
         grid: None,
+        first_number: 0,
         reference: Some(0),
         disparity: None,
         is_certain: true,

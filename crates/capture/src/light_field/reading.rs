@@ -254,7 +254,7 @@ fn missing(arrangement: &Arrangement, placed: &[Placed]) -> Option<Remark> {
         return Some(Remark::note(format!("{shown}: a cross of {columns} and {rows} views")));
     }
     let names = missing.iter().map(|[column, row]| match arrangement.layout {
-        ViewLayout::Numbered => format!("number {}", row * columns + column),
+        ViewLayout::Numbered => format!("number {}", arrangement.first_number + row * columns + column),
         _ => format!("row {row} column {column}"),
     });
     let count = missing.len();

@@ -4,9 +4,11 @@
 //! others varies, too, the two that vary. They may start anywhere and be padded or not. `c03_r01` and `x3_y1` are recognised.
 
 use super::arrangement::{Arrangement, Placed, ViewLayout};
+use super::numbered_grid::NumberedGrid;
 use super::numbered_name::{NumberedName, parse_positions};
+use crate::CaptureError;
 use glam::DVec2;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
 
 /// The most columns or rows; Stanford's have 17, gantries some more.
@@ -25,38 +27,51 @@ struct Named {
     place: Option<[f64; 2]>,
 }
 
-/// The grid numbered row by row (`input_Cam000`), with these columns and rows, if there is one.
+/// The grid numbered row by row (`input_Cam000`), if there is one; with these columns and rows if they are stated.
+///
+/// # Errors
+/// The numbers do not tell how many columns there are.
 pub(super) fn arrange_numbered(
     folder: &Path,
     files: &[PathBuf],
     grid: Option<[u32; 2]>,
-) -> Option<Arrangement> {
-    /// The benchmark's.
-    const GRID: [u32; 2] = [9, 9];
+) -> Result<Option<Arrangement>, CaptureError> {
     let number = |file: &PathBuf| {
         let name = NumberedName::parse(&stem(file))?;
         let is_camera = name.numbers.len() == 1
-            && name.texts[0].trim_end_matches('_').ends_with("cam")
+            && name.texts[0].trim_end_matches(['_', '-', ' ', '.']).ends_with("cam")
             && name.texts[1].is_empty();
         is_camera.then(|| (name.numbers[0], file.clone()))
     };
     let candidates: Vec<(u32, PathBuf)> = files.iter().filter_map(number).collect();
-    let [columns, rows] = grid.unwrap_or(GRID);
-    let (fit, beyond): (Vec<_>, Vec<_>) = candidates
-        .into_iter()
-        .partition(|(number, _)| u64::from(*number) < u64::from(columns) * u64::from(rows));
-    let named = fit.into_iter().map(|(number, file)| Named {
-        file,
-        cell: [number / columns, number % columns],
-        place: None,
+    let numbers: BTreeSet<u32> = candidates.iter().map(|(number, _)| *number).collect();
+    let numbers: Vec<u32> = numbers.into_iter().collect();
+    let [lowest, .., highest] = numbers[..] else { return Ok(None) };
+    let NumberedGrid { columns, rows, first } = match grid {
+        Some(grid) => NumberedGrid::stated(grid, &numbers),
+        None => NumberedGrid::inferred(&numbers).map_err(|why| CaptureError::GridUnknown {
+            folder: folder.into(),
+            what: format!("{} views are numbered from {lowest} to {highest}: {why}", numbers.len()),
+        })?,
+    };
+    let in_grid = |number: u32| number.checked_sub(first).filter(|index| *index < columns * rows);
+    let (fit, beyond): (Vec<_>, Vec<_>) =
+        candidates.into_iter().partition(|(number, _)| in_grid(*number).is_some());
+    let named = fit.into_iter().filter_map(|(number, file)| {
+        let index = in_grid(number)?;
+        Some(Named { file, cell: [index / columns, index % columns], place: None })
     });
-    let mut arrangement = arrange_grid(folder, named.collect(), ViewLayout::Numbered, Some([columns, rows]))?;
+    let layout = ViewLayout::Numbered;
+    let Some(mut arrangement) = arrange_grid(folder, named.collect(), layout, Some([columns, rows])) else {
+        return Ok(None);
+    };
+    arrangement.first_number = first;
     let beyond: Vec<String> = beyond.into_iter().map(|(_, file)| stem(&file)).collect();
     if !beyond.is_empty() {
         let what = format!("numbers beyond a grid of {columns} × {rows}, which are ignored");
         arrangement.notes.push((what, beyond));
     }
-    Some(arrangement)
+    Ok(Some(arrangement))
 }
 
 /// The grid whose names have row, column and positions, if there is one.
@@ -174,6 +189,7 @@ fn arrange_grid(
         folder: folder.into(),
         views: views.collect(),
         grid: Some([columns, rows]),
+        first_number: 0,
         reference: None,
         disparity: None,
         is_certain: true,

@@ -75,9 +75,10 @@ fn views_in(
         .filter(|(path, kind)| *kind == EntryKind::File && is_view(path))
         .map(|(path, _)| path)
         .collect();
-    let arrangement = arrange_by_positions(place, &files)
-        .or_else(|| arrange_hexagon(place, &files))
-        .or_else(|| arrange_numbered(place, &files, grid))
-        .or_else(|| arrange_by_row_column(place, &files));
-    Ok(arrangement)
+    if let Some(arrangement) = arrange_by_positions(place, &files).or_else(|| arrange_hexagon(place, &files))
+    {
+        return Ok(Some(arrangement));
+    }
+    let numbered = arrange_numbered(place, &files, grid)?;
+    Ok(numbered.or_else(|| arrange_by_row_column(place, &files)))
 }

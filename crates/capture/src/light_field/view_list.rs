@@ -99,6 +99,7 @@ pub(super) fn read_view_list(folder: &Folder, file: &Path) -> Result<Arrangement
         folder: base.into(),
         views,
         grid: None,
+        first_number: 0,
         reference,
         disparity,
         is_certain: true,

@@ -12,8 +12,10 @@
 //! blocks of 8 are not micro-images. The same for rows.
 
 use super::png_rows::PngRows;
-use image::{ImageReader, Limits};
+use image::{DynamicImage, ImageDecoder, Limits};
 use scene::LoadOptions;
+use std::fs::File;
+use std::io::BufReader;
 use std::path::Path;
 
 /// Candidate pitches, px: Lytro has 10, 14 and 15; renderers choose freely.
@@ -72,11 +74,11 @@ fn band(file: &Path, options: &LoadOptions) -> Option<(Vec<f32>, usize)> {
         }
         return Some((levels, rows.size[0] as usize));
     }
-    let mut reader = ImageReader::open(file).ok()?.with_guessed_format().ok()?;
     let mut limits = Limits::default();
     limits.max_alloc = Some(options.max_memory / 2);
-    reader.limits(limits);
-    let picture = reader.decode().ok()?.into_luma8();
+    let decoder = scene::open_picture(BufReader::new(File::open(file).ok()?), limits.clone()).ok()?;
+    limits.reserve(decoder.total_bytes()).ok()?;
+    let picture = DynamicImage::from_decoder(decoder).ok()?.into_luma8();
     if !is_usable([picture.width(), picture.height()]) {
         return None;
     }

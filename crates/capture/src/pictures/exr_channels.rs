@@ -8,15 +8,18 @@ use crate::files::whole_file::whole_file;
 use exr::block::reader::ChunksReader;
 use exr::meta::MetaData;
 use exr::meta::attribute::SampleType;
-use exr::meta::header::Header;
 use exr::prelude::{Vec2, f16};
 use scene::LoadOptions;
+use std::collections::HashSet;
 use std::io::Cursor;
 use std::panic::AssertUnwindSafe;
 use std::path::Path;
 
 /// The largest width and height of a window.
 const LARGEST_SIDE: usize = 32768;
+
+/// Layers that are the whole picture.
+const PICTURES: [&str; 6] = ["combined", "image", "rgba", "rgb", "beauty", "composite"];
 
 /// Channels of an image.
 pub(crate) struct ExrChannels {
@@ -27,8 +30,20 @@ pub(crate) struct ExrChannels {
 
 /// The names of the channels of an EXR.
 pub(crate) fn exr_names(file: &Path, options: &LoadOptions) -> Result<Vec<String>, CaptureError> {
+    Ok(exr_names_and_root(file, options)?.0)
+}
+
+/// The same, and the name of the first part, whose channels bear none; it may have none.
+pub(crate) fn exr_names_and_root(
+    file: &Path,
+    options: &LoadOptions,
+) -> Result<(Vec<String>, String), CaptureError> {
     let bytes = whole_file(file, options.max_memory / 2)?;
-    guarded(file, || Ok(names(&meta(&bytes)?)))
+    guarded(file, || {
+        let meta = meta(&bytes)?;
+        let root = meta.headers[0].own_attributes.layer_name.as_ref();
+        Ok((names(&meta), root.map(ToString::to_string).unwrap_or_default()))
+    })
 }
 
 /// Reads the channels of these names, all of which must exist.
@@ -57,23 +72,39 @@ fn meta(bytes: &[u8]) -> Result<MetaData, String> {
 }
 
 fn names(meta: &MetaData) -> Vec<String> {
-    let of_part = |(part, header): (usize, &Header)| {
-        let names = header.channels.list.iter();
-        names.map(|channel| full_name(part, header, &channel.name.to_string())).collect::<Vec<_>>()
-    };
-    meta.headers.iter().enumerate().flat_map(of_part).collect()
+    names_by_part(meta).concat()
 }
 
-/// The name of a part's channel among those of all parts.
-fn full_name(part: usize, header: &Header, channel: &str) -> String {
-    match &header.own_attributes.layer_name {
-        Some(layer)
-            if !channel.contains('.') && (part > 0 || layer.to_string().to_lowercase().contains("depth")) =>
-        {
-            format!("{layer}.{channel}")
-        }
-        _ => channel.into(),
+/// The names of the channels of each part among those of all parts. Channels of the first part keep their own, unless the part is named as a
+/// pass of a layer (`ViewLayer.Combined`) or as depth. Those of other parts bear the part's name, unless they begin with it, or are in a layer
+/// that no part before has.
+fn names_by_part(meta: &MetaData) -> Vec<Vec<String>> {
+    let mut earlier = HashSet::new();
+    let mut all = Vec::new();
+    for (part, header) in meta.headers.iter().enumerate() {
+        let own: Vec<String> = header.channels.list.iter().map(|channel| channel.name.to_string()).collect();
+        let layer = header.own_attributes.layer_name.as_ref().map(ToString::to_string);
+        let is_prefixed = |layer: &str, channel: &str| match (channel.contains('.'), part) {
+            (false, 0) => is_picture_pass(layer) || layer.to_lowercase().contains("depth"),
+            (false, _) => true,
+            (true, _) => {
+                let begins_so = channel.strip_prefix(layer).is_some_and(|rest| rest.starts_with('.'));
+                !begins_so && earlier.contains(channel)
+            }
+        };
+        let full = |channel: &String| match &layer {
+            Some(layer) if is_prefixed(layer, channel) => format!("{layer}.{channel}"),
+            _ => channel.clone(),
+        };
+        all.push(own.iter().map(full).collect());
+        earlier.extend(own);
     }
+    all
+}
+
+/// Whether a part is named as the picture of a layer.
+fn is_picture_pass(part: &str) -> bool {
+    part.rsplit_once('.').is_some_and(|(_, pass)| PICTURES.contains(&pass.to_lowercase().as_str()))
 }
 
 fn decode(bytes: &[u8], channel_names: &[&str], options: &LoadOptions) -> Result<ExrChannels, String> {
@@ -93,13 +124,10 @@ fn decode(bytes: &[u8], channel_names: &[&str], options: &LoadOptions) -> Result
         return Err(format!("is of {width} × {height} px; there must be at least one, and at most {limit}"));
     }
     // The position of each requested channel: its part, and its index in the part.
-    let mut places = Vec::new();
+    let (all_names, mut places) = (names_by_part(&meta), Vec::new());
     for name in channel_names {
-        let location = meta.headers.iter().enumerate().find_map(|(part, header)| {
-            let of_name = |channel: &exr::meta::attribute::ChannelDescription| {
-                full_name(part, header, &channel.name.to_string()) == *name
-            };
-            header.channels.list.iter().position(of_name).map(|channel| (part, channel))
+        let location = all_names.iter().enumerate().find_map(|(part, names)| {
+            names.iter().position(|other| other == name).map(|channel| (part, channel))
         });
         let (part, channel) = location.ok_or_else(|| format!("has no channel {name}"))?;
         if meta.headers[part].channels.list[channel].sampling != Vec2(1, 1) {
@@ -147,8 +175,6 @@ fn decode(bytes: &[u8], channel_names: &[&str], options: &LoadOptions) -> Result
 /// The colour channels, red first: those without a layer, or of the layer that is the picture; `None` if there are
 /// none.
 pub(crate) fn color_channels(names: &[String]) -> Option<[String; 3]> {
-    /// Layers that are the whole picture.
-    const PICTURES: [&str; 6] = ["combined", "image", "rgba", "rgb", "beauty", "composite"];
     let layer = |name: &str| {
         let (layer, channel) = name.rsplit_once('.').unwrap_or(("", name));
         channel.eq_ignore_ascii_case("r").then(|| layer.to_owned())

@@ -79,6 +79,81 @@ fn an_exr_with_the_names_of_blender_and_of_nuke() {
 }
 
 #[test]
+fn a_layer_of_an_exr_may_be_chosen() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("a.exr");
+    let channel = |value: f32| move |_: usize, _: usize| value;
+    let [one, two, four] = [1.0, 2.0, 4.0].map(channel);
+    let near_layer = [
+        ("ViewLayer.Combined.R", &one as &dyn Fn(usize, usize) -> f32),
+        ("ViewLayer.Combined.G", &one),
+        ("ViewLayer.Combined.B", &one),
+        ("ViewLayer.Depth.Z", &two),
+    ];
+    let far_layer = [
+        ("ViewLayer_001.Combined.R", &two as &dyn Fn(usize, usize) -> f32),
+        ("ViewLayer_001.Combined.G", &two),
+        ("ViewLayer_001.Combined.B", &two),
+        ("ViewLayer_001.Depth.Z", &four),
+    ];
+    exr(&file, 4, 4, &[&near_layer[..], &far_layer].concat());
+    let chosen = |layer: &str| {
+        open_depth_picture(&file, &DepthPictureOptions { layer: Some(layer.into()), ..Default::default() })
+    };
+    let first = opened(&file);
+    assert_eq!((pixels(&first).pixels[0][0], first.depth.range()), (1.0, Some([2.0, 2.0])));
+    assert!(
+        first.remarks.len() == 1
+            && first.remarks[0].text.contains(
+                "its layer \"ViewLayer\" is used; there are also ViewLayer_001 (choose one with --layer)"
+            ),
+        "{:?}",
+        first.remarks
+    );
+    let second = chosen("ViewLayer_001").unwrap();
+    assert_eq!((pixels(&second).pixels[0][0], second.depth.range()), (2.0, Some([4.0, 4.0])));
+    assert!(second.remarks.is_empty(), "{:?}", second.remarks);
+    let error = chosen("viewlayer").unwrap_err().to_string();
+    assert!(
+        error.ends_with("a.exr: has no layer \"viewlayer\" with a picture and its depth (choose among \"ViewLayer\", \"ViewLayer_001\")"),
+        "{error}"
+    );
+    // The depth of one layer is not that of another.
+    exr(&file, 4, 4, &[&near_layer[..3], &far_layer].concat());
+    assert_eq!(pixels(&opened(&file)).pixels[0][0], 2.0);
+    assert!(chosen("ViewLayer").is_err());
+    let photo = folder.path().join("b.jpg");
+    put(&photo, jpeg(8, 8, 90));
+    let options = DepthPictureOptions { layer: Some("x".into()), ..Default::default() };
+    let error = open_depth_picture(&photo, &options).unwrap_err().to_string();
+    assert!(error.ends_with("b.jpg: is no EXR with several layers (leave out --layer)"), "{error}");
+}
+
+#[test]
+fn parts_of_an_exr_are_layers() {
+    use exr::prelude::*;
+    let folder = tempfile::tempdir().unwrap();
+    let part = |name: &str, names: [&str; 4], value: f32| {
+        let channels = names.iter().zip([value, value, value, value + 1.0]);
+        let channels =
+            channels.map(|(name, value)| AnyChannel::new(*name, FlatSamples::F32(vec![value; 16])));
+        let attributes = LayerAttributes::named(name);
+        Layer::new((4, 4), attributes, Encoding::SMALL_FAST_LOSSLESS, AnyChannels::sort(channels.collect()))
+    };
+    for names in [["R", "G", "B", "Z"], ["Combined.R", "Combined.G", "Combined.B", "Depth.Z"]] {
+        let file = folder.path().join("parts.exr");
+        let parts = vec![part("inside", names, 1.0), part("outside", names, 5.0)];
+        Image::from_layers(ImageAttributes::with_size((4, 4)), parts).write().to_file(&file).unwrap();
+        for (layer, value) in [(None, 1.0), (Some("inside"), 1.0), (Some("outside"), 5.0)] {
+            let options = DepthPictureOptions { layer: layer.map(String::from), ..Default::default() };
+            let picture = open_depth_picture(&file, &options).unwrap();
+            assert_eq!(pixels(&picture).pixels[0], [value; 3], "{layer:?}");
+            assert_eq!(picture.depth.range(), Some([value + 1.0; 2]), "{layer:?}");
+        }
+    }
+}
+
+#[test]
 fn exrs_without_depth_or_without_a_picture() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("a.exr");

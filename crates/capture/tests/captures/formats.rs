@@ -126,6 +126,44 @@ fn nerfstudio_by_an_angle_without_extensions() {
 }
 
 #[test]
+fn nerfstudio_with_zeros_for_what_is_unknown() {
+    let angle = "1.0808390005411683";
+    let known = r#""fl_x": 50, "fl_y": 50, "cx": 30, "cy": 20, "w": 60, "h": 40"#;
+    for lens in [
+        format!(r#"{known}, "camera_angle_x": 0, "camera_angle_y": 0"#),
+        format!(r#"{known}, "camera_angle_x": 3.5, "camera_angle_y": -1.0"#),
+        r#""fl_x": 50, "fl_y": 0, "cx": 0, "cy": 0, "w": 60, "h": 40"#.into(),
+        format!(r#""fl_x": 0, "fl_y": 0, "camera_angle_x": {angle}, "w": 60, "h": 40"#),
+        r#""fl_x": 0.0, "fl_y": 50, "cx": 30, "cy": 20, "w": 0, "h": 0, "camera_angle_x": 0"#.into(),
+        format!(r#""w": 0, "h": 0, "fl_x": "0", "camera_angle_x": {angle}"#),
+    ] {
+        same_cameras(CameraFormat::Nerfstudio, |folder, cameras| {
+            transforms(folder, cameras, &lens, |name| format!("images/{name}"));
+        });
+    }
+}
+
+#[test]
+fn nerfstudio_with_zeros_in_a_frame() {
+    let folder = tempfile::tempdir().unwrap();
+    pictures_and_mesh(folder.path(), &cameras(&["a.jpg"]));
+    let pose = "[[1,0,0,0],[0,1,0,0],[0,0,1,5],[0,0,0,1]]";
+    let read = |of_frame: &str, of_file: &str| {
+        let frame = format!(r#"{{"file_path": "images/a.jpg", "transform_matrix": {pose}, {of_frame}}}"#);
+        write(folder.path().join("transforms.json"), format!(r#"{{{of_file}, "frames": [{frame}]}}"#))
+            .unwrap();
+        *open(folder.path()).unwrap().views[0].lens.intrinsics()
+    };
+    let focal = |of_frame: &str, of_file: &str| read(of_frame, of_file).focal_px;
+    let file = r#""fl_x": 50, "fl_y": 51, "w": 60, "h": 40, "camera_angle_x": 0"#;
+    assert_eq!(focal(r#""fl_x": 0, "fl_y": 0, "w": 0"#, file), [50.0, 51.0]);
+    assert_eq!(focal(r#""fl_x": 40, "fl_y": 41, "camera_angle_x": 0"#, file), [40.0, 41.0]);
+    assert_eq!(focal(r#""fl_x": 40, "fl_y": 41"#, r#""fl_x": 0, "fl_y": 0, "w": 0, "h": 0"#), [40.0, 41.0]);
+    let off_centre = read(r#""fl_x": 40, "cx": 28.5"#, r#""cx": 0, "cy": 0"#);
+    assert_eq!(off_centre.principal_px, [28.5, 20.0]);
+}
+
+#[test]
 fn nerfstudio_with_a_lens_and_a_mask_for_each() {
     let folder = tempfile::tempdir().unwrap();
     pictures_and_mesh(folder.path(), &cameras(&["a.jpg"]));
@@ -272,6 +310,37 @@ fn metashape_lenses_are_those_of_its_manual() {
 }
 
 #[test]
+fn pictures_that_were_not_aligned_are_told_in_good_english() {
+    let row = "1 0 0\n0 1 0\n0 0 1\n0 0 -5\n";
+    for (not_aligned, told) in [
+        (
+            1,
+            "bundle.out: sub/b.jpg has no camera: it was not aligned by the program that wrote the file (align it there",
+        ),
+        (
+            2,
+            "bundle.out: sub/b.jpg, sub/c.jpg have no camera: they were not aligned by the program that wrote the file (align them there",
+        ),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        pictures_and_mesh(folder.path(), &cameras(&NAMES));
+        write(folder.path().join("list.txt"), NAMES[..1 + not_aligned].join("\n")).unwrap();
+        let unknown = "0 0 0\n".repeat(5 * not_aligned);
+        let bundle = format!("# Bundle file v0.3\n{} 0\n50 0 0\n{row}{unknown}", 1 + not_aligned);
+        write(folder.path().join("bundle.out"), bundle).unwrap();
+        let remarks: Vec<String> =
+            open(folder.path()).unwrap().remarks.into_iter().map(|remark| remark.text).collect();
+        assert!(remarks.iter().any(|text| text.contains(told)), "{remarks:?}");
+        // A picture that the file does not list is another matter.
+        let unlisted = remarks.iter().find(|text| text.contains("ignored"));
+        match not_aligned {
+            1 => assert!(unlisted.unwrap().contains("sub/c.jpg has no camera in"), "{remarks:?}"),
+            _ => assert_eq!(unlisted, None, "{remarks:?}"),
+        }
+    }
+}
+
+#[test]
 fn a_kind_may_be_chosen() {
     let folder = crate::made::colmap(&NAMES);
     transforms(folder.path(), &cameras(&NAMES[..2]), "\"fl_x\": 50", |name| format!("images/{name}"));
@@ -307,6 +376,16 @@ fn malformed_files_are_reported_with_the_place() {
         "transforms.json",
         &format!("{{{frame}}}"),
         "picture \"a.jpg\": neither fl_x nor camera_angle_x",
+    );
+    assert_refused(
+        "transforms.json",
+        &format!("{{\"fl_x\": 0, \"camera_angle_x\": 0, \"w\": 60, \"h\": 40, {frame}}}"),
+        "neither fl_x nor camera_angle_x gives its focal length (0 counts as missing)",
+    );
+    assert_refused(
+        "transforms.json",
+        &format!("{{\"camera_angle_x\": 4, {frame}}}"),
+        "camera_angle_x is not an angle between 0 and π",
     );
     assert_refused(
         "transforms.json",

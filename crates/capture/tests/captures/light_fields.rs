@@ -147,6 +147,60 @@ fn one_row_determines_nothing_about_others() {
 }
 
 #[test]
+fn numbered_views_without_parameters_are_a_square() {
+    let names: [Names; 3] = [
+        |x, y| format!("input_Cam{:03}.png", y * 5 + x),
+        |x, y| format!("input_Cam{}.png", y * 5 + x + 1),
+        |x, y| format!("views/cam_{}.png", y * 5 + x),
+    ];
+    for name in names {
+        let folder = tempfile::tempdir().unwrap();
+        grid(folder.path(), 5, 5, name);
+        assert_eq!(detect_capture_kind(folder.path()).unwrap(), CaptureKind::LightField);
+        let field = opened(folder.path());
+        assert_grid(&field, 5, 5);
+        assert_eq!((field.views.len(), field.reference, field.layout), (25, 12, ViewLayout::Numbered));
+        assert!(field.remarks.is_empty(), "{}", remarks_text(&field));
+        // One is missing.
+        std::fs::remove_file(folder.path().join(name(2, 1))).unwrap();
+        let field = opened(folder.path());
+        assert_grid(&field, 5, 5);
+        let number = if name(0, 0).contains('1') { 8 } else { 7 };
+        let told = format!("1 of 5 × 5 views are missing: number {number} (");
+        assert!(remarks_text(&field).contains(&told), "{}", remarks_text(&field));
+    }
+}
+
+#[test]
+fn the_numbered_views_of_the_shared_cases_are_where_those_named_by_row_and_column_are() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../../../shared/cases/field2/20-light-fields-by-other-names");
+    if !folder.is_dir() {
+        println!("SKIPPED: there is no {}", folder.display());
+        return;
+    }
+    let [numbered, named] = ["hci25", "base"].map(|name| opened(&folder.join(name)));
+    assert_eq!((numbered.grid, numbered.views.len()), (Some([5, 5]), 25));
+    for (a, b) in numbered.views.iter().zip(&named.views) {
+        let pixels = [a, b].map(|view| std::fs::read(view.picture.file()).unwrap());
+        assert!(a.position == b.position && pixels[0] == pixels[1], "{} and {}", a.name, b.name);
+    }
+}
+
+#[test]
+fn numbered_views_that_could_be_several_grids_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    grid(folder.path(), 5, 3, |x, y| format!("input_Cam{:03}.png", y * 5 + x));
+    let text = detect_capture_kind(folder.path()).unwrap_err().to_string();
+    for part in ["15 views are numbered from 0 to 14", "5 × 3, 3 × 5", "num_cams_x = COLUMNS", "views.json"]
+    {
+        assert!(text.contains(part), "{text}");
+    }
+    put(&folder.path().join("parameters.cfg"), "num_cams_x = 5\nnum_cams_y = 3\n");
+    assert_grid(&opened(folder.path()), 5, 3);
+}
+
+#[test]
 fn crosses_and_gaps() {
     let folder = tempfile::tempdir().unwrap();
     grid(folder.path(), 5, 5, |x, y| format!("{y}_{x}.png"));

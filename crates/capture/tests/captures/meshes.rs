@@ -122,6 +122,53 @@ fn ply_faces_of_many_corners_are_fans() {
     assert_eq!(triangles, [[0, 1, 2], [0, 2, 3], [0, 1, 2]]);
 }
 
+/// A PLY of the tetrahedron whose faces are triangle strips, as in Stanford's scans.
+fn ply_of_strips(format: &str, strips: &[i32]) -> Vec<u8> {
+    let mut ply = format!(
+        "ply\nformat {format} 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement tristrips 1\n\
+         property list int int vertex_indices\nend_header\n"
+    )
+    .into_bytes();
+    let corners = [[-1.0f32, -0.5, -0.5], [1.0, -0.5, -0.5], [0.0, -0.5, 1.0], [0.0, 1.0, 0.0]];
+    if format == "ascii" {
+        let words = corners.iter().flatten().map(f32::to_string);
+        let words = words.chain([strips.len().to_string()]).chain(strips.iter().map(i32::to_string));
+        ply.extend(words.collect::<Vec<_>>().join(" ").into_bytes());
+        return ply;
+    }
+    let is_big = format == "binary_big_endian";
+    let word = |bytes: [u8; 4]| if is_big { [bytes[3], bytes[2], bytes[1], bytes[0]] } else { bytes };
+    ply.extend(corners.iter().flatten().flat_map(|value| word(value.to_le_bytes())));
+    let integers = [strips.len() as i32].into_iter().chain(strips.iter().copied());
+    ply.extend(integers.flat_map(|value| word(value.to_le_bytes())));
+    ply
+}
+
+#[test]
+fn ply_of_triangle_strips() {
+    for format in ["ascii", "binary_little_endian", "binary_big_endian"] {
+        let strips = [0, 1, 2, -1, 0, 3, 1, -1, 1, 3, 2, 0, -1];
+        let scene = scene_of("bunny.ply", ply_of_strips(format, &strips));
+        let triangles: Vec<_> = scene.triangles.iter().map(|triangle| triangle.vertices).collect();
+        assert_eq!(triangles, [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]], "{format}");
+        let outside = refusal_of("bunny.ply", ply_of_strips(format, &[0, 1, -2]));
+        assert!(
+            outside.contains("1 of 1 triangles have a vertex that does not exist"),
+            "{format}: {outside}"
+        );
+        let empty = refusal_of("bunny.ply", ply_of_strips(format, &[0, 1, -1, 2, 3]));
+        assert!(empty.contains("no triangle"), "{format}: {empty}");
+        let cut = ply_of_strips(format, &strips);
+        assert!(
+            refusal_of("bunny.ply", &cut[..cut.len() - 5]).contains("the file ends too early"),
+            "{format}"
+        );
+    }
+    let nameless =
+        String::from_utf8(ply_of_strips("ascii", &[0, 1, 2])).unwrap().replace("vertex_indices", "x");
+    assert!(refusal_of("bunny.ply", nameless).contains("its triangle strips have no list of vertex_indices"));
+}
+
 #[test]
 fn ply_that_is_malformed_names_its_place() {
     for (from, to, what) in [

@@ -179,7 +179,7 @@ fn trap_5_missing_pictures_are_named_and_the_others_used() {
     assert!(
         missing.is_incomplete
             && missing.names == ["b.jpg"]
-            && missing.text.contains("1 of 3 pictures are missing: b.jpg"),
+            && missing.text.contains("1 of 3 pictures is missing: b.jpg (put it into"),
         "{missing}"
     );
     assert!(!unused.is_incomplete && unused.names == ["z.jpg"], "{unused}");

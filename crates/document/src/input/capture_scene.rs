@@ -8,7 +8,7 @@ use crate::input::light_field_scene::load_light_field;
 use crate::input::picture_surface::PictureSurface;
 use capture::{
     Capture, CaptureError, CaptureKind, CaptureOptions, DepthPictureOptions, DepthQuantity,
-    LightFieldOptions, NearEnd,
+    LightFieldOptions, MeshFit, NearEnd,
 };
 use glam::{DVec2, DVec3};
 use lens::{Camera, Intrinsics};
@@ -43,6 +43,8 @@ pub(crate) struct CaptureScene {
     pub remarks: Vec<String>,
     /// Whether something that the capture refers to is missing.
     pub is_incomplete: bool,
+    /// How well the mesh fits the photographs.
+    pub mesh_fit: Option<MeshFit>,
 }
 
 /// Whether a file or folder is a capture that can be opened. A picture is one if it has depth.
@@ -88,6 +90,10 @@ pub(crate) fn load_capture(
         }
         None => capture::detect_capture_kind(path)?,
     };
+    if choices.layer.is_some() && kind != CaptureKind::Depth {
+        let what = "has no layers to choose from: it is not a picture with depth (leave out --layer)";
+        return Err(DocumentError::bad_file(path, what));
+    }
     let near = choices.near.as_ref().map(|near| near.parse::<NearEnd>());
     let near = near.transpose().map_err(|message| DocumentError::BadInput(format!("--near {message}")))?;
     let load = LoadOptions::default();
@@ -101,12 +107,12 @@ pub(crate) fn load_capture(
         CaptureKind::Depth => {
             let disparity = choices.disparity.clone().map(|file| (file, DepthQuantity::Disparity));
             let depth = choices.depth.clone().map(|file| (file, DepthQuantity::Depth)).or(disparity);
-            let options = DepthPictureOptions { depth, near, load };
+            let options = DepthPictureOptions { depth, layer: choices.layer.clone(), near, load };
             load_depth_picture(path, &options, &choices.depth_strokes, steps)?
         }
     };
     let PictureSurface { scene, camera, remarks, is_incomplete } = surface;
-    Ok(CaptureScene { scene: Arc::new(scene), camera: Some(camera), remarks, is_incomplete })
+    Ok(CaptureScene { scene: Arc::new(scene), camera: Some(camera), remarks, is_incomplete, mesh_fit: None })
 }
 
 /// Reads the photographs in a folder, and the mesh of the scene that they show.
@@ -116,7 +122,7 @@ fn load_photographs(
     progress: &dyn Progress,
 ) -> Result<CaptureScene, DocumentError> {
     let options = CaptureOptions { mesh: choices.mesh.clone(), ..CaptureOptions::default() };
-    let Capture { views, mut scene, remarks, .. } = capture::open(folder, &options, progress)?;
+    let Capture { views, mut scene, remarks, fit: mesh_fit, .. } = capture::open(folder, &options, progress)?;
     if let Some(name) = choices.leave_out.iter().find(|name| !views.iter().any(|view| view.name == **name)) {
         return Err(DocumentError::bad_file(
             folder,
@@ -132,7 +138,7 @@ fn load_photographs(
     (scene.views, scene.excluded_views) = (views, left_out);
     let is_incomplete = remarks.iter().any(|remark| remark.is_incomplete);
     let remarks = remarks.into_iter().map(|remark| remark.text).collect();
-    Ok(CaptureScene { scene: Arc::new(scene), camera: None, remarks, is_incomplete })
+    Ok(CaptureScene { scene: Arc::new(scene), camera: None, remarks, is_incomplete, mesh_fit })
 }
 
 /// The camera for a name after [`PHOTOGRAPH_PREFIX`]: that of a photograph, or for `A..B@SHARE` one between two photographs; otherwise the

@@ -48,11 +48,20 @@ impl LinearPicture {
 /// # Errors
 /// The file cannot be read or decoded, or an EXR has no colours.
 pub fn read_picture(file: &Path) -> Result<LinearPicture, ProjectError> {
+    read_picture_mended(file, |_| {})
+}
+
+/// The same, with the pixels of EXR and HDR mended as they are stored: before colours are converted.
+pub(crate) fn read_picture_mended(
+    file: &Path,
+    mut mend: impl FnMut(&mut [f32; 3]),
+) -> Result<LinearPicture, ProjectError> {
     match extension(file).as_str() {
-        "exr" => from_exr(file, read_exr(file, |_| 0.0)?),
+        "exr" => from_exr(file, read_exr(file, |_| 0.0)?, mend),
         "hdr" => {
             let image = read_image(file)?.into_rgb32f();
-            let rgb = image.pixels().map(|p| p.0).collect();
+            let mut rgb: Vec<_> = image.pixels().map(|p| p.0).collect();
+            rgb.iter_mut().for_each(&mut mend);
             Ok(LinearPicture {
                 width: image.width(),
                 height: image.height(),
@@ -68,7 +77,11 @@ pub fn read_picture(file: &Path) -> Result<LinearPicture, ProjectError> {
     }
 }
 
-fn from_exr(file: &Path, mut exr: ExrImage) -> Result<LinearPicture, ProjectError> {
+fn from_exr(
+    file: &Path,
+    mut exr: ExrImage,
+    mut mend: impl FnMut(&mut [f32; 3]),
+) -> Result<LinearPicture, ProjectError> {
     // R, G, B without a prefix, or those of the first layer that has them.
     let has_colors =
         |prefix: &str| ["R", "G", "B"].iter().all(|c| exr.channels.contains_key(&format!("{prefix}{c}")));
@@ -82,6 +95,7 @@ fn from_exr(file: &Path, mut exr: ExrImage) -> Result<LinearPicture, ProjectErro
         let [r, g, b] =
             ["R", "G", "B"].map(|c| exr.channels.remove(&format!("{prefix}{c}")).unwrap_or_default());
         let mut rgb: Vec<_> = r.into_iter().zip(g).zip(b).map(|((r, g), b)| [r, g, b]).collect();
+        rgb.iter_mut().for_each(&mut mend);
         let rec709 = ColorSpace::Rec709.chromaticities();
         if let Some(matrix) =
             exr.chromaticities.filter(|c| !c.is_close_to(&rec709)).and_then(|c| c.matrix_to(&rec709))
@@ -90,7 +104,9 @@ fn from_exr(file: &Path, mut exr: ExrImage) -> Result<LinearPicture, ProjectErro
         }
         rgb
     } else if let Some(name) = grey().or_else(single) {
-        exr.channels[&name].iter().map(|&y| [y; 3]).collect()
+        let mut rgb: Vec<_> = exr.channels[&name].iter().map(|&y| [y; 3]).collect();
+        rgb.iter_mut().for_each(&mut mend);
+        rgb
     } else {
         let names: Vec<_> = exr.channels.keys().cloned().collect();
         let problem = format!("has no channels R, G, B, only {}", names.join(", "));

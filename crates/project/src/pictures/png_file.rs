@@ -2,7 +2,7 @@
 
 use crate::ProjectError;
 use crate::disk::read_bytes;
-use image::{DynamicImage, ImageReader, Limits};
+use image::{DynamicImage, ImageDecoder, Limits};
 use png::{BitDepth, ColorType};
 use std::io::Cursor;
 use std::path::Path;
@@ -29,14 +29,13 @@ pub(crate) fn read_image(file: &Path) -> Result<DynamicImage, ProjectError> {
 /// Decodes the bytes of a picture's file.
 pub(crate) fn decode(bytes: &[u8]) -> Result<DynamicImage, String> {
     let decoded = std::panic::catch_unwind(|| {
-        let mut reader =
-            ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| e.to_string())?;
         let mut limits = Limits::default();
         limits.max_image_width = Some(MAX_SIDE);
         limits.max_image_height = Some(MAX_SIDE);
         limits.max_alloc = Some(MAX_MEMORY);
-        reader.limits(limits);
-        reader.decode().map_err(|e| e.to_string())
+        let decoder = scene::open_picture(Cursor::new(bytes), limits.clone()).map_err(|e| e.to_string())?;
+        limits.reserve(decoder.total_bytes()).map_err(|e| e.to_string())?;
+        DynamicImage::from_decoder(decoder).map_err(|e| e.to_string())
     });
     decoded.unwrap_or_else(|_| Err("its content contradicts itself".to_string()))
 }

@@ -18,6 +18,8 @@ pub struct CaptureChoices {
     pub disparity: Option<PathBuf>,
     /// The depth map of a picture; `None`: the one found beside it.
     pub depth: Option<PathBuf>,
+    /// The layer of an EXR with several pictures, by name; `None`: the first one with depth.
+    pub layer: Option<String>,
     /// Which end of a relative depth map is near: `white`, `black`, or the distances of both ends.
     pub near: Option<String>,
     /// Strokes that repair the depth of a light field or picture, in order.
@@ -38,6 +40,8 @@ pub(crate) struct CaptureEntry {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     depth: Option<ScenePath>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    layer: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     near: Option<String>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     depth_strokes: Vec<DepthStroke>,
@@ -53,9 +57,15 @@ impl CaptureEntry {
             kind: choices.kind.clone(),
             disparity: path(&choices.disparity),
             depth: path(&choices.depth),
+            layer: choices.layer.clone(),
             near: choices.near.clone(),
             depth_strokes: choices.depth_strokes.clone(),
         }
+    }
+
+    /// Whether a layer of the picture's file was chosen.
+    pub fn has_layer(&self) -> bool {
+        self.layer.is_some()
     }
 
     /// Whether depth was repaired.
@@ -83,6 +93,7 @@ impl CaptureEntry {
             kind: self.kind.clone(),
             disparity: path(&self.disparity)?,
             depth: path(&self.depth)?,
+            layer: self.layer.clone(),
             near: self.near.clone(),
             depth_strokes: self.depth_strokes.clone(),
         })

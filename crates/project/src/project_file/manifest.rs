@@ -17,6 +17,7 @@ pub(crate) const MANIFEST: &str = "manifest.json";
 
 /// The version of a project without depth repairs: older programs would show the depth unrepaired.
 const WITHOUT_DEPTH: u64 = 6;
+const WITHOUT_CHOSEN_LAYER: u64 = 7;
 
 /// The version of a project in which gloss keeps the lens's focus everywhere: older programs assume that.
 const WITHOUT_GLOSS: u64 = 5;
@@ -118,7 +119,7 @@ impl Manifest {
     pub const FORMAT: &str = "focus-brush project";
 
     /// The newest version. It is increased whenever an older program would misread the file.
-    pub const VERSION: u64 = 7;
+    pub const VERSION: u64 = 8;
 
     /// The same in the oldest version that can express it.
     pub fn with_oldest_version(self) -> Self {
@@ -128,8 +129,10 @@ impl Manifest {
             || self.brush.paints_gloss()
             || self.focus_map.as_ref().is_some_and(|map| map.gloss.is_some())
             || any_row(LayerEntry::has_gloss);
+        let capture_has = |of: fn(&CaptureEntry) -> bool| self.capture.as_ref().is_some_and(of);
         let version = match () {
-            _ if self.capture.as_ref().is_some_and(CaptureEntry::has_depth_strokes) => Self::VERSION,
+            _ if capture_has(CaptureEntry::has_layer) => Self::VERSION,
+            _ if capture_has(CaptureEntry::has_depth_strokes) => WITHOUT_CHOSEN_LAYER,
             _ if has_gloss => WITHOUT_DEPTH,
             _ if self.variant.is_some() => WITHOUT_GLOSS,
             _ if any_row(|row| row.plane.is_some()) => WITHOUT_VARIANT,

@@ -16,7 +16,8 @@ enum Name {
 }
 
 impl FrameFiles {
-    /// File names from a pattern with one run of `#`, one for each digit (the minimum number of digits): `out.####.exr`.
+    /// File names from a pattern with one run of `#`, one for each digit (the minimum number of digits): `out.####.exr`. Before the digits
+    /// of a frame below 0 there is a minus sign, as in Blender: `out.-0003.exr`.
     ///
     /// # Errors
     /// The pattern has no run of `#`, or more than one, or is not UTF-8.
@@ -49,11 +50,12 @@ impl FrameFiles {
     }
 
     /// The file of a frame.
-    pub fn path_of(&self, frame: u32) -> PathBuf {
+    pub fn path_of(&self, frame: i32) -> PathBuf {
         match &self.0 {
             Name::Fixed(file) => file.clone(),
             Name::Numbered { folder, before, digits, after } => {
-                folder.join(format!("{before}{frame:0digits$}{after}"))
+                let (sign, frame) = (if frame < 0 { "-" } else { "" }, frame.unsigned_abs());
+                folder.join(format!("{before}{sign}{frame:0digits$}{after}"))
             }
         }
     }
@@ -68,6 +70,9 @@ mod tests {
         let files = FrameFiles::new(Path::new("shots/a.####.exr")).unwrap();
         assert_eq!(files.path_of(7), Path::new("shots/a.0007.exr"));
         assert_eq!(files.path_of(12345), Path::new("shots/a.12345.exr"));
+        assert_eq!(files.path_of(0), Path::new("shots/a.0000.exr"));
+        assert_eq!(files.path_of(-3), Path::new("shots/a.-0003.exr"));
+        assert_eq!(files.path_of(-12345), Path::new("shots/a.-12345.exr"));
         assert_eq!(FrameFiles::new(Path::new("#.png")).unwrap().path_of(3), Path::new("3.png"));
         for wrong in ["a.exr", "a.##.#.exr", "##/a.exr", ""] {
             assert!(FrameFiles::new(Path::new(wrong)).is_err(), "{wrong}");

@@ -36,7 +36,7 @@ pub struct SequenceOptions<'a> {
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameReport {
     /// Frame number.
-    pub frame: u32,
+    pub frame: i32,
     /// Time in the animation, s.
     pub seconds: f64,
     /// The file of its picture.
@@ -77,7 +77,7 @@ impl SequenceReport {
 /// The work was cancelled, or there is a temporary problem of the machine (including a missing GPU). Finished frames stay.
 pub fn render_frames(
     take: &Take<'_>,
-    frames: &[u32],
+    frames: &[i32],
     options: &SequenceOptions<'_>,
     steps: &dyn Steps,
 ) -> Result<SequenceReport, RenderError> {

@@ -94,7 +94,7 @@ impl<'a> Take<'a> {
     }
 
     /// Time of a frame, s.
-    pub fn seconds(&self, frame: u32) -> f64 {
+    pub fn seconds(&self, frame: i32) -> f64 {
         (f64::from(frame) - 1.0) / self.options.frames_per_second
     }
 

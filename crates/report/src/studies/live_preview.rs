@@ -67,7 +67,9 @@ pub fn watch_preview(
         session.apply(Command::SetBackFaces(back_faces))?;
     }
     if let Some(world) = &request.world {
-        session.apply(Command::SetWorld(Some(world.load(&subject.scene)?)))?;
+        // What is wrong with its file was told when the subject was opened.
+        let (world, _) = world.load(&subject.scene)?;
+        session.apply(Command::SetWorld(Some(world)))?;
     }
     poll_until(&mut session, progress, Session::is_idle)?;
 

@@ -2,10 +2,10 @@
 
 use super::View;
 use super::linear_conversion::{LinearConversion, UnsupportedProfile};
-use crate::LoadOptions;
+use crate::{LoadOptions, open_picture};
 use glam::{DVec2, UVec2, Vec3};
 use image::metadata::Orientation;
-use image::{DynamicImage, ImageDecoder, ImageReader, Limits};
+use image::{DynamicImage, ImageDecoder, Limits};
 use std::io::{BufRead, BufReader, Cursor, Seek};
 use std::path::{Path, PathBuf};
 
@@ -197,16 +197,13 @@ fn decode(
     orientation: u8,
     options: &LoadOptions,
 ) -> Result<(DynamicImage, Option<Vec<u8>>), PictureError> {
-    let unreadable = |source| PictureError::Unreadable { file: file.into(), source };
     let broken = |error: image::ImageError| PictureError::Undecodable {
         file: file.into(),
         why: error.to_string().replace('\n', " "),
     };
-    let mut reader = ImageReader::new(input).with_guessed_format().map_err(unreadable)?;
     let mut limits = Limits::default();
     limits.max_alloc = Some(options.max_memory);
-    reader.limits(limits);
-    let mut decoder = reader.into_decoder().map_err(broken)?;
+    let mut decoder = open_picture(input, limits).map_err(broken)?;
     let (width, height) = decoder.dimensions();
     let pixels = u64::from(width) * u64::from(height);
     // Decoded and converted at the same time.

@@ -40,6 +40,8 @@ pub(super) struct RebuiltStage {
     pub base: Arc<Stage>,
     pub generation: u64,
     pub stage: Stage,
+    /// What is wrong with the file of its environment.
+    pub warnings: Vec<String>,
 }
 
 impl StageChange {
@@ -65,11 +67,16 @@ impl StageChange {
         }
     }
 
-    /// The stage made so.
-    pub fn apply_to(&self, stage: &Stage, progress: &JobProgress) -> Result<Stage, SessionError> {
-        match self {
-            Self::BackFaces(back_faces) => Ok(stage.with_back_faces(*back_faces, progress)?),
-            Self::World(world) => Ok(stage.with_world(world.clone(), progress)?),
+    /// The stage made so, and warnings about the environment's file.
+    pub fn apply_to(
+        &self,
+        stage: &Stage,
+        progress: &JobProgress,
+    ) -> Result<(Stage, Vec<String>), SessionError> {
+        let mut warnings = Vec::new();
+        let stage = match self {
+            Self::BackFaces(back_faces) => stage.with_back_faces(*back_faces, progress)?,
+            Self::World(world) => stage.with_world(world.clone(), progress)?,
             Self::Environment(file) => {
                 let before = stage.scene.world.as_ref();
                 let file_world = WorldFile::from_environment_file(file);
@@ -79,10 +86,13 @@ impl StageChange {
                     bounces: before.and_then(|world| world.bounces),
                     ..file_world
                 };
-                Ok(stage.with_world(Some(world.load(&stage.scene)?), progress)?)
+                let (world, faults) = world.load(&stage.scene)?;
+                warnings = faults;
+                stage.with_world(Some(world), progress)?
             }
-            Self::Variant { name, .. } => Ok(stage.with_variant(name.as_deref(), progress)?),
-            Self::Depth(choices) => Ok(stage.with_depth_repaired(choices, &JobSteps { progress })?),
-        }
+            Self::Variant { name, .. } => stage.with_variant(name.as_deref(), progress)?,
+            Self::Depth(choices) => stage.with_depth_repaired(choices, &JobSteps { progress })?,
+        };
+        Ok((stage, warnings))
     }
 }

@@ -20,8 +20,9 @@ impl Session {
         let base = self.document_mut()?.stage.clone();
         if change.differs_from(&base) {
             self.start_job(label.into(), move |progress| {
-                let stage = change.apply_to(&base, progress)?;
-                Ok(JobOutcome::StageRebuilt(Box::new(RebuiltStage { change, base, generation, stage })))
+                let (stage, warnings) = change.apply_to(&base, progress)?;
+                let rebuilt = RebuiltStage { change, base, generation, stage, warnings };
+                Ok(JobOutcome::StageRebuilt(Box::new(rebuilt)))
             })?;
         }
         Ok(())
@@ -29,7 +30,7 @@ impl Session {
 
     /// Takes up a stage that was prepared.
     pub(super) fn show_rebuilt_stage(&mut self, rebuilt: RebuiltStage) -> Result<(), SessionError> {
-        let RebuiltStage { change, base, generation, stage } = rebuilt;
+        let RebuiltStage { change, base, generation, stage, warnings } = rebuilt;
         if generation != self.generation {
             return Ok(());
         }
@@ -38,7 +39,8 @@ impl Session {
         if !Arc::ptr_eq(&base, &document.stage) {
             return self.rebuild_stage(change);
         }
-        let new_warnings = document.add_warnings_of(&stage.scene);
+        let mut new_warnings = document.add_warnings_of(&stage.scene);
+        new_warnings.extend(warnings);
         if let StageChange::Depth(_) = change {
             // The strokes were counted as a change when they were made.
             document.replace_surface(stage);

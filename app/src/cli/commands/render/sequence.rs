@@ -30,7 +30,13 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure
     let keys = sequence_arguments.keys.as_deref().map(read_keys).transpose()?;
 
     let start = Instant::now();
-    let input = open_input(&arguments.file, &arguments.shot.appearance, console.resources(), console)?;
+    let input = open_input(
+        &arguments.file,
+        &arguments.shot.appearance,
+        arguments.layer.as_deref(),
+        console.resources(),
+        console,
+    )?;
     console.warn(&input.warnings);
     let (camera, focus) = camera_and_focus(&input, &arguments.shot, console)?;
     let render = options(arguments, &input, gpu)?;
@@ -66,7 +72,7 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure
 }
 
 /// The output files, and the frame numbers of this share.
-fn files_and_frames(arguments: &RenderArguments) -> Result<(FrameFiles, Vec<u32>), Failure> {
+fn files_and_frames(arguments: &RenderArguments) -> Result<(FrameFiles, Vec<i32>), Failure> {
     let sequence_arguments = &arguments.sequence;
     let frames = sequence_arguments.frames.clone().or(sequence_arguments.frame.map(FrameList::single));
     let frames = frames.as_ref().map_or(&[][..], FrameList::numbers);

@@ -20,7 +20,13 @@ pub fn run(arguments: &RenderArguments, grid: TileGrid, console: &Console) -> Re
     check_supported(arguments)?;
     check_options(arguments)?;
     let start = Instant::now();
-    let input = open_input(&arguments.file, &arguments.shot.appearance, console.resources(), console)?;
+    let input = open_input(
+        &arguments.file,
+        &arguments.shot.appearance,
+        arguments.layer.as_deref(),
+        console.resources(),
+        console,
+    )?;
     if input.salf.is_some() {
         let what = "already baked, for the whole picture (leave out --tiles, or give the scene or project)";
         return Err(Failure::wrong_usage(format!("{}: {what}", arguments.file.display())));
