@@ -1,17 +1,24 @@
 //! The window: a thin layer of egui over the `session` crate.
 //!
 //! * [`Shell`] (`shell`): the application; runs one frame from top to bottom and performs the commands.
+//! * `chrome`: menu bar, tool bar, status line, palette, help, toasts, and the headers of the panes; they read
+//!   the document and emit [`Action`]s. Menus, palette, keys and help are views of the one command table in
+//!   `session`.
+//! * `dialogs`: files, unsaved changes, preset names, depth polarity.
 //! * `views`: what the panes contain: `paint_view` is the scene in 3D in the colours of its blur,
 //!   `picture_view` the refocused picture, `inspector` the properties, `drawer` the atlas, the aperture and
 //!   the histogram.
+//! * [`ViewSettings`] (`view_settings`): the user's own settings, saved between runs.
 //! * `tools`: what pointer and pen do in both pictures, and the marks they draw there.
-//! * `chrome`: menu bar, tool bar, status line, palette, help, toasts; they read the document and emit
-//!   [`Action`]s. Menus, palette, keys and help are views of the one command table in `session`.
-//! * `dialogs`: files, unsaved changes, preset names, depth polarity.
+//! * `widgets`: what bars, panes, dialogs and tools share: controls and formatted numbers, keys, the theme, the
+//!   false colours of blur.
+//! * [`Action`] (`action`): a request to the shell.
 //! * `layout`: where the panes are: docked, in tabs, floating, or one over all.
 //! * `graphics`: the wgpu device; `blit` puts pictures on the screen, `soft_painter` draws egui's shapes on a
 //!   software adapter.
 //! * `stroke_player`: plays a recording in the window, timed. `demo`: the scene at first start.
+//!
+//! A module uses only modules below it in this list.
 
 mod action;
 mod chrome;
@@ -25,6 +32,7 @@ mod stroke_player;
 mod tools;
 mod view_settings;
 mod views;
+mod widgets;
 
 pub use action::Action;
 pub use chrome::toasts::Severity;

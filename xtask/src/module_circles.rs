@@ -29,10 +29,6 @@ use siblings::Siblings;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
-/// Crates in which only files are compared, not yet folders: the window's bars, views and tools still use one
-/// another.
-const FILES_ONLY: &[&str] = &["focus-brush"];
-
 /// Checks the workspace.
 pub fn check() -> Result<(), Failure> {
     circles(&[])
@@ -50,8 +46,7 @@ pub fn circles(crates: &[OsString]) -> Result<(), Failure> {
     for (name, root) in roots(&metadata) {
         if crates.is_empty() || crates.iter().any(|chosen| *chosen == *name) {
             let read = |file: &Path| std::fs::read_to_string(file).ok();
-            let crate_circles =
-                circles_in(&root, &read, !FILES_ONLY.contains(&&*name)).map_err(Failure::new)?;
+            let crate_circles = circles_in(&root, &read).map_err(Failure::new)?;
             messages.extend(crate_circles.iter().map(|circle| format!("{name}: {circle}")));
         }
     }
@@ -77,13 +72,9 @@ fn roots(metadata: &Value) -> Vec<(String, PathBuf)> {
     roots
 }
 
-/// Descriptions of the cycles in the crate whose root is the file `root`, between files and, with `folders`,
+/// Descriptions of the cycles in the crate whose root is the file `root`: between files or, if there are none,
 /// between sibling modules.
-fn circles_in(
-    root: &Path,
-    read: &dyn Fn(&Path) -> Option<String>,
-    folders: bool,
-) -> Result<Vec<String>, String> {
+fn circles_in(root: &Path, read: &dyn Fn(&Path) -> Option<String>) -> Result<Vec<String>, String> {
     let modules = CrateModules::read(root, read)?;
     let folder = root.parent().unwrap_or(Path::new(""));
     let shown = |file: usize| {
@@ -93,7 +84,7 @@ fn circles_in(
     let arrows = modules.arrows();
     let mut circles: Vec<_> =
         circles_of(&arrows).iter().map(|circle| describe_circle(circle, &shown)).collect();
-    if folders && circles.is_empty() {
+    if circles.is_empty() {
         let paths: Vec<_> = (0..modules.files().len()).map(shown).collect();
         let siblings = Siblings::new(&paths, &arrows);
         let name = |sibling: usize| siblings.names()[sibling].clone();

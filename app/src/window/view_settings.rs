@@ -1,7 +1,6 @@
 //! Settings of the window. Saved between runs, not part of any document.
 
 use super::tools::tool_settings::ToolSettings;
-use super::views::paint_view::SurfaceAppearance;
 use render::{Display, ToneCurve};
 use serde::{Deserialize, Serialize};
 use session::KeyMap;
@@ -101,6 +100,25 @@ impl ViewSettings {
         self.recent.retain(|recent| recent != path);
         self.recent.insert(0, path.to_path_buf());
         self.recent.truncate(MAX_RECENT);
+    }
+}
+
+/// Appearance of the surface in the paint view.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfaceAppearance {
+    /// Share of the false colours of blur, in [0, 1]; the rest is the scene's own colour.
+    pub focus_share: f32,
+    /// Whether to draw contour lines where the circle of confusion is 1, 4 and 16 px.
+    pub contours: bool,
+    /// Whether to show the number of photographs, or the invented parts, instead of the light of photographs.
+    pub photograph_counts: bool,
+    /// Whether to show the depth of a picture's surface.
+    pub depth: bool,
+}
+
+impl Default for SurfaceAppearance {
+    fn default() -> Self {
+        Self { focus_share: 0.65, contours: false, photograph_counts: false, depth: false }
     }
 }
 

@@ -2,7 +2,6 @@
 
 pub mod aperture_orbit;
 pub mod drawer;
-pub mod false_colour;
 pub mod inspector;
 pub mod paint_view;
 pub mod picture_view;

@@ -8,7 +8,7 @@ fn circles(files: &[(&str, &str)]) -> Vec<String> {
     let read = |file: &Path| {
         files.iter().find(|(name, _)| Path::new(name) == file).map(|(_, text)| text.to_string())
     };
-    circles_in(Path::new(files[0].0), &read, true).unwrap_or_else(|error| panic!("{error}"))
+    circles_in(Path::new(files[0].0), &read).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// The arrows of the one circle there must be.
@@ -178,6 +178,6 @@ fn a_module_within_a_file_belongs_to_the_file() {
 #[test]
 fn a_module_without_a_file_is_an_error() {
     let error =
-        circles_in(Path::new("src/lib.rs"), &|file| file.ends_with("lib.rs").then(|| "mod a;".into()), true);
+        circles_in(Path::new("src/lib.rs"), &|file| file.ends_with("lib.rs").then(|| "mod a;".into()));
     assert_eq!(error, Err("src/lib.rs: module a has no file".to_string()));
 }

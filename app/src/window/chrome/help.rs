@@ -1,7 +1,7 @@
 //! The help windows: all shortcuts from the command table, and information about the program.
 
-use super::keys;
 use crate::window::tools::navigation;
+use crate::window::widgets::keys;
 use egui::{Align2, Context, Grid, RichText, ScrollArea, Window};
 use session::{COMMANDS, Menu};
 

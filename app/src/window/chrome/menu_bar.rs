@@ -1,7 +1,7 @@
 //! The menus, generated from the command table.
 
-use super::keys;
 use crate::window::views::inspector::is_layer_command_possible;
+use crate::window::widgets::keys;
 use crate::window::{Action, ViewSettings};
 use document::Document;
 use egui::{Button, Ui};

@@ -1,5 +1,6 @@
 //! The command palette: finds commands by a part of their names and shows their keys.
 
+use crate::window::widgets::{controls, keys};
 use egui::{Align2, Context, Id, Key, RichText};
 use session::{COMMANDS, CommandId, CommandInfo};
 
@@ -50,7 +51,7 @@ impl Palette {
             let edit = egui::TextEdit::singleline(&mut self.query);
             let hint = "Type a part of a command's name";
             let response = ui.add(edit.hint_text(hint).desired_width(f32::INFINITY));
-            super::controls::set_accessible_name(&response, "Find a command");
+            controls::set_accessible_name(&response, "Find a command");
             response.request_focus();
             if response.changed() {
                 self.chosen = 0;
@@ -82,7 +83,7 @@ impl Palette {
 }
 
 fn row(ui: &mut egui::Ui, info: &CommandInfo, chosen: bool) -> egui::Response {
-    let shortcut = super::keys::shortcut_text(ui.ctx(), info.id);
+    let shortcut = keys::shortcut_text(ui.ctx(), info.id);
     let label = format!("{}: {}", info.menu.title(), info.name);
     let layout = egui::Layout::top_down_justified(egui::Align::LEFT);
     let button = egui::Button::selectable(chosen, label).right_text(RichText::new(shortcut).weak());

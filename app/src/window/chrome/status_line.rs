@@ -1,8 +1,8 @@
 //! The status line: picture quality, jobs, the surface under the pointer, and a tip.
 
-use super::controls;
 use crate::window::Action;
 use crate::window::views::inspector::selection_summary;
+use crate::window::widgets::controls;
 use egui::{Align, Layout, ProgressBar, Ui};
 use jobs::JobStatus;
 use session::{Command, DrawingCosts, Preview, PreviewKind, Quality, Session};

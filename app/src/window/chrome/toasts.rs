@@ -1,6 +1,6 @@
 //! Short messages in a corner that need no interaction: failures and notices.
 
-use super::theme;
+use crate::window::widgets::theme;
 use egui::{Align2, Context, Frame, Id, Order, RichText};
 
 /// Display time of a notice, s.

@@ -1,9 +1,9 @@
 //! The header of a panel: its title, its display options, and its menu.
 
-use super::{controls, keys};
 use crate::window::action::PanelCommand;
 use crate::window::layout::{DockState, Pane};
 use crate::window::views::picture_view::{DisplayedPicture, PictureView};
+use crate::window::widgets::{controls, keys};
 use crate::window::{Action, ViewSettings};
 use egui::{Button, Ui};
 use session::{CommandId, Session};

@@ -1,6 +1,6 @@
 //! The dialog that asks which end of a depth map is near, with a preview of both answers.
 
-use crate::window::views::false_colour::nearness_color;
+use crate::window::widgets::false_colour::nearness_color;
 use document::DepthPolarityRequest;
 use egui::{Button, ColorImage, Context, Id, Image, TextureHandle, TextureOptions, vec2};
 

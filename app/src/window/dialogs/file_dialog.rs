@@ -305,7 +305,7 @@ fn typed_dialog(
             .desired_width(f32::INFINITY);
         let output = edit.show(ui);
         let response = output.response.response;
-        crate::window::chrome::controls::set_accessible_name(&response, "Path");
+        crate::window::widgets::controls::set_accessible_name(&response, "Path");
         let selection = match std::mem::replace(focus_request, FocusRequest::Nothing) {
             FocusRequest::Replace => Some(replaceable_range(purpose, text)),
             FocusRequest::Append => Some([text.chars().count(); 2]),
@@ -336,7 +336,7 @@ fn typed_dialog(
                     entry.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
                 let folder = entry.is_dir();
                 let label = if folder { format!("{name}{}", std::path::MAIN_SEPARATOR) } else { name };
-                let button = crate::window::chrome::controls::list_row(ui, false, &label);
+                let button = crate::window::widgets::controls::list_row(ui, false, &label);
                 if button.clicked() {
                     *text = entry.display().to_string();
                     if folder {

@@ -1,13 +1,13 @@
 //! Executes the commands of the command table.
 
 use super::Shell;
-use crate::window::chrome::tool_bar::{largest_radius, signed_circle_px};
 use crate::window::dialogs::file_dialog::Purpose;
 use crate::window::dialogs::unsaved_changes_dialog::PendingAction;
 use crate::window::layout::{Layout, Pane};
 use crate::window::tools::brush_gesture::BrushParameter;
 use crate::window::views::paint_view::PaintView;
 use crate::window::views::picture_view::TRUTH_SAMPLES;
+use crate::window::widgets::brush_controls::{largest_radius, signed_circle_px};
 use crate::window::{Tool, ViewSettings};
 use document::{CameraEdit, FillRegion};
 use egui::{Context, ViewportCommand};
@@ -289,7 +289,7 @@ impl Shell {
 
     /// Moves the brush's blur on the blur map, stopping at sharp on the way.
     fn move_blur(&mut self, step: f64) {
-        use crate::window::views::false_colour::{circle_px, position};
+        use crate::window::widgets::false_colour::{circle_px, position};
         let Some(document) = self.session.document() else { return };
         let optics = document.camera.optics();
         let before = position(signed_circle_px(&optics, document.brush.target.t));

@@ -2,7 +2,6 @@
 
 use super::Shell;
 use crate::window::chrome::status_line::Hover;
-use crate::window::chrome::tool_bar::signed_circle_px;
 use crate::window::chrome::view_header::{ViewHeader, panel_menu};
 use crate::window::layout::{DockState, Pane, PaneContents};
 use crate::window::tools::active_tool::ActiveTool;
@@ -11,6 +10,7 @@ use crate::window::views::drawer::Drawer;
 use crate::window::views::inspector::{Inspected, Inspector};
 use crate::window::views::paint_view::PaintView;
 use crate::window::views::picture_view::PictureView;
+use crate::window::widgets::brush_controls::signed_circle_px;
 use crate::window::{Action, Tool, ViewSettings};
 use document::SurfaceHit;
 use egui::{Context, Ui};

@@ -1,7 +1,7 @@
 //! Adjusts one parameter of the brush at the pointer: a key starts the gesture, moving the mouse or typing
 //! digits sets the value, a click or Enter accepts it.
 
-use crate::window::chrome::controls;
+use crate::window::widgets::controls;
 use egui::{Align2, Area, Context, Event, Frame, Id, Key, Modifiers, Order, PointerButton, Pos2};
 use focus::Brush;
 

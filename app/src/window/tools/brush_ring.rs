@@ -1,7 +1,7 @@
 //! The brush cursor on the surface: a ring in world space around the point under the pointer, in its tangent
 //! plane.
 
-use crate::window::views::false_colour;
+use crate::window::widgets::false_colour;
 use document::SurfaceHit;
 use egui::{Color32, Painter, Pos2, Shape, Stroke};
 use glam::DVec3;

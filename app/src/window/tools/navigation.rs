@@ -44,7 +44,7 @@ fn is_space_held(context: &Context) -> bool {
 /// Whether the left button would currently move a view instead of painting.
 pub fn claims_primary(context: &Context, modifiers: Modifiers) -> bool {
     motion(
-        crate::window::chrome::keys::key_map(context),
+        crate::window::widgets::keys::key_map(context),
         PointerButton::Primary,
         modifiers,
         is_space_held(context),
@@ -54,7 +54,7 @@ pub fn claims_primary(context: &Context, modifiers: Modifiers) -> bool {
 
 /// The motion of the current drag and its distance since the last frame, points.
 pub fn view_drag(ui: &Ui, response: &Response) -> Option<(Motion, Vec2)> {
-    let (map, space) = (crate::window::chrome::keys::key_map(ui.ctx()), is_space_held(ui.ctx()));
+    let (map, space) = (crate::window::widgets::keys::key_map(ui.ctx()), is_space_held(ui.ctx()));
     let modifiers = ui.input(|input| input.modifiers);
     let buttons = [PointerButton::Middle, PointerButton::Secondary, PointerButton::Primary];
     let held = buttons.into_iter().find(|button| response.dragged_by(*button))?;

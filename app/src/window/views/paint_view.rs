@@ -1,9 +1,9 @@
 //! The paint view: the scene in 3D, in the false colours of its focus, painted on directly.
 //!
 //! ```text
-//! scene, atlas ──▶ SurfaceMesh ─┐
-//! focus map ────▶ FocusTexture ─┼─▶ SurfaceRenderer ──▶ texture ──▶ PaintView (panel, pointer, ring)
-//! OrbitCamera, SurfaceLook ─────┘
+//! scene, atlas ──▶ SurfaceMesh ────┐
+//! focus map ────▶ FocusTexture ────┼─▶ SurfaceRenderer ──▶ texture ──▶ PaintView (panel, pointer, ring)
+//! OrbitCamera, SurfaceAppearance ──┘
 //! ```
 
 mod changed_pixels;
@@ -23,5 +23,5 @@ pub use device_errors::GraphicsError;
 pub use focus_texture::FocusTexture;
 pub use orbit_camera::OrbitCamera;
 pub use surface_mesh::SurfaceMesh;
-pub use surface_renderer::{Stale, SurfaceAppearance, SurfaceFrame, SurfaceRenderer};
+pub use surface_renderer::{Stale, SurfaceFrame, SurfaceRenderer};
 pub use view::{PaintView, paint_hint};

@@ -9,7 +9,6 @@ pub use displayed_picture::DisplayedPicture;
 
 use super::paint_view::paint_hint;
 use crate::window::Action;
-use crate::window::chrome::{controls, theme};
 use crate::window::graphics::blit::{Blitter, Filter};
 use crate::window::tools::active_tool::ActiveTool;
 use crate::window::tools::brush_ring;
@@ -17,6 +16,7 @@ use crate::window::tools::drag_tool::DragView;
 use crate::window::tools::navigation::{self, Motion};
 use crate::window::tools::region_highlight::RegionHighlight;
 use crate::window::tools::stroke_input::StrokeInput;
+use crate::window::widgets::{controls, theme};
 use displayed_picture::Textures;
 use document::SurfaceHit;
 use egui::{PointerButton, Pos2, Rect, Response, Sense, Ui, Vec2, vec2};

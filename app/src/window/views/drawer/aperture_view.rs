@@ -3,8 +3,8 @@
 
 use super::aperture_pad::{APERTURE_TIP, aperture_pad};
 use crate::window::Action;
-use crate::window::chrome::controls::{self, row, rows};
-use crate::window::chrome::keys;
+use crate::window::widgets::controls::{self, row, rows};
+use crate::window::widgets::keys;
 use document::SurfaceHit;
 use egui::{Color32, Mesh, Rect, Response, Sense, Shape, Stroke, Ui, pos2, vec2};
 use glam::{DVec2, DVec3};

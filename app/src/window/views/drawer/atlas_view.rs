@@ -1,9 +1,8 @@
 //! The flat atlas: every chart in the false colours of its blur; it can be painted on in 2D.
 
 use crate::window::Action;
-use crate::window::chrome::controls;
 use crate::window::tools::active_tool::ActiveTool;
-use crate::window::views::false_colour;
+use crate::window::widgets::{controls, false_colour};
 use document::{Document, StrokePoint, StrokeTarget};
 use egui::{Color32, ColorImage, Pos2, Rect, Sense, TextureHandle, TextureOptions, Ui, pos2, vec2};
 use focus::FocusMap;

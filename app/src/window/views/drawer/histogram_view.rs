@@ -1,7 +1,6 @@
 //! A histogram of the picture's circles of confusion, near on the left, far on the right.
 
-use crate::window::chrome::controls;
-use crate::window::views::false_colour;
+use crate::window::widgets::{controls, false_colour};
 use egui::{Align2, Color32, FontId, Rect, Sense, Stroke, Ui, pos2, vec2};
 use session::{BlurHistogram, Session};
 

@@ -2,7 +2,7 @@
 //! to it.
 
 use crate::window::Action;
-use crate::window::chrome::controls;
+use crate::window::widgets::controls;
 use document::{CameraEdit, Document, camera_between};
 use egui::{
     Color32, ColorImage, CornerRadius, Rect, ScrollArea, Sense, Slider, Stroke, TextureHandle, Ui, pos2, vec2,

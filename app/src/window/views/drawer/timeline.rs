@@ -2,7 +2,7 @@
 //! it, dragging a key moves it.
 
 use crate::window::Action;
-use crate::window::chrome::{controls, keys};
+use crate::window::widgets::{controls, keys};
 use document::Document;
 use egui::{Align2, Color32, DragValue, FontId, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, pos2, vec2};
 use focus::{Keys, LayerEdit};

@@ -2,10 +2,10 @@
 
 use super::falloff_editor::{falloff_choice, falloff_editor};
 use super::preset_row::preset_row;
-use crate::window::chrome::controls::{self, format_number, proportional_value, row, rows};
-use crate::window::chrome::tool_bar::{
+use crate::window::widgets::brush_controls::{
     HARDNESS_TIP, SIZE_TIP, STRENGTH_TIP, largest_radius, push_brush_change,
 };
+use crate::window::widgets::controls::{self, format_number, proportional_value, row, rows};
 use crate::window::{Action, ViewSettings};
 use document::{Document, SurfaceHit};
 use egui::{ComboBox, DragValue, Slider, Ui};

@@ -1,9 +1,9 @@
 //! Editor of a depth curve: blur over depth, edited by dragging points.
 
 use crate::window::Action;
-use crate::window::chrome::controls::{self, finish_edit, format_number, proportional_value};
-use crate::window::chrome::tool_bar::signed_circle_px;
-use crate::window::views::false_colour;
+use crate::window::widgets::brush_controls::signed_circle_px;
+use crate::window::widgets::controls::{self, finish_edit, format_number, proportional_value};
+use crate::window::widgets::false_colour;
 use document::Document;
 use egui::{
     Align2, Color32, DragValue, FontId, PointerButton, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2,

@@ -1,6 +1,6 @@
 //! Editor of the brush's falloff: strength over the distance from the centre, edited by dragging points.
 
-use crate::window::chrome::controls;
+use crate::window::widgets::controls;
 use egui::{Color32, ComboBox, PointerButton, Pos2, Rect, Sense, Stroke, Ui, pos2, vec2};
 use focus::{Brush, Curve};
 

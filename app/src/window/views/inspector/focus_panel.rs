@@ -1,8 +1,8 @@
 //! The focus that is painted: as blur, and as raw numbers.
 
 use crate::window::Action;
-use crate::window::chrome::controls::{self, format_number, proportional_value, row, rows};
-use crate::window::chrome::tool_bar::{push_brush_change, signed_circle_px, target_slider};
+use crate::window::widgets::brush_controls::{push_brush_change, signed_circle_px, target_slider};
+use crate::window::widgets::controls::{self, format_number, proportional_value, row, rows};
 use document::Document;
 use egui::{Button, Checkbox, DragValue, RichText, Ui};
 use lens::FocusOffset;

@@ -1,10 +1,8 @@
 //! The history: every step with a thumbnail of what it changed; a click goes to that step.
 
 use crate::window::Action;
-use crate::window::chrome::controls;
-use crate::window::chrome::keys;
-use crate::window::chrome::tool_bar::signed_circle_px;
-use crate::window::views::false_colour;
+use crate::window::widgets::brush_controls::signed_circle_px;
+use crate::window::widgets::{controls, false_colour, keys};
 use document::{Document, HistoryStep};
 use egui::{Color32, Rect, RichText, ScrollArea, Sense, Ui, pos2, vec2};
 use focus::EditThumbnail;

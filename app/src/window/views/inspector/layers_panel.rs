@@ -3,8 +3,8 @@
 use super::curve_editor::curve_editor;
 use super::plane_editor::plane_editor;
 use crate::window::Action;
-use crate::window::chrome::controls::{self, finish_edit, row, rows};
-use crate::window::chrome::keys;
+use crate::window::widgets::controls::{self, finish_edit, row, rows};
+use crate::window::widgets::keys;
 use document::Document;
 use egui::{Button, ComboBox, Slider, TextEdit, Ui};
 use focus::{Adjustment, BlendMode, FocusLayer, LayerEdit};

@@ -2,8 +2,8 @@
 
 use super::preset_row::preset_row;
 use super::shape_panel::shape_panel;
-use crate::window::chrome::controls::{self, finish_edit, format_number, proportional_value, row, rows};
 use crate::window::view_settings::LARGEST_TOLERANCE_PX;
+use crate::window::widgets::controls::{self, finish_edit, format_number, proportional_value, row, rows};
 use crate::window::{Action, ViewSettings};
 use document::{CameraEdit, Document};
 use egui::{Button, ComboBox, DragValue, Slider, Ui};

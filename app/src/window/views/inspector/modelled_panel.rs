@@ -1,6 +1,6 @@
 //! What the light field contains; the same table as in `info` and `report`.
 
-use crate::window::chrome::controls::{bytes_text, count_text, row, rows, seconds_text};
+use crate::window::widgets::controls::{bytes_text, count_text, row, rows, seconds_text};
 use document::Document;
 use egui::{RichText, Ui};
 use render::Modelled;

@@ -1,8 +1,8 @@
 //! A focal plane in numbers: tilt, swing, distance and curvature.
 
 use crate::window::Action;
-use crate::window::chrome::controls::{finish_edit, format_number, row, rows};
-use crate::window::chrome::keys;
+use crate::window::widgets::controls::{finish_edit, format_number, row, rows};
+use crate::window::widgets::keys;
 use document::Document;
 use egui::{DragValue, Slider, SliderClamping, Ui};
 use focus::{FocalPlane, LayerEdit};

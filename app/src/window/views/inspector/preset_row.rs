@@ -2,8 +2,8 @@
 
 use crate::window::Action;
 use crate::window::action::PresetAction;
-use crate::window::chrome::controls::row;
-use crate::window::chrome::keys;
+use crate::window::widgets::controls::row;
+use crate::window::widgets::keys;
 use egui::{Button, Ui};
 use project::{LibraryEntry, Preset, PresetKind, PresetLibrary};
 use session::CommandId;
@@ -102,7 +102,7 @@ fn own_entry(ui: &mut Ui, entry: &LibraryEntry, is_current: bool, actions: &mut 
                 ui.close();
             }
         });
-        crate::window::chrome::controls::set_accessible_name(
+        crate::window::widgets::controls::set_accessible_name(
             &more.response,
             &format!("{}: more", entry.name()),
         );

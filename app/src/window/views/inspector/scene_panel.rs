@@ -43,7 +43,7 @@ impl ScenePanel {
             ui.selectable_value(&mut self.by_material, true, "Materials")
                 .on_hover_text("List the scene's materials.");
             let edit = egui::TextEdit::singleline(&mut self.filter).hint_text("filter").desired_width(110.0);
-            crate::window::chrome::controls::set_accessible_name(&ui.add(edit), "Filter the list");
+            crate::window::widgets::controls::set_accessible_name(&ui.add(edit), "Filter the list");
         });
         let rows = if self.by_material { material_rows(scene) } else { object_rows(scene) };
         let filter = self.filter.to_lowercase();

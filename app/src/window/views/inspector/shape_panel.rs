@@ -1,7 +1,7 @@
 //! The shape of the aperture: the appearance of out-of-focus lights.
 
 use crate::window::Action;
-use crate::window::chrome::controls::{finish_edit, row};
+use crate::window::widgets::controls::{finish_edit, row};
 use document::CameraEdit;
 use egui::{ComboBox, DragValue, Ui};
 use lens::{Aperture, ApertureShape, Camera};

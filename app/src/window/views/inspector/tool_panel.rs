@@ -1,8 +1,8 @@
 //! Settings of the active tool, other than those of the brush.
 
-use crate::window::chrome::controls::{self, row, rows};
-use crate::window::chrome::keys;
 use crate::window::tools::tool_settings::{GradientEnd, ToolSettings};
+use crate::window::widgets::controls::{self, row, rows};
+use crate::window::widgets::keys;
 use crate::window::{Action, Tool};
 use document::Document;
 use egui::{Button, ComboBox, DragValue, Ui};

@@ -1,7 +1,7 @@
 //! The material variant of the scene, if its file has several (KHR_materials_variants).
 
 use crate::window::Action;
-use crate::window::chrome::controls::{row, rows};
+use crate::window::widgets::controls::{row, rows};
 use document::Document;
 use egui::{ComboBox, Ui};
 use session::Command;

@@ -1,7 +1,7 @@
 //! The world: the environment that lights the scene and is visible behind all surfaces.
 
 use crate::window::Action;
-use crate::window::chrome::controls::{proportional_value, row, rows};
+use crate::window::widgets::controls::{proportional_value, row, rows};
 use document::Document;
 use egui::{Button, ComboBox, DragValue, Ui};
 use glam::{DVec3, Vec3};

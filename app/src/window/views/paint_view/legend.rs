@@ -1,7 +1,7 @@
 //! The legend of the paint view, in its lower right corner.
 
 use super::surface_overlay::{MAX_COUNTED, OverlayKind, UNOBSERVED_COLOR, share_of_count};
-use crate::window::views::false_colour;
+use crate::window::widgets::false_colour;
 use egui::{Align2, Color32, FontId, Painter, Rect, pos2, vec2};
 
 /// Smallest view with room for the legend, points.

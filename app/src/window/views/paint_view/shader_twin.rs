@@ -1,10 +1,9 @@
 //! Compares the shader's κ and colours with `lens` and the Rust colour map, on the graphics adapter of the
 //! tests.
 
-use super::{
-    FocusTexture, OrbitCamera, Stale, SurfaceAppearance, SurfaceFrame, SurfaceMesh, SurfaceRenderer,
-};
-use crate::window::views::false_colour;
+use super::{FocusTexture, OrbitCamera, Stale, SurfaceFrame, SurfaceMesh, SurfaceRenderer};
+use crate::window::view_settings::SurfaceAppearance;
+use crate::window::widgets::false_colour;
 use atlas::Atlas;
 use focus::FocusMap;
 use glam::{DVec3, Mat3, Vec2};

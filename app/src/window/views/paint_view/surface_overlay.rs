@@ -1,7 +1,7 @@
 //! A texture over the whole atlas that is shown instead of the materials: the light of the photographs, or
 //! their number; for a surface reconstructed from a picture, its depth, or which parts were invented.
 
-use crate::window::views::false_colour::nearness_color;
+use crate::window::widgets::false_colour::nearness_color;
 use atlas::TexelMap;
 use document::Stage;
 use egui::ecolor::gamma_u8_from_linear_f32;

@@ -4,29 +4,11 @@
 use super::device_errors::{GraphicsError, catch_device_errors};
 use super::surface_passes::{COLOR_FORMAT, GBuffer, Passes, target_texture};
 use super::{FocusTexture, OrbitCamera, SurfaceMesh};
-use crate::window::views::false_colour;
+use crate::window::view_settings::SurfaceAppearance;
+use crate::window::widgets::false_colour;
 use bytemuck::{Pod, Zeroable};
 use lens::Camera;
 use std::ops::Range;
-
-/// Appearance of the surface.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SurfaceAppearance {
-    /// Share of the false colours of blur, in [0, 1]; the rest is the scene's own colour.
-    pub focus_share: f32,
-    /// Whether to draw contour lines where the circle of confusion is 1, 4 and 16 px.
-    pub contours: bool,
-    /// Whether to show the number of photographs, or the invented parts, instead of the light of photographs.
-    pub photograph_counts: bool,
-    /// Whether to show the depth of a picture's surface.
-    pub depth: bool,
-}
-
-impl Default for SurfaceAppearance {
-    fn default() -> Self {
-        Self { focus_share: 0.65, contours: false, photograph_counts: false, depth: false }
-    }
-}
 
 /// Inputs of one drawn picture of the surface.
 #[derive(Clone, Copy, Debug)]

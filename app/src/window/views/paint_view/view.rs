@@ -3,12 +3,8 @@
 use super::changed_pixels::changed_pixels;
 use super::legend;
 use super::surface_overlay::{OverlayKind, SurfaceOverlay};
-use super::{
-    FocusTexture, GraphicsError, OrbitCamera, Stale, SurfaceAppearance, SurfaceFrame, SurfaceMesh,
-    SurfaceRenderer,
-};
+use super::{FocusTexture, GraphicsError, OrbitCamera, Stale, SurfaceFrame, SurfaceMesh, SurfaceRenderer};
 use crate::window::Action;
-use crate::window::chrome::theme;
 use crate::window::graphics::blit::{self, Blitter, Drawable, Filter};
 use crate::window::tools::active_tool::ActiveTool;
 use crate::window::tools::brush_ring;
@@ -16,6 +12,8 @@ use crate::window::tools::drag_tool::DragView;
 use crate::window::tools::navigation::{self, Motion};
 use crate::window::tools::region_highlight::RegionHighlight;
 use crate::window::tools::stroke_input::StrokeInput;
+use crate::window::view_settings::SurfaceAppearance;
+use crate::window::widgets::theme;
 use document::{Document, SurfaceHit};
 use egui::{Color32, Pos2, Rect, Response, Sense, Stroke, Ui, pos2, vec2};
 use glam::{DVec2, DVec3};
@@ -284,7 +282,7 @@ impl PaintView {
         let (rect, response) =
             ui.allocate_exact_size(ui.available_size().max(vec2(8.0, 8.0)), Sense::click_and_drag());
         self.rect = rect;
-        crate::window::chrome::controls::set_accessible_name(&response, "Paint view");
+        crate::window::widgets::controls::set_accessible_name(&response, "Paint view");
         if self.drawn.is_none() {
             ui.painter().rect_filled(rect, 0.0, Color32::from_gray(32));
         }

@@ -1,7 +1,7 @@
 //! Verification of a rectangle of the picture by ray tracing: selection, display and error.
 
 use crate::window::Action;
-use crate::window::chrome::controls;
+use crate::window::widgets::controls;
 use egui::{
     Color32, ColorImage, Key, PointerButton, Pos2, Rect, Response, Stroke, StrokeKind, TextureHandle,
     TextureOptions, Ui, UiBuilder, pos2, vec2,

@@ -1,7 +1,7 @@
 //! The wipe: a line across the picture with another picture on its left.
 
 use super::displayed_picture::DisplayedPicture;
-use crate::window::chrome::controls;
+use crate::window::widgets::controls;
 use egui::{Align2, Color32, CursorIcon, FontId, Key, Rect, Sense, Stroke, Ui, pos2, vec2};
 
 /// Distance within which the line can be grabbed, points.

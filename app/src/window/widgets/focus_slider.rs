@@ -1,7 +1,7 @@
 //! A slider from near blur through sharp to far blur, in the false colours of the views; finer around sharp,
 //! where it snaps.
 
-use crate::window::views::false_colour;
+use super::false_colour;
 use egui::{
     Color32, CornerRadius, CursorIcon, Key, Rect, Response, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2,
 };
