@@ -12,7 +12,7 @@ use serde_json::json;
 use sha2::{Digest, Sha256};
 use splat::Gpu;
 use std::io::Read;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Measures, and writes the report.
 ///
@@ -124,7 +124,7 @@ fn scene_requests(arguments: &ReportArguments) -> Result<Vec<SceneRequest>, Fail
         light: shot.appearance.light(),
     };
     if !arguments.scenes.is_empty() {
-        arguments.scenes.iter().try_for_each(check_scene)?;
+        arguments.scenes.iter().try_for_each(|scene| check_scene(scene))?;
         return Ok(arguments.scenes.iter().map(request).collect());
     }
     if arguments.hard {
@@ -136,7 +136,7 @@ fn scene_requests(arguments: &ReportArguments) -> Result<Vec<SceneRequest>, Fail
 }
 
 /// Refuses a file that is no scene before anything is measured.
-fn check_scene(file: &PathBuf) -> Result<(), Failure> {
+fn check_scene(file: &Path) -> Result<(), Failure> {
     if !file.exists() {
         return Err(Failure::bad_input(format!("{}: no such file (check the path)", file.display())));
     }

@@ -1,5 +1,8 @@
 //! How views that are numbered row by row are laid out, where no file says so.
 
+/// The most columns or rows; Stanford's have 17, gantries some more.
+pub(super) const MAX_SIDE: u32 = 128;
+
 /// A grid and the number of its first view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct NumberedGrid {
@@ -23,7 +26,7 @@ impl NumberedGrid {
     pub fn inferred(numbers: &[u32]) -> Result<Self, String> {
         let [low, .., high] = *numbers else { return Err("there are fewer than two".into()) };
         let (low_wide, high_wide, views) = (u64::from(low), u64::from(high), numbers.len() as u64);
-        let max_side = u64::from(super::row_column::MAX_SIDE);
+        let max_side = u64::from(MAX_SIDE);
         let square = |count: u64, first: u32| {
             let side = count.isqrt();
             ((2..=max_side).contains(&side) && side * side == count).then_some(Self {

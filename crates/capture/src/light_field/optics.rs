@@ -63,7 +63,8 @@ pub(super) fn read_parameters(file: &Path) -> Result<Optics, CaptureError> {
             }
         };
         let count = || {
-            let count = text.parse().ok().filter(|count| (1..=super::row_column::MAX_SIDE).contains(count));
+            let count =
+                text.parse().ok().filter(|count| (1..=super::numbered_grid::MAX_SIDE).contains(count));
             count.ok_or_else(|| lines.malformed(format!("{key} is {}, not a number of views", quoted(text))))
         };
         match key {

@@ -4,15 +4,12 @@
 //! others varies, too, the two that vary. They may start anywhere and be padded or not. `c03_r01` and `x3_y1` are recognised.
 
 use super::arrangement::{Arrangement, Placed, ViewLayout};
-use super::numbered_grid::NumberedGrid;
+use super::numbered_grid::{MAX_SIDE, NumberedGrid};
 use super::numbered_name::{NumberedName, parse_positions};
 use crate::CaptureError;
 use glam::DVec2;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
-
-/// The most columns or rows; Stanford's have 17, gantries some more.
-pub(super) const MAX_SIDE: u32 = 128;
 
 fn stem(file: &Path) -> String {
     file.file_stem().unwrap_or_default().to_string_lossy().into_owned()
