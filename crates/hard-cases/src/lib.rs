@@ -25,6 +25,7 @@
 //! | `light/mirrors` | mirrored light keeps the standard focus |
 //! | `light/panes` | partial opacity |
 //! | `light/chance` | lamps that paths find by chance |
+//! | `light/white` | white surfaces close together |
 //!
 //! ```
 //! use hard_cases::{Effort, run};
@@ -44,7 +45,7 @@ mod support;
 pub use case::{Case, Effort, Outcome};
 
 use geometry::{rays, texels, triangles};
-use light::{chance, energy, furnace, glass, lobes, mirrors, panes, ranges, rooms};
+use light::{chance, energy, furnace, glass, lobes, mirrors, panes, ranges, rooms, white};
 use optics::{aperture_plane, defocus, masks, offsets, sampling, scaling};
 use progress::{Cancelled, Progress};
 
@@ -69,6 +70,7 @@ pub fn suite() -> Vec<Case> {
         mirrors::CASES,
         panes::CASES,
         chance::CASES,
+        white::CASES,
     ]
     .concat()
 }

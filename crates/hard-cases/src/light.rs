@@ -9,3 +9,4 @@ pub mod mirrors;
 pub mod panes;
 pub mod ranges;
 pub mod rooms;
+pub mod white;

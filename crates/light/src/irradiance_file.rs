@@ -1,7 +1,7 @@
 //! Irradiance cached on disk, so that it is not solved for again.
 //!
 //! A file belongs to a scene (everything in it that emits, blocks or scatters light) in a world. It holds linear RGB per patch, first all
-//! direct, then all indirect, as little-endian `f32`.
+//! direct, then all indirect, as little-endian `f32`; then a byte that is 1 if light was cut off before it died away.
 
 use crate::disk_cache::CacheSection;
 use crate::options::LightOptions;
@@ -9,10 +9,13 @@ use crate::scene_hashes::light_hash;
 use glam::Vec3;
 use scene::{Environment, Scene, World};
 use sha2::{Digest, Sha256};
-use slf::{Irradiance, IrradianceOptions};
+use slf::{Irradiance, IrradianceOptions, IrradianceSolution};
 
 /// A file takes about a megabyte.
 pub(super) const SECTION: CacheSection = CacheSection { name: "light", budget_bytes: 256 << 20 };
+
+/// Counts the solvers whose results differ.
+const SOLVER_VERSION: u32 = 2;
 
 /// Hashes everything that the irradiance of a scene in a world depends on.
 pub(super) fn hash_inputs(
@@ -22,6 +25,7 @@ pub(super) fn hash_inputs(
     light: LightOptions,
     options: IrradianceOptions,
 ) {
+    hash.update(SOLVER_VERSION.to_le_bytes());
     hash.update(light_hash(scene, light));
     hash.update(format!("{world:?} {options:?}"));
     if let Environment::Map(map) = &world.environment {
@@ -42,13 +46,16 @@ pub(super) fn from_bytes(
         .map(|rgb| Vec3::new(number(rgb), number(&rgb[4..]), number(&rgb[8..])))
         .collect();
     let (direct, indirect) = all.split_at(all.len() / 2);
-    Irradiance::from_values(scene, world, options, [direct.to_vec(), indirect.to_vec()])
+    let is_cut_off = bytes.len() % 12 == 1 && bytes.ends_with(&[1]);
+    let solution = IrradianceSolution { direct: direct.to_vec(), indirect: indirect.to_vec(), is_cut_off };
+    Irradiance::from_solution(scene, world, options, solution)
 }
 
 /// The bytes of the file.
 pub(super) fn to_bytes(irradiance: &Irradiance) -> Vec<u8> {
-    let numbers = irradiance.values().into_iter().flatten().flat_map(|value| value.to_array());
-    numbers.flat_map(f32::to_le_bytes).collect()
+    let IrradianceSolution { direct, indirect, is_cut_off } = irradiance.solution();
+    let numbers = [direct, indirect].into_iter().flatten().flat_map(|value| value.to_array());
+    numbers.flat_map(f32::to_le_bytes).chain([u8::from(*is_cut_off)]).collect()
 }
 
 #[cfg(test)]
@@ -78,7 +85,7 @@ mod tests {
         let (scene, irradiance) = solved(&world);
         let bytes = to_bytes(&irradiance);
         let again = from_bytes(&bytes, &scene, &world, OPTIONS).unwrap();
-        assert_eq!(again.values(), irradiance.values());
+        assert_eq!(again.solution(), irradiance.solution());
         // With other options, the number of patches differs.
         assert!(from_bytes(&bytes, &scene, &world, IrradianceOptions { patches: 5, rays: 8 }).is_none());
         let origin = |world: &World| {

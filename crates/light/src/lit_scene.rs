@@ -11,7 +11,7 @@ use jobs::CancelToken;
 use lens::Camera;
 use progress::Progress;
 use scene::{Scene, World};
-use slf::{PhotographLight, Transport};
+use slf::{BounceLimit, PhotographLight, Transport};
 use std::sync::Arc;
 use trace::{Radiance, Tracer};
 
@@ -35,6 +35,7 @@ pub struct LitScene {
     irradiance: IrradianceCache,
     /// `Some` if photographs light the scene.
     photographs: Option<PhotographLightCache>,
+    bounce_limit: BounceLimit,
     cancel: CancelToken,
 }
 
@@ -52,7 +53,8 @@ impl LitScene {
         let photographs =
             photographs.then(|| PhotographLightCache::new(&tracer, options, resources, &cancel));
         let (irradiance, resources) = (IrradianceCache::default(), resources.clone());
-        Arc::new(Self { tracer, options, resources, irradiance, photographs, cancel })
+        let bounce_limit = BounceLimit::default();
+        Arc::new(Self { tracer, options, resources, irradiance, photographs, bounce_limit, cancel })
     }
 
     /// Traces rays in the scene.
@@ -106,6 +108,9 @@ impl LitScene {
             cancel: &self.cancel,
         };
         let irradiance = self.irradiance.wait(&self.world(camera), quality, &inputs, progress)?;
+        if irradiance.solution().is_cut_off {
+            self.bounce_limit.reach();
+        }
         Ok(Arc::new(match quality {
             LightQuality::Refined { .. } => transport.with_control_variate(irradiance),
             LightQuality::Rough | LightQuality::Fine => transport.with_irradiance(irradiance),
@@ -146,6 +151,12 @@ impl LitScene {
             Some(photographs) => photographs.wait_for_lookup(progress),
             None => Ok(Arc::new(self.transport(camera, 1, LIGHT_SAMPLES))),
         }
+    }
+
+    /// Whether light that was solved or traced so far was cut off after [`slf::MAX_BOUNCES`] before it had died away: it cannot get out
+    /// of a closed room that absorbs next to nothing.
+    pub fn is_cut_off(&self) -> bool {
+        self.bounce_limit.is_reached()
     }
 
     /// Whether photographs light the scene.
@@ -195,6 +206,7 @@ impl LitScene {
 
     fn transport(&self, camera: &Camera, paths: u32, light_samples: u32) -> Transport {
         transport_without_cache(&self.tracer, self.world(camera), self.options, paths, light_samples)
+            .with_bounce_limit(self.bounce_limit.clone())
     }
 }
 

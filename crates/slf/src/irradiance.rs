@@ -26,23 +26,30 @@ use trace::IncidentLight;
 #[derive(Debug)]
 pub struct Irradiance {
     patches: Patches,
-    /// Irradiance/π by patch, from sampled lights.
-    direct: Vec<Vec3>,
-    /// Irradiance/π by patch, all other light.
-    indirect: Vec<Vec3>,
+    solution: IrradianceSolution,
     sky: Option<OpenSky>,
 }
 
+/// Solved irradiance: together with the scene, the world and the solver's options this is all that needs to be stored.
+#[derive(Clone, Debug, PartialEq)]
+pub struct IrradianceSolution {
+    /// Irradiance/π by patch (linear RGB radiance units), from sampled lights.
+    pub direct: Vec<Vec3>,
+    /// Irradiance/π by patch, all other light.
+    pub indirect: Vec<Vec3>,
+    /// Whether light was cut off after [`MAX_BOUNCES`](crate::MAX_BOUNCES) before it had died away.
+    pub is_cut_off: bool,
+}
+
 impl Irradiance {
-    /// Wraps solved values: irradiance/π by patch, in a world.
-    pub(crate) fn new(patches: Patches, [direct, indirect]: [Vec<Vec3>; 2], world: &World) -> Self {
-        Self { patches, direct, indirect, sky: OpenSky::from_world(world) }
+    /// Wraps solved values of patches in a world.
+    pub(crate) fn new(patches: Patches, solution: IrradianceSolution, world: &World) -> Self {
+        Self { patches, solution, sky: OpenSky::from_world(world) }
     }
 
-    /// Irradiance/π by patch (linear RGB radiance units): direct and indirect. Together with the scene, the world and
-    /// the solver's options this is all that needs to be stored; see [`Irradiance::from_values`].
-    pub fn values(&self) -> [&[Vec3]; 2] {
-        [&self.direct, &self.indirect]
+    /// What was solved; see [`Irradiance::from_solution`].
+    pub fn solution(&self) -> &IrradianceSolution {
+        &self.solution
     }
 
     /// Irradiance/π that an unoccluded environment sends to a surface with this normal; `None` if the environment is
@@ -64,12 +71,12 @@ impl Irradiance {
 
     /// Indirect irradiance/π at a place; `None` if no patch covers it.
     pub(crate) fn indirect(&self, place: &Place) -> Option<Vec3> {
-        self.interpolate(place, |patch| self.indirect[patch])
+        self.interpolate(place, |patch| self.solution.indirect[patch])
     }
 
     /// Direct and indirect irradiance/π at a place; `None` if no patch covers it.
     pub(crate) fn total(&self, place: &Place) -> Option<Vec3> {
-        self.interpolate(place, |patch| self.direct[patch] + self.indirect[patch])
+        self.interpolate(place, |patch| self.solution.direct[patch] + self.solution.indirect[patch])
     }
 
     fn interpolate(&self, place: &Place, value: impl Fn(usize) -> Vec3) -> Option<Vec3> {

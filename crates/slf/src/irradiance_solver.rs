@@ -3,21 +3,23 @@
 //! Every patch sends cosine-distributed rays once. A ray ends at a light, which counts at once, or at a diffuse
 //! surface: a *link* to a patch, with the weight by which its diffuse lobes pass on what arrives there. Gloss and
 //! glass on the way are traced as usual. Light is then a linear system, E = D + I₀ + T·E, solved by passing light
-//! along the links; each pass is a bounce. Finally each patch's indirect light is averaged with its neighbours' as far
+//! along the links; each pass is a bounce. No row of T sums to more than the albedos along its rays, whatever the
+//! geometry, so a pass never makes light. Finally each patch's indirect light is averaged with its neighbours' as far
 //! as no near surface interferes (Ward 1988: the harmonic mean of the hit distances).
 
-use crate::irradiance::Irradiance;
+use crate::bounce_limit::MAX_BOUNCES;
 use crate::irradiance::patches::{Patch, Patches};
 use crate::irradiance::place::Place;
-use crate::transport::{PatchRay, Transport};
-use glam::Vec3;
+use crate::irradiance::{Irradiance, IrradianceSolution};
+use crate::transport::{PatchRay, PatchRayLink, Transport};
+use glam::{DVec3, Vec3};
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;
 use scene::{Scene, World};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Maximum number of passes; by then light has died away whatever the albedo (0.9⁶⁴ is a thousandth).
-const MAX_BOUNCES: u32 = 64;
+/// Change of a pass, as a share of the brightest patch, at which light has died away.
+const CONVERGED_CHANGE: f32 = 1e-5;
 /// Neighbours within this share of the harmonic mean distance are averaged.
 const SMOOTHING_RADIUS: f64 = 0.25;
 
@@ -57,23 +59,24 @@ impl Irradiance {
         progress: &dyn Progress,
     ) -> Result<Self, Cancelled> {
         let patches = Patches::new(transport.scene(), options.patches);
-        let values = solve_bounces(transport, &patches, options.rays.max(1), progress)?;
-        Ok(Self::new(patches, values, transport.world()))
+        let solution = solve_bounces(transport, &patches, options.rays.max(1), progress)?;
+        Ok(Self::new(patches, solution, transport.world()))
     }
 
-    /// Restores an irradiance from its stored [`values`](Irradiance::values), of the same scene, world and options;
-    /// `None` if their number does not match or one is not finite.
-    pub fn from_values(
+    /// Restores an irradiance from its [`solution`](Irradiance::solution), of the same scene, world and options; `None`
+    /// if the number of values does not match or one is not finite.
+    pub fn from_solution(
         scene: &Scene,
         world: &World,
         options: IrradianceOptions,
-        values: [Vec<Vec3>; 2],
+        solution: IrradianceSolution,
     ) -> Option<Self> {
         let patches = Patches::new(scene, options.patches);
         let fits = |values: &Vec<Vec3>| {
             values.len() == patches.all().len() && values.iter().all(|value| value.is_finite())
         };
-        values.iter().all(fits).then(|| Self::new(patches, values, world))
+        let is_valid = [&solution.direct, &solution.indirect].into_iter().all(fits);
+        is_valid.then(|| Self::new(patches, solution, world))
     }
 }
 
@@ -83,7 +86,7 @@ fn solve_bounces(
     patches: &Patches,
     rays: u32,
     progress: &dyn Progress,
-) -> Result<[Vec<Vec3>; 2], Cancelled> {
+) -> Result<IrradianceSolution, Cancelled> {
     let done = AtomicUsize::new(0);
     let all = patches.all();
     let patch_light: Vec<PatchLight> = all
@@ -97,8 +100,9 @@ fn solve_bounces(
         .collect::<Result<_, Cancelled>>()?;
     let direct: Vec<Vec3> = patch_light.iter().map(|light| light.direct).collect();
     let mut indirect: Vec<Vec3> = patch_light.iter().map(|light| light.indirect).collect();
-    let passes = transport.world().bounces.map_or(MAX_BOUNCES, |bounces| bounces.min(MAX_BOUNCES));
-    for _ in 0..passes {
+    let bounces = transport.world().bounces;
+    let mut is_cut_off = bounces.is_none();
+    for _ in 0..bounces.map_or(MAX_BOUNCES, |bounces| bounces.min(MAX_BOUNCES)) {
         progress.check()?;
         let next: Vec<Vec3> = patch_light
             .par_iter()
@@ -113,15 +117,16 @@ fn solve_bounces(
             next.iter().zip(&indirect).map(|(a, b)| (*a - *b).abs().max_element()).fold(0.0, f32::max);
         let brightest = next.iter().map(|light| light.max_element()).fold(0.0, f32::max);
         indirect = next;
-        if change <= 1e-5 * brightest {
+        if change <= CONVERGED_CHANGE * brightest {
+            is_cut_off = false;
             break;
         }
     }
-    let smooth = (0..all.len())
+    let indirect = (0..all.len())
         .into_par_iter()
         .map(|at| smoothed_indirect(patches, &patch_light, &indirect, at))
         .collect();
-    Ok([direct, smooth])
+    Ok(IrradianceSolution { direct, indirect, is_cut_off })
 }
 
 /// Traces the rays of a patch.
@@ -129,7 +134,7 @@ fn trace_patch_rays(transport: &Transport, patches: &Patches, patch: &Patch, ray
     let points = patches.points(patch);
     let share = 1.0 / rays as f32;
     let (mut direct, mut indirect, mut links) = (Vec3::ZERO, Vec3::ZERO, Vec::new());
-    let mut nearness = 0.0;
+    let (mut nearness, mut albedo_sum) = (0.0, DVec3::ZERO);
     for ray in 0..rays {
         let point = points[ray as usize % points.len()];
         let PatchRay { direct: drawn, indirect: other, distance, link: onward } =
@@ -137,13 +142,32 @@ fn trace_patch_rays(transport: &Transport, patches: &Patches, patch: &Patch, ray
         direct += drawn * share;
         indirect += other * share;
         nearness += 1.0 / distance;
-        if let Some((place, weight, choice)) = onward
+        if let Some(PatchRayLink { place, weight, albedo, choice }) = onward
             && let Some(target) = choose_patch(patches, &place, choice)
         {
             links.push((target, weight * share));
+            albedo_sum += albedo;
         }
     }
+    bound_row_sum(&mut links, albedo_sum / f64::from(rays));
     PatchLight { direct, indirect, links, distance: f64::from(rays) / nearness }
+}
+
+/// Scales the weights of a patch's links, channel by channel, so that they sum to at most `albedo`.
+fn bound_row_sum(links: &mut [(u32, Vec3)], albedo: DVec3) {
+    let sum = row_sum(links);
+    // The margin is for the rounding of the scaled weights.
+    let scale = albedo / sum * (1.0 - f64::from(f32::EPSILON));
+    if scale.cmplt(DVec3::ONE).any() {
+        links
+            .iter_mut()
+            .for_each(|(_, weight)| *weight = (weight.as_dvec3() * scale.min(DVec3::ONE)).as_vec3());
+    }
+}
+
+/// Sum of the absolute weights of a patch's links.
+fn row_sum(links: &[(u32, Vec3)]) -> DVec3 {
+    links.iter().map(|(_, weight)| weight.abs().as_dvec3()).sum()
 }
 
 /// Samples a patch around a place by its interpolation weight.

@@ -43,6 +43,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod bounce_limit;
 mod emitters;
 mod environment_light;
 mod irradiance;
@@ -58,7 +59,8 @@ mod photographs;
 mod punctual;
 mod transport;
 
-pub use irradiance::Irradiance;
+pub use bounce_limit::{BounceLimit, MAX_BOUNCES};
+pub use irradiance::{Irradiance, IrradianceSolution};
 pub use irradiance_solver::IrradianceOptions;
 pub use material::Scattering;
 pub use photographs::{

@@ -6,6 +6,7 @@ mod path_tracing;
 mod scattered_light;
 mod uncached_light;
 
+use crate::bounce_limit::BounceLimit;
 use crate::irradiance::Irradiance;
 use crate::irradiance::patches::{PatchPoint, Patches};
 use crate::irradiance::place::Place;
@@ -66,6 +67,7 @@ pub struct Transport {
     lights: Lights,
     media: Media,
     cache_mode: CacheMode,
+    bounce_limit: BounceLimit,
     /// Whether any surface receives light.
     is_lit: bool,
     /// Directions of the sky, sampled on first use.
@@ -114,8 +116,19 @@ pub(crate) struct PatchRay {
     pub direct: Vec3,
     pub indirect: Vec3,
     pub distance: f64,
-    /// The place whose irradiance is passed on, its weight, and a uniform number.
-    pub link: Option<(Place, Vec3, f64)>,
+    pub link: Option<PatchRayLink>,
+}
+
+/// Where the ray of a patch ended at another patch.
+pub(crate) struct PatchRayLink {
+    /// The place whose irradiance is passed on.
+    pub place: Place,
+    /// The share of it that is passed on.
+    pub weight: Vec3,
+    /// The product of the albedos along the ray, which the mean weight of all rays must not exceed.
+    pub albedo: DVec3,
+    /// Uniform number in [0, 1) that chooses among the patches around the place.
+    pub choice: f64,
 }
 
 impl Transport {
@@ -131,9 +144,15 @@ impl Transport {
             lights,
             media,
             cache_mode: CacheMode::Disabled,
+            bounce_limit: BounceLimit::default(),
             is_lit,
             sky_samples: OnceLock::new(),
         }
+    }
+
+    /// Records in `limit` whether a path was cut off after [`MAX_BOUNCES`](crate::MAX_BOUNCES).
+    pub fn with_bounce_limit(self, limit: BounceLimit) -> Self {
+        Self { bounce_limit: limit, ..self }
     }
 
     /// Uses cached irradiance of the same scene and world, trusting it.
@@ -196,9 +215,12 @@ impl Transport {
             ray.direct += (weight * path_light.direct).as_vec3();
             ray.indirect = (weight * path_light.indirect).as_vec3();
             ray.distance = path_light.distance;
-            ray.link = path_light
-                .cached_end
-                .map(|(cached, share)| (cached.place, (weight * share).as_vec3(), path.random.next()));
+            ray.link = path_light.cached_end.map(|(cached, share)| PatchRayLink {
+                place: cached.place,
+                weight: (weight * share).as_vec3(),
+                albedo: weight * path_light.albedo,
+                choice: path.random.next(),
+            });
         }
         ray
     }

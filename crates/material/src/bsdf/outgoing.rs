@@ -6,6 +6,9 @@ use crate::{Split, sheen};
 use glam::{DVec2, DVec3};
 use std::f64::consts::FRAC_1_PI;
 
+/// Number of directions that [`OutgoingBsdf::resample`] chooses from.
+const RESAMPLING_CANDIDATES: usize = 4;
+
 /// A [`Bsdf`] for one outgoing direction: what does not depend on the incident direction is computed once.
 pub struct OutgoingBsdf<'b, 'a> {
     bsdf: &'b Bsdf<'a>,
@@ -36,6 +39,36 @@ impl OutgoingBsdf<'_, '_> {
     /// [`Bsdf::sample`].
     pub fn sample(&self, u: [f64; 3]) -> Option<Scattered> {
         self.bsdf.sample_lobes(&self.view, &self.probabilities, u)
+    }
+
+    /// Samples an incident direction nearly in proportion to the light scattered from there: one of
+    /// [`RESAMPLING_CANDIDATES`] directions of [`Self::sample`] is chosen by its weight and gets the mean of their
+    /// weights (resampled importance sampling; Talbot, Cline and Egbert 2005). Unbiased like `sample`, but products of
+    /// the weights along a path that is caught between near surfaces stay small. `random` supplies uniform numbers.
+    pub fn resample(&self, mut random: impl FnMut() -> f64) -> Option<Scattered> {
+        if self.is_single_lobe() {
+            return self.sample([random(), random(), random()]);
+        }
+        let mut chosen: Option<(Scattered, f64)> = None;
+        let mut sum = 0.0;
+        for _ in 0..RESAMPLING_CANDIDATES {
+            let Some(candidate) = self.sample([random(), random(), random()]) else { continue };
+            let weight = candidate.weight.total().element_sum();
+            sum += weight;
+            chosen = chosen.or(Some((candidate, weight)));
+            if random() * sum < weight {
+                chosen = Some((candidate, weight));
+            }
+        }
+        let (scattered, weight) = chosen?;
+        let mean = sum / RESAMPLING_CANDIDATES as f64;
+        Some(Scattered { weight: scattered.weight * (mean / weight), ..scattered })
+    }
+
+    /// Whether one lobe alone is sampled.
+    fn is_single_lobe(&self) -> bool {
+        let LobeProbabilities { coat, gloss, glass, spread, through, returned } = self.probabilities;
+        [coat, gloss, glass, spread, through, returned].into_iter().any(|probability| probability == 1.0)
     }
 
     /// The albedo in both parts: the share of uniform light from everywhere that is scattered.

@@ -17,7 +17,7 @@ use rayon::prelude::*;
 use salf::{BakeOptions, Salf, SalfStatistics};
 use scene::SurfacePoint;
 use serde::Serialize;
-use slf::PhotographLight;
+use slf::{MAX_BOUNCES, PhotographLight};
 use splat::{Gpu, Splatter, Tolerance};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -485,8 +485,16 @@ fn finish(
     if options.has_aov(Aov::CircleOfConfusion) {
         attributes.insert("focusBrush.cocConvention".into(), options.coc.name().into());
     }
-    let warnings = mattes.map_or_else(Vec::new, |mattes| mattes.warnings);
+    let mut warnings = mattes.map_or_else(Vec::new, |mattes| mattes.warnings);
+    warnings.extend(lit.is_cut_off().then(cut_off_warning));
     Ok(Rendered { picture, layers, attributes, cost, warnings })
+}
+
+/// The warning about light that was cut off.
+fn cut_off_warning() -> String {
+    format!(
+        "light was cut off after {MAX_BOUNCES} bounces: it cannot get out of a closed white room (use an albedo below 1, or `bounces` in the world)"
+    )
 }
 
 /// The unpainted pinhole picture by the same renderer, with its alpha if requested.

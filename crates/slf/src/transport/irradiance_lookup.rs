@@ -55,6 +55,18 @@ impl IrradianceLookup<'_> {
         matches!(self, Self::ControlVariate(_))
     }
 
+    /// Whether paths must not send on more than the albedos along them, for the price of a small bias: what is solved
+    /// would grow from bounce to bounce. Unbiased paths have weights of mean 1 that are not bounded.
+    pub fn is_bounded(self) -> bool {
+        matches!(self, Self::Unsolved(_) | Self::Trusted(_))
+    }
+
+    /// Throughput below which Russian roulette ends paths. The rays of a patch are few, and their sum is bounded: there
+    /// it would cut off what roulette adds to the surviving ones.
+    pub fn roulette_throughput(self) -> f64 {
+        if matches!(self, Self::Unsolved(_)) { 0.05 } else { 1.0 }
+    }
+
     /// The cached place at a hit, if there is one and the hit is far enough away.
     pub fn cached_place(
         self,

@@ -2,6 +2,7 @@
 
 use super::irradiance_lookup::{CachedPlace, IrradianceLookup};
 use super::{Path, Step, Transport, power_heuristic};
+use crate::bounce_limit::MAX_BOUNCES;
 use crate::material_point::{MaterialPoint, emitted};
 use glam::DVec3;
 use material::{Bsdf, Split};
@@ -17,8 +18,12 @@ pub(super) struct PathLight {
     pub distance: f64,
     /// Where the path ended at cached irradiance, and the share of it that is passed on.
     pub cached_end: Option<(CachedPlace, DVec3)>,
+    /// The product of the albedos of the surfaces that the path met.
+    pub albedo: DVec3,
 }
 
+/// Throughput of a path that may be cut off without a word.
+const NEGLIGIBLE_THROUGHPUT: f64 = 0.01;
 /// Number of scattering events before Russian roulette starts.
 const MIN_SCATTERINGS: u32 = 3;
 /// Share of paths that go on past the cache when it is a control variate. Fewer cost less but add noise: measured in
@@ -35,12 +40,13 @@ impl Transport {
         mut lookup: IrradianceLookup<'_>,
     ) -> PathLight {
         let scene = self.scene();
-        let max_bounces = self.world.bounces.unwrap_or(u32::MAX);
+        let max_bounces = self.world.bounces.unwrap_or(MAX_BOUNCES);
         let mut result = PathLight {
             direct: DVec3::ZERO,
             indirect: DVec3::ZERO,
             distance: f64::INFINITY,
             cached_end: None,
+            albedo: DVec3::ONE,
         };
         let mut throughput = DVec3::ONE;
         let mut min_density = step.density;
@@ -71,7 +77,13 @@ impl Transport {
                     scatterings,
                 );
             }
-            if scatterings > max_bounces || scene.material_of(point.triangle).unlit {
+            if scene.material_of(point.triangle).unlit {
+                return result;
+            }
+            if scatterings > max_bounces {
+                if self.world.bounces.is_none() && throughput.max_element() > NEGLIGIBLE_THROUGHPUT {
+                    self.bounce_limit.reach();
+                }
                 return result;
             }
             let mut at = MaterialPoint::new(scene, point, self.options.scattering);
@@ -86,13 +98,17 @@ impl Transport {
             let scattered = match lookup.cached_place(scene, point, is_front, t) {
                 None => {
                     result.indirect += throughput * self.direct(point, &at, &lobes, path).total();
-                    let Some(scattered) = lobes.sample(path.random.next3()) else { return result };
-                    throughput *= scattered.weight.total();
+                    let Some(scattered) = lobes.resample(|| path.random.next()) else { return result };
+                    let albedo = lobes.albedo().total();
+                    result.albedo *= albedo;
+                    // No product of albedos exceeds 1, whereas a product of sampled weights has no bound.
+                    throughput *= if lookup.is_bounded() { albedo } else { scattered.weight.total() };
                     scattered
                 }
                 Some(cached) => {
                     // The own part ends at the cache; the carried part is traced on.
                     let Split { own, carried } = lobes.albedo();
+                    result.albedo *= own + carried;
                     let [own_albedo, carried_albedo] = [own, carried].map(DVec3::element_sum);
                     if carried_albedo > 0.0 {
                         result.indirect += throughput * self.direct_carried(point, &at, &lobes, path);
@@ -125,7 +141,9 @@ impl Transport {
                 }
             };
             if scatterings >= MIN_SCATTERINGS || throughput == DVec3::ZERO {
-                let survival_probability = throughput.max_element().min(0.95);
+                // A path that loses no light goes on: one that ended by chance would leave its light to the others,
+                // whose weights would grow without bound between white surfaces.
+                let survival_probability = (throughput.max_element() / lookup.roulette_throughput()).min(1.0);
                 if path.random.next() >= survival_probability {
                     return result;
                 }

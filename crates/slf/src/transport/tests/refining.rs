@@ -2,7 +2,7 @@
 
 use super::rooms::{inside, outside};
 use super::*;
-use crate::IrradianceOptions;
+use crate::{IrradianceOptions, IrradianceSolution};
 
 const LAMP: f32 = 8.0;
 
@@ -99,10 +99,16 @@ fn refined_light_equals_full_path_tracing_whatever_the_cache_holds() {
     let tracer = Arc::new(Tracer::new(Arc::new(room())));
     let points = &points(tracer.scene())[..24];
     let irradiance = coarse(&tracer);
-    let [direct, indirect] = irradiance.values().map(|values| values.iter().map(|v| *v * 3.0).collect());
+    let tripled = |values: &[Vec3]| values.iter().map(|v| *v * 3.0).collect();
+    let right = irradiance.solution();
+    let wrong = IrradianceSolution {
+        direct: tripled(&right.direct),
+        indirect: tripled(&right.indirect),
+        is_cut_off: false,
+    };
     let options = IrradianceOptions { patches: 24, rays: 64 };
     let world = World::uniform(Vec3::ZERO);
-    let wrong = Irradiance::from_values(tracer.scene(), &world, options, [direct, indirect]).unwrap();
+    let wrong = Irradiance::from_solution(tracer.scene(), &world, options, wrong).unwrap();
     let mean = |all: &[Vec3]| all.iter().sum::<Vec3>() / all.len() as f32;
     let truth = mean(&sent(&transport(&tracer, 1 << 12), points, 0));
     let wrong = Arc::new(wrong);
