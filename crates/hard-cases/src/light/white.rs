@@ -133,7 +133,7 @@ fn glass(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> 
         ior: 1.5,
         ..with_lobes(albedo, 0.0, 0.5)
     };
-    compare(white, (2, 20.0), effort, progress)
+    compare(white, (2, 28.0), effort, progress)
 }
 
 /// Compares pictures from cached light with the ground truth, for all geometries with one kind of material: `turn` is
@@ -218,7 +218,7 @@ impl WhiteShot {
     }
 
     fn truth(&self, seed: u32, progress: &dyn Progress) -> Result<Picture, Cancelled> {
-        let samples_per_pixel = self.effort.choose(256, 64);
+        let samples_per_pixel = self.effort.choose(128, 64);
         let options = TruthOptions { samples_per_pixel, seed, ..TruthOptions::default() };
         let light = self.transport(None, 1);
         let rendered = truth::render(&self.tracer, &light, &self.focus(), &self.camera, &options, progress)?;

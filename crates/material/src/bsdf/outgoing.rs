@@ -65,6 +65,14 @@ impl OutgoingBsdf<'_, '_> {
         Some(Scattered { weight: scattered.weight * (mean / weight), ..scattered })
     }
 
+    /// What crossing the surface (or not) does to radiance whose flux is conserved: 1/η² through an interface that refracts. It
+    /// is part of the weights of sampled directions, not of the albedo; the factors of a path into glass and out again
+    /// cancel.
+    pub fn radiance_scale(&self, crosses: bool) -> f64 {
+        let (bsdf, is_refracted) = (self.bsdf, self.bsdf.shares[2] > 0.0 && !self.bsdf.surface.is_thin);
+        if crosses && is_refracted { bsdf.eta(&self.view).powi(-2) } else { 1.0 }
+    }
+
     /// Whether one lobe alone is sampled.
     fn is_single_lobe(&self) -> bool {
         let LobeProbabilities { coat, gloss, glass, spread, through, returned } = self.probabilities;

@@ -18,7 +18,7 @@ pub(super) struct PathLight {
     pub distance: f64,
     /// Where the path ended at cached irradiance, and the share of it that is passed on.
     pub cached_end: Option<(CachedPlace, DVec3)>,
-    /// The product of the albedos of the surfaces that the path met.
+    /// The product of the albedos of the surfaces that the path met, and of what refraction does to radiance.
     pub albedo: DVec3,
 }
 
@@ -99,9 +99,9 @@ impl Transport {
                 None => {
                     result.indirect += throughput * self.direct(point, &at, &lobes, path).total();
                     let Some(scattered) = lobes.resample(|| path.random.next()) else { return result };
-                    let albedo = lobes.albedo().total();
+                    let albedo = lobes.albedo().total() * lobes.radiance_scale(scattered.crosses);
                     result.albedo *= albedo;
-                    // No product of albedos exceeds 1, whereas a product of sampled weights has no bound.
+                    // No product of albedos exceeds 1 in a medium, whereas a product of sampled weights has no bound.
                     throughput *= if lookup.is_bounded() { albedo } else { scattered.weight.total() };
                     scattered
                 }
@@ -136,6 +136,7 @@ impl Transport {
                     } else {
                         let Some(scattered) = lobes.sample_sharp(path.random.next3()) else { return result };
                         throughput *= scattered.weight.carried / (1.0 - end_probability);
+                        result.albedo *= lobes.radiance_scale(scattered.crosses);
                         scattered
                     }
                 }
