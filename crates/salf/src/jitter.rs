@@ -14,7 +14,7 @@ fn mix(x: u32, y: u32, z: u32) -> [u32; 3] {
     v
 }
 
-/// Three uniform numbers in [0, 1).
+/// Three uniform numbers in [0, 1), which depend on nothing but `x`, `y` and `z`.
 pub fn jitter(x: u32, y: u32, z: u32) -> [f64; 3] {
     mix(x, y, z).map(|k| k as f64 / 4294967296.0)
 }
@@ -32,7 +32,7 @@ pub struct Net {
 }
 
 impl Net {
-    /// Of 2 to `bits` cells a side; another one for each seed.
+    /// A net of 2 to the power of `bits` cells a side; another one for each seed.
     pub fn new(bits: u32, seed: [u32; 2]) -> Self {
         let [a, b, _] = mix(seed[0], seed[1], u32::MAX);
         let digits = u32::MAX << (u32::BITS - bits);

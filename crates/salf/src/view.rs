@@ -25,6 +25,7 @@ pub struct View<'a> {
 }
 
 impl<'a> View<'a> {
+    /// The view of a camera, in which positions may be wrong by `tolerance_px`.
     pub fn new(camera: &'a Camera, tolerance_px: f64) -> Self {
         let optics = camera.optics();
         Self {

@@ -50,7 +50,8 @@ const OUTLIER_DEVIATIONS: f32 = 8.0;
 /// Neighbours are at most so far apart, px.
 const NEAR_PX: f32 = 1.6;
 
-/// Spreads what outliers among the samples of a block have too much.
+/// Takes from outliers among the samples of a block the light that they have too much, and spreads it evenly over
+/// their group: samples of one part, own or carried.
 pub fn spread_outliers(samples: &mut [BakedSample], scene: &Scene) -> Outliers {
     let light = |baked: &BakedSample| {
         f64::from(baked.sample.radiance.max_element()) * f64::from(visible_weight(&baked.sample))

@@ -23,6 +23,8 @@ const BRIGHT: f32 = 2.0;
 const SMALL_PX: f64 = 3.0;
 
 impl Placement {
+    /// Chooses which triangles get samples on their surface: those that turn their back to the aperture, and small
+    /// bright ones.
     pub fn new(scene: &Scene, view: &View) -> Self {
         let on_surface = |triangle: u32| {
             !view.faces_aperture(scene, triangle)

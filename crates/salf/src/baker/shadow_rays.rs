@@ -61,6 +61,7 @@ impl Patterns {
     /// How many there are of each.
     const COUNT: u32 = 1 << (2 * Self::DIGITS);
 
+    /// Makes all patterns, coarse (8 × 8) and fine (16 × 16).
     pub fn new() -> Self {
         let all =
             |side: usize, spread: f64| (0..Self::COUNT).map(|k| Self::pattern(side, spread, k)).collect();

@@ -123,6 +123,7 @@ pub struct MaskWriter {
 }
 
 impl MaskWriter {
+    /// A writer without masks, whose model has learnt nothing.
     pub fn new() -> Self {
         Self { model: Model::new(), low: 0, range: u32::MAX, codes: Vec::new(), is_empty: true }
     }
@@ -190,6 +191,7 @@ pub struct MaskReader<'a> {
 }
 
 impl<'a> MaskReader<'a> {
+    /// Reads the masks that a [`MaskWriter`] has written to `codes`.
     pub fn new(codes: &'a [u8]) -> Self {
         let mut codes = codes.iter();
         let code = (0..4).fold(0, |code, _| code << 8 | next(&mut codes));

@@ -37,6 +37,7 @@ pub fn block_corner(pixel: IVec2) -> IVec2 {
 }
 
 impl Packer {
+    /// An empty packer for a chunk whose upper left corner is at `corner`, px.
     pub fn new(corner: IVec2) -> Self {
         Self {
             corner,

@@ -35,6 +35,7 @@ impl Content {
 }
 
 impl Grid {
+    /// The grid of blocks over a light field's picture and its margin.
     pub fn new(salf: &Salf) -> Self {
         let frame = IVec2::new(salf.camera.width as i32, salf.camera.height as i32);
         let domain = Domain { size: frame, margin: salf.margin_px as i32 };
