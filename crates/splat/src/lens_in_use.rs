@@ -63,6 +63,7 @@ impl NodeFocus {
     /// Nothing is painted.
     pub const STANDARD: Self = Self { t: 1.0, anchor: 0.0, t_apart: 0.0, anchor_apart: 0.0 };
 
+    /// The focus as nodes have it: in 32-bit floats, with t limited and without subnormal numbers.
     pub fn new(offset: FocusOffset) -> Self {
         let t = (offset.t as f32).clamp(-LARGEST_OFFSET, LARGEST_OFFSET);
         Self { t, anchor: offset.anchor as f32, ..Self::STANDARD }.without_subnormals()
@@ -224,6 +225,7 @@ pub const ALIKE: f32 = 0.125;
 pub const SHARP: u32 = 16;
 
 impl LensInUse {
+    /// A lens with an aperture of this shape; `tolerance` decides which nodes are drawn and how finely.
     pub fn new(optics: Optics, shape: &Shape, tolerance: Tolerance) -> Self {
         let deviation = (shape.variance.min_element()).sqrt();
         let smallest = |finer: f64, wider: f64| {

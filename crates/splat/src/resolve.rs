@@ -112,7 +112,10 @@ pub struct LevelRows<'a, W: Word> {
 }
 
 impl<'a, W: Word> LevelRows<'a, W> {
-    /// Those of a sum in a window of the picture.
+    /// The rows of a sum in a window of the picture.
+    ///
+    /// # Errors
+    /// A sum has overflowed.
     pub fn for_sum(
         accumulator: &'a Accumulator<W>,
         quanta: Quanta,
@@ -157,7 +160,10 @@ impl<'a, W: Word> LevelRows<'a, W> {
         self.coarser.into_iter().for_each(|coarser| room.recycle(coarser.pixels));
     }
 
-    /// Sets a line to the pixels of a row. `marks` are the row's.
+    /// Sets `line` to the pixels of row `row`; `marks` are the row's.
+    ///
+    /// # Errors
+    /// A sum has overflowed.
     pub fn read(&mut self, row: i32, marks: &mut [Mark<W>], line: &mut [Light]) -> Result<(), Overflow> {
         match &self.coarser {
             Some(coarser) => with_widest_simd(
@@ -194,8 +200,11 @@ impl Columns {
     }
 }
 
-/// Adds the first `CHANNELS` channels of a row of a level's pixels in some columns. `marks` are the row's. Returns the largest coverage that
-/// was met, in quanta.
+/// Adds the first `CHANNELS` channels of a row of a level's pixels in some columns. `marks` are the row's. Returns
+/// the largest coverage that was met, in quanta.
+///
+/// # Errors
+/// A sum has overflowed.
 pub fn add_row<W: Word, const CHANNELS: usize>(
     level: &Level<W>,
     row: i32,

@@ -83,6 +83,9 @@ impl Sum {
     }
 
     /// The rows of its pixels in a window of the picture. `quanta` are those of ordinary samples, and of bright ones ([`crate::nodes::Scale::quanta`]).
+    ///
+    /// # Errors
+    /// A sum has overflowed.
     pub fn rows<'a>(
         &'a self,
         quanta: [Quanta; 2],
@@ -112,7 +115,10 @@ pub struct SumRows<'a> {
 }
 
 impl SumRows<'_> {
-    /// Sets a line to the pixels of a row.
+    /// Sets `line` to the pixels of row `row`: linear RGB and coverage.
+    ///
+    /// # Errors
+    /// A sum has overflowed.
     pub fn read(&mut self, row: i32, line: &mut [Light]) -> Result<(), Overflow> {
         self.dim.read(row, self.dim_marks.row(row), line)?;
         if let Some((level, quanta, marks)) = &mut self.bright {
@@ -190,6 +196,9 @@ impl Sums {
     }
 
     /// Replaces the sums by the lists of all blocks. `pace` learns how long it takes.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if `progress` asks to stop.
     pub fn set(
         &mut self,
         pen: &Pen,
@@ -200,7 +209,10 @@ impl Sums {
         self.draw(pen, lists, |band| band.clear(), pace, progress)
     }
 
-    /// Adds the lists of all blocks.
+    /// Adds the lists of all blocks to the sums. `pace` learns how long it takes.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if `progress` asks to stop.
     pub fn add(
         &mut self,
         pen: &Pen,

@@ -145,6 +145,7 @@ impl Stencils {
     /// Stencils of a place, at most.
     pub const PHASES: usize = 1 << PHASE_BITS;
 
+    /// The stencils of a shape; each is cut when it is first used.
     pub fn new(shape: Shape) -> Self {
         let parts = [2, 4].map(|side| shape.parts(side));
         Self { shape, parts, table: (0..Self::PLACES).map(|_| OnceLock::new()).collect() }

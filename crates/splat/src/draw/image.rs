@@ -106,7 +106,8 @@ impl Image<'_> {
     }
 }
 
-/// Where a node's dither starts on a level: its place from the picture's middle, whatever else is in the light field.
+/// The seed of a node's dither on a level, from the node's place relative to `middle`, the picture's: it does not
+/// depend on what else is in the light field.
 #[inline(always)]
 pub fn seed(node: &SplatNode, level: u8, middle: [i32; 2]) -> u32 {
     let [x, y] = [(node.center[0] - middle[0]) as u32, (node.center[1] - middle[1]) as u32];

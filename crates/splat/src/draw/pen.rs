@@ -92,6 +92,8 @@ pub enum Form {
 }
 
 impl<'a> Pen<'a> {
+    /// A pen for an aperture's shape and a lens whose aperture radius is `stop` times the baked one's; `moments` are
+    /// those of the masks of `nodes`.
     pub fn new(
         nodes: &'a Nodes,
         stencils: &'a Stencils,

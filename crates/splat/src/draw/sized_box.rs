@@ -59,6 +59,7 @@ pub struct SizedBox {
 }
 
 impl SizedBox {
+    /// Adds the box to the pixels in `rows`, or with `sign` −1 takes it away.
     #[inline(always)]
     pub fn draw<W: Word>(&self, rows: &mut Rows<W>, sign: i32) {
         let Self { center, half: [half, half_height], per_half: [across, down], .. } = *self;

@@ -101,6 +101,7 @@ impl Pen<'_> {
 }
 
 impl VisibleRuns {
+    /// The runs of the part of the aperture that the node of `image` sees, at the image's size.
     #[inline(always)]
     pub fn new(pen: &Pen, image: &Image) -> Self {
         let radius = image.radius.unsigned_abs();

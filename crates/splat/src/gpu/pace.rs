@@ -48,6 +48,9 @@ impl Pace {
     }
 
     /// Registers a submission, and waits while too many are in flight.
+    ///
+    /// # Errors
+    /// The card is lost.
     pub fn add(&mut self, gpu: &Gpu, batch: Batch, submission: SubmissionIndex) -> Result<(), Lost> {
         self.in_flight.push_back((batch, submission, Instant::now()));
         if self.in_flight.len() <= MAX_IN_FLIGHT {

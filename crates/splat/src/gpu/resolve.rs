@@ -37,6 +37,10 @@ const KNOT_WORDS: usize = 16;
 const GAIN_WORDS: usize = 8;
 
 impl Resolve {
+    /// Makes the buffers in which sums of this layout become a picture of `size` columns and rows.
+    ///
+    /// # Errors
+    /// The card is lost.
     pub fn new(gpu: &Gpu, size: [usize; 2], layout: &Layout) -> Result<Self, Lost> {
         let storage = BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC;
         let pixels = size[0] * size[1];
@@ -92,7 +96,8 @@ impl Resolve {
         gpu.write(&self.overflow, &[0]);
     }
 
-    /// Integrates the sums of free (0) or sharing (1) samples to lines, coarse levels first.
+    /// Integrates the pixel rows `rows` of the sums of free (`kind` 0) or sharing (1) samples to lines, coarse levels
+    /// first. Recorded in `work`, not yet run.
     pub fn integrate(&self, gpu: &Gpu, work: &mut Commands, kind: usize, sums: &Buffer, rows: &Range<u32>) {
         let passes = gpu.passes();
         for (k, level) in self.levels.iter().enumerate().rev() {
@@ -108,7 +113,11 @@ impl Resolve {
         }
     }
 
-    /// Adds the sums of bright samples.
+    /// Adds the sums of bright free (`kind` 0) or sharing (1) samples to the lines of `rows`. Recorded in `work`, not
+    /// yet run.
+    ///
+    /// # Errors
+    /// The card is lost.
     pub fn integrate_wide(
         &self,
         gpu: &Gpu,
@@ -137,14 +146,20 @@ impl Resolve {
         work.submit();
     }
 
-    /// The contribution of lines and shares to each knot.
+    /// What lines and shares contribute to each knot, row by row.
+    ///
+    /// # Errors
+    /// The card is lost, or an integer has overflowed.
     pub fn knot_sums(&self, gpu: &Gpu) -> Result<Vec<KnotSums>, GpuError> {
         let knots = Knots::new(self.size);
         let sums = self.sums(gpu, &gpu.passes().balance, [knots.columns(), knots.rows()])?;
         Ok(sums.into_iter().map(KnotSums).collect())
     }
 
-    /// The contribution of lines, shares and gains to each cell.
+    /// What lines, shares and gains contribute to each cell between knots, row by row.
+    ///
+    /// # Errors
+    /// The card is lost, or an integer has overflowed.
     pub fn shared_sums(&self, gpu: &Gpu) -> Result<Vec<SharedSums>, GpuError> {
         let knots = Knots::new(self.size);
         let sums = self.sums(gpu, &gpu.passes().share, [knots.columns() - 1, knots.rows() - 1])?;
@@ -190,6 +205,9 @@ impl Resolve {
     }
 
     /// Waits for all submitted work, and checks that no integer has overflowed.
+    ///
+    /// # Errors
+    /// The card is lost, or an integer has overflowed.
     pub fn check(&self, gpu: &Gpu) -> Result<(), GpuError> {
         self.checked(gpu, &self.overflow, 0..4).map(|_| ())
     }
@@ -209,7 +227,10 @@ impl Resolve {
         &self.picture
     }
 
-    /// Pixel rows of it.
+    /// Reads pixel rows of the picture back: red, green, blue (linear), coverage.
+    ///
+    /// # Errors
+    /// The card is lost, or an integer has overflowed.
     pub fn read(&self, gpu: &Gpu, rows: Range<u32>) -> Result<Vec<[f32; 4]>, GpuError> {
         let row = 16 * self.size[0] as u64;
         let words = self.checked(gpu, &self.picture, rows.start as u64 * row..rows.end as u64 * row)?;

@@ -48,6 +48,9 @@ pub struct NodesOfChunk {
 
 impl Scene {
     /// Uploads the nodes.
+    ///
+    /// # Errors
+    /// The card is lost.
     pub fn new(gpu: &Gpu, nodes: &Nodes) -> Result<Self, Lost> {
         let mut chunks = Vec::new();
         let mut block = 0;
@@ -62,7 +65,10 @@ impl Scene {
         Ok(Self { chunks, dim_bits: nodes.scale.dim_bits })
     }
 
-    /// The same nodes, for another lens and paint.
+    /// The same nodes, without a second upload, for another lens and paint.
+    ///
+    /// # Errors
+    /// The card is lost.
     pub fn twin(&self, gpu: &Gpu) -> Result<Self, Lost> {
         let chunks = self.chunks.iter().map(|chunk| Chunk::with_shared(gpu, chunk.shared.clone()));
         Ok(Self { chunks: chunks.collect::<Result<_, Lost>>()?, dim_bits: self.dim_bits })
@@ -97,6 +103,9 @@ impl Scene {
     }
 
     /// Uploads what is painted on the nodes.
+    ///
+    /// # Errors
+    /// The card is lost.
     pub fn upload_paint(&mut self, gpu: &Gpu, nodes: &Nodes, paint: &Paint) -> Result<(), Lost> {
         for chunk in &mut self.chunks {
             let NodesOfChunk { blocks, count, .. } = &*chunk.shared;

@@ -29,6 +29,10 @@ pub struct Shapes {
 }
 
 impl Shapes {
+    /// Uploads the rows of the stencils' shape; stencils follow when they are needed.
+    ///
+    /// # Errors
+    /// The card is lost.
     pub fn new(gpu: &Gpu, stencils: &Stencils) -> Result<Self, Lost> {
         let shape = &stencils.shape;
         let mut words = shape.firsts.clone();
@@ -48,6 +52,9 @@ impl Shapes {
     }
 
     /// Uploads the stencils of these places that are not there yet.
+    ///
+    /// # Errors
+    /// The card is lost.
     pub fn upload(&mut self, gpu: &Gpu, stencils: &Stencils, places: &[Place]) -> Result<(), Lost> {
         let before = self.words.len();
         for &place in places {
@@ -81,7 +88,10 @@ impl Shapes {
         Ok(())
     }
 
-    /// Room for a pen.
+    /// A buffer that holds a pen.
+    ///
+    /// # Errors
+    /// The card is lost.
     pub fn pen_buffer(gpu: &Gpu) -> Result<Buffer, Lost> {
         gpu.struct_buffer::<shader_structs::Pen>("pen", BufferUsages::STORAGE)
     }

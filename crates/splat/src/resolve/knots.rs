@@ -31,6 +31,7 @@ impl SharedSums {
     /// Sums that take turns, a pixel each: none waits for the one before.
     pub const TURNS: usize = 2;
 
+    /// Adds a pixel's light before and after it was evened.
     #[inline(always)]
     pub fn add(&mut self, before: &Light, after: &Light) {
         for c in 0..4 {

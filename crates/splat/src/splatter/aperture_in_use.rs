@@ -19,6 +19,8 @@ pub struct ApertureInUse {
 }
 
 impl ApertureInUse {
+    /// An aperture, whose radius is `stop` times the baked one's; with its moments for the masks of `nodes`, if there
+    /// are any.
     pub fn new(aperture: &Aperture, stop: f64, nodes: Option<&Nodes>) -> Self {
         let (shape, moments) = (Shape::new(aperture), Vec::new());
         let mut new = Self { aperture: aperture.clone(), stop, stencils: Stencils::new(shape), moments };

@@ -99,18 +99,27 @@ impl Card {
     }
 
     /// Sums what a scene sends; `None` where the sums are not on a card.
+    ///
+    /// # Errors
+    /// The work was cancelled, the card is lost, or an integer has overflowed.
     pub fn sum(&mut self, scene: &Scene, progress: &dyn Progress) -> Option<Result<(), SplatError>> {
         let set = self.sums.as_mut()?.set(scene, progress);
         Some(self.convert_result(set))
     }
 
     /// Takes nodes away and adds others; `None` where the sums are not on a card.
+    ///
+    /// # Errors
+    /// The card is lost, or an integer has overflowed.
     pub fn change(&mut self, pen: &Pen, changes: &Changes) -> Option<Result<(), SplatError>> {
         let changed = self.sums.as_mut()?.change(pen, changes);
         Some(self.convert_result(changed))
     }
 
-    /// Finds the shares of a standard picture, which stay there, and the gains.
+    /// Finds the shares of a standard picture, which stay on the card, and the gains.
+    ///
+    /// # Errors
+    /// The card is lost or has no sums, or an integer has overflowed.
     pub fn find_shares(&mut self, nodes: &Nodes) -> Result<Gains, SplatError> {
         let gains = match &mut self.sums {
             Some(sums) => sums.find_shares(nodes),
@@ -120,6 +129,9 @@ impl Card {
     }
 
     /// Makes pixel rows of a picture, and fetches them unless pictures stay on the card.
+    ///
+    /// # Errors
+    /// The card is lost, or an integer has overflowed.
     pub fn make_picture(
         &mut self,
         nodes: &Nodes,
@@ -153,7 +165,10 @@ impl Card {
         sums.finish()
     }
 
-    /// Brings back what of the picture is newer here; `None` where nothing is.
+    /// Brings back what of the picture is newer on the card; `None` where nothing is.
+    ///
+    /// # Errors
+    /// The card is lost, or an integer has overflowed.
     pub fn fetch(&mut self, picture: &mut Picture) -> Option<Result<(), SplatError>> {
         let rows = std::mem::take(&mut self.stale_rows);
         let sums = self.sums.as_ref().filter(|_| !rows.is_empty())?;

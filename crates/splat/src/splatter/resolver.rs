@@ -42,7 +42,10 @@ impl Resolver {
         self.balance.bytes() + marks
     }
 
-    /// Integrates the sums in some rows and columns.
+    /// Integrates the sums in some pixel rows and columns to what `output` says.
+    ///
+    /// # Errors
+    /// A sum has overflowed.
     pub fn resolve(
         &mut self,
         nodes: &Nodes,

@@ -11,6 +11,7 @@ pub struct Commands<'g> {
 }
 
 impl<'g> Commands<'g> {
+    /// An empty list of commands for a card.
     pub fn new(gpu: &'g Gpu) -> Self {
         let encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         Self { gpu, encoder }
