@@ -121,11 +121,19 @@ mod distance {
         Word(String),
     }
 
+    /// Writes a distance in scene units: as a number, or "inf" if it is infinite.
+    ///
+    /// # Errors
+    /// Errors of `to`.
     pub fn serialize<S: Serializer>(distance: &f64, to: S) -> Result<S::Ok, S::Error> {
         let is_infinite = distance.is_infinite();
         if is_infinite { Form::Word("inf".into()) } else { Form::Number(*distance) }.serialize(to)
     }
 
+    /// Reads a distance in scene units, a number or "inf".
+    ///
+    /// # Errors
+    /// It is something else.
     pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
         match Form::deserialize(from)? {
             Form::Number(distance) => Ok(distance),
@@ -146,10 +154,18 @@ mod surface_point {
         barycentric: [f64; 2],
     }
 
+    /// Writes a surface point as triangle and barycentric weights.
+    ///
+    /// # Errors
+    /// Errors of `to`.
     pub fn serialize<S: Serializer>(point: &SurfacePoint, to: S) -> Result<S::Ok, S::Error> {
         Form { triangle: point.triangle, barycentric: point.barycentric.to_array() }.serialize(to)
     }
 
+    /// Reads a surface point as it is written by [`serialize`].
+    ///
+    /// # Errors
+    /// The form is another.
     pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<SurfacePoint, D::Error> {
         let Form { triangle, barycentric } = Form::deserialize(from)?;
         Ok(SurfacePoint { triangle, barycentric: DVec2::from_array(barycentric) })
