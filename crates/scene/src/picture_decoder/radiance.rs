@@ -24,7 +24,10 @@ pub(super) struct RadianceDecoder<R> {
 }
 
 impl<R: BufRead + Seek> RadianceDecoder<R> {
-    /// Whether the input begins as a Radiance picture does. It stays where it is.
+    /// Whether the input begins as a Radiance picture does. Its position is unchanged.
+    ///
+    /// # Errors
+    /// The input cannot be read.
     pub fn is_radiance(input: &mut R) -> std::io::Result<bool> {
         let start = input.stream_position()?;
         let mut first = Vec::new();

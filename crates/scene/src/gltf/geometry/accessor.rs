@@ -136,7 +136,10 @@ pub(crate) struct Accessor<'a> {
 }
 
 impl<'a> Accessor<'a> {
-    /// Checks accessor `index`, which `place` refers to.
+    /// Opens and checks accessor `index`, to which `place` refers.
+    ///
+    /// # Errors
+    /// It does not exist, is faulty, or reaches beyond its buffers.
     pub fn open(document: &'a Document<'_>, index: usize, place: &str) -> Result<Self, Fault> {
         let place = document.entry("accessors", index, place)?;
         document.check_below(&place)?;
@@ -276,7 +279,11 @@ impl<'a> Accessor<'a> {
         Fault::Malformed { place: self.place.clone(), what: what.into() }
     }
 
-    /// Checks that elements have one of the `allowed` numbers of components.
+    /// Checks that elements have one of the `allowed` numbers of components; `role` says in an error what they are
+    /// for.
+    ///
+    /// # Errors
+    /// They have another number.
     pub fn expect_components(self, allowed: &[usize], role: &str) -> Result<Self, Fault> {
         if self.shape.columns == 1 && allowed.contains(&self.shape.rows) {
             Ok(self)

@@ -41,6 +41,9 @@ const VERTEX_BYTES: u64 = 4 + 24 + 24 + 2 * 8 + 16;
 
 impl Primitive {
     /// Reads a primitive in a variant with the weights of its morph targets; `None` if it has no triangles.
+    ///
+    /// # Errors
+    /// The primitive or its accessors are faulty, or the budget is exhausted.
     pub fn read(
         document: &Document<'_>,
         file: &gltf::Primitive<'_>,

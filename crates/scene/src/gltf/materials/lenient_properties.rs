@@ -17,6 +17,8 @@ pub(crate) struct LenientProperties<'r, 'a> {
 }
 
 impl<'r, 'a> LenientProperties<'r, 'a> {
+    /// Reads the properties of `object`, a material or an extension of it; `sets` are the UV sets of the primitives
+    /// that use it.
     pub fn new(reader: &'r mut TextureReader<'a>, object: Object<'a>, sets: &'r [u32]) -> Self {
         Self { reader, object, sets }
     }
@@ -40,7 +42,8 @@ impl<'r, 'a> LenientProperties<'r, 'a> {
         self.or_warn(self.object.number(key)).map_or(absent, |number| number as f32).clamp(low, high)
     }
 
-    /// A number that may be infinite, which is its default.
+    /// The property `key` as a number that may be infinite, which is its default (as attenuation distances are, in
+    /// scene units).
     pub fn distance(&self, key: &str) -> f64 {
         let distance = self.or_warn(self.object.number(key)).unwrap_or(f64::INFINITY);
         if distance > 0.0 { distance } else { f64::INFINITY }

@@ -25,6 +25,7 @@ pub(crate) struct MaterialReader<'a> {
 }
 
 impl<'a> MaterialReader<'a> {
+    /// A reader of a document's materials that has read none.
     pub fn new(document: &'a Document<'a>) -> Self {
         Self { textures: TextureReader::new(document) }
     }
@@ -44,6 +45,9 @@ impl<'a> MaterialReader<'a> {
 
     /// Reads material `index`, which is used by `place`. Faults in base colour, emission or opacity are errors; any
     /// other faulty property is reported as a warning and left out.
+    ///
+    /// # Errors
+    /// The material does not exist, or its base colour, emission or opacity is faulty.
     pub fn read(&mut self, index: usize, place: &str) -> Result<Material, Fault> {
         let document = self.textures.document;
         let place = document.entry("materials", index, place)?;

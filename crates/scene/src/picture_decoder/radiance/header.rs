@@ -19,7 +19,10 @@ pub(super) struct Header {
 }
 
 impl Header {
-    /// Reads a header to its end; what is wrong with it is text.
+    /// Reads a header to its end; what is wrong with its content is text.
+    ///
+    /// # Errors
+    /// The input cannot be read.
     pub fn read(input: &mut impl BufRead) -> std::io::Result<Result<Self, String>> {
         let mut input = input.take(MAX_BYTES);
         let mut is_end = false;
