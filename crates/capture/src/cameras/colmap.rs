@@ -31,7 +31,10 @@ impl Model {
         })
     }
 
-    /// Reads the pictures of the model.
+    /// Reads the pictures of the model, with their lenses and poses.
+    ///
+    /// # Errors
+    /// A file of the model cannot be read or is malformed.
     pub fn read(&self) -> Result<Shots, CaptureError> {
         let cameras = match self.is_binary {
             true => binary_model::cameras(&self.cameras)?,

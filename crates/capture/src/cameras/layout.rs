@@ -98,7 +98,10 @@ impl Cameras {
         }
     }
 
-    /// Reads the cameras.
+    /// Reads the cameras, in the form of their program.
+    ///
+    /// # Errors
+    /// A file cannot be read or is malformed.
     pub fn read(&self) -> Result<Shots, CaptureError> {
         match self {
             Self::Colmap(model) => model.read(),

@@ -49,7 +49,10 @@ impl ShotLens {
         }
     }
 
-    /// The lens for a picture of this size, unless it has a size of its own.
+    /// The lens for a picture of `size_px` (width, height), unless it has a size of its own.
+    ///
+    /// # Errors
+    /// A parameter of the lens is out of range.
     pub fn for_size(&self, size_px: [u32; 2]) -> Result<CalibratedLens, CameraError> {
         match *self {
             Self::Calibrated(lens) => Ok(lens),

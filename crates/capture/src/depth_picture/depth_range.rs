@@ -30,7 +30,10 @@ impl DepthRange {
         if is_inverse { ((1.0 - level) / near + level / far).recip() } else { near + level * (far - near) }
     }
 
-    /// Parses the range in a file. `None` if it has none: the map is relative then. `Err` describes what is wrong.
+    /// Parses the range that a file declares. `None` if it has none: the map is relative then.
+    ///
+    /// # Errors
+    /// What is wrong, as text.
     pub fn parse(
         format: Option<&str>,
         near: Option<&str>,

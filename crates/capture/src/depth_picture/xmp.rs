@@ -37,7 +37,10 @@ impl XmpTexts {
         Ok(Self { texts })
     }
 
-    /// The texts as XML.
+    /// The texts, parsed as XML.
+    ///
+    /// # Errors
+    /// Why one is no XML, as text.
     pub fn documents(&self) -> Result<Vec<Document<'_>>, String> {
         self.texts.iter().map(|text| parsed(text)).collect()
     }

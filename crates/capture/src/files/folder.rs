@@ -22,6 +22,10 @@ pub(crate) enum EntryKind {
 }
 
 impl Folder {
+    /// Opens a folder; links in its path are resolved.
+    ///
+    /// # Errors
+    /// It cannot be read, or is no folder.
     pub fn open(path: &Path) -> Result<Self, CaptureError> {
         let root = path.canonicalize().map_err(|source| CaptureError::unreadable(path, source))?;
         if !root.is_dir() {

@@ -24,6 +24,8 @@ pub(super) struct DistanceMap {
 }
 
 impl DistanceMap {
+    /// Draws the map of `view`, scaled down by `factor`: the distance of the scene's surface from the camera, scene
+    /// units; infinite where none is.
     pub fn new(scene: &Scene, view: &View, factor: f64) -> Self {
         let [width, height] = view.lens.size_px().map(|side| (f64::from(side) / factor).ceil() as usize);
         let mut map = Self { factor, width, height, distances: vec![f32::INFINITY; width * height] };

@@ -43,6 +43,9 @@ pub(crate) struct PictureFolder {
 
 impl PictureFolder {
     /// Finds the folder with the most pictures of these names.
+    ///
+    /// # Errors
+    /// A folder cannot be read, or the pictures lie outside the capture's folder.
     pub fn find(source: &PictureSearch<'_>, names: &[String]) -> Result<Self, CaptureError> {
         let PictureSearch { folder, cameras, pictures } = *source;
         if let Some(pictures) = pictures {

@@ -22,6 +22,7 @@ pub(super) struct Rigs<'a, 'b> {
 }
 
 impl<'a, 'b> Rigs<'a, 'b> {
+    /// The rigs among these cameras, which are found by their ids.
     pub fn new(cameras: impl Iterator<Item = Node<'a, 'b>>) -> Self {
         Self { cameras: cameras.filter_map(|camera| Some((camera.attribute("id")?, camera))).collect() }
     }

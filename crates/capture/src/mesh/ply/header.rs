@@ -119,6 +119,9 @@ impl Element {
 
 impl Header {
     /// Reads the header of a file; returns it with the rest of the file.
+    ///
+    /// # Errors
+    /// The file cannot be read, or is no PLY.
     pub fn open(file: &Path) -> Result<(Self, Rest), CaptureError> {
         let unreadable = |source| CaptureError::unreadable(file, source);
         let mut input = BufReader::new(File::open(file).map_err(unreadable)?);
