@@ -21,7 +21,10 @@ pub(crate) struct GlbDocument {
 }
 
 impl GlbDocument {
-    /// The document of a file; its buffers and separate images go into the chunk.
+    /// Starts from the document of a file; its buffers and separate images go into the GLB's chunk.
+    ///
+    /// # Errors
+    /// A buffer is faulty or cannot be read.
     pub fn from_source(source: &GltfSource<'_>) -> Result<Self, Fault> {
         let root = source.document().as_object().cloned().unwrap_or_default();
         let mut glb = Self { root, chunk: Vec::new() };
@@ -173,6 +176,9 @@ impl GlbDocument {
     }
 
     /// The bytes of the GLB.
+    ///
+    /// # Errors
+    /// They are more than a GLB can hold.
     pub fn into_bytes(mut self) -> Result<Vec<u8>, AtlasError> {
         self.append(&[]);
         let length = self.chunk.len();
