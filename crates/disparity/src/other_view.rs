@@ -104,6 +104,9 @@ fn pixels(place: f32, half: f32, length: usize) -> std::ops::Range<usize> {
 
 /// Fills the uncovered pixels of the view by matching it with `chosen` views; returns the disparities and the
 /// evidence.
+///
+/// # Errors
+/// [`Cancelled`] if `progress` asks to stop.
 pub fn fill_holes(
     refinement: &Refinement<'_>,
     warped: &[f32],

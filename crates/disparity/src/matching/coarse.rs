@@ -60,6 +60,9 @@ pub struct CoarseEstimate {
 }
 
 /// Estimates the disparities of small pictures, in `range` or as far as parallax is searched.
+///
+/// # Errors
+/// [`Cancelled`] if `progress` asks to stop.
 pub fn estimate_coarse(
     reference: &Planes,
     others: &[ShiftedView<'_>],
