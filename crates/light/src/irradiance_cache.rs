@@ -56,7 +56,10 @@ impl IrradianceCache {
         worlds.iter().find(|entry| entry.world == *world)?.available(LightQuality::Rough).cloned()
     }
 
-    /// Waits for the irradiance in `world`, of at least `quality`.
+    /// Waits for the irradiance in `world`, of at least `quality`, and starts solving it if nobody has.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if `progress` asks to stop.
     pub fn wait(
         &self,
         world: &World,
