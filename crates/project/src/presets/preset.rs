@@ -103,8 +103,10 @@ impl Preset {
         }
     }
 
-    /// The camera with this preset applied, or `None` if it is a brush preset. An error, as a sentence for the user,
-    /// if the camera cannot have it.
+    /// The camera with this preset applied, or `None` if it is a brush preset.
+    ///
+    /// # Errors
+    /// Why the camera cannot have it, as a sentence for the user.
     pub fn apply_to_camera(&self, current: &Camera) -> Option<Result<Camera, String>> {
         match &self.content {
             PresetContent::Brush(_) => None,

@@ -73,7 +73,10 @@ impl CaptureEntry {
         !self.depth_strokes.is_empty()
     }
 
-    /// The choices, with paths resolved from the project's location, or what is wrong with them.
+    /// The choices, with paths resolved from the project's location.
+    ///
+    /// # Errors
+    /// What is wrong with them, as text.
     pub fn to_choices(&self, project: &Path) -> Result<CaptureChoices, &'static str> {
         if !self.depth_strokes.iter().all(DepthStroke::is_valid) {
             return Err("capture.depth_strokes has a stroke beyond all pictures");
