@@ -10,6 +10,7 @@ pub(crate) struct Frame {
 }
 
 impl Frame {
+    /// The frame of a picture of `width` × `height` px, with `margin` pixels on every side.
     pub fn new([width, height]: [usize; 2], margin: usize) -> Self {
         Self { grid: Grid { width: width + 2 * margin, height: height + 2 * margin }, margin }
     }
