@@ -50,6 +50,9 @@ impl SceneInTime {
     }
 
     /// The scene at `moment`, its light modelled as that of `like`.
+    ///
+    /// # Errors
+    /// The animation is faulty, or `progress` asks to stop.
     pub fn moved(
         moving: &AnimatedScene,
         moment: &AnimationTime,
