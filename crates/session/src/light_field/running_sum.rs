@@ -90,7 +90,10 @@ pub(crate) struct LightField {
 const LIGHT_SHARE: f32 = 0.3;
 
 impl LightField {
-    /// Bakes a light field for `camera` and `focus`.
+    /// Bakes a light field for `camera` and `focus`, with a margin that allows for some change.
+    ///
+    /// # Errors
+    /// The light cannot be solved, or the work was cancelled.
     pub fn bake(
         stage: &Stage,
         camera: &Camera,
@@ -241,6 +244,9 @@ impl LightField {
     }
 
     /// Brings the sum to a lens and a focus. After an error the next call makes the whole sum.
+    ///
+    /// # Errors
+    /// The sum overflows, or the work was cancelled.
     pub fn update_sum(
         &mut self,
         camera: &Camera,
@@ -251,7 +257,10 @@ impl LightField {
         self.execute_plan(plan, camera, focus, progress)
     }
 
-    /// The same, as it was just planned for this lens and focus.
+    /// Brings the sum to a lens and a focus by `plan`, which was just made for them.
+    ///
+    /// # Errors
+    /// The sum overflows, or the work was cancelled.
     pub fn execute_plan(
         &mut self,
         plan: Plan,
@@ -296,6 +305,9 @@ impl LightField {
     }
 
     /// The picture of the sum, brought back if it is on a card.
+    ///
+    /// # Errors
+    /// The card is lost.
     pub fn fetch_picture(&mut self) -> Result<&Picture, SplatError> {
         self.splatter.fetch_picture()?;
         Ok(self.splatter.picture())

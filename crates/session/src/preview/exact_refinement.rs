@@ -86,7 +86,10 @@ impl ExactRefinement {
         }
     }
 
-    /// Takes the sum back from the thread.
+    /// Takes the sum back from the thread, with the picture that it made.
+    ///
+    /// # Errors
+    /// The error of the thread.
     pub fn take_up(
         &mut self,
         refined: ExactDelivery,

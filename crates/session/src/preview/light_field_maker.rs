@@ -115,7 +115,10 @@ impl LightFieldMaker {
         (field, epoch)
     }
 
-    /// What was made, with all that changed meanwhile noted.
+    /// The light field that was made, with all that changed meanwhile noted, and the epoch it was made for.
+    ///
+    /// # Errors
+    /// The error of the thread.
     pub fn take_up(&mut self, delivery: FieldDelivery) -> Result<(LightField, u64), SessionError> {
         self.join();
         let pending_changes = std::mem::take(&mut self.pending_changes);

@@ -110,6 +110,9 @@ impl LightRefinement {
 
     /// What was made, with all that changed meanwhile noted, if it is better than what stands, which was refined by so many passes; else it
     /// is kept, to be compared with. `None` if there is nothing to take up.
+    ///
+    /// # Errors
+    /// The error of the thread.
     pub fn take_up(&mut self, epoch: u64, displayed_passes: u32) -> Result<Option<FinerField>, SessionError> {
         let Some(RefinedLightDelivery { result, epoch: of_epoch }) = self.finished.take() else {
             return Ok(None);

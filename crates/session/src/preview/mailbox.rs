@@ -110,7 +110,10 @@ impl Shared {
         self.wake.notify_one();
     }
 
-    /// Notes what the thread does now, unless it was cancelled.
+    /// Notes what the thread does now.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if it was cancelled.
     pub fn begin(&self, activity: PreviewActivity) -> Result<(), Cancelled> {
         self.quick.check()?;
         self.quick.begin_step("", 0.0, 1.0);

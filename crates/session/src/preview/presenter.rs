@@ -62,6 +62,7 @@ pub(crate) struct Presenter {
 }
 
 impl Presenter {
+    /// A presenter that has shown nothing.
     pub fn new(shared: Arc<Shared>) -> Self {
         Self {
             shared,

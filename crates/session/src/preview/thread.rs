@@ -26,6 +26,9 @@ pub(crate) struct PreviewThread {
 impl PreviewThread {
     /// Starts the thread. After nothing has changed for `exact_after` (`None`: never) the exact picture is drawn, and then light is refined
     /// by at most `light_passes`. Light fields are stored in `store`. Pictures are summed on `gpu`, or on the processor if `None`.
+    ///
+    /// # Errors
+    /// The system refused a thread.
     pub fn start(
         waker: Waker,
         exact_after: Option<Duration>,
@@ -97,7 +100,7 @@ impl PreviewThread {
         self.shared.light.cancel();
     }
 
-    /// The number of passes by which light is being refined, and the progress.
+    /// The number of passes by which light is being refined, and the progress; `None` if it is not being refined.
     pub fn refining_light(&self) -> Option<(u32, &JobProgress)> {
         self.shared.refining_light()
     }

@@ -67,7 +67,10 @@ impl StageChange {
         }
     }
 
-    /// The stage made so, and warnings about the environment's file.
+    /// The stage with this change made, and warnings about the environment's file.
+    ///
+    /// # Errors
+    /// A file cannot be read, the light cannot be solved, or the work was cancelled.
     pub fn apply_to(
         &self,
         stage: &Stage,
