@@ -45,7 +45,7 @@ impl Net {
         Self { seed: [0, bits], bits, shift: sequence(k) }
     }
 
-    /// The place in a cell, in [0, 1)².
+    /// The random place in the cell in row `row` and column `column`, in [0, 1)² of the cell.
     pub fn place(&self, row: usize, column: usize) -> [f64; 2] {
         let [u, v, _] = mix(self.seed[0], self.seed[1], (row << self.bits | column) as u32);
         // The digits of the other coordinate, in reverse, and what is random behind them.

@@ -46,7 +46,7 @@ impl<'a> View<'a> {
         Self { carried, ..self }
     }
 
-    /// The chief ray through a pixel position; its t is the depth z.
+    /// The chief ray (world) through a pixel position; its t is the depth z in scene units.
     #[inline]
     pub fn chief_ray(&self, pixel: DVec2) -> Ray {
         let q = self.camera.q_from_pixel(pixel) * self.optics.tan_half_yfov;
@@ -61,7 +61,7 @@ impl<'a> View<'a> {
         Beam { origin: self.eye, axis: self.camera.world_direction(DVec3::Z), edges }
     }
 
-    /// The world position of the aperture point R·u.
+    /// The world position of the aperture point R·u; `u` in [−1, 1]².
     pub fn aperture_point(&self, u: DVec2) -> DVec3 {
         self.eye + self.optics.aperture_radius * (u.x * self.right + u.y * self.up)
     }
@@ -72,7 +72,8 @@ impl<'a> View<'a> {
         Square { center: self.eye, right: radius * self.right, up: radius * self.up }
     }
 
-    /// The circle of confusion that the ordinary lens makes of a point, px.
+    /// The diameter, px, of the circle of confusion that the unpainted lens makes of a point with this inverse depth
+    /// (1/length).
     pub fn circle_px(&self, inverse_depth: f64) -> f64 {
         self.optics.circle_of_confusion_px(self.optics.standard_kappa(inverse_depth))
     }

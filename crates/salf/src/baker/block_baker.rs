@@ -67,7 +67,7 @@ pub struct BlockBaker<'a> {
 }
 
 impl<'a> BlockBaker<'a> {
-    /// For `camera`, which must be valid.
+    /// Prepares to bake blocks of the light field for `camera`, which must be valid.
     pub fn new(
         tracer: &'a Tracer,
         radiance: &'a dyn Radiance,
@@ -124,7 +124,7 @@ impl<'a> BlockBaker<'a> {
         self.trace_nearest(cell).1.depths(cell)
     }
 
-    /// Looks at the cells of a block.
+    /// Looks at what each of the cells of a block shows; one survey for each, in order.
     pub fn survey_cells(&self, cells: &[Cell]) -> Vec<CellSurvey> {
         let mut surveys = Vec::with_capacity(cells.len());
         cells.chunks(self.batch_cells()).for_each(|cells| surveys.extend(self.survey_batch(cells)));

@@ -23,7 +23,7 @@ pub struct Outliers {
 }
 
 impl Outliers {
-    /// Those of two parts of a picture.
+    /// The outliers of two parts of a picture together.
     pub fn merged(self, other: Self) -> Self {
         Self {
             samples: self.samples + other.samples,
@@ -32,7 +32,7 @@ impl Outliers {
         }
     }
 
-    /// The share of all light that was spread.
+    /// The share of all light that was spread, in [0, 1].
     pub fn share(&self) -> f64 {
         if self.total_light > 0.0 { self.spread_light / self.total_light } else { 0.0 }
     }

@@ -128,7 +128,7 @@ impl MaskWriter {
         Self { model: Model::new(), low: 0, range: u32::MAX, codes: Vec::new(), is_empty: true }
     }
 
-    /// Codes the next field: the words of a [`Visibility::Cells`].
+    /// Codes the next field of cells: the words of a [`Visibility::Cells`].
     pub fn write(&mut self, words: &[u64]) {
         self.is_empty = false;
         let side = Visibility::side_of(words);
@@ -151,7 +151,7 @@ impl MaskWriter {
         });
     }
 
-    /// The codes of all fields.
+    /// The bytes that code all fields.
     pub fn finish(mut self) -> Vec<u8> {
         if !self.is_empty {
             // The range contains a multiple of its least width: one byte identifies it, as zeros follow.
@@ -198,7 +198,7 @@ impl<'a> MaskReader<'a> {
         Self { model: Model::new(), code, range: u32::MAX, codes }
     }
 
-    /// The next field, of 8 or 16 cells a side.
+    /// Decodes the next field, of `side` = 8 or 16 cells a side.
     pub fn read(&mut self, side: usize) -> Box<[u64]> {
         let mut rows = [0; 16];
         let (code, range, codes) = (&mut self.code, &mut self.range, &mut self.codes);

@@ -7,7 +7,7 @@ use glam::{DVec3, Vec3};
 pub struct Float24(pub [u8; 3]);
 
 impl Float24 {
-    /// `None` if it is negative, not finite, or rounds to infinity.
+    /// The nearest number of 24 bits; `None` if the value is negative, not finite, or rounds to infinity.
     pub fn new(value: f32) -> Option<Self> {
         if value == 0.0 {
             return Some(Self([0; 3]));

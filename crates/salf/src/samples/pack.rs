@@ -48,7 +48,7 @@ impl Packer {
         }
     }
 
-    /// Takes up a sample: packed, or as it is if it cannot be.
+    /// Adds a sample: packed, or as it is if it cannot be packed.
     pub fn push(&mut self, baked: BakedSample) {
         if self.plane_of.len() >= Record::BACKGROUND as usize {
             self.close();

@@ -34,7 +34,7 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// The number of words beside the record that list its sub-cells.
+    /// The number of 16-bit words beside the record that list its sub-cells.
     pub fn words(self) -> usize {
         match self {
             Self::WholeCell | Self::Patch => 0,
@@ -100,7 +100,7 @@ impl Kind {
         })
     }
 
-    /// The cell that it is all or part of, in a block at `corner`.
+    /// The cell that the sample is all or part of, in a block whose upper left corner is `corner`, px.
     pub fn cell(&self, corner: IVec2) -> Cell {
         Cell { corner: corner + self.pixel, side: 1 << self.level }
     }
@@ -139,7 +139,7 @@ impl Record {
         self.place >> 15 != 0
     }
 
-    /// Its barycentrics.
+    /// The barycentric weights of the second and the third corner of its triangle, in [0, 1].
     pub fn barycentric(&self) -> DVec2 {
         DVec2::from_array(self.barycentric.map(|b| f64::from(b) / 65535.0))
     }
