@@ -64,12 +64,12 @@ impl LensMotion {
             && self.f_number.is_valid(|number| *number > 0.0 && number.is_finite())
     }
 
-    /// Bytes in memory.
+    /// The memory that it takes, in bytes.
     pub fn bytes(&self) -> usize {
         size_of::<Self>() + size_of_val(self.focus.keys()) + size_of_val(self.f_number.keys())
     }
 
-    /// The times of all keys.
+    /// The times of all keys, s; some may occur twice.
     pub fn times(&self) -> impl Iterator<Item = f64> {
         let focus = self.focus.keys().iter().map(|key| key.seconds);
         focus.chain(self.f_number.keys().iter().map(|key| key.seconds))
@@ -98,7 +98,7 @@ impl LensMotion {
         moved
     }
 
-    /// The f-number at a time, if it is animated.
+    /// The f-number at a time, s, if it is animated: interpolated as its logarithm.
     pub fn f_number_at(&self, seconds: f64) -> Option<f64> {
         let span = self.f_number.span_at(seconds)?;
         // Equal values are returned exactly.
