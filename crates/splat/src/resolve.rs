@@ -68,14 +68,14 @@ impl Lines {
 pub struct Room(Vec<Vec<Light>>);
 
 impl Room {
-    /// So many pixels, whatever they hold.
+    /// A list of `count` pixels of any content, reused if possible.
     pub fn take(&mut self, count: usize) -> Vec<Light> {
         let mut pixels = self.0.pop().unwrap_or_default();
         pixels.resize(count, BLACK);
         pixels
     }
 
-    /// Returns pixels for reuse.
+    /// Takes a list of pixels for reuse.
     pub fn recycle(&mut self, pixels: Vec<Light>) {
         self.0.push(pixels);
     }
@@ -154,7 +154,7 @@ impl<'a, W: Word> LevelRows<'a, W> {
         Self { level, quanta, columns, coarser, mixed, largest: 0 }
     }
 
-    /// What they needed room for.
+    /// Gives the lists of pixels back to `room`.
     pub fn recycle(self, room: &mut Room) {
         room.recycle(self.mixed);
         self.coarser.into_iter().for_each(|coarser| room.recycle(coarser.pixels));

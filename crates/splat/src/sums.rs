@@ -139,7 +139,7 @@ impl SumRows<'_> {
         Self { bright: None, ..self }
     }
 
-    /// What they needed room for.
+    /// Gives the lists of pixels back to `room`.
     pub fn recycle(self, room: &mut Room) {
         self.dim.recycle(room);
     }
@@ -180,12 +180,13 @@ impl SumCanvas<'_> {
 }
 
 impl Sums {
-    /// Empty ones, for a picture of this size.
+    /// Empty sums for a picture of `size` columns and rows; `has_bright`: with room for samples that need wide
+    /// integers.
     pub fn new(size: [usize; 2], has_bright: bool) -> Self {
         Self { free: Sum::new(size, has_bright), sharing: Sum::new(size, has_bright) }
     }
 
-    /// Bytes in memory.
+    /// The memory that they take, in bytes.
     pub fn bytes(&self) -> usize {
         self.free.bytes() + self.sharing.bytes()
     }
@@ -270,7 +271,7 @@ impl Sums {
         Ok(())
     }
 
-    /// Takes away what is no longer drawn, and adds what is now.
+    /// Takes away the nodes that are no longer drawn, and adds those that are now.
     pub fn change(&mut self, pen: &Pen, changes: &Changes, pace: &Pace) {
         let changed: Vec<_> = changes.0.iter().filter(|block| !block.is_empty()).collect();
         let mut work = Work::empty(self.height());
@@ -410,7 +411,7 @@ impl Band<'_> {
     }
 }
 
-/// Whether a node shares what open samples leave.
+/// Whether a node, drawn with the standard focus, shares the light that open samples leave of a pixel.
 #[inline(always)]
 pub fn is_sharing(node: &SplatNode, placed: Placed) -> bool {
     placed.is_standard && !node.is_open()

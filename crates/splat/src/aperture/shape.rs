@@ -127,7 +127,7 @@ impl Shape {
         ((v + 1.0) / 2.0 * count).clamp(0.0, count)
     }
 
-    /// The runs of the row that v (times 16384) lies in.
+    /// The runs of the row of the aperture that contains the height `v`, in [−1, 1] times 16384.
     #[inline(always)]
     pub fn runs_at(&self, v: i32) -> &[ShapeRun] {
         let count = self.firsts.len() as u32 - 1;

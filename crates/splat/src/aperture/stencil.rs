@@ -70,7 +70,7 @@ impl Place {
         Self { index: half + index, phase_bits: PHASE_BITS - coarser - coarsest }
     }
 
-    /// One of the table's [`Stencils::PLACES`].
+    /// The place with this index below [`Stencils::PLACES`].
     pub fn from_table_index(index: usize) -> Self {
         let half = if index < Stencils::PLACES / 2 { 0 } else { Stencils::PLACES / 2 };
         Self::from_index(index - half, half)
@@ -84,12 +84,12 @@ impl Place {
         (((rounded & (PIXEL - 1)) >> bits) as usize, rounded >> POSITION_BITS)
     }
 
-    /// Half the step of heights, 1/4096 px.
+    /// Half the step between heights of the place's stencils, in 1/4096 px.
     pub fn half_step(self) -> u32 {
         1 << (POSITION_BITS - self.phase_bits - 1)
     }
 
-    /// A number for each stencil.
+    /// A number for the place's stencil of this phase; no other stencil has it.
     pub fn with_phase(self, phase: usize) -> u32 {
         ((self.index << PHASE_BITS) + phase) as u32
     }
@@ -151,7 +151,7 @@ impl Stencils {
         Self { shape, parts, table: (0..Self::PLACES).map(|_| OnceLock::new()).collect() }
     }
 
-    /// Cuts the stencils of all places now, unless cancelled.
+    /// Cuts the stencils of all places now; stops early if `progress` asks to.
     pub fn cut_all(&self, progress: &dyn Progress) {
         (0..Self::PLACES).into_par_iter().filter(|_| !progress.cancelled()).for_each(|index| {
             self.at_place(Place::from_table_index(index));
@@ -174,7 +174,7 @@ impl Stencils {
         (place, phase, row)
     }
 
-    /// The stencils of a place, cut on first use.
+    /// The stencils of a place, one for each phase; cut on first use.
     #[inline(always)]
     pub fn at_place(&self, place: Place) -> &[Stencil] {
         self.table[place.index].get_or_init(|| {

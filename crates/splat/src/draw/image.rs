@@ -17,7 +17,7 @@ pub struct Light {
 }
 
 impl Light {
-    /// Of finite numbers ≥ 0.
+    /// Packs red, green, blue and weight, which must be finite and ≥ 0, as mantissas with one exponent.
     #[inline(always)]
     pub fn from_floats(light: [f32; 4]) -> Self {
         let bits = light.map(f32::to_bits);
@@ -88,7 +88,7 @@ impl Image<'_> {
         self.center = [self.center[0].wrapping_add(x), self.center[1].wrapping_sub(y)];
     }
 
-    /// The light of a pixel of `height` (see [`Light::in_pixel`]).
+    /// The light of a pixel of `height` (see [`Light::in_pixel`]), in integers.
     #[inline(always)]
     pub fn value(&self, height: u32, shift: u32, row: i32) -> [u64; 4] {
         self.light.in_pixel(

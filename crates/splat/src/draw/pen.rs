@@ -161,7 +161,7 @@ impl<'a> Pen<'a> {
         }
     }
 
-    /// The image of a node that was placed.
+    /// The image of a node that was placed, with this light.
     #[inline(always)]
     pub fn image<'n>(&self, node: &'n SplatNode, light: [f32; 4], placed: Placed) -> Image<'n> {
         Image {
@@ -184,7 +184,7 @@ impl<'a> Pen<'a> {
         }
     }
 
-    /// About what it costs to draw a node, in nanoseconds.
+    /// The approximate cost of drawing a node that was placed, in ns.
     #[inline(always)]
     pub fn cost(&self, node: &SplatNode, placed: Placed) -> u64 {
         let radius = placed.radius.unsigned_abs() >> placed.level;
@@ -197,7 +197,7 @@ impl<'a> Pen<'a> {
         u64::from(if node.is_bright { 2 * once } else { once })
     }
 
-    /// Calls `visit` with the forms that a node that was placed is drawn in.
+    /// Calls `visit` with each form in which a node that was placed is drawn.
     #[inline(always)]
     pub fn forms(&self, node: &SplatNode, placed: Placed, mut visit: impl FnMut(Form)) {
         let radius = placed.radius.unsigned_abs();

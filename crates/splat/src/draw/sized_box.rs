@@ -35,7 +35,7 @@ impl UnsizedBox<'_> {
         a | b | c | d < 1 << 15
     }
 
-    /// Of its size; `less` is what its level blurs too much.
+    /// The box at its size, without `less`, the variance by which its level blurs too much.
     #[inline(always)]
     pub fn sized(&self, less: u32) -> SizedBox {
         let half = self.legs.map(|[a, b]| hypotenuse(a, b, less).max(SMALLEST_HALF));

@@ -42,7 +42,7 @@ impl Pace {
         Self { sizes: [FIRST; 2], in_flight: VecDeque::new(), last_done: Instant::now() }
     }
 
-    /// How many records to submit next.
+    /// How many records to submit next, for sums of this width (0 ordinary, 1 wide) and kind (0 free, 1 sharing).
     pub fn size(&self, width: usize, kind: usize) -> usize {
         self.sizes[width][kind]
     }

@@ -69,13 +69,13 @@ impl Resolve {
         Ok(resolve)
     }
 
-    /// Bytes on the card.
+    /// The memory that it takes on the card, in bytes.
     pub fn bytes(&self) -> usize {
         let buffers = self.lines.iter().chain([&self.shares, &self.knots, &self.gains, &self.picture]);
         buffers.map(|buffer| buffer.size() as usize).sum()
     }
 
-    /// Sets which rows are made, and how.
+    /// Sets which pixel rows are made next, and whether shares are found or light is evened out.
     pub fn begin(&self, gpu: &Gpu, nodes: &Nodes, rows: Range<u32>, is_sharing: bool, is_evened: bool) {
         let (dim, wide) = Quanta::from_nodes(nodes);
         let wide_largest = wide.largest_coverage as u64;
@@ -138,7 +138,7 @@ impl Resolve {
         gpu.bind(&gpu.passes().integrate_layout, (0..).zip(buffers))
     }
 
-    /// Makes shares or the picture of the lines.
+    /// Makes the shares or the picture from the lines of pixel rows, and submits that.
     pub fn finish(&self, gpu: &Gpu, rows: &Range<u32>) {
         let across = (self.size[0] as u32).div_ceil(THREADS);
         let mut work = Commands::new(gpu);
@@ -182,7 +182,7 @@ impl Resolve {
         Ok(floats.as_chunks().0.as_chunks().0.to_vec())
     }
 
-    /// Brings the gains to the card.
+    /// Uploads the gains.
     pub fn set_gains(&self, gpu: &Gpu, gains: &Gains, rest: [f32; 3]) {
         let all = gains.knot_gains().as_flattened().iter().chain([&rest]);
         let words = all.flat_map(|[r, g, b]| [*r, *g, *b, 1.0].map(f32::to_bits));

@@ -74,14 +74,14 @@ impl Scene {
         Ok(Self { chunks: chunks.collect::<Result<_, Lost>>()?, dim_bits: self.dim_bits })
     }
 
-    /// Bytes on the card: of what twins share, and of its own.
+    /// The memory on the card, in bytes: what twins share, and its own.
     pub fn bytes(&self) -> [usize; 2] {
         let shared = self.chunks.iter().map(|chunk| chunk.shared.nodes.size());
         let own = |chunk: &Chunk| chunk.cells.size() + chunk.focus.as_ref().map_or(0, Buffer::size);
         [shared.sum::<u64>(), self.chunks.iter().map(own).sum()].map(|bytes| bytes as usize)
     }
 
-    /// Uploads the cells and moments of partly occluded nodes.
+    /// Uploads the cells and aperture moments of partly occluded nodes.
     pub fn upload_moments(&self, gpu: &Gpu, nodes: &Nodes, moments: &[ApertureMoments]) {
         for chunk in &self.chunks {
             let partial = &chunk.shared.partial;

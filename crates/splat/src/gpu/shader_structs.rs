@@ -39,7 +39,7 @@ macro_rules! shader_structs {
             pub struct $name { $($(#[$of_field])* pub $field: $type,)* }
         )*
 
-        /// The layouts of all structs.
+        /// The layouts in memory of all structs that shaders read.
         #[cfg(test)]
         pub fn layouts() -> Vec<StructLayout> {
             vec![$({

@@ -110,7 +110,7 @@ impl GpuSums {
         })
     }
 
-    /// Bytes on the card, the hierarchy's first, then those of the sums.
+    /// The memory on the card, in bytes: of the nodes, then of the sums.
     pub fn bytes(&self) -> [usize; 2] {
         let sums = self.accumulators.iter().flat_map(|accumulators| &accumulators.sums);
         let stencils = self.shapes.iter().map(|shapes| &shapes.stencils);
@@ -337,7 +337,7 @@ impl GpuSums {
         self.resolve.shared_sums(&self.gpu)
     }
 
-    /// Makes pixel rows of a picture, which were integrated last.
+    /// Makes pixel rows of a picture from what was integrated last, and submits that.
     pub fn make_picture(&self, gains: &Gains, rest: [f32; 3], rows: &Range<u32>) {
         self.resolve.set_gains(&self.gpu, gains, rest);
         self.resolve.finish(&self.gpu, rows);

@@ -67,7 +67,7 @@ pub struct Parts<'a> {
 }
 
 impl Parts<'_> {
-    /// Finds the factors of the pixels of a standard picture.
+    /// Finds the factors, in `shares`, by which the pixels of a standard picture are shared.
     pub fn find_shares(self, shares: &mut [Share]) {
         with_widest_simd(
             #[inline(always)]

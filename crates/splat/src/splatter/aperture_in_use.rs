@@ -30,18 +30,18 @@ impl ApertureInUse {
         new
     }
 
-    /// Goes on to other nodes.
+    /// Computes the aperture moments anew for other nodes.
     pub fn set_nodes(&mut self, nodes: &Nodes) {
         // A pinhole sees what its chief ray sees.
         self.moments = aperture_moments(nodes, &self.stencils.shape, self.stop.max(1e-3));
     }
 
-    /// What nodes are drawn with.
+    /// The pen that draws `nodes` through this aperture.
     pub fn pen<'a>(&'a self, nodes: &'a Nodes, lens: &LensInUse) -> Pen<'a> {
         Pen::new(nodes, &self.stencils, &self.moments, self.stop, lens.detail)
     }
 
-    /// What is summed of `camera`'s picture.
+    /// What is to be summed for `camera`'s picture.
     pub fn scene<'a>(
         &'a self,
         nodes: &'a Nodes,

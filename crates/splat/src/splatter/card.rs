@@ -25,7 +25,7 @@ pub struct Card {
 }
 
 impl Card {
-    /// Uses another card, or none.
+    /// Uses another card, or the processor if `None`; sums must be made anew.
     pub fn replace(&mut self, gpu: Option<Gpu>) {
         *self = Self { gpu, keeps_picture: self.keeps_picture, ..Self::default() };
     }
@@ -37,7 +37,7 @@ impl Card {
         Self { gpu: self.gpu.clone(), sums, keeps_picture: self.keeps_picture, ..Self::default() }
     }
 
-    /// Uploads the nodes if that has not been done, for a picture of `size`.
+    /// Uploads the nodes, if that has not been done, for a picture of `size` columns and rows.
     pub fn upload_nodes(&mut self, nodes: &Nodes, size: [usize; 2]) {
         let (Some(gpu), None) = (&self.gpu, &self.sums) else { return };
         match GpuSums::new(gpu, nodes, size) {
@@ -77,12 +77,12 @@ impl Card {
         self.is_lost
     }
 
-    /// The card itself.
+    /// The card, if one is used.
     pub fn gpu(&self) -> Option<&Gpu> {
         self.gpu.as_ref()
     }
 
-    /// Bytes of the hierarchy and of the sums.
+    /// The memory on the card, in bytes: of the nodes, then of the sums.
     pub fn bytes(&self) -> [usize; 2] {
         self.sums.as_ref().map_or([0; 2], GpuSums::bytes)
     }
@@ -92,7 +92,7 @@ impl Card {
         self.sums.as_ref()?.seconds()
     }
 
-    /// The picture on it, of this width and height.
+    /// The picture on the card, of `size` columns and rows; `None` if it is not there.
     pub fn picture(&self, size: [u32; 2]) -> Option<PictureOnCard> {
         let (gpu, sums) = (self.gpu.as_ref()?, self.sums.as_ref()?);
         Some(PictureOnCard::from_buffer(gpu, sums.picture(), size))
@@ -188,7 +188,7 @@ impl Card {
         })
     }
 
-    /// The sums on it.
+    /// The sums on the card, if they are there.
     #[cfg(test)]
     pub fn sums(&self) -> Option<&GpuSums> {
         self.sums.as_ref()

@@ -17,7 +17,7 @@ impl<'g> Commands<'g> {
         Self { gpu, encoder }
     }
 
-    /// Runs a pass in this many workgroups.
+    /// Records a pass with these buffers, in `x` × `y` workgroups.
     pub fn dispatch(&mut self, pass: &Pass, bound: &BindGroup, [x, y]: [u32; 2]) {
         let mut compute = self.encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
         compute.set_pipeline(pass.pipeline(self.gpu.device()));
@@ -25,7 +25,7 @@ impl<'g> Commands<'g> {
         compute.dispatch_workgroups(x, y, 1);
     }
 
-    /// Sets a buffer to 0.
+    /// Records that a buffer is set to 0.
     pub fn clear(&mut self, buffer: &Buffer) {
         self.encoder.clear_buffer(buffer, 0, None);
     }

@@ -28,12 +28,12 @@ impl Stopwatch {
         Ok(Some(Self { moments, words: gpu.buffer("moments", 4, usage)? }))
     }
 
-    /// Begins.
+    /// Takes the first moment.
     pub fn begin(&self, gpu: &Gpu) {
         self.write_timestamp(gpu, Some(0), None);
     }
 
-    /// Ends.
+    /// Takes the second moment.
     pub fn end(&self, gpu: &Gpu) {
         self.write_timestamp(gpu, None, Some(1));
     }
