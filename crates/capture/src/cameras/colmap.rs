@@ -21,7 +21,7 @@ pub(crate) struct Model {
 }
 
 impl Model {
-    /// The model in a folder; binary files take precedence, as in COLMAP.
+    /// The model in the folder `path`, if there is one; binary files take precedence, as in COLMAP.
     pub fn find(folder: &Folder, path: &Path) -> Option<Self> {
         [("bin", true), ("txt", false)].into_iter().find_map(|(extension, is_binary)| {
             let [cameras, images] =

@@ -38,7 +38,7 @@ const MODELS: [&str; 9] = [
 ];
 
 impl Cameras {
-    /// Finds all cameras in a folder, likelier ones first.
+    /// Finds the cameras of all programs in a folder, likelier ones first.
     pub fn find(folder: &Folder) -> Vec<Self> {
         let root = folder.shown.as_path();
         let mut cameras: Vec<Self> = models(folder).into_iter().map(Self::Colmap).collect();

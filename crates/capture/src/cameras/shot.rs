@@ -41,7 +41,7 @@ pub(crate) enum Focal {
 }
 
 impl ShotLens {
-    /// The size of the pictures that it was calibrated with, if it has one.
+    /// Width and height, px, of the pictures that it was calibrated with, if they are known.
     pub fn size_px(&self) -> Option<[u32; 2]> {
         match self {
             Self::Calibrated(lens) => Some(lens.size_px()),

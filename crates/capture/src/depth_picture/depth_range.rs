@@ -24,7 +24,7 @@ pub(super) struct DepthRange {
 }
 
 impl DepthRange {
-    /// The distance of a level, m.
+    /// The distance, m, of a level in [0, 1].
     pub fn distance(&self, level: f64) -> f64 {
         let Self { is_inverse, near, far } = *self;
         if is_inverse { ((1.0 - level) / near + level / far).recip() } else { near + level * (far - near) }
@@ -80,7 +80,7 @@ pub(super) enum Unit {
 }
 
 impl Unit {
-    /// By its name; metres if there is none.
+    /// The unit with this name; metres if there is no name, or another one.
     pub fn named(name: Option<&str>) -> Self {
         match name.unwrap_or_default().trim().to_lowercase().as_str() {
             "mm" | "millimeters" | "millimetres" => Self::Millimetres,

@@ -23,6 +23,7 @@ impl Binary {
         let unreadable = |source| CaptureError::unreadable(file, source);
         let input = File::open(file).map_err(unreadable)?;
         let size = input.metadata().map_err(unreadable)?.len();
+        /// The next N bytes; `what` names them in errors.
         Ok(Self { file: file.into(), input: BufReader::new(input), at: 0, size })
     }
 
@@ -128,7 +129,7 @@ impl Binary {
         skipped.map_err(|source| CaptureError::unreadable(&self.file, source))
     }
 
-    /// An error at the current byte.
+    /// An error that says what is wrong at the current byte.
     pub fn malformed(&self, what: impl ToString) -> CaptureError {
         self.malformed_at(self.at, what)
     }

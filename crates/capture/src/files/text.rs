@@ -27,7 +27,7 @@ impl Lines {
         Ok(Self { file: file.into(), input: BufReader::new(input), line: Vec::new(), number: 0 })
     }
 
-    /// The lines of the rest of an opened file, after `number` lines.
+    /// The remaining lines of an opened file, after `number` lines.
     pub fn rest_of(file: &Path, input: BufReader<File>, number: usize) -> Self {
         Self { file: file.into(), input, line: Vec::new(), number }
     }
@@ -68,7 +68,7 @@ impl Lines {
         Ok(read > 0)
     }
 
-    /// An error at the current line.
+    /// An error that says what is wrong in the current line.
     pub fn malformed(&self, what: impl ToString) -> CaptureError {
         CaptureError::malformed(&self.file, format!("line {}", self.number), what)
     }

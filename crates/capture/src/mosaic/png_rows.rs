@@ -63,7 +63,7 @@ impl PngRows {
         }
     }
 
-    /// Bytes per pixel.
+    /// The number of bytes of a pixel.
     pub fn pixel_bytes(&self) -> usize {
         self.channels * if self.is_deep { 2 } else { 1 }
     }

@@ -27,7 +27,7 @@ impl<'a, 'b> Rigs<'a, 'b> {
         Self { cameras: cameras.filter_map(|camera| Some((camera.attribute("id")?, camera))).collect() }
     }
 
-    /// Whether the pose of a camera follows from another one's.
+    /// Whether the pose of a camera follows from another one's, its master.
     pub fn is_slave(camera: Node<'_, '_>) -> bool {
         let master = camera.attribute("master_id").filter(|master| Some(*master) != camera.attribute("id"));
         child(camera, "transform").is_none() && master.is_some()

@@ -24,7 +24,7 @@ enum Input {
 }
 
 impl Body {
-    /// The body of a file, after its header.
+    /// The body of a file, which `rest` is after the header.
     pub fn new(file: &Path, format: Format, rest: Rest) -> Self {
         let Rest { input, lines, at, size } = rest;
         let input = match format {
@@ -36,7 +36,7 @@ impl Body {
         Self { file: file.into(), input, format, at, size }
     }
 
-    /// An error at the current place.
+    /// An error that says what is wrong at the current line or byte.
     pub fn malformed(&self, what: impl ToString) -> CaptureError {
         let place = match &self.input {
             Input::Binary(_) => format!("byte {}", self.at),
