@@ -26,7 +26,7 @@ pub struct WarpedMap {
     pub confidence: Vec<f32>,
 }
 
-/// Warps a map to the view at `offset` from its own.
+/// Warps a disparity map with rows of `width`, and its confidence, to the view at `offset` from its own.
 pub fn warp(disparity: &[f32], confidence: &[f32], width: usize, offset: [f32; 2]) -> WarpedMap {
     let height = disparity.len() / width;
     let mut warped =
