@@ -160,7 +160,7 @@ impl Observations {
         Ok(Self { side, blocks, picture: means, steepest, views: views.len(), all })
     }
 
-    /// The observations of a block, in the order of the views.
+    /// The observations of the block with this number, in the order of the views.
     pub fn of_block(&self, block: usize) -> Vec<Observation> {
         self.all[block * self.views..(block + 1) * self.views]
             .iter()

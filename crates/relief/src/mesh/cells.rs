@@ -21,7 +21,7 @@ impl Grid {
         y * self.width + x
     }
 
-    /// The cells left, right, above and below.
+    /// The numbers of the cells left, right, above and below, as far as they exist.
     pub fn around(self, cell: usize) -> impl Iterator<Item = (Side, usize)> {
         let (x, y) = (cell % self.width, cell / self.width);
         let sides = [
@@ -62,7 +62,7 @@ pub(crate) struct Links {
 }
 
 impl Links {
-    /// No cell is connected to another.
+    /// Links by which no cell is connected to another.
     pub fn none(grid: Grid) -> Self {
         Self { grid, right: vec![false; grid.count()], below: vec![false; grid.count()] }
     }
