@@ -126,7 +126,7 @@ pub(crate) struct Fields<'a> {
 }
 
 impl<'a> Field<'a> {
-    /// The file's whole value.
+    /// The whole value of a file.
     pub fn root(file: &'a Path, value: &'a Json) -> Self {
         Self { file, value, parent: None, name: "" }
     }
@@ -139,7 +139,7 @@ impl<'a> Field<'a> {
         }
     }
 
-    /// An error about the field.
+    /// An error about the field: what is wrong with it, and the cure.
     pub fn error(&self, problem: impl Into<String>, cure: impl Into<String>) -> ProjectError {
         let path = self.path();
         let field = if path.is_empty() { "the whole file".to_string() } else { path };
@@ -231,7 +231,7 @@ impl<'a> Field<'a> {
 }
 
 impl<'a> Fields<'a> {
-    /// The field of this name; of duplicates, the last.
+    /// The field with this name; of duplicates, the last. `None` if there is none.
     pub fn get(&'a self, name: &'a str) -> Option<Field<'a>> {
         let (name, value) = self.entries.iter().rev().find(|(key, _)| key == name)?;
         Some(Field { file: self.file, value, parent: Some(self), name })
@@ -257,7 +257,7 @@ impl<'a> Fields<'a> {
         }
     }
 
-    /// An error about the object itself.
+    /// An error about the object itself: what is wrong with it, and the cure.
     pub fn error(&self, problem: impl Into<String>, cure: impl Into<String>) -> ProjectError {
         let field = if self.path.is_empty() { "the whole file".to_string() } else { self.path.clone() };
         ProjectError::Field { file: self.file.to_owned(), field, problem: problem.into(), cure: cure.into() }

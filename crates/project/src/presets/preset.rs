@@ -71,7 +71,7 @@ pub enum PresetContent {
 }
 
 impl Preset {
-    /// A preset of this name.
+    /// A preset with this name and content.
     ///
     /// # Errors
     /// A sentence for the user, if the name is empty or too long.
@@ -123,7 +123,7 @@ impl Preset {
         }
     }
 
-    /// Whether the brush has this preset's settings.
+    /// Whether `brush` has this preset's settings; false for a lens preset.
     pub fn matches_brush(&self, brush: &Brush) -> bool {
         self.apply_to_brush(brush).is_some_and(|own| own == *brush)
     }

@@ -48,7 +48,7 @@ pub(crate) struct CaptureEntry {
 }
 
 impl CaptureEntry {
-    /// For a project file at `project`.
+    /// The entry of these choices in a project file at `project`: its paths become relative.
     pub fn new(choices: &CaptureChoices, project: &Path) -> Self {
         let path = |path: &Option<PathBuf>| path.as_ref().map(|path| ScenePath::new(path, project));
         Self {

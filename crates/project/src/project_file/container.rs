@@ -50,7 +50,7 @@ impl<'a> Container<'a> {
         Ok(Self { file, archive })
     }
 
-    /// An error about an entry.
+    /// An error about an entry of the file: what is wrong with it.
     pub fn error(&self, entry: &str, problem: impl Into<String>) -> ProjectError {
         let (file, entry) = (self.file.to_owned(), entry.to_owned());
         ProjectError::Entry { file, entry, problem: problem.into(), cure: DAMAGED_CURE.to_string() }
