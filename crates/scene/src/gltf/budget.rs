@@ -42,12 +42,12 @@ impl Budget {
         })
     }
 
-    /// Remaining bytes.
+    /// The memory that is left, in bytes.
     pub fn memory_left(&self) -> u64 {
         self.memory.get()
     }
 
-    /// Returns `bytes`.
+    /// Returns `bytes` of memory that were taken.
     pub fn release_memory(&self, bytes: u64) {
         self.memory.set(self.memory.get() + bytes);
     }

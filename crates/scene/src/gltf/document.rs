@@ -185,7 +185,7 @@ impl<'a> Document<'a> {
         Ok(self.root.clone())
     }
 
-    /// Number of entries of a collection such as `meshes`.
+    /// The number of entries of a collection such as `meshes`.
     pub fn len(&self, collection: &str) -> usize {
         repair::len(&self.root, collection)
     }
@@ -201,7 +201,7 @@ impl<'a> Document<'a> {
         }
     }
 
-    /// Records a harmless defect.
+    /// Records a warning about a harmless defect.
     pub fn warn(&self, warning: impl Into<String>) {
         let (mut warnings, warning) = (self.warnings.borrow_mut(), warning.into());
         if warnings.messages.len() >= MAX_WARNINGS {
@@ -211,7 +211,7 @@ impl<'a> Document<'a> {
         }
     }
 
-    /// All warnings so far.
+    /// All warnings so far, in the order in which they were recorded.
     pub fn warnings(&self) -> Vec<String> {
         let warnings = self.warnings.borrow();
         let mut all = warnings.messages.clone();

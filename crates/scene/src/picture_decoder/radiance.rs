@@ -38,7 +38,10 @@ impl<R: BufRead + Seek> RadianceDecoder<R> {
 }
 
 impl<R: BufRead> RadianceDecoder<R> {
-    /// Reads the header.
+    /// Reads the header; pixels are decoded later.
+    ///
+    /// # Errors
+    /// The input cannot be read, or is no Radiance picture.
     pub fn open(mut input: R) -> ImageResult<Self> {
         let header = Header::read(&mut input)?.map_err(damaged)?;
         Ok(Self { header, input })

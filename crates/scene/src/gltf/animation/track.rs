@@ -47,7 +47,7 @@ impl<'a> Track<'a> {
         time
     }
 
-    /// Time of the last key, s.
+    /// The time of the last key, s.
     pub fn end_seconds(&self) -> f64 {
         self.time(self.times.count - 1)
     }

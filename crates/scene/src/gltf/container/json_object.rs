@@ -24,12 +24,12 @@ impl<'a> Object<'a> {
         }
     }
 
-    /// An error at a property.
+    /// An error that says what is wrong with the property `key`.
     pub fn malformed(&self, key: &str, what: impl Into<String>) -> Fault {
         Fault::Malformed { place: format!("{}/{key}", self.place), what: what.into() }
     }
 
-    /// The raw property; null counts as absent.
+    /// The property `key` as it is; `None` if absent or null.
     pub fn get(&self, key: &str) -> Option<&'a Value> {
         self.map.get(key).filter(|value| !value.is_null())
     }

@@ -115,7 +115,7 @@ impl Primitive {
         Ok(Some(primitive))
     }
 
-    /// Returns its memory to the budget.
+    /// Returns the memory that it takes to the budget.
     pub fn release(self, document: &Document<'_>) {
         document.budget.release_memory(self.memory);
     }

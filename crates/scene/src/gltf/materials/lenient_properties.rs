@@ -31,13 +31,13 @@ impl<'r, 'a> LenientProperties<'r, 'a> {
         })
     }
 
-    /// A part or an extension, if it exists.
+    /// The properties of the object or extension `name`, if it exists.
     pub fn section(&mut self, name: &str) -> Option<LenientProperties<'_, 'a>> {
         let object = self.or_warn(section(&self.object, name))?;
         Some(LenientProperties { reader: self.reader, object, sets: self.sets })
     }
 
-    /// A number, clamped to a range.
+    /// The property `key` as a number, clamped to [`low`, `high`]; `absent` if it is missing or faulty.
     pub fn number(&self, key: &str, absent: f32, [low, high]: [f32; 2]) -> f32 {
         self.or_warn(self.object.number(key)).map_or(absent, |number| number as f32).clamp(low, high)
     }
@@ -49,7 +49,8 @@ impl<'r, 'a> LenientProperties<'r, 'a> {
         if distance > 0.0 { distance } else { f64::INFINITY }
     }
 
-    /// A linear colour, each channel clamped to [0, `high`].
+    /// The property `key` as a linear colour, each channel clamped to [0, `high`]; `absent` if it is missing or
+    /// faulty.
     pub fn color(&self, key: &str, absent: Vec3, high: f32) -> Vec3 {
         let color = self.or_warn(self.object.numbers::<3>(key));
         color
@@ -57,7 +58,7 @@ impl<'r, 'a> LenientProperties<'r, 'a> {
             .clamp(Vec3::ZERO, Vec3::splat(high))
     }
 
-    /// A texture.
+    /// The texture `key`, if it exists and can be read; `is_color`: whether it is stored as sRGB.
     pub fn texture(&mut self, key: &str, is_color: bool) -> Option<TextureRef> {
         let info = self.or_warn(TextureInfo::read(&self.object, key))?;
         let place = format!("{}/{key}", self.object.place);
@@ -78,7 +79,7 @@ impl<'r, 'a> LenientProperties<'r, 'a> {
         Tint { factor, texture: if factor == Vec3::ZERO { None } else { self.texture(texture, true) } }
     }
 
-    /// A normal map.
+    /// The normal map `key`, if it exists and can be read.
     pub fn normal_map(&mut self, key: &str) -> Option<NormalMap> {
         let scale = self.or_warn(TextureInfo::read(&self.object, key))?.scale;
         let texture = self.texture(key, false)?;

@@ -30,12 +30,12 @@ impl<'a> MaterialReader<'a> {
         Self { textures: TextureReader::new(document) }
     }
 
-    /// The images that the materials need.
+    /// The images that the materials read so far need, by their index in the scene.
     pub fn into_images(self) -> Vec<Image> {
         self.textures.images
     }
 
-    /// The name of material `index`.
+    /// The name of material `index`, or a substitute if it has none.
     pub fn material_name(&self, index: usize) -> String {
         let material = self.textures.document.typed().materials().nth(index);
         material

@@ -34,7 +34,7 @@ impl Variants {
         Ok(Self { names, selected: chosen })
     }
 
-    /// The name of the chosen one.
+    /// The name of the chosen variant; `None` for the default materials.
     pub fn selected_name(&self) -> Option<&str> {
         self.names.get(self.selected?).map(String::as_str)
     }

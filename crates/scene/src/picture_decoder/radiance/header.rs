@@ -78,7 +78,7 @@ impl Header {
         Ok(Self { scanlines, length, by_columns, falls })
     }
 
-    /// Columns and rows of the picture.
+    /// Columns and rows of the picture, px.
     pub fn size(&self) -> [u32; 2] {
         if self.by_columns { [self.scanlines, self.length] } else { [self.length, self.scanlines] }
     }
