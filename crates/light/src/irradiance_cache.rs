@@ -50,7 +50,7 @@ pub(crate) struct IrradianceInputs<'a> {
 }
 
 impl IrradianceCache {
-    /// The irradiance in `world`, if it is solved.
+    /// The irradiance in `world`, of any quality, if it is solved; nothing is started.
     pub fn available(&self, world: &World) -> Option<Arc<Irradiance>> {
         let worlds = self.lock();
         worlds.iter().find(|entry| entry.world == *world)?.available(LightQuality::Rough).cloned()
