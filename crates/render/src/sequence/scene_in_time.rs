@@ -34,7 +34,7 @@ pub(crate) struct SceneInTime {
 }
 
 impl SceneInTime {
-    /// A scene at rest.
+    /// A scene that is not moved from where its file has it.
     pub fn at_rest(lit: Arc<LitScene>) -> Self {
         let scene = lit.scene().clone();
         let still = Self::new(scene, None, &lit);
