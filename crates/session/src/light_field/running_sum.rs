@@ -117,7 +117,7 @@ impl LightField {
         })
     }
 
-    /// Sets the number of passes by which its light was refined.
+    /// The light field, with the number of passes by which its light was refined.
     pub fn refined(self, light_passes: u32) -> Self {
         Self { light_passes, ..self }
     }
@@ -127,7 +127,7 @@ impl LightField {
         self.light_passes
     }
 
-    /// Wraps a light field that was baked before.
+    /// The light field `salf`, baked before for `stage`; summed on `gpu`, or on the processor if `None`.
     pub fn from_salf(stage: &Stage, salf: Arc<Salf>, tolerance: Tolerance, gpu: Option<Gpu>) -> Self {
         let index = Arc::new(SampleIndex::new(salf.clone(), stage.atlas.clone()));
         let modelled = Modelled::with_texels(&salf, stage.tracer(), Some(&stage.texels.texels));
@@ -171,7 +171,7 @@ impl LightField {
         Arc::ptr_eq(self.splatter.salf(), other.splatter.salf())
     }
 
-    /// Bytes of its sums; twins share all else.
+    /// The memory of its sums, in bytes; twins share all else.
     pub fn summing_bytes(&self) -> usize {
         let [_, sums] = self.splatter.bytes();
         sums
@@ -185,7 +185,7 @@ impl LightField {
         }
     }
 
-    /// Whether it can show what `camera` sees.
+    /// Whether the light field can show what `camera` sees.
     pub fn can_show(&self, camera: &Camera) -> bool {
         is_compatible(&self.splatter.salf().camera, camera)
     }
@@ -214,7 +214,7 @@ impl LightField {
         }
     }
 
-    /// Notes changes of the focus map.
+    /// Notes changes of the focus map, for the next update.
     pub fn note(&mut self, changes: &Changes) {
         self.pending_changes.join(changes);
     }

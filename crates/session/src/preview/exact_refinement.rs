@@ -48,7 +48,7 @@ impl ExactRefinement {
         self.thread.is_some()
     }
 
-    /// Notes changes of the focus map.
+    /// Notes changes of the focus map that were made meanwhile.
     pub fn note(&mut self, changes: &Changes) {
         match &mut self.field {
             Some(field) => field.note(changes),

@@ -45,7 +45,7 @@ pub(super) struct RebuiltStage {
 }
 
 impl StageChange {
-    /// What the job is called; those of one name are in each other's place.
+    /// The name of the job that makes the change; a later job of the same name replaces it.
     pub fn job_label(&self) -> &'static str {
         match self {
             Self::BackFaces(_) => "looking at other faces",
@@ -55,7 +55,7 @@ impl StageChange {
         }
     }
 
-    /// Whether the stage is not that way already.
+    /// Whether the stage is not as the change would make it.
     pub fn differs_from(&self, stage: &Stage) -> bool {
         let scene = &stage.scene;
         match self {
