@@ -119,7 +119,7 @@ fn ramp(size: [u32; 2]) -> (Arc<Salf>, i32) {
     (salf, edge)
 }
 
-/// All five fields.
+/// The five synthetic light fields, of `size` columns and rows.
 pub fn fields(size: [u32; 2]) -> impl Iterator<Item = LightFieldCase> {
     let (width, height) = (size[0] as usize, size[1] as usize);
     let planes =
