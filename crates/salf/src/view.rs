@@ -8,7 +8,9 @@ use trace::{Beam, Ray, Square};
 
 /// A camera with its axes in the world.
 pub struct View<'a> {
+    /// The camera.
     pub camera: &'a Camera,
+    /// Its optics: how it focuses.
     pub optics: Optics,
     /// Draws places of the aperture that light passes.
     pub open_aperture: ApertureSampler,

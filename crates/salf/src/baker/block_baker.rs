@@ -35,8 +35,10 @@ struct Candidate {
 
 /// The result of tracing a cell's nearest surfaces.
 pub struct CellSurvey {
+    /// The cell that was surveyed.
     pub cell: Cell,
     density: Density,
+    /// The depths that its chief rays found around it.
     pub depths: Depths,
     has_gap: bool,
     has_pane: bool,
@@ -56,10 +58,15 @@ fn pack_samples(corner: IVec2, baked: Vec<BakedSample>, packs: bool) -> Samples 
 
 /// What every cell is sampled with.
 pub struct BlockBaker<'a> {
+    /// Traces the rays.
     pub tracer: &'a Tracer,
+    /// The light that surfaces send.
     pub radiance: &'a dyn Radiance,
+    /// The camera's view.
     pub view: View<'a>,
+    /// Which triangles have samples of their own.
     pub placement: Placement,
+    /// Where on the aperture shadow rays end.
     pub patterns: Patterns,
     /// Where the pinhole picture is sampled.
     pub domain: Domain,

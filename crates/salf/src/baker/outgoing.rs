@@ -32,8 +32,11 @@ const STEPS: f32 = 128.0;
 /// Light toward the aperture, and what of the weight of its patch it has.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LightComponent {
+    /// Its radiance, linear RGB.
     pub radiance: Vec3,
+    /// Its share of the patch's weight, in [0, 1].
     pub share: f32,
+    /// Whether it is carried light; otherwise own.
     pub is_carried: bool,
     /// The noisy part of the radiance ([`OutgoingRadiance::noisy`]).
     pub noisy: Vec3,
@@ -134,7 +137,9 @@ pub fn cells_of_lobe(view: &View, inverse_depth: f64, width: f64) -> f64 {
 /// A query for the light of a cell's points: the light model, the view, and what has been computed already.
 #[derive(Clone, Copy)]
 pub struct RadianceQuery<'a> {
+    /// The light that surfaces send.
     pub radiance: &'a dyn Radiance,
+    /// The camera's view.
     pub view: &'a View<'a>,
     /// Of the cell.
     pub seed: [u32; 2],

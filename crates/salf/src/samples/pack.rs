@@ -15,6 +15,7 @@ use std::collections::HashMap;
 /// A sample and its origin.
 #[derive(Clone, Debug)]
 pub struct BakedSample {
+    /// The sample.
     pub sample: Sample,
     /// The cell that it is a part of, and which sub-cells (a bit each); none for a patch of surface.
     pub part_of: Option<(Cell, u64)>,

@@ -51,9 +51,11 @@ pub struct Kind {
     pub pixel: IVec2,
     /// The cell's side is 2 to this, px.
     pub level: u8,
+    /// Which part of the cell the sample is.
     pub shape: Shape,
     /// Cells per side of its visibility; `None` if it sees the whole aperture.
     pub cells: Option<u8>,
+    /// Whether it sends carried light; otherwise own.
     pub is_carried: bool,
 }
 
