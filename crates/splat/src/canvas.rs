@@ -187,6 +187,7 @@ impl<W: Word> PartialEq for Level<W> {
 /// A pyramid of accumulators.
 #[derive(Clone, PartialEq)]
 pub struct Accumulator<W: Word> {
+    /// The levels, each of half the columns and rows of the one before.
     pub levels: Vec<Level<W>>,
 }
 
@@ -280,6 +281,7 @@ impl<W: Word> Accumulator<W> {
 
 /// Some rows of each level, to draw on.
 pub struct Canvas<'a, W> {
+    /// The rows of each level, finest first.
     pub levels: Vec<Rows<'a, W>>,
 }
 

@@ -14,8 +14,11 @@ pub const AHEAD: usize = 24;
 
 /// The nodes to sum, with lens and paint.
 pub struct Scene<'a> {
+    /// What nodes are drawn with.
     pub pen: Pen<'a>,
+    /// The lens, which decides where nodes are drawn and how large.
     pub lens: &'a LensInUse,
+    /// The focus of the nodes.
     pub paint: &'a Paint,
     /// Pixel columns and rows of the picture.
     pub size: [u32; 2],
@@ -120,7 +123,9 @@ pub struct Spans(Vec<Range<u32>>);
 /// A node that is drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DrawnNode {
+    /// The node's index.
     pub index: u32,
+    /// Where it is drawn, and how large.
     pub placed: Placed,
     /// The first pixel row that its light may reach, and the one behind the last.
     rows: [u32; 2],
@@ -202,7 +207,9 @@ impl Changes {
 /// What is no longer drawn of a block, and what is now: each in the order of the nodes.
 #[derive(Clone, Debug, Default)]
 pub struct BlockChanges {
+    /// The nodes that are no longer drawn, as they were drawn.
     pub removed: Vec<DrawnNode>,
+    /// The nodes that are drawn now.
     pub added: Vec<DrawnNode>,
     /// The pixel rows that their light may reach.
     pub rows: Range<u32>,

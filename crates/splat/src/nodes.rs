@@ -166,17 +166,22 @@ pub struct Nodes {
     pub blocks: Vec<Range<u32>>,
     /// The nodes without a parent.
     pub roots: Vec<Range<u32>>,
+    /// All nodes, block by block, each before those that it replaces.
     pub nodes: Vec<SplatNode>,
     cells: Vec<Cells>,
     /// The sample of each node that is one.
     pub sample_of_node: Vec<u32>,
+    /// The node of each sample.
     pub node_of_sample: Vec<u32>,
+    /// The block of each node.
     pub block_of_node: Vec<u32>,
+    /// The integers that light is summed in.
     pub scale: Scale,
     /// The picture's middle, 1/4096 px.
     pub middle: [i32; 2],
     /// The largest radiance, at least 1.
     pub brightest: f64,
+    /// Whether any sample needs wide integers.
     pub has_bright: bool,
 }
 

@@ -11,6 +11,7 @@ use scene::SurfaceField;
 /// Focus of all nodes, block by block; a block on which nothing is painted has none.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Paint {
+    /// By block: the focus of its nodes.
     pub blocks: Vec<Option<Box<[NodeFocus]>>>,
 }
 

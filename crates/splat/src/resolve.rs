@@ -18,7 +18,9 @@ pub struct Overflow;
 /// A rectangle of pixels of a level, in its rows and columns; −1 is the border.
 #[derive(Clone, Debug)]
 pub struct Window {
+    /// The rows of the level.
     pub rows: Range<i32>,
+    /// The columns of the level.
     pub columns: Range<i32>,
 }
 

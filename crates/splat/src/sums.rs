@@ -33,7 +33,9 @@ const BLOCKS_PER_REPORT: usize = 64;
 /// One kind of samples: ordinary ones, and bright ones if there are any.
 #[derive(Clone, PartialEq)]
 pub struct Sum {
+    /// The sums of ordinary samples.
     pub dim: Accumulator<i32>,
+    /// The sums of bright samples, in wide integers.
     pub bright: Option<Accumulator<i64>>,
 }
 

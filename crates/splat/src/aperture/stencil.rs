@@ -47,6 +47,7 @@ pub struct Stencil {
 
 /// All stencils of an aperture, made when they are first used.
 pub struct Stencils {
+    /// The shape that they are cut from.
     pub shape: Shape,
     /// Its parts, few and many.
     pub parts: [Vec<Part>; 2],
@@ -57,6 +58,7 @@ pub struct Stencils {
 /// The stencils of one signed radius.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Place {
+    /// The place's index in the table, below [`Stencils::PLACES`].
     pub index: usize,
     /// They are cut at 2 to this heights of the centre within a pixel.
     phase_bits: u32,

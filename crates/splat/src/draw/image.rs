@@ -12,7 +12,9 @@ pub const HASH_DITHER: u32 = 0x2C1B_3C6D;
 /// Red, green, blue and coverage: `mantissa`·2^`exponent` quanta. The largest mantissa has 31 bits.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Light {
+    /// Red, green, blue and coverage, to be multiplied by 2 to the power of `exponent`.
     pub mantissa: [u32; 4],
+    /// The exponent that all four share.
     pub exponent: i32,
 }
 
@@ -61,10 +63,15 @@ impl Light {
 
 /// A node's image on its level: centre and signed radius, 1/4096 px of the level.
 pub struct Image<'a> {
+    /// The node.
     pub node: &'a SplatNode,
+    /// The level that it is drawn on; a pixel of it has a side of 2 to this, px.
     pub level: u8,
+    /// The image's centre, 1/4096 px of the level.
     pub center: [i32; 2],
+    /// The image's signed radius, 1/4096 px of the level: below 0 for near defocus.
     pub radius: i32,
+    /// The node's light.
     pub light: Light,
     /// How much of the light is drawn, times 2²⁴.
     pub share: u32,

@@ -8,6 +8,7 @@ use crate::simd_dispatch::with_widest_simd;
 
 /// Some rows of a level, and what waits to be drawn on them.
 pub struct Paper<'a, W> {
+    /// The rows that are drawn on.
     pub rows: Rows<'a, W>,
     small: SmallBoxes,
     /// See [`too_blurred`].

@@ -22,8 +22,11 @@ fn halved(x: i32, times: u8) -> i32 {
 
 /// What nodes are drawn with.
 pub struct Pen<'a> {
+    /// The nodes to draw.
     pub nodes: &'a Nodes,
+    /// The images of the aperture, by size.
     pub stencils: &'a Stencils,
+    /// The aperture moments of partly occluded nodes.
     pub moments: &'a [ApertureMoments],
     /// The lens's aperture radius as a share of the baked one, in 1/16384.
     pub stop: i32,
@@ -33,6 +36,7 @@ pub struct Pen<'a> {
     pub half: [u32; 2],
     /// By what the tilt over the baked aperture moves the mean aperture point of the lens.
     pub tilt_shift: [i32; 2],
+    /// The mean aperture point of the shape, times 16384.
     pub mean: [i32; 2],
     /// What levels blur too much, as squares of a stencil's radius: by level, (1/4096 px of the level)².
     pub too_blurred: [i64; salf::tree::LEVELS],
@@ -65,9 +69,13 @@ pub const MAX_PARTS: usize = 16;
 /// A part of the aperture: its share times 2²⁴, mean and variance times 16384, √3 deviations times 65536.
 #[derive(Clone, Copy)]
 pub struct BoxPart {
+    /// The part's share of all light, times 2²⁴.
     pub share: u32,
+    /// The part's mean aperture point, times 16384.
     pub mean: [i32; 2],
+    /// The part's variance along each axis, times 16384.
     pub variance: [i32; 2],
+    /// √3 standard deviations along each axis, times 65536.
     pub half: [u32; 2],
 }
 

@@ -21,6 +21,7 @@ const CHUNK_NODES: u32 = if cfg!(test) { 1 << 11 } else { 1 << 21 };
 
 /// A light field's nodes, in chunks of whole blocks.
 pub struct Scene {
+    /// The chunks, in the order of the nodes.
     pub chunks: Vec<Chunk>,
     /// The scale that light was uploaded at.
     pub dim_bits: i32,
@@ -28,6 +29,7 @@ pub struct Scene {
 
 /// Neighbouring blocks.
 pub struct Chunk {
+    /// The nodes, which twins share.
     pub shared: Arc<NodesOfChunk>,
     /// The cells and moments of its partly occluded nodes, after [`Scene::upload_moments`].
     pub cells: Buffer,
@@ -37,11 +39,13 @@ pub struct Chunk {
 
 /// What is the same whatever lens and paint: splatters of one light field share it.
 pub struct NodesOfChunk {
+    /// The blocks whose nodes these are.
     pub blocks: Range<usize>,
     /// The first of them.
     pub first: u32,
     /// So many.
     pub count: u32,
+    /// The nodes on the card.
     pub nodes: Buffer,
     partial: Vec<u32>,
 }

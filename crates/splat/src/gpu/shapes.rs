@@ -18,7 +18,9 @@ const GROWTH: usize = 1 << 18;
 
 /// The aperture's rows and stencils of one shape.
 pub struct Shapes {
+    /// The rows of the aperture.
     pub shape: Buffer,
+    /// The stencils that have been uploaded.
     pub stencils: Buffer,
     /// What `stencils` holds: for each place where its runs begin and how many, then the runs.
     words: Vec<u32>,

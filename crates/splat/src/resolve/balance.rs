@@ -30,13 +30,17 @@ use rayon::prelude::*;
 /// Which light is scaled: that of the sharing samples, where the picture is not evened out; else all.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scaled {
+    /// The light of sharing samples.
     Sharing = 0,
+    /// All light.
     All = 1,
 }
 
 /// The gains of a picture, and room to find them.
 pub struct Balance {
+    /// Where the gains are.
     pub knots: Knots,
+    /// The gains.
     pub gains: Gains,
     /// What all light that shares is scaled by beside its gains.
     pub rest: [f32; 3],

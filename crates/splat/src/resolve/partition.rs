@@ -62,7 +62,9 @@ impl Share {
 /// Some pixels of a row of the sums: what is free, and what shares the rest.
 #[derive(Clone, Copy)]
 pub struct Parts<'a> {
+    /// The light of free samples.
     pub free: &'a [Light],
+    /// The light of sharing samples.
     pub sharing: &'a [Light],
 }
 

@@ -12,8 +12,11 @@ use lens::{Aperture, Camera};
 
 /// What depends on the aperture's shape, and on how far it is stopped down from the baked one.
 pub struct ApertureInUse {
+    /// The aperture.
     pub aperture: Aperture,
+    /// The lens's aperture radius as a share of the baked one, in [0, 1].
     pub stop: f64,
+    /// The images of the aperture, by size.
     pub stencils: Stencils,
     moments: Vec<ApertureMoments>,
 }
