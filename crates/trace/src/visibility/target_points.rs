@@ -29,7 +29,9 @@ fn strip(x: f32) -> usize {
 /// A box on the square.
 #[derive(Clone, Copy, Debug)]
 pub struct Bounds {
+    /// The least coordinates on the square.
     pub low: [f32; 2],
+    /// The greatest coordinates on the square.
     pub high: [f32; 2],
 }
 
