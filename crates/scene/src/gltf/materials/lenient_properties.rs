@@ -37,7 +37,7 @@ impl<'r, 'a> LenientProperties<'r, 'a> {
         Some(LenientProperties { reader: self.reader, object, sets: self.sets })
     }
 
-    /// The property `key` as a number, clamped to [`low`, `high`]; `absent` if it is missing or faulty.
+    /// The property `key` as a number, clamped to the range from `low` to `high`; `absent` if it is missing or faulty.
     pub fn number(&self, key: &str, absent: f32, [low, high]: [f32; 2]) -> f32 {
         self.or_warn(self.object.number(key)).map_or(absent, |number| number as f32).clamp(low, high)
     }
