@@ -75,7 +75,7 @@ impl Atlas {
         Self { width, height, corners, chart_of, charts, hash, density, notes: Vec::new() }
     }
 
-    /// The atlas position of a surface point, in texel coordinates.
+    /// The position of a surface point in the atlas, in texels from the upper left corner.
     pub fn position_of(&self, point: SurfacePoint) -> DVec2 {
         let [a, b, c] = self.corners[point.triangle as usize].map(Vec2::as_dvec2);
         let [wa, wb, wc] = point.weights();

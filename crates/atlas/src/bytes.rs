@@ -11,7 +11,7 @@ use scene::Scene;
 const MAGIC: &[u8; 8] = b"FBATLAS1";
 
 impl Atlas {
-    /// The stored form.
+    /// The atlas as stored on disk; read by [`Self::from_bytes`].
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut bytes = Vec::with_capacity(96 + 28 * self.corners.len() + 4 * self.charts.len());
         bytes.extend(MAGIC);
@@ -25,7 +25,7 @@ impl Atlas {
         bytes
     }
 
-    /// Reads the stored form, if it is complete and fits the scene.
+    /// Reads an atlas from its stored form, if it is complete and fits the scene.
     ///
     /// # Errors
     /// [`AtlasError::Stored`] if the bytes are damaged or belong to another scene.

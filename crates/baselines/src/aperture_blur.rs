@@ -26,6 +26,9 @@ pub struct ApertureBlur {
 impl ApertureBlur {
     /// The image of `aperture` with the signed radius `radius_px` (negative: turned by 180°), for a picture of `height`
     /// rows. `None` at half a pixel and below, where the image is the pixel itself.
+    ///
+    /// # Errors
+    /// The aperture lets no light through.
     pub fn new(aperture: &Aperture, radius_px: f64, height: usize) -> Result<Option<Self>, BaselineError> {
         if radius_px.abs() <= 0.5 {
             return Ok(None);
@@ -63,6 +66,9 @@ impl ApertureBlur {
     }
 
     /// Blurs a picture of rows of `width`. What lies outside of it is taken to be like its nearest pixel.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if `progress` asks to stop.
     pub fn apply(
         &self,
         source: &[[f32; 4]],

@@ -14,6 +14,9 @@ pub struct ApertureCell {
 }
 
 /// The open cells among `side` × `side` of `aperture`, from u = (−1, −1), row by row. Their shares sum to 1.
+///
+/// # Errors
+/// The aperture lets no light through.
 pub fn open_cells(aperture: &Aperture, side: u32) -> Result<Vec<ApertureCell>, BaselineError> {
     /// Rows of the aperture in a row of cells.
     const FINENESS: usize = 16;

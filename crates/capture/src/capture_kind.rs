@@ -28,7 +28,7 @@ impl CaptureKind {
     pub const ALL: [(&str, Self); 3] =
         [("photographs", Self::Photographs), ("lightfield", Self::LightField), ("depth", Self::Depth)];
 
-    /// The kind with this name.
+    /// The kind with this name in files and on the command line; `None` if there is none.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.iter().find(|(candidate, _)| *candidate == name).map(|(_, kind)| *kind)
     }

@@ -70,7 +70,7 @@ pub(crate) enum Sight {
 }
 
 impl Sight {
-    /// How well the mesh fits, if that is known.
+    /// How well the mesh fits; `None` if no photograph shows enough of it.
     pub fn fit(&self) -> Option<MeshFit> {
         match self {
             Self::Unseen | Self::OnBlanks => None,
@@ -87,7 +87,7 @@ impl Sight {
         }
     }
 
-    /// Whether the mesh fits clearly better than elsewhere.
+    /// Whether the mesh fits clearly better, beyond chance, than it does `elsewhere`.
     pub fn is_better_than(&self, elsewhere: &Self) -> bool {
         /// More than chance makes of the fewest patches.
         const MARGIN: f64 = 0.15;

@@ -21,6 +21,9 @@ pub(crate) struct MeshPlace<'a> {
 impl MeshPlace<'_> {
     /// How well the mesh fits the photographs, after it was moved as a file says if it fits better then; remarks if it was moved, or does not
     /// fit.
+    ///
+    /// # Errors
+    /// A photograph cannot be read, or the work was cancelled.
     pub fn fit_mesh(
         &self,
         scene: &mut Scene,

@@ -56,7 +56,7 @@ const NEAR: f32 = 0.05;
 /// A pixel this far from the curve is a mixture.
 const MIXTURE: f32 = 0.1;
 
-/// Decodes the map.
+/// Decodes a map whose colours are a code, from `samples` of known disparity, whose unit the result has.
 ///
 /// # Errors
 /// [`DisparityError::TooFewSamples`], [`DisparityError::SampleOutside`], [`DisparityError::Size`] and [`DisparityError::NotFinite`]

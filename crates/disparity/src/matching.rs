@@ -22,7 +22,11 @@ const COSTS: usize = 40_000_000;
 /// Rows by which strips overlap: paths of costs begin there and have converged where they count.
 const OVERLAP: usize = 32;
 
-/// The label of every pixel of the reference.
+/// The label chosen for every pixel of the reference, row by row: its disparity, and how far it leads over the next
+/// best.
+///
+/// # Errors
+/// [`Cancelled`] if `progress` asks to stop.
 pub fn match_labels(
     reference: &Planes,
     others: &[ShiftedView<'_>],

@@ -26,7 +26,7 @@ pub struct WarpedMap {
     pub confidence: Vec<f32>,
 }
 
-/// Warps a map to the view at `offset` from its own.
+/// Warps a disparity map with rows of `width`, and its confidence, to the view at `offset` from its own.
 pub fn warp(disparity: &[f32], confidence: &[f32], width: usize, offset: [f32; 2]) -> WarpedMap {
     let height = disparity.len() / width;
     let mut warped =
@@ -104,6 +104,9 @@ fn pixels(place: f32, half: f32, length: usize) -> std::ops::Range<usize> {
 
 /// Fills the uncovered pixels of the view by matching it with `chosen` views; returns the disparities and the
 /// evidence.
+///
+/// # Errors
+/// [`Cancelled`] if `progress` asks to stop.
 pub fn fill_holes(
     refinement: &Refinement<'_>,
     warped: &[f32],

@@ -15,12 +15,12 @@ pub struct Planes {
 }
 
 impl Planes {
-    /// The planes of `picture`.
+    /// The colour channels of `picture` as planes.
     pub fn from_picture(picture: &Picture<'_>) -> Self {
         Self::from_fn(picture.width, picture.height, |x, y| picture.rgb[y * picture.width + x])
     }
 
-    /// The planes of the colours that `colour` returns for every pixel.
+    /// Planes of `width` × `height` px with the colour that `colour` returns for column and row of each pixel.
     pub fn from_fn(width: usize, height: usize, colour: impl Fn(usize, usize) -> [f32; 3]) -> Self {
         let stride = width + 1;
         let mut channels: [Vec<f32>; 3] = std::array::from_fn(|_| vec![0.0; stride * (height + 1)]);
@@ -35,23 +35,23 @@ impl Planes {
         Self { width, height, channels }
     }
 
-    /// Pixels per row.
+    /// The number of pixels in a row.
     pub fn width(&self) -> usize {
         self.width
     }
 
-    /// Rows.
+    /// The number of rows.
     pub fn height(&self) -> usize {
         self.height
     }
 
-    /// The colour of a pixel.
+    /// The RGB of the pixel in column `x` and row `y`.
     pub fn pixel(&self, x: usize, y: usize) -> [f32; 3] {
         let at = y * (self.width + 1) + x;
         [self.channels[0][at], self.channels[1][at], self.channels[2][at]]
     }
 
-    /// Row `y` (up to `height`) of a channel: width + 1 values.
+    /// Row `y` (up to `height`) of a channel (0 red, 1 green, 2 blue): width + 1 values, the last repeated.
     pub fn row(&self, channel: usize, y: usize) -> &[f32] {
         let stride = self.width + 1;
         &self.channels[channel][y * stride..(y + 1) * stride]
@@ -93,7 +93,7 @@ impl Planes {
         })
     }
 
-    /// Multiplies every pixel by what `gain` returns for it.
+    /// Multiplies the RGB of every pixel by what `gain` returns for its column and row.
     pub fn scale(&mut self, gain: impl Fn(usize, usize) -> [f32; 3]) {
         let stride = self.width + 1;
         for y in 0..=self.height {

@@ -7,7 +7,7 @@ use crate::view::{MIN_SIDE_PX, View};
 /// The most pixels of a view: the memory needed stays below 4 GB.
 const MAX_PIXELS: usize = 64_000_000;
 
-/// Checks the views and the request.
+/// Checks that the views, at least two of one size, and the request can be used.
 ///
 /// # Errors
 /// What is wrong with the views, or with the request.

@@ -14,7 +14,7 @@ pub struct AdjustmentView {
 }
 
 impl AdjustmentView {
-    /// The properties of `camera`.
+    /// What adjustment layers depend on of `camera`.
     pub fn from_camera(camera: &Camera) -> Self {
         let &Camera { camera_to_world, yfov, sensor_height, shift, .. } = camera;
         Self { camera_to_world, yfov, sensor_height, shift }

@@ -53,7 +53,7 @@ impl From<IoFault> for DocumentError {
 }
 
 impl DocumentError {
-    /// [`Self::BadInput`] about `file`.
+    /// [`Self::BadInput`] that says what is wrong with `file`.
     pub fn bad_file(file: &Path, message: impl std::fmt::Display) -> Self {
         Self::BadInput(format!("{}: {message}", file.display()))
     }
@@ -99,7 +99,7 @@ fn without_error_number(error: &Error) -> String {
     text.split(" (os error").next().unwrap_or(&text).to_lowercase()
 }
 
-/// The name of a document's file, as shown to people.
+/// The last part of a path, as a document's name for people.
 pub fn file_name(path: &Path) -> String {
     path.file_name().map_or_else(|| PathBuf::from(path).display().to_string(), |n| n.to_string_lossy().into())
 }

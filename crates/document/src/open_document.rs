@@ -372,7 +372,7 @@ impl Document {
         &self.stage.scene
     }
 
-    /// The focus at a surface point.
+    /// The focus at a surface point, as all layers together make it.
     pub fn focus_at(&self, hit: &SurfaceHit) -> FocusOffset {
         self.map.sample(self.stage.atlas.position_of(hit.point))
     }
@@ -387,12 +387,12 @@ impl Document {
         file_name(self.path.as_deref().unwrap_or(&self.stage.scene.path))
     }
 
-    /// The name of the step that undo would revert.
+    /// The name of the step that undo would revert; `None` if there is none.
     pub fn undo_name(&self) -> Option<&str> {
         self.undo.undo_name()
     }
 
-    /// The name of the step that redo would repeat.
+    /// The name of the step that redo would repeat; `None` if there is none.
     pub fn redo_name(&self) -> Option<&str> {
         self.undo.redo_name()
     }
@@ -424,7 +424,7 @@ impl Document {
         self.undo.names()
     }
 
-    /// Memory used by the undo history, and its budget, bytes.
+    /// The memory that the undo history takes, and its budget, in bytes.
     pub fn undo_bytes(&self) -> [usize; 2] {
         self.undo.bytes()
     }

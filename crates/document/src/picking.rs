@@ -19,7 +19,7 @@ pub struct SurfaceHit {
     pub distance: f64,
 }
 
-/// The first hit of `ray`.
+/// The first surface that `ray` hits; `None` if there is none.
 pub fn pick(tracer: &Tracer, ray: &Ray) -> Option<SurfaceHit> {
     let hit = tracer.first_hit(ray)?;
     let scene: &Scene = tracer.scene();

@@ -47,7 +47,7 @@ fn is_same_surface(a: &Scene, b: &Scene) -> bool {
         && a.parts.iter().map(part_key).eq(b.parts.iter().map(part_key))
 }
 
-/// The canvas of a scene in its atlas.
+/// The canvas, its texels with positions and neighbours, of a scene in its atlas.
 pub fn build_canvas(scene: &Scene, atlas: &Atlas, texels: &TexelMap) -> Canvas {
     let texel_at = |index: u32| [index % atlas.width, index / atlas.width];
     let gutters: Vec<_> = texels.dilations.iter().map(|d| [texel_at(d.texel), texel_at(d.source)]).collect();

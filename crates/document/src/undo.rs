@@ -271,7 +271,7 @@ impl UndoHistory {
         }
     }
 
-    /// Undoes the latest step; `None` if there is none.
+    /// Undoes the latest step in `state`, and returns what that affects; `None` if there is none.
     pub fn undo(&mut self, state: UndoState<'_>) -> Option<StepEffect> {
         let step = self.done.pop_back()?;
         self.is_run_open = false;

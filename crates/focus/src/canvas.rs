@@ -102,7 +102,7 @@ impl Canvas {
         Self { part_owners: part_owners(scene), ..self.clone() }
     }
 
-    /// Columns and rows of the map that it belongs to.
+    /// Columns and rows of texels of the focus map that it belongs to.
     pub fn size(&self) -> [u32; 2] {
         self.size
     }
@@ -112,17 +112,17 @@ impl Canvas {
         &self.texels
     }
 
-    /// The scene node of a texel.
+    /// The index of the scene node that a texel belongs to.
     pub fn node_of(&self, texel: &CanvasTexel) -> u32 {
         self.part_owners[texel.part as usize][0]
     }
 
-    /// The material of a texel.
+    /// The index of the material of a texel.
     pub fn material_of(&self, texel: &CanvasTexel) -> u32 {
         self.part_owners[texel.part as usize][1]
     }
 
-    /// The gutter texels that copy a texel.
+    /// The gutter texels (column, row) that copy the texel with this index.
     pub fn gutters_of(&self, index: usize) -> &[[u32; 2]] {
         &self.gutters[self.gutter_starts[index] as usize..self.gutter_starts[index + 1] as usize]
     }
@@ -241,7 +241,7 @@ impl Canvas {
         }
     }
 
-    /// Copies every covered texel into its gutters.
+    /// Copies every covered texel into its gutters. Returns the texels that changed.
     pub fn dilate(&self, map: &mut FocusMap) -> ChangedTexels {
         let mut changed = Vec::new();
         for index in 0..self.texels.len() {

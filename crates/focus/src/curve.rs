@@ -40,12 +40,12 @@ impl Curve {
             && self.points.windows(2).all(|pair| pair[0][0] < pair[1][0])
     }
 
-    /// The points, x ascending.
+    /// The curve's points as [x, y], x ascending.
     pub fn points(&self) -> &[[f64; 2]] {
         &self.points
     }
 
-    /// y at x.
+    /// The curve's y at `x`; beyond its ends that of the nearest point.
     pub fn evaluate(&self, x: f64) -> f64 {
         let next = self.points.partition_point(|p| p[0] <= x);
         let (Some(after), Some(before)) = (self.points.get(next), next.checked_sub(1)) else {

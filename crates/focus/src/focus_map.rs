@@ -46,7 +46,7 @@ impl FocusMap {
         Self { texels, gloss, mask: None, background: value, background_mask: 1.0 }
     }
 
-    /// A fully transparent map: the ordinary lens with a mask of 0 everywhere.
+    /// A fully transparent map of `width` × `height` texels: the ordinary lens with a mask of 0 everywhere.
     pub fn transparent(width: u32, height: u32) -> Self {
         let mut map = Self::new(width, height, FocusOffset::STANDARD);
         map.mask = Some(TileGrid::new(width, height, 0.0));
@@ -67,7 +67,7 @@ impl FocusMap {
         self.texels.to_rows()
     }
 
-    /// The gloss of all texels, row 0 on top; `None` where all of it is 0.
+    /// The gloss of all texels, in [0, 1], row 0 on top; `None` where all of it is 0.
     pub fn gloss_rows(&self) -> Option<Vec<f32>> {
         let is_some = |tile: &Arc<Tile<f32>>| !is_blank(tile) && tile.iter().any(|gloss| *gloss != 0.0);
         self.gloss.tiles().iter().any(is_some).then(|| self.gloss.to_rows())
@@ -87,7 +87,7 @@ impl FocusMap {
         self.background.gloss != 0.0 || !self.gloss.is_blank()
     }
 
-    /// The mask of all texels, row 0 on top; `None` if there is no mask.
+    /// The mask of all texels, in [0, 1], row 0 on top; `None` if there is no mask, which counts as 1.
     pub fn mask_rows(&self) -> Option<Vec<f32>> {
         self.mask.as_ref().map(TileGrid::to_rows)
     }
@@ -132,28 +132,28 @@ impl FocusMap {
         self.background_mask = 1.0 - self.background_mask;
     }
 
-    /// Number of columns, that of the atlas.
+    /// The number of columns of texels, that of the atlas.
     pub fn width(&self) -> u32 {
         self.size()[0]
     }
 
-    /// Number of rows, that of the atlas.
+    /// The number of rows of texels, that of the atlas.
     pub fn height(&self) -> u32 {
         self.size()[1]
     }
 
-    /// Columns and rows.
+    /// Columns and rows of texels.
     pub fn size(&self) -> [u32; 2] {
         self.texels.size()
     }
 
-    /// The value of a texel, which must lie in the map.
+    /// The focus of the texel in column `x` and row `y`, which must lie in the map.
     pub fn at(&self, x: u32, y: u32) -> FocusOffset {
         let [t, anchor] = self.texel(x, y).map(f64::from);
         FocusOffset { t, anchor, gloss: f64::from(self.gloss_at(x, y)) }
     }
 
-    /// [t, anchor] of a texel, which must lie in the map.
+    /// [t, anchor] of the texel in column `x` and row `y`, which must lie in the map.
     pub fn texel(&self, x: u32, y: u32) -> [f32; 2] {
         self.texels.at(x, y)
     }
@@ -163,7 +163,7 @@ impl FocusMap {
         self.gloss.at(x, y)
     }
 
-    /// How much a texel counts, in [0, 1].
+    /// How much the texel in column `x` and row `y` counts, in [0, 1]; 1 where there is no mask.
     pub fn mask_at(&self, x: u32, y: u32) -> f32 {
         self.mask.as_ref().map_or(1.0, |mask| mask.at(x, y))
     }

@@ -41,12 +41,12 @@ impl Default for FocusRecipe {
 }
 
 impl FocusRecipe {
-    /// A recipe of one value.
+    /// A recipe that gives everything the same focus.
     pub fn constant(value: FocusOffset) -> Self {
         Self { default: RecipeEntry::Value(value), ..Self::default() }
     }
 
-    /// The focus of `scene`.
+    /// The focus of every part of `scene` and of its background.
     ///
     /// # Errors
     /// A name that does not occur in the scene, a map on a part without texture coordinates or on the background, a

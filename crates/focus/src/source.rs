@@ -41,13 +41,13 @@ pub struct Focus {
 }
 
 impl Focus {
-    /// The same value everywhere, the background included.
+    /// The same focus everywhere, the background included.
     pub fn constant(scene: Arc<Scene>, value: FocusOffset) -> Self {
         let parts = vec![FocusSource::Constant(value); scene.parts.len()];
         Self { scene, parts, background: value }
     }
 
-    /// The painted map over the whole scene; it must have the atlas's size.
+    /// The focus that a painted map gives the whole scene; the map must have the atlas's size.
     pub fn from_atlas_map(scene: Arc<Scene>, atlas: Arc<Atlas>, map: Arc<FocusMap>) -> Self {
         debug_assert_eq!([atlas.width, atlas.height], map.size());
         let background = map.background;

@@ -23,7 +23,7 @@ fn is_zero(shift: &DVec2) -> bool {
 }
 
 impl ViewFrame {
-    /// The view of a camera.
+    /// The frame of a camera's view: pose, angle of view, aspect and shift.
     pub fn from_camera(camera: &Camera) -> Self {
         let &Camera { camera_to_world, yfov, shift, .. } = camera;
         Self { camera_to_world, yfov, aspect: camera.aspect(), shift }

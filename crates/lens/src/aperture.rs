@@ -101,7 +101,8 @@ impl Aperture {
         Ok(())
     }
 
-    /// Transmission at u in [−1, 1]², in [0, 1]; 0 outside.
+    /// Share of light that passes at the aperture point `u`, in [0, 1]; coordinates are in units of the aperture
+    /// radius R, and nothing passes outside [−1, 1]².
     pub fn transmission(&self, u: DVec2) -> f64 {
         let u = u / self.squeeze();
         if u.abs().max_element() > 1.0 {
@@ -214,7 +215,8 @@ impl Aperture {
 }
 
 impl ApertureMask {
-    /// Mean transmission over the box `u` × `v`, 0 outside [−1, 1]².
+    /// Mean transmission, in [0, 1], over the box from `u[0]` to `u[1]` and `v[0]` to `v[1]`, in units of the
+    /// aperture radius R; 0 outside [−1, 1]².
     pub fn mean(&self, u: [f64; 2], v: [f64; 2]) -> f64 {
         let columns = u.map(|u| (u + 1.0) / 2.0 * self.width as f64);
         let rows = [v[1], v[0]].map(|v| (1.0 - v) / 2.0 * self.height as f64);
@@ -293,7 +295,7 @@ impl ApertureSampler {
     /// Entries of the table of a rounded polygon's wedge.
     const WEDGE_STEPS: usize = 4096;
 
-    /// Prepares to sample `aperture`, which must be valid.
+    /// Prepares to sample `aperture`, which must be valid (see [`Aperture`]).
     pub fn new(aperture: &Aperture) -> Self {
         let mut rows = Vec::new();
         let cumulative = match &aperture.shape {
@@ -316,7 +318,8 @@ impl ApertureSampler {
         Self { aperture: aperture.clone(), cumulative, rows }
     }
 
-    /// The aperture point of the uniform numbers a, b in [0, 1); in [−1, 1]².
+    /// The aperture point, in [−1, 1]² (units of the aperture radius R), of two uniform numbers in [0, 1);
+    /// distributed as the transmission is.
     pub fn sample(&self, a: f64, b: f64) -> DVec2 {
         let point = match &self.aperture.shape {
             ApertureShape::Disc => disc(a, b),

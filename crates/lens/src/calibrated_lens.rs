@@ -46,10 +46,10 @@ pub struct Intrinsics {
 }
 
 impl CalibratedLens {
-    /// A lens with these parameters.
+    /// A lens with these parameters; lengths of `intrinsics` are in px.
     ///
     /// # Errors
-    /// A parameter is out of range.
+    /// A parameter is out of range: sizes and focal lengths must be above 0, everything finite.
     pub fn new(
         intrinsics: Intrinsics,
         projection: Projection,
@@ -80,7 +80,8 @@ impl CalibratedLens {
         Ok(Self { intrinsics, projection, distortion, valid_radius })
     }
 
-    /// A pinhole of a focal length, its axis in the middle of the picture.
+    /// An ideal perspective lens with this focal length in px, for pictures of `size_px` (width, height), its axis in
+    /// their middle.
     ///
     /// # Errors
     /// A parameter is out of range.
@@ -128,7 +129,7 @@ impl CalibratedLens {
         self.intrinsics.size_px
     }
 
-    /// Whether a pixel position lies in the picture.
+    /// Whether a pixel position, (0, 0) the picture's upper left corner, lies in the picture.
     pub fn is_in_picture(&self, pixel: DVec2) -> bool {
         let [width, height] = self.size_px().map(f64::from);
         pixel.cmpge(DVec2::ZERO).all() && pixel.x < width && pixel.y < height
@@ -159,7 +160,7 @@ impl CalibratedLens {
         self.projection.direction_from_plane(self.undistorted(distorted)?)
     }
 
-    /// The same lens for photographs that were scaled.
+    /// The same lens for photographs scaled to `size_px` (width, height): its lengths in px scale along.
     ///
     /// # Errors
     /// A side of the picture is 0.

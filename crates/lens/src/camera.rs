@@ -121,17 +121,17 @@ impl Camera {
         }
     }
 
-    /// The aperture's centre in the world.
+    /// The aperture's centre in the world, scene units.
     pub fn position(&self) -> DVec3 {
         self.camera_to_world.w_axis.truncate()
     }
 
-    /// A world point in camera space (x right, y up, z forward).
+    /// A world point, scene units, in camera space (x right, y up, z forward, the aperture's centre at the origin).
     pub fn camera_from_world(&self, point: DVec3) -> DVec3 {
         self.camera_direction(point - self.position())
     }
 
-    /// A world direction in camera space.
+    /// A world direction in camera space; its length is kept.
     pub fn camera_direction(&self, direction: DVec3) -> DVec3 {
         let m = &self.camera_to_world;
         DVec3::new(
@@ -141,7 +141,7 @@ impl Camera {
         )
     }
 
-    /// A camera-space point in the world. Inverse of [`Self::camera_from_world`].
+    /// A camera-space point in the world, scene units. Inverse of [`Self::camera_from_world`].
     pub fn world_from_camera(&self, point: DVec3) -> DVec3 {
         self.position() + self.world_direction(point)
     }
@@ -154,7 +154,7 @@ impl Camera {
             - m.z_axis.truncate() * direction.z
     }
 
-    /// Half the picture's width, in half-heights.
+    /// The picture's width over its height.
     pub fn aspect(&self) -> f64 {
         self.width as f64 / self.height as f64
     }
@@ -166,7 +166,7 @@ impl Camera {
         DVec2::new(width / 2.0 - self.shift.x * height, height / 2.0 + self.shift.y * height)
     }
 
-    /// The picture's middle and half its extent, as q in half-heights.
+    /// The picture's middle and half its extent, both as picture positions q in half picture heights.
     pub fn frame_q(&self) -> [DVec2; 2] {
         [2.0 * self.shift, DVec2::new(self.aspect(), 1.0)]
     }
@@ -178,7 +178,8 @@ impl Camera {
         DVec2::new(axis.x + q.x * half_height, axis.y - q.y * half_height)
     }
 
-    /// q in half-heights of a pixel position. Inverse of [`Self::pixel_from_q`].
+    /// The picture position q, in half picture heights from the lens's axis, y up, of a pixel position (px, y down).
+    /// Inverse of [`Self::pixel_from_q`].
     #[inline]
     pub fn q_from_pixel(&self, pixel: DVec2) -> DVec2 {
         let half_height = self.height as f64 / 2.0;
@@ -186,7 +187,7 @@ impl Camera {
         DVec2::new((pixel.x - axis.x) / half_height, (axis.y - pixel.y) / half_height)
     }
 
-    /// The f-number f/(2R).
+    /// The f-number f/(2R): the thin lens's focal length over the aperture's diameter.
     pub fn f_number(&self) -> f64 {
         self.optics().focal_length() / (2.0 * self.aperture_radius)
     }

@@ -30,12 +30,13 @@ impl FocusOffset {
     /// In focus, wherever the camera focuses.
     pub const SHARP: Self = Self::new(1.0, 1.0);
 
-    /// An offset of `t`, relative to `anchor`, which gloss does not obey.
+    /// A focus offset of `t` relative to `anchor` (0 the sensor, 1 the point's conjugate), with gloss 0: carried
+    /// light keeps the lens's focus.
     pub const fn new(t: f64, anchor: f64) -> Self {
         Self { t, anchor, gloss: 0.0 }
     }
 
-    /// The same with this gloss.
+    /// The same focus with this gloss, in [0, 1].
     pub const fn with_gloss(self, gloss: f64) -> Self {
         Self { gloss, ..self }
     }

@@ -84,7 +84,8 @@ impl Optics {
         half_heights * (self.half_height_px / self.tan_half_yfov).powi(2)
     }
 
-    /// κ of the unpainted point: the ordinary thin lens, 1/s − 1/z.
+    /// The defocus κ, in 1/length, of an unpainted point with the inverse depth 1/z: the ordinary thin lens, 1/s −
+    /// 1/z.
     #[inline]
     pub fn standard_kappa(&self, inverse_depth: f64) -> f64 {
         self.inverse_focus_distance - inverse_depth
@@ -117,7 +118,7 @@ impl Optics {
         2.0 * self.aperture_radius * kappa.abs() * self.image_distance
     }
 
-    /// The diameter of the circle of confusion in pixels.
+    /// The diameter of the circle of confusion of a defocus κ (in 1/length), px; never negative.
     pub fn circle_of_confusion_px(&self, kappa: f64) -> f64 {
         2.0 * self.splat_radius_px(kappa).abs()
     }
@@ -146,7 +147,7 @@ impl Optics {
         t.is_finite().then_some(t)
     }
 
-    /// The focal length of the thin lens: 1/f = 1/s + 1/d.
+    /// The focal length f of the thin lens, in scene units: 1/f = 1/s + 1/d.
     pub fn focal_length(&self) -> f64 {
         1.0 / (self.inverse_focus_distance + 1.0 / self.image_distance)
     }

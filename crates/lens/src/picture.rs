@@ -24,7 +24,7 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// A black picture with zero coverage.
+    /// A black picture with zero coverage, of `width` columns and `height` rows.
     pub fn black(width: u32, height: u32) -> Self {
         let pixels = width as usize * height as usize;
         Self { width, height, radiance: vec![[0.0; 3]; pixels], coverage: vec![0.0; pixels] }
@@ -51,7 +51,8 @@ impl Picture {
         mean
     }
 
-    /// The picture under `exposure`. Pixels without coverage are black.
+    /// The picture's linear RGB under `exposure`, row by row from the top. [`Exposure::Normalise`] leaves pixels
+    /// without coverage black.
     pub fn exposed(&self, exposure: Exposure) -> Vec<[f32; 3]> {
         match exposure {
             Exposure::Conserve => self.radiance.clone(),

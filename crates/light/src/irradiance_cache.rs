@@ -50,13 +50,16 @@ pub(crate) struct IrradianceInputs<'a> {
 }
 
 impl IrradianceCache {
-    /// The irradiance in `world`, if it is solved.
+    /// The irradiance in `world`, of any quality, if it is solved; nothing is started.
     pub fn available(&self, world: &World) -> Option<Arc<Irradiance>> {
         let worlds = self.lock();
         worlds.iter().find(|entry| entry.world == *world)?.available(LightQuality::Rough).cloned()
     }
 
-    /// Waits for the irradiance in `world`, of at least `quality`.
+    /// Waits for the irradiance in `world`, of at least `quality`, and starts solving it if nobody has.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if `progress` asks to stop.
     pub fn wait(
         &self,
         world: &World,

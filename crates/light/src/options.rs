@@ -16,7 +16,7 @@ impl PhotoLookup {
     /// All variants with their names.
     pub const ALL: [(&str, Self); 2] = [("texels", Self::Texels), ("direct", Self::Direct)];
 
-    /// The variant of this name.
+    /// The variant with this name on the command line; `None` if there is none.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.iter().find(|(candidate, _)| *candidate == name).map(|(_, lookup)| *lookup)
     }

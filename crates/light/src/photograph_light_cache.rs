@@ -81,7 +81,10 @@ impl PhotographLightCache {
         }
     }
 
-    /// Waits for the light as it is to be looked up.
+    /// Waits for the light in the form in which it is to be looked up.
+    ///
+    /// # Errors
+    /// The photographs cannot be read or their light cannot be solved, or `progress` asks to stop.
     pub fn wait_for_lookup(&self, progress: &dyn Progress) -> Result<PhotographRadiance, LightError> {
         let light = self.wait(progress)?;
         match self.lookup {
@@ -97,7 +100,10 @@ impl PhotographLightCache {
         }
     }
 
-    /// Waits for the light.
+    /// Starts solving the light, unless that has been done, and waits for it.
+    ///
+    /// # Errors
+    /// The photographs cannot be read or their light cannot be solved, or `progress` asks to stop.
     pub fn wait(&self, progress: &dyn Progress) -> Result<Arc<PhotographLight>, LightError> {
         self.start();
         let shared = &self.shared;

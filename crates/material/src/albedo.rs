@@ -132,14 +132,15 @@ pub struct Gloss {
 }
 
 impl Gloss {
-    /// A and B toward a direction in the surface's axes.
+    /// A and B, each a share in [0, 1], toward a direction in the surface's axes (unit, z along the normal): the
+    /// lobe's albedo is A·F0 + B·F90.
     pub fn shares(self, w: DVec3) -> DVec2 {
         let root = w.z.abs().min(1.0).sqrt();
         let azimuth = if self.anisotropy == 0.0 { 0.0 } else { w.y.abs().atan2(w.x.abs()) / FRAC_PI_2 };
         self.interpolated(|row| row.at(root, azimuth))
     }
 
-    /// The means of A and B over the cosine-weighted hemisphere.
+    /// The means of A and B, as of [`Self::shares`], over the cosine-weighted hemisphere.
     pub fn mean_shares(self) -> DVec2 {
         self.interpolated(|row| row.mean)
     }

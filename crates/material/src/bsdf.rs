@@ -201,7 +201,8 @@ impl<'a> Bsdf<'a> {
         self.value(&view, incident)
     }
 
-    /// The density, 1/sr, with which [`Self::sample`] generates `incident`.
+    /// The density, 1/sr, with which [`Self::sample`] generates the unit direction `incident` toward `outgoing`;
+    /// without mirrors, whose density is infinite.
     pub fn density(&self, outgoing: DVec3, incident: DVec3) -> f64 {
         let view = self.outgoing_frame(outgoing);
         self.density_of(&view, &self.lobe_probabilities(&view), incident)

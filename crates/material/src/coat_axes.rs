@@ -8,7 +8,7 @@ use glam::DVec3;
 pub(crate) struct CoatAxes(Option<[DVec3; 3]>);
 
 impl CoatAxes {
-    /// The axes for a frame that faces the eye.
+    /// The clearcoat's axes, for a frame that faces the eye; none of its own where the coat has the surface's normal.
     pub fn new(frame: &Frame) -> Self {
         if frame.coat == frame.normal {
             return Self(None);
@@ -18,12 +18,12 @@ impl CoatAxes {
         Self(Some([tangent, bitangent, normal]))
     }
 
-    /// A direction of the frame in these axes.
+    /// A direction given in the frame's axes, in the coat's: z along its normal.
     pub fn local(&self, w: DVec3) -> DVec3 {
         self.0.map_or(w, |axes| DVec3::from_array(axes.map(|axis| axis.dot(w))))
     }
 
-    /// The inverse of [`Self::local`].
+    /// A direction given in the coat's axes, in the frame's. The inverse of [`Self::local`].
     pub fn back(&self, w: DVec3) -> DVec3 {
         self.0.map_or(w, |[x, y, z]| x * w.x + y * w.y + z * w.z)
     }

@@ -27,12 +27,12 @@ impl Frame {
         Self { geometric, normal, tangent, coat: normal }
     }
 
-    /// The same frame with a clearcoat of this normal.
+    /// The same frame with a clearcoat whose normal is `coat` (world, unit).
     pub fn coated(self, coat: DVec3) -> Self {
         Self { coat, ..self }
     }
 
-    /// A frame of one normal.
+    /// A frame whose geometric, shading and coat normal are all `normal` (world, unit), with no preferred tangent.
     pub fn flat(normal: DVec3) -> Self {
         Self::new(normal, normal, DVec3::ZERO)
     }

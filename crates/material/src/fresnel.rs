@@ -12,7 +12,8 @@ pub(crate) fn rise(cos: f64) -> f64 {
     (1.0 - cos).clamp(0.0, 1.0).powi(5)
 }
 
-/// Schlick's reflectance (1994), F0 + (F90 − F0)(1 − cos)⁵.
+/// Schlick's reflectance (1994), F0 + (F90 − F0)(1 − cos)⁵, per colour and in [0, 1]; `cos` is that of the angle of
+/// incidence.
 pub fn schlick(f0: DVec3, f90: DVec3, cos: f64) -> DVec3 {
     f0 + (f90 - f0) * rise(cos)
 }

@@ -28,7 +28,7 @@ impl Ggx {
         self.alpha.min_element() < SMOOTHEST
     }
 
-    /// The α that describes the width of lobes: the geometric mean of both axes.
+    /// The α that describes the width of lobes: the geometric mean of those of both axes.
     pub fn mean_alpha(&self) -> f64 {
         (self.alpha.x * self.alpha.y).sqrt()
     }
@@ -48,7 +48,8 @@ impl Ggx {
         ((1.0 + tan2).sqrt() - 1.0) / 2.0
     }
 
-    /// Smith's masking G₁: the share of microfacets that is visible from `w`.
+    /// Smith's masking G₁ (1967): the share, in [0, 1], of microfacets facing the unit direction `w` that is visible
+    /// from it.
     pub fn masking(&self, w: DVec3) -> f64 {
         1.0 / (1.0 + self.lambda(w))
     }
@@ -63,7 +64,7 @@ impl Ggx {
         self.masking(o) * self.masking(i)
     }
 
-    /// The density of visible normals from `o` (z > 0), 1/sr.
+    /// The density, 1/sr, with which normals `h` are visible from `o` (unit, z > 0): Heitz, 2018.
     pub fn density_of_visible(&self, o: DVec3, h: DVec3) -> f64 {
         self.masking(o) * o.dot(h).max(0.0) * self.density_of_normals(h) / o.z
     }

@@ -48,12 +48,12 @@ pub(crate) struct RoughGlass {
 }
 
 impl Interface {
-    /// Between vacuum and a medium of this index of refraction.
+    /// The interface with vacuum on the front and a medium with this index of refraction on the back.
     pub fn from_ior(ior: f64) -> Self {
         Self::between(1.0, ior)
     }
 
-    /// Between two media.
+    /// The interface between media with the indices of refraction `front` and `back`.
     pub fn between(front: f64, back: f64) -> Self {
         Self { front, back, tables: OnceLock::new() }
     }
@@ -82,7 +82,7 @@ impl Interface {
 }
 
 impl RoughGlass {
-    /// As seen from the front or the back.
+    /// The glass as seen from the front (`true`) or the back.
     pub fn side(&self, front: bool) -> &GlassRow {
         &self.rows[usize::from(!front)]
     }
@@ -155,17 +155,18 @@ impl GlassRow {
         self.entries[k].lerp(self.entries[k + 1], ((cos - from) / (to - from)).clamp(0.0, 1.0))
     }
 
-    /// The share that single scattering reflects for a cosine.
+    /// The share, in [0, 1], that single scattering reflects where light comes in at an angle with this cosine.
     pub fn mirrored(&self, cos: f64) -> f64 {
         self.at(cos).x
     }
 
-    /// The share that single scattering sends to neither side.
+    /// The share, in [0, 1], that single scattering sends to neither side where light comes in at an angle with this
+    /// cosine.
     pub fn lost(&self, cos: f64) -> f64 {
         self.at(cos).y
     }
 
-    /// The mean of [`Self::lost`] over the cosine-weighted hemisphere.
+    /// The mean of [`Self::lost`] over the cosine-weighted hemisphere, in [0, 1].
     pub fn mean_lost(&self) -> f64 {
         self.lost_below[COSINES - 1]
     }

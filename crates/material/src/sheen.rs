@@ -21,7 +21,7 @@ pub fn value(o: DVec3, i: DVec3, roughness: f64) -> f64 {
     density / (4.0 * (o.z + i.z - o.z * i.z))
 }
 
-/// The albedo of white sheen for a cosine.
+/// The albedo of white sheen, in [0, 1], seen at an angle with this cosine; `roughness` in [0, 1].
 pub fn albedo(cos: f64, roughness: f64) -> f64 {
     static TABLE: OnceLock<Vec<f64>> = OnceLock::new();
     let table = TABLE.get_or_init(|| {

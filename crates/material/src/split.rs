@@ -21,7 +21,7 @@ pub(crate) fn is_carried(alpha: f64) -> bool {
 }
 
 impl Split {
-    /// The sum of both parts.
+    /// The sum of own and carried light.
     pub fn total(self) -> DVec3 {
         self.own + self.carried
     }

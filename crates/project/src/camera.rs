@@ -166,7 +166,7 @@ pub fn write_camera(file: &Path, camera: &Camera) -> Result<(), ProjectError> {
     write_bytes(file, (text + "\n").as_bytes())
 }
 
-/// The camera as a JSON value.
+/// The camera as the JSON value of a camera file.
 pub fn camera_to_json(camera: &Camera) -> Value {
     let rows = camera.camera_to_world.transpose().to_cols_array_2d();
     let focus_distance = match camera.focus_distance {

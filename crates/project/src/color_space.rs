@@ -19,7 +19,7 @@ impl ColorSpace {
     /// All of them, with their names on the command line.
     pub const ALL: [(&'static str, Self); 2] = [("rec709", Self::Rec709), ("acescg", Self::AcesCg)];
 
-    /// The colour space of this name.
+    /// The colour space with this name on the command line and in files; `None` if there is none.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.iter().find(|(candidate, _)| *candidate == name).map(|(_, space)| *space)
     }
@@ -64,7 +64,7 @@ pub(crate) struct Chromaticities {
 const CHROMATICITY_TOLERANCE: f64 = 1e-3;
 
 impl Chromaticities {
-    /// Whether these are the same within the precision of files.
+    /// Whether both have the same primaries and white within the precision of files.
     pub fn is_close_to(&self, other: &Self) -> bool {
         let [a, b] = [self, other].map(|c| [c.red, c.green, c.blue, c.white]);
         a.iter().zip(b).all(|(a, b)| (*a - b).abs().max_element() <= CHROMATICITY_TOLERANCE)

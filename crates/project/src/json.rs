@@ -18,11 +18,17 @@ pub(crate) enum Json {
 
 impl Json {
     /// Reads a file of one JSON value.
+    ///
+    /// # Errors
+    /// The file cannot be read, or is not JSON.
     pub fn read(file: &Path) -> Result<Self, ProjectError> {
         Self::parse(file, &read_text(file)?)
     }
 
-    /// Parses the text of `file`.
+    /// Parses `text`, the content of `file`, which errors name.
+    ///
+    /// # Errors
+    /// It is not JSON.
     pub fn parse(file: &Path, text: &str) -> Result<Self, ProjectError> {
         serde_json::from_str(text).map_err(|error| {
             let key = key_before(text, error.line(), error.column());
@@ -120,7 +126,7 @@ pub(crate) struct Fields<'a> {
 }
 
 impl<'a> Field<'a> {
-    /// The file's whole value.
+    /// The whole value of a file.
     pub fn root(file: &'a Path, value: &'a Json) -> Self {
         Self { file, value, parent: None, name: "" }
     }
@@ -133,7 +139,7 @@ impl<'a> Field<'a> {
         }
     }
 
-    /// An error about the field.
+    /// An error about the field: what is wrong with it, and the cure.
     pub fn error(&self, problem: impl Into<String>, cure: impl Into<String>) -> ProjectError {
         let path = self.path();
         let field = if path.is_empty() { "the whole file".to_string() } else { path };
@@ -149,6 +155,9 @@ impl<'a> Field<'a> {
     }
 
     /// The value as a finite number.
+    ///
+    /// # Errors
+    /// It is something else.
     pub fn number(&self) -> Result<f64, ProjectError> {
         match self.value {
             Json::Number(number) if number.is_finite() => Ok(*number),
@@ -158,6 +167,9 @@ impl<'a> Field<'a> {
     }
 
     /// The value as a whole number that fits 32 bits.
+    ///
+    /// # Errors
+    /// It is something else.
     pub fn whole_number(&self) -> Result<u32, ProjectError> {
         let number = self.number()?;
         if number.fract() == 0.0 && (0.0..=u32::MAX as f64).contains(&number) {
@@ -168,6 +180,9 @@ impl<'a> Field<'a> {
     }
 
     /// The value as text.
+    ///
+    /// # Errors
+    /// It is something else.
     pub fn text(&self) -> Result<&'a str, ProjectError> {
         match self.value {
             Json::Text(text) => Ok(text),
@@ -176,6 +191,9 @@ impl<'a> Field<'a> {
     }
 
     /// The value as N finite numbers.
+    ///
+    /// # Errors
+    /// It is something else.
     pub fn numbers<const N: usize>(&self) -> Result<[f64; N], ProjectError> {
         let wrong_type = || self.type_error(&format!("a list of {N} numbers"));
         let Json::List(list) = self.value else { return Err(wrong_type()) };
@@ -187,6 +205,9 @@ impl<'a> Field<'a> {
     }
 
     /// The value as N lists of M finite numbers.
+    ///
+    /// # Errors
+    /// It is something else.
     pub fn rows<const N: usize, const M: usize>(&self) -> Result<[[f64; M]; N], ProjectError> {
         let wrong_type = || self.type_error(&format!("{N} rows of {M} numbers"));
         let Json::List(list) = self.value else { return Err(wrong_type()) };
@@ -198,6 +219,9 @@ impl<'a> Field<'a> {
     }
 
     /// The value as an object.
+    ///
+    /// # Errors
+    /// It is something else.
     pub fn object(&self) -> Result<Fields<'a>, ProjectError> {
         match self.value {
             Json::Object(entries) => Ok(Fields { file: self.file, path: self.path(), entries }),
@@ -207,7 +231,7 @@ impl<'a> Field<'a> {
 }
 
 impl<'a> Fields<'a> {
-    /// The field of this name; of duplicates, the last.
+    /// The field with this name; of duplicates, the last. `None` if there is none.
     pub fn get(&'a self, name: &'a str) -> Option<Field<'a>> {
         let (name, value) = self.entries.iter().rev().find(|(key, _)| key == name)?;
         Some(Field { file: self.file, value, parent: Some(self), name })
@@ -220,7 +244,10 @@ impl<'a> Fields<'a> {
         })
     }
 
-    /// An error for the first field that is not one of `allowed`.
+    /// Checks that all fields are among `allowed`.
+    ///
+    /// # Errors
+    /// The first field that is not.
     pub fn allow_only(&'a self, allowed: &[&str]) -> Result<(), ProjectError> {
         match self.iter().find(|(name, _)| !allowed.contains(name)) {
             None => Ok(()),
@@ -230,7 +257,7 @@ impl<'a> Fields<'a> {
         }
     }
 
-    /// An error about the object itself.
+    /// An error about the object itself: what is wrong with it, and the cure.
     pub fn error(&self, problem: impl Into<String>, cure: impl Into<String>) -> ProjectError {
         let field = if self.path.is_empty() { "the whole file".to_string() } else { self.path.clone() };
         ProjectError::Field { file: self.file.to_owned(), field, problem: problem.into(), cure: cure.into() }

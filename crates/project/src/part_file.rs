@@ -45,7 +45,7 @@ pub struct PartWriter {
 }
 
 impl PartWriter {
-    /// Creates a part.
+    /// Creates a part file, whose sections are appended next.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -63,7 +63,7 @@ impl PartWriter {
         self.out.write_all(bytes).map_err(|source| ProjectError::Write { file: self.file.clone(), source })
     }
 
-    /// Appends floats; returns their section.
+    /// Appends 32-bit floats; returns the section that they make up.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -71,7 +71,7 @@ impl PartWriter {
         self.write_words(numbers.into_iter().map(f32::to_bits))
     }
 
-    /// Appends integers; returns their section.
+    /// Appends 32-bit integers; returns the section that they make up.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -90,7 +90,7 @@ impl PartWriter {
         Ok(Section { first, count: (self.written - first) / 4 })
     }
 
-    /// Completes the part with its description.
+    /// Completes the part file with its description and its seal.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -117,7 +117,7 @@ pub struct PartFile {
 }
 
 impl PartFile {
-    /// Opens a part, reading all of it once to verify the seal.
+    /// Opens a part file, reading all of it once to verify its seal.
     ///
     /// # Errors
     /// It cannot be read, is not a part, or is incomplete.
@@ -165,7 +165,7 @@ impl PartFile {
         Ok(Self { file: file.to_owned(), description })
     }
 
-    /// Reads a section from its beginning.
+    /// Starts to read a section from its beginning.
     ///
     /// # Errors
     /// The file cannot be read.
@@ -186,7 +186,7 @@ pub struct NumberReader {
 }
 
 impl NumberReader {
-    /// The next `count` integers.
+    /// The next `count` integers of the section.
     ///
     /// # Errors
     /// There are fewer, or the file cannot be read.
@@ -199,7 +199,7 @@ impl NumberReader {
         Ok(words.iter().map(|word| u32::from_le_bytes(*word)).collect())
     }
 
-    /// The next `count` floats.
+    /// The next `count` floats of the section.
     ///
     /// # Errors
     /// There are fewer, or the file cannot be read.

@@ -17,7 +17,7 @@ pub(crate) struct ScenePath {
 }
 
 impl ScenePath {
-    /// The path of `scene` relative to the folder of `project`.
+    /// The path of `scene` relative to the folder of `project`; absolute if they share no folder.
     pub fn new(scene: &Path, project: &Path) -> Self {
         let path = relative_path(scene, project);
         let text = path.to_string_lossy().replace(std::path::MAIN_SEPARATOR, "/");

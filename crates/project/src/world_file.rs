@@ -70,7 +70,7 @@ impl WorldFile {
         Self::from_fields(&Field::root(file, &json).object()?)
     }
 
-    /// Describes the world of a `scene` that was loaded before.
+    /// Describes `world`, that of a `scene` which was loaded before.
     pub fn from_world(world: &World, scene: &Scene) -> Self {
         let embedded = scene.embedded_world.as_ref().map(|own| &own.environment);
         let environment = match &world.environment {
@@ -88,7 +88,7 @@ impl WorldFile {
         }
     }
 
-    /// An environment file alone, for light and backdrop.
+    /// The world of an environment file alone, for light and backdrop.
     pub fn from_environment_file(file: &Path) -> Self {
         Self { environment: EnvironmentChoice::File(file.into()), ..Self::default() }
     }

@@ -21,14 +21,14 @@ pub(crate) struct ColorAccumulator {
 }
 
 impl ColorAccumulator {
-    /// Adds a colour that counts by a weight ≥ 0.
+    /// Adds a linear RGB colour that counts with `weight` ≥ 0.
     pub fn add(&mut self, color: [f32; 3], weight: f32) {
         self.weight += weight;
         (0..3).for_each(|c| self.color[c] += weight * color[c]);
         self.square += weight * color.iter().map(|c| c * c).sum::<f32>();
     }
 
-    /// The statistics, if there are any colours.
+    /// The statistics of the colours so far; `None` if there are none.
     pub fn stats(&self) -> Option<ColorStats> {
         if self.weight <= 0.0 {
             return None;

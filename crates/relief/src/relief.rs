@@ -192,7 +192,7 @@ impl Relief {
         })
     }
 
-    /// The number of triangles of the hidden layer.
+    /// The number of triangles in layers behind the front one.
     pub fn hidden_triangles(&self) -> usize {
         self.triangles.iter().filter(|corners| self.vertices[corners[0] as usize].layer > 0).count()
     }

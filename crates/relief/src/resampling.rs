@@ -34,6 +34,9 @@ pub(crate) struct FrontLayer<'a> {
 impl FrontLayer<'_> {
     /// The colours of places in other views, where one shows them; in pixels that they share with an occluder, from
     /// the remaining light.
+    ///
+    /// # Errors
+    /// A view cannot be read, or `progress` asks to stop.
     pub fn collect_color_stats<E: Send>(
         &self,
         queries: &[TexelQuery],

@@ -43,7 +43,10 @@ pub(crate) struct Mattes {
 }
 
 impl Mattes {
-    /// Renders the mattes of a picture of `scene`.
+    /// Renders the mattes that `request` asks for of a picture of `scene`.
+    ///
+    /// # Errors
+    /// Errors of `source`, or the work was cancelled.
     pub fn render(
         scene: &Scene,
         mut source: impl MatteSource,

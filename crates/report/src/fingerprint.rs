@@ -23,7 +23,7 @@ impl Fingerprint {
         self
     }
 
-    /// Adds the debug form of a value.
+    /// Adds a value, in its debug form, to what is fingerprinted.
     pub fn add_debug(self, value: &dyn std::fmt::Debug) -> Self {
         self.add(format!("{value:?}").as_bytes())
     }

@@ -25,7 +25,7 @@ pub fn plain(value: f64) -> String {
     significant(value)
 }
 
-/// Seconds, as milliseconds below one.
+/// A time in seconds as text, in ms below one second.
 pub fn seconds(value: f64) -> String {
     match value {
         _ if value >= 1.0 || value == 0.0 => format!("{} s", significant(value)),
@@ -34,7 +34,7 @@ pub fn seconds(value: f64) -> String {
     }
 }
 
-/// Bytes in decimal units.
+/// A number of bytes as text, in decimal units.
 pub fn bytes(value: f64) -> String {
     match value {
         _ if value < 1e3 => format!("{} B", significant(value)),

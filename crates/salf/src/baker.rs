@@ -138,14 +138,17 @@ pub fn patches(
     Ok(of_block)
 }
 
-/// Samples that lie outside the domain, and so in no block.
+/// The given samples of the blocks outside the domain, block by block, row by row.
 pub fn outside_domain(patches: HashMap<IVec2, Vec<Sample>>) -> impl Iterator<Item = Samples> {
     let mut blocks: Vec<_> = patches.into_iter().collect();
     blocks.sort_by_key(|(corner, _)| (corner.y, corner.x));
     blocks.into_iter().map(|(_, patches)| Samples::from(patches))
 }
 
-/// Works on rows in parallel, in order of result, with progress and cancel.
+/// Maps `rows` by `work` in parallel, in order, and reports the share that is done.
+///
+/// # Errors
+/// [`Cancelled`] if `progress` asks to stop.
 pub fn map_rows<T: Sync, R: Send>(
     rows: &[T],
     progress: &dyn Progress,

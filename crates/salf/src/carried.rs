@@ -14,7 +14,7 @@ pub enum Carried {
 }
 
 impl Carried {
-    /// What a focus needs.
+    /// How finely carried light must be sampled for a focus: finely if gloss lets carried light obey the paint.
     pub fn for_focus(focus: &dyn SurfaceField<FocusOffset>) -> Self {
         if focus.affects_carried_light() { Self::Painted } else { Self::Standard }
     }

@@ -21,7 +21,7 @@ pub enum Density {
 }
 
 impl Density {
-    /// Rays a side of a cell.
+    /// The number of rays along each side of a cell.
     pub fn rays_per_side(self) -> usize {
         match self {
             Self::Coarse => Cell::SUBDIVISION / 2,
@@ -29,12 +29,12 @@ impl Density {
         }
     }
 
-    /// Rays of a cell, in the order of its sub-cells.
+    /// The number of rays of a cell; rays are in the order of its sub-cells.
     pub fn rays(self) -> usize {
         self.rays_per_side() * self.rays_per_side()
     }
 
-    /// The sub-cells that a ray represents, a bit each.
+    /// The sub-cells that ray `ray` represents, a bit each.
     pub fn sub_cells(self, ray: usize) -> u64 {
         let each = Cell::SUB_CELLS / self.rays();
         (u64::MAX >> (Cell::SUB_CELLS - each)) << (ray * each)
@@ -53,7 +53,7 @@ impl Cell {
         [every_second(k >> 1), every_second(k)]
     }
 
-    /// The first of the quadrants that some sub-cells, a bit each, lie in.
+    /// The number of the first quadrant, 0 to 3, in which some of `sub_cells` (a bit each) lie.
     pub fn quadrant(sub_cells: u64) -> u32 {
         sub_cells.trailing_zeros() / 16
     }
@@ -124,7 +124,8 @@ impl Domain {
     /// The largest cell, px.
     pub const BLOCK: i32 = 16;
 
-    /// A frame with a margin of at least `margin_px`.
+    /// A picture of `width` × `height` px with a margin of at least `margin_px` on every side, a whole number of
+    /// blocks.
     pub fn new(width: u32, height: u32, margin_px: f64) -> Self {
         let margin = (margin_px / Self::BLOCK as f64).ceil() as i32 * Self::BLOCK;
         Self { size: IVec2::new(width as i32, height as i32), margin }
@@ -146,17 +147,17 @@ impl Domain {
         (0..rows).map(|row| of_row(row).collect()).collect()
     }
 
-    /// How many blocks there are in a row, and rows of them.
+    /// The number of blocks in a row, and of rows of them.
     pub fn blocks(&self) -> IVec2 {
         (self.extent() + Self::BLOCK - 1) / Self::BLOCK
     }
 
-    /// The upper left corner of a block, by its column and row.
+    /// The upper left corner, px, of a block, by its column and row.
     pub fn corner_of_block(&self, block: IVec2) -> IVec2 {
         block * Self::BLOCK - self.margin
     }
 
-    /// The cells of a block.
+    /// The cells that a block is divided into.
     pub fn cells_of_block(&self, block: IVec2) -> Vec<Cell> {
         let mut cells = Vec::new();
         self.split(Cell { corner: self.corner_of_block(block), side: Self::BLOCK }, &mut cells);
@@ -169,7 +170,7 @@ impl Domain {
         block.clamp(IVec2::ZERO, self.blocks() - 1)
     }
 
-    /// The cell that `pixel`, of the frame or its margin, lies in.
+    /// The cell that `pixel`, of the picture or its margin, lies in.
     pub fn cell_around(&self, pixel: IVec2) -> Cell {
         let block = (pixel + self.margin) / Self::BLOCK;
         let mut cell = Cell { corner: block * Self::BLOCK - self.margin, side: Self::BLOCK };

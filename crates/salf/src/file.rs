@@ -59,7 +59,7 @@ pub struct SalfFile {
 }
 
 impl SalfFile {
-    /// Writes the file.
+    /// Writes the file, with a checksum (SHA-256) at its end; the form is described in the book.
     ///
     /// # Errors
     /// Errors of `to`.
@@ -77,7 +77,7 @@ impl SalfFile {
         to.inner.flush()
     }
 
-    /// Reads the file and checks it.
+    /// Reads a file and checks its form, its checksum and all values.
     ///
     /// # Errors
     /// [`SalfFileError`]: what is wrong with the file, or the error of `from`.

@@ -14,7 +14,7 @@ fn mix(x: u32, y: u32, z: u32) -> [u32; 3] {
     v
 }
 
-/// Three uniform numbers in [0, 1).
+/// Three uniform numbers in [0, 1), which depend on nothing but `x`, `y` and `z`.
 pub fn jitter(x: u32, y: u32, z: u32) -> [f64; 3] {
     mix(x, y, z).map(|k| k as f64 / 4294967296.0)
 }
@@ -32,7 +32,7 @@ pub struct Net {
 }
 
 impl Net {
-    /// Of 2 to `bits` cells a side; another one for each seed.
+    /// A net of 2 to the power of `bits` cells a side; another one for each seed.
     pub fn new(bits: u32, seed: [u32; 2]) -> Self {
         let [a, b, _] = mix(seed[0], seed[1], u32::MAX);
         let digits = u32::MAX << (u32::BITS - bits);
@@ -45,7 +45,7 @@ impl Net {
         Self { seed: [0, bits], bits, shift: sequence(k) }
     }
 
-    /// The place in a cell, in [0, 1)².
+    /// The random place in the cell in row `row` and column `column`, in [0, 1)² of the cell.
     pub fn place(&self, row: usize, column: usize) -> [f64; 2] {
         let [u, v, _] = mix(self.seed[0], self.seed[1], (row << self.bits | column) as u32);
         // The digits of the other coordinate, in reverse, and what is random behind them.

@@ -37,7 +37,7 @@ impl BakeOptions {
     /// each px of tolerance.
     pub const EVEN_PER_PX: f64 = 0.05;
 
-    /// Options whose margin and resolution suit `focus`.
+    /// Options whose margin (px) and resolution of carried light suit `focus`.
     pub fn for_focus(tracer: &Tracer, camera: &Camera, focus: &dyn SurfaceField<FocusOffset>) -> Self {
         let view = View::new(camera, Self::TOLERANCE_PX);
         let margin_px = painted_margin_px(tracer, &view, focus);

@@ -66,12 +66,12 @@ pub struct SampleFocus<'a> {
 }
 
 impl<'a> SampleFocus<'a> {
-    /// How a paint focuses samples.
+    /// Looks up how `paint` focuses samples.
     pub fn new(paint: &'a dyn SurfaceField<FocusOffset>) -> Self {
         Self { paint, affects_carried: paint.affects_carried_light() }
     }
 
-    /// How it focuses what is sent from an address.
+    /// How the paint focuses the light that is sent from an address.
     pub fn offset(&self, address: Address) -> FocusOffset {
         if address.is_carried && !self.affects_carried {
             return FocusOffset::STANDARD;
@@ -95,7 +95,7 @@ pub enum Visibility {
 }
 
 impl Visibility {
-    /// What these cells make up, one word of them or four.
+    /// The visibility that the bits of these cells make up: 1 word for 8 × 8 cells, 4 words for 16 × 16.
     pub fn from_words(words: &[u64]) -> Self {
         match words.iter().all(|&word| word == u64::MAX) {
             true => Self::Open,
@@ -103,7 +103,7 @@ impl Visibility {
         }
     }
 
-    /// The part that is visible from both; `None` if it is empty.
+    /// The part of the aperture that is visible in both; `None` if it is empty.
     pub fn intersection(&self, other: &Self) -> Option<Self> {
         let (Self::Cells { words: a }, Self::Cells { words: b }) = (self, other) else {
             return Some(if *self == Self::Open { other.clone() } else { self.clone() });
@@ -116,12 +116,12 @@ impl Visibility {
         words.iter().any(|&word| word != 0).then_some(Self::Cells { words })
     }
 
-    /// Cells a side of a field of cells.
+    /// The number of cells a side (8 or 16) of a field of cells.
     pub fn side_of(words: &[u64]) -> usize {
         8 * words.len().isqrt()
     }
 
-    /// The bits of `row` of a field of cells, column 0 the lowest.
+    /// The bits of row `row` of a field of cells, column 0 the lowest.
     pub fn row(words: &[u64], row: usize) -> u64 {
         let side = Self::side_of(words);
         let rows_a_word = 64 / side;

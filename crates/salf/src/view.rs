@@ -8,7 +8,9 @@ use trace::{Beam, Ray, Square};
 
 /// A camera with its axes in the world.
 pub struct View<'a> {
+    /// The camera.
     pub camera: &'a Camera,
+    /// Its optics: how it focuses.
     pub optics: Optics,
     /// Draws places of the aperture that light passes.
     pub open_aperture: ApertureSampler,
@@ -25,6 +27,7 @@ pub struct View<'a> {
 }
 
 impl<'a> View<'a> {
+    /// The view of a camera, in which positions may be wrong by `tolerance_px`.
     pub fn new(camera: &'a Camera, tolerance_px: f64) -> Self {
         let optics = camera.optics();
         Self {
@@ -45,7 +48,7 @@ impl<'a> View<'a> {
         Self { carried, ..self }
     }
 
-    /// The chief ray through a pixel position; its t is the depth z.
+    /// The chief ray (world) through a pixel position; its t is the depth z in scene units.
     #[inline]
     pub fn chief_ray(&self, pixel: DVec2) -> Ray {
         let q = self.camera.q_from_pixel(pixel) * self.optics.tan_half_yfov;
@@ -60,7 +63,7 @@ impl<'a> View<'a> {
         Beam { origin: self.eye, axis: self.camera.world_direction(DVec3::Z), edges }
     }
 
-    /// The world position of the aperture point R·u.
+    /// The world position of the aperture point R·u; `u` in [−1, 1]².
     pub fn aperture_point(&self, u: DVec2) -> DVec3 {
         self.eye + self.optics.aperture_radius * (u.x * self.right + u.y * self.up)
     }
@@ -71,7 +74,8 @@ impl<'a> View<'a> {
         Square { center: self.eye, right: radius * self.right, up: radius * self.up }
     }
 
-    /// The circle of confusion that the ordinary lens makes of a point, px.
+    /// The diameter, px, of the circle of confusion that the unpainted lens makes of a point with this inverse depth
+    /// (1/length).
     pub fn circle_px(&self, inverse_depth: f64) -> f64 {
         self.optics.circle_of_confusion_px(self.optics.standard_kappa(inverse_depth))
     }

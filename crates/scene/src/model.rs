@@ -170,26 +170,26 @@ pub struct SceneCamera {
 }
 
 impl Scene {
-    /// The world positions of a triangle's corners.
+    /// The world positions of the corners of the triangle with this index.
     #[inline]
     pub fn corners(&self, triangle: u32) -> [DVec3; 3] {
         let [a, b, c] = self.triangles[triangle as usize].vertices;
         [self.positions[a as usize], self.positions[b as usize], self.positions[c as usize]]
     }
 
-    /// The part that a triangle belongs to.
+    /// The part that the triangle with this index belongs to.
     #[inline]
     pub fn part_of(&self, triangle: u32) -> &Part {
         &self.parts[self.triangles[triangle as usize].part as usize]
     }
 
-    /// The material of a triangle.
+    /// The material of the triangle with this index.
     #[inline]
     pub fn material_of(&self, triangle: u32) -> &Material {
         &self.materials[self.part_of(triangle).material as usize]
     }
 
-    /// Whether a triangle's back face is hidden.
+    /// Whether the back face of the triangle with this index is hidden.
     pub fn culls_back_face(&self, triangle: u32) -> bool {
         self.material_of(triangle).culls_back_faces(self.back_faces)
     }

@@ -48,7 +48,7 @@ pub enum Backdrop {
 const NEUTRAL_GREY: f32 = 0.21;
 
 impl World {
-    /// The same radiance everywhere, as light and as backdrop.
+    /// A world of the same radiance (linear RGB) everywhere, as light and as backdrop.
     pub fn uniform(radiance: Vec3) -> Self {
         Self {
             environment: Environment::Uniform(radiance),
@@ -59,7 +59,7 @@ impl World {
         }
     }
 
-    /// A soft neutral studio, with a neutral grey backdrop.
+    /// A soft neutral studio for scenes without any light, with a neutral grey backdrop.
     pub fn studio() -> Self {
         Self {
             environment: Environment::Map(EnvironmentMap::studio()),
@@ -68,7 +68,7 @@ impl World {
         }
     }
 
-    /// Radiance that arrives from a direction (unit).
+    /// The radiance (linear RGB) that arrives from a direction (world, unit).
     pub fn radiance(&self, direction: DVec3) -> Vec3 {
         let radiance = match &self.environment {
             Environment::Uniform(radiance) => *radiance,
@@ -77,7 +77,7 @@ impl World {
         radiance * self.strength
     }
 
-    /// The radiance that the camera sees in a direction (unit) without a surface.
+    /// The radiance (linear RGB) that the camera sees in a direction (world, unit) without a surface.
     pub fn backdrop_radiance(&self, direction: DVec3) -> Vec3 {
         match self.backdrop {
             Backdrop::Environment => self.radiance(direction),
@@ -85,7 +85,7 @@ impl World {
         }
     }
 
-    /// A direction of the world in the environment's own axes.
+    /// A world direction in the environment's own axes, which are turned.
     pub fn environment_from_world(&self, direction: DVec3) -> DVec3 {
         glam::DQuat::from_rotation_y(-self.rotation) * direction
     }

@@ -38,6 +38,9 @@ pub struct VerifiedError {
 
 impl Verification {
     /// The error of a preview against the estimate. `None` if there is no estimate yet, or the preview shows something else or is coarse.
+    ///
+    /// # Errors
+    /// The pictures cannot be compared.
     pub fn error_of(
         &self,
         preview: &Preview,

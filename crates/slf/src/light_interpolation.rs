@@ -177,7 +177,7 @@ impl<M: IncidentSampler> QuadtreeInterpolator<'_, M> {
 }
 
 impl LightVisibility {
-    /// Whether some lights of a kind are visible and others are not.
+    /// Whether some of the lights of kind `kind` above the horizon are visible and others are not.
     pub fn is_mixed(&self, kind: usize) -> bool {
         self.visible[kind] != 0 && self.visible[kind] != self.above_horizon[kind]
     }

@@ -60,7 +60,7 @@ const BUCKETS: usize = 12;
 const MAX_SPLIT_DEPTH: usize = 32;
 
 impl LightTree {
-    /// Builds the tree over lights that have power.
+    /// Builds the tree over lights that have power; lights keep their numbers in `lights`.
     pub fn new(lights: &[LightBounds]) -> Self {
         let mut tree = Self { nodes: Vec::new(), trails: vec![0; lights.len()] };
         let mut lights_left: Vec<u32> = (0..lights.len() as u32).collect();
@@ -106,7 +106,8 @@ impl LightTree {
         }
     }
 
-    /// The probability with which [`Self::draw`] chooses a light.
+    /// The probability, in [0, 1], with which [`Self::draw`] chooses the light with this number for a position
+    /// (world).
     pub fn probability(&self, position: DVec3, number: usize) -> f64 {
         let (mut node, mut probability, mut trail) = (0, 1.0, self.trails[number]);
         while let NodeKind::Inner(second) = self.nodes[node].kind {

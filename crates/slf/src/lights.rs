@@ -55,6 +55,7 @@ pub(crate) struct DrawCounts {
 const MAX_PUNCTUAL_ENUMERATED: usize = 3;
 
 impl Lights {
+    /// The lights of a scene and its world, prepared for sampling.
     pub fn new(scene: &Scene, world: &World) -> Self {
         let (low, high) = scene.bounds();
         let outside_distance = 2.0 * (high - low).length();
@@ -62,7 +63,7 @@ impl Lights {
         Self { emitters, environment, punctual: scene.lights.len(), outside_distance }
     }
 
-    /// Number of punctual lights.
+    /// The number of punctual lights in the scene.
     pub fn punctual_count(&self) -> usize {
         self.punctual
     }
@@ -101,7 +102,8 @@ impl Lights {
         }
     }
 
-    /// Samples one direction of the environment and one point on an emitter.
+    /// Samples one direction of the environment and one point on an emitter, for light that arrives at `position`.
+    /// `draw` makes uniform numbers in [0, 1); `visit` gets each sample that sends light.
     pub fn sample_areas(
         &self,
         scene: &Scene,

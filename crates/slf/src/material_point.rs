@@ -19,7 +19,7 @@ pub(crate) struct MaterialPoint {
 }
 
 impl MaterialPoint {
-    /// Evaluates the material at a point.
+    /// Evaluates the material at a point: its surface with all textures looked up, and its frame.
     pub fn new(scene: &Scene, point: SurfacePoint, scattering: Scattering) -> Self {
         let material = scene.part_of(point.triangle).material;
         Self {

@@ -52,6 +52,7 @@ pub(crate) struct MediumStack {
 }
 
 impl Media {
+    /// The media inside the scene's solid materials.
     pub fn from_scene(scene: &Scene) -> Self {
         let mut numbers = HashMap::from([(1.0f64.to_bits(), 0u16)]);
         let mut iors = vec![1.0];
@@ -87,12 +88,12 @@ impl Media {
         Self { interiors, iors, interfaces }
     }
 
-    /// Whether a material refracts each colour differently.
+    /// Whether a material, by its index in the scene, refracts each colour differently.
     pub fn disperses(&self, material: u32) -> bool {
         self.interiors[material as usize].disperses
     }
 
-    /// The interface that a path meets on the front or the back of a material.
+    /// The interface that a path meets on the front or the back of a material, given the bodies that it is inside of.
     pub fn interface(&self, material: u32, inside: &MediumStack, is_front: bool) -> &Interface {
         let own = self.ior(material, inside);
         let mut around = *inside;
@@ -120,7 +121,8 @@ impl Media {
         })
     }
 
-    /// Crosses a surface of a material, into its body or out of it.
+    /// Crosses a surface of a material, into its body (`enters`) or out of it. Has no effect if the material has no
+    /// body.
     pub fn cross(&self, inside: &mut MediumStack, material: u32, enters: bool) {
         if !self.interiors[material as usize].is_solid {
             return;

@@ -45,7 +45,8 @@ impl OpenSky {
         Self { values }
     }
 
-    /// Irradiance/π at a unit normal, in the world that the table was made for.
+    /// Irradiance/π, linear RGB, of an unoccluded surface with this unit normal, in the world that the table was made
+    /// for.
     pub fn at(&self, world: &World, normal: DVec3) -> DVec3 {
         self.values.radiance(world.environment_from_world(normal)).as_dvec3() * f64::from(world.strength)
     }

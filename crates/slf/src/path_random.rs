@@ -22,13 +22,13 @@ pub(crate) struct PathRandom {
 const SOBOL_DIMENSIONS: u32 = 24;
 
 impl PathRandom {
-    /// The seed for light from a point toward an eye.
+    /// The seed for light from a point toward an eye at `eye` (world): the same for the same inputs.
     pub fn seed(point: SurfacePoint, eye: DVec3) -> u64 {
         let numbers = point.barycentric.to_array().into_iter().chain(eye.to_array());
         numbers.fold(mix(u64::from(point.triangle)), |state, number| mix(state ^ number.to_bits()))
     }
 
-    /// The stream of path `index` of a seed.
+    /// The stream of path `index` of a seed: Owen-scrambled Sobol' points.
     pub fn new(seed: u64, index: u32) -> Self {
         // The Sobol' sequence has 2¹⁶ points here; beyond them another scramble is used.
         let scramble = mix(seed ^ u64::from(index >> 16));
@@ -41,6 +41,7 @@ impl PathRandom {
         }
     }
 
+    /// The next uniform number in [0, 1).
     pub fn next(&mut self) -> f64 {
         if self.dimension < SOBOL_DIMENSIONS {
             let within = self.dimension % 4;
@@ -54,10 +55,12 @@ impl PathRandom {
         (self.state >> 11) as f64 / (1u64 << 53) as f64
     }
 
+    /// The next two uniform numbers in [0, 1).
     pub fn next2(&mut self) -> [f64; 2] {
         std::array::from_fn(|_| self.next())
     }
 
+    /// The next three uniform numbers in [0, 1).
     pub fn next3(&mut self) -> [f64; 3] {
         std::array::from_fn(|_| self.next())
     }

@@ -68,7 +68,7 @@ pub struct PhotographLight {
 }
 
 impl PhotographLight {
-    /// How each photograph renders light, by view.
+    /// How each photograph renders light, in the order of the views.
     pub fn exposures(&self) -> &[Exposure] {
         &self.exposures
     }
@@ -78,7 +78,7 @@ impl PhotographLight {
         self.displacements.iter().map(Displacement::max_px).collect()
     }
 
-    /// How far a point was observed, in [0, 1]: 1 fully, 0 filled in from around.
+    /// How far a point was observed, in [0, 1]: 1 fully, 0 not at all (its light is filled in from around).
     pub fn observed_share(&self, point: SurfacePoint) -> f32 {
         self.interpolate(point, |texel| self.observed_share[texel])
     }
@@ -93,7 +93,7 @@ impl PhotographLight {
             .unwrap_or(0)
     }
 
-    /// View-independent radiance of a point.
+    /// View-independent radiance of a point, linear RGB.
     pub fn constant(&self, point: SurfacePoint) -> Vec3 {
         self.grid.around(point).map_or(Vec3::ZERO, |around| {
             around.iter().map(|&(texel, share)| self.constant[texel as usize] * share).sum()

@@ -132,7 +132,7 @@ pub(crate) struct PatchRayLink {
 }
 
 impl Transport {
-    /// Prepares the scene in `tracer`, lit by a world.
+    /// Prepares to trace light paths in the scene of `tracer`, lit by `world`. No irradiance is cached.
     pub fn new(tracer: Arc<Tracer>, world: World, options: TransportOptions) -> Self {
         let scene = tracer.scene();
         let (lights, media) = (Lights::new(scene, &world), Media::from_scene(scene));
@@ -155,7 +155,8 @@ impl Transport {
         Self { bounce_limit: limit, ..self }
     }
 
-    /// Uses cached irradiance of the same scene and world, trusting it.
+    /// Uses cached irradiance of the same scene and world, trusting it: paths end on it. Fast, with the cache's
+    /// error.
     pub fn with_irradiance(self, irradiance: Arc<Irradiance>) -> Self {
         Self { cache_mode: CacheMode::Trusted(irradiance), ..self }
     }

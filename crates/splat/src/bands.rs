@@ -15,12 +15,12 @@ const SLOT_ROWS: u32 = BLOCK_PX as u32;
 pub struct Work(Vec<u64>);
 
 impl Work {
-    /// None, in a picture of this height.
+    /// No work, in a picture of `height` rows.
     pub fn empty(height: u32) -> Self {
         Self(vec![0; height.div_ceil(SLOT_ROWS).max(1) as usize])
     }
 
-    /// More of it at a row, which may lie outside of the picture.
+    /// Adds work of this cost at a pixel row, which may lie outside of the picture.
     pub fn add(&mut self, row: i32, cost: u64) {
         let slot = (row.max(0) as usize / SLOT_ROWS as usize).min(self.0.len() - 1);
         self.0[slot] += cost;

@@ -187,6 +187,7 @@ impl<W: Word> PartialEq for Level<W> {
 /// A pyramid of accumulators.
 #[derive(Clone, PartialEq)]
 pub struct Accumulator<W: Word> {
+    /// The levels, each of half the columns and rows of the one before.
     pub levels: Vec<Level<W>>,
 }
 
@@ -214,14 +215,15 @@ impl<W: Word> Level<W> {
 
 #[cfg(test)]
 impl<W: Word> Level<W> {
-    /// All pixels, border included, and the totals of the rows.
+    /// All pixels, border included, and the totals of the rows, both row by row.
     pub fn all(&self) -> (&[Pixel<W>], &[i64]) {
         (&self.cells, &self.totals)
     }
 }
 
 impl<W: Word> Accumulator<W> {
-    /// An empty one, of `levels` levels, for a picture of this size.
+    /// An empty accumulator of `levels` levels, for a picture of `width` × `height` px; each level has half the
+    /// columns and rows of the one before.
     pub fn new(width: usize, height: usize, levels: usize) -> Self {
         let level = |k: usize| {
             let [width, height] = [width, height].map(|side| side.div_ceil(1 << k));
@@ -237,7 +239,7 @@ impl<W: Word> Accumulator<W> {
         Self { levels: (0..levels).map(level).collect() }
     }
 
-    /// Bytes in memory.
+    /// The memory that it takes, in bytes.
     pub fn bytes(&self) -> usize {
         self.levels.iter().map(|level| size_of_val(&*level.cells) + size_of_val(&*level.totals)).sum()
     }
@@ -279,6 +281,7 @@ impl<W: Word> Accumulator<W> {
 
 /// Some rows of each level, to draw on.
 pub struct Canvas<'a, W> {
+    /// The rows of each level, finest first.
     pub levels: Vec<Rows<'a, W>>,
 }
 
@@ -321,7 +324,7 @@ impl<W: Word> Rows<'_, W> {
         }
     }
 
-    /// A position (1/4096 px) no further outside than needs be told apart.
+    /// The position `x`, in 1/4096 px, moved no further outside than positions need to be told apart.
     #[inline(always)]
     pub fn clamped(&self, x: i32) -> i32 {
         x.clamp(-4 * PIXEL, (self.width as i32 + 4) << POSITION_BITS)
@@ -340,7 +343,7 @@ impl<W: Word> Rows<'_, W> {
         }
     }
 
-    /// Whether a column is the picture's, or the border's before it.
+    /// Whether a column is one of the picture's, or the border's before it (−1).
     #[inline(always)]
     pub fn has_column(&self, column: i32) -> bool {
         (-1..self.width as i32).contains(&column)

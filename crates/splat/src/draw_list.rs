@@ -14,8 +14,11 @@ pub const AHEAD: usize = 24;
 
 /// The nodes to sum, with lens and paint.
 pub struct Scene<'a> {
+    /// What nodes are drawn with.
     pub pen: Pen<'a>,
+    /// The lens, which decides where nodes are drawn and how large.
     pub lens: &'a LensInUse,
+    /// The focus of the nodes.
     pub paint: &'a Paint,
     /// Pixel columns and rows of the picture.
     pub size: [u32; 2],
@@ -120,14 +123,16 @@ pub struct Spans(Vec<Range<u32>>);
 /// A node that is drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DrawnNode {
+    /// The node's index.
     pub index: u32,
+    /// Where it is drawn, and how large.
     pub placed: Placed,
     /// The first pixel row that its light may reach, and the one behind the last.
     rows: [u32; 2],
 }
 
 impl DrawnNode {
-    /// The pixel rows that its light may reach.
+    /// The pixel rows that the node's light may reach.
     #[inline(always)]
     pub fn rows(&self) -> Range<u32> {
         self.rows[0]..self.rows[1]
@@ -151,7 +156,7 @@ impl BlockList {
         self.cost * part.len() as u64 / self.drawn.len().max(1) as u64
     }
 
-    /// Bytes in memory.
+    /// The memory that it takes, in bytes.
     pub fn bytes(&self) -> usize {
         self.drawn.capacity() * size_of::<DrawnNode>()
     }
@@ -162,7 +167,7 @@ impl BlockList {
 pub struct Changes(pub Vec<BlockChanges>);
 
 impl Changes {
-    /// Makes them those of some blocks that were painted otherwise before.
+    /// Sets the changes to those of some blocks; each is given with its paint of before (`None`: it had none).
     pub fn update(&mut self, scene: &Scene, blocks: &[(usize, Option<&[NodeFocus]>)]) {
         self.0.resize_with(blocks.len(), BlockChanges::default);
         let room = <(Spans, [BlockList; 2])>::default;
@@ -180,7 +185,7 @@ impl Changes {
         );
     }
 
-    /// The rows that they change.
+    /// The pixel rows that the changes may reach.
     pub fn rows(&self) -> Range<u32> {
         hull(self.0.iter().filter(|block| !block.is_empty()).map(|block| block.rows.clone()))
     }
@@ -192,7 +197,7 @@ impl Changes {
         [self.rows(), hull(all().map(columns).filter(|columns| !columns.is_empty()))]
     }
 
-    /// Bytes in memory.
+    /// The memory that they take, in bytes.
     pub fn bytes(&self) -> usize {
         let drawn: usize = self.0.iter().map(|block| block.removed.capacity() + block.added.capacity()).sum();
         drawn * size_of::<DrawnNode>()
@@ -202,7 +207,9 @@ impl Changes {
 /// What is no longer drawn of a block, and what is now: each in the order of the nodes.
 #[derive(Clone, Debug, Default)]
 pub struct BlockChanges {
+    /// The nodes that are no longer drawn, as they were drawn.
     pub removed: Vec<DrawnNode>,
+    /// The nodes that are drawn now.
     pub added: Vec<DrawnNode>,
     /// The pixel rows that their light may reach.
     pub rows: Range<u32>,
@@ -243,18 +250,18 @@ impl BlockChanges {
         self.cost = old.cost_of(removed) + new.cost_of(added);
     }
 
-    /// The first node that changes.
+    /// The number of the first node that changes; `None` if none does.
     pub fn first(&self) -> Option<u32> {
         self.removed.first().or(self.added.first()).map(|drawn| drawn.index)
     }
 
-    /// Whether nothing does.
+    /// Whether nothing changes in the block.
     pub fn is_empty(&self) -> bool {
         self.first().is_none()
     }
 }
 
-/// The range from the first start to the last end.
+/// The range from the least start to the greatest end; empty if there are no ranges.
 pub fn hull(ranges: impl Iterator<Item = Range<u32>>) -> Range<u32> {
     ranges.reduce(|a, b| a.start.min(b.start)..a.end.max(b.end)).unwrap_or(0..0)
 }

@@ -33,7 +33,7 @@ pub fn floored(x: f64) -> u32 {
     (x.floor() + SIZE).to_bits() as u32
 }
 
-/// ⌊√x⌋.
+/// ⌊√x⌋, exact.
 #[inline(always)]
 pub fn integer_sqrt(x: u32) -> u32 {
     (x as f64).sqrt() as u32
@@ -65,7 +65,7 @@ pub struct Reciprocal {
 }
 
 impl Reciprocal {
-    /// Of a number from 1 to 2¹⁸.
+    /// The reciprocal of a number from 1 to 2¹⁸.
     #[inline(always)]
     pub fn new(number: u32) -> Self {
         let size = number.ilog2();
@@ -83,14 +83,14 @@ pub struct Divisor {
 }
 
 impl Divisor {
-    /// Of a number ≥ 1.
+    /// A divisor, which must be ≥ 1.
     #[inline(always)]
     pub fn new(divisor: u32) -> Self {
         let shift = 16u32.saturating_sub(divisor.leading_zeros());
         Self { shift, reciprocal: (1 << 31) / (divisor >> shift) }
     }
 
-    /// x·2¹⁴ / divisor, toward zero; its size at most 2¹⁵.
+    /// x·2¹⁴ / divisor, rounded toward zero and limited to ±2¹⁵.
     #[inline(always)]
     pub fn divide(self, x: i32) -> i32 {
         let size = mul_shift(x.unsigned_abs() >> self.shift, self.reciprocal, 17).min(1 << 15) as i32;

@@ -24,7 +24,7 @@ impl Tolerance {
     /// For interactive viewing.
     pub const VIEWING: Self = Self { share_of_circle: 0.375 };
 
-    /// Nodes of `px` pixels where the circle of confusion is 16.
+    /// The tolerance by which nodes are up to `px` pixels large where the circle of confusion is 16 px.
     pub fn px(px: f64) -> Self {
         Self { share_of_circle: px / 16.0 }
     }
@@ -63,6 +63,7 @@ impl NodeFocus {
     /// Nothing is painted.
     pub const STANDARD: Self = Self { t: 1.0, anchor: 0.0, t_apart: 0.0, anchor_apart: 0.0 };
 
+    /// The focus as nodes have it: in 32-bit floats, with t limited and without subnormal numbers.
     pub fn new(offset: FocusOffset) -> Self {
         let t = (offset.t as f32).clamp(-LARGEST_OFFSET, LARGEST_OFFSET);
         Self { t, anchor: offset.anchor as f32, ..Self::STANDARD }.without_subnormals()
@@ -224,6 +225,7 @@ pub const ALIKE: f32 = 0.125;
 pub const SHARP: u32 = 16;
 
 impl LensInUse {
+    /// A lens with an aperture of this shape; `tolerance` decides which nodes are drawn and how finely.
     pub fn new(optics: Optics, shape: &Shape, tolerance: Tolerance) -> Self {
         let deviation = (shape.variance.min_element()).sqrt();
         let smallest = |finer: f64, wider: f64| {
@@ -249,7 +251,7 @@ impl LensInUse {
         }
     }
 
-    /// The lens's aperture radius as a share of the baked one, ≤ 1.
+    /// The lens's aperture radius as a share of the baked one (`baked_radius`, scene units), in [0, 1].
     pub fn stop(optics: &Optics, baked_radius: f64) -> f64 {
         if baked_radius > 0.0 { (optics.aperture_radius / baked_radius).min(1.0) } else { 1.0 }
     }
@@ -287,7 +289,7 @@ impl LensInUse {
         radius.unsigned_abs() >= self.smallest_radius[fineness as usize][level as usize]
     }
 
-    /// Whether a node that was `placed` may replace all nodes below it.
+    /// Whether a node that was `placed` with this focus may be drawn in place of all nodes below it.
     #[inline(always)]
     pub fn may_merge(&self, node: &SplatNode, focus: &NodeFocus, placed: Placed) -> bool {
         if focus.t_apart >= LARGEST_OFFSET {

@@ -44,7 +44,7 @@ impl Scale {
         [dim, Quanta::new(self.bright_bits, 64, brightest)]
     }
 
-    /// For light that converges more.
+    /// The next coarser scale, for light that converges more; `None` where there is none.
     pub fn coarser(self) -> Option<Self> {
         let dim_bits = self.dim_bits - Self::STEP;
         (dim_bits > 0).then_some(Self { dim_bits, ..self })
@@ -134,7 +134,7 @@ impl SplatNode {
         self.child_count == 0
     }
 
-    /// The nodes that it replaces, which come after it.
+    /// The indices of the nodes that it replaces, which come after it.
     #[inline(always)]
     pub fn children(&self) -> Range<u32> {
         self.first_child..self.first_child + u32::from(self.child_count)
@@ -146,7 +146,7 @@ impl SplatNode {
         Self { first_child: self.first_child + nodes, cells, ..self }
     }
 
-    /// A sample of a large cell as samples of cells of `level`.
+    /// A sample of a large cell, divided into samples of cells of level `level` (side 2 to its power, px).
     pub fn pieces(&self, level: u8) -> impl Iterator<Item = Self> + '_ {
         let finer = self.level - level;
         let count = 1 << finer;
@@ -166,22 +166,27 @@ pub struct Nodes {
     pub blocks: Vec<Range<u32>>,
     /// The nodes without a parent.
     pub roots: Vec<Range<u32>>,
+    /// All nodes, block by block, each before those that it replaces.
     pub nodes: Vec<SplatNode>,
     cells: Vec<Cells>,
     /// The sample of each node that is one.
     pub sample_of_node: Vec<u32>,
+    /// The node of each sample.
     pub node_of_sample: Vec<u32>,
+    /// The block of each node.
     pub block_of_node: Vec<u32>,
+    /// The integers that light is summed in.
     pub scale: Scale,
     /// The picture's middle, 1/4096 px.
     pub middle: [i32; 2],
     /// The largest radiance, at least 1.
     pub brightest: f64,
+    /// Whether any sample needs wide integers.
     pub has_bright: bool,
 }
 
 impl Nodes {
-    /// Reads a light field. `None` if a sample is too bright to be summed.
+    /// The nodes of a light field, in integers of this scale. `None` if a sample is too bright to be summed.
     pub fn new(salf: &Salf, scale: Scale) -> Option<Self> {
         Self::from_corner(salf, scale, [0; 2])
     }
@@ -239,7 +244,7 @@ impl Nodes {
         self.scale.quanta(self.brightest)
     }
 
-    /// Changes to another scale.
+    /// Changes the integers to another scale.
     pub fn rescale(&mut self, scale: Scale) {
         if self.scale == scale {
             return;
@@ -295,7 +300,7 @@ impl Nodes {
         [0.0, 0.0, 0.0, node.light[3] * (finer as f32).exp2()]
     }
 
-    /// Bytes in memory.
+    /// The memory that they take, in bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(&*self.nodes)
             + size_of_val(&*self.cells)
@@ -304,18 +309,18 @@ impl Nodes {
             + size_of_val(&*self.block_of_node)
     }
 
-    /// The pixel row that the centre of a node lies in.
+    /// The pixel row in which the centre of the node with this index lies.
     pub fn row_of(&self, index: u32) -> i32 {
         self.nodes[index as usize].center[1] >> POSITION_BITS
     }
 
-    /// The nodes of a block.
+    /// The nodes of the block with this number.
     pub fn block_nodes(&self, block: usize) -> &[SplatNode] {
         let range = &self.blocks[block];
         &self.nodes[range.start as usize..range.end as usize]
     }
 
-    /// The visibility of a node; `None` if it sees the whole aperture.
+    /// Which cells of the aperture see the node; `None` if it sees the whole aperture.
     #[inline(always)]
     pub fn cells(&self, node: &SplatNode) -> Option<&Cells> {
         self.cells.get(node.cells as usize)

@@ -11,6 +11,7 @@ use scene::SurfaceField;
 /// Focus of all nodes, block by block; a block on which nothing is painted has none.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Paint {
+    /// By block: the focus of its nodes.
     pub blocks: Vec<Option<Box<[NodeFocus]>>>,
 }
 
@@ -18,7 +19,7 @@ pub struct Paint {
 pub static STANDARD: Paint = Paint { blocks: Vec::new() };
 
 impl Paint {
-    /// Looks up the focus of every sample.
+    /// Looks up the focus of every sample in `focus`, and combines it for the nodes above.
     pub fn sample(nodes: &Nodes, samples: &Samples, focus: &dyn SurfaceField<FocusOffset>) -> Self {
         let focus = SampleFocus::new(focus);
         let blocks = (0..nodes.blocks.len()).into_par_iter().map(|block| {
@@ -41,7 +42,7 @@ impl Paint {
         Self { blocks: blocks.collect() }
     }
 
-    /// Whether nothing is painted.
+    /// Whether nothing is painted: every node has the standard focus.
     pub fn is_standard(&self) -> bool {
         self.blocks.iter().all(Option::is_none)
     }
@@ -98,7 +99,7 @@ impl Paint {
         (!is_standard).then_some(painted)
     }
 
-    /// Focus of the nodes of a block; `None` if nothing is painted.
+    /// The focus of the nodes of a block; `None` if nothing in it is painted.
     pub fn block(&self, block: usize) -> Option<&[NodeFocus]> {
         self.blocks.get(block)?.as_deref()
     }

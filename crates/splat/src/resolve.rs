@@ -18,7 +18,9 @@ pub struct Overflow;
 /// A rectangle of pixels of a level, in its rows and columns; −1 is the border.
 #[derive(Clone, Debug)]
 pub struct Window {
+    /// The rows of the level.
     pub rows: Range<i32>,
+    /// The columns of the level.
     pub columns: Range<i32>,
 }
 
@@ -68,14 +70,14 @@ impl Lines {
 pub struct Room(Vec<Vec<Light>>);
 
 impl Room {
-    /// So many pixels, whatever they hold.
+    /// A list of `count` pixels of any content, reused if possible.
     pub fn take(&mut self, count: usize) -> Vec<Light> {
         let mut pixels = self.0.pop().unwrap_or_default();
         pixels.resize(count, BLACK);
         pixels
     }
 
-    /// Returns pixels for reuse.
+    /// Takes a list of pixels for reuse.
     pub fn recycle(&mut self, pixels: Vec<Light>) {
         self.0.push(pixels);
     }
@@ -112,7 +114,10 @@ pub struct LevelRows<'a, W: Word> {
 }
 
 impl<'a, W: Word> LevelRows<'a, W> {
-    /// Those of a sum in a window of the picture.
+    /// The rows of a sum in a window of the picture.
+    ///
+    /// # Errors
+    /// A sum has overflowed.
     pub fn for_sum(
         accumulator: &'a Accumulator<W>,
         quanta: Quanta,
@@ -151,13 +156,16 @@ impl<'a, W: Word> LevelRows<'a, W> {
         Self { level, quanta, columns, coarser, mixed, largest: 0 }
     }
 
-    /// What they needed room for.
+    /// Gives the lists of pixels back to `room`.
     pub fn recycle(self, room: &mut Room) {
         room.recycle(self.mixed);
         self.coarser.into_iter().for_each(|coarser| room.recycle(coarser.pixels));
     }
 
-    /// Sets a line to the pixels of a row. `marks` are the row's.
+    /// Sets `line` to the pixels of row `row`; `marks` are the row's.
+    ///
+    /// # Errors
+    /// A sum has overflowed.
     pub fn read(&mut self, row: i32, marks: &mut [Mark<W>], line: &mut [Light]) -> Result<(), Overflow> {
         match &self.coarser {
             Some(coarser) => with_widest_simd(
@@ -194,8 +202,11 @@ impl Columns {
     }
 }
 
-/// Adds the first `CHANNELS` channels of a row of a level's pixels in some columns. `marks` are the row's. Returns the largest coverage that
-/// was met, in quanta.
+/// Adds the first `CHANNELS` channels of a row of a level's pixels in some columns. `marks` are the row's. Returns
+/// the largest coverage that was met, in quanta.
+///
+/// # Errors
+/// A sum has overflowed.
 pub fn add_row<W: Word, const CHANNELS: usize>(
     level: &Level<W>,
     row: i32,

@@ -28,7 +28,7 @@ pub fn with_widest_simd<R>(work: impl FnOnce() -> R) -> R {
     work()
 }
 
-/// Asks for the memory of an item that will be read soon.
+/// Asks the processor to load an item that will be read soon; never affects a result.
 #[inline(always)]
 pub fn prefetch<T>(item: Option<&T>) {
     #[cfg(target_arch = "x86_64")]

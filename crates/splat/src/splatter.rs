@@ -101,7 +101,7 @@ impl Splatter {
         self.tolerance
     }
 
-    /// Sets how coarse the sum may be, from the next [`Self::render`] on.
+    /// Sets how coarse the sum may be. Effective from the next [`Self::render`] on.
     pub fn set_tolerance(&mut self, tolerance: Tolerance) {
         self.tolerance = tolerance;
     }
@@ -173,10 +173,14 @@ impl Splatter {
         self.sum(progress)
     }
 
-    /// Sums the whole picture for another lens, with the focus of before.
+    /// Sums the whole picture for the lens of `camera`, with the paint of before.
+    ///
+    /// # Panics
+    /// If nothing was rendered before.
     ///
     /// # Errors
-    /// [`SplatError::Cancelled`] if `progress` is cancelled; [`SplatError::Overflow`] if the picture is too bright for its integers.
+    /// [`SplatError::Cancelled`] if `progress` is cancelled; [`SplatError::Overflow`] if the picture is too bright
+    /// for its integers.
     pub fn refocus(&mut self, camera: &Camera, progress: &dyn Progress) -> Result<(), SplatError> {
         self.set_lens(camera);
         let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;

@@ -33,7 +33,9 @@ const BLOCKS_PER_REPORT: usize = 64;
 /// One kind of samples: ordinary ones, and bright ones if there are any.
 #[derive(Clone, PartialEq)]
 pub struct Sum {
+    /// The sums of ordinary samples.
     pub dim: Accumulator<i32>,
+    /// The sums of bright samples, in wide integers.
     pub bright: Option<Accumulator<i64>>,
 }
 
@@ -83,6 +85,9 @@ impl Sum {
     }
 
     /// The rows of its pixels in a window of the picture. `quanta` are those of ordinary samples, and of bright ones ([`crate::nodes::Scale::quanta`]).
+    ///
+    /// # Errors
+    /// A sum has overflowed.
     pub fn rows<'a>(
         &'a self,
         quanta: [Quanta; 2],
@@ -112,7 +117,10 @@ pub struct SumRows<'a> {
 }
 
 impl SumRows<'_> {
-    /// Sets a line to the pixels of a row.
+    /// Sets `line` to the pixels of row `row`: linear RGB and coverage.
+    ///
+    /// # Errors
+    /// A sum has overflowed.
     pub fn read(&mut self, row: i32, line: &mut [Light]) -> Result<(), Overflow> {
         self.dim.read(row, self.dim_marks.row(row), line)?;
         if let Some((level, quanta, marks)) = &mut self.bright {
@@ -133,7 +141,7 @@ impl SumRows<'_> {
         Self { bright: None, ..self }
     }
 
-    /// What they needed room for.
+    /// Gives the lists of pixels back to `room`.
     pub fn recycle(self, room: &mut Room) {
         self.dim.recycle(room);
     }
@@ -174,12 +182,13 @@ impl SumCanvas<'_> {
 }
 
 impl Sums {
-    /// Empty ones, for a picture of this size.
+    /// Empty sums for a picture of `size` columns and rows; `has_bright`: with room for samples that need wide
+    /// integers.
     pub fn new(size: [usize; 2], has_bright: bool) -> Self {
         Self { free: Sum::new(size, has_bright), sharing: Sum::new(size, has_bright) }
     }
 
-    /// Bytes in memory.
+    /// The memory that they take, in bytes.
     pub fn bytes(&self) -> usize {
         self.free.bytes() + self.sharing.bytes()
     }
@@ -190,6 +199,9 @@ impl Sums {
     }
 
     /// Replaces the sums by the lists of all blocks. `pace` learns how long it takes.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if `progress` asks to stop.
     pub fn set(
         &mut self,
         pen: &Pen,
@@ -200,7 +212,10 @@ impl Sums {
         self.draw(pen, lists, |band| band.clear(), pace, progress)
     }
 
-    /// Adds the lists of all blocks.
+    /// Adds the lists of all blocks to the sums. `pace` learns how long it takes.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if `progress` asks to stop.
     pub fn add(
         &mut self,
         pen: &Pen,
@@ -258,7 +273,7 @@ impl Sums {
         Ok(())
     }
 
-    /// Takes away what is no longer drawn, and adds what is now.
+    /// Takes away the nodes that are no longer drawn, and adds those that are now.
     pub fn change(&mut self, pen: &Pen, changes: &Changes, pace: &Pace) {
         let changed: Vec<_> = changes.0.iter().filter(|block| !block.is_empty()).collect();
         let mut work = Work::empty(self.height());
@@ -398,7 +413,7 @@ impl Band<'_> {
     }
 }
 
-/// Whether a node shares what open samples leave.
+/// Whether a node, drawn with the standard focus, shares the light that open samples leave of a pixel.
 #[inline(always)]
 pub fn is_sharing(node: &SplatNode, placed: Placed) -> bool {
     placed.is_standard && !node.is_open()

@@ -77,7 +77,7 @@ impl Hierarchy {
         (Self { nodes, stack_size: 3 * depth + 4 }, order)
     }
 
-    /// Bytes of all nodes.
+    /// Bytes of memory that all nodes take.
     pub fn bytes(&self) -> usize {
         size_of_val(self.nodes.as_slice())
     }
@@ -229,7 +229,7 @@ impl Halfspaces {
     /// What f32 may be wrong by, as a share of what is summed.
     const SLACK: f64 = 1.0 / (1u32 << 20) as f64;
 
-    /// All of space; boxes are visited in ascending order along `toward`.
+    /// All of space; boxes are visited in ascending order along the direction `toward`.
     pub fn toward(toward: DVec3) -> Self {
         Self { toward: toward.as_vec3(), ..Self::default() }
     }

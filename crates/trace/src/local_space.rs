@@ -51,7 +51,7 @@ pub(crate) struct LocalRay {
 }
 
 impl LocalSpace {
-    /// The space of a scene between two corners.
+    /// The space of a scene that lies between two opposite corners (world); a power of two scales it to [−1, 1]³.
     pub fn enclosing(low: DVec3, high: DVec3) -> Self {
         let center = low * 0.5 + high * 0.5;
         let half = ((high - center).max(center - low)).max_element();
@@ -59,17 +59,17 @@ impl LocalSpace {
         Self { center, scale }
     }
 
-    /// A position in this space.
+    /// A world position in this space, in [−1, 1]³ within the scene.
     pub fn position(&self, world: DVec3) -> DVec3 {
         (world - self.center) * self.scale
     }
 
-    /// A difference of two positions in this space.
+    /// A difference of two world positions in this space: scaled, not moved.
     pub fn direction(&self, world: DVec3) -> DVec3 {
         world * self.scale
     }
 
-    /// The box around a triangle.
+    /// The box in this space around a triangle with these world corners, padded so that rounding does not lose it.
     pub fn bounds(&self, corners: &[DVec3; 3]) -> Aabb {
         let [a, b, c] = corners.map(|corner| self.position(corner));
         let low = a.min(b).min(c) - BOX_PAD;
@@ -119,7 +119,7 @@ impl LocalSpace {
 }
 
 impl LocalRay {
-    /// The local t of a t of the ray, not smaller than it is.
+    /// The parameter along the local ray of the parameter `t` of the world's, rounded so that it is not nearer.
     #[inline(always)]
     pub fn local_t(&self, t: f64) -> f32 {
         ((t - self.t_start) * self.scale) as f32 * FAR_STRETCH

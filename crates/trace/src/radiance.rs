@@ -65,7 +65,7 @@ pub struct SampleSlot {
 }
 
 impl SampleSlot {
-    /// A group of one point, without incident light.
+    /// A group of one point, without incident light computed before; `seed` selects its random numbers.
     pub fn single(seed: u64) -> Self {
         Self { seed, index: 0, count: 1, incident: None, own_only: false }
     }
@@ -107,7 +107,7 @@ pub struct OutgoingRadiance {
 }
 
 impl IncidentLight {
-    /// This light plus `factor` times another.
+    /// This light plus `factor` times another, linear RGB.
     pub fn plus_scaled(&self, other: &Self, factor: f64) -> Self {
         let factor = factor as f32;
         let vector_irradiance =
@@ -125,12 +125,12 @@ impl IncidentLight {
 }
 
 impl OutgoingRadiance {
-    /// Radiance that obeys the paint, without carried light.
+    /// Radiance, linear RGB, all of which obeys the paint.
     pub fn from_own(own: Vec3) -> Self {
         Self { own, ..Self::default() }
     }
 
-    /// The sum of own and carried light.
+    /// The sum of own and carried radiance, linear RGB.
     pub fn total(&self) -> Vec3 {
         self.own + self.carried
     }

@@ -56,7 +56,7 @@ struct Nearest {
 }
 
 impl Tracer {
-    /// Builds the hierarchy.
+    /// Builds the bounding volume hierarchy of the scene's triangles; those without area are never hit.
     pub fn new(scene: Arc<Scene>) -> Self {
         let with_area: Vec<u32> =
             (0..scene.triangles.len() as u32).filter(|&index| has_area(&scene.corners(index))).collect();
@@ -101,7 +101,8 @@ impl Tracer {
             + size_of_val(self.outlines.as_slice())
     }
 
-    /// The first surface that is visible along a ray from its origin.
+    /// The first surface that is visible along a ray from its origin; partly transparent ones are hit at random, by
+    /// their opacity. `None` if nothing is.
     pub fn first_hit(&self, ray: &Ray) -> Option<Hit> {
         self.first_hit_with(ray, TransparencyMode::Stochastic)
     }
@@ -236,7 +237,7 @@ impl Tracer {
         })
     }
 
-    /// Whether any surface is visible along a ray from its origin.
+    /// Whether any surface is visible along a ray from its origin; faster than [`Self::first_hit`].
     pub fn any_hit(&self, ray: &Ray) -> bool {
         self.any_hit_where(ray, |triangle, crossing| !triangle.culls_back || crossing.from_front)
     }

@@ -87,7 +87,8 @@ pub fn render(
 }
 
 impl<'a> Truth<'a> {
-    /// Prepares to render; see [`render`].
+    /// Prepares to render `camera`'s picture by rays, or the region of it in `options`: light from `radiance`,
+    /// focused by `focus`. See [`render`].
     pub fn new(
         tracer: &'a Tracer,
         radiance: &'a dyn Radiance,
@@ -108,7 +109,7 @@ impl<'a> Truth<'a> {
         }
     }
 
-    /// Focuses ray by ray in place of the painted focus. Before the first pass.
+    /// Focuses ray by ray by `ray_focus`, in place of the painted focus. To be set before the first pass.
     pub fn with_ray_focus(self, ray_focus: &'a dyn RayFocus) -> Self {
         Self { view: View { ray_focus: Some(ray_focus), ..self.view }, ..self }
     }
@@ -118,7 +119,7 @@ impl<'a> Truth<'a> {
         self.region
     }
 
-    /// Samples a pixel so far.
+    /// Samples a pixel so far, by all passes.
     pub fn samples_per_pixel(&self) -> u32 {
         self.statistics.samples
     }

@@ -61,6 +61,7 @@ pub(crate) struct VisibilityQuery<'a> {
 }
 
 impl<'a> VisibilityQuery<'a> {
+    /// Asks which of `points`, places of `square`, are visible from `eye`; `space` is the tracer's.
     pub fn new(eye: Eye, square: &'a Square, points: &'a TargetPoints, space: &LocalSpace) -> Self {
         let axis = square.axis();
         let away = match eye {
@@ -91,7 +92,8 @@ impl<'a> VisibilityQuery<'a> {
         shaft
     }
 
-    /// The ray to a point of the square.
+    /// The ray from the eye to a place of the square, each coordinate in [−1, 1]; from a distant eye it starts at the
+    /// place.
     pub fn ray(&self, place: DVec2) -> Ray {
         let place = self.square.world_position(place);
         match self.eye {
@@ -145,7 +147,7 @@ impl<'a> VisibilityQuery<'a> {
         candidates
     }
 
-    /// The points among `near` that a triangle hides.
+    /// The points among `near` that a triangle with these world corners hides.
     #[inline(always)]
     pub fn newly_hidden(&self, corners: &[DVec3; 3], near: PointSet) -> PointSet {
         let Some(shadow) = Shadow::cast(corners, self.eye, self.square) else { return PointSet::default() };

@@ -30,7 +30,7 @@ pub(crate) struct Crossing {
 }
 
 impl ShearedRay {
-    /// `direction` must be finite and not zero.
+    /// Prepares a ray for intersection with triangles (Woop et al., 2013). `direction` must be finite and not zero.
     pub fn new(origin: DVec3, direction: DVec3) -> Self {
         let length = direction.abs();
         let z = if length.x >= length.y && length.x >= length.z {
@@ -85,7 +85,7 @@ impl ShearedRayPacket {
     /// How many there can be.
     pub const MAX: usize = 16;
 
-    /// `None` if they are not longest along the same axis.
+    /// A packet of rays with one origin. `None` if they are not longest along the same axis.
     pub fn new(rays: &[ShearedRay; Self::MAX]) -> Option<Self> {
         let ShearedRay { origin, axes, .. } = rays[0];
         let shear = [0, 1].map(|k| rays.map(|ray| ray.shear[k]));

@@ -43,7 +43,7 @@ impl Toasts {
         self.push(Severity::Error, text.into());
     }
 
-    /// The texts on screen, oldest first.
+    /// The texts of the messages on screen, oldest first, with their severity.
     pub fn texts(&self) -> impl Iterator<Item = (Severity, &str)> {
         self.shown.iter().map(|toast| (toast.severity, toast.text.as_str()))
     }

@@ -77,7 +77,7 @@ impl BrushGesture {
         self.active = Some(ActiveGesture { parameter, before: brush.clone(), from, typed: String::new() });
     }
 
-    /// Whether the gesture takes the input of pointer and keys.
+    /// Whether the gesture takes all input of pointer and keys at present.
     pub fn has_input(&self) -> bool {
         self.active.is_some() || self.awaits_release
     }

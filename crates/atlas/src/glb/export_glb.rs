@@ -61,7 +61,7 @@ pub(crate) fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), AtlasErr
     write().map_err(|source| AtlasError::Write { path: path.to_owned(), source })
 }
 
-/// The bytes that [`write_glb`] writes. The atlas must be of this scene.
+/// The bytes of the GLB file that [`write_glb`] writes. The atlas must be of this scene.
 ///
 /// # Errors
 /// The scene's file cannot be read again or has changed; the result is too large for a GLB; the work was cancelled.

@@ -21,7 +21,10 @@ pub(crate) struct GlbDocument {
 }
 
 impl GlbDocument {
-    /// The document of a file; its buffers and separate images go into the chunk.
+    /// Starts from the document of a file; its buffers and separate images go into the GLB's chunk.
+    ///
+    /// # Errors
+    /// A buffer is faulty or cannot be read.
     pub fn from_source(source: &GltfSource<'_>) -> Result<Self, Fault> {
         let root = source.document().as_object().cloned().unwrap_or_default();
         let mut glb = Self { root, chunk: Vec::new() };
@@ -92,12 +95,12 @@ impl GlbDocument {
         }
     }
 
-    /// A top-level list.
+    /// The entries of the top-level list `key`; empty if missing.
     pub fn entries(&self, key: &str) -> &[Value] {
         self.root.get(key).and_then(Value::as_array).map_or(&[], Vec::as_slice)
     }
 
-    /// A top-level list, for modification; created if missing.
+    /// The top-level list `key`, for modification; created if missing.
     pub fn list(&mut self, key: &str) -> &mut Vec<Value> {
         let list = self.root.entry(key).or_insert_with(|| json!([]));
         if !list.is_array() {
@@ -106,7 +109,7 @@ impl GlbDocument {
         list.as_array_mut().expect("it is a list now")
     }
 
-    /// Appends to a top-level list; returns the index.
+    /// Appends to the top-level list `key`; returns the index of the entry.
     pub fn push(&mut self, key: &str, value: Value) -> usize {
         let list = self.list(key);
         list.push(value);
@@ -134,7 +137,7 @@ impl GlbDocument {
         self.add_view(bytes, None)
     }
 
-    /// Appends indices; returns the index of their view.
+    /// Appends vertex indices to the chunk; returns the index of their buffer view.
     pub fn add_index_view(&mut self, bytes: &[u8]) -> usize {
         self.add_view(bytes, Some(ELEMENT_ARRAY_BUFFER))
     }
@@ -173,6 +176,9 @@ impl GlbDocument {
     }
 
     /// The bytes of the GLB.
+    ///
+    /// # Errors
+    /// They are more than a GLB can hold.
     pub fn into_bytes(mut self) -> Result<Vec<u8>, AtlasError> {
         self.append(&[]);
         let length = self.chunk.len();

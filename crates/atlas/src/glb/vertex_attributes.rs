@@ -24,7 +24,7 @@ pub(crate) struct VertexAttributes<'a> {
 }
 
 impl<'a> VertexAttributes<'a> {
-    /// For vertices that are these elements.
+    /// Rewrites attributes for vertices that are copies of the elements `elements`.
     pub fn new(source: &'a GltfSource<'a>, elements: &'a [u32]) -> Self {
         Self { source, elements, rewritten: BTreeMap::new() }
     }

@@ -11,7 +11,7 @@ pub(crate) struct BoxedChart {
 }
 
 impl BoxedChart {
-    /// Rotates a chart into its smallest bounding box.
+    /// Rotates a chart into its smallest bounding box, if it may be rotated.
     pub fn new(chart: &UnpackedChart) -> Self {
         let axis = if chart.can_rotate { smallest_box_axis(&chart.corners) } else { DVec2::X };
         let turn = |c: DVec2| DVec2::new(c.dot(axis), axis.perp_dot(c));
@@ -32,7 +32,7 @@ impl BoxedChart {
         if self.size.x > 0.0 { density.max(1.0 / self.size.x) } else { density }
     }
 
-    /// Its triangles in texels after `turns` quarter turns, starting at 0.
+    /// Its triangles after `turns` quarter turns, in texels from 0 on, at `density` texels per scene unit.
     pub fn rotated(&self, density: f64, turns: u32) -> impl Iterator<Item = [DVec2; 3]> + Clone {
         let scale = self.scale(density);
         let size = self.size * scale;

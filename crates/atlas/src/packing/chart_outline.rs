@@ -12,7 +12,7 @@ pub(crate) struct ChartOutline {
 }
 
 impl ChartOutline {
-    /// The outline of triangles in texel units whose coordinates start at 0.
+    /// The outline of triangles, in texels; their coordinates start at 0.
     pub fn new(triangles: impl Iterator<Item = [DVec2; 3]> + Clone) -> Self {
         let high = triangles.clone().flatten().fold(DVec2::ZERO, DVec2::max);
         let (width, height) = (texel_extent(high.x), texel_extent(high.y));
@@ -25,7 +25,7 @@ impl ChartOutline {
         Self { columns, height }
     }
 
-    /// Columns.
+    /// The number of columns of texels.
     pub fn width(&self) -> u32 {
         self.columns.len() as u32
     }

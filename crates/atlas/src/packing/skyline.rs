@@ -12,7 +12,7 @@ pub(crate) struct Skyline {
 }
 
 impl Skyline {
-    /// An empty atlas of `width` columns.
+    /// An empty atlas that is `width` texels wide.
     pub fn new(width: u32) -> Self {
         Self { rows: vec![0; width as usize], width_used: 1, height: 1 }
     }
@@ -56,7 +56,7 @@ impl Skyline {
         Some((y, rows.iter().zip(&outline.columns).map(gap).sum()))
     }
 
-    /// Fills the area under an outline.
+    /// Fills the area under an outline whose upper left texel is in column `x` and row `y`.
     pub fn place(&mut self, outline: &ChartOutline, x: u32, y: u32) {
         for (filled, &(low, high)) in self.rows[x as usize..].iter_mut().zip(&outline.columns) {
             if low < high {

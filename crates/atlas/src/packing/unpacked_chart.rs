@@ -32,7 +32,7 @@ pub(crate) fn signed_area([a, b, c]: [DVec2; 3]) -> f64 {
 }
 
 impl UnpackedChart {
-    /// A chart of one triangle, undistorted.
+    /// A chart of one triangle with these corners (world), undistorted.
     pub fn from_triangle(part: u32, triangle: u32, corners: [DVec3; 3]) -> Self {
         Self { part, triangles: vec![triangle], corners: vec![flatten_triangle(corners)], can_rotate: true }
     }

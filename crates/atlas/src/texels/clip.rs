@@ -18,7 +18,7 @@ impl Polygon {
         Self { corners: [DVec2::ZERO; CAPACITY], len: 0 }
     }
 
-    /// A triangle.
+    /// The polygon of a triangle.
     pub fn triangle(corners: [DVec2; 3]) -> Self {
         let mut polygon = Self::empty();
         corners.into_iter().for_each(|c| polygon.push(c));
@@ -34,7 +34,7 @@ impl Polygon {
         }
     }
 
-    /// Its corners in order.
+    /// The polygon's corners, in order.
     pub fn corners(&self) -> &[DVec2] {
         &self.corners[..self.len]
     }

@@ -29,7 +29,7 @@ pub struct TexelMap {
 }
 
 impl TexelMap {
-    /// The covered texel at a column and row.
+    /// The texel in column `x` and row `y`; `None` if it is not covered.
     pub fn texel_at(&self, x: u32, y: u32) -> Option<&AtlasTexel> {
         if x >= self.width || y >= self.height {
             return None;

@@ -21,12 +21,12 @@ impl Engine {
         }
     }
 
-    /// The engine of this name.
+    /// The engine with this name; `None` if there is none.
     pub fn from_name(word: &str) -> Option<Self> {
         [Engine::Xatlas, Engine::Uvunwrap].into_iter().find(|engine| engine.name() == word)
     }
 
-    /// Flattens a patch; `None` if the engine fails.
+    /// Flattens a patch of surface; `None` if the engine fails.
     pub fn flatten(self, patch: &SurfacePatch) -> Option<FlattenedPatch> {
         match self {
             Engine::Xatlas => crate::unwrap::xatlas::flatten_with_xatlas(patch),

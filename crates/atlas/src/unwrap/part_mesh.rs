@@ -39,7 +39,7 @@ pub(crate) struct CheckedPart {
 }
 
 impl CheckedPart {
-    /// Checks a part of the scene.
+    /// Checks the part of the scene with this index for what engines cannot unwrap.
     pub fn new(scene: &Scene, part: u32) -> Self {
         let mut checked = Self::default();
         let mut copies: HashMap<[u32; 3], usize> = HashMap::new();
@@ -107,18 +107,18 @@ impl PartMesh {
         mesh
     }
 
-    /// World positions of a triangle's corners.
+    /// World positions of the corners of the triangle with this number.
     pub fn corner_positions(&self, triangle: u32) -> [DVec3; 3] {
         self.corners[triangle as usize].map(|v| self.positions[v as usize])
     }
 
-    /// Geometric normal times twice the area.
+    /// The triangle's geometric normal, whose length is twice its area (square scene units).
     pub fn area_normal(&self, triangle: u32) -> DVec3 {
         let [a, b, c] = self.corner_positions(triangle);
         (b - a).cross(c - a)
     }
 
-    /// The middle of a triangle.
+    /// The centroid of a triangle, world.
     pub fn middle(&self, triangle: u32) -> DVec3 {
         self.corner_positions(triangle).iter().sum::<DVec3>() / 3.0
     }

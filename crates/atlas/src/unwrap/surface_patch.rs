@@ -26,14 +26,14 @@ pub(crate) struct FlattenedPatch {
 }
 
 impl FlattenedPatch {
-    /// A result in which no triangle has a place yet.
+    /// A result for this many triangles in which none has a place yet.
     pub fn unplaced(triangles: usize) -> Self {
         Self { chart: vec![UNPLACED; triangles], corners: vec![[[0.0; 2]; 3]; triangles] }
     }
 }
 
 impl SurfacePatch {
-    /// The patch of some triangles of a mesh.
+    /// The patch of some triangles (by number) of a mesh, scaled so that a triangle's mean area is 1.
     pub fn new(mesh: &PartMesh, triangles: &[u32]) -> Self {
         let area: f64 = triangles.iter().map(|&t| 0.5 * mesh.area_normal(t).length()).sum();
         let scale = (triangles.len() as f64 / area).sqrt();

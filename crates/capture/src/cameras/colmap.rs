@@ -21,7 +21,7 @@ pub(crate) struct Model {
 }
 
 impl Model {
-    /// The model in a folder; binary files take precedence, as in COLMAP.
+    /// The model in the folder `path`, if there is one; binary files take precedence, as in COLMAP.
     pub fn find(folder: &Folder, path: &Path) -> Option<Self> {
         [("bin", true), ("txt", false)].into_iter().find_map(|(extension, is_binary)| {
             let [cameras, images] =
@@ -31,7 +31,10 @@ impl Model {
         })
     }
 
-    /// Reads the pictures of the model.
+    /// Reads the pictures of the model, with their lenses and poses.
+    ///
+    /// # Errors
+    /// A file of the model cannot be read or is malformed.
     pub fn read(&self) -> Result<Shots, CaptureError> {
         let cameras = match self.is_binary {
             true => binary_model::cameras(&self.cameras)?,

@@ -38,7 +38,7 @@ const MODELS: [&str; 9] = [
 ];
 
 impl Cameras {
-    /// Finds all cameras in a folder, likelier ones first.
+    /// Finds the cameras of all programs in a folder, likelier ones first.
     pub fn find(folder: &Folder) -> Vec<Self> {
         let root = folder.shown.as_path();
         let mut cameras: Vec<Self> = models(folder).into_iter().map(Self::Colmap).collect();
@@ -98,7 +98,10 @@ impl Cameras {
         }
     }
 
-    /// Reads the cameras.
+    /// Reads the cameras, in the form of their program.
+    ///
+    /// # Errors
+    /// A file cannot be read or is malformed.
     pub fn read(&self) -> Result<Shots, CaptureError> {
         match self {
             Self::Colmap(model) => model.read(),

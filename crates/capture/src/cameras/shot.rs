@@ -41,7 +41,7 @@ pub(crate) enum Focal {
 }
 
 impl ShotLens {
-    /// The size of the pictures that it was calibrated with, if it has one.
+    /// Width and height, px, of the pictures that it was calibrated with, if they are known.
     pub fn size_px(&self) -> Option<[u32; 2]> {
         match self {
             Self::Calibrated(lens) => Some(lens.size_px()),
@@ -49,7 +49,10 @@ impl ShotLens {
         }
     }
 
-    /// The lens for a picture of this size, unless it has a size of its own.
+    /// The lens for a picture of `size_px` (width, height), unless it has a size of its own.
+    ///
+    /// # Errors
+    /// A parameter of the lens is out of range.
     pub fn for_size(&self, size_px: [u32; 2]) -> Result<CalibratedLens, CameraError> {
         match *self {
             Self::Calibrated(lens) => Ok(lens),

@@ -48,7 +48,7 @@ impl DepthMap {
         }
     }
 
-    /// The share of unknown pixels, 0 to 1.
+    /// The share of pixels whose depth is unknown, in [0, 1].
     pub fn unknown_share(&self) -> f64 {
         let unknown = self.values.iter().filter(|value| value.is_nan()).count();
         unknown as f64 / self.values.len().max(1) as f64

@@ -42,7 +42,10 @@ pub(crate) fn quantity_from_name(file: &Path) -> Option<DepthQuantity> {
 const BACKGROUND: f32 = 1e10;
 
 impl Stored {
-    /// Interprets the numbers as a map.
+    /// Interprets the numbers of `file` as a map, by `hint` or else by the file's name.
+    ///
+    /// # Errors
+    /// Which end of the numbers is near is not known, or the map shows no depth.
     pub fn into_depth_map(self, file: &Path, hint: DepthHint) -> Result<DepthMap, CaptureError> {
         let quantity = hint.quantity.or_else(|| quantity_from_name(file));
         let finite_or_nan = |value: f32| if value.is_finite() { value } else { f32::NAN };

@@ -24,13 +24,16 @@ pub(super) struct DepthRange {
 }
 
 impl DepthRange {
-    /// The distance of a level, m.
+    /// The distance, m, of a level in [0, 1].
     pub fn distance(&self, level: f64) -> f64 {
         let Self { is_inverse, near, far } = *self;
         if is_inverse { ((1.0 - level) / near + level / far).recip() } else { near + level * (far - near) }
     }
 
-    /// Parses the range in a file. `None` if it has none: the map is relative then. `Err` describes what is wrong.
+    /// Parses the range that a file declares. `None` if it has none: the map is relative then.
+    ///
+    /// # Errors
+    /// What is wrong, as text.
     pub fn parse(
         format: Option<&str>,
         near: Option<&str>,
@@ -77,7 +80,7 @@ pub(super) enum Unit {
 }
 
 impl Unit {
-    /// By its name; metres if there is none.
+    /// The unit with this name; metres if there is no name, or another one.
     pub fn named(name: Option<&str>) -> Self {
         match name.unwrap_or_default().trim().to_lowercase().as_str() {
             "mm" | "millimeters" | "millimetres" => Self::Millimetres,

@@ -21,6 +21,9 @@ pub(super) struct Embedded {
 impl Embedded {
     /// Decodes a picture of levels and interprets it with a range. Without a range levels are relative, black is
     /// near.
+    ///
+    /// # Errors
+    /// Why it cannot be decoded, as text.
     pub fn decode(bytes: &[u8], range: Option<DepthRange>, options: &LoadOptions) -> Result<Self, String> {
         let stored = levels_of(bytes, options).map_err(|why| format!("its depth map {why}"))?;
         let (mut values, mut notes) = (stored.values, Vec::new());

@@ -48,7 +48,7 @@ pub(super) fn is_picture(bytes: &[u8]) -> bool {
 }
 
 impl<'a> Segments<'a> {
-    /// Parses the segments before the picture's pixels.
+    /// Parses the segments of a JPEG before the picture's pixels; what is wrong with it is text.
     pub fn parse(bytes: &'a [u8]) -> At<Self> {
         let mut segments = Self::default();
         let mut at = START.len();
@@ -81,7 +81,7 @@ impl<'a> Segments<'a> {
         }
     }
 
-    /// Assembles the extended XMP of this GUID.
+    /// Assembles the extended XMP with this GUID from its pieces; what is wrong with it is text.
     pub fn extended(&self, guid: &str) -> At<Vec<u8>> {
         let mut pieces: Vec<&Piece> =
             self.pieces.iter().filter(|piece| piece.guid.eq_ignore_ascii_case(guid.as_bytes())).collect();

@@ -13,7 +13,7 @@ pub(super) struct XmpTexts {
 }
 
 impl XmpTexts {
-    /// The texts of a JPEG's segments; empty if there is no XMP.
+    /// The XMP texts of a JPEG's segments; empty if there are none.
     pub fn from_segments(segments: &Segments<'_>) -> At<Self> {
         let text = |bytes: &[u8]| {
             let text = String::from_utf8_lossy(bytes);
@@ -37,12 +37,15 @@ impl XmpTexts {
         Ok(Self { texts })
     }
 
-    /// The texts as XML.
+    /// The texts, parsed as XML.
+    ///
+    /// # Errors
+    /// Why one is no XML, as text.
     pub fn documents(&self) -> Result<Vec<Document<'_>>, String> {
         self.texts.iter().map(|text| parsed(text)).collect()
     }
 
-    /// Whether the texts mention something.
+    /// Whether any of the texts contains `what`.
     pub fn mention(&self, what: &str) -> bool {
         self.texts.iter().any(|text| text.contains(what))
     }

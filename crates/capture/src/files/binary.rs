@@ -15,14 +15,22 @@ pub(crate) struct Binary {
 }
 
 impl Binary {
+    /// Opens a file at its begin.
+    ///
+    /// # Errors
+    /// It cannot be read.
     pub fn open(file: &Path) -> Result<Self, CaptureError> {
         let unreadable = |source| CaptureError::unreadable(file, source);
         let input = File::open(file).map_err(unreadable)?;
         let size = input.metadata().map_err(unreadable)?.len();
+        /// The next N bytes; `what` names them in errors.
         Ok(Self { file: file.into(), input: BufReader::new(input), at: 0, size })
     }
 
-    /// The next bytes.
+    /// The next N bytes; `what` names them in errors, here and below.
+    ///
+    /// # Errors
+    /// The file cannot be read or ends before.
     pub fn bytes<const N: usize>(&mut self, what: &str) -> Result<[u8; N], CaptureError> {
         let mut bytes = [0; N];
         match self.input.read_exact(&mut bytes) {
@@ -37,15 +45,26 @@ impl Binary {
         }
     }
 
+    /// The next 4 bytes as a number, little endian.
+    ///
+    /// # Errors
+    /// As [`Self::bytes`].
     pub fn u32(&mut self, what: &str) -> Result<u32, CaptureError> {
         self.bytes(what).map(u32::from_le_bytes)
     }
 
+    /// The next 8 bytes as a number, little endian.
+    ///
+    /// # Errors
+    /// As [`Self::bytes`].
     pub fn u64(&mut self, what: &str) -> Result<u64, CaptureError> {
         self.bytes(what).map(u64::from_le_bytes)
     }
 
-    /// A finite number.
+    /// The next 8 bytes as a finite number, little endian.
+    ///
+    /// # Errors
+    /// As [`Self::bytes`], or the number is not finite.
     pub fn f64(&mut self, what: &str) -> Result<f64, CaptureError> {
         let at = self.at;
         let value = self.bytes(what).map(f64::from_le_bytes)?;
@@ -55,6 +74,10 @@ impl Binary {
         }
     }
 
+    /// The next N finite numbers of 8 bytes.
+    ///
+    /// # Errors
+    /// As [`Self::f64`].
     pub fn f64s<const N: usize>(&mut self, what: &str) -> Result<[f64; N], CaptureError> {
         let mut values = [0.0; N];
         for value in &mut values {
@@ -63,7 +86,10 @@ impl Binary {
         Ok(values)
     }
 
-    /// A count of items of at least `each` bytes that follow.
+    /// A count (8 bytes) of items of at least `each` bytes that follow.
+    ///
+    /// # Errors
+    /// As [`Self::bytes`], or the rest of the file is too short for them.
     pub fn count(&mut self, each: u64, what: &str) -> Result<u64, CaptureError> {
         let at = self.at;
         let count = self.u64(what)?;
@@ -76,7 +102,10 @@ impl Binary {
         }
     }
 
-    /// A zero-terminated text.
+    /// A zero-terminated text; `what` names it in errors.
+    ///
+    /// # Errors
+    /// The file cannot be read, or the text is too long or does not end.
     pub fn text(&mut self, what: &str) -> Result<String, CaptureError> {
         /// The longest path of any system, twice.
         const LONGEST: u64 = 1 << 16;
@@ -90,14 +119,17 @@ impl Binary {
         }
     }
 
-    /// Skips bytes.
+    /// Skips this many bytes.
+    ///
+    /// # Errors
+    /// The file cannot be read.
     pub fn skip(&mut self, bytes: u64) -> Result<(), CaptureError> {
         self.at += bytes;
         let skipped = self.input.seek_relative(bytes as i64);
         skipped.map_err(|source| CaptureError::unreadable(&self.file, source))
     }
 
-    /// An error at the current byte.
+    /// An error that says what is wrong at the current byte.
     pub fn malformed(&self, what: impl ToString) -> CaptureError {
         self.malformed_at(self.at, what)
     }

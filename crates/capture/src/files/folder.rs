@@ -22,6 +22,10 @@ pub(crate) enum EntryKind {
 }
 
 impl Folder {
+    /// Opens a folder; links in its path are resolved.
+    ///
+    /// # Errors
+    /// It cannot be read, or is no folder.
     pub fn open(path: &Path) -> Result<Self, CaptureError> {
         let root = path.canonicalize().map_err(|source| CaptureError::unreadable(path, source))?;
         if !root.is_dir() {
@@ -31,7 +35,7 @@ impl Folder {
         Ok(Self { root, shown: path.into() })
     }
 
-    /// What a path below the folder refers to.
+    /// What a path below the folder refers to; `None` if it does not exist.
     pub fn entry_kind(&self, path: &Path) -> Option<EntryKind> {
         let real = path.canonicalize().ok()?;
         match real.metadata().ok()? {
@@ -42,7 +46,7 @@ impl Folder {
         }
     }
 
-    /// Whether the path is a regular file inside the folder.
+    /// Whether the path is a regular file inside the folder, links resolved.
     pub fn has_file(&self, path: &Path) -> bool {
         self.entry_kind(path) == Some(EntryKind::File)
     }

@@ -18,17 +18,24 @@ pub(crate) struct Lines {
 const LONGEST: u64 = 64 << 20;
 
 impl Lines {
+    /// Opens a file of lines before its first.
+    ///
+    /// # Errors
+    /// It cannot be read.
     pub fn open(file: &Path) -> Result<Self, CaptureError> {
         let input = File::open(file).map_err(|source| CaptureError::unreadable(file, source))?;
         Ok(Self { file: file.into(), input: BufReader::new(input), line: Vec::new(), number: 0 })
     }
 
-    /// The lines of the rest of an opened file, after `number` lines.
+    /// The remaining lines of an opened file, after `number` lines.
     pub fn rest_of(file: &Path, input: BufReader<File>, number: usize) -> Self {
         Self { file: file.into(), input, line: Vec::new(), number }
     }
 
     /// The next line, trimmed; `None` at the end. Bytes that are not UTF-8 are replaced.
+    ///
+    /// # Errors
+    /// The file cannot be read, or a line is too long.
     pub fn next(&mut self) -> Result<Option<String>, CaptureError> {
         Ok(self.advance()?.then(|| {
             let text = String::from_utf8_lossy(&self.line);
@@ -36,7 +43,10 @@ impl Lines {
         }))
     }
 
-    /// The next line that is neither empty nor a comment (`#`).
+    /// The next line that is neither empty nor a comment (`#`), trimmed; `None` at the end.
+    ///
+    /// # Errors
+    /// As [`Self::next`].
     pub fn next_filled(&mut self) -> Result<Option<String>, CaptureError> {
         while let Some(line) = self.next()? {
             if !line.is_empty() && !line.starts_with('#') {
@@ -58,7 +68,7 @@ impl Lines {
         Ok(read > 0)
     }
 
-    /// An error at the current line.
+    /// An error that says what is wrong in the current line.
     pub fn malformed(&self, what: impl ToString) -> CaptureError {
         CaptureError::malformed(&self.file, format!("line {}", self.number), what)
     }

@@ -53,7 +53,7 @@ pub(crate) struct Arrangement {
 }
 
 impl Arrangement {
-    /// The middle of the aperture, in positions.
+    /// The middle of the aperture, in the units of the views' positions.
     pub fn middle(&self) -> DVec2 {
         match (self.grid, self.layout) {
             (Some([columns, rows]), ViewLayout::Numbered | ViewLayout::RowColumn) => {

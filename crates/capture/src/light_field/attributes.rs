@@ -63,6 +63,9 @@ pub(super) fn read_attributes(file: &Path) -> Result<Attributes, CaptureError> {
 
 impl Attributes {
     /// The disparity map in `depth.bin`, for pictures of `size` if `attributes.dat` does not specify one.
+    ///
+    /// # Errors
+    /// The file cannot be read, is of another size, or exceeds the limits of `options`.
     pub fn disparity(
         &self,
         file: &Path,

@@ -28,7 +28,11 @@ pub(super) enum DisparitySource {
 }
 
 impl DisparitySource {
-    /// Reads a file that is given as disparities.
+    /// Reads a file that is given as disparities; `near` says which end of its numbers is near. A map coded by
+    /// colours is decoded later.
+    ///
+    /// # Errors
+    /// The file cannot be read or decoded, or which end is near is not known.
     pub fn from_file(file: &Path, near: Option<NearEnd>, load: &LoadOptions) -> Result<Self, CaptureError> {
         if is_coded_by_color(file, load) {
             return Ok(Self::Coded(file.into()));

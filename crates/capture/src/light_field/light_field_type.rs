@@ -61,7 +61,7 @@ pub struct LightField {
 }
 
 impl LightField {
-    /// The index of the view with a name.
+    /// The index of the view with this name; `None` if there is none.
     pub fn view(&self, name: &str) -> Option<usize> {
         self.views.iter().position(|view| view.name == name)
     }

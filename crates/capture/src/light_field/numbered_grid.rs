@@ -23,6 +23,9 @@ impl NumberedGrid {
     /// A square, if their first and last number are its first and last, counted from 0 or 1 (or from anywhere if there is no gap), or if
     /// they are its middle row or another set that is symmetric to its centre, such as a cross, or if they fill half of it up to its
     /// last number. A single row, if their count is prime.
+    ///
+    /// # Errors
+    /// What makes the numbers ambiguous, as text.
     pub fn inferred(numbers: &[u32]) -> Result<Self, String> {
         let [low, .., high] = *numbers else { return Err("there are fewer than two".into()) };
         let (low_wide, high_wide, views) = (u64::from(low), u64::from(high), numbers.len() as u64);

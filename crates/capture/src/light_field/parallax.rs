@@ -28,7 +28,7 @@ pub struct GridTurn {
 }
 
 impl GridTurn {
-    /// The true position of a position according to its name.
+    /// The true position of a view from the position that its name says.
     pub fn apply(&self, position: DVec2) -> DVec2 {
         let DVec2 { x, y } = if self.is_transposed { position.yx() } else { position };
         let sign = |is_reversed| if is_reversed { -1.0 } else { 1.0 };

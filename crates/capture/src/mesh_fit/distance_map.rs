@@ -24,6 +24,8 @@ pub(super) struct DistanceMap {
 }
 
 impl DistanceMap {
+    /// Draws the map of `view`, scaled down by `factor`: the distance of the scene's surface from the camera, scene
+    /// units; infinite where none is.
     pub fn new(scene: &Scene, view: &View, factor: f64) -> Self {
         let [width, height] = view.lens.size_px().map(|side| (f64::from(side) / factor).ceil() as usize);
         let mut map = Self { factor, width, height, distances: vec![f32::INFINITY; width * height] };
@@ -53,7 +55,7 @@ impl DistanceMap {
         distance.is_finite().then_some(f64::from(distance))
     }
 
-    /// The surface point in a pixel of the map.
+    /// The world position of the surface in a pixel of the map; `None` where there is none.
     pub fn point(&self, view: &View, x: usize, y: usize) -> Option<DVec3> {
         let distance = self.at(x, y)?;
         let pixel = (DVec2::new(x as f64, y as f64) + 0.5) * self.factor;
@@ -74,7 +76,7 @@ impl DistanceMap {
         (camera.length() <= farthest * (1.0 + TOLERANCE)).then_some(place)
     }
 
-    /// All pixels of the map where a surface is, row by row.
+    /// Column and row of all pixels of the map that show a surface, row by row.
     pub fn hits(&self) -> impl Iterator<Item = [usize; 2]> + '_ {
         let is_hit = |index: &usize| self.distances[*index].is_finite();
         (0..self.distances.len()).filter(is_hit).map(|index| [index % self.width, index / self.width])

@@ -12,7 +12,10 @@ pub(super) struct GreyPicture {
 }
 
 impl GreyPicture {
-    /// Reads a photograph at the size of its map, whose factor is whole.
+    /// Reads a photograph at the size of its map, whose factor is whole; grey is the square root of luminance.
+    ///
+    /// # Errors
+    /// The photograph cannot be read.
     pub fn read(view: &View, map: &DistanceMap, options: &LoadOptions) -> Result<Self, PictureError> {
         let photograph = view.read_photograph(options)?.downsampled(map.factor as u32);
         let grey = |[red, green, blue]: &[f32; 3]| {
@@ -26,6 +29,7 @@ impl GreyPicture {
         })
     }
 
+    /// The grey value of a pixel; positions beyond the right or lower edge are those at the edge.
     pub fn pixel(&self, x: usize, y: usize) -> f64 {
         let (x, y) = (x.min(self.width - 1), y.min(self.height - 1));
         f64::from(self.pixels[y * self.width + x])

@@ -44,7 +44,7 @@ impl Mosaic {
         self.pitch
     }
 
-    /// Columns and rows of micro-images, which is the size of a view.
+    /// Columns and rows of micro-images; this is the size of a view, px.
     pub fn view_size(&self) -> [u32; 2] {
         [0, 1].map(|axis| self.size[axis] / self.pitch[axis])
     }

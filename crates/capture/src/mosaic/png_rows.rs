@@ -18,7 +18,11 @@ pub(super) struct PngRows {
 }
 
 impl PngRows {
-    /// The rows of a file; `None` if it is no PNG, or interlaced.
+    /// Opens the rows of a file; `None` if it is no PNG, or interlaced. Decoding takes at most a quarter of
+    /// `max_memory` bytes.
+    ///
+    /// # Errors
+    /// Why it cannot be decoded, as text.
     pub fn open(file: &Path, max_memory: u64) -> Option<Result<Self, String>> {
         if !head(file, 8).starts_with(b"\x89PNG\r\n\x1a\n") {
             return None;
@@ -47,7 +51,10 @@ impl PngRows {
         Some(Ok(Self { reader, size, channels, is_deep: depth == BitDepth::Sixteen, profile }))
     }
 
-    /// The bytes of the next row, big endian.
+    /// The bytes of the next row, samples big endian.
+    ///
+    /// # Errors
+    /// Why it cannot be decoded, as text.
     pub fn next(&mut self) -> Result<&[u8], String> {
         match self.reader.next_row() {
             Ok(Some(row)) => Ok(row.data()),
@@ -56,7 +63,7 @@ impl PngRows {
         }
     }
 
-    /// Bytes per pixel.
+    /// The number of bytes of a pixel.
     pub fn pixel_bytes(&self) -> usize {
         self.channels * if self.is_deep { 2 } else { 1 }
     }

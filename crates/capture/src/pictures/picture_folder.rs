@@ -43,6 +43,9 @@ pub(crate) struct PictureFolder {
 
 impl PictureFolder {
     /// Finds the folder with the most pictures of these names.
+    ///
+    /// # Errors
+    /// A folder cannot be read, or the pictures lie outside the capture's folder.
     pub fn find(source: &PictureSearch<'_>, names: &[String]) -> Result<Self, CaptureError> {
         let PictureSearch { folder, cameras, pictures } = *source;
         if let Some(pictures) = pictures {
@@ -91,12 +94,12 @@ impl PictureFolder {
         self.files.iter().flatten().count()
     }
 
-    /// The path, relative to the folder, of the picture of a name.
+    /// The path, relative to the folder, of the picture for the name with this index; `None` if there is none.
     pub fn path(&self, name: usize) -> Option<&str> {
         self.files[name].map(|file| self.paths[file].as_str())
     }
 
-    /// Pictures that match no name.
+    /// The paths, relative to the folder, of pictures that match no name.
     pub fn unused(&self) -> Vec<String> {
         let mut is_used = vec![false; self.paths.len()];
         self.files.iter().flatten().for_each(|&file| is_used[file] = true);

@@ -15,7 +15,7 @@ pub(crate) struct PictureFiles {
 type KeyFunction = fn(&str) -> String;
 
 impl PictureFiles {
-    /// The files of these paths.
+    /// The files with these paths, to be found by name.
     pub fn new(paths: Vec<String>) -> Self {
         Self { paths }
     }

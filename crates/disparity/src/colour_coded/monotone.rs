@@ -19,7 +19,7 @@ pub struct MonotoneFunction {
 }
 
 impl MonotoneFunction {
-    /// Fits samples of (place, value); `None` if they do not grow.
+    /// Fits a growing function to samples of (place, value); `None` if they do not grow.
     pub fn fit(samples: &[(f32, f32)]) -> Option<Self> {
         let mut sorted = samples.to_vec();
         sorted.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));

@@ -19,7 +19,7 @@ pub struct Nearest {
 }
 
 impl Palette {
-    /// The curve through these colours; `None` if they are all one.
+    /// The curve that passes through these colours in order; `None` if they are all one.
     pub fn through(colours: &[[f32; 3]]) -> Option<Self> {
         let mut lengths = vec![0.0];
         for pair in colours.windows(2) {
@@ -45,12 +45,12 @@ impl Palette {
         Some(Self { points })
     }
 
-    /// The points, evenly along the curve.
+    /// The colours along the curve, at even distances.
     pub fn points(&self) -> &[[f32; 3]] {
         &self.points
     }
 
-    /// The nearest place to a colour.
+    /// The place on the curve that is nearest to a colour, and its distance.
     pub fn nearest(&self, colour: [f32; 3]) -> Nearest {
         let mut best = Nearest { place: 0.0, distance: f32::MAX };
         for (k, pair) in self.points.windows(2).enumerate() {
@@ -71,7 +71,7 @@ impl Palette {
     }
 }
 
-/// The Euclidean distance of two colours.
+/// The Euclidean distance of two colours, RGB.
 pub fn distance(a: [f32; 3], b: [f32; 3]) -> f32 {
     (0..3).map(|c| (a[c] - b[c]).powi(2)).sum::<f32>().sqrt()
 }

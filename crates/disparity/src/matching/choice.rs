@@ -11,7 +11,7 @@ pub struct Choice {
     pub lead: i16,
 }
 
-/// The choice for one pixel from the costs of all its labels.
+/// Chooses a label for a pixel from the costs of all its labels: the cheapest, refined between its neighbours.
 pub fn choose(costs: &[i16], labels: &Labels) -> Choice {
     let (mut best, mut least) = (0, i16::MAX);
     for (label, &cost) in costs.iter().enumerate() {

@@ -29,7 +29,7 @@ const POPULATED: f32 = 0.003;
 /// Labels that are counted together.
 const BIN: f32 = 2.0;
 
-/// The factor by which pictures are shrunk for a coarse estimate.
+/// The factor, at least 1, by which pictures of `width` × `height` px are shrunk for a coarse estimate.
 pub fn shrink_factor(width: usize, height: usize) -> usize {
     (width.max(height) / SIDE).clamp(1, width.min(height) / crate::MIN_SIDE_PX)
 }
@@ -60,6 +60,9 @@ pub struct CoarseEstimate {
 }
 
 /// Estimates the disparities of small pictures, in `range` or as far as parallax is searched.
+///
+/// # Errors
+/// [`Cancelled`] if `progress` asks to stop.
 pub fn estimate_coarse(
     reference: &Planes,
     others: &[ShiftedView<'_>],

@@ -12,13 +12,13 @@ pub struct Labels {
 }
 
 impl Labels {
-    /// Labels that cover `low..=high` no more than `step` apart.
+    /// Labels, at least three, that cover the disparities `low..=high` no more than `step` apart.
     pub fn covering(low: f32, high: f32, step: f32) -> Self {
         let count = (((high - low) / step).ceil() as usize + 1).max(3);
         Self { low, step: ((high - low) / (count - 1) as f32).max(f32::MIN_POSITIVE), count }
     }
 
-    /// The disparity of a label, or between two.
+    /// The disparity of a label; a fraction lies between two labels.
     pub fn disparity(&self, label: f32) -> f32 {
         self.low + label * self.step
     }

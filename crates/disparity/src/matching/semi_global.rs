@@ -32,6 +32,9 @@ impl Default for Penalties {
 }
 
 /// The aggregated costs of a volume: the sum of eight directions, laid out as `volume.costs`.
+///
+/// # Errors
+/// [`Cancelled`] if `progress` asks to stop.
 pub fn aggregate(
     volume: &CostVolume,
     guide: &Planes,

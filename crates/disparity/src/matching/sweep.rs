@@ -49,7 +49,10 @@ pub struct CostVolume {
     pub costs: Vec<i16>,
 }
 
-/// The costs of `labels` in `rows` of the reference.
+/// The costs of all `labels` for the pixels in `rows` of the reference (Collins's plane sweep, 1996).
+///
+/// # Errors
+/// [`Cancelled`] if `progress` asks to stop.
 pub fn plane_sweep(
     reference: &Planes,
     others: &[ShiftedView<'_>],

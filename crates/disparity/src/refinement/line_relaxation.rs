@@ -20,7 +20,8 @@ pub struct Bonds {
 }
 
 impl Bonds {
-    /// The weights that `bond_between` returns for pairs of indices.
+    /// The bonds that `bond_between` returns for the indices of neighbouring pixels, in a picture of `width` ×
+    /// `height` px.
     pub fn new(width: usize, height: usize, bond_between: impl Fn(usize, usize) -> f32 + Sync) -> Self {
         let mut along_rows = vec![0.0; width * height];
         along_rows.par_chunks_mut(width).enumerate().for_each(|(y, bonds)| {

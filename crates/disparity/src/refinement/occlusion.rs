@@ -20,7 +20,7 @@ pub struct OcclusionTest<'a> {
 }
 
 impl<'a> OcclusionTest<'a> {
-    /// For views at these offsets.
+    /// Prepares the test for a disparity map with rows of `width`, seen by views at these offsets.
     pub fn new(disparity: &'a [f32], width: usize, offsets: &[[f32; 2]]) -> Self {
         let height = disparity.len() / width;
         let reach = offsets.iter().flatten().fold(0.0f32, |reach, o| reach.max(o.abs()));
@@ -50,7 +50,7 @@ impl<'a> OcclusionTest<'a> {
         }
     }
 
-    /// The largest disparity that could occlude the pixel.
+    /// The largest disparity around the pixel in column `x` and row `y` that could occlude it.
     pub fn nearest_occluder(&self, x: usize, y: usize) -> f32 {
         self.nearest[y / TILE * self.tiles_across + x / TILE]
     }

@@ -37,12 +37,12 @@ pub(crate) struct PictureSpace {
 }
 
 impl PictureSpace {
-    /// The inverse depth 1/z of a disparity.
+    /// The inverse depth 1/z (1/scene unit) of a disparity, px between neighbouring views.
     pub fn inverse_depth(&self, disparity: f64) -> f64 {
         (disparity + self.offset) / self.scale
     }
 
-    /// The distance b between neighbouring views.
+    /// The distance between neighbouring views, scene units.
     pub fn baseline(&self) -> f64 {
         self.scale / self.focal_px
     }

@@ -35,7 +35,7 @@ impl CombineMode {
 }
 
 impl Selection {
-    /// The texels for which `is_selected` is true.
+    /// Selects the texels of a canvas for which `is_selected` is true.
     pub fn from_predicate(canvas: &Canvas, is_selected: impl Fn(&CanvasTexel) -> bool) -> SelectionResult {
         Self::from_bits(canvas.texels().iter().map(is_selected))
     }
@@ -55,12 +55,12 @@ impl Selection {
         }
     }
 
-    /// Whether the texel of this index is selected.
+    /// Whether the canvas's texel with this index is selected.
     pub fn contains(&self, index: usize) -> bool {
         self.words[index / 64] >> (index % 64) & 1 == 1
     }
 
-    /// Number of selected texels.
+    /// The number of selected texels.
     pub fn count(&self) -> usize {
         self.count
     }
@@ -70,7 +70,7 @@ impl Selection {
         Self::from_bits((0..self.texel_count).map(|index| !self.contains(index)))
     }
 
-    /// Memory, in bytes.
+    /// The memory that it takes, in bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(&*self.words)
     }

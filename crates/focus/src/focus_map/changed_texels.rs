@@ -39,7 +39,7 @@ impl ChangedTexels {
         rectangles
     }
 
-    /// Adds the texels of another edit.
+    /// Adds the texels that another edit changed.
     pub fn extend(&mut self, other: ChangedTexels) {
         let mut texels = std::mem::take(&mut self.texels);
         texels.extend(other.texels);
@@ -47,7 +47,7 @@ impl ChangedTexels {
     }
 }
 
-/// The smallest rectangle that contains two rectangles (columns, rows).
+/// The smallest rectangle that contains two rectangles of texels (columns, rows).
 pub fn rectangle_union(a: &[Range<u32>; 2], b: &[Range<u32>; 2]) -> [Range<u32>; 2] {
     [0, 1].map(|axis| a[axis].start.min(b[axis].start)..a[axis].end.max(b[axis].end))
 }

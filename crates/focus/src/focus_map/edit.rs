@@ -58,12 +58,12 @@ impl Edit {
         self.background[0] != self.background[1]
     }
 
-    /// Applies the change. Returns the changed texels.
+    /// Applies the change to `map`. Returns the texels that changed.
     pub fn apply(&self, map: &mut FocusMap) -> ChangedTexels {
         self.replace(map, EditSide::After)
     }
 
-    /// Reverts the change, bit for bit. Returns the changed texels.
+    /// Reverts the change in `map`, bit for bit. Returns the texels that changed.
     pub fn revert(&self, map: &mut FocusMap) -> ChangedTexels {
         self.replace(map, EditSide::Before)
     }

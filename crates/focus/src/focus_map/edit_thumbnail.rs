@@ -55,12 +55,12 @@ impl EditThumbnail {
         Self { cells: sums.into_iter().map(cell).collect() }
     }
 
-    /// The cells, row by row, the top one first.
+    /// The cells, row by row from the top.
     pub fn cells(&self) -> &[ThumbnailCell] {
         &self.cells
     }
 
-    /// Memory, in bytes.
+    /// The memory that it takes, in bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(&*self.cells)
     }

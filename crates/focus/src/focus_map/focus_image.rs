@@ -55,7 +55,7 @@ impl FocusImage {
         FocusOffset { t, anchor, gloss: self.gloss.as_ref().map_or(0.0, |gloss| f64::from(gloss[index])) }
     }
 
-    /// The smallest and largest t.
+    /// The smallest and the largest focus offset t of all texels.
     pub fn offset_range(&self) -> [f32; 2] {
         let start = [f32::INFINITY, f32::NEG_INFINITY];
         self.texels.iter().fold(start, |[low, high], [t, _]| [low.min(*t), high.max(*t)])

@@ -20,7 +20,7 @@ pub(crate) struct TileGrid<T> {
 }
 
 impl<T: Copy + PartialEq> TileGrid<T> {
-    /// A grid of one value. Width and height must be above 0.
+    /// A grid of `width` × `height` texels (above 0) that all have one value.
     pub fn new(width: u32, height: u32, value: T) -> Self {
         let tile = Arc::new([value; TILE_TEXELS]);
         Self { width, height, tiles: vec![tile; Self::tile_count(width, height)] }
@@ -52,7 +52,7 @@ impl<T: Copy + PartialEq> TileGrid<T> {
         Some(Self { width, height, tiles: tiles.collect() })
     }
 
-    /// All texels, row 0 on top. Inverse of [`Self::from_rows`].
+    /// The values of all texels, row by row from the top. Inverse of [`Self::from_rows`].
     pub fn to_rows(&self) -> Vec<T> {
         let mut rows = Vec::with_capacity(self.width as usize * self.height as usize);
         for y in 0..self.height {
@@ -61,12 +61,12 @@ impl<T: Copy + PartialEq> TileGrid<T> {
         rows
     }
 
-    /// Columns and rows.
+    /// Columns and rows of texels.
     pub fn size(&self) -> [u32; 2] {
         [self.width, self.height]
     }
 
-    /// The value of a texel, which must lie in the grid.
+    /// The value of the texel in column `x` and row `y`, which must lie in the grid.
     pub fn at(&self, x: u32, y: u32) -> T {
         let (tile, within) = self.tile_and_texel(x, y);
         self.tiles[tile][within]
@@ -78,22 +78,22 @@ impl<T: Copy + PartialEq> TileGrid<T> {
         Arc::make_mut(&mut self.tiles[tile])[within] = value;
     }
 
-    /// The tiles, row by row.
+    /// The tiles, row by row from the top.
     pub fn tiles(&self) -> &[Arc<Tile<T>>] {
         &self.tiles
     }
 
-    /// Whether all tiles are shared with another grid of the same size.
+    /// Whether all tiles are shared in memory with another grid of the same size.
     pub fn shares_tiles_with(&self, other: &Self) -> bool {
         self.tiles.iter().zip(&other.tiles).all(|(a, b)| Arc::ptr_eq(a, b))
     }
 
-    /// Replaces a tile.
+    /// Replaces the tile with this index.
     pub fn set_tile(&mut self, index: usize, tile: Arc<Tile<T>>) {
         self.tiles[index] = tile;
     }
 
-    /// The grid position of a texel of a tile, if it lies in the grid.
+    /// Column and row in the grid of texel `texel` of tile `tile`; `None` beyond the grid.
     pub fn position(&self, tile: usize, texel: usize) -> Option<[u32; 2]> {
         let across = self.width.div_ceil(TILE_SIDE);
         let x = tile as u32 % across * TILE_SIDE + texel as u32 % TILE_SIDE;
@@ -101,12 +101,12 @@ impl<T: Copy + PartialEq> TileGrid<T> {
         (x < self.width && y < self.height).then_some([x, y])
     }
 
-    /// The index of the tile that holds a texel.
+    /// The index of the tile that holds the texel in this column and row.
     pub fn tile_of(&self, [x, y]: [u32; 2]) -> usize {
         self.tile_and_texel(x, y).0
     }
 
-    /// The positions within the grid where two tiles of one index differ.
+    /// The texels (column, row) of the grid where two tiles of index `index` differ.
     pub fn differing_texels(&self, index: usize, a: &Arc<Tile<T>>, b: &Arc<Tile<T>>) -> Vec<[u32; 2]> {
         if Arc::ptr_eq(a, b) {
             return Vec::new();
@@ -127,7 +127,7 @@ impl<T: Copy + PartialEq> TileGrid<T> {
 static BLANK: LazyLock<Arc<Tile<f32>>> = LazyLock::new(|| Arc::new([0.0; TILE_TEXELS]));
 
 impl TileGrid<f32> {
-    /// A grid of zeros. Width and height must be above 0.
+    /// A grid of `width` × `height` zeros (both above 0), which share one tile.
     pub fn blank(width: u32, height: u32) -> Self {
         let count = Self::tile_count(width, height);
         Self { width, height, tiles: vec![BLANK.clone(); count] }
@@ -146,7 +146,7 @@ impl TileGrid<f32> {
         self.tiles.iter().all(is_blank)
     }
 
-    /// Whether that is true of the tiles of some texels.
+    /// Whether the tiles of all these texels (column, row) are blank.
     pub fn is_blank_at(&self, mut texels: impl Iterator<Item = [u32; 2]>) -> bool {
         texels.all(|texel| is_blank(&self.tiles[self.tile_of(texel)]))
     }

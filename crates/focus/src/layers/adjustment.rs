@@ -21,7 +21,7 @@ impl Adjustment {
         }
     }
 
-    /// The focus of every texel of a canvas, as `camera` sees it.
+    /// The focus of every texel of a canvas, from its position in front of `camera`.
     pub fn evaluate(&self, canvas: &Canvas, camera: &Camera) -> FocusMap {
         match self {
             Self::Curve(curve) => curve.evaluate(canvas, camera),

@@ -24,7 +24,7 @@ impl BlendMode {
     /// All modes, in the order in which a menu offers them.
     pub const ALL: [Self; 4] = [Self::Set, Self::Mix, Self::Add, Self::MultiplyDefocus];
 
-    /// Blends a layer's [t, anchor] with the values below.
+    /// Blends a layer's [t, anchor] with the values `beneath`, with the weight `w` in [0, 1].
     pub fn blend(self, beneath: [f32; 2], layer: [f32; 2], w: f32) -> [f32; 2] {
         if w <= 0.0 {
             return beneath;
@@ -46,7 +46,7 @@ impl BlendMode {
         }
     }
 
-    /// Blends a layer's gloss with the gloss below.
+    /// Blends a layer's gloss with the gloss `beneath`, both in [0, 1], with the weight `w` in [0, 1].
     pub fn blend_gloss(self, beneath: f32, layer: f32, w: f32) -> f32 {
         match self {
             _ if w <= 0.0 => beneath,

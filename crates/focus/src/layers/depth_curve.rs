@@ -35,7 +35,7 @@ impl DepthCurve {
         FocusOffset::new(self.curve.evaluate(depth.max(f64::MIN_POSITIVE).ln()), self.anchor)
     }
 
-    /// The focus of every texel of a canvas, by its depth in `camera`.
+    /// The focus of every texel of a canvas, by its depth in front of `camera`.
     pub fn evaluate(&self, canvas: &Canvas, camera: &Camera) -> FocusMap {
         let values: Vec<[f32; 2]> = canvas
             .texels()

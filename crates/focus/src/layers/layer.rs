@@ -24,14 +24,14 @@ pub struct FocusLayer {
 }
 
 impl FocusLayer {
-    /// A painted layer with the values of a map.
+    /// A visible, opaque painted layer with the values of `map`, and without keys.
     pub fn from_map(name: impl Into<String>, map: FocusMap) -> Self {
         let (is_visible, opacity, blend) = (true, 1.0, BlendMode::Set);
         let (adjustment, motion) = (None, LayerMotion::default());
         Self { name: name.into(), is_visible, opacity, blend, map, adjustment, motion }
     }
 
-    /// An adjustment layer.
+    /// An adjustment layer whose values follow from `adjustment` for a shot camera.
     pub fn from_adjustment(
         name: impl Into<String>,
         adjustment: Adjustment,
@@ -55,7 +55,7 @@ impl FocusLayer {
         counts.then_some(move |k: usize| opacity * mask.map_or(1.0, |mask| mask[k]))
     }
 
-    /// Evaluates its rule, if it has one, for a shot camera; the mask stays.
+    /// Computes the values anew by the layer's rule, if it has one, for a shot camera; the mask stays.
     pub fn evaluate(&mut self, canvas: &Canvas, camera: &Camera) {
         if let Some(adjustment) = &self.adjustment {
             let values = adjustment.evaluate(canvas, camera);

@@ -23,7 +23,7 @@ impl LayerStack {
     /// Maximum number of layers of a document.
     pub const MAX_LAYERS: usize = 64;
 
-    /// A stack with one painted layer.
+    /// A stack with one painted layer, which has the values of `map`.
     pub fn from_map(map: FocusMap) -> Self {
         Self { layers: vec![FocusLayer::from_map(BASE_LAYER_NAME, map)], active: 0 }
     }
@@ -38,12 +38,12 @@ impl LayerStack {
         usable.then_some(Self { layers, active })
     }
 
-    /// The layers, bottom to top.
+    /// The layers, from bottom to top.
     pub fn layers(&self) -> &[FocusLayer] {
         &self.layers
     }
 
-    /// Index of the layer that is painted on.
+    /// The index of the layer that is painted on, 0 at the bottom.
     pub fn active_index(&self) -> usize {
         self.active
     }
@@ -53,7 +53,7 @@ impl LayerStack {
         &self.layers[self.active]
     }
 
-    /// Mutable access to a layer.
+    /// Mutable access to the layer with this index, 0 at the bottom; `None` if there is none.
     pub fn layer_mut(&mut self, index: usize) -> Option<&mut FocusLayer> {
         self.layers.get_mut(index)
     }
@@ -63,12 +63,12 @@ impl LayerStack {
         &mut self.layers[self.active]
     }
 
-    /// Makes a layer the active one.
+    /// Makes the layer with this index, 0 at the bottom, the one that is painted on; at most the top one.
     pub fn activate(&mut self, index: usize) {
         self.active = index.min(self.layers.len() - 1);
     }
 
-    /// Columns and rows of every layer.
+    /// Columns and rows of texels of every layer.
     pub fn size(&self) -> [u32; 2] {
         self.layers[0].map.size()
     }
@@ -103,7 +103,8 @@ impl LayerStack {
         true
     }
 
-    /// Moves a layer to another index; the active layer stays the same one.
+    /// Moves a layer to another index, 0 at the bottom; the active layer stays the same one. Nothing happens if
+    /// either is out of range.
     pub fn move_layer(&mut self, from: usize, to: usize) {
         if from.max(to) >= self.layers.len() {
             return;
@@ -152,7 +153,7 @@ impl LayerStack {
         stack
     }
 
-    /// Evaluates all adjustment layers for a shot camera.
+    /// Computes the values of all adjustment layers anew, for a shot camera.
     pub fn evaluate(&mut self, canvas: &Canvas, camera: &Camera) {
         self.layers.iter_mut().for_each(|layer| layer.evaluate(canvas, camera));
     }
@@ -172,7 +173,7 @@ impl LayerStack {
         self.composite_tiles(map, Some(tiles.into_iter().collect()))
     }
 
-    /// Updates the whole composite. Returns the texels that changed.
+    /// Sets `map` to the composite of all layers. Returns the texels that changed.
     pub fn recomposite_all(&self, map: &mut FocusMap) -> ChangedTexels {
         self.composite_tiles(map, None)
     }
@@ -249,7 +250,7 @@ impl LayerStack {
         })
     }
 
-    /// Memory, in bytes, of the tiles that are not shared with a newer state.
+    /// The memory, in bytes, of the tiles that are not shared with `other`, a newer state.
     pub fn unshared_bytes(&self, other: &Self) -> usize {
         let mut shared = BTreeSet::new();
         for layer in &other.layers {

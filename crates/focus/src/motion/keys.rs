@@ -21,7 +21,7 @@ impl Ease {
     pub const ALL: [(&'static str, Ease); 3] =
         [("hold", Ease::Hold), ("linear", Ease::Linear), ("smooth", Ease::Smooth)];
 
-    /// The interpolation of this name.
+    /// The interpolation with this name in files; `None` if there is none.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.iter().find(|(candidate, _)| *candidate == name).map(|(_, ease)| *ease)
     }
@@ -71,7 +71,7 @@ pub struct KeySpan<'a, T> {
 }
 
 impl KeySpan<'_, f64> {
-    /// The interpolated number, never beyond either end.
+    /// The number at the time in question, never beyond either end.
     pub fn interpolate(&self) -> f64 {
         mix(*self.from, *self.to, self.share)
     }
@@ -86,7 +86,7 @@ impl<T> Keys<T> {
     /// Maximum number of keys of one property.
     pub const MAX_KEYS: usize = 4096;
 
-    /// The keys, in order of time.
+    /// The keys, ascending in time.
     pub fn keys(&self) -> &[Key<T>] {
         &self.0
     }
@@ -111,14 +111,14 @@ impl<T> Keys<T> {
         true
     }
 
-    /// Removes the key at a time. Returns whether there was one.
+    /// Removes the key at exactly this time, s. Returns whether there was one.
     pub fn remove(&mut self, seconds: f64) -> bool {
         let count = self.0.len();
         self.0.retain(|key| key.seconds != seconds);
         self.0.len() < count
     }
 
-    /// The two values around a time; `None` without keys.
+    /// The values of the keys before and after a time, s, and how far it lies between them; `None` without keys.
     pub fn span_at(&self, seconds: f64) -> Option<KeySpan<'_, T>> {
         let after = self.0.partition_point(|key| key.seconds <= seconds);
         let before = after.checked_sub(1).and_then(|before| self.0.get(before));

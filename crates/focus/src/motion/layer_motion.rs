@@ -23,12 +23,12 @@ impl LayerMotion {
         self.opacity.is_empty() && self.mask.is_empty()
     }
 
-    /// Whether it can be used.
+    /// Whether all its keys are valid: opacities in [0, 1], masks finite.
     pub fn is_valid(&self) -> bool {
         self.opacity.is_valid(|opacity| (0.0..=1.0).contains(opacity)) && self.mask.is_valid(Curve::is_valid)
     }
 
-    /// The times of all keys.
+    /// The times of all keys, s; some may occur twice.
     pub fn times(&self) -> impl Iterator<Item = f64> {
         let opacity = self.opacity.keys().iter().map(|key| key.seconds);
         opacity.chain(self.mask.keys().iter().map(|key| key.seconds))

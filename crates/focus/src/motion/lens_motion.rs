@@ -64,12 +64,12 @@ impl LensMotion {
             && self.f_number.is_valid(|number| *number > 0.0 && number.is_finite())
     }
 
-    /// Bytes in memory.
+    /// The memory that it takes, in bytes.
     pub fn bytes(&self) -> usize {
         size_of::<Self>() + size_of_val(self.focus.keys()) + size_of_val(self.f_number.keys())
     }
 
-    /// The times of all keys.
+    /// The times of all keys, s; some may occur twice.
     pub fn times(&self) -> impl Iterator<Item = f64> {
         let focus = self.focus.keys().iter().map(|key| key.seconds);
         focus.chain(self.f_number.keys().iter().map(|key| key.seconds))
@@ -98,7 +98,7 @@ impl LensMotion {
         moved
     }
 
-    /// The f-number at a time, if it is animated.
+    /// The f-number at a time, s, if it is animated: interpolated as its logarithm.
     pub fn f_number_at(&self, seconds: f64) -> Option<f64> {
         let span = self.f_number.span_at(seconds)?;
         // Equal values are returned exactly.
@@ -121,11 +121,19 @@ mod distance {
         Word(String),
     }
 
+    /// Writes a distance in scene units: as a number, or "inf" if it is infinite.
+    ///
+    /// # Errors
+    /// Errors of `to`.
     pub fn serialize<S: Serializer>(distance: &f64, to: S) -> Result<S::Ok, S::Error> {
         let is_infinite = distance.is_infinite();
         if is_infinite { Form::Word("inf".into()) } else { Form::Number(*distance) }.serialize(to)
     }
 
+    /// Reads a distance in scene units, a number or "inf".
+    ///
+    /// # Errors
+    /// It is something else.
     pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
         match Form::deserialize(from)? {
             Form::Number(distance) => Ok(distance),
@@ -146,10 +154,18 @@ mod surface_point {
         barycentric: [f64; 2],
     }
 
+    /// Writes a surface point as triangle and barycentric weights.
+    ///
+    /// # Errors
+    /// Errors of `to`.
     pub fn serialize<S: Serializer>(point: &SurfacePoint, to: S) -> Result<S::Ok, S::Error> {
         Form { triangle: point.triangle, barycentric: point.barycentric.to_array() }.serialize(to)
     }
 
+    /// Reads a surface point as it is written by [`serialize`].
+    ///
+    /// # Errors
+    /// The form is another.
     pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<SurfacePoint, D::Error> {
         let Form { triangle, barycentric } = Form::deserialize(from)?;
         Ok(SurfacePoint { triangle, barycentric: DVec2::from_array(barycentric) })

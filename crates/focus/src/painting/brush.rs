@@ -147,7 +147,7 @@ impl Default for Brush {
 }
 
 impl Brush {
-    /// The first invalid setting, if any, as a sentence for the user.
+    /// What is wrong with the first invalid setting, as a sentence for the user; `None` if all are valid.
     pub fn problem(&self) -> Option<&'static str> {
         let unit = 0.0..=1.0;
         let [low, high] = self.offset_limits;
@@ -224,12 +224,12 @@ impl Brush {
         self.mirror_by_object || !self.symmetry().has_world_axes()
     }
 
-    /// The radius of a dab at a pen pressure.
+    /// The radius of a dab, scene units, at the pen's pressure.
     pub fn radius_at(&self, pen: PenSample) -> f64 {
         self.radius * pressure_response(self.pressure_to_radius, pen)
     }
 
-    /// The strength of a dab at a pen pressure.
+    /// The strength of a dab, in [0, 1], at the pen's pressure.
     pub fn strength_at(&self, pen: PenSample) -> f64 {
         self.strength * pressure_response(self.pressure_to_strength, pen)
     }

@@ -20,7 +20,7 @@ pub(crate) struct Dab {
 const NORMAL_ROUNDING: f32 = 1e-5;
 
 impl Dab {
-    /// Whether the side of the surface that the texel lies on is painted.
+    /// Whether the texel faces a side that the brush paints: within its normal limit of the dab's normal.
     pub fn accepts_normal(&self, brush: &Brush, texel: &CanvasTexel) -> bool {
         match self.normal {
             Some(normal) if texel.normal != Vec3::ZERO => {

@@ -24,7 +24,7 @@ pub enum FillTarget {
 }
 
 impl FillTarget {
-    /// Whether a texel belongs to it.
+    /// Whether a texel of `canvas` belongs to the target.
     pub fn contains(self, canvas: &Canvas, texel: &CanvasTexel) -> bool {
         match self {
             Self::Node(node) => canvas.node_of(texel) == node,

@@ -54,6 +54,10 @@ mod optional {
     use serde::de::Error;
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
+    /// Writes a focus as [t, anchor], or [t, anchor, gloss] where carried light obeys it; its absence as null.
+    ///
+    /// # Errors
+    /// Errors of `to`.
     pub fn serialize<S: Serializer>(value: &Option<FocusOffset>, to: S) -> Result<S::Ok, S::Error> {
         let numbers = |FocusOffset { t, anchor, gloss }| match gloss {
             0.0 => vec![t, anchor],
@@ -62,6 +66,10 @@ mod optional {
         value.map(numbers).serialize(to)
     }
 
+    /// Reads a focus of two or three numbers, or null.
+    ///
+    /// # Errors
+    /// The form is another.
     pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Option<FocusOffset>, D::Error> {
         let Some(numbers) = Option::<Vec<f64>>::deserialize(from)? else { return Ok(None) };
         match numbers[..] {

@@ -26,7 +26,7 @@ pub(crate) struct SmoothedValues {
 }
 
 impl SmoothedValues {
-    /// Gathers the texels around `dab` that face the same way.
+    /// Gathers mean values of the texels around `dab` that face the same way.
     pub fn new(dab: &Dab, brush: &Brush, canvas: &Canvas, map: &FocusMap) -> Self {
         let mut area = 0.0;
         let mut count = 0.0;
@@ -81,7 +81,7 @@ impl SmoothedValues {
         }
     }
 
-    /// The minimum and maximum of t, anchor, gloss and mask around the dab.
+    /// The smallest and the largest t, anchor, gloss and mask around the dab.
     pub fn bounds(&self) -> [[f32; 4]; 2] {
         self.bounds
     }

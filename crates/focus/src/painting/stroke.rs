@@ -59,12 +59,12 @@ impl Stroke {
         Ok(Self { brush, canvas, before, coverage, selection, images, last: None, until_next_dab: 0.0 })
     }
 
-    /// The same stroke, restricted to a selection.
+    /// The same stroke, restricted to the selected texels; `None` lifts the restriction.
     pub fn with_selection(self, selection: Option<Selection>) -> Self {
         Self { selection, ..self }
     }
 
-    /// Draws on to the next hit. Returns the changed texels.
+    /// Draws on from the last hit to `hit`. Returns the texels that changed.
     pub fn extend(&mut self, map: &mut FocusMap, hit: SurfaceHit, pen: PenSample) -> ChangedTexels {
         let mut changed = Vec::new();
         if !hit.position.is_finite() {
@@ -102,12 +102,12 @@ impl Stroke {
         self.last = None;
     }
 
-    /// Ends the stroke. `None` if there is nothing to undo.
+    /// Ends the stroke. Returns its edit; `None` if there is nothing to undo.
     pub fn commit(self, map: &FocusMap) -> Option<Edit> {
         Edit::from_difference(self.brush.stroke_name(), &self.before, map)
     }
 
-    /// Reverts the stroke. Returns the changed texels.
+    /// Reverts the stroke in `map`. Returns the texels that changed.
     pub fn abort(self, map: &mut FocusMap) -> ChangedTexels {
         match Edit::from_difference(self.brush.stroke_name(), map, &self.before) {
             Some(edit) => edit.apply(map),

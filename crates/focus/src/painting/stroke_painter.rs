@@ -18,7 +18,7 @@ pub(crate) struct StrokePainter<'a> {
 }
 
 impl StrokePainter<'_> {
-    /// Paints a dab; changed texels are appended to `changed`.
+    /// Paints a dab on `map`; the texels that it changes (column, row) are appended to `changed`.
     pub fn paint_dab(
         &mut self,
         dab: &Dab,

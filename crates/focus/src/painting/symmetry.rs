@@ -46,17 +46,17 @@ pub struct SymmetryImage {
 }
 
 impl SymmetryImage {
-    /// The image of a point. The identity returns it bit for bit.
+    /// The image of a world point. The identity returns it bit for bit.
     pub fn point(&self, point: DVec3) -> DVec3 {
         if self.is_identity { point } else { self.center + self.linear * (point - self.center) }
     }
 
-    /// The image of a direction.
+    /// The image of a world direction. The identity returns it bit for bit.
     pub fn direction(&self, direction: DVec3) -> DVec3 {
         if self.is_identity { direction } else { self.linear * direction }
     }
 
-    /// The point of which this is the image.
+    /// The world point of which `image` is the image.
     pub fn original(&self, image: DVec3) -> DVec3 {
         let back = || self.center + self.linear.transpose() * (image - self.center);
         if self.is_identity { image } else { back() }
@@ -85,7 +85,7 @@ impl Symmetry {
         (1..=Self::MAX_RADIAL).contains(&self.radial) && is_center_finite && are_square
     }
 
-    /// All images, the identity first.
+    /// All images under the mirrors and turns, the identity first.
     pub fn images(&self) -> Vec<SymmetryImage> {
         let center = DVec3::from_array(self.center);
         let axes = DMat3::from_cols_array_2d(&self.axes);

@@ -39,7 +39,7 @@ pub struct Distortion {
 }
 
 impl Distortion {
-    /// Only radial terms k₁, k₂ …
+    /// A distortion of only radial terms k₁, k₂ …, at most six; further ones are ignored.
     pub fn radial(terms: &[f64]) -> Self {
         let mut radial = [0.0; 6];
         radial.iter_mut().zip(terms).for_each(|(to, from)| *to = *from);
@@ -63,7 +63,7 @@ impl Distortion {
         self.tangential == [0.0; 2] && self.prism == [0.0; 4]
     }
 
-    /// The distorted position of an ideal point.
+    /// The distorted position of an ideal point. Both are in units of the focal length, from the axis.
     pub fn distorted(&self, q: DVec2) -> DVec2 {
         let radial = q * self.radial_factor(q.length_squared())[0];
         if self.is_radial() {

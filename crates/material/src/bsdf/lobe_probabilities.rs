@@ -35,7 +35,7 @@ impl LobeProbabilities {
         Self { coat, gloss, glass, spread, through, returned }
     }
 
-    /// All lobes but the spread one; `None` where there are no others.
+    /// The probabilities of all lobes but the spread one, scaled to sum to 1; `None` where there are no others.
     pub fn without_spread(self) -> Option<Self> {
         let others = Self { spread: 0.0, ..self }.normalized();
         (others.spread == 0.0).then_some(others)

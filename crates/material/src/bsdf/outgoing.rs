@@ -17,7 +17,7 @@ pub struct OutgoingBsdf<'b, 'a> {
 }
 
 impl<'a> Bsdf<'a> {
-    /// The BSDF for one outgoing direction.
+    /// The BSDF for one outgoing direction (world, unit): what depends on it alone is computed once.
     pub fn toward(&self, outgoing: DVec3) -> OutgoingBsdf<'_, 'a> {
         let view = self.outgoing_frame(outgoing);
         let probabilities = self.lobe_probabilities(&view);
@@ -26,7 +26,7 @@ impl<'a> Bsdf<'a> {
 }
 
 impl OutgoingBsdf<'_, '_> {
-    /// [`Bsdf::evaluate`] times the cosine, and [`Bsdf::density`].
+    /// [`Bsdf::evaluate`] times the cosine of the incident direction, and [`Bsdf::density`], 1/sr; without mirrors.
     pub fn scatter(&self, incident: DVec3) -> (Split, f64) {
         let value = self.bsdf.value(&self.view, incident);
         if value.total() == DVec3::ZERO {
@@ -36,7 +36,7 @@ impl OutgoingBsdf<'_, '_> {
         (value * cosine, self.bsdf.density_of(&self.view, &self.probabilities, incident))
     }
 
-    /// [`Bsdf::sample`].
+    /// Samples an incident direction, as [`Bsdf::sample`] does.
     pub fn sample(&self, u: [f64; 3]) -> Option<Scattered> {
         self.bsdf.sample_lobes(&self.view, &self.probabilities, u)
     }
@@ -84,7 +84,8 @@ impl OutgoingBsdf<'_, '_> {
         self.bsdf.albedo_toward(&self.view)
     }
 
-    /// The albedo of the spread lobes ([`Parts`]).
+    /// The albedo of the spread lobes ([`Parts`]), linear RGB: the share of light from all around that they send in
+    /// the outgoing direction.
     pub fn spread_albedo(&self) -> DVec3 {
         let (bsdf, side) = (self.bsdf, &self.view.side);
         if self.view.o.z <= 0.0 {
@@ -136,7 +137,8 @@ impl OutgoingBsdf<'_, '_> {
         }
     }
 
-    /// Samples an incident direction of the sharp lobes ([`Parts`]).
+    /// Samples an incident direction of the sharp lobes ([`Parts`]) from uniform numbers in [0, 1). `None` if there
+    /// are none or nothing is scattered that way.
     pub fn sample_sharp(&self, u: [f64; 3]) -> Option<Scattered> {
         let probabilities = self.probabilities.without_spread()?;
         let scattered = self.bsdf.sample_lobes(&self.view, &probabilities, u)?;
@@ -151,12 +153,12 @@ impl OutgoingBsdf<'_, '_> {
         self.probabilities.without_spread().is_none()
     }
 
-    /// The shading normal, on the outgoing side.
+    /// The shading normal (world, unit), on the outgoing side.
     pub fn normal(&self) -> DVec3 {
         self.view.frame.normal
     }
 
-    /// [`Bsdf::coverage_shares`].
+    /// [`Bsdf::coverage_shares`] for this outgoing direction.
     pub fn coverage_shares(&self) -> [f64; 2] {
         self.bsdf.shares_of(self.bsdf.albedo_toward(&self.view))
     }

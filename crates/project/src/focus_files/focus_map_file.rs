@@ -52,7 +52,7 @@ pub struct FocusMapFile {
 }
 
 impl FocusMapFile {
-    /// A map painted over `atlas`.
+    /// The file's content for a map painted over `atlas`.
     pub fn from_atlas_map(map: &FocusMap, atlas: &Atlas) -> Self {
         let (width, height) = (map.width(), map.height());
         let image = FocusImage { width, height, texels: map.to_rows(), gloss: map.gloss_rows() };
@@ -64,7 +64,7 @@ impl FocusMapFile {
         }
     }
 
-    /// The map over `atlas`; `file` is named in messages.
+    /// The map over `atlas`; `file` is named in errors.
     ///
     /// # Errors
     /// The map belongs to another atlas or has another size.

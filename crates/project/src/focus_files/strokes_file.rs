@@ -57,7 +57,7 @@ pub enum RecordedStep {
 }
 
 impl RecordedStep {
-    /// Memory that it takes, in bytes.
+    /// The memory that it takes, in bytes.
     pub fn bytes(&self) -> usize {
         let content_bytes = match self {
             Self::Stroke(stroke) => size_of_val(&*stroke.points) + stroke.layer.len(),
@@ -239,7 +239,7 @@ struct StrokesFile {
     strokes: Vec<RecordedStroke>,
 }
 
-/// Writes recorded edits.
+/// Writes recorded steps of painting as JSON.
 ///
 /// # Errors
 /// The file cannot be written.
@@ -260,7 +260,7 @@ pub fn write_strokes(file: &Path, steps: &[RecordedStep]) -> Result<(), ProjectE
     })
 }
 
-/// Reads recorded edits.
+/// Reads recorded steps of painting, in order.
 ///
 /// # Errors
 /// The file cannot be read, has another form, or has an invalid step.

@@ -32,7 +32,7 @@ impl Compression {
         ("none", Self::None),
     ];
 
-    /// The compression of this name.
+    /// The compression with this name on the command line; `None` if there is none.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.iter().find(|(candidate, _)| *candidate == name).map(|(_, compression)| *compression)
     }
@@ -65,7 +65,7 @@ pub(crate) enum ExrSamples {
 }
 
 impl ExrSamples {
-    /// Whether a channel is stored as half.
+    /// Whether a channel with this name is stored in 16-bit floats; otherwise in 32-bit floats.
     pub fn is_half(self, channel: &str) -> bool {
         matches!(self, Self::HalfIf(suffices) if suffices(channel))
     }

@@ -15,7 +15,7 @@ pub(crate) struct Window {
 }
 
 impl Window {
-    /// From the decoder's type.
+    /// The window with a decoder's bounds.
     pub fn from_bounds(bounds: IntegerBounds) -> Self {
         Self {
             corner: [bounds.position.x(), bounds.position.y()],
@@ -23,12 +23,12 @@ impl Window {
         }
     }
 
-    /// Number of pixels.
+    /// The number of pixels.
     pub fn area(&self) -> usize {
         self.size[0] * self.size[1]
     }
 
-    /// Number of pixels shared with another window.
+    /// The number of pixels that are also in another window.
     pub fn shared_area(&self, other: Self) -> usize {
         (0..2).map(|axis| self.shared_span(other, axis).1).product()
     }

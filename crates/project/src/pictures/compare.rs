@@ -85,7 +85,7 @@ pub fn compare(a: &LinearPicture, b: &LinearPicture) -> Result<Comparison, Proje
     })
 }
 
-/// The per-pixel differences of `a` from the reference `b`.
+/// The differences of `a` from the reference `b`, pixel by pixel.
 ///
 /// # Errors
 /// [`ProjectError::SizesDiffer`] if the sizes differ.

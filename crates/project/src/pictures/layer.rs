@@ -18,12 +18,12 @@ impl Layer {
     /// The pinhole picture: `pinhole.R`, `pinhole.G` and `pinhole.B`, in the picture's own colour space.
     pub const PINHOLE: &'static str = "pinhole";
 
-    /// The picture's coverage.
+    /// The picture's coverage as a layer.
     pub fn coverage(picture: &Picture) -> Self {
         Self { name: "coverage".to_string(), values: picture.coverage.clone() }
     }
 
-    /// Colours as three layers of this name.
+    /// Linear RGB as three layers: the name with .R, .G and .B.
     pub fn from_colors(name: &str, rgb: &[[f32; 3]]) -> [Self; 3] {
         color_channels(rgb).map(|(channel, values)| Self { name: format!("{name}.{channel}"), values })
     }

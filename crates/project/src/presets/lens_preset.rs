@@ -18,7 +18,7 @@ pub struct LensPreset {
 }
 
 impl LensPreset {
-    /// The lens of a camera.
+    /// The preset that has the lens and aperture of a camera.
     pub fn from_camera(camera: &Camera) -> Self {
         Self {
             focal_length: camera.optics().focal_length(),

@@ -89,7 +89,7 @@ impl PresetLibrary {
         self.entries.iter().filter(move |entry| entry.kind == kind)
     }
 
-    /// The preset of this name; of several, the user's own.
+    /// The preset of this kind and name; of several, the user's own. `None` if there is none.
     pub fn find(&self, kind: PresetKind, name: &str) -> Option<&Preset> {
         let presets = self.entries_of_kind(kind).filter_map(|entry| entry.preset.as_ref().ok());
         presets.filter(|preset| preset.name == name).last()
@@ -110,7 +110,7 @@ impl PresetLibrary {
         Ok(file)
     }
 
-    /// Copies a preset file from elsewhere into the library.
+    /// Copies a preset file from elsewhere into the library. Returns the preset.
     ///
     /// # Errors
     /// It cannot be read or saved.

@@ -71,7 +71,7 @@ pub enum PresetContent {
 }
 
 impl Preset {
-    /// A preset of this name.
+    /// A preset with this name and content.
     ///
     /// # Errors
     /// A sentence for the user, if the name is empty or too long.
@@ -103,8 +103,10 @@ impl Preset {
         }
     }
 
-    /// The camera with this preset applied, or `None` if it is a brush preset. An error, as a sentence for the user,
-    /// if the camera cannot have it.
+    /// The camera with this preset applied, or `None` if it is a brush preset.
+    ///
+    /// # Errors
+    /// Why the camera cannot have it, as a sentence for the user.
     pub fn apply_to_camera(&self, current: &Camera) -> Option<Result<Camera, String>> {
         match &self.content {
             PresetContent::Brush(_) => None,
@@ -121,7 +123,7 @@ impl Preset {
         }
     }
 
-    /// Whether the brush has this preset's settings.
+    /// Whether `brush` has this preset's settings; false for a lens preset.
     pub fn matches_brush(&self, brush: &Brush) -> bool {
         self.apply_to_brush(brush).is_some_and(|own| own == *brush)
     }

@@ -48,7 +48,7 @@ pub(crate) struct CaptureEntry {
 }
 
 impl CaptureEntry {
-    /// For a project file at `project`.
+    /// The entry of these choices in a project file at `project`: its paths become relative.
     pub fn new(choices: &CaptureChoices, project: &Path) -> Self {
         let path = |path: &Option<PathBuf>| path.as_ref().map(|path| ScenePath::new(path, project));
         Self {
@@ -73,7 +73,10 @@ impl CaptureEntry {
         !self.depth_strokes.is_empty()
     }
 
-    /// The choices, with paths resolved from the project's location, or what is wrong with them.
+    /// The choices, with paths resolved from the project's location.
+    ///
+    /// # Errors
+    /// What is wrong with them, as text.
     pub fn to_choices(&self, project: &Path) -> Result<CaptureChoices, &'static str> {
         if !self.depth_strokes.iter().all(DepthStroke::is_valid) {
             return Err("capture.depth_strokes has a stroke beyond all pictures");

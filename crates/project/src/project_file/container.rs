@@ -35,7 +35,10 @@ pub(crate) struct Container<'a> {
 }
 
 impl<'a> Container<'a> {
-    /// Opens the bytes of `file`.
+    /// Opens the bytes of `file`, a ZIP archive.
+    ///
+    /// # Errors
+    /// It is none, is damaged, or has too many entries.
     pub fn open(file: &'a Path, bytes: &'a [u8]) -> Result<Self, ProjectError> {
         let archive = ZipArchive::new(Cursor::new(bytes)).map_err(|error| {
             ProjectError::content(file, format!("is not a complete project file: {error}"), DAMAGED_CURE)
@@ -47,13 +50,16 @@ impl<'a> Container<'a> {
         Ok(Self { file, archive })
     }
 
-    /// An error about an entry.
+    /// An error about an entry of the file: what is wrong with it.
     pub fn error(&self, entry: &str, problem: impl Into<String>) -> ProjectError {
         let (file, entry) = (self.file.to_owned(), entry.to_owned());
         ProjectError::Entry { file, entry, problem: problem.into(), cure: DAMAGED_CURE.to_string() }
     }
 
     /// Reads an entry of at most `limit` bytes.
+    ///
+    /// # Errors
+    /// The entry is missing, damaged, or longer.
     pub fn read(&mut self, entry: &str, limit: u64) -> Result<Vec<u8>, ProjectError> {
         let read = match self.archive.by_name(entry) {
             // The size that the entry declares is not trusted: reading stops at the limit.

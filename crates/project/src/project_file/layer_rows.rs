@@ -53,7 +53,7 @@ impl LayerEntry {
         self.background_gloss != 0.0 || self.gloss.is_some()
     }
 
-    /// The rule of an adjustment layer.
+    /// The rule of an adjustment layer; `None` for a painted layer.
     pub fn adjustment(&self) -> Option<Adjustment> {
         let curve = self.curve.clone().map(Adjustment::Curve);
         curve.or_else(|| self.plane.clone().map(Adjustment::Plane))

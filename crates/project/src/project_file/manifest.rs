@@ -143,7 +143,10 @@ impl Manifest {
         Self { version, ..self }
     }
 
-    /// Reads and checks the manifest.
+    /// Reads and checks the manifest of a project.
+    ///
+    /// # Errors
+    /// It is missing or malformed, or of a version that is not supported.
     pub fn read(file: &Path, container: &mut Container<'_>) -> Result<Self, ProjectError> {
         /// The fields that every version has.
         #[derive(Deserialize)]
@@ -169,7 +172,10 @@ impl Manifest {
             .map_err(|error| container.error(MANIFEST, format!("cannot be parsed: {error}")))
     }
 
-    /// An entry's bytes, checked against the manifest's checksum.
+    /// Reads an entry of at most `limit` bytes, and checks it against the manifest's checksum.
+    ///
+    /// # Errors
+    /// The entry is missing, damaged, or longer, or has no checksum.
     pub fn read_entry(
         &self,
         file: &Path,

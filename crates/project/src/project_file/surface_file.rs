@@ -18,7 +18,7 @@ use scene::{Node, Part, Scene, Triangle};
 
 const MAGIC: &[u8; 8] = b"FBSURF\r\n";
 
-/// The surface of a scene as bytes.
+/// The surface of a scene as the bytes that a project stores of it.
 pub fn surface_to_bytes(scene: &Scene) -> Vec<u8> {
     let origin = scene.positions.first().copied().unwrap_or_default();
     let counts = [scene.nodes.len(), scene.parts.len(), scene.positions.len(), scene.triangles.len()];

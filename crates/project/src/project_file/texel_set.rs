@@ -20,7 +20,7 @@ impl TexelSet {
         set
     }
 
-    /// Width and height of the map.
+    /// Columns and rows of texels of the map.
     pub fn size(&self) -> [u32; 2] {
         self.size
     }

@@ -62,7 +62,7 @@ impl Thumbnail {
         is_there.then(|| manifest.read_entry(file, container, THUMBNAIL, MAX_BYTES).map(Self)).transpose()
     }
 
-    /// The same with its longer side at most `side_px`.
+    /// The thumbnail with its longer side at most `side_px`.
     ///
     /// # Errors
     /// A sentence, if the PNG cannot be decoded.
@@ -84,7 +84,7 @@ impl Thumbnail {
         write_bytes(file, &self.0)
     }
 
-    /// The bytes of its PNG.
+    /// The bytes of the thumbnail's PNG.
     pub fn png(&self) -> &[u8] {
         &self.0
     }

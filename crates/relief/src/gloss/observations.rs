@@ -70,7 +70,11 @@ const DARK: f32 = 0.02;
 const RATIOS: usize = 20_000;
 
 impl Observations {
-    /// Observes the whole pixels in each view.
+    /// Collects what `views` show of the pixels that are `whole`: those of a single surface. `shown` is the
+    /// reference, linear RGB, row by row.
+    ///
+    /// # Errors
+    /// A view cannot be read, or `progress` asks to stop.
     pub fn collect<E: Send>(
         layer: &FrontLayer<'_>,
         shown: &[[f32; 3]],
@@ -156,7 +160,7 @@ impl Observations {
         Ok(Self { side, blocks, picture: means, steepest, views: views.len(), all })
     }
 
-    /// The observations of a block, in the order of the views.
+    /// The observations of the block with this number, in the order of the views.
     pub fn of_block(&self, block: usize) -> Vec<Observation> {
         self.all[block * self.views..(block + 1) * self.views]
             .iter()

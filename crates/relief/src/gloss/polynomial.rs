@@ -99,7 +99,7 @@ impl Regression {
         Some(self.reweight_outliers(observations, first).errors(observations))
     }
 
-    /// The coefficients of the polynomial of a degree, except the constant.
+    /// The coefficients, RGB, of the polynomial of degree `degree` that fits the observations; without the constant.
     pub fn fit_coefficients(&self, observations: &[Observation], degree: usize) -> [[f32; 3]; TERMS - 1] {
         let Some(counts) = self.counts(observations) else { return [[0.0; 3]; TERMS - 1] };
         let NormalEquations { factor, z: mut coefficients, .. } =

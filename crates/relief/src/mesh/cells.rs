@@ -11,15 +11,17 @@ pub(crate) struct Grid {
 }
 
 impl Grid {
+    /// The number of its cells.
     pub fn count(self) -> usize {
         self.width * self.height
     }
 
+    /// The number of the cell in column `x` and row `y`.
     pub fn at(self, x: usize, y: usize) -> usize {
         y * self.width + x
     }
 
-    /// The cells left, right, above and below.
+    /// The numbers of the cells left, right, above and below, as far as they exist.
     pub fn around(self, cell: usize) -> impl Iterator<Item = (Side, usize)> {
         let (x, y) = (cell % self.width, cell / self.width);
         let sides = [
@@ -60,7 +62,7 @@ pub(crate) struct Links {
 }
 
 impl Links {
-    /// No cell is connected to another.
+    /// Links by which no cell is connected to another.
     pub fn none(grid: Grid) -> Self {
         Self { grid, right: vec![false; grid.count()], below: vec![false; grid.count()] }
     }
@@ -75,6 +77,7 @@ impl Links {
         }
     }
 
+    /// Links a cell to its neighbour on a side, or cuts it off. The neighbour must exist.
     pub fn set(&mut self, cell: usize, side: Side, is_linked: bool) {
         match side {
             Side::Left => self.right[cell - 1] = is_linked,
@@ -96,6 +99,7 @@ pub(crate) struct Cells {
 }
 
 impl Cells {
+    /// Whether a layer has a surface in a cell.
     pub fn is_there(&self, layer: usize, cell: usize) -> bool {
         !self.disparity[layer][cell].is_nan()
     }

@@ -131,17 +131,17 @@ impl Modelled {
         Self { samples: salf.statistics(), texels: texels.map(estimate) }
     }
 
-    /// Number of samples.
+    /// The number of samples of the light field.
     pub fn sample_count(&self) -> usize {
         self.samples.open + self.samples.partial
     }
 
-    /// Bytes of the samples in dense form, one microimage each.
+    /// The bytes of the samples in dense form, one microimage for each.
     pub fn dense_bytes(&self) -> usize {
         self.sample_count() * DENSE_SAMPLE_BYTES
     }
 
-    /// Mean bytes of a sample; 0 if there are no samples.
+    /// The mean number of bytes of a sample; 0 if there are no samples.
     pub fn bytes_a_sample(&self) -> f64 {
         self.samples.bytes as f64 / self.sample_count().max(1) as f64
     }

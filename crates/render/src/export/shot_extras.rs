@@ -14,7 +14,7 @@ const CAMERA_NAME: &str = "Focus Brush shot";
 /// Keys of a camera file that glTF can express itself.
 const GLTF_KEYS: [&str; 3] = ["yfov", "camera_to_world", "background"];
 
-/// Writes the lens of `shot` to the document of `scene`.
+/// Writes the lens of `shot` into `root`, the glTF document of `scene`, as extras of its camera.
 pub fn write_lens_extras(root: &mut Map<String, Value>, scene: &Scene, shot: &Camera) {
     let own = scene.cameras.iter().find(|camera| is_at(camera, shot)).and_then(|camera| camera.index);
     let index = own.map_or_else(|| add_camera(root, shot), |index| index as usize);

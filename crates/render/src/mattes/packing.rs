@@ -83,7 +83,7 @@ impl Packing {
         footprints.pack()
     }
 
-    /// Number of colors.
+    /// The number of colours.
     pub fn colors(&self) -> usize {
         self.owners.len()
     }
@@ -93,7 +93,7 @@ impl Packing {
         self.color_of_thing[thing as usize] as usize
     }
 
-    /// The thing of a color whose light may land in a pixel.
+    /// The thing of a colour whose light may land in the pixel in column `x` and row `y`; `None` if there is none.
     pub fn owner(&self, color: usize, x: usize, y: usize) -> Option<u32> {
         let tile = y / TILE_PX as usize * self.columns as usize + x / TILE_PX as usize;
         Some(self.owners[color][tile]).filter(|owner| *owner != NO_OWNER)

@@ -51,7 +51,7 @@ const NO_PART: u32 = u32::MAX;
 pub(crate) struct SampleParts(Vec<u32>);
 
 impl SampleParts {
-    /// Looks up the parts of all samples.
+    /// Looks up which part of the scene each sample lies on.
     pub fn new(salf: &Salf, scene: &Scene) -> Self {
         let runs: Vec<_> = salf.samples.runs().collect();
         let part = |point: SurfacePoint| scene.triangles[point.triangle as usize].part;
@@ -67,7 +67,7 @@ impl SampleParts {
         Self(parts)
     }
 
-    /// The part of a sample; `None` for the background.
+    /// The part that the sample with this number lies on; `None` for the background.
     pub fn part(&self, sample: u32) -> Option<u32> {
         Some(self.0[sample as usize]).filter(|part| *part != NO_PART)
     }

@@ -43,7 +43,7 @@ impl Things {
         Self { kind, plural_name, names, of_part }
     }
 
-    /// The thing that a part of the scene belongs to.
+    /// The index of the thing that a part of the scene belongs to.
     pub fn of_part(&self, part: u32) -> u32 {
         self.of_part[part as usize]
     }

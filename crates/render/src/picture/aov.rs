@@ -65,12 +65,12 @@ impl Aov {
         ("stderr", Aov::StandardError),
     ];
 
-    /// The entry in [`Self::ALL`].
+    /// The AOV's entry, with its name, in [`Self::ALL`]; `None` if it has none.
     pub fn entry(&self) -> Option<(&'static str, Aov)> {
         Self::ALL.into_iter().find(|(_, aov)| aov == self)
     }
 
-    /// The AOV of this name.
+    /// The AOV with this name on the command line; `None` if there is none.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.iter().find(|(entry_name, _)| *entry_name == name).map(|(_, aov)| *aov)
     }

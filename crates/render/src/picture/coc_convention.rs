@@ -32,7 +32,7 @@ impl CocConvention {
         ("flame", Self::Flame),
     ];
 
-    /// The convention of this name.
+    /// The convention with this name on the command line; `None` if there is none.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.iter().find(|(entry_name, _)| *entry_name == name).map(|(_, convention)| *convention)
     }

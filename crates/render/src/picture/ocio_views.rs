@@ -87,7 +87,7 @@ impl OcioViews {
         }
     }
 
-    /// Number of views.
+    /// The number of views.
     pub fn len(&self) -> usize {
         self.views.len()
     }
@@ -97,7 +97,7 @@ impl OcioViews {
         self.views.is_empty()
     }
 
-    /// The name of a view, for menus.
+    /// The name of the view with this number, for menus; `None` if there is none.
     pub fn name(&self, view: u16) -> Option<&str> {
         self.views.get(usize::from(view)).map(|view| view.name.as_str())
     }

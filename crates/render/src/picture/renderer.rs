@@ -29,7 +29,7 @@ impl Renderer {
         ("scatter", Renderer::Scatter),
     ];
 
-    /// The renderer of this name.
+    /// The renderer with this name on the command line; `None` if there is none.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.iter().find(|(entry_name, _)| *entry_name == name).map(|(_, renderer)| *renderer)
     }

@@ -100,7 +100,7 @@ fn encoded(linear: f32) -> u8 {
     ENCODED[((linear.max(0.0) * ENTRIES as f32) as usize).min(ENTRIES - 1)]
 }
 
-/// Converts a picture to screen pixels, row by row.
+/// Converts a picture of linear light to screen pixels (8-bit), row by row from the top.
 pub fn to_screen(picture: &Picture, tone: Tone) -> Vec<ScreenPixel> {
     tone.rectangle_to_screen(picture, [0..picture.width, 0..picture.height])
 }

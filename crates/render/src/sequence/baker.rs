@@ -71,6 +71,9 @@ impl<'a> FrameBaker<'a> {
     }
 
     /// What the light field of a frame is baked from. `None` if the renderer needs none.
+    ///
+    /// # Errors
+    /// The light of the frame's scene cannot be solved.
     pub fn field(&mut self, state: &FrameState) -> Result<Option<Field>, RenderError> {
         if self.options.renderer != Renderer::Splat {
             return Ok(None);
@@ -111,7 +114,10 @@ impl<'a> FrameBaker<'a> {
         Ok(Some(field))
     }
 
-    /// Renders a frame whose light field is `field`.
+    /// Renders a frame whose light field is `field`; `None` for renderers that need none.
+    ///
+    /// # Errors
+    /// The light cannot be solved, the picture cannot be rendered, or the work was cancelled.
     pub fn render(
         &mut self,
         state: &FrameState,

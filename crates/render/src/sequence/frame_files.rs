@@ -44,12 +44,12 @@ impl FrameFiles {
         Ok(Self(Name::Numbered { folder, before, digits, after }))
     }
 
-    /// A fixed file name, for a single frame.
+    /// The files of a single frame: one with a fixed name.
     pub fn single(file: &Path) -> Self {
         Self(Name::Fixed(file.to_owned()))
     }
 
-    /// The file of a frame.
+    /// The path of the file of a frame.
     pub fn path_of(&self, frame: i32) -> PathBuf {
         match &self.0 {
             Name::Fixed(file) => file.clone(),

@@ -23,7 +23,7 @@ impl FrameList {
         Self(vec![frame])
     }
 
-    /// The frame numbers.
+    /// The frame numbers, in the order in which they are rendered.
     pub fn numbers(&self) -> &[i32] {
         &self.0
     }

@@ -23,7 +23,7 @@ impl Outcome {
         }
     }
 
-    /// The error of a failed frame or tile.
+    /// The error of a failed frame or tile; `None` if it did not fail.
     pub fn error(&self) -> Option<&RenderError> {
         match self {
             Self::Failed(error) => Some(error),

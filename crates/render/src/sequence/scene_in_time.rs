@@ -34,7 +34,7 @@ pub(crate) struct SceneInTime {
 }
 
 impl SceneInTime {
-    /// A scene at rest.
+    /// A scene that is not moved from where its file has it.
     pub fn at_rest(lit: Arc<LitScene>) -> Self {
         let scene = lit.scene().clone();
         let still = Self::new(scene, None, &lit);
@@ -50,6 +50,9 @@ impl SceneInTime {
     }
 
     /// The scene at `moment`, its light modelled as that of `like`.
+    ///
+    /// # Errors
+    /// The animation is faulty, or `progress` asks to stop.
     pub fn moved(
         moving: &AnimatedScene,
         moment: &AnimationTime,

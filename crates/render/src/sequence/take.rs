@@ -93,7 +93,7 @@ impl<'a> Take<'a> {
         &self.input.path
     }
 
-    /// Time of a frame, s.
+    /// The time of a frame in the animation, s.
     pub fn seconds(&self, frame: i32) -> f64 {
         (f64::from(frame) - 1.0) / self.options.frames_per_second
     }

@@ -100,7 +100,10 @@ impl<'a> CropDrawer<'a> {
         MAX_BYTES / (BYTES_PER_SUM * (pictures + mattes) + BYTES_PER_RESOLVED_PIXEL)
     }
 
-    /// Draws a crop, in pixels of the picture.
+    /// Draws a crop, given in pixels of the picture, with these integers.
+    ///
+    /// # Errors
+    /// The integers do not suffice, the picture cannot be rendered, or the work was cancelled.
     pub fn draw(&self, crop: Crop, integers: Integers, steps: &dyn Steps) -> Result<DrawnCrop, CropFailure> {
         let LitPicture { finer, options, .. } = self.lit;
         let (cells, tolerance) = (options.cells_a_side, options.splat_tolerance);

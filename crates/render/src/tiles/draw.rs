@@ -44,7 +44,11 @@ impl Shot<'_> {
         Ok((picture, Some(pinhole)))
     }
 
-    /// Draws a tile and writes its numbers to a part.
+    /// Draws a tile and writes its numbers to a part; returns where the part holds which piece.
+    ///
+    /// # Errors
+    /// The integers do not suffice, the picture cannot be rendered, the part cannot be written, or the work was
+    /// cancelled.
     pub fn draw(
         self,
         tile: Crop,

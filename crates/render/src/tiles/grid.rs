@@ -23,7 +23,7 @@ impl TileGrid {
     /// Maximum number of columns, and of rows.
     const MAX_SIDE: u32 = 512;
 
-    /// Number of tiles.
+    /// The number of tiles.
     pub fn count(self) -> u32 {
         self.columns * self.rows
     }

@@ -48,6 +48,9 @@ impl<'a> PieceRows<'a> {
     }
 
     /// Reads the next row, which must be `y`: for each piece that it crosses, from left to right, its first column and its numbers.
+    ///
+    /// # Errors
+    /// A part cannot be read.
     pub fn next(&mut self, y: u32) -> Result<Vec<(u32, Vec<f32>)>, RenderError> {
         let mut row = Vec::new();
         for piece in self.pieces.iter_mut().filter(|piece| piece.rows.contains(&y)) {
@@ -129,7 +132,10 @@ impl<'a> JoinedPicture<'a> {
         Ok(row)
     }
 
-    /// Resolves the next rows of the picture.
+    /// Resolves the next rows of the picture, which must follow those resolved before.
+    ///
+    /// # Errors
+    /// A part cannot be read.
     pub fn picture(&mut self, rows: Range<u32>) -> Result<Picture, RenderError> {
         let fine = rows.start * self.cells..rows.end * self.cells;
         let (mut radiance, mut coverage) = (Vec::new(), Vec::new());

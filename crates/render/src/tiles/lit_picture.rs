@@ -24,6 +24,9 @@ pub(crate) struct LitPicture {
 
 impl LitPicture {
     /// Solves the light for a picture of `camera` with `focus`.
+    ///
+    /// # Errors
+    /// The options do not fit the camera, the light cannot be solved, or the work was cancelled.
     pub fn new(
         lit: &LitScene,
         camera: &Camera,

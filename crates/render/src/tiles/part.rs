@@ -107,12 +107,14 @@ impl From<Section> for NumbersAt {
 }
 
 impl NumbersAt {
+    /// Where the numbers lie in the part.
     pub fn section(self) -> Section {
         Section { first: self.first, count: self.count }
     }
 }
 
 impl Sums {
+    /// What a part records of a crop's sums: form, facts, and where its numbers and knots lie.
     pub fn new(form: CropForm, facts: CropFacts, [numbers, knots]: [Section; 2]) -> Self {
         let CropFacts { integers: Integers { standard, painted }, is_painted, brightest, largest } = facts;
         Self {
@@ -126,10 +128,12 @@ impl Sums {
         }
     }
 
+    /// The form of the crop.
     pub fn form(&self) -> CropForm {
         if self.is_evened { CropForm::Evened } else { CropForm::Parts }
     }
 
+    /// What the crop reports for decisions about the whole picture.
     pub fn facts(&self) -> CropFacts {
         let [standard, painted] = self.integers;
         let integers = Integers { standard, painted };
@@ -147,6 +151,7 @@ impl Sums {
 }
 
 impl Output {
+    /// The names of the options by which the picture is written.
     pub fn new(options: &PictureOptions) -> Self {
         let name = |all: &[(&'static str, Compression)]| {
             all.iter()

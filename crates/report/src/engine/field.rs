@@ -32,8 +32,11 @@ pub struct LightFieldCase {
     pub scene: String,
     /// Name of the focus; empty if there is only one.
     pub what: &'static str,
+    /// The light field.
     pub salf: Arc<Salf>,
+    /// The focus.
     pub focus: Arc<dyn SurfaceField<FocusOffset> + Send>,
+    /// The pixels near outlines, whose errors are counted apart.
     pub band: OutlineBand,
     /// Nominal circle of confusion, px.
     pub coc_px: f64,

@@ -16,7 +16,7 @@ pub struct Timing {
 }
 
 impl Timing {
-    /// The time of the task in frame copies.
+    /// The time of the task as a multiple of that of copying a frame.
     pub fn frame_copies(self) -> f64 {
         self.seconds / self.frame_copy
     }
@@ -38,7 +38,7 @@ pub struct FrameCopy {
 }
 
 impl FrameCopy {
-    /// Frames with this number of pixels.
+    /// Prepares to copy frames of this number of pixels.
     pub fn new(pixels: usize) -> Self {
         Self { source: vec![[0.5; 3]; pixels], target: vec![[0.0; 3]; pixels], times: Vec::new() }
     }

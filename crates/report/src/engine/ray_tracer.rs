@@ -64,7 +64,7 @@ impl RayTracer {
         Ok(Self { reference, curve })
     }
 
-    /// Compares a picture of the same scene and focus.
+    /// The error of a picture of the same scene and focus against the ray tracer's.
     ///
     /// # Errors
     /// The pictures cannot be compared.

@@ -119,7 +119,7 @@ fn ramp(size: [u32; 2]) -> (Arc<Salf>, i32) {
     (salf, edge)
 }
 
-/// All five fields.
+/// The five synthetic light fields, of `size` columns and rows.
 pub fn fields(size: [u32; 2]) -> impl Iterator<Item = LightFieldCase> {
     let (width, height) = (size[0] as usize, size[1] as usize);
     let planes =
@@ -145,7 +145,11 @@ pub fn fields(size: [u32; 2]) -> impl Iterator<Item = LightFieldCase> {
     })
 }
 
-/// Measures cost against the circle of confusion, at the viewing tolerance.
+/// Measures cost against the circle of confusion, 0 to 150 px, at the viewing tolerance, for pictures of `size`
+/// columns and rows. `note` gets a line for each measurement.
+///
+/// # Errors
+/// The work was cancelled.
 pub fn sweep_circles(
     size: [u32; 2],
     measured: &mut EngineMeasurements,
@@ -160,6 +164,9 @@ pub fn sweep_circles(
 
 /// Measures cost against the number of samples, which equals that of pixels; the sizes are timed in turn,
 /// because they are compared.
+///
+/// # Errors
+/// The work was cancelled.
 pub fn sweep_sizes(
     [width, height]: [u32; 2],
     measured: &mut EngineMeasurements,

@@ -97,7 +97,7 @@ impl Contender {
         self.kind().name()
     }
 
-    /// A short description for the page.
+    /// A short description of a renderer, by its name, for the page.
     pub fn description(renderer: &str) -> &'static str {
         match Renderer::named(renderer) {
             Some(Renderer::Splat) => "the light field, splatted",
@@ -122,7 +122,7 @@ impl Contender {
         }
     }
 
-    /// Value of its knob; 0 if it has none.
+    /// The value of the setting by which it trades error for time; 0 if it has none.
     pub fn knob_value(&self) -> f64 {
         match *self {
             Self::Splat { tolerance_px } => tolerance_px,
@@ -153,7 +153,7 @@ impl Contender {
         options
     }
 
-    /// Draws the picture, repeatedly if that is quick.
+    /// Draws the picture, repeatedly if that is quick, and times it.
     ///
     /// # Errors
     /// Rendering fails or is cancelled.

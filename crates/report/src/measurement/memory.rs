@@ -13,7 +13,7 @@ impl PeakMemory {
         Self { before: if is_set_back { status_bytes("VmRSS:") } else { None } }
     }
 
-    /// Peak increase of resident memory since the start, bytes.
+    /// The largest increase of resident memory since the start, in bytes; `None` where it cannot be read.
     pub fn peak_increase_bytes(&self) -> Option<u64> {
         Some(status_bytes("VmHWM:")?.saturating_sub(self.before?))
     }
@@ -24,7 +24,7 @@ fn status_bytes(name: &str) -> Option<u64> {
     parse_kilobytes(&std::fs::read_to_string("/proc/self/status").ok()?, name)
 }
 
-/// The value of a line `NAME   12345 kB`, in bytes.
+/// The value of a line `NAME   12345 kB` of `text`, in bytes; `None` if there is no such line.
 pub fn parse_kilobytes(text: &str, name: &str) -> Option<u64> {
     let value = text.lines().find_map(|line| line.strip_prefix(name))?;
     Some(value.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()? * 1024)

@@ -36,7 +36,7 @@ pub struct ReferenceError {
     pub psnr: f64,
 }
 
-/// Traces the reference of a picture.
+/// Traces the reference of a picture with `spp` samples per pixel. Returns it with its error.
 ///
 /// # Errors
 /// Tracing is cancelled.

@@ -40,7 +40,7 @@ pub fn measure_time<T>(mut work: impl FnMut() -> Result<T, SessionError>) -> Res
     }
 }
 
-/// The median of some times; NaN of none. Sorts the times.
+/// The median of some times, s; NaN of none. Sorts the times.
 pub fn median_seconds(times: &mut [f64]) -> f64 {
     median(times).unwrap_or(f64::NAN)
 }

@@ -30,7 +30,7 @@ is baked.";
 pub const LIVE_NOTE: &str = "What the window shows after a change, in wall-clock seconds, and its error against the final exact \
 picture; smaller pictures are enlarged as in the window. The scene's light is computed beforehand; nothing is baked for the new view.";
 
-/// The page.
+/// The report as an HTML page.
 ///
 /// # Errors
 /// A picture cannot be read.
@@ -220,7 +220,7 @@ fn sparse_sentence(pictures: &str, sparse: &SparseLightField) -> String {
     )
 }
 
-/// A plot, with a note on marks that cannot be shown.
+/// A plot as HTML, with a note on marks that cannot be shown.
 pub fn figure(chart: &Chart) -> String {
     let caption = match chart.left_out_count() {
         0 => String::new(),

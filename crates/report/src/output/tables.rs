@@ -10,7 +10,7 @@ use crate::studies::live_preview::ShownPicture;
 use crate::summary::{ModelledScene, SceneSummary};
 use hard_cases::Outcome;
 
-/// The scenes and their references.
+/// A table of the scenes and their references.
 pub fn scenes(scenes: &[SceneSummary]) -> Table {
     let mut table = Table::new(&[
         "scene",
@@ -43,7 +43,7 @@ pub fn scenes(scenes: &[SceneSummary]) -> Table {
     table
 }
 
-/// Time at equal error.
+/// A table of the time that renderers take to equal errors.
 pub fn equal_errors(comparisons: &[EqualError]) -> Table {
     let mut table = Table::new(&[
         "scene",
@@ -75,7 +75,7 @@ pub fn equal_errors(comparisons: &[EqualError]) -> Table {
     table
 }
 
-/// What is modelled of a scene.
+/// A table of what is modelled of a scene.
 pub fn modelled(scene: &ModelledScene) -> Table {
     let mut table = Table::new(&["kind", "#texels", "#samples", "#bytes", "#bytes a sample", "what"]);
     let text = |value: Option<usize>| value.map_or_else(|| "–".into(), |n| n.to_string());
@@ -90,7 +90,7 @@ pub fn modelled(scene: &ModelledScene) -> Table {
     table
 }
 
-/// The pictures of the live preview.
+/// A table of the pictures of the live preview.
 pub fn live(pictures: &[ShownPicture]) -> Table {
     let mut table = Table::new(&["after", "picture", "#size", "#seconds", "#PSNR, dB"]);
     for ShownPicture { after, what, size: [width, height], seconds, psnr } in pictures {
@@ -134,7 +134,7 @@ pub fn disparity(error: &Disparity) -> Table {
     table
 }
 
-/// The hard cases.
+/// A table of the hard cases: expected results, ours, and the wrong ones.
 pub fn hard_cases(outcomes: &[Outcome]) -> Table {
     let mut table = Table::new(&["case", "expected", "found", "pass", "control fails"]);
     let yes_or_no = |yes: bool| if yes { "yes" } else { "NO" }.to_string();
@@ -146,7 +146,7 @@ pub fn hard_cases(outcomes: &[Outcome]) -> Table {
     table
 }
 
-/// Measurements, one per row.
+/// A table of measurements, one in a row.
 pub fn records<'a>(records: impl Iterator<Item = &'a Record>) -> Table {
     let mut table = Table::new(&[
         "scene",

@@ -35,8 +35,10 @@ struct Candidate {
 
 /// The result of tracing a cell's nearest surfaces.
 pub struct CellSurvey {
+    /// The cell that was surveyed.
     pub cell: Cell,
     density: Density,
+    /// The depths that its chief rays found around it.
     pub depths: Depths,
     has_gap: bool,
     has_pane: bool,
@@ -56,10 +58,15 @@ fn pack_samples(corner: IVec2, baked: Vec<BakedSample>, packs: bool) -> Samples 
 
 /// What every cell is sampled with.
 pub struct BlockBaker<'a> {
+    /// Traces the rays.
     pub tracer: &'a Tracer,
+    /// The light that surfaces send.
     pub radiance: &'a dyn Radiance,
+    /// The camera's view.
     pub view: View<'a>,
+    /// Which triangles have samples of their own.
     pub placement: Placement,
+    /// Where on the aperture shadow rays end.
     pub patterns: Patterns,
     /// Where the pinhole picture is sampled.
     pub domain: Domain,
@@ -67,7 +74,7 @@ pub struct BlockBaker<'a> {
 }
 
 impl<'a> BlockBaker<'a> {
-    /// For `camera`, which must be valid.
+    /// Prepares to bake blocks of the light field for `camera`, which must be valid.
     pub fn new(
         tracer: &'a Tracer,
         radiance: &'a dyn Radiance,
@@ -124,7 +131,7 @@ impl<'a> BlockBaker<'a> {
         self.trace_nearest(cell).1.depths(cell)
     }
 
-    /// Looks at the cells of a block.
+    /// Looks at what each of the cells of a block shows; one survey for each, in order.
     pub fn survey_cells(&self, cells: &[Cell]) -> Vec<CellSurvey> {
         let mut surveys = Vec::with_capacity(cells.len());
         cells.chunks(self.batch_cells()).for_each(|cells| surveys.extend(self.survey_batch(cells)));

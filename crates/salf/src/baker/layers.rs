@@ -231,7 +231,7 @@ impl Layers {
         self.groups.push(Group { members, shares, panes, is_nearest, is_just_behind, part, tilt, slope });
     }
 
-    /// The depths around the cell.
+    /// The nearest and the farthest inverse depth around the cell, and how far it varies within.
     pub fn depths(&self, cell: Cell) -> Depths {
         let [nearest, farthest] = self.depth_range;
         let slants = self.groups.iter().map(|group| group.slope.abs().element_sum());
@@ -244,7 +244,8 @@ impl Layers {
         self.groups.len() > 1 || self.has_gap && !self.groups.is_empty()
     }
 
-    /// Whether another surface of this cell lies noticeably in front of `group`.
+    /// Whether another surface of this cell lies in front of `group` by more than 0.1 px; `parallax_px` is the shift,
+    /// px, per inverse depth.
     pub fn has_nearer(&self, group: &Group, parallax_px: f64) -> bool {
         let depth = group.mean_inverse_depth();
         let others = self.groups.iter().filter(|other| !std::ptr::eq(*other, group));
@@ -253,12 +254,12 @@ impl Layers {
 }
 
 impl Group {
-    /// Mean of 1/z.
+    /// The mean inverse depth 1/z of its points, 1/length.
     pub fn mean_inverse_depth(&self) -> f64 {
         mean_inverse_depth(&self.members)
     }
 
-    /// The centre of its sub-cells, px.
+    /// The centre of the sub-cells that it covers, in px of the picture.
     pub fn center(&self, cell: Cell) -> DVec2 {
         cell.part(sub_cells_of(&self.members)).center
     }
@@ -368,7 +369,7 @@ impl Group {
         Some(Tile { part: self.part?, corner, tile_side, side })
     }
 
-    /// Its points with how much of each counts.
+    /// Its points, with the weight by which each counts.
     pub fn weighted_points(&self) -> impl Iterator<Item = (SurfacePoint, f32)> {
         self.members.iter().zip(&self.shares).filter_map(|(member, share)| Some((member.point?, *share)))
     }

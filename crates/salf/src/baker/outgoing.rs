@@ -32,8 +32,11 @@ const STEPS: f32 = 128.0;
 /// Light toward the aperture, and what of the weight of its patch it has.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LightComponent {
+    /// Its radiance, linear RGB.
     pub radiance: Vec3,
+    /// Its share of the patch's weight, in [0, 1].
     pub share: f32,
+    /// Whether it is carried light; otherwise own.
     pub is_carried: bool,
     /// The noisy part of the radiance ([`OutgoingRadiance::noisy`]).
     pub noisy: Vec3,
@@ -52,7 +55,7 @@ pub struct MeanRadiance {
 }
 
 impl MeanRadiance {
-    /// Of points of these weights.
+    /// The mean radiance of points with these weights.
     pub fn mean(of: impl IntoIterator<Item = (OutgoingRadiance, f32)>) -> Self {
         let mut sum = Self::default();
         for (OutgoingRadiance { own, carried, carried_share, noisy }, weight) in of {
@@ -78,7 +81,7 @@ impl MeanRadiance {
         OutgoingRadiance { own, carried, carried_share, noisy }
     }
 
-    /// All light, own and carried.
+    /// The sum of own and carried radiance, linear RGB.
     pub fn total(&self) -> Vec3 {
         self.own + self.carried
     }
@@ -125,7 +128,8 @@ pub fn cells_per_side(view: &View, inverse_depth: f64, width: f64) -> usize {
     if cells > 1.0 { (cells.min(MAX_CELLS as f64).ceil() as usize).next_power_of_two() } else { 1 }
 }
 
-/// How many cells a side the light of a lobe of a width needs.
+/// How many cells a side of the aperture the light of a lobe of `width` (rad) needs, for a point of inverse depth
+/// `inverse_depth`.
 pub fn cells_of_lobe(view: &View, inverse_depth: f64, width: f64) -> f64 {
     CELLS_A_WIDTH * 2.0 * view.optics.aperture_radius * inverse_depth / width
 }
@@ -133,7 +137,9 @@ pub fn cells_of_lobe(view: &View, inverse_depth: f64, width: f64) -> f64 {
 /// A query for the light of a cell's points: the light model, the view, and what has been computed already.
 #[derive(Clone, Copy)]
 pub struct RadianceQuery<'a> {
+    /// The light that surfaces send.
     pub radiance: &'a dyn Radiance,
+    /// The camera's view.
     pub view: &'a View<'a>,
     /// Of the cell.
     pub seed: [u32; 2],
@@ -161,7 +167,7 @@ impl RadianceQuery<'_> {
     }
 }
 
-/// What points send toward the open aperture, each toward a place of its own.
+/// The radiance that each point sends toward a place of its own on the open aperture; the places are evenly spread.
 pub fn toward_aperture_points(query: &RadianceQuery, points: &[SurfacePoint]) -> Vec<OutgoingRadiance> {
     // Roberts's sequence: fractions of the plastic number's powers.
     const STEP: DVec2 = DVec2::new(0.754_877_666_246_692_8, 0.569_840_290_998_053_3);
@@ -189,7 +195,7 @@ pub fn tile_side(view: &View, inverse_depth: f64) -> i32 {
     1 << (side as u32).ilog2()
 }
 
-/// The number of pixels over which light of standard focus is spread.
+/// The number of pixels, at least 1, over which the light of a point with standard focus is spread.
 pub fn blurred_px(view: &View, inverse_depth: f64) -> usize {
     if view.carried == Carried::Painted {
         return 1;
@@ -244,13 +250,13 @@ impl ApertureRadiance {
         }
     }
 
-    /// The same carried light beside other own light.
+    /// The same carried light beside `own`, other own light.
     pub fn with_own(&self, own: MeanRadiance) -> Self {
         let all = MeanRadiance { carried: self.all.carried, ..own };
         Self { all, side: self.side, carried: self.carried.clone(), noisy: self.noisy.clone() }
     }
 
-    /// Carried light on as few parts of the aperture as possible.
+    /// The carried light, on as few parts of the aperture as possible without changing it noticeably.
     pub fn carried(&self) -> Vec<LightComponent> {
         let differs = ALIKE * self.all.total().max_element();
         let cells = ApertureCells { side: self.side, light: &self.carried, noisy: &self.noisy };

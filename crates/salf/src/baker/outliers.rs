@@ -23,7 +23,7 @@ pub struct Outliers {
 }
 
 impl Outliers {
-    /// Those of two parts of a picture.
+    /// The outliers of two parts of a picture together.
     pub fn merged(self, other: Self) -> Self {
         Self {
             samples: self.samples + other.samples,
@@ -32,7 +32,7 @@ impl Outliers {
         }
     }
 
-    /// The share of all light that was spread.
+    /// The share of all light that was spread, in [0, 1].
     pub fn share(&self) -> f64 {
         if self.total_light > 0.0 { self.spread_light / self.total_light } else { 0.0 }
     }
@@ -50,7 +50,8 @@ const OUTLIER_DEVIATIONS: f32 = 8.0;
 /// Neighbours are at most so far apart, px.
 const NEAR_PX: f32 = 1.6;
 
-/// Spreads what outliers among the samples of a block have too much.
+/// Takes from outliers among the samples of a block the light that they have too much, and spreads it evenly over
+/// their group: samples of one part, own or carried.
 pub fn spread_outliers(samples: &mut [BakedSample], scene: &Scene) -> Outliers {
     let light = |baked: &BakedSample| {
         f64::from(baked.sample.radiance.max_element()) * f64::from(visible_weight(&baked.sample))

@@ -42,7 +42,7 @@ pub struct Surroundings {
 const WIDEST_FOOTPRINT_PX: f32 = 32.0;
 
 impl<'a> PartsBaker<'a> {
-    /// For `camera`, which must be valid, and a focus.
+    /// Prepares to bake parts of a light field for `camera`, which must be valid, and for `focus`.
     pub fn new(
         tracer: &'a Tracer,
         radiance: &'a dyn Radiance,
@@ -144,7 +144,7 @@ impl<'a> PartsBaker<'a> {
         block / (SQUARE_PX / Domain::BLOCK)
     }
 
-    /// Bakes some of the squares around a part of the picture.
+    /// Bakes some squares (column, row) around a part of the picture.
     ///
     /// # Errors
     /// [`Cancelled`] if `progress` is cancelled.

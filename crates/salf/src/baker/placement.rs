@@ -23,6 +23,8 @@ const BRIGHT: f32 = 2.0;
 const SMALL_PX: f64 = 3.0;
 
 impl Placement {
+    /// Chooses which triangles get samples on their surface: those that turn their back to the aperture, and small
+    /// bright ones.
     pub fn new(scene: &Scene, view: &View) -> Self {
         let on_surface = |triangle: u32| {
             !view.faces_aperture(scene, triangle)
@@ -31,12 +33,13 @@ impl Placement {
         Self { on_surface: (0..scene.triangles.len() as u32).map(on_surface).collect() }
     }
 
-    /// Whether a triangle's samples are placed on it.
+    /// Whether the samples of a triangle (by its index in the scene) are placed on the triangle itself, not by
+    /// pixels.
     pub fn is_on_surface(&self, triangle: u32) -> bool {
         self.on_surface[triangle as usize]
     }
 
-    /// The triangles whose samples are placed on them.
+    /// The triangles whose samples are placed on them, ascending.
     pub fn on_surface(&self) -> impl Iterator<Item = u32> {
         (0..self.on_surface.len() as u32).filter(|&triangle| self.is_on_surface(triangle))
     }

@@ -99,7 +99,7 @@ pub struct Reach {
 const CHUNK_TRIANGLES: usize = 1 << 12;
 
 impl Reach {
-    /// Of what `view` shows of a scene that is focused so.
+    /// How far light reaches from each square of `domain`, for what `view` shows of a scene focused by `focus`.
     pub fn new(
         scene: &Scene,
         view: &View,
@@ -152,7 +152,7 @@ impl Reach {
         Self { size: squares.size, corner: squares.corner, bounds, parts, may_be_painted }
     }
 
-    /// All squares with their bounds, row by row: by column and row.
+    /// All squares with their bounds, row by row: column and row of each square.
     pub fn squares(&self) -> impl Iterator<Item = (IVec2, Bound)> {
         let width = self.size.x;
         let place = move |number: usize| IVec2::new(number as i32 % width, number as i32 / width);
@@ -167,7 +167,7 @@ impl Reach {
         })
     }
 
-    /// The pixels of a square, first and end.
+    /// The pixels of a square: its upper left, and the end to its lower right.
     pub fn pixels(&self, square: IVec2) -> [IVec2; 2] {
         let first = self.corner + square * SQUARE_PX;
         [first, first + SQUARE_PX]

@@ -27,7 +27,8 @@ pub enum Fineness {
 }
 
 impl Fineness {
-    /// For a point of inverse depth `inverse_depth`.
+    /// How finely a point of inverse depth `inverse_depth` (1/length) sees the aperture: by the size of its circle of
+    /// confusion.
     pub fn for_depth(view: &View, inverse_depth: f64) -> Self {
         let circle_px = view.circle_px(inverse_depth);
         if circle_px <= view.tolerance_px {
@@ -61,6 +62,7 @@ impl Patterns {
     /// How many there are of each.
     const COUNT: u32 = 1 << (2 * Self::DIGITS);
 
+    /// Makes all patterns, coarse (8 × 8) and fine (16 × 16).
     pub fn new() -> Self {
         let all =
             |side: usize, spread: f64| (0..Self::COUNT).map(|k| Self::pattern(side, spread, k)).collect();
@@ -84,7 +86,7 @@ impl Patterns {
         (0..Self::DIGITS).map(digit).sum::<u32>() ^ (index as u32).wrapping_mul(21)
     }
 
-    /// The number of some pattern.
+    /// The number of a pattern below [`Self::COUNT`], chosen at random by `seed`.
     pub fn random_number(seed: [u32; 2]) -> u32 {
         (jitter(seed[0], seed[1], 0)[0] * f64::from(Self::COUNT)) as u32
     }

@@ -9,9 +9,13 @@ use lens::{Aperture, ApertureMask, ApertureShape, Camera};
 use std::io::{self, Read, Write};
 use std::sync::Arc;
 
-/// Width and height (u32); yfov, focus distance, aperture radius, sensor height, shift (2), background (3; NaN if none was chosen), pose (16, by
-/// columns), aperture ratio (f64); shape (u8): 0 disc, 1 polygon with blades (u32), rotation and roundness
-/// (f64), 2 square, 3 mask with width and height (u32), file (text) and a transmission a texel (f32).
+/// Writes a camera, little endian: width and height (u32); yfov, focus distance, aperture radius, sensor height,
+/// shift (2), background (3; NaN if none was chosen), pose (16, by columns), aperture ratio (f64); shape (u8): 0
+/// disc, 1 polygon with blades (u32), rotation and roundness (f64), 2 square, 3 mask with width and height (u32),
+/// file (text) and a transmission a texel (f32).
+///
+/// # Errors
+/// Errors of `to`.
 pub fn write_camera(to: &mut impl Write, camera: &Camera) -> io::Result<()> {
     to.write_all(&camera.width.to_le_bytes())?;
     to.write_all(&camera.height.to_le_bytes())?;
@@ -38,6 +42,10 @@ pub fn write_camera(to: &mut impl Write, camera: &Camera) -> io::Result<()> {
     }
 }
 
+/// Reads a camera as [`write_camera`] writes it, and checks it.
+///
+/// # Errors
+/// `from` cannot be read or ends too early, or the camera is not valid.
 pub fn read_camera(from: &mut impl Read) -> Result<Camera, SalfFileError> {
     let width = u32::from_le_bytes(bytes(from)?);
     let height = u32::from_le_bytes(bytes(from)?);

@@ -12,6 +12,10 @@ const BACKGROUND: u32 = u32::MAX;
 /// Added to the number of words of visibility: the light is carried.
 const CARRIED: u8 = 0x80;
 
+/// Writes samples: the counts of their lists (u64), then the lists.
+///
+/// # Errors
+/// Errors of `to`.
 pub fn write_samples(to: &mut impl Write, samples: &Samples) -> io::Result<()> {
     let Samples { chunks, records, planes, sub_cells, patches, codes, loose } = samples;
     let counts =
@@ -32,7 +36,10 @@ pub fn write_samples(to: &mut impl Write, samples: &Samples) -> io::Result<()> {
     loose.iter().try_for_each(|sample| write_sample(to, sample))
 }
 
-/// Reads samples whose surfaces are among `triangles`, and checks them.
+/// Reads samples whose surfaces are among `triangles` of the scene, and checks them.
+///
+/// # Errors
+/// `from` cannot be read or ends too early, or the samples are not valid.
 pub fn read_samples(from: &mut impl Read, triangles: u32) -> Result<Samples, SalfFileError> {
     let mut counts = [0; 7];
     for count in &mut counts {

@@ -43,7 +43,7 @@ pub(crate) struct Starts {
 }
 
 impl Samples {
-    /// How many there are.
+    /// The number of samples.
     pub fn len(&self) -> usize {
         self.records.len() + self.loose.len()
     }
@@ -53,7 +53,7 @@ impl Samples {
         self.len() == 0
     }
 
-    /// Bytes in memory, and of these what the partly occluded samples take.
+    /// Bytes of memory of all samples, and of these what partly occluded samples take.
     pub fn bytes(&self) -> [usize; 2] {
         let partial = |sample: &&Sample| sample.visibility != Visibility::Open;
         let loose_bytes = |sample: &Sample| match &sample.visibility {

@@ -123,11 +123,12 @@ pub struct MaskWriter {
 }
 
 impl MaskWriter {
+    /// A writer without masks, whose model has learnt nothing.
     pub fn new() -> Self {
         Self { model: Model::new(), low: 0, range: u32::MAX, codes: Vec::new(), is_empty: true }
     }
 
-    /// Codes the next field: the words of a [`Visibility::Cells`].
+    /// Codes the next field of cells: the words of a [`Visibility::Cells`].
     pub fn write(&mut self, words: &[u64]) {
         self.is_empty = false;
         let side = Visibility::side_of(words);
@@ -150,7 +151,7 @@ impl MaskWriter {
         });
     }
 
-    /// The codes of all fields.
+    /// The bytes that code all fields.
     pub fn finish(mut self) -> Vec<u8> {
         if !self.is_empty {
             // The range contains a multiple of its least width: one byte identifies it, as zeros follow.
@@ -190,13 +191,14 @@ pub struct MaskReader<'a> {
 }
 
 impl<'a> MaskReader<'a> {
+    /// Reads the masks that a [`MaskWriter`] has written to `codes`.
     pub fn new(codes: &'a [u8]) -> Self {
         let mut codes = codes.iter();
         let code = (0..4).fold(0, |code, _| code << 8 | next(&mut codes));
         Self { model: Model::new(), code, range: u32::MAX, codes }
     }
 
-    /// The next field, of 8 or 16 cells a side.
+    /// Decodes the next field, of `side` = 8 or 16 cells a side.
     pub fn read(&mut self, side: usize) -> Box<[u64]> {
         let mut rows = [0; 16];
         let (code, range, codes) = (&mut self.code, &mut self.range, &mut self.codes);

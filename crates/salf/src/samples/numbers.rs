@@ -7,7 +7,7 @@ use glam::{DVec3, Vec3};
 pub struct Float24(pub [u8; 3]);
 
 impl Float24 {
-    /// `None` if it is negative, not finite, or rounds to infinity.
+    /// The nearest number of 24 bits; `None` if the value is negative, not finite, or rounds to infinity.
     pub fn new(value: f32) -> Option<Self> {
         if value == 0.0 {
             return Some(Self([0; 3]));
@@ -18,6 +18,7 @@ impl Float24 {
         (value > 0.0 && rounded.get().is_finite()).then_some(rounded)
     }
 
+    /// The number, as a float of 32 bits; exact.
     pub fn get(self) -> f32 {
         let [a, b, c] = self.0;
         f32::from_bits(u32::from_le_bytes([a, b, c, 0]) << 7)
@@ -57,6 +58,7 @@ impl Rgb40 {
         Some(Self([a, b, c, d, e]))
     }
 
+    /// The colour, linear RGB; exact.
     pub fn get(self) -> Vec3 {
         let [a, b, c, d, e] = self.0;
         let bits = u64::from_le_bytes([a, b, c, d, e, 0, 0, 0]);

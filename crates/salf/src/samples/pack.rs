@@ -15,6 +15,7 @@ use std::collections::HashMap;
 /// A sample and its origin.
 #[derive(Clone, Debug)]
 pub struct BakedSample {
+    /// The sample.
     pub sample: Sample,
     /// The cell that it is a part of, and which sub-cells (a bit each); none for a patch of surface.
     pub part_of: Option<(Cell, u64)>,
@@ -37,6 +38,7 @@ pub fn block_corner(pixel: IVec2) -> IVec2 {
 }
 
 impl Packer {
+    /// An empty packer for a chunk whose upper left corner is at `corner`, px.
     pub fn new(corner: IVec2) -> Self {
         Self {
             corner,
@@ -47,7 +49,7 @@ impl Packer {
         }
     }
 
-    /// Takes up a sample: packed, or as it is if it cannot be.
+    /// Adds a sample: packed, or as it is if it cannot be packed.
     pub fn push(&mut self, baked: BakedSample) {
         if self.plane_of.len() >= Record::BACKGROUND as usize {
             self.close();

@@ -17,6 +17,7 @@ impl Plane {
     /// The triangle number of the background, seen through partly transparent surfaces.
     pub const NO_TRIANGLE: u32 = u32::MAX;
 
+    /// The plane as stored in a file, little endian.
     pub fn to_bytes(self) -> [u8; Self::BYTES] {
         let mut bytes = [0; Self::BYTES];
         bytes[..4].copy_from_slice(&{ self.triangle }.to_le_bytes());
@@ -27,6 +28,7 @@ impl Plane {
         bytes
     }
 
+    /// The plane from its bytes in a file; the inverse of [`Self::to_bytes`].
     pub fn from_bytes([a, b, c, d, w0, w1, u0, u1, v0, v1]: [u8; Self::BYTES]) -> Self {
         let weights = [[w0, w1], [u0, u1], [v0, v1]].map(u16::from_le_bytes);
         Self { triangle: u32::from_le_bytes([a, b, c, d]), weights }

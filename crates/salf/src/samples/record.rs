@@ -34,7 +34,7 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// The number of words beside the record that list its sub-cells.
+    /// The number of 16-bit words beside the record that list its sub-cells.
     pub fn words(self) -> usize {
         match self {
             Self::WholeCell | Self::Patch => 0,
@@ -51,9 +51,11 @@ pub struct Kind {
     pub pixel: IVec2,
     /// The cell's side is 2 to this, px.
     pub level: u8,
+    /// Which part of the cell the sample is.
     pub shape: Shape,
     /// Cells per side of its visibility; `None` if it sees the whole aperture.
     pub cells: Option<u8>,
+    /// Whether it sends carried light; otherwise own.
     pub is_carried: bool,
 }
 
@@ -100,7 +102,7 @@ impl Kind {
         })
     }
 
-    /// The cell that it is all or part of, in a block at `corner`.
+    /// The cell that the sample is all or part of, in a block whose upper left corner is `corner`, px.
     pub fn cell(&self, corner: IVec2) -> Cell {
         Cell { corner: corner + self.pixel, side: 1 << self.level }
     }
@@ -110,12 +112,18 @@ impl Record {
     pub const BYTES: usize = size_of::<Self>();
     pub const BACKGROUND: u16 = u16::MAX;
 
+    /// A record of a sample: its kind, the number of its plane, its place in the triangle as barycentric weights in
+    /// [0, 1] (rounded to 1/65535), its inverse depth and its radiance.
     pub fn new(kind: Kind, plane: u16, barycentric: DVec2, depth: Float24, radiance: Rgb40) -> Self {
         // Rounding may put it beside its triangle by 1/65535 of it.
         let barycentric = barycentric.to_array().map(|b| (b * 65535.0).round() as u16);
         Self { place: kind.place(), plane, barycentric, inverse_depth: depth, radiance }
     }
 
+    /// The kind of sample.
+    ///
+    /// # Panics
+    /// On a record that was not checked when it was read.
     #[inline]
     pub fn kind(&self) -> Kind {
         Kind::from_place(self.place).expect("a record that was read was checked")
@@ -133,7 +141,7 @@ impl Record {
         self.place >> 15 != 0
     }
 
-    /// Its barycentrics.
+    /// The barycentric weights of the second and the third corner of its triangle, in [0, 1].
     pub fn barycentric(&self) -> DVec2 {
         DVec2::from_array(self.barycentric.map(|b| f64::from(b) / 65535.0))
     }
@@ -143,6 +151,7 @@ impl Record {
         Kind::from_place(self.place).is_some() && self.inverse_depth.get().is_finite()
     }
 
+    /// The record as stored in a file, little endian.
     pub fn to_bytes(self) -> [u8; Self::BYTES] {
         let mut bytes = [0; Self::BYTES];
         for (k, word) in [self.place, self.plane, self.barycentric[0], self.barycentric[1]].iter().enumerate()
@@ -154,6 +163,7 @@ impl Record {
         bytes
     }
 
+    /// The record from its bytes in a file; the inverse of [`Self::to_bytes`].
     pub fn from_bytes(bytes: [u8; Self::BYTES]) -> Self {
         let word = |k: usize| u16::from_le_bytes([bytes[2 * k], bytes[2 * k + 1]]);
         let byte = |k: usize| bytes[k];
@@ -181,7 +191,7 @@ pub struct Patch {
 impl Patch {
     pub const BYTES: usize = size_of::<Self>();
 
-    /// `None` if it is out of range.
+    /// A patch, with lengths rounded to 1/4096 px. `None` if one is out of range.
     pub fn new(fraction: Vec2, half_size: Vec2, largest: Float24) -> Option<Self> {
         let fixed = |px: f32| (px * 4096.0).round();
         let [x, y] = fraction.to_array().map(|px| fixed(px).clamp(0.0, 4095.0) as u32);
@@ -192,22 +202,26 @@ impl Patch {
         fits.then_some(Self { fraction: [a, b, c], half_size, largest })
     }
 
+    /// Its position in its pixel, in [0, 1)².
     pub fn fraction(&self) -> Vec2 {
         let [a, b, c] = self.fraction;
         let bits = u32::from_le_bytes([a, b, c, 0]);
         Vec2::new((bits & 0xFFF) as f32, (bits >> 12) as f32) / 4096.0
     }
 
+    /// Half its width and height, px.
     pub fn half_size(&self) -> Vec2 {
         Vec2::from_array(self.half_size.map(|half| f32::from(u16::from_le_bytes(half)) / 4096.0))
     }
 
+    /// The patch as stored in a file, little endian.
     pub fn to_bytes(self) -> [u8; Self::BYTES] {
         let [[h0, h1], [h2, h3]] = self.half_size;
         let ([f0, f1, f2], [l0, l1, l2]) = (self.fraction, self.largest.0);
         [f0, f1, f2, h0, h1, h2, h3, l0, l1, l2]
     }
 
+    /// The patch from its bytes in a file; the inverse of [`Self::to_bytes`].
     pub fn from_bytes([f0, f1, f2, h0, h1, h2, h3, l0, l1, l2]: [u8; Self::BYTES]) -> Self {
         Self { fraction: [f0, f1, f2], half_size: [[h0, h1], [h2, h3]], largest: Float24([l0, l1, l2]) }
     }

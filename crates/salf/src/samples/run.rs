@@ -47,7 +47,7 @@ pub struct Addresses<'a> {
 }
 
 impl Addresses<'_> {
-    /// The address of a sample.
+    /// The address of the sample with this number: the surface point and the kind of light.
     #[inline]
     pub fn get(&mut self, index: u32) -> Address {
         let samples = self.samples;
@@ -135,12 +135,12 @@ impl<'a> Run<'a> {
 }
 
 impl Samples {
-    /// How many runs they go in.
+    /// The number of runs that all samples make up.
     pub fn run_count(&self) -> usize {
         self.chunks.len() + self.loose.len().div_ceil(LOOSE_RUN)
     }
 
-    /// A run of them; together, in order, the runs have all samples in order.
+    /// The run with this number; together, in order, the runs have all samples in order.
     pub fn run(&self, run: usize) -> Run<'_> {
         if run < self.chunks.len() {
             let [start, end] = [run, run + 1].map(|chunk| self.starts(chunk).records);
@@ -161,12 +161,12 @@ impl Samples {
         self.runs().flat_map(|run| run.iter())
     }
 
-    /// Every sample, not packed.
+    /// All samples, unpacked, in order.
     pub fn to_vec(&self) -> Vec<Sample> {
         (0..self.run_count()).into_par_iter().flat_map_iter(|run| self.run(run).iter()).collect()
     }
 
-    /// The samples with `change` made to each of them; they are not packed then.
+    /// The samples with `change` made to each of them; the result is not packed.
     pub fn changed(&self, mut change: impl FnMut(&mut Sample)) -> Self {
         let mut samples = self.to_vec();
         samples.iter_mut().for_each(&mut change);
@@ -178,7 +178,7 @@ impl Samples {
         self.run(self.run_of(index)).sample(index).expect("the run that holds it")
     }
 
-    /// Where a sample is.
+    /// Where the sample with this number lies in the picture and on the surface.
     pub fn location(&self, index: u32) -> SampleLocation {
         self.run(self.run_of(index)).location(index).expect("the run that holds it")
     }

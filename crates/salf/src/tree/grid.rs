@@ -24,7 +24,7 @@ pub struct Content {
 }
 
 impl Content {
-    /// Its samples, with their numbers.
+    /// The samples of the block, with their numbers in the light field.
     pub fn samples<'a>(&'a self, samples: &'a Samples) -> impl Iterator<Item = (u32, Sample)> {
         let in_runs = self.runs.iter().flat_map(|&run| {
             let run = samples.run(run);
@@ -35,18 +35,19 @@ impl Content {
 }
 
 impl Grid {
+    /// The grid of blocks over a light field's picture and its margin.
     pub fn new(salf: &Salf) -> Self {
         let frame = IVec2::new(salf.camera.width as i32, salf.camera.height as i32);
         let domain = Domain { size: frame, margin: salf.margin_px as i32 };
         Self { domain, size: domain.blocks() }
     }
 
-    /// The upper left pixel of a block.
+    /// The upper left pixel of the block with this number.
     pub fn corner(&self, block: usize) -> IVec2 {
         self.domain.corner_of_block(IVec2::new(block as i32 % self.size.x, block as i32 / self.size.x))
     }
 
-    /// The pixel of the grid that a place in the picture lies in.
+    /// The pixel of the grid in which a place of the picture, px, lies, or the nearest.
     pub fn pixel(&self, center: Vec2) -> IVec2 {
         let low = IVec2::splat(-self.domain.margin);
         center.floor().as_ivec2().clamp(low, low + self.size * BLOCK_PX - 1)
@@ -74,7 +75,7 @@ impl Grid {
         (block.y * self.size.x + block.x) as usize
     }
 
-    /// The side of the cell that was sampled around `pixel`, as a power of two.
+    /// The side, as a power of two in px, of the cell that was sampled around `pixel`.
     pub fn cell_level(&self, pixel: IVec2) -> u8 {
         self.domain.cell_around(pixel).side.ilog2() as u8
     }

@@ -20,6 +20,7 @@ const MAX_WORK: u64 = 1 << 30;
 const MAX_CHECKS: u64 = 1 << 27;
 
 impl Budget {
+    /// The budget that `options` allow for one file.
     pub fn new(options: &LoadOptions) -> Self {
         Self {
             memory: Cell::new(options.max_memory),
@@ -30,7 +31,10 @@ impl Budget {
         }
     }
 
-    /// Takes `bytes` for `what`.
+    /// Takes `bytes` for `what`, which errors name.
+    ///
+    /// # Errors
+    /// Fewer bytes are left.
     pub fn take_memory(&self, bytes: u64, what: &str) -> Result<(), Fault> {
         let limit = self.options.max_memory >> 20;
         take(&self.memory, bytes, || {
@@ -38,22 +42,28 @@ impl Budget {
         })
     }
 
-    /// Remaining bytes.
+    /// The memory that is left, in bytes.
     pub fn memory_left(&self) -> u64 {
         self.memory.get()
     }
 
-    /// Returns `bytes`.
+    /// Returns `bytes` of memory that were taken.
     pub fn release_memory(&self, bytes: u64) {
         self.memory.set(self.memory.get() + bytes);
     }
 
     /// Takes `count` triangles.
+    ///
+    /// # Errors
+    /// Fewer triangles are left.
     pub fn take_triangles(&self, count: u64) -> Result<(), Fault> {
         take(&self.triangles, count, || format!("it has more than {} triangles", self.options.max_triangles))
     }
 
-    /// Takes the time for `count` values, on behalf of `place`.
+    /// Takes the steps for reading `count` values, on behalf of `place`, which errors name.
+    ///
+    /// # Errors
+    /// Fewer steps are left.
     pub fn take_work(&self, count: u64, place: &str) -> Result<(), Fault> {
         take(&self.work, count, || format!("{place}: reading the scene takes too many steps"))
     }

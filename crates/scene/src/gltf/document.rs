@@ -40,7 +40,10 @@ struct Warnings {
 }
 
 impl<'a> Document<'a> {
-    /// Parses the bytes of a scene file in `folder`.
+    /// Parses the bytes of a glTF or GLB file in `folder`, against which its URIs are resolved.
+    ///
+    /// # Errors
+    /// The file is malformed, requires an extension that is not read, or exceeds the limits of `options`.
     pub fn parse(bytes: &'a [u8], folder: PathBuf, options: &LoadOptions) -> Result<Self, Fault> {
         let budget = Budget::new(options);
         budget.take_memory(bytes.len() as u64, "the file")?;
@@ -75,6 +78,9 @@ impl<'a> Document<'a> {
     }
 
     /// The same with another root, an additional buffer of these bytes, and without the decoded extensions.
+    ///
+    /// # Errors
+    /// The new root is malformed, or the budget is exhausted.
     pub fn with_decoded_buffer(
         mut self,
         mut root: Value,
@@ -101,6 +107,9 @@ impl<'a> Document<'a> {
     }
 
     /// The same with another root, in which only numbers differ.
+    ///
+    /// # Errors
+    /// The new root is malformed, or the budget is exhausted.
     pub fn with_root(mut self, root: Value) -> Result<Self, Fault> {
         (self.typed, self.faults) = repair::repair_document(&root, &self.budget)?;
         self.root = root;
@@ -113,12 +122,18 @@ impl<'a> Document<'a> {
         &self.typed
     }
 
-    /// An error if there is a fault exactly at `place`, a JSON pointer.
+    /// Checks that there is no fault exactly at `place`, a JSON pointer.
+    ///
+    /// # Errors
+    /// The fault.
     pub fn check_at(&self, place: &str) -> Result<(), Fault> {
         self.faults.check_at(place)
     }
 
-    /// An error if there is a fault at `place` or anywhere inside.
+    /// Checks that there is no fault at `place`, a JSON pointer, or anywhere inside.
+    ///
+    /// # Errors
+    /// The first fault.
     pub fn check_below(&self, place: &str) -> Result<(), Fault> {
         self.faults.check_below(place)
     }
@@ -128,7 +143,10 @@ impl<'a> Document<'a> {
         usize::try_from(as_whole_number(self.root.pointer(place)?)?).ok()
     }
 
-    /// The place of an entry of a collection, which `place` refers to.
+    /// The place (JSON pointer) of the entry of a collection to which `place` refers.
+    ///
+    /// # Errors
+    /// The collection has fewer entries.
     pub fn entry(&self, collection: &str, index: usize, place: &str) -> Result<String, Fault> {
         if index < self.len(collection) {
             Ok(format!("/{collection}/{index}"))
@@ -159,17 +177,23 @@ impl<'a> Document<'a> {
     }
 
     /// A copy of the root.
+    ///
+    /// # Errors
+    /// The budget of memory is exhausted.
     pub fn cloned_root(&self) -> Result<Value, Fault> {
         self.budget.take_memory(self.root_bytes, "the animated document")?;
         Ok(self.root.clone())
     }
 
-    /// Number of entries of a collection such as `meshes`.
+    /// The number of entries of a collection such as `meshes`.
     pub fn len(&self, collection: &str) -> usize {
         repair::len(&self.root, collection)
     }
 
-    /// An entry of a collection, which `place` refers to.
+    /// The entry of a collection to which `place` refers.
+    ///
+    /// # Errors
+    /// The collection has fewer entries, or the entry is not an object.
     pub fn item(&self, collection: &str, index: usize, place: &str) -> Result<Object<'_>, Fault> {
         match self.root.get(collection).and_then(|list| list.get(index)) {
             Some(value) => Object::new(value, format!("/{collection}/{index}")),
@@ -177,7 +201,7 @@ impl<'a> Document<'a> {
         }
     }
 
-    /// Records a harmless defect.
+    /// Records a warning about a harmless defect.
     pub fn warn(&self, warning: impl Into<String>) {
         let (mut warnings, warning) = (self.warnings.borrow_mut(), warning.into());
         if warnings.messages.len() >= MAX_WARNINGS {
@@ -187,7 +211,7 @@ impl<'a> Document<'a> {
         }
     }
 
-    /// All warnings so far.
+    /// All warnings so far, in the order in which they were recorded.
     pub fn warnings(&self) -> Vec<String> {
         let warnings = self.warnings.borrow();
         let mut all = warnings.messages.clone();

@@ -128,7 +128,7 @@ impl AnimatedScene {
         &self.rest
     }
 
-    /// The animations of the file.
+    /// The animations of the file, in order.
     pub fn animations(&self) -> &[Animation] {
         &self.animations
     }

@@ -52,7 +52,10 @@ impl Faults {
         self.0.entry(place.into()).or_insert(what);
     }
 
-    /// An error if there is a fault exactly at `place`.
+    /// Checks that there is no fault exactly at `place`, a JSON pointer.
+    ///
+    /// # Errors
+    /// The fault.
     pub fn check_at(&self, place: &str) -> Result<(), Fault> {
         match self.0.get(place) {
             Some(what) => Err(Fault::Malformed { place: place.into(), what: what.clone() }),
@@ -60,7 +63,10 @@ impl Faults {
         }
     }
 
-    /// An error if there is a fault at `place` or below.
+    /// Checks that there is no fault at `place`, a JSON pointer, or below.
+    ///
+    /// # Errors
+    /// The first fault.
     pub fn check_below(&self, place: &str) -> Result<(), Fault> {
         self.check_at(place)?;
         let inner = format!("{place}/");

@@ -12,7 +12,10 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 impl<'a> Document<'a> {
-    /// The bytes of the `uri` of the buffer or image at `owner`.
+    /// The bytes of the `uri`, a data URI or a file beside the scene, of the buffer or image at `owner`.
+    ///
+    /// # Errors
+    /// The data is malformed, or the file cannot be read, lies outside the scene's folder, or exceeds the budget.
     pub fn resource(&self, owner: &str, uri: &str) -> Result<Vec<u8>, Fault> {
         let refuse = |what: &str| Fault::Resource {
             place: format!("{owner}/uri"),
@@ -57,7 +60,10 @@ impl<'a> Document<'a> {
         Err(wrong.unwrap_or_default())
     }
 
-    /// The bytes of a buffer, as far as declared and present. They are read once.
+    /// The bytes of buffer `index`, to which `place` refers, as far as declared and present. They are read once.
+    ///
+    /// # Errors
+    /// The buffer does not exist or is faulty, or its file cannot be read.
     pub fn buffer(&self, index: usize, place: &str) -> Result<&[u8], Fault> {
         let buffer_place = self.entry("buffers", index, place)?;
         self.check_below(&buffer_place)?;
@@ -84,7 +90,10 @@ impl<'a> Document<'a> {
         Ok(&bytes[..bytes.len().min(declared)])
     }
 
-    /// The bytes of a buffer view and its stride, if declared.
+    /// The bytes of buffer view `index`, to which `place` refers, and its stride in bytes, if declared.
+    ///
+    /// # Errors
+    /// It does not exist, is faulty, or reaches beyond its buffer.
     pub fn buffer_view(&self, index: usize, place: &str) -> Result<(&[u8], Option<usize>), Fault> {
         let view_place = self.entry("bufferViews", index, place)?;
         self.check_below(&view_place)?;

@@ -21,7 +21,7 @@ impl BackFaces {
         Self::ALL.iter().find(|(_, candidate)| *candidate == self).map_or("", |(name, _)| name)
     }
 
-    /// The setting of this name.
+    /// The setting with this name in files and on the command line; `None` if there is none.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.iter().find(|(candidate, _)| *candidate == name).map(|(_, back_faces)| *back_faces)
     }

@@ -21,7 +21,7 @@ pub struct CameraLens {
 }
 
 impl CameraLens {
-    /// The camera with these settings.
+    /// `camera` with these settings of the lens; all others stay.
     pub fn apply_to(&self, camera: Camera) -> Camera {
         let [width, height] = self.size_px.unwrap_or([camera.width, camera.height]);
         Camera {

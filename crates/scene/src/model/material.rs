@@ -173,14 +173,14 @@ pub enum AlphaMode {
 }
 
 impl Scalar {
-    /// Without a texture.
+    /// A parameter that is the same everywhere, without a texture.
     pub const fn constant(factor: f32) -> Self {
         Self { factor, texture: None }
     }
 }
 
 impl Tint {
-    /// Without a texture.
+    /// A linear colour that is the same everywhere, without a texture.
     pub const fn constant(factor: Vec3) -> Self {
         Self { factor, texture: None }
     }
@@ -231,7 +231,7 @@ impl Material {
         Self { workflow, specular: Scalar::constant(0.0), ..Self::default() }
     }
 
-    /// Whether its back faces are hidden.
+    /// Whether the material's back faces are hidden, given the scene's setting.
     pub fn culls_back_faces(&self, back_faces: BackFaces) -> bool {
         back_faces == BackFaces::Hide && !self.double_sided
     }

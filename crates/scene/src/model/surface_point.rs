@@ -20,7 +20,7 @@ impl SurfacePoint {
         [1.0 - b1 - b2, b1, b2]
     }
 
-    /// The point in world space.
+    /// The point's position in the world.
     #[inline]
     pub fn position(self, scene: &Scene) -> DVec3 {
         let [a, b, c] = scene.corners(self.triangle);

@@ -19,7 +19,10 @@ pub(super) struct LinearConversion {
 pub(super) struct UnsupportedProfile(pub String);
 
 impl LinearConversion {
-    /// The conversion for a decoded picture with this ICC profile.
+    /// The conversion to linear light of a decoded picture with this ICC profile; without one it is sRGB.
+    ///
+    /// # Errors
+    /// The profile cannot be used for this picture.
     pub fn from_profile(profile: Option<&[u8]>, picture: &DynamicImage) -> Result<Self, UnsupportedProfile> {
         let entries = if is_deep(picture.color()) { 1 << 16 } else { 1 << 8 };
         let Some(bytes) = profile else {

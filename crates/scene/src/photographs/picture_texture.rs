@@ -28,12 +28,12 @@ impl PictureTexture {
     /// Rows between the picture and the continued surface.
     pub const GUTTER: u32 = 4;
 
-    /// Columns and rows of the picture itself.
+    /// Columns and rows of the picture itself, px, without what surrounds it.
     pub fn picture_size(&self) -> [u32; 2] {
         [self.size[0] - 2 * self.margin, self.behind_first_row - Self::GUTTER - 2 * self.margin]
     }
 
-    /// Whether the texture at this position, each coordinate in [0, 1], was photographed.
+    /// Whether the texture shows the photograph at this position; u and v in [0, 1].
     pub fn is_photographed_at(&self, [u, v]: [f64; 2]) -> bool {
         let [width, height] = self.size;
         let texel = |at: f64, side: u32| ((at * f64::from(side)) as u32).min(side - 1) as usize;

@@ -44,7 +44,7 @@ impl View {
         DMat4::from_mat3_translation(rotation, rotation * -self.position())
     }
 
-    /// World position of the camera.
+    /// The camera's position in the world.
     pub fn position(&self) -> DVec3 {
         self.camera_to_world.w_axis.truncate()
     }
@@ -54,12 +54,12 @@ impl View {
         -self.camera_to_world.z_axis.truncate()
     }
 
-    /// Unit up direction of the camera in the world.
+    /// The camera's up direction (world, unit).
     pub fn up(&self) -> DVec3 {
         self.camera_to_world.y_axis.truncate()
     }
 
-    /// A world point in camera space (x right, y up, z forward).
+    /// A world point in camera space (x right, y up, z forward, the camera at the origin).
     pub fn camera_from_world(&self, point: DVec3) -> DVec3 {
         let pose = &self.camera_to_world;
         let offset = point - self.position();

@@ -24,7 +24,10 @@ pub(super) struct RadianceDecoder<R> {
 }
 
 impl<R: BufRead + Seek> RadianceDecoder<R> {
-    /// Whether the input begins as a Radiance picture does. It stays where it is.
+    /// Whether the input begins as a Radiance picture does. Its position is unchanged.
+    ///
+    /// # Errors
+    /// The input cannot be read.
     pub fn is_radiance(input: &mut R) -> std::io::Result<bool> {
         let start = input.stream_position()?;
         let mut first = Vec::new();
@@ -35,7 +38,10 @@ impl<R: BufRead + Seek> RadianceDecoder<R> {
 }
 
 impl<R: BufRead> RadianceDecoder<R> {
-    /// Reads the header.
+    /// Reads the header; pixels are decoded later.
+    ///
+    /// # Errors
+    /// The input cannot be read, or is no Radiance picture.
     pub fn open(mut input: R) -> ImageResult<Self> {
         let header = Header::read(&mut input)?.map_err(damaged)?;
         Ok(Self { header, input })

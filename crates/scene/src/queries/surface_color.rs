@@ -37,7 +37,8 @@ impl Scene {
         image.sample(uv, texture.wrap, texture.nearest, texture.is_color)
     }
 
-    /// A texture's linear RGBA at a point of the surface.
+    /// A texture's RGBA at a point of the surface; colours are linear, components in [0, 1] unless the texture is a
+    /// radiance.
     #[inline]
     pub fn sample_texture_at(&self, texture: &TextureRef, point: SurfacePoint) -> Vec4 {
         self.sample_texture(texture, self.uv_at(point, texture.uv_set))
@@ -94,7 +95,7 @@ impl Scene {
         self.area_normal(point.triangle).normalize_or_zero()
     }
 
-    /// A scalar parameter of the material at a point.
+    /// A scalar parameter of the material at a point: its factor times its texture.
     #[inline]
     pub fn scalar_at(&self, scalar: &Scalar, point: SurfacePoint) -> f32 {
         match &scalar.texture {
@@ -105,7 +106,7 @@ impl Scene {
         }
     }
 
-    /// A colour of the material at a point, linear.
+    /// A linear RGB parameter of the material at a point: its factor times its texture.
     #[inline]
     pub fn tint_at(&self, tint: &Tint, point: SurfacePoint) -> Vec3 {
         match &tint.texture {

@@ -42,7 +42,7 @@ impl Image {
         self.mean(&TexelQuad { starts: [at; 4], shares: None }, is_color)
     }
 
-    /// RGBA at texture coordinates; colours are linear.
+    /// RGBA at texture coordinates, bilinear or of the nearest texel; colours are linear.
     #[inline]
     pub fn sample(&self, uv: Vec2, wrap: [Wrap; 2], nearest: bool, is_color: bool) -> Vec4 {
         /// At most half the range of i32, so that the right neighbour has a valid index.

@@ -55,7 +55,7 @@ impl CubeMap {
         [texels, texels * u64::from(Self::samples_per_side(side)).pow(2)]
     }
 
-    /// Radiance from a direction of any length but 0.
+    /// The radiance (linear RGB) from a direction of any length but 0, in the environment's axes.
     pub fn radiance(&self, direction: DVec3) -> Vec3 {
         let size = direction.abs();
         let axis = if size.x >= size.y && size.x >= size.z {

@@ -43,19 +43,19 @@ impl EnvironmentMap {
         DVec2::new(u * f64::from(self.width), v * f64::from(self.height))
     }
 
-    /// The direction at a position.
+    /// The unit direction at a position of the map, px from its upper left corner.
     pub fn direction_at(&self, position: DVec2) -> DVec3 {
         let longitude = (position.x / f64::from(self.width) - 0.5) * TAU;
         let (y, flat) = self.row_latitude(position.y).sin_cos();
         DVec3::new(flat * longitude.cos(), y, flat * longitude.sin())
     }
 
-    /// The latitude at a row's position, rad: π/2 at the top.
+    /// The latitude at a row's position, px from the top, in rad: π/2 at the top.
     pub fn row_latitude(&self, row: f64) -> f64 {
         FRAC_PI_2 - row / f64::from(self.height) * PI
     }
 
-    /// Radiance from a direction (unit).
+    /// The radiance (linear RGB) from a unit direction in the environment's axes.
     pub fn radiance(&self, direction: DVec3) -> Vec3 {
         let at = self.texel_position(direction) - 0.5;
         let low = at.floor();

@@ -38,7 +38,7 @@ impl KeyMap {
         }
     }
 
-    /// The key of a command, if it has one.
+    /// The key of a command; `None` if it has none.
     pub fn shortcut(self, id: CommandId) -> Option<Shortcut> {
         let entry = self.overrides().iter().find(|(command, _)| *command == id);
         entry.map_or(id.info().shortcut, |(_, shortcut)| *shortcut)

@@ -14,7 +14,7 @@ use std::ops::Range;
 /// So many small pixels away a change of one is seen: two pixels of the cubic, twice, and one that means are of.
 const CHANGE_REACH_PX: u32 = 5;
 
-/// A picture at another size, at least its own.
+/// A picture at another size (columns, rows), at least its own.
 pub fn enlarged(picture: &Picture, size: [u32; 2]) -> Picture {
     enlarged_part(picture, size, size.map(|side| 0..side))
 }

@@ -56,7 +56,7 @@ impl PictureRing {
         (self.show(picture, changed.as_ref()), changed)
     }
 
-    /// The picture that is followed.
+    /// The picture that changes are made to; `None` before the first.
     pub fn followed(&self) -> Option<Arc<Picture>> {
         self.base.as_ref().or(self.snapshots.last().map(|snapshot| &snapshot.picture)).cloned()
     }

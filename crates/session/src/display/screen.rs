@@ -49,7 +49,7 @@ impl Patch {
 }
 
 impl Screen {
-    /// Columns and rows, px; none before the first picture.
+    /// Columns and rows, px; 0 before the first picture.
     pub fn size(&self) -> [u32; 2] {
         self.size
     }
@@ -64,7 +64,7 @@ impl Screen {
         self.on_card.as_ref().map(|(picture, tone)| (picture, *tone))
     }
 
-    /// Counts changes.
+    /// A number that grows with every change of what is shown.
     pub fn serial(&self) -> u64 {
         self.serial
     }

@@ -43,12 +43,12 @@ struct ReadState {
 }
 
 impl Thumbnails {
-    /// None is read yet. `waker` is called when one is there.
+    /// Thumbnails of a scene, none of which is read yet. `waker` is called when one is there.
     pub fn new(scene: Arc<Scene>, waker: Waker) -> Self {
         Self { shared: Arc::new(Shared { scene, state: Mutex::default() }), waker }
     }
 
-    /// Whether they are of this scene.
+    /// Whether the thumbnails are those of this scene.
     pub fn is_for_scene(&self, scene: &Arc<Scene>) -> bool {
         Arc::ptr_eq(&self.shared.scene, scene)
     }

@@ -24,7 +24,7 @@ impl Changes {
         matches!(self, Self::Texels(texels) if texels.is_empty())
     }
 
-    /// Merges newer changes.
+    /// Adds changes that were made later.
     pub fn join(&mut self, newer: &Changes) {
         match (&mut *self, newer) {
             (Self::Texels(texels), Self::Texels(more)) if texels.len() + more.len() <= MAX_TEXELS => {

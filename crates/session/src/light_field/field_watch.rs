@@ -32,12 +32,12 @@ pub(crate) enum BakeState {
 }
 
 impl FieldWatch {
-    /// Notes that a light field is being made.
+    /// Notes that a light field for `stage` is being made.
     pub fn begin(&self, stage: &Arc<Stage>) {
         *self.lock() = Some(LatestBake { stage: Arc::downgrade(stage), baked: None });
     }
 
-    /// Notes that it is baked.
+    /// Notes that the light field is baked.
     pub fn set_baked(&self, salf: &Arc<Salf>) {
         if let Some(latest) = &mut *self.lock() {
             latest.baked = Some(Arc::downgrade(salf));

@@ -20,7 +20,7 @@ pub(crate) struct MarginReach {
 }
 
 impl MarginReach {
-    /// Tests all samples.
+    /// Tests which samples of the light field reach too far for its margin.
     pub fn survey(salf: &Salf, camera: &Camera, focus: &Focus) -> Self {
         let test = MarginTest::new(salf, camera, focus);
         let far_in_run = |run: usize| {
@@ -34,12 +34,12 @@ impl MarginReach {
         Self { moved: vec![0; too_far.len()], too_far }
     }
 
-    /// Notes samples that moved.
+    /// Notes the numbers of samples that moved.
     pub fn note_moved(&mut self, samples: &[u32]) {
         set(&mut self.moved, samples);
     }
 
-    /// Tests the samples that moved again.
+    /// Tests again the samples that moved.
     pub fn retest_moved(&mut self, salf: &Salf, camera: &Camera, focus: &Focus) {
         let test = MarginTest::new(salf, camera, focus);
         let words = self.too_far.par_iter_mut().zip(&mut self.moved).enumerate();
@@ -56,7 +56,7 @@ impl MarginReach {
         self.too_far.iter().any(|word| *word != 0)
     }
 
-    /// The margin that would be needed, px; 0 if no sample reaches too far.
+    /// The margin, px, that the samples that reach too far need; 0 if none does.
     pub fn needed_px(&self, salf: &Salf, camera: &Camera, focus: &Focus) -> f64 {
         let test = MarginTest::new(salf, camera, focus);
         let widest = |(word, bits): (usize, &u64)| {

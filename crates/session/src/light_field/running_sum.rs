@@ -90,7 +90,10 @@ pub(crate) struct LightField {
 const LIGHT_SHARE: f32 = 0.3;
 
 impl LightField {
-    /// Bakes a light field for `camera` and `focus`.
+    /// Bakes a light field for `camera` and `focus`, with a margin that allows for some change.
+    ///
+    /// # Errors
+    /// The light cannot be solved, or the work was cancelled.
     pub fn bake(
         stage: &Stage,
         camera: &Camera,
@@ -114,7 +117,7 @@ impl LightField {
         })
     }
 
-    /// Sets the number of passes by which its light was refined.
+    /// The light field, with the number of passes by which its light was refined.
     pub fn refined(self, light_passes: u32) -> Self {
         Self { light_passes, ..self }
     }
@@ -124,7 +127,7 @@ impl LightField {
         self.light_passes
     }
 
-    /// Wraps a light field that was baked before.
+    /// The light field `salf`, baked before for `stage`; summed on `gpu`, or on the processor if `None`.
     pub fn from_salf(stage: &Stage, salf: Arc<Salf>, tolerance: Tolerance, gpu: Option<Gpu>) -> Self {
         let index = Arc::new(SampleIndex::new(salf.clone(), stage.atlas.clone()));
         let modelled = Modelled::with_texels(&salf, stage.tracer(), Some(&stage.texels.texels));
@@ -168,7 +171,7 @@ impl LightField {
         Arc::ptr_eq(self.splatter.salf(), other.splatter.salf())
     }
 
-    /// Bytes of its sums; twins share all else.
+    /// The memory of its sums, in bytes; twins share all else.
     pub fn summing_bytes(&self) -> usize {
         let [_, sums] = self.splatter.bytes();
         sums
@@ -182,7 +185,7 @@ impl LightField {
         }
     }
 
-    /// Whether it can show what `camera` sees.
+    /// Whether the light field can show what `camera` sees.
     pub fn can_show(&self, camera: &Camera) -> bool {
         is_compatible(&self.splatter.salf().camera, camera)
     }
@@ -211,7 +214,7 @@ impl LightField {
         }
     }
 
-    /// Notes changes of the focus map.
+    /// Notes changes of the focus map, for the next update.
     pub fn note(&mut self, changes: &Changes) {
         self.pending_changes.join(changes);
     }
@@ -241,6 +244,9 @@ impl LightField {
     }
 
     /// Brings the sum to a lens and a focus. After an error the next call makes the whole sum.
+    ///
+    /// # Errors
+    /// The sum overflows, or the work was cancelled.
     pub fn update_sum(
         &mut self,
         camera: &Camera,
@@ -251,7 +257,10 @@ impl LightField {
         self.execute_plan(plan, camera, focus, progress)
     }
 
-    /// The same, as it was just planned for this lens and focus.
+    /// Brings the sum to a lens and a focus by `plan`, which was just made for them.
+    ///
+    /// # Errors
+    /// The sum overflows, or the work was cancelled.
     pub fn execute_plan(
         &mut self,
         plan: Plan,
@@ -296,6 +305,9 @@ impl LightField {
     }
 
     /// The picture of the sum, brought back if it is on a card.
+    ///
+    /// # Errors
+    /// The card is lost.
     pub fn fetch_picture(&mut self) -> Result<&Picture, SplatError> {
         self.splatter.fetch_picture()?;
         Ok(self.splatter.picture())

@@ -19,7 +19,7 @@ pub(crate) struct SampleIndex {
 }
 
 impl SampleIndex {
-    /// Of `salf` in `atlas`.
+    /// The index of the samples of `salf` by the texels of `atlas`.
     pub fn new(salf: Arc<Salf>, atlas: Arc<Atlas>) -> Self {
         let own = Tiles::from_samples(&salf, &atlas, |address| !address.is_carried);
         Self { salf, atlas, own, carried: OnceLock::new() }
@@ -30,7 +30,7 @@ impl SampleIndex {
         self.own.samples_reading(texels)
     }
 
-    /// The same of carried light.
+    /// The numbers of the samples of carried light on these texels (column, row).
     pub fn carried_reading(&self, texels: &[[u32; 2]]) -> Vec<u32> {
         let carried = self
             .carried

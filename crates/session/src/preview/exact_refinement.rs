@@ -48,7 +48,7 @@ impl ExactRefinement {
         self.thread.is_some()
     }
 
-    /// Notes changes of the focus map.
+    /// Notes changes of the focus map that were made meanwhile.
     pub fn note(&mut self, changes: &Changes) {
         match &mut self.field {
             Some(field) => field.note(changes),
@@ -86,7 +86,10 @@ impl ExactRefinement {
         }
     }
 
-    /// Takes the sum back from the thread.
+    /// Takes the sum back from the thread, with the picture that it made.
+    ///
+    /// # Errors
+    /// The error of the thread.
     pub fn take_up(
         &mut self,
         refined: ExactDelivery,

@@ -54,7 +54,7 @@ impl LightFieldMaker {
         Self { store, thread: None, pending_changes: Changes::default() }
     }
 
-    /// Whether the light field need not be baked.
+    /// Whether a stored light field can be read, so that none need be baked.
     pub fn has_stored(&self, stage: &Stage, camera: &Camera) -> bool {
         self.store.as_ref().is_some_and(|store| store.has(stage, camera))
     }
@@ -103,7 +103,7 @@ impl LightFieldMaker {
         }
     }
 
-    /// Notes changes of the focus map.
+    /// Notes changes of the focus map that were made meanwhile.
     pub fn note(&mut self, changes: &Changes) {
         self.pending_changes.join(changes);
     }
@@ -115,7 +115,10 @@ impl LightFieldMaker {
         (field, epoch)
     }
 
-    /// What was made, with all that changed meanwhile noted.
+    /// The light field that was made, with all that changed meanwhile noted, and the epoch it was made for.
+    ///
+    /// # Errors
+    /// The error of the thread.
     pub fn take_up(&mut self, delivery: FieldDelivery) -> Result<(LightField, u64), SessionError> {
         self.join();
         let pending_changes = std::mem::take(&mut self.pending_changes);

@@ -71,7 +71,7 @@ impl LightRefinement {
             .filter(|&passes| passes <= max_passes)
     }
 
-    /// Notes changes of the focus map.
+    /// Notes changes of the focus map that were made meanwhile.
     pub fn note(&mut self, changes: &Changes) {
         self.pending_changes.join(changes);
         if let Some(last) = &mut self.last {
@@ -79,7 +79,7 @@ impl LightRefinement {
         }
     }
 
-    /// Begins, unless something was wished meanwhile.
+    /// Starts to refine light, unless something else was requested meanwhile.
     pub fn start(&mut self, shared: &Arc<Shared>, task: LightTask) {
         if self.is_at_work() || !shared.begin_light(task.passes) {
             return;
@@ -102,7 +102,7 @@ impl LightRefinement {
         }
     }
 
-    /// Takes back what was made.
+    /// Takes back what the thread has made.
     pub fn take_back(&mut self, delivery: RefinedLightDelivery) {
         self.join();
         self.finished = Some(delivery);
@@ -110,6 +110,9 @@ impl LightRefinement {
 
     /// What was made, with all that changed meanwhile noted, if it is better than what stands, which was refined by so many passes; else it
     /// is kept, to be compared with. `None` if there is nothing to take up.
+    ///
+    /// # Errors
+    /// The error of the thread.
     pub fn take_up(&mut self, epoch: u64, displayed_passes: u32) -> Result<Option<FinerField>, SessionError> {
         let Some(RefinedLightDelivery { result, epoch: of_epoch }) = self.finished.take() else {
             return Ok(None);

@@ -110,7 +110,10 @@ impl Shared {
         self.wake.notify_one();
     }
 
-    /// Notes what the thread does now, unless it was cancelled.
+    /// Notes what the thread does now.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if it was cancelled.
     pub fn begin(&self, activity: PreviewActivity) -> Result<(), Cancelled> {
         self.quick.check()?;
         self.quick.begin_step("", 0.0, 1.0);
@@ -155,7 +158,7 @@ impl Shared {
         true
     }
 
-    /// It is refined, or given up.
+    /// Delivers refined light, or the failure to refine it, to the preview's thread.
     pub fn deliver_refined_light(&self, refined: RefinedLightDelivery) {
         self.light_passes.store(0, Ordering::Relaxed);
         self.post(StopScope::Nothing, |request| request.refined_light = Some(refined));
@@ -167,7 +170,7 @@ impl Shared {
         (passes > 0).then_some((passes, &self.light))
     }
 
-    /// The exact picture is done, or given up.
+    /// Delivers the exact picture, or the failure to draw it, to the preview's thread.
     pub fn deliver_exact(&self, refined: ExactDelivery) {
         self.is_refining.store(false, Ordering::Relaxed);
         self.post(StopScope::Nothing, |request| request.refined = Some(refined));
@@ -178,12 +181,12 @@ impl Shared {
         self.helper.store(PreviewActivity::Splatting as u8, Ordering::Relaxed);
     }
 
-    /// The helper is done.
+    /// Delivers a light field, or the failure to make it, to the preview's thread.
     pub fn deliver(&self, delivery: FieldDelivery) {
         self.post(StopScope::Nothing, |request| request.delivery = Some(delivery));
     }
 
-    /// The helper has made something to begin with, and goes on.
+    /// Delivers a coarse light field to the preview's thread, while the full one is being made.
     pub fn deliver_interim(&self, interim: InterimField) {
         self.post(StopScope::Nothing, |request| request.interim = Some(interim));
     }
@@ -205,7 +208,7 @@ impl Shared {
         (self.waker)();
     }
 
-    /// A message about a graphics card that was lost.
+    /// The message that a graphics card was lost; `None` if none was.
     pub fn loss_message(&self) -> Option<String> {
         let gpu = self.gpu.as_ref()?;
         let reason = gpu.why_lost()?.lines().next().unwrap_or_default();
@@ -217,7 +220,7 @@ impl Shared {
         self.gpu.clone().filter(|gpu| !gpu.is_lost())
     }
 
-    /// Shows the light field that pictures are made of.
+    /// Makes the light field from which pictures are drawn available to others.
     pub fn publish_field(&self, generation: u64, field: BakedField) {
         lock(&self.published).events.field = Some((generation, field));
     }
@@ -274,7 +277,7 @@ impl Shared {
         }
     }
 
-    /// How far the exact picture is, while it is drawn.
+    /// The share of the exact picture that is done, in [0, 1]; `None` if none is being drawn.
     pub fn refining_fraction(&self) -> Option<f32> {
         self.is_refining.load(Ordering::Relaxed).then(|| self.refining.fraction())
     }

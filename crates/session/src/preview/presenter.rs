@@ -62,6 +62,7 @@ pub(crate) struct Presenter {
 }
 
 impl Presenter {
+    /// A presenter that has shown nothing.
     pub fn new(shared: Arc<Shared>) -> Self {
         Self {
             shared,
@@ -78,7 +79,7 @@ impl Presenter {
         }
     }
 
-    /// Another document: what was shown is not of it.
+    /// Begins another document, with the number `generation`: what was shown is not of it.
     pub fn open(&mut self, generation: u64) {
         self.generation = generation;
         self.is_glare_checked = false;
@@ -95,7 +96,7 @@ impl Presenter {
         }
     }
 
-    /// The newest picture.
+    /// The newest picture; `None` before the first.
     pub fn shown(&self) -> Option<&Preview> {
         self.shown.as_ref()
     }
@@ -110,7 +111,7 @@ impl Presenter {
         self.tone.exposure
     }
 
-    /// Shows a picture.
+    /// Shows a picture in place of the one shown.
     pub fn show(&mut self, new_picture: NewPicture) {
         let summed = Instant::now();
         let is_new = matches!(new_picture.relation, Relation::New);

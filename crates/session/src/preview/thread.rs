@@ -26,6 +26,9 @@ pub(crate) struct PreviewThread {
 impl PreviewThread {
     /// Starts the thread. After nothing has changed for `exact_after` (`None`: never) the exact picture is drawn, and then light is refined
     /// by at most `light_passes`. Light fields are stored in `store`. Pictures are summed on `gpu`, or on the processor if `None`.
+    ///
+    /// # Errors
+    /// The system refused a thread.
     pub fn start(
         waker: Waker,
         exact_after: Option<Duration>,
@@ -45,7 +48,8 @@ impl PreviewThread {
         Ok(Self { shared, thread: Some(thread) })
     }
 
-    /// Another scene, with its focus.
+    /// Shows another scene, with its focus and camera; the numbers are the generation of the stage and the serial of
+    /// the map.
     pub fn set_stage(&self, stage: (Arc<Stage>, u64), map: (FocusMap, u64), camera: Camera) {
         self.shared.post(StopScope::Everything, |request| {
             request.stage = Some(stage);
@@ -97,12 +101,12 @@ impl PreviewThread {
         self.shared.light.cancel();
     }
 
-    /// The number of passes by which light is being refined, and the progress.
+    /// The number of passes by which light is being refined, and the progress; `None` if it is not being refined.
     pub fn refining_light(&self) -> Option<(u32, &JobProgress)> {
         self.shared.refining_light()
     }
 
-    /// Current activity and its progress.
+    /// What the preview's thread does now, and its progress.
     pub fn activity(&self) -> (PreviewActivity, &JobProgress) {
         self.shared.activity()
     }
@@ -112,7 +116,7 @@ impl PreviewThread {
         self.shared.take(id)
     }
 
-    /// Sets the tone.
+    /// Sets how linear light is shown on the screen.
     pub fn set_tone(&self, tone: Tone) {
         self.shared.post(StopScope::Nothing, |request| request.tone = Some(tone));
     }
@@ -122,7 +126,7 @@ impl PreviewThread {
         self.shared.clone()
     }
 
-    /// Sets the tolerance of pictures while the user works.
+    /// Sets how coarse pictures may be while the user works.
     pub fn set_tolerance(&self, tolerance: Tolerance) {
         self.shared.post(StopScope::Refining, |request| {
             request.tolerance = Some(tolerance);
@@ -130,7 +134,7 @@ impl PreviewThread {
         });
     }
 
-    /// Progress of the exact picture, while it is drawn.
+    /// The share of the exact picture that is done, in [0, 1]; `None` if none is being drawn.
     pub fn refining(&self) -> Option<f32> {
         self.shared.refining_fraction()
     }

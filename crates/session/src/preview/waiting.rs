@@ -16,6 +16,9 @@ const POLL_INTERVAL: Duration = Duration::from_millis(50);
 impl Shared {
     /// Waits for the light field that the preview is making, and returns it if it is compatible with `camera` in `stage`. On `None` the
     /// caller can start its own bake: the preview's has ended, so the two do not compete for the processors.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if `progress` asks to stop.
     pub fn wait_for_field(
         &self,
         stage: &Arc<Stage>,

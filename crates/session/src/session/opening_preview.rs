@@ -32,6 +32,7 @@ pub(super) struct OpeningSteps<'a> {
 }
 
 impl OpeningPreview {
+    /// The steps of opening, which report to `progress` and update this preview.
     pub fn steps<'a>(&'a self, progress: &'a JobProgress) -> OpeningSteps<'a> {
         OpeningSteps { steps: JobSteps { progress }, preview: self }
     }

@@ -9,7 +9,7 @@ use lens::FocusOffset;
 use trace::Ray;
 
 impl Session {
-    /// The first hit of a ray of either view.
+    /// The first surface that a ray of either view hits; `None` if there is none.
     pub fn pick(&self, ray: &Ray) -> Option<SurfaceHit> {
         pick(self.document.as_ref()?.stage.tracer(), ray)
     }
@@ -19,7 +19,7 @@ impl Session {
         Some(chief_ray(&self.document.as_ref()?.camera, position))
     }
 
-    /// The focus at a surface point.
+    /// The focus at a surface point; `None` if nothing is open.
     pub fn focus_at(&self, hit: &SurfaceHit) -> Option<FocusOffset> {
         Some(self.document.as_ref()?.focus_at(hit))
     }

@@ -49,7 +49,7 @@ impl Session {
         self.fixation_point.is_some()
     }
 
-    /// Whether the picture of a kind is being made.
+    /// Whether the reference picture of this kind is being made.
     pub fn is_making_reference(&self, kind: ReferenceKind) -> bool {
         self.reference_jobs.iter().any(|(_, job_kind)| *job_kind == kind)
     }

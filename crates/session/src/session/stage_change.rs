@@ -45,7 +45,7 @@ pub(super) struct RebuiltStage {
 }
 
 impl StageChange {
-    /// What the job is called; those of one name are in each other's place.
+    /// The name of the job that makes the change; a later job of the same name replaces it.
     pub fn job_label(&self) -> &'static str {
         match self {
             Self::BackFaces(_) => "looking at other faces",
@@ -55,7 +55,7 @@ impl StageChange {
         }
     }
 
-    /// Whether the stage is not that way already.
+    /// Whether the stage is not as the change would make it.
     pub fn differs_from(&self, stage: &Stage) -> bool {
         let scene = &stage.scene;
         match self {
@@ -67,7 +67,10 @@ impl StageChange {
         }
     }
 
-    /// The stage made so, and warnings about the environment's file.
+    /// The stage with this change made, and warnings about the environment's file.
+    ///
+    /// # Errors
+    /// A file cannot be read, the light cannot be solved, or the work was cancelled.
     pub fn apply_to(
         &self,
         stage: &Stage,

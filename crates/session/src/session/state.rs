@@ -171,12 +171,12 @@ impl Session {
         })
     }
 
-    /// The open document.
+    /// The open document; `None` if nothing is open.
     pub fn document(&self) -> Option<&Document> {
         self.document.as_ref()
     }
 
-    /// The last good picture.
+    /// The last picture that could be drawn; `None` before the first.
     pub fn preview(&self) -> Option<&Preview> {
         self.preview.as_ref()
     }
@@ -211,7 +211,7 @@ impl Session {
         &self.finished_pictures
     }
 
-    /// How many changes of the map there were: a preview that has seen as many shows it as it is.
+    /// The number of changes of the focus map so far: a preview that has seen as many shows the map as it is.
     pub fn map_serial(&self) -> u64 {
         self.map_serial
     }
@@ -236,7 +236,7 @@ impl Session {
         self.jobs.is_empty() && self.preview_thread.is_settled(self.last_preview_id)
     }
 
-    /// All background work in progress.
+    /// The state of all background work in progress.
     pub fn jobs(&self) -> Vec<JobStatus> {
         let (activity, progress) = self.preview_thread.activity();
         let label = match activity {

@@ -15,7 +15,7 @@ use trace::truth::{Estimate, Region, Truth, TruthOptions};
 const SAMPLES_PER_PIXEL: u32 = 1024;
 
 impl Session {
-    /// The rectangle that is being verified, or was.
+    /// The rectangle that is being verified, or was last; `None` if there is none.
     pub fn verification(&self) -> Option<&Verification> {
         self.verification.as_ref()
     }

@@ -20,7 +20,7 @@ pub(super) struct WatchedFile {
 }
 
 impl WatchedFile {
-    /// The file at `scene`, if a bridge wrote it.
+    /// Watches the file at `scene`, if a bridge wrote it; otherwise `None`.
     pub fn for_bridged_scene(scene: &Path) -> Option<Self> {
         let is_bridged = scene.parent()?.join(MANIFEST).is_file();
         is_bridged.then(|| Self {

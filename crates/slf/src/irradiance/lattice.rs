@@ -38,7 +38,7 @@ fn key(cell: IVec3) -> u64 {
 }
 
 impl Lattice {
-    /// Sorts the items 0.. into their cells.
+    /// Sorts items into cells of side `spacing` (scene units); item k lies in `cells[k]`.
     pub fn new(spacing: f64, cells: &[IVec3]) -> Self {
         let mut numbers: Vec<u32> = (0..cells.len() as u32).collect();
         numbers.sort_by_key(|&number| (key(cells[number as usize]), number));
@@ -52,12 +52,12 @@ impl Lattice {
         lattice
     }
 
-    /// The cell that contains a position.
+    /// The cell, of side `spacing`, that contains a position; both in scene units.
     pub fn cell(spacing: f64, position: DVec3) -> IVec3 {
         (position / spacing).floor().as_ivec3()
     }
 
-    /// The items in a cell.
+    /// The numbers of the items in a cell, ascending; empty if there are none.
     pub fn numbers(&self, cell: IVec3) -> &[u32] {
         let (begin, count) = self.cells.get(&key(cell)).copied().unwrap_or_default();
         &self.numbers[begin as usize..(begin + count) as usize]

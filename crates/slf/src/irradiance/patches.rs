@@ -109,14 +109,17 @@ impl Patches {
         Self { lattice: Lattice::new(spacing, &cells), patches, points }
     }
 
+    /// The side of the cells of space whose surface makes a patch, scene units.
     pub fn spacing(&self) -> f64 {
         self.lattice.spacing
     }
 
+    /// All patches, by number.
     pub fn all(&self) -> &[Patch] {
         &self.patches
     }
 
+    /// The points of the surface at which a patch's irradiance is measured.
     pub fn points(&self, patch: &Patch) -> &[PatchPoint] {
         &self.points[patch.first_point as usize..(patch.first_point + patch.points) as usize]
     }
@@ -141,7 +144,7 @@ impl Patches {
         });
     }
 
-    /// Whether any patch contributes at a place.
+    /// Whether any patch contributes to the irradiance at a place.
     pub fn covers(&self, place: &Place) -> bool {
         let mut is_covered = false;
         self.visit_around(place, |_, _| is_covered = true);

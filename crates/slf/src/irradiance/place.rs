@@ -13,7 +13,7 @@ pub(crate) struct Place {
 }
 
 impl Place {
-    /// A point of the scene, on its front or its back.
+    /// The place of a point of the scene, on its front or its back.
     pub fn new(scene: &Scene, point: SurfacePoint, is_front: bool) -> Self {
         let normal = scene.shading_normal(point);
         Self {

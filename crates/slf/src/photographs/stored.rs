@@ -29,7 +29,7 @@ struct Head {
 }
 
 impl PhotographLight {
-    /// Serialises everything except the scene. Only the same build can read it.
+    /// Serialises everything except the scene, uncompressed. Only the same build can read it.
     pub fn to_bytes(&self) -> Vec<u8> {
         let (grid, kernel) = (&self.grid, self.residuals.kernel);
         let head = Head {

@@ -17,12 +17,12 @@ pub(super) enum CacheMode {
 }
 
 impl CacheMode {
-    /// The cache, if it is trusted.
+    /// The cache, if it is trusted; otherwise `None`.
     pub fn trusted(&self) -> Option<&Irradiance> {
         if let Self::Trusted(irradiance) = self { Some(irradiance) } else { None }
     }
 
-    /// The cache, if it is a control variate.
+    /// The cache, if it is a control variate; otherwise `None`.
     pub fn control_variate(&self) -> Option<&Irradiance> {
         if let Self::ControlVariate(irradiance) = self { Some(irradiance) } else { None }
     }
@@ -67,7 +67,8 @@ impl IrradianceLookup<'_> {
         if matches!(self, Self::Unsolved(_)) { 0.05 } else { 1.0 }
     }
 
-    /// The cached place at a hit, if there is one and the hit is far enough away.
+    /// The cached place at a hit after `distance` (scene units). `None` if nothing is cached there, or the hit is so
+    /// near that the patches would show.
     pub fn cached_place(
         self,
         scene: &Scene,

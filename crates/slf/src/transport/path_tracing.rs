@@ -161,7 +161,7 @@ impl Transport {
 }
 
 impl PathLight {
-    /// Light passed on from cached irradiance.
+    /// Light passed on from cached irradiance, linear RGB; black if the path does not end on it.
     pub fn cached_light(&self) -> DVec3 {
         self.cached_end.as_ref().map_or(DVec3::ZERO, |(cached, share)| *share * cached.irradiance.as_dvec3())
     }

@@ -28,6 +28,7 @@ impl ScatteredLight {
         Self { light: carried(self.light), noisy: carried(self.noisy) }
     }
 
+    /// The light times `share`, per colour.
     pub fn scaled(self, share: DVec3) -> Self {
         Self { light: scale_split(self.light, share), noisy: scale_split(self.noisy, share) }
     }

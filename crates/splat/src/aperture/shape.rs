@@ -46,6 +46,7 @@ impl ShapeRun {
 }
 
 impl Shape {
+    /// Cuts an aperture into rows, with its mean, variance and moments.
     pub fn new(aperture: &Aperture) -> Self {
         let cut = aperture.rows(FINE_ROWS);
         let open_area = cut.open_area();
@@ -96,7 +97,8 @@ impl Shape {
         parts.into_iter().filter(|part| part.share > 0.0).map(Part::about_mean).collect()
     }
 
-    /// Of what lies between two v: its light as a share of all, and that times u, u² and v.
+    /// Of the light that passes between two heights v, in [−1, 1]: its share of all, and that share times the mean of
+    /// u, of u² and of v.
     pub fn moments(&self, [low, high]: [f64; 2]) -> DVec4 {
         let below = |v: f64| {
             let at = self.row_of(v);
@@ -125,7 +127,7 @@ impl Shape {
         ((v + 1.0) / 2.0 * count).clamp(0.0, count)
     }
 
-    /// The runs of the row that v (times 16384) lies in.
+    /// The runs of the row of the aperture that contains the height `v`, in [−1, 1] times 16384.
     #[inline(always)]
     pub fn runs_at(&self, v: i32) -> &[ShapeRun] {
         let count = self.firsts.len() as u32 - 1;

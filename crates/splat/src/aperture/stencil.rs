@@ -47,6 +47,7 @@ pub struct Stencil {
 
 /// All stencils of an aperture, made when they are first used.
 pub struct Stencils {
+    /// The shape that they are cut from.
     pub shape: Shape,
     /// Its parts, few and many.
     pub parts: [Vec<Part>; 2],
@@ -57,6 +58,7 @@ pub struct Stencils {
 /// The stencils of one signed radius.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Place {
+    /// The place's index in the table, below [`Stencils::PLACES`].
     pub index: usize,
     /// They are cut at 2 to this heights of the centre within a pixel.
     phase_bits: u32,
@@ -70,7 +72,7 @@ impl Place {
         Self { index: half + index, phase_bits: PHASE_BITS - coarser - coarsest }
     }
 
-    /// One of the table's [`Stencils::PLACES`].
+    /// The place with this index below [`Stencils::PLACES`].
     pub fn from_table_index(index: usize) -> Self {
         let half = if index < Stencils::PLACES / 2 { 0 } else { Stencils::PLACES / 2 };
         Self::from_index(index - half, half)
@@ -84,12 +86,12 @@ impl Place {
         (((rounded & (PIXEL - 1)) >> bits) as usize, rounded >> POSITION_BITS)
     }
 
-    /// Half the step of heights, 1/4096 px.
+    /// Half the step between heights of the place's stencils, in 1/4096 px.
     pub fn half_step(self) -> u32 {
         1 << (POSITION_BITS - self.phase_bits - 1)
     }
 
-    /// A number for each stencil.
+    /// A number for the place's stencil of this phase; no other stencil has it.
     pub fn with_phase(self, phase: usize) -> u32 {
         ((self.index << PHASE_BITS) + phase) as u32
     }
@@ -145,12 +147,13 @@ impl Stencils {
     /// Stencils of a place, at most.
     pub const PHASES: usize = 1 << PHASE_BITS;
 
+    /// The stencils of a shape; each is cut when it is first used.
     pub fn new(shape: Shape) -> Self {
         let parts = [2, 4].map(|side| shape.parts(side));
         Self { shape, parts, table: (0..Self::PLACES).map(|_| OnceLock::new()).collect() }
     }
 
-    /// Cuts the stencils of all places now, unless cancelled.
+    /// Cuts the stencils of all places now; stops early if `progress` asks to.
     pub fn cut_all(&self, progress: &dyn Progress) {
         (0..Self::PLACES).into_par_iter().filter(|_| !progress.cancelled()).for_each(|index| {
             self.at_place(Place::from_table_index(index));
@@ -173,7 +176,7 @@ impl Stencils {
         (place, phase, row)
     }
 
-    /// The stencils of a place, cut on first use.
+    /// The stencils of a place, one for each phase; cut on first use.
     #[inline(always)]
     pub fn at_place(&self, place: Place) -> &[Stencil] {
         self.table[place.index].get_or_init(|| {

@@ -29,7 +29,7 @@ impl Default for Integers {
 }
 
 impl Integers {
-    /// The bits of a kind.
+    /// The bits of a kind of sums: 2 to their power quanta make a pixel of 1.
     pub fn bits(self, kind: Kind) -> i32 {
         match kind {
             Kind::Standard => self.standard,
@@ -41,7 +41,7 @@ impl Integers {
         Scale { dim_bits: self.bits(kind), ..Scale::FINEST }
     }
 
-    /// The next coarser ones of a kind; `None` where there are none.
+    /// The same with the next coarser integers for a kind; `None` where there are none.
     pub fn coarser(self, kind: Kind) -> Option<Self> {
         let bits = self.scale(kind).coarser()?.dim_bits;
         Some(match kind {
@@ -50,7 +50,7 @@ impl Integers {
         })
     }
 
-    /// The coarser of both, kind by kind.
+    /// The coarser integers of both, kind by kind.
     pub fn coarsest(self, other: Self) -> Self {
         Self { standard: self.standard.min(other.standard), painted: self.painted.min(other.painted) }
     }

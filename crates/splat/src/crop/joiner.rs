@@ -78,7 +78,7 @@ impl CropJoiner {
         self.rest = rest(&self.cells);
     }
 
-    /// Makes a row's pixels.
+    /// Makes the pixels of row `y` from the sums in `row`, in place.
     pub fn join(&self, y: u32, form: CropForm, row: &mut CropRow) {
         if self.is_painted {
             let gains = self.gains.row_gains(y as usize, Scaled::Sharing);

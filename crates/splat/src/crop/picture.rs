@@ -51,6 +51,7 @@ pub(super) struct Inner {
 }
 
 impl Inner {
+    /// An inner rectangle whose upper left pixel is `first`, of `size` columns and rows.
     pub fn new(first: [u32; 2], size: [u32; 2]) -> Self {
         Self { first, size: size.map(|side| side as usize) }
     }

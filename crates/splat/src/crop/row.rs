@@ -18,7 +18,7 @@ pub enum CropForm {
 pub const KNOT_NUMBERS: usize = 16;
 
 impl CropForm {
-    /// How many numbers that is.
+    /// How many numbers each pixel has in this form.
     pub fn numbers(self) -> usize {
         match self {
             Self::Evened => 4,
@@ -41,7 +41,7 @@ pub struct CropRow {
 }
 
 impl CropRow {
-    /// A black row of this width, px.
+    /// A black row of `width` px.
     pub fn black(width: usize) -> Self {
         Self {
             free: vec![BLACK; width],
@@ -52,7 +52,7 @@ impl CropRow {
         }
     }
 
-    /// Puts the numbers of a crop's row in, from a column of the whole on.
+    /// Puts the numbers of a crop's row in, from column `column` of the whole picture on.
     pub fn set(&mut self, column: usize, form: CropForm, numbers: &[f32]) {
         let pixels = numbers.chunks_exact(form.numbers());
         for (at, numbers) in (column..).zip(pixels) {

@@ -93,7 +93,7 @@ impl<'a> CropSums<'a> {
         if tolerance == Tolerance::NONE { 0 } else { 5 * BLOCK_PX }
     }
 
-    /// Empty ones.
+    /// Empty sums of a crop.
     pub fn new(options: CropOptions<'a>) -> Self {
         let CropOptions { camera, crop, tolerance, .. } = options;
         let (near, block) = (Self::near_px(tolerance) as u32, BLOCK_PX as u32);

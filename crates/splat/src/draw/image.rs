@@ -12,12 +12,14 @@ pub const HASH_DITHER: u32 = 0x2C1B_3C6D;
 /// Red, green, blue and coverage: `mantissa`·2^`exponent` quanta. The largest mantissa has 31 bits.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Light {
+    /// Red, green, blue and coverage, to be multiplied by 2 to the power of `exponent`.
     pub mantissa: [u32; 4],
+    /// The exponent that all four share.
     pub exponent: i32,
 }
 
 impl Light {
-    /// Of finite numbers ≥ 0.
+    /// Packs red, green, blue and weight, which must be finite and ≥ 0, as mantissas with one exponent.
     #[inline(always)]
     pub fn from_floats(light: [f32; 4]) -> Self {
         let bits = light.map(f32::to_bits);
@@ -61,10 +63,15 @@ impl Light {
 
 /// A node's image on its level: centre and signed radius, 1/4096 px of the level.
 pub struct Image<'a> {
+    /// The node.
     pub node: &'a SplatNode,
+    /// The level that it is drawn on; a pixel of it has a side of 2 to this, px.
     pub level: u8,
+    /// The image's centre, 1/4096 px of the level.
     pub center: [i32; 2],
+    /// The image's signed radius, 1/4096 px of the level: below 0 for near defocus.
     pub radius: i32,
+    /// The node's light.
     pub light: Light,
     /// How much of the light is drawn, times 2²⁴.
     pub share: u32,
@@ -88,7 +95,7 @@ impl Image<'_> {
         self.center = [self.center[0].wrapping_add(x), self.center[1].wrapping_sub(y)];
     }
 
-    /// The light of a pixel of `height` (see [`Light::in_pixel`]).
+    /// The light of a pixel of `height` (see [`Light::in_pixel`]), in integers.
     #[inline(always)]
     pub fn value(&self, height: u32, shift: u32, row: i32) -> [u64; 4] {
         self.light.in_pixel(
@@ -106,7 +113,8 @@ impl Image<'_> {
     }
 }
 
-/// Where a node's dither starts on a level: its place from the picture's middle, whatever else is in the light field.
+/// The seed of a node's dither on a level, from the node's place relative to `middle`, the picture's: it does not
+/// depend on what else is in the light field.
 #[inline(always)]
 pub fn seed(node: &SplatNode, level: u8, middle: [i32; 2]) -> u32 {
     let [x, y] = [(node.center[0] - middle[0]) as u32, (node.center[1] - middle[1]) as u32];

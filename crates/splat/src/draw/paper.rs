@@ -8,6 +8,7 @@ use crate::simd_dispatch::with_widest_simd;
 
 /// Some rows of a level, and what waits to be drawn on them.
 pub struct Paper<'a, W> {
+    /// The rows that are drawn on.
     pub rows: Rows<'a, W>,
     small: SmallBoxes,
     /// See [`too_blurred`].
@@ -17,12 +18,12 @@ pub struct Paper<'a, W> {
 }
 
 impl<'a, W: Word> Paper<'a, W> {
-    /// Nothing waits.
+    /// A paper on which nothing waits to be drawn; `rows` are those of level `level`.
     pub fn new(rows: Rows<'a, W>, level: u8) -> Self {
         Self { rows, small: SmallBoxes::default(), too_blurred: too_blurred(level), runs: Vec::new() }
     }
 
-    /// A small box, drawn with others.
+    /// Adds a small box (`sign` 1) or takes one away (−1). It waits until it is drawn with others.
     #[inline(always)]
     pub fn add(&mut self, unsized_box: &UnsizedBox, sign: i32) {
         self.small.add(unsized_box);
@@ -31,7 +32,7 @@ impl<'a, W: Word> Paper<'a, W> {
         }
     }
 
-    /// Draws what waits.
+    /// Draws the boxes that wait, with this sign.
     pub fn finish(&mut self, sign: i32) {
         if self.small.is_empty() {
             return;

@@ -22,8 +22,11 @@ fn halved(x: i32, times: u8) -> i32 {
 
 /// What nodes are drawn with.
 pub struct Pen<'a> {
+    /// The nodes to draw.
     pub nodes: &'a Nodes,
+    /// The images of the aperture, by size.
     pub stencils: &'a Stencils,
+    /// The aperture moments of partly occluded nodes.
     pub moments: &'a [ApertureMoments],
     /// The lens's aperture radius as a share of the baked one, in 1/16384.
     pub stop: i32,
@@ -33,6 +36,7 @@ pub struct Pen<'a> {
     pub half: [u32; 2],
     /// By what the tilt over the baked aperture moves the mean aperture point of the lens.
     pub tilt_shift: [i32; 2],
+    /// The mean aperture point of the shape, times 16384.
     pub mean: [i32; 2],
     /// What levels blur too much, as squares of a stencil's radius: by level, (1/4096 px of the level)².
     pub too_blurred: [i64; salf::tree::LEVELS],
@@ -65,9 +69,13 @@ pub const MAX_PARTS: usize = 16;
 /// A part of the aperture: its share times 2²⁴, mean and variance times 16384, √3 deviations times 65536.
 #[derive(Clone, Copy)]
 pub struct BoxPart {
+    /// The part's share of all light, times 2²⁴.
     pub share: u32,
+    /// The part's mean aperture point, times 16384.
     pub mean: [i32; 2],
+    /// The part's variance along each axis, times 16384.
     pub variance: [i32; 2],
+    /// √3 standard deviations along each axis, times 65536.
     pub half: [u32; 2],
 }
 
@@ -92,6 +100,8 @@ pub enum Form {
 }
 
 impl<'a> Pen<'a> {
+    /// A pen for an aperture's shape and a lens whose aperture radius is `stop` times the baked one's; `moments` are
+    /// those of the masks of `nodes`.
     pub fn new(
         nodes: &'a Nodes,
         stencils: &'a Stencils,
@@ -159,7 +169,7 @@ impl<'a> Pen<'a> {
         }
     }
 
-    /// The image of a node that was placed.
+    /// The image of a node that was placed, with this light.
     #[inline(always)]
     pub fn image<'n>(&self, node: &'n SplatNode, light: [f32; 4], placed: Placed) -> Image<'n> {
         Image {
@@ -182,7 +192,7 @@ impl<'a> Pen<'a> {
         }
     }
 
-    /// About what it costs to draw a node, in nanoseconds.
+    /// The approximate cost of drawing a node that was placed, in ns.
     #[inline(always)]
     pub fn cost(&self, node: &SplatNode, placed: Placed) -> u64 {
         let radius = placed.radius.unsigned_abs() >> placed.level;
@@ -195,7 +205,7 @@ impl<'a> Pen<'a> {
         u64::from(if node.is_bright { 2 * once } else { once })
     }
 
-    /// Calls `visit` with the forms that a node that was placed is drawn in.
+    /// Calls `visit` with each form in which a node that was placed is drawn.
     #[inline(always)]
     pub fn forms(&self, node: &SplatNode, placed: Placed, mut visit: impl FnMut(Form)) {
         let radius = placed.radius.unsigned_abs();

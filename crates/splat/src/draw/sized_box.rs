@@ -35,7 +35,7 @@ impl UnsizedBox<'_> {
         a | b | c | d < 1 << 15
     }
 
-    /// Of its size; `less` is what its level blurs too much.
+    /// The box at its size, without `less`, the variance by which its level blurs too much.
     #[inline(always)]
     pub fn sized(&self, less: u32) -> SizedBox {
         let half = self.legs.map(|[a, b]| hypotenuse(a, b, less).max(SMALLEST_HALF));
@@ -59,6 +59,7 @@ pub struct SizedBox {
 }
 
 impl SizedBox {
+    /// Adds the box to the pixels in `rows`, or with `sign` −1 takes it away.
     #[inline(always)]
     pub fn draw<W: Word>(&self, rows: &mut Rows<W>, sign: i32) {
         let Self { center, half: [half, half_height], per_half: [across, down], .. } = *self;

@@ -27,6 +27,7 @@ struct Sizes {
 }
 
 impl SmallBoxes {
+    /// Adds a box; there must be room ([`Self::is_full`]).
     #[inline(always)]
     pub fn add(&mut self, unsized_box: &UnsizedBox) {
         let at = self.len;
@@ -40,11 +41,13 @@ impl SmallBoxes {
         self.len += 1;
     }
 
+    /// Whether there is no room for another box.
     #[inline(always)]
     pub fn is_full(&self) -> bool {
         self.len == COUNT
     }
 
+    /// Whether it holds no box.
     #[inline(always)]
     pub fn is_empty(&self) -> bool {
         self.len == 0

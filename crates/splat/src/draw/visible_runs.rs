@@ -101,6 +101,7 @@ impl Pen<'_> {
 }
 
 impl VisibleRuns {
+    /// The runs of the part of the aperture that the node of `image` sees, at the image's size.
     #[inline(always)]
     pub fn new(pen: &Pen, image: &Image) -> Self {
         let radius = image.radius.unsigned_abs();
@@ -131,7 +132,7 @@ impl VisibleRuns {
         }
     }
 
-    /// The largest number of calls of `emit` by [`Self::visit_row`].
+    /// The largest number of calls of `emit` that [`Self::visit_row`] makes for a row.
     #[inline(always)]
     pub fn max_runs_of_row<const TAKES_ALL: bool>(&self) -> usize {
         // Rows of cells that a pixel row lies across.

@@ -113,7 +113,7 @@ impl Gpu {
         &self.0.name
     }
 
-    /// Whether both are one device.
+    /// Whether both are the same device.
     pub fn is_same(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.0, &other.0)
     }
@@ -123,7 +123,7 @@ impl Gpu {
         self.why_lost().is_some()
     }
 
-    /// Why it no longer works, in its driver's words; none while it does.
+    /// Why the card no longer works, in its driver's words; `None` while it does.
     pub fn why_lost(&self) -> Option<&str> {
         self.0.lost.get().map(String::as_str)
     }

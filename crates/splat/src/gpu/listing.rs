@@ -39,6 +39,10 @@ pub struct Counts {
 pub type Listed = [[Range<u32>; KINDS]; 2];
 
 impl Listing {
+    /// Makes the buffers with which the nodes of `scene` are listed.
+    ///
+    /// # Errors
+    /// The card is lost.
     pub fn new(gpu: &Gpu, scene: &Scene) -> Result<Self, Lost> {
         let storage = BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC;
         let of_chunk = |_| {
@@ -59,7 +63,10 @@ impl Listing {
         &self.records
     }
 
-    /// Counts what is drawn of all chunks; `is_painted`: as it is painted.
+    /// Counts what is drawn of all chunks; `is_painted`: with the paint, otherwise with the standard focus.
+    ///
+    /// # Errors
+    /// The card is lost.
     pub fn count(
         &self,
         gpu: &Gpu,
@@ -84,7 +91,10 @@ impl Listing {
         })
     }
 
-    /// Lists what is drawn of a chunk.
+    /// Lists what is drawn of the chunk with this number, as it was counted.
+    ///
+    /// # Errors
+    /// The card is lost.
     pub fn list(
         &mut self,
         gpu: &Gpu,

@@ -42,12 +42,15 @@ impl Pace {
         Self { sizes: [FIRST; 2], in_flight: VecDeque::new(), last_done: Instant::now() }
     }
 
-    /// How many records to submit next.
+    /// How many records to submit next, for sums of this width (0 ordinary, 1 wide) and kind (0 free, 1 sharing).
     pub fn size(&self, width: usize, kind: usize) -> usize {
         self.sizes[width][kind]
     }
 
     /// Registers a submission, and waits while too many are in flight.
+    ///
+    /// # Errors
+    /// The card is lost.
     pub fn add(&mut self, gpu: &Gpu, batch: Batch, submission: SubmissionIndex) -> Result<(), Lost> {
         self.in_flight.push_back((batch, submission, Instant::now()));
         if self.in_flight.len() <= MAX_IN_FLIGHT {

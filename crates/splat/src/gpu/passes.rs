@@ -44,7 +44,7 @@ impl Pass {
         Self { module, layout, entry, constants, pipeline: OnceLock::new() }
     }
 
-    /// What the card runs.
+    /// The compiled pipeline of the pass; it is compiled on first use.
     pub fn pipeline(&self, device: &Device) -> &ComputePipeline {
         self.pipeline.get_or_init(|| {
             let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -76,7 +76,7 @@ enum Bound {
 }
 
 impl Passes {
-    /// Has a card read the shaders.
+    /// Loads the shaders of all passes on a card.
     pub fn new(device: &Device) -> Self {
         use Bound::{Read, Uniform, Write};
         let module = |name: &'static str, source: String| {

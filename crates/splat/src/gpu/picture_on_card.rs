@@ -33,7 +33,7 @@ impl PictureOnCard {
         self.gpu.name()
     }
 
-    /// Columns and rows, px.
+    /// Columns and rows of the picture, px.
     pub fn size(&self) -> [u32; 2] {
         self.size
     }
@@ -43,12 +43,12 @@ impl PictureOnCard {
         &self.pixels
     }
 
-    /// Whether both are of one size and on one device.
+    /// Whether both pictures have one size and lie on one card.
     pub fn is_like(&self, other: &Self) -> bool {
         self.size == other.size && self.gpu.is_same(&other.gpu)
     }
 
-    /// Whether both are the same memory.
+    /// Whether both pictures are the same memory.
     pub fn is_same(&self, other: &Self) -> bool {
         self.pixels == other.pixels
     }

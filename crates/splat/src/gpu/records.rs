@@ -21,7 +21,7 @@ pub struct Records {
 }
 
 impl Records {
-    /// Adds a node that is drawn (`sign` 1) or taken away (−1).
+    /// Adds the record of a node that is drawn (`sign` 1) or taken away (−1).
     pub fn push(&mut self, pen: &Pen, index: u32, first: u32, node: &SplatNode, placed: Placed, sign: i32) {
         let mut flags = if is_sharing(node, placed) { IS_SHARING } else { 0 };
         if sign < 0 {

@@ -37,6 +37,10 @@ const KNOT_WORDS: usize = 16;
 const GAIN_WORDS: usize = 8;
 
 impl Resolve {
+    /// Makes the buffers in which sums of this layout become a picture of `size` columns and rows.
+    ///
+    /// # Errors
+    /// The card is lost.
     pub fn new(gpu: &Gpu, size: [usize; 2], layout: &Layout) -> Result<Self, Lost> {
         let storage = BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC;
         let pixels = size[0] * size[1];
@@ -65,13 +69,13 @@ impl Resolve {
         Ok(resolve)
     }
 
-    /// Bytes on the card.
+    /// The memory that it takes on the card, in bytes.
     pub fn bytes(&self) -> usize {
         let buffers = self.lines.iter().chain([&self.shares, &self.knots, &self.gains, &self.picture]);
         buffers.map(|buffer| buffer.size() as usize).sum()
     }
 
-    /// Sets which rows are made, and how.
+    /// Sets which pixel rows are made next, and whether shares are found or light is evened out.
     pub fn begin(&self, gpu: &Gpu, nodes: &Nodes, rows: Range<u32>, is_sharing: bool, is_evened: bool) {
         let (dim, wide) = Quanta::from_nodes(nodes);
         let wide_largest = wide.largest_coverage as u64;
@@ -92,7 +96,8 @@ impl Resolve {
         gpu.write(&self.overflow, &[0]);
     }
 
-    /// Integrates the sums of free (0) or sharing (1) samples to lines, coarse levels first.
+    /// Integrates the pixel rows `rows` of the sums of free (`kind` 0) or sharing (1) samples to lines, coarse levels
+    /// first. Recorded in `work`, not yet run.
     pub fn integrate(&self, gpu: &Gpu, work: &mut Commands, kind: usize, sums: &Buffer, rows: &Range<u32>) {
         let passes = gpu.passes();
         for (k, level) in self.levels.iter().enumerate().rev() {
@@ -108,7 +113,11 @@ impl Resolve {
         }
     }
 
-    /// Adds the sums of bright samples.
+    /// Adds the sums of bright free (`kind` 0) or sharing (1) samples to the lines of `rows`. Recorded in `work`, not
+    /// yet run.
+    ///
+    /// # Errors
+    /// The card is lost.
     pub fn integrate_wide(
         &self,
         gpu: &Gpu,
@@ -129,7 +138,7 @@ impl Resolve {
         gpu.bind(&gpu.passes().integrate_layout, (0..).zip(buffers))
     }
 
-    /// Makes shares or the picture of the lines.
+    /// Makes the shares or the picture from the lines of pixel rows, and submits that.
     pub fn finish(&self, gpu: &Gpu, rows: &Range<u32>) {
         let across = (self.size[0] as u32).div_ceil(THREADS);
         let mut work = Commands::new(gpu);
@@ -137,14 +146,20 @@ impl Resolve {
         work.submit();
     }
 
-    /// The contribution of lines and shares to each knot.
+    /// What lines and shares contribute to each knot, row by row.
+    ///
+    /// # Errors
+    /// The card is lost, or an integer has overflowed.
     pub fn knot_sums(&self, gpu: &Gpu) -> Result<Vec<KnotSums>, GpuError> {
         let knots = Knots::new(self.size);
         let sums = self.sums(gpu, &gpu.passes().balance, [knots.columns(), knots.rows()])?;
         Ok(sums.into_iter().map(KnotSums).collect())
     }
 
-    /// The contribution of lines, shares and gains to each cell.
+    /// What lines, shares and gains contribute to each cell between knots, row by row.
+    ///
+    /// # Errors
+    /// The card is lost, or an integer has overflowed.
     pub fn shared_sums(&self, gpu: &Gpu) -> Result<Vec<SharedSums>, GpuError> {
         let knots = Knots::new(self.size);
         let sums = self.sums(gpu, &gpu.passes().share, [knots.columns() - 1, knots.rows() - 1])?;
@@ -167,7 +182,7 @@ impl Resolve {
         Ok(floats.as_chunks().0.as_chunks().0.to_vec())
     }
 
-    /// Brings the gains to the card.
+    /// Uploads the gains.
     pub fn set_gains(&self, gpu: &Gpu, gains: &Gains, rest: [f32; 3]) {
         let all = gains.knot_gains().as_flattened().iter().chain([&rest]);
         let words = all.flat_map(|[r, g, b]| [*r, *g, *b, 1.0].map(f32::to_bits));
@@ -190,6 +205,9 @@ impl Resolve {
     }
 
     /// Waits for all submitted work, and checks that no integer has overflowed.
+    ///
+    /// # Errors
+    /// The card is lost, or an integer has overflowed.
     pub fn check(&self, gpu: &Gpu) -> Result<(), GpuError> {
         self.checked(gpu, &self.overflow, 0..4).map(|_| ())
     }
@@ -209,7 +227,10 @@ impl Resolve {
         &self.picture
     }
 
-    /// Pixel rows of it.
+    /// Reads pixel rows of the picture back: red, green, blue (linear), coverage.
+    ///
+    /// # Errors
+    /// The card is lost, or an integer has overflowed.
     pub fn read(&self, gpu: &Gpu, rows: Range<u32>) -> Result<Vec<[f32; 4]>, GpuError> {
         let row = 16 * self.size[0] as u64;
         let words = self.checked(gpu, &self.picture, rows.start as u64 * row..rows.end as u64 * row)?;

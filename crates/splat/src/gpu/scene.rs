@@ -21,6 +21,7 @@ const CHUNK_NODES: u32 = if cfg!(test) { 1 << 11 } else { 1 << 21 };
 
 /// A light field's nodes, in chunks of whole blocks.
 pub struct Scene {
+    /// The chunks, in the order of the nodes.
     pub chunks: Vec<Chunk>,
     /// The scale that light was uploaded at.
     pub dim_bits: i32,
@@ -28,6 +29,7 @@ pub struct Scene {
 
 /// Neighbouring blocks.
 pub struct Chunk {
+    /// The nodes, which twins share.
     pub shared: Arc<NodesOfChunk>,
     /// The cells and moments of its partly occluded nodes, after [`Scene::upload_moments`].
     pub cells: Buffer,
@@ -37,17 +39,22 @@ pub struct Chunk {
 
 /// What is the same whatever lens and paint: splatters of one light field share it.
 pub struct NodesOfChunk {
+    /// The blocks whose nodes these are.
     pub blocks: Range<usize>,
     /// The first of them.
     pub first: u32,
     /// So many.
     pub count: u32,
+    /// The nodes on the card.
     pub nodes: Buffer,
     partial: Vec<u32>,
 }
 
 impl Scene {
     /// Uploads the nodes.
+    ///
+    /// # Errors
+    /// The card is lost.
     pub fn new(gpu: &Gpu, nodes: &Nodes) -> Result<Self, Lost> {
         let mut chunks = Vec::new();
         let mut block = 0;
@@ -62,20 +69,23 @@ impl Scene {
         Ok(Self { chunks, dim_bits: nodes.scale.dim_bits })
     }
 
-    /// The same nodes, for another lens and paint.
+    /// The same nodes, without a second upload, for another lens and paint.
+    ///
+    /// # Errors
+    /// The card is lost.
     pub fn twin(&self, gpu: &Gpu) -> Result<Self, Lost> {
         let chunks = self.chunks.iter().map(|chunk| Chunk::with_shared(gpu, chunk.shared.clone()));
         Ok(Self { chunks: chunks.collect::<Result<_, Lost>>()?, dim_bits: self.dim_bits })
     }
 
-    /// Bytes on the card: of what twins share, and of its own.
+    /// The memory on the card, in bytes: what twins share, and its own.
     pub fn bytes(&self) -> [usize; 2] {
         let shared = self.chunks.iter().map(|chunk| chunk.shared.nodes.size());
         let own = |chunk: &Chunk| chunk.cells.size() + chunk.focus.as_ref().map_or(0, Buffer::size);
         [shared.sum::<u64>(), self.chunks.iter().map(own).sum()].map(|bytes| bytes as usize)
     }
 
-    /// Uploads the cells and moments of partly occluded nodes.
+    /// Uploads the cells and aperture moments of partly occluded nodes.
     pub fn upload_moments(&self, gpu: &Gpu, nodes: &Nodes, moments: &[ApertureMoments]) {
         for chunk in &self.chunks {
             let partial = &chunk.shared.partial;
@@ -97,6 +107,9 @@ impl Scene {
     }
 
     /// Uploads what is painted on the nodes.
+    ///
+    /// # Errors
+    /// The card is lost.
     pub fn upload_paint(&mut self, gpu: &Gpu, nodes: &Nodes, paint: &Paint) -> Result<(), Lost> {
         for chunk in &mut self.chunks {
             let NodesOfChunk { blocks, count, .. } = &*chunk.shared;

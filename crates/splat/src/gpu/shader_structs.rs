@@ -14,8 +14,11 @@ use salf::tree::LEVELS;
 #[cfg(test)]
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FieldLayout {
+    /// The field's name.
     pub name: String,
+    /// Its offset in the struct, bytes.
     pub offset: usize,
+    /// Its size, bytes.
     pub size: usize,
 }
 
@@ -23,7 +26,9 @@ pub struct FieldLayout {
 #[cfg(test)]
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StructLayout {
+    /// The struct's name.
     pub name: String,
+    /// Its size, bytes.
     pub size: usize,
     /// Without padding.
     pub fields: Vec<FieldLayout>,
@@ -39,7 +44,7 @@ macro_rules! shader_structs {
             pub struct $name { $($(#[$of_field])* pub $field: $type,)* }
         )*
 
-        /// The layouts of all structs.
+        /// The layouts in memory of all structs that shaders read.
         #[cfg(test)]
         pub fn layouts() -> Vec<StructLayout> {
             vec![$({

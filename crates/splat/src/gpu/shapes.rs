@@ -18,7 +18,9 @@ const GROWTH: usize = 1 << 18;
 
 /// The aperture's rows and stencils of one shape.
 pub struct Shapes {
+    /// The rows of the aperture.
     pub shape: Buffer,
+    /// The stencils that have been uploaded.
     pub stencils: Buffer,
     /// What `stencils` holds: for each place where its runs begin and how many, then the runs.
     words: Vec<u32>,
@@ -29,6 +31,10 @@ pub struct Shapes {
 }
 
 impl Shapes {
+    /// Uploads the rows of the stencils' shape; stencils follow when they are needed.
+    ///
+    /// # Errors
+    /// The card is lost.
     pub fn new(gpu: &Gpu, stencils: &Stencils) -> Result<Self, Lost> {
         let shape = &stencils.shape;
         let mut words = shape.firsts.clone();
@@ -48,6 +54,9 @@ impl Shapes {
     }
 
     /// Uploads the stencils of these places that are not there yet.
+    ///
+    /// # Errors
+    /// The card is lost.
     pub fn upload(&mut self, gpu: &Gpu, stencils: &Stencils, places: &[Place]) -> Result<(), Lost> {
         let before = self.words.len();
         for &place in places {
@@ -81,7 +90,10 @@ impl Shapes {
         Ok(())
     }
 
-    /// Room for a pen.
+    /// A buffer that holds a pen.
+    ///
+    /// # Errors
+    /// The card is lost.
     pub fn pen_buffer(gpu: &Gpu) -> Result<Buffer, Lost> {
         gpu.struct_buffer::<shader_structs::Pen>("pen", BufferUsages::STORAGE)
     }

@@ -63,12 +63,18 @@ pub struct GpuSums {
 }
 
 impl GpuSums {
-    /// Room for a picture of this size of some nodes, which are uploaded.
+    /// Uploads nodes and makes room for a picture of them, of `size` columns and rows.
+    ///
+    /// # Errors
+    /// The card is lost.
     pub fn new(gpu: &Gpu, nodes: &Nodes, size: [usize; 2]) -> Result<Self, Lost> {
         Self::with_scene(gpu, Uploaded::new(gpu, nodes)?, nodes.has_bright, size)
     }
 
     /// Another picture of the same nodes, which are uploaded already.
+    ///
+    /// # Errors
+    /// The card is lost.
     pub fn twin(&self) -> Result<Self, Lost> {
         let has_bright = self.accumulators.len() > 1;
         Self::with_scene(&self.gpu, self.scene.twin(&self.gpu)?, has_bright, self.resolve.size)
@@ -104,7 +110,7 @@ impl GpuSums {
         })
     }
 
-    /// Bytes on the card, the hierarchy's first, then those of the sums.
+    /// The memory on the card, in bytes: of the nodes, then of the sums.
     pub fn bytes(&self) -> [usize; 2] {
         let sums = self.accumulators.iter().flat_map(|accumulators| &accumulators.sums);
         let stencils = self.shapes.iter().map(|shapes| &shapes.stencils);
@@ -124,6 +130,9 @@ impl GpuSums {
     }
 
     /// Sets the sums to what a scene sends.
+    ///
+    /// # Errors
+    /// The work was cancelled, the card is lost, or an integer has overflowed.
     pub fn set(&mut self, scene: &Scene, progress: &dyn Progress) -> Result<(), GpuError> {
         self.integrated = 0..0;
         self.pace.clear();
@@ -185,6 +194,9 @@ impl GpuSums {
     }
 
     /// Takes nodes away and adds others.
+    ///
+    /// # Errors
+    /// The card is lost, or an integer has overflowed.
     pub fn change(&mut self, pen: &Pen, changes: &Changes) -> Result<(), GpuError> {
         self.integrated = 0..0;
         self.pace.clear();
@@ -295,6 +307,9 @@ impl GpuSums {
     }
 
     /// Finds the shares of a standard picture whose sums these are, and the gains.
+    ///
+    /// # Errors
+    /// The card is lost, or an integer has overflowed.
     pub fn find_shares(&mut self, nodes: &Nodes) -> Result<Gains, GpuError> {
         let rows = 0..self.resolve.size[1] as u32;
         self.resolve.begin(&self.gpu, nodes, rows.clone(), true, false);
@@ -303,20 +318,26 @@ impl GpuSums {
         Ok(Gains::from_sums(Knots::new(self.resolve.size), &self.resolve.knot_sums(&self.gpu)?))
     }
 
-    /// Integrates pixel rows, for a picture of them, unless they are.
+    /// Integrates pixel rows for a picture of them, unless they are integrated already.
+    ///
+    /// # Errors
+    /// The card is lost, or an integer has overflowed.
     pub fn integrate(&mut self, nodes: &Nodes, rows: &Range<u32>, is_evened: bool) -> Result<(), GpuError> {
         self.resolve.begin(&self.gpu, nodes, rows.clone(), false, is_evened);
         let is_there = self.integrated.start <= rows.start && rows.end <= self.integrated.end;
         if is_there { Ok(()) } else { Ok(self.integrate_lines(rows)?) }
     }
 
-    /// What shares in each cell of a picture, once all rows are integrated.
+    /// The sums of what shares in each cell of a picture, once all rows are integrated.
+    ///
+    /// # Errors
+    /// The card is lost, or an integer has overflowed.
     pub fn shared_sums(&self, gains: &Gains) -> Result<Vec<SharedSums>, GpuError> {
         self.resolve.set_gains(&self.gpu, gains, NO_REST);
         self.resolve.shared_sums(&self.gpu)
     }
 
-    /// Makes pixel rows of a picture, which were integrated last.
+    /// Makes pixel rows of a picture from what was integrated last, and submits that.
     pub fn make_picture(&self, gains: &Gains, rest: [f32; 3], rows: &Range<u32>) {
         self.resolve.set_gains(&self.gpu, gains, rest);
         self.resolve.finish(&self.gpu, rows);
@@ -331,11 +352,17 @@ impl GpuSums {
     }
 
     /// Waits until the picture is made.
+    ///
+    /// # Errors
+    /// The card is lost, or an integer has overflowed.
     pub fn finish(&self) -> Result<(), GpuError> {
         self.resolve.check(&self.gpu)
     }
 
-    /// Brings pixel rows of the picture back.
+    /// Copies pixel rows of the picture from the card to `picture`.
+    ///
+    /// # Errors
+    /// The card is lost, or an integer has overflowed.
     pub fn read_picture(&self, rows: Range<u32>, picture: &mut Picture) -> Result<(), GpuError> {
         let first = rows.start as usize * self.resolve.size[0];
         let pixels = self.resolve.read(&self.gpu, rows)?;

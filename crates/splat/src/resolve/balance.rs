@@ -30,13 +30,17 @@ use rayon::prelude::*;
 /// Which light is scaled: that of the sharing samples, where the picture is not evened out; else all.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scaled {
+    /// The light of sharing samples.
     Sharing = 0,
+    /// All light.
     All = 1,
 }
 
 /// The gains of a picture, and room to find them.
 pub struct Balance {
+    /// Where the gains are.
     pub knots: Knots,
+    /// The gains.
     pub gains: Gains,
     /// What all light that shares is scaled by beside its gains.
     pub rest: [f32; 3],
@@ -47,7 +51,7 @@ pub struct Balance {
 }
 
 impl Balance {
-    /// For a picture of this width and height, px: no gains yet.
+    /// Gains of 1, for a picture of `size` columns and rows.
     pub fn neutral(size: [usize; 2]) -> Self {
         let knots = Knots::new(size);
         let rows = vec![KnotSums::default(); size[1] * knots.columns()];
@@ -70,7 +74,7 @@ impl Balance {
         self.rest = rest(&self.knots.cells(&self.shared));
     }
 
-    /// Bytes in memory.
+    /// The memory that it takes, in bytes.
     pub fn bytes(&self) -> usize {
         let rows = size_of_val(self.rows.as_slice()) + size_of_val(self.shared.as_slice());
         rows + size_of_val(self.gains.knot_gains.as_slice())
@@ -89,7 +93,7 @@ pub struct Gains {
 }
 
 impl Gains {
-    /// Gains of 1.
+    /// Gains of 1 at all knots.
     pub fn neutral(knots: Knots) -> Self {
         Self { knot_gains: vec![[[1.0; 3]; 2]; knots.columns() * knots.rows()], knots }
     }
@@ -129,13 +133,13 @@ impl Gains {
         Self { knots, knot_gains }
     }
 
-    /// Scales a picture that is evened out.
+    /// Scales the linear RGB of a picture, evened out before, by the gains, in place.
     pub fn scale(&self, radiance: &mut [[f32; 3]]) {
         let width = self.knots.size[0];
         radiance.par_chunks_mut(width).enumerate().for_each(|(y, row)| self.scale_row(y, row));
     }
 
-    /// Scales a row of it.
+    /// Scales the linear RGB of row `y` of such a picture, in place.
     pub fn scale_row(&self, y: usize, row: &mut [[f32; 3]]) {
         let gains = self.row_gains(y, Scaled::All);
         with_widest_simd(
@@ -144,12 +148,12 @@ impl Gains {
         );
     }
 
-    /// Those of knots, row by row, by [`Scaled`].
+    /// The gains at the knots, row by row; for each by [`Scaled`], per colour.
     pub fn knot_gains(&self) -> &[[[f32; 3]; 2]] {
         &self.knot_gains
     }
 
-    /// Those of a row of pixels, at each column of knots.
+    /// The gains along row `y` of pixels, at each column of knots.
     pub fn row_gains(&self, y: usize, scaled: Scaled) -> RowGains {
         let ((row, behind), columns) = (position(y), self.knots.columns());
         let of_knot = |knot: &[[f32; 3]; 2]| {
@@ -180,7 +184,7 @@ fn within(largest: f64, gain: f64) -> f64 {
 pub struct RowGains(Vec<[f32; 4]>);
 
 impl RowGains {
-    /// Those of a pixel.
+    /// The gains of the pixel in column `x`, interpolated between knots; coverage has 1.
     #[inline(always)]
     pub fn at(&self, x: usize) -> [f32; 4] {
         let (knot, behind) = position(x);

@@ -15,7 +15,7 @@ pub const SPACING: usize = 32;
 pub struct KnotSums(pub [[f32; 4]; 4]);
 
 impl KnotSums {
-    /// Adds others with a weight.
+    /// Adds other sums times `weight`.
     pub fn add(&mut self, weight: f32, other: &Self) {
         for (sum, other) in self.0.as_flattened_mut().iter_mut().zip(other.0.as_flattened()) {
             *sum += weight * other;
@@ -31,6 +31,7 @@ impl SharedSums {
     /// Sums that take turns, a pixel each: none waits for the one before.
     pub const TURNS: usize = 2;
 
+    /// Adds a pixel's light before and after it was evened.
     #[inline(always)]
     pub fn add(&mut self, before: &Light, after: &Light) {
         for c in 0..4 {
@@ -39,7 +40,7 @@ impl SharedSums {
         }
     }
 
-    /// The sum of those of all turns.
+    /// The sum over all turns.
     #[inline(always)]
     pub fn from_turns([mut sum, second]: [Self; Self::TURNS]) -> Self {
         let [before, after] = &second.0;
@@ -62,22 +63,22 @@ pub const fn position(pixel: usize) -> (usize, f32) {
 }
 
 impl Knots {
-    /// Of a picture of this width and height, px.
+    /// The knots of a picture of `size` columns and rows.
     pub fn new(size: [usize; 2]) -> Self {
         Self { size }
     }
 
-    /// How many there are in a row.
+    /// The number of knots in a row.
     pub fn columns(&self) -> usize {
         self.size[0].div_ceil(SPACING) + 1
     }
 
-    /// How many rows there are.
+    /// The number of rows of knots.
     pub fn rows(&self) -> usize {
         self.size[1].div_ceil(SPACING) + 1
     }
 
-    /// How many spans of [`SPACING`] pixels a row of pixels has.
+    /// The number of spans of [`SPACING`] pixels in a row of pixels.
     pub fn spans(&self) -> usize {
         self.columns() - 1
     }
@@ -98,7 +99,7 @@ impl Knots {
         }
     }
 
-    /// The sums of knots from those of all rows of pixels.
+    /// The sums of all knots, row by row, from those of all rows of pixels.
     pub fn sums(&self, rows: &[KnotSums]) -> Vec<KnotSums> {
         let columns = self.columns();
         let sum = |knot: usize| {

@@ -28,20 +28,20 @@ pub struct Marks<W> {
 }
 
 impl<W: Word> Marks<W> {
-    /// Of rows of `columns` columns in memory that hold nothing.
+    /// The marks of `rows` with `columns` columns in memory: they hold nothing.
     pub fn empty(rows: Range<i32>, columns: usize) -> Self {
         let marks_a_row = columns.div_ceil(SPAN);
         Self { first: rows.start, marks_a_row, marks: vec![Mark::default(); rows.len() * marks_a_row] }
     }
 
-    /// Those of a row.
+    /// The marks of a row.
     #[inline(always)]
     pub fn row(&mut self, row: i32) -> &mut [Mark<W>] {
         let at = (row - self.first) as usize * self.marks_a_row;
         &mut self.marks[at..at + self.marks_a_row]
     }
 
-    /// Bytes in memory.
+    /// The memory that they take, in bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(&*self.marks)
     }

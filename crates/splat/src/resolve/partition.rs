@@ -62,12 +62,14 @@ impl Share {
 /// Some pixels of a row of the sums: what is free, and what shares the rest.
 #[derive(Clone, Copy)]
 pub struct Parts<'a> {
+    /// The light of free samples.
     pub free: &'a [Light],
+    /// The light of sharing samples.
     pub sharing: &'a [Light],
 }
 
 impl Parts<'_> {
-    /// Finds the factors of the pixels of a standard picture.
+    /// Finds the factors, in `shares`, by which the pixels of a standard picture are shared.
     pub fn find_shares(self, shares: &mut [Share]) {
         with_widest_simd(
             #[inline(always)]

@@ -78,7 +78,9 @@ fn share_span(
 pub struct Pixels<'a> {
     /// The first one's column.
     pub first: usize,
+    /// Linear RGB.
     pub radiance: &'a mut [[f32; 3]],
+    /// Coverage.
     pub coverage: &'a mut [f32],
 }
 

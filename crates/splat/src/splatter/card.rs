@@ -25,7 +25,7 @@ pub struct Card {
 }
 
 impl Card {
-    /// Uses another card, or none.
+    /// Uses another card, or the processor if `None`; sums must be made anew.
     pub fn replace(&mut self, gpu: Option<Gpu>) {
         *self = Self { gpu, keeps_picture: self.keeps_picture, ..Self::default() };
     }
@@ -37,7 +37,7 @@ impl Card {
         Self { gpu: self.gpu.clone(), sums, keeps_picture: self.keeps_picture, ..Self::default() }
     }
 
-    /// Uploads the nodes if that has not been done, for a picture of `size`.
+    /// Uploads the nodes, if that has not been done, for a picture of `size` columns and rows.
     pub fn upload_nodes(&mut self, nodes: &Nodes, size: [usize; 2]) {
         let (Some(gpu), None) = (&self.gpu, &self.sums) else { return };
         match GpuSums::new(gpu, nodes, size) {
@@ -77,12 +77,12 @@ impl Card {
         self.is_lost
     }
 
-    /// The card itself.
+    /// The card, if one is used.
     pub fn gpu(&self) -> Option<&Gpu> {
         self.gpu.as_ref()
     }
 
-    /// Bytes of the hierarchy and of the sums.
+    /// The memory on the card, in bytes: of the nodes, then of the sums.
     pub fn bytes(&self) -> [usize; 2] {
         self.sums.as_ref().map_or([0; 2], GpuSums::bytes)
     }
@@ -92,25 +92,34 @@ impl Card {
         self.sums.as_ref()?.seconds()
     }
 
-    /// The picture on it, of this width and height.
+    /// The picture on the card, of `size` columns and rows; `None` if it is not there.
     pub fn picture(&self, size: [u32; 2]) -> Option<PictureOnCard> {
         let (gpu, sums) = (self.gpu.as_ref()?, self.sums.as_ref()?);
         Some(PictureOnCard::from_buffer(gpu, sums.picture(), size))
     }
 
     /// Sums what a scene sends; `None` where the sums are not on a card.
+    ///
+    /// # Errors
+    /// The work was cancelled, the card is lost, or an integer has overflowed.
     pub fn sum(&mut self, scene: &Scene, progress: &dyn Progress) -> Option<Result<(), SplatError>> {
         let set = self.sums.as_mut()?.set(scene, progress);
         Some(self.convert_result(set))
     }
 
     /// Takes nodes away and adds others; `None` where the sums are not on a card.
+    ///
+    /// # Errors
+    /// The card is lost, or an integer has overflowed.
     pub fn change(&mut self, pen: &Pen, changes: &Changes) -> Option<Result<(), SplatError>> {
         let changed = self.sums.as_mut()?.change(pen, changes);
         Some(self.convert_result(changed))
     }
 
-    /// Finds the shares of a standard picture, which stay there, and the gains.
+    /// Finds the shares of a standard picture, which stay on the card, and the gains.
+    ///
+    /// # Errors
+    /// The card is lost or has no sums, or an integer has overflowed.
     pub fn find_shares(&mut self, nodes: &Nodes) -> Result<Gains, SplatError> {
         let gains = match &mut self.sums {
             Some(sums) => sums.find_shares(nodes),
@@ -120,6 +129,9 @@ impl Card {
     }
 
     /// Makes pixel rows of a picture, and fetches them unless pictures stay on the card.
+    ///
+    /// # Errors
+    /// The card is lost, or an integer has overflowed.
     pub fn make_picture(
         &mut self,
         nodes: &Nodes,
@@ -153,7 +165,10 @@ impl Card {
         sums.finish()
     }
 
-    /// Brings back what of the picture is newer here; `None` where nothing is.
+    /// Brings back what of the picture is newer on the card; `None` where nothing is.
+    ///
+    /// # Errors
+    /// The card is lost, or an integer has overflowed.
     pub fn fetch(&mut self, picture: &mut Picture) -> Option<Result<(), SplatError>> {
         let rows = std::mem::take(&mut self.stale_rows);
         let sums = self.sums.as_ref().filter(|_| !rows.is_empty())?;
@@ -173,7 +188,7 @@ impl Card {
         })
     }
 
-    /// The sums on it.
+    /// The sums on the card, if they are there.
     #[cfg(test)]
     pub fn sums(&self) -> Option<&GpuSums> {
         self.sums.as_ref()

@@ -33,13 +33,13 @@ impl Splatter {
         if self.drop_lost_card() { self.sum(&progress::Unwatched) } else { fetched }
     }
 
-    /// The seconds by the card's own clock that the last picture took, from its first sum to its last pixel; none where it
-    /// has no clock.
+    /// The seconds by the card's own clock that the last picture took, from its first sum to its last pixel; `None`
+    /// where it has no clock.
     pub fn seconds_on_card(&self) -> Option<f64> {
         self.card.seconds()
     }
 
-    /// The card that is summed on; none where it is the processor.
+    /// The card that is summed on; `None` where it is the processor.
     pub fn gpu(&self) -> Option<&Gpu> {
         self.card.gpu()
     }

@@ -46,18 +46,22 @@ pub enum ResolveOutput {
 }
 
 impl ResolveOutput {
+    /// Whether the shares are found.
     pub fn has_shares(self) -> bool {
         matches!(self, Self::Shares | Self::SharesAndPicture)
     }
 
+    /// Whether the picture is made of all samples.
     pub fn has_picture(self) -> bool {
         matches!(self, Self::Picture | Self::SharesAndPicture)
     }
 
+    /// Whether the sums of free samples are read.
     pub fn has_free(self) -> bool {
         self != Self::Shared
     }
 
+    /// Whether the sums of sharing samples are read.
     pub fn has_sharing(self) -> bool {
         self != Self::PictureOverShared
     }

@@ -23,7 +23,7 @@ pub struct Resolver {
 }
 
 impl Resolver {
-    /// For sums of this width and height, px.
+    /// A resolver for `sums` of a picture of `width` × `height` px.
     pub fn new([width, height]: [usize; 2], sums: &Sums) -> Self {
         let rows_of_chunk = |first: usize| first as i32..(first + RESOLVE_ROWS).min(height) as i32;
         let chunks = (0..height).step_by(RESOLVE_ROWS).map(rows_of_chunk);
@@ -35,14 +35,17 @@ impl Resolver {
         }
     }
 
-    /// Bytes in memory, those of shares and picture not among them.
+    /// The memory that it takes, in bytes, without shares and picture.
     pub fn bytes(&self) -> usize {
         let marks: usize =
             self.marks.iter().flatten().map(|(dim, bright)| dim.bytes() + bright.bytes()).sum();
         self.balance.bytes() + marks
     }
 
-    /// Integrates the sums in some rows and columns.
+    /// Integrates the sums in some pixel rows and columns to what `output` says.
+    ///
+    /// # Errors
+    /// A sum has overflowed.
     pub fn resolve(
         &mut self,
         nodes: &Nodes,

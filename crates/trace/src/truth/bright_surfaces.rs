@@ -50,7 +50,8 @@ pub(super) struct BrightSurfaces {
 }
 
 impl BrightSurfaces {
-    /// Finds them. `window` is where light counts, px.
+    /// Finds the surfaces that are too bright for the sensor's own samples. `window` is where light counts: its least
+    /// and greatest corner, px.
     pub fn detect(
         view: &View,
         radiance: &dyn Radiance,
@@ -91,7 +92,10 @@ impl BrightSurfaces {
         camera / (camera + rate / (normal.length() / 2.0))
     }
 
-    /// Sends the rays of one pass.
+    /// Sends the rays of one pass, for the samples `passed` of each pixel, and adds their light to `sensor`.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if `progress` asks to stop.
     pub fn expose(
         &self,
         view: &View,

@@ -32,7 +32,8 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// The standard error of each channel of `picture.exposed(exposure)`.
+    /// The standard error of each channel of `picture.exposed(exposure)`, row by row; infinite before the second
+    /// pass.
     pub fn error_of(&self, exposure: Exposure) -> &[[f32; 3]] {
         match exposure {
             Exposure::Conserve => &self.standard_error.radiance,
@@ -102,12 +103,14 @@ pub(super) struct Statistics {
 }
 
 impl Statistics {
+    /// Statistics of a picture of `width` × `height` px, without a sample.
     pub fn new(width: u32, height: u32) -> Self {
         let pixels = vec![Moments::default(); width as usize * height as usize];
         Self { width, height, pixels, samples: 0, passes: 0 }
     }
 
-    /// Adds a pass of `samples` samples a pixel; `means` holds every pixel's.
+    /// Adds a pass of `samples` samples a pixel; `means` holds the pass's mean of red, green, blue and coverage for
+    /// every pixel.
     pub fn add(&mut self, samples: u32, means: impl IndexedParallelIterator<Item = [f64; 4]>) {
         self.samples += samples;
         self.passes += 1;
@@ -116,6 +119,7 @@ impl Statistics {
         self.pixels.par_iter_mut().zip(means).for_each(|(moments, x)| moments.add(x, weight, share));
     }
 
+    /// The weighted mean of the passes and its standard error, which is infinite before the second pass.
     pub fn estimate(&self) -> Estimate {
         let mut picture = Picture::black(self.width, self.height);
         let mut standard_error = picture.clone();

@@ -33,7 +33,7 @@ impl ReconstructionFilter {
     /// The smallest and the largest radius that is accepted, px; others are moved to these.
     pub const RADII: [f64; 2] = [0.5, 8.0];
 
-    /// How far from a pixel's middle samples count, px.
+    /// How far from a pixel's middle samples count, px; limited to the radii that are supported.
     pub fn radius(self) -> f64 {
         let (Self::Box { radius } | Self::Tent { radius } | Self::Gaussian { radius }) = self;
         let [least, greatest] = Self::RADII;

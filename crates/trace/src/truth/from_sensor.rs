@@ -70,6 +70,8 @@ struct TracedRay {
 }
 
 impl FromSensor {
+    /// Prepares the rays from the pixels of `sensor`: how far around them light can land, and which surfaces are too
+    /// bright for such rays.
     pub fn new(view: &View, radiance: &dyn Radiance, sensor: &Sensor, options: &TruthOptions) -> Self {
         let reach = Reach::new(view, sensor.window());
         let bright = BrightSurfaces::detect(view, radiance, reach, sensor.window(), options);
@@ -78,7 +80,10 @@ impl FromSensor {
         Self { reach, bright, aperture, options, seed, fitted: OnceLock::new() }
     }
 
-    /// Sends the rays of one pass, the samples `passed` of each pixel.
+    /// Sends the rays of one pass, for the samples `passed` of each pixel, and adds their light to `sensor`.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if `progress` asks to stop.
     pub fn expose(
         &self,
         view: &View,

@@ -62,6 +62,7 @@ pub(super) struct FromSurfaces {
 }
 
 impl FromSurfaces {
+    /// Cuts the surfaces that can reach the sensor into pieces that send rays.
     pub fn new(view: &View, radiance: &dyn Radiance, sensor: &Sensor, options: &TruthOptions) -> Self {
         let window = sensor.window();
         let triangles = 0..view.tracer.scene().triangles.len() as u32;
@@ -82,7 +83,10 @@ impl FromSurfaces {
         Self { sources, aperture, sampler: options.sampler, seed: u64::from(options.seed) }
     }
 
-    /// Sends the rays of one pass, for the samples `passed` of each pixel.
+    /// Sends the rays of one pass, for the samples `passed` of each pixel, and adds their light to `sensor`.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if `progress` asks to stop.
     pub fn expose(
         &self,
         view: &View,

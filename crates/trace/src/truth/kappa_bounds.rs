@@ -19,7 +19,7 @@ pub(super) enum FocusBox {
 }
 
 impl FocusBox {
-    /// Of a triangle.
+    /// The box of the focus of all points of a triangle, given by its index in the scene.
     pub fn of_triangle(view: &View, triangle: u32) -> Self {
         match view.ray_focus {
             Some(rays) => Self::ByRay(rays.bounds()),
@@ -29,7 +29,7 @@ impl FocusBox {
         }
     }
 
-    /// Of the background.
+    /// The box of the background's focus.
     pub fn of_background(view: &View) -> Self {
         match view.ray_focus {
             Some(rays) => Self::ByRay(rays.bounds()),
@@ -63,7 +63,7 @@ impl FocusBox {
         }
     }
 
-    /// The largest |κ| for depths with the reciprocals `inverse_depths`.
+    /// The largest defocus |κ|, 1/length, at depths whose reciprocals lie between both `inverse_depths`.
     pub fn largest_kappa(&self, view: &View, inverse_depths: [f64; 2]) -> f64 {
         largest(inverse_depths.into_iter().flat_map(|inverse_depth| self.corners(view, inverse_depth)))
     }
@@ -81,7 +81,7 @@ impl FocusBox {
         }))
     }
 
-    /// The largest |κ·z| for depths in (0, `depth`]: finite although κ is not.
+    /// The largest |κ·z|, without unit, for depths in (0, `depth`]: finite although κ is not.
     pub fn largest_kappa_times_depth(&self, view: &View, depth: f64) -> f64 {
         let [at_depth, at_half] = [depth, depth / 2.0].map(|z| self.corners(view, 1.0 / z).map(|k| k * z));
         // A straight line in z, whose value at 0 follows from two others.

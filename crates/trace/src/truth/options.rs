@@ -39,18 +39,18 @@ pub struct Region {
 }
 
 impl Region {
-    /// The whole frame.
+    /// The whole picture of a camera.
     pub fn frame(camera: &Camera) -> Self {
         Self { x: 0, y: 0, width: camera.width, height: camera.height }
     }
 
-    /// What of it lies in the frame; possibly nothing.
+    /// What of the region lies in the camera's picture; possibly nothing.
     pub fn within(self, camera: &Camera) -> Self {
         let (x, y) = (self.x.min(camera.width), self.y.min(camera.height));
         Self { x, y, width: self.width.min(camera.width - x), height: self.height.min(camera.height - y) }
     }
 
-    /// Pixels in it.
+    /// The number of pixels in it.
     pub fn pixels(self) -> usize {
         self.width as usize * self.height as usize
     }

@@ -63,7 +63,7 @@ pub(super) fn visit_patches(view: &View, window: [DVec2; 2], triangle: u32, visi
 }
 
 impl Patch {
-    /// The least (but not below 0) and the greatest depth.
+    /// The least (but not below 0) and the greatest depth of its corners, scene units.
     pub fn depths(&self) -> [f64; 2] {
         let [a, b, c] = self.corners.map(|corner| corner.z);
         [a.min(b).min(c).max(0.0), a.max(b).max(c)]
@@ -81,7 +81,7 @@ impl Patch {
         [a.min(b).min(c), a.max(b).max(c)]
     }
 
-    /// The area, square units of length.
+    /// The patch's area, square units of length.
     pub fn area(&self) -> f64 {
         let [a, b, c] = self.corners;
         (b - a).cross(c - a).length() / 2.0

@@ -23,7 +23,8 @@ pub(super) struct Reach {
 }
 
 impl Reach {
-    /// Of everything that is displaced into `window`.
+    /// The positions of the pinhole picture from which light can be displaced into `window` (least and greatest
+    /// corner, px).
     pub fn new(view: &View, window: [DVec2; 2]) -> Self {
         let window = Self { low: window[0], high: window[1] };
         let widest = window.widened(WIDEST * view.optics.half_height_px);
@@ -72,7 +73,7 @@ impl Reach {
         Self { low: self.low.max(other.low), high: self.high.min(other.high) }
     }
 
-    /// Whether a position is in it.
+    /// Whether a position of the pinhole picture, px, is in it.
     pub fn contains(&self, position: DVec2) -> bool {
         position.cmpge(self.low).all() && position.cmplt(self.high).all()
     }

@@ -61,7 +61,7 @@ pub(super) struct Sensor {
 }
 
 impl Sensor {
-    /// A black sensor for passes of at most `samples` samples a pixel.
+    /// A black sensor for `region`, for at most `samples` samples a pixel in each pass.
     pub fn new(region: Region, filter: ReconstructionFilter, samples: u32) -> Self {
         let mut pixels = Vec::new();
         pixels.resize_with(region.pixels(), Default::default);
@@ -93,7 +93,7 @@ impl Sensor {
         if whole.is_nan() { None } else { self.pixel_at(whole.x as i64, whole.y as i64) }
     }
 
-    /// Whether light that lands at a position counts for any pixel.
+    /// Whether light that lands at a position, px, counts for any pixel.
     pub fn covers(&self, position: DVec2) -> bool {
         let [low, high] = self.window();
         position.cmpge(low).all() && position.cmplt(high).all()
@@ -116,7 +116,8 @@ impl Sensor {
         Sum([r, g, b, coverage.round() as i64])
     }
 
-    /// Adds a sample that lands at `position`, through the filter.
+    /// Adds a sample that lands at `position`, px, through the filter: linear RGB radiance times `weight`, and
+    /// coverage.
     pub fn expose(&self, position: DVec2, radiance: Vec3, weight: f64, coverage: f64) {
         if self.is_own_pixel() {
             if let Some(pixel) = self.pixel(position) {
@@ -157,7 +158,7 @@ impl Sensor {
         overflowed
     }
 
-    /// The mean of `samples` samples in every pixel: red, green, blue, coverage.
+    /// The mean of `samples` samples in every pixel, row by row: red, green, blue (linear), coverage.
     pub fn means(&self, samples: u32) -> impl IndexedParallelIterator<Item = [f64; 4]> + '_ {
         let step = |exponent: i32| f64::from(-exponent).exp2() / f64::from(samples);
         let (light, coverage) = (step(self.quantiser.light), step(self.quantiser.coverage));

@@ -44,23 +44,23 @@ impl Level {
     pub const COUNT: usize = 2 * Self::LARGEST as usize + 1;
     const STEP: f64 = 0.04;
 
-    /// The one nearest to a signed radius, px.
+    /// The level nearest to a signed radius of the circle of confusion, px.
     pub fn from_radius(radius_px: f64) -> Self {
         let largest = f64::from(Self::LARGEST);
         Self((radius_px.asinh() / Self::STEP).round().clamp(-largest, largest) as i16)
     }
 
-    /// Its signed radius, px.
+    /// The level's signed radius of the circle of confusion, px.
     pub fn radius_px(self) -> f64 {
         (f64::from(self.0) * Self::STEP).sinh()
     }
 
-    /// Whether two levels may be those of one surface.
+    /// Whether two levels are near enough to be those of one surface.
     pub fn is_near(self, other: Self) -> bool {
         (self.0 - other.0).abs() <= 2
     }
 
-    /// Its number among all, below [`Self::COUNT`].
+    /// The level's number among all, below [`Self::COUNT`].
     pub fn index(self) -> usize {
         (self.0 + Self::LARGEST) as usize
     }
@@ -121,7 +121,7 @@ impl Sheared {
         Self { seed, size, spreads, latest: Mutex::new(None) }
     }
 
-    /// Of every spread the samples `passed`; `sample` makes one of four numbers.
+    /// For every spread, the samples `passed` of its pixel; `sample` makes one of four uniform numbers in [0, 1).
     pub fn samples(
         &self,
         passed: &Range<u32>,

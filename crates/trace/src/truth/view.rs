@@ -67,12 +67,13 @@ impl View<'_> {
         DVec2::new(q.x, -q.y) * self.optics.half_height_px
     }
 
-    /// Where the ray from `position` (camera space, z > 0) through `u` lands, px.
+    /// Where the ray from `position` (camera space, z > 0) through the aperture point `u`, in [−1, 1]², lands with a
+    /// defocus `kappa` (1/length); px.
     pub fn landing_px(&self, position: DVec3, u: DVec2, kappa: f64) -> DVec2 {
         self.camera.pixel_from_q(self.optics.landing(position, u, kappa))
     }
 
-    /// The radius of the circle of confusion of a |κ|, px.
+    /// The radius of the circle of confusion of a defocus κ (1/length), px; never negative.
     pub fn radius_px(&self, kappa: f64) -> f64 {
         self.optics.splat_radius_px(kappa).abs()
     }

@@ -11,7 +11,7 @@ impl PointSet {
     /// The largest number of points.
     pub const MAX: usize = 64 * Self::WORDS;
 
-    /// The bits, 64 points per word.
+    /// The set's bits, 64 points per word, the first in the lowest bit.
     #[inline(always)]
     pub fn words(&self) -> &[u64; Self::WORDS] {
         &self.0
@@ -29,12 +29,12 @@ impl PointSet {
         self.0.iter().fold(0, |all, word| all | word) == 0
     }
 
-    /// Whether a point is in the set.
+    /// Whether the point with this number is in the set.
     pub fn contains(&self, place: usize) -> bool {
         self.0[place / 64] >> (place % 64) & 1 == 1
     }
 
-    /// The points of the set, in ascending order.
+    /// The numbers of the points in the set, in ascending order.
     pub fn iter(self) -> impl Iterator<Item = usize> {
         self.0.into_iter().enumerate().flat_map(|(word, mut left)| {
             std::iter::from_fn(move || {

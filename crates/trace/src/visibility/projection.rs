@@ -11,6 +11,7 @@ use glam::{BVec4A, DVec3, Mat4, Vec3, Vec4};
 pub(crate) struct Outline([Vec4; 3]);
 
 impl Outline {
+    /// The corners of a triangle (world), in the space of the tracer.
     pub fn new(corners: &[DVec3; 3], space: &LocalSpace) -> Self {
         let [a, b, c] = corners.map(|corner| space.position(corner).as_vec3());
         Self([0, 1, 2].map(|axis| Vec4::new(a[axis], b[axis], c[axis], c[axis])))
@@ -40,6 +41,7 @@ const ROUNDING: f64 = 16.0 / (1u32 << 23) as f64;
 const SLACK: f32 = 1e-5;
 
 impl Projection {
+    /// The projection from `eye` to the plane of `square`; `axis` is the square's normal, pointing away from the eye.
     pub fn new(eye: Eye, square: &Square, axis: DVec3, space: &LocalSpace) -> Self {
         let local = |side: DVec3| space.direction(side);
         // What measures u and v: the sides over the squares of their lengths.
@@ -67,7 +69,8 @@ impl Projection {
         }
     }
 
-    /// The boxes around some triangles, at most [`Boxes::MAX`] and at least one.
+    /// The boxes in the square's plane around the projections of some triangles, at most [`Boxes::MAX`] and at least
+    /// one.
     #[inline(always)]
     pub fn boxes(&self, outlines: &[Outline]) -> Boxes {
         let last = outlines.len() - 1;
@@ -103,7 +106,7 @@ impl Projection {
         Boxes::new(low, high, is_bounded, u32::MAX >> (31 - last))
     }
 
-    /// The boxes around all that a node's boxes hold.
+    /// The boxes in the square's plane around the projections of a node's boxes.
     #[inline(always)]
     pub fn node_boxes(&self, node: &Node) -> Boxes {
         let mut from_origin = node.sides;
@@ -170,7 +173,7 @@ impl Boxes {
         }
     }
 
-    /// The bounds of one box, if they are finite.
+    /// The bounds in the square's plane of the box with this number; `None` if they are not finite.
     #[inline(always)]
     pub fn get(&self, index: usize) -> Option<Bounds> {
         let is_bounded = self.bounded >> index & 1 == 1;

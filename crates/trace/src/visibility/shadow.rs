@@ -28,6 +28,7 @@ impl Linear {
         Self([a, b, c].map(|part| (part * scale) as f32))
     }
 
+    /// The values of the linear function at four places with these coordinates.
     #[inline(always)]
     pub fn evaluate(self, [u, v]: [Vec4; 2]) -> Vec4 {
         let [a, b, c] = self.0.map(Vec4::splat);

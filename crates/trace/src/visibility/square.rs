@@ -14,7 +14,7 @@ pub struct Square {
 }
 
 impl Square {
-    /// The world position of a place.
+    /// The world position of a place on the square, each coordinate in [−1, 1].
     pub fn world_position(&self, place: DVec2) -> DVec3 {
         self.center + place.x * self.right + place.y * self.up
     }

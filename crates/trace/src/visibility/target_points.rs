@@ -29,7 +29,9 @@ fn strip(x: f32) -> usize {
 /// A box on the square.
 #[derive(Clone, Copy, Debug)]
 pub struct Bounds {
+    /// The least coordinates on the square.
     pub low: [f32; 2],
+    /// The greatest coordinates on the square.
     pub high: [f32; 2],
 }
 
@@ -64,7 +66,7 @@ impl TargetPoints {
         self.all
     }
 
-    /// The coordinates of the place at `index`, as they are used: in f32.
+    /// The coordinates, in [−1, 1]², of the point with number `index`, as they are used: rounded to f32.
     pub fn position(&self, index: usize) -> DVec2 {
         let [u, v] = self.coordinates[index / 4];
         DVec2::new(f64::from(u[index % 4]), f64::from(v[index % 4]))

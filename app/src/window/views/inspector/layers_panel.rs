@@ -10,7 +10,7 @@ use egui::{Button, ComboBox, Slider, TextEdit, Ui};
 use focus::{Adjustment, BlendMode, FocusLayer, LayerEdit};
 use session::{Command, CommandId};
 
-/// The list of layers, and the settings of the active one.
+/// Draws the list of layers and the settings of the active one; adds what the user requests to `actions`.
 pub fn layers_panel(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) {
     let layers = document.layers.layers();
     let active = document.layers.active_index();

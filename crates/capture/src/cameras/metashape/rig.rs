@@ -22,11 +22,12 @@ pub(super) struct Rigs<'a, 'b> {
 }
 
 impl<'a, 'b> Rigs<'a, 'b> {
+    /// The rigs among these cameras, which are found by their ids.
     pub fn new(cameras: impl Iterator<Item = Node<'a, 'b>>) -> Self {
         Self { cameras: cameras.filter_map(|camera| Some((camera.attribute("id")?, camera))).collect() }
     }
 
-    /// Whether the pose of a camera follows from another one's.
+    /// Whether the pose of a camera follows from another one's, its master.
     pub fn is_slave(camera: Node<'_, '_>) -> bool {
         let master = camera.attribute("master_id").filter(|master| Some(*master) != camera.attribute("id"));
         child(camera, "transform").is_none() && master.is_some()

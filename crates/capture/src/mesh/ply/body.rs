@@ -24,7 +24,7 @@ enum Input {
 }
 
 impl Body {
-    /// The body of a file, after its header.
+    /// The body of a file, which `rest` is after the header.
     pub fn new(file: &Path, format: Format, rest: Rest) -> Self {
         let Rest { input, lines, at, size } = rest;
         let input = match format {
@@ -36,7 +36,7 @@ impl Body {
         Self { file: file.into(), input, format, at, size }
     }
 
-    /// An error at the current place.
+    /// An error that says what is wrong at the current line or byte.
     pub fn malformed(&self, what: impl ToString) -> CaptureError {
         let place = match &self.input {
             Input::Binary(_) => format!("byte {}", self.at),
@@ -45,7 +45,10 @@ impl Body {
         CaptureError::malformed(&self.file, place, what)
     }
 
-    /// An error if the file is too short for the rows that an element declares.
+    /// Checks that the file is long enough for the rows that an element declares.
+    ///
+    /// # Errors
+    /// It is too short.
     pub fn check_count(&self, element: &Element) -> Result<(), CaptureError> {
         // The last number of a file needs no separator after it.
         let left = self.size.saturating_sub(self.at) + 1;
@@ -59,7 +62,10 @@ impl Body {
         }
     }
 
-    /// An error if the rows of an element, of `each` bytes, take more memory than allowed.
+    /// Checks that the rows of an element, of `each` bytes in memory, take no more memory than allowed.
+    ///
+    /// # Errors
+    /// They take more.
     pub fn check_memory(
         &self,
         element: &Element,
@@ -79,7 +85,10 @@ impl Body {
         Err(CaptureError::TooBig { file: self.file.clone(), what })
     }
 
-    /// Skips an element.
+    /// Skips the rows of an element.
+    ///
+    /// # Errors
+    /// The file cannot be read, ends before, or is malformed.
     pub fn skip(&mut self, element: &Element) -> Result<(), CaptureError> {
         let is_fixed =
             element.properties.iter().all(|property| matches!(property.data_type, DataType::Scalar(_)));
@@ -101,7 +110,10 @@ impl Body {
         Ok(())
     }
 
-    /// Reads a row: the numbers of its scalar columns, and the list of one column.
+    /// Reads a row: the numbers of its scalar columns into `row`, and the list of one column, if asked for.
+    ///
+    /// # Errors
+    /// The file cannot be read, ends before, or is malformed.
     pub fn row(
         &mut self,
         element: &Element,

@@ -83,7 +83,7 @@ impl Scalar {
         })
     }
 
-    /// Bytes in a binary file.
+    /// The number of bytes in a binary file.
     pub fn size(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
@@ -95,7 +95,7 @@ impl Scalar {
 }
 
 impl DataType {
-    /// The number for full intensity of a colour of this type.
+    /// The number that stands for full intensity in a colour of this type.
     pub fn white(self) -> f64 {
         match self {
             Self::Scalar(Scalar::F32 | Scalar::F64) | Self::List { .. } => 1.0,
@@ -105,7 +105,7 @@ impl DataType {
 }
 
 impl Element {
-    /// The least number of bytes of a row.
+    /// The least number of bytes that a row takes in this format.
     pub fn least_bytes(&self, format: Format) -> u64 {
         let min_size = |property: &Property| match (format, property.data_type) {
             // A digit and a separator.
@@ -119,6 +119,9 @@ impl Element {
 
 impl Header {
     /// Reads the header of a file; returns it with the rest of the file.
+    ///
+    /// # Errors
+    /// The file cannot be read, or is no PLY.
     pub fn open(file: &Path) -> Result<(Self, Rest), CaptureError> {
         let unreadable = |source| CaptureError::unreadable(file, source);
         let mut input = BufReader::new(File::open(file).map_err(unreadable)?);
@@ -175,7 +178,7 @@ impl Header {
         Err(CaptureError::malformed(file, format!("line {MOST_LINES}"), "the header does not end"))
     }
 
-    /// The element of a name.
+    /// The element with this name; `None` if there is none.
     pub fn element(&self, name: &str) -> Option<&Element> {
         self.elements.iter().find(|element| element.name == name)
     }

@@ -8,6 +8,7 @@ pub const MAX_CELLS: usize = 8;
 /// A part of the aperture, and what is sent toward it in the mean.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AperturePart {
+    /// The mean radiance toward the part, linear RGB.
     pub light: Vec3,
     /// The noisy part of it.
     pub noisy: Vec3,
@@ -17,8 +18,11 @@ pub struct AperturePart {
 
 /// Light toward each of `side` × `side` cells, row by row from v = −1, and the noisy part of it.
 pub struct ApertureCells<'a> {
+    /// The number of cells a side.
     pub side: usize,
+    /// The radiance toward each cell, linear RGB.
     pub light: &'a [Vec3],
+    /// The noisy part of the radiance toward each cell.
     pub noisy: &'a [Vec3],
 }
 

@@ -31,7 +31,7 @@ impl OwnLightChange {
         Some(Self { side, more: (0..side * side).map(more).collect() })
     }
 
-    /// What is sent to the middle as it is sent toward each part of the aperture.
+    /// The own light `sent` to the aperture's middle, as it is sent toward each part of the aperture.
     pub fn parts(&self, sent: &LightComponent) -> Vec<LightComponent> {
         let light = |more: &Vec3| (sent.radiance + *more / sent.share).max(Vec3::ZERO);
         let light: Vec<Vec3> = self.more.iter().map(light).collect();

@@ -14,7 +14,7 @@ pub(super) enum Interpolation {
 }
 
 impl Interpolation {
-    /// The interpolation of glTF's name.
+    /// The interpolation with this name in glTF, LINEAR without a name; `None` if there is no such one.
     pub fn from_name(name: Option<&str>) -> Option<Self> {
         Some(match name {
             None | Some("LINEAR") => Self::Linear,

@@ -71,7 +71,7 @@ impl Target {
         self.kind == ValueKind::MaterialProperty
     }
 
-    /// Number of values it takes; `None` for any.
+    /// The number of values that the target takes; `None` if any number.
     pub fn number_count(&self) -> Option<usize> {
         match self.kind {
             ValueKind::List(count) => count,

@@ -17,7 +17,10 @@ pub(super) struct Track<'a> {
 }
 
 impl<'a> Track<'a> {
-    /// Checks a sampler.
+    /// Opens and checks a sampler of an animation.
+    ///
+    /// # Errors
+    /// Its accessors or its interpolation are faulty.
     pub fn open(document: &'a Document<'_>, sampler: &Object<'_>) -> Result<Self, Fault> {
         let accessor = |key: &str| -> Result<Accessor<'a>, Fault> {
             let index = sampler.index(key)?.ok_or_else(|| sampler.malformed(key, "is missing"))?;
@@ -44,12 +47,16 @@ impl<'a> Track<'a> {
         time
     }
 
-    /// Time of the last key, s.
+    /// The time of the last key, s.
     pub fn end_seconds(&self) -> f64 {
         self.time(self.times.count - 1)
     }
 
-    /// The value at a time. Before the first key it is that of the first, after the last that of the last.
+    /// The value at a time, s. Before the first key it is that of the first, after the last that of the last.
+    /// Rotations are interpolated on the sphere.
+    ///
+    /// # Errors
+    /// The budget of steps or memory is exhausted.
     pub fn sample(
         &self,
         document: &Document<'_>,

@@ -14,7 +14,7 @@ pub(super) struct PlainDocument {
 }
 
 impl PlainDocument {
-    /// Appends bytes; returns their offset.
+    /// Appends bytes to the additional buffer; returns their offset in it.
     pub fn append(&mut self, bytes: &[u8]) -> usize {
         self.bytes.resize(self.bytes.len().next_multiple_of(8), 0);
         let start = self.bytes.len();
@@ -22,7 +22,7 @@ impl PlainDocument {
         start
     }
 
-    /// Adds an entry to a collection; returns its index.
+    /// Adds an entry to a collection such as `bufferViews`; returns its index.
     pub fn add(&mut self, collection: &str, entry: Value) -> usize {
         let list = self.root.as_object_mut().map(|root| root.entry(collection).or_insert_with(|| json!([])));
         let Some(Value::Array(list)) = list else { return 0 };
@@ -30,7 +30,7 @@ impl PlainDocument {
         list.len() - 1
     }
 
-    /// Removes an extension from the object at `place`.
+    /// Removes an extension from the object at `place`, a JSON pointer.
     pub fn remove_extension(&mut self, place: &str, extension: &str) {
         let Some(Value::Object(entry)) = self.root.pointer_mut(place) else { return };
         if let Some(Value::Object(extensions)) = entry.get_mut("extensions") {

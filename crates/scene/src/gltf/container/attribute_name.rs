@@ -7,7 +7,7 @@ pub(crate) struct AttributeName<'a> {
 }
 
 impl<'a> AttributeName<'a> {
-    /// `None` if glTF does not define the name.
+    /// Parses the name of a vertex attribute; `None` if glTF does not define it.
     pub fn parse(name: &'a str) -> Option<Self> {
         if matches!(name, "POSITION" | "NORMAL" | "TANGENT") || name.starts_with('_') && name.len() > 1 {
             return Some(Self { base: name, set: None });

@@ -13,7 +13,10 @@ pub(crate) struct Object<'a> {
 }
 
 impl<'a> Object<'a> {
-    /// `value` at `place`, which must be an object.
+    /// The object `value` at `place`, a JSON pointer.
+    ///
+    /// # Errors
+    /// The value is not an object.
     pub fn new(value: &'a Value, place: String) -> Result<Self, Fault> {
         match value.as_object() {
             Some(map) => Ok(Self { map, place }),
@@ -21,12 +24,12 @@ impl<'a> Object<'a> {
         }
     }
 
-    /// An error at a property.
+    /// An error that says what is wrong with the property `key`.
     pub fn malformed(&self, key: &str, what: impl Into<String>) -> Fault {
         Fault::Malformed { place: format!("{}/{key}", self.place), what: what.into() }
     }
 
-    /// The raw property; null counts as absent.
+    /// The property `key` as it is; `None` if absent or null.
     pub fn get(&self, key: &str) -> Option<&'a Value> {
         self.map.get(key).filter(|value| !value.is_null())
     }
@@ -43,22 +46,34 @@ impl<'a> Object<'a> {
         }
     }
 
-    /// A whole number ≥ 0.
+    /// The property `key` as a whole number ≥ 0; `None` if absent.
+    ///
+    /// # Errors
+    /// It is something else.
     pub fn whole_number(&self, key: &str) -> Result<Option<u64>, Fault> {
         self.read(key, "a whole number", as_whole_number)
     }
 
-    /// An index.
+    /// The property `key` as an index; `None` if absent.
+    ///
+    /// # Errors
+    /// It is no whole number ≥ 0.
     pub fn index(&self, key: &str) -> Result<Option<usize>, Fault> {
         Ok(self.whole_number(key)?.map(|i| usize::try_from(i).unwrap_or(usize::MAX)))
     }
 
-    /// A number.
+    /// The property `key` as a number; `None` if absent.
+    ///
+    /// # Errors
+    /// It is something else.
     pub fn number(&self, key: &str) -> Result<Option<f64>, Fault> {
         self.read(key, "a number", Value::as_f64)
     }
 
-    /// N numbers.
+    /// The property `key` as an array of N numbers; `None` if absent.
+    ///
+    /// # Errors
+    /// It is something else.
     pub fn numbers<const N: usize>(&self, key: &str) -> Result<Option<[f64; N]>, Fault> {
         self.read(key, &format!("an array of {N} numbers"), |value| {
             let items: Vec<f64> = value.as_array()?.iter().map(Value::as_f64).collect::<Option<_>>()?;
@@ -66,12 +81,18 @@ impl<'a> Object<'a> {
         })
     }
 
-    /// Any number of numbers.
+    /// The property `key` as an array of any number of numbers; `None` if absent.
+    ///
+    /// # Errors
+    /// It is something else.
     pub fn number_list(&self, key: &str) -> Result<Option<Vec<f64>>, Fault> {
         self.read(key, "an array of numbers", |value| value.as_array()?.iter().map(Value::as_f64).collect())
     }
 
-    /// Indices; absent is empty.
+    /// The property `key` as an array of indices; absent is empty.
+    ///
+    /// # Errors
+    /// It is something else.
     pub fn indices(&self, key: &str) -> Result<Vec<usize>, Fault> {
         let index = |value: &Value| as_whole_number(value).map(|i| usize::try_from(i).unwrap_or(usize::MAX));
         let list =
@@ -79,22 +100,34 @@ impl<'a> Object<'a> {
         Ok(list.unwrap_or_default())
     }
 
-    /// A text.
+    /// The property `key` as a text; `None` if absent.
+    ///
+    /// # Errors
+    /// It is something else.
     pub fn text(&self, key: &str) -> Result<Option<&'a str>, Fault> {
         self.read(key, "a text", Value::as_str)
     }
 
-    /// True or false; absent is false.
+    /// The property `key` as true or false; absent is false.
+    ///
+    /// # Errors
+    /// It is something else.
     pub fn flag(&self, key: &str) -> Result<bool, Fault> {
         Ok(self.read(key, "true or false", Value::as_bool)?.unwrap_or(false))
     }
 
-    /// An object.
+    /// The property `key` as an object; `None` if absent.
+    ///
+    /// # Errors
+    /// It is something else.
     pub fn object(&self, key: &str) -> Result<Option<Object<'a>>, Fault> {
         self.get(key).map(|value| Object::new(value, format!("{}/{key}", self.place))).transpose()
     }
 
-    /// An extension's object.
+    /// The object of the extension `name`; `None` if absent.
+    ///
+    /// # Errors
+    /// It, or the object of all extensions, is something else.
     pub fn extension(&self, name: &str) -> Result<Option<Object<'a>>, Fault> {
         match self.object("extensions")? {
             Some(extensions) => extensions.object(name),
@@ -102,14 +135,20 @@ impl<'a> Object<'a> {
         }
     }
 
-    /// An array of objects; absent is empty.
+    /// The property `key` as an array of objects; absent is empty.
+    ///
+    /// # Errors
+    /// It is something else.
     pub fn objects(&self, key: &str) -> Result<Vec<Object<'a>>, Fault> {
         let items = self.list(key)?;
         let object = |(i, value)| Object::new(value, format!("{}/{key}/{i}", self.place));
         items.iter().enumerate().map(object).collect()
     }
 
-    /// An array of anything; absent is empty.
+    /// The property `key` as an array of anything; absent is empty.
+    ///
+    /// # Errors
+    /// It is something else.
     pub fn list(&self, key: &str) -> Result<&'a [Value], Fault> {
         Ok(self.read(key, "an array", |value| value.as_array().map(Vec::as_slice))?.unwrap_or_default())
     }

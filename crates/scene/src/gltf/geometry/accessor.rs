@@ -57,7 +57,7 @@ pub(crate) struct Shape {
 }
 
 impl Shape {
-    /// The shape of glTF's name.
+    /// The shape with this name in glTF, such as VEC3; `None` if there is none.
     pub fn from_name(name: &str) -> Option<Self> {
         Some(Self::from(match name {
             "SCALAR" => Dimensions::Scalar,
@@ -71,7 +71,7 @@ impl Shape {
         }))
     }
 
-    /// Number of components of an element.
+    /// The number of components of an element.
     pub fn components(self) -> usize {
         self.rows * self.columns
     }
@@ -87,7 +87,7 @@ impl Shape {
         if self.columns > 1 { size.next_multiple_of(4) } else { size }
     }
 
-    /// Bytes of an element.
+    /// The bytes of an element whose components are of this type.
     pub fn size(self, component: Component) -> usize {
         self.columns * self.column_size(component)
     }
@@ -136,7 +136,10 @@ pub(crate) struct Accessor<'a> {
 }
 
 impl<'a> Accessor<'a> {
-    /// Checks accessor `index`, which `place` refers to.
+    /// Opens and checks accessor `index`, to which `place` refers.
+    ///
+    /// # Errors
+    /// It does not exist, is faulty, or reaches beyond its buffers.
     pub fn open(document: &'a Document<'_>, index: usize, place: &str) -> Result<Self, Fault> {
         let place = document.entry("accessors", index, place)?;
         document.check_below(&place)?;
@@ -237,7 +240,7 @@ impl<'a> Accessor<'a> {
         }
     }
 
-    /// The same as a number, normalised if the accessor is.
+    /// A component of element `index` as a number, normalised if the accessor says so.
     pub fn value(&self, index: usize, component: usize) -> f64 {
         let stored = self.raw_value(index, component);
         if self.normalized { normalized(self.component, stored) } else { stored }
@@ -262,7 +265,7 @@ impl<'a> Accessor<'a> {
         self.doubles(index).map(|value| value as f32)
     }
 
-    /// As [`Self::floats`], in f64.
+    /// The components of element `index`, as [`Self::floats`], in f64.
     pub fn doubles<const N: usize>(&self, index: usize) -> [f64; N] {
         let Some(bytes) = self.element(index) else { return [0.0; N] };
         std::array::from_fn(|i| {
@@ -271,12 +274,16 @@ impl<'a> Accessor<'a> {
         })
     }
 
-    /// An error about the accessor.
+    /// An error that says what is wrong with the accessor.
     pub fn malformed(&self, what: impl Into<String>) -> Fault {
         Fault::Malformed { place: self.place.clone(), what: what.into() }
     }
 
-    /// Checks that elements have one of the `allowed` numbers of components.
+    /// Checks that elements have one of the `allowed` numbers of components; `role` says in an error what they are
+    /// for.
+    ///
+    /// # Errors
+    /// They have another number.
     pub fn expect_components(self, allowed: &[usize], role: &str) -> Result<Self, Fault> {
         if self.shape.columns == 1 && allowed.contains(&self.shape.rows) {
             Ok(self)

@@ -21,7 +21,10 @@ pub(crate) struct Hierarchy {
 }
 
 impl Hierarchy {
-    /// Reads the nodes.
+    /// Reads the nodes, with their places in the world.
+    ///
+    /// # Errors
+    /// A node is faulty, or nodes are nested in a circle.
     pub fn read(document: &Document<'_>) -> Result<Self, Fault> {
         let count = document.len("nodes");
         let roots = scene_roots(document)?;

@@ -41,6 +41,9 @@ const VERTEX_BYTES: u64 = 4 + 24 + 24 + 2 * 8 + 16;
 
 impl Primitive {
     /// Reads a primitive in a variant with the weights of its morph targets; `None` if it has no triangles.
+    ///
+    /// # Errors
+    /// The primitive or its accessors are faulty, or the budget is exhausted.
     pub fn read(
         document: &Document<'_>,
         file: &gltf::Primitive<'_>,
@@ -112,7 +115,7 @@ impl Primitive {
         Ok(Some(primitive))
     }
 
-    /// Returns its memory to the budget.
+    /// Returns the memory that it takes to the budget.
     pub fn release(self, document: &Document<'_>) {
         document.budget.release_memory(self.memory);
     }

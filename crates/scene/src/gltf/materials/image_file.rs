@@ -26,7 +26,10 @@ pub(crate) fn mime_type(bytes: &[u8]) -> Option<&'static str> {
 }
 
 impl Document<'_> {
-    /// The encoded bytes of image `index`, which `place` refers to.
+    /// The encoded bytes of image `index`, to which `place` refers.
+    ///
+    /// # Errors
+    /// The image does not exist, is faulty, or its file cannot be read.
     pub fn image_bytes(&self, index: usize, place: &str) -> Result<Cow<'_, [u8]>, Fault> {
         let place = self.entry("images", index, place)?;
         self.check_below(&place)?;
@@ -45,7 +48,10 @@ impl Document<'_> {
         }
     }
 
-    /// Decodes image `index`.
+    /// Decodes image `index`, to which `place` refers.
+    ///
+    /// # Errors
+    /// As [`Self::image_bytes`], or it is no PNG, JPEG, WebP or KTX 2, is damaged, or exceeds the budget.
     pub fn decode_image(&self, index: usize, place: &str) -> Result<Image, Fault> {
         let bytes = self.image_bytes(index, place)?;
         let place = format!("/images/{index}");

@@ -17,6 +17,8 @@ pub(crate) struct LenientProperties<'r, 'a> {
 }
 
 impl<'r, 'a> LenientProperties<'r, 'a> {
+    /// Reads the properties of `object`, a material or an extension of it; `sets` are the UV sets of the primitives
+    /// that use it.
     pub fn new(reader: &'r mut TextureReader<'a>, object: Object<'a>, sets: &'r [u32]) -> Self {
         Self { reader, object, sets }
     }
@@ -29,24 +31,26 @@ impl<'r, 'a> LenientProperties<'r, 'a> {
         })
     }
 
-    /// A part or an extension, if it exists.
+    /// The properties of the object or extension `name`, if it exists.
     pub fn section(&mut self, name: &str) -> Option<LenientProperties<'_, 'a>> {
         let object = self.or_warn(section(&self.object, name))?;
         Some(LenientProperties { reader: self.reader, object, sets: self.sets })
     }
 
-    /// A number, clamped to a range.
+    /// The property `key` as a number, clamped to the range from `low` to `high`; `absent` if it is missing or faulty.
     pub fn number(&self, key: &str, absent: f32, [low, high]: [f32; 2]) -> f32 {
         self.or_warn(self.object.number(key)).map_or(absent, |number| number as f32).clamp(low, high)
     }
 
-    /// A number that may be infinite, which is its default.
+    /// The property `key` as a number that may be infinite, which is its default (as attenuation distances are, in
+    /// scene units).
     pub fn distance(&self, key: &str) -> f64 {
         let distance = self.or_warn(self.object.number(key)).unwrap_or(f64::INFINITY);
         if distance > 0.0 { distance } else { f64::INFINITY }
     }
 
-    /// A linear colour, each channel clamped to [0, `high`].
+    /// The property `key` as a linear colour, each channel clamped to [0, `high`]; `absent` if it is missing or
+    /// faulty.
     pub fn color(&self, key: &str, absent: Vec3, high: f32) -> Vec3 {
         let color = self.or_warn(self.object.numbers::<3>(key));
         color
@@ -54,7 +58,7 @@ impl<'r, 'a> LenientProperties<'r, 'a> {
             .clamp(Vec3::ZERO, Vec3::splat(high))
     }
 
-    /// A texture.
+    /// The texture `key`, if it exists and can be read; `is_color`: whether it is stored as sRGB.
     pub fn texture(&mut self, key: &str, is_color: bool) -> Option<TextureRef> {
         let info = self.or_warn(TextureInfo::read(&self.object, key))?;
         let place = format!("{}/{key}", self.object.place);
@@ -75,7 +79,7 @@ impl<'r, 'a> LenientProperties<'r, 'a> {
         Tint { factor, texture: if factor == Vec3::ZERO { None } else { self.texture(texture, true) } }
     }
 
-    /// A normal map.
+    /// The normal map `key`, if it exists and can be read.
     pub fn normal_map(&mut self, key: &str) -> Option<NormalMap> {
         let scale = self.or_warn(TextureInfo::read(&self.object, key))?.scale;
         let texture = self.texture(key, false)?;

@@ -25,16 +25,17 @@ pub(crate) struct MaterialReader<'a> {
 }
 
 impl<'a> MaterialReader<'a> {
+    /// A reader of a document's materials that has read none.
     pub fn new(document: &'a Document<'a>) -> Self {
         Self { textures: TextureReader::new(document) }
     }
 
-    /// The images that the materials need.
+    /// The images that the materials read so far need, by their index in the scene.
     pub fn into_images(self) -> Vec<Image> {
         self.textures.images
     }
 
-    /// The name of material `index`.
+    /// The name of material `index`, or a substitute if it has none.
     pub fn material_name(&self, index: usize) -> String {
         let material = self.textures.document.typed().materials().nth(index);
         material
@@ -44,6 +45,9 @@ impl<'a> MaterialReader<'a> {
 
     /// Reads material `index`, which is used by `place`. Faults in base colour, emission or opacity are errors; any
     /// other faulty property is reported as a warning and left out.
+    ///
+    /// # Errors
+    /// The material does not exist, or its base colour, emission or opacity is faulty.
     pub fn read(&mut self, index: usize, place: &str) -> Result<Material, Fault> {
         let document = self.textures.document;
         let place = document.entry("materials", index, place)?;

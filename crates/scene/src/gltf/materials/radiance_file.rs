@@ -12,7 +12,10 @@ use std::io::Cursor;
 const TEXEL_BYTES: u64 = 16;
 
 impl Document<'_> {
-    /// Decodes the picture of a radiance.
+    /// Decodes the EXR of a radiance, linear RGB.
+    ///
+    /// # Errors
+    /// The file cannot be read or decoded, or exceeds the budget.
     pub fn decode_radiance(&self, info: &RadianceInfo<'_>) -> Result<Image, Fault> {
         let bytes = self.resource(&info.place, info.uri)?;
         let broken = |what: String| Fault::Malformed { place: format!("{}/uri", info.place), what };

@@ -50,7 +50,10 @@ pub(crate) struct TextureInfo {
 }
 
 impl TextureInfo {
-    /// The property `key` of `owner`, if it exists.
+    /// Reads the texture property `key` of `owner`; `None` if absent.
+    ///
+    /// # Errors
+    /// It is malformed.
     pub fn read(owner: &Object<'_>, key: &str) -> Result<Option<Self>, Fault> {
         let Some(info) = owner.object(key)? else { return Ok(None) };
         let Some(index) = info.index("index")? else { return Err(info.malformed("index", "is missing")) };

@@ -21,11 +21,16 @@ pub(crate) struct TextureReader<'a> {
 }
 
 impl<'a> TextureReader<'a> {
+    /// A reader of a document's textures that has read none.
     pub fn new(document: &'a Document<'a>) -> Self {
         Self { document, image_indices: HashMap::new(), images: Vec::new(), radiance_indices: HashMap::new() }
     }
 
-    /// The texture at `place`; `None` (which is white) with a warning if its image cannot be read.
+    /// The texture at `place`; `None` (which is white) with a warning if its image cannot be read. `is_color`:
+    /// whether it is stored as sRGB.
+    ///
+    /// # Errors
+    /// The texture does not exist, or it or its sampler is faulty.
     pub fn texture(
         &mut self,
         info: &TextureInfo,

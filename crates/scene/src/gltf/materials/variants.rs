@@ -19,7 +19,10 @@ pub(crate) struct Variants {
 }
 
 impl Variants {
-    /// Reads the variants; `choice` is the name of the chosen one.
+    /// Reads the names of the variants; `choice` is the name of the chosen one, `None` for the default materials.
+    ///
+    /// # Errors
+    /// The extension is malformed, or there is no variant of this name.
     pub fn read(document: &Document<'_>, choice: Option<&str>) -> Result<Self, Fault> {
         let names = variant_names(document);
         let chosen = match choice {
@@ -31,13 +34,16 @@ impl Variants {
         Ok(Self { names, selected: chosen })
     }
 
-    /// The name of the chosen one.
+    /// The name of the chosen variant; `None` for the default materials.
     pub fn selected_name(&self) -> Option<&str> {
         self.names.get(self.selected?).map(String::as_str)
     }
 
     /// The material, by its index in the file, that the chosen variant assigns to the primitive at `place`; `None` if
     /// it has its own.
+    ///
+    /// # Errors
+    /// The mappings of the primitive are malformed.
     pub fn material(&self, document: &Document<'_>, place: &str) -> Result<Option<usize>, Fault> {
         let Some(selected) = self.selected else { return Ok(None) };
         let place = format!("{place}/extensions/{EXTENSION}/mappings");

@@ -19,7 +19,10 @@ pub(super) struct Header {
 }
 
 impl Header {
-    /// Reads a header to its end; what is wrong with it is text.
+    /// Reads a header to its end; what is wrong with its content is text.
+    ///
+    /// # Errors
+    /// The input cannot be read.
     pub fn read(input: &mut impl BufRead) -> std::io::Result<Result<Self, String>> {
         let mut input = input.take(MAX_BYTES);
         let mut is_end = false;
@@ -75,7 +78,7 @@ impl Header {
         Ok(Self { scanlines, length, by_columns, falls })
     }
 
-    /// Columns and rows of the picture.
+    /// Columns and rows of the picture, px.
     pub fn size(&self) -> [u32; 2] {
         if self.by_columns { [self.scanlines, self.length] } else { [self.length, self.scanlines] }
     }

@@ -34,6 +34,7 @@ pub(crate) struct Displacement {
 }
 
 impl Lattice {
+    /// The lattice over a view's picture.
     pub fn new(view: &View) -> Self {
         let [width, height] = view.lens.size_px().map(f64::from);
         let side_px = (width.max(height) / CELLS).max(1.0);
@@ -41,10 +42,12 @@ impl Lattice {
         Self { columns, rows, side_px }
     }
 
+    /// The number of its nodes.
     pub fn nodes(&self) -> usize {
         self.columns * self.rows
     }
 
+    /// The number of its cells.
     pub fn cells(&self) -> usize {
         (self.columns - 1) * (self.rows - 1)
     }
@@ -61,7 +64,7 @@ impl Lattice {
         (row * (self.columns - 1) + column, CellPosition { nodes, share })
     }
 
-    /// Pairs of neighbouring nodes.
+    /// Pairs of neighbouring nodes, beside or above each other, by number.
     pub fn neighbours(&self) -> impl Iterator<Item = [usize; 2]> {
         let Self { columns, rows, .. } = *self;
         (0..columns * rows).flat_map(move |node| {
@@ -73,7 +76,7 @@ impl Lattice {
 }
 
 impl CellPosition {
-    /// Bilinear weights of the corners.
+    /// Bilinear weights of the cell's corners: upper left, upper right, lower left, lower right.
     pub fn shares(&self) -> [f64; 4] {
         let DVec2 { x, y } = self.share;
         [(1.0 - x) * (1.0 - y), x * (1.0 - y), (1.0 - x) * y, x * y]
@@ -81,7 +84,7 @@ impl CellPosition {
 }
 
 impl Displacement {
-    /// No displacement.
+    /// No displacement of a view's picture.
     pub fn none(view: &View) -> Self {
         Self { lattice: Lattice::new(view), nodes: Vec::new() }
     }
@@ -94,15 +97,17 @@ impl Displacement {
         (has_valid_count && nodes.iter().all(|node| node.is_finite())).then_some(Self { lattice, nodes })
     }
 
+    /// The displacement of each node, px, row by row; empty if there is none.
     pub fn nodes(&self) -> &[Vec2] {
         &self.nodes
     }
 
+    /// Whether nothing is displaced.
     pub fn is_none(&self) -> bool {
         self.nodes.is_empty()
     }
 
-    /// Displacement at a pixel position of the camera's projection, px.
+    /// Displacement at a pixel position of the camera's projection, px; bilinear between nodes.
     pub fn at(&self, pixel: DVec2) -> DVec2 {
         if self.is_none() {
             return DVec2::ZERO;
@@ -117,7 +122,7 @@ impl Displacement {
         pixel + self.at(pixel)
     }
 
-    /// The largest displacement, px.
+    /// The length of the largest displacement, px.
     pub fn max_px(&self) -> f64 {
         self.nodes.iter().map(|node| f64::from(node.length())).fold(0.0, f64::max)
     }

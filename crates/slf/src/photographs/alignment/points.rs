@@ -104,7 +104,8 @@ impl ComparisonPoints {
         self.all.par_iter().map_init(Default::default, predict_point).collect()
     }
 
-    /// Compares a displaced photograph with the predictions.
+    /// Compares what the displaced photograph of view `view` shows at its points with the predictions. Points without
+    /// a prediction are left out.
     pub fn compare(
         &self,
         view: usize,

@@ -15,7 +15,7 @@ pub(crate) struct CalibratedObservations<'a> {
 }
 
 impl CalibratedObservations<'_> {
-    /// Collects what photographs show of a texel, by view, into `samples`.
+    /// Replaces `samples` by what photographs show of a texel, in the order of the views.
     pub fn collect_samples(&self, texel: usize, samples: &mut Vec<Sample>) {
         samples.clear();
         samples.extend(self.observations.of_texel(texel).iter().map(|observation| {
@@ -24,7 +24,7 @@ impl CalibratedObservations<'_> {
         }));
     }
 
-    /// Camera position of an observation.
+    /// Camera position of an observation, in the world.
     pub fn eye(&self, observation: &Observation) -> DVec3 {
         self.eyes[usize::from(observation.view)]
     }

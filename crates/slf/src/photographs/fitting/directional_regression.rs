@@ -52,7 +52,8 @@ pub(crate) struct Regression {
 }
 
 impl Kernel {
-    /// k at a distance between unit directions.
+    /// The kernel's value, in [0, 1], at a distance between unit directions; 0 from its reach on (Wendland's C²
+    /// function).
     pub fn at(&self, distance: f32) -> f32 {
         let share = distance / self.reach;
         if share >= 1.0 {
@@ -76,6 +77,7 @@ impl Kernel {
 }
 
 impl Regression {
+    /// Room for the regression of up to [`MAX_PHOTOGRAPHS`] residuals.
     pub fn new() -> Self {
         Self {
             matrix: vec![0.0; MAX_PHOTOGRAPHS * MAX_PHOTOGRAPHS],

@@ -51,7 +51,7 @@ const GRID_ROWS: usize = 128;
 const MAX_STRENGTH: f32 = 25.0;
 
 impl Mirrored {
-    /// No mirrored part.
+    /// No mirrored part, for this many texels.
     pub fn none(texels: usize) -> Self {
         let sphere = DirectionGrid::with_rows(1);
         Self {
@@ -63,6 +63,9 @@ impl Mirrored {
     }
 
     /// Fits the mirrored part, given the constant part without it; also returns the constant part beside it.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if `progress` asks to stop.
     pub fn fit(
         calibrated: &CalibratedObservations<'_>,
         constant: &[Vec3],
@@ -98,18 +101,18 @@ impl Mirrored {
         Ok((mirrored, constant))
     }
 
-    /// Scales the strength of each texel by `share`, in [0, 1].
+    /// The same with the strength of each texel scaled by its `share`, in [0, 1].
     pub fn scaled(mut self, share: &[f32]) -> Self {
         self.strength.iter_mut().zip(share).for_each(|(strength, share)| *strength *= share);
         self
     }
 
-    /// s of a texel.
+    /// The strength s of a texel's mirrored part, a factor of Fresnel's reflectance; 0 if it has none.
     pub fn strength(&self, texel: usize) -> f32 {
         self.strength.get(texel).copied().unwrap_or(0.0)
     }
 
-    /// Mirrored radiance of a texel toward a direction, for this normal.
+    /// Mirrored radiance of a texel, linear RGB, toward a unit direction, for this unit normal.
     pub fn light(&self, texel: usize, normal: Vec3, outgoing: Vec3) -> Vec3 {
         match self.strength(texel) {
             strength if strength > 0.0 => self.unit_light(normal, outgoing) * strength,
@@ -117,12 +120,12 @@ impl Mirrored {
         }
     }
 
-    /// Mirrored share for strength s, in [0, 1].
+    /// The share of light that is mirrored, in [0, 1], for the strength s, unit normal and unit direction.
     pub fn carried_share(&self, strength: f32, normal: Vec3, outgoing: Vec3) -> f32 {
         (strength * fresnel(normal.dot(outgoing).abs())).min(1.0)
     }
 
-    /// F·E: mirrored radiance for s = 1 toward a direction, for this normal.
+    /// F·E: mirrored radiance, linear RGB, for s = 1 toward a unit direction, for this unit normal.
     pub fn unit_light(&self, normal: Vec3, outgoing: Vec3) -> Vec3 {
         let (direction, share) = mirror_direction(normal, outgoing);
         let around = self.sphere.around(direction);

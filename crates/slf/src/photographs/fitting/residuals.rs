@@ -70,6 +70,7 @@ const MIN_OUTLIER_SCORE: f32 = 1e-3;
 pub(crate) const MIN_ERROR: f32 = 0.006;
 
 impl ResidualCoefficient {
+    /// The coefficient of the kernel, linear RGB.
     pub fn alpha(&self) -> Vec3 {
         Vec3::from_array(self.alpha.map(f32::from)) * STEP
     }
@@ -95,6 +96,7 @@ pub(crate) struct Workspace {
 }
 
 impl Workspace {
+    /// An empty workspace; reused for many texels.
     pub fn new() -> Self {
         let (samples, residuals, alpha, predictions) = Default::default();
         Self { regression: Regression::new(), samples, residuals, alpha, predictions }
@@ -111,7 +113,7 @@ impl Workspace {
         }
     }
 
-    /// Solves for `alpha` and the leave-one-out prediction of each residual.
+    /// Solves for `alpha` and the leave-one-out prediction of each residual, with this kernel.
     pub fn leave_one_out(&mut self, kernel: &Kernel) {
         self.regression.decompose(kernel, &self.residuals);
         self.leave_one_out_again();
@@ -138,7 +140,7 @@ impl Workspace {
         }
     }
 
-    /// Leave-one-out prediction errors.
+    /// Leave-one-out prediction errors, linear RGB, in the order of the residuals.
     pub fn errors(&self) -> impl Iterator<Item = Vec3> {
         self.residuals
             .iter()
@@ -276,7 +278,7 @@ impl CandidateModels<'_> {
         block_sums(blocks, by_texel.into_iter())
     }
 
-    /// Fits the mirrored share by texel, and the residuals.
+    /// Fits the mirrored share, in [0, 1], by texel, and the residuals.
     ///
     /// # Errors
     /// [`Cancelled`] if `progress` asks to stop.
@@ -356,7 +358,7 @@ fn block_sums(blocks: &TexelBlocks, terms: impl Iterator<Item = BlockSum>) -> Ve
 }
 
 impl Residuals {
-    /// No residuals.
+    /// No residuals, for this many texels.
     pub fn none(texels: usize) -> Self {
         Self {
             kernel: KERNELS[0],
@@ -366,6 +368,7 @@ impl Residuals {
         }
     }
 
+    /// The coefficients of a texel, in the order of the views.
     pub fn of_texel(&self, texel: usize) -> &[ResidualCoefficient] {
         &self.all[self.start[texel] as usize..self.start[texel + 1] as usize]
     }

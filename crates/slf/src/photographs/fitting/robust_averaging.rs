@@ -27,7 +27,7 @@ const LIMIT_SHARE: f32 = 0.95;
 const FULLY_LIMITED_SHARE: f32 = 0.25;
 
 impl Sample {
-    /// The sample with another light and the same weight.
+    /// The sample with other light (linear RGB) and the same weight.
     pub fn with_light(self, light: Vec3) -> Self {
         Self { light, ..self }
     }
@@ -37,7 +37,7 @@ impl Sample {
         (self.clipped / FULLY_LIMITED_SHARE).min(1.0)
     }
 
-    /// Weight that holds whatever the reference.
+    /// The weight that the sample has whatever the reference: clipped light counts less.
     pub fn min_weight(&self) -> f32 {
         self.weight * (1.0 - (1.0 - CLIPPED_WEIGHT) * self.clipped)
     }

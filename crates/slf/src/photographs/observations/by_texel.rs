@@ -53,10 +53,12 @@ pub(crate) struct Observations {
 const BLOCKED: u8 = 128;
 
 impl Observation {
+    /// The observation's weight, in [0, 1].
     pub fn weight(&self) -> f32 {
         f32::from(self.weight) / 255.0
     }
 
+    /// The share of it that is clipped in the photograph, in [0, 1].
     pub fn clipped(&self) -> f32 {
         f32::from(self.clipped & !BLOCKED) / 127.0
     }
@@ -95,16 +97,17 @@ impl Observations {
         Ok(Self { pictures, start, all, background_weights, brightest })
     }
 
-    /// Observations of a texel, by view.
+    /// Observations of a texel, in the order of the views.
     pub fn of_texel(&self, texel: usize) -> &[Observation] {
         &self.all[self.range(texel)]
     }
 
-    /// Range of a texel's observations in the list of all.
+    /// The range of a texel's observations in the list of all.
     pub fn range(&self, texel: usize) -> Range<usize> {
         self.start[texel] as usize..self.start[texel + 1] as usize
     }
 
+    /// The number of all observations.
     pub fn count(&self) -> usize {
         self.all.len()
     }
@@ -196,7 +199,7 @@ impl Observations {
         });
     }
 
-    /// Light of an observation.
+    /// The light of an observation, linear RGB.
     pub fn light(&self, observation: &Observation) -> Vec3 {
         decode_light(observation.root, self.brightest)
     }

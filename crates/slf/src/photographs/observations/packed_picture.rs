@@ -28,7 +28,7 @@ pub(crate) struct PictureSample {
 const STEPS: f32 = 1023.0;
 
 impl PackedPicture {
-    /// Packs a photograph, averaging `reduction`² pixels.
+    /// Packs a photograph, averaging squares of `reduction` × `reduction` pixels (at least 1).
     pub fn new(photograph: &Photograph, reduction: u32) -> Self {
         let reduction = reduction.max(1);
         let [width, height] =
@@ -80,7 +80,7 @@ impl PackedPicture {
         pixel / f64::from(self.reduction)
     }
 
-    /// Bilinear interpolation at a [`Self::place`], clamped at the border.
+    /// The light at a [`Self::place`]: bilinear between pixels, clamped at the border.
     pub fn at(&self, place: DVec2) -> PictureSample {
         let at = place - 0.5;
         let floor = at.floor();
@@ -102,7 +102,7 @@ impl PackedPicture {
         sample
     }
 
-    /// A pixel by its index, row by row, and whether it is clipped.
+    /// The light of a pixel, linear RGB, by its index row by row, and whether it is clipped.
     pub fn pixel(&self, index: usize) -> (Vec3, bool) {
         let word = self.pixels[index];
         let square_root =
@@ -111,7 +111,7 @@ impl PackedPicture {
         (square_root * square_root * self.brightest, word >> 30 != 0)
     }
 
-    /// Upper bound of pixel values.
+    /// Upper bound of the light of all pixels, per channel.
     pub fn brightest(&self) -> f32 {
         self.brightest
     }

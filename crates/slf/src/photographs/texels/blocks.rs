@@ -17,23 +17,24 @@ const BLOCK_TEXELS: usize = 12;
 const NEIGHBOUR_WEIGHT: f32 = 0.25;
 
 impl TexelBlocks {
-    /// Blocks over an atlas with this many columns and rows of texels.
+    /// Blocks over an atlas with `size` columns and rows of texels.
     pub fn new(size: [u32; 2]) -> Self {
         let [columns, rows] = size.map(|side| (side as usize).div_ceil(BLOCK_TEXELS).max(1));
         Self { columns, rows }
     }
 
+    /// The number of blocks.
     pub fn count(&self) -> usize {
         self.columns * self.rows
     }
 
-    /// The block that contains a texel.
+    /// The number of the block that contains a texel.
     pub fn block_of(&self, texels: &Texels, texel: usize) -> usize {
         let [x, y] = texels.place(texel).map(|at| at as usize / BLOCK_TEXELS);
         y * self.columns + x
     }
 
-    /// Whether a block is a white square of a chessboard.
+    /// Whether a block is a white square of a chessboard over all blocks.
     pub fn is_even(&self, block: usize) -> bool {
         (block % self.columns + block / self.columns).is_multiple_of(2)
     }
@@ -57,7 +58,7 @@ impl TexelBlocks {
             .collect()
     }
 
-    /// Interpolates block values at all texels.
+    /// Interpolates `values`, one for each block, at all texels: bilinear between the blocks' middles.
     pub fn interpolate_texels(&self, texels: &Texels, values: &[f32]) -> Vec<f32> {
         let middle = |texel: usize| DVec2::from(texels.place(texel).map(f64::from)) + 0.5;
         (0..texels.count()).into_par_iter().map(|texel| self.at(middle(texel), values)).collect()

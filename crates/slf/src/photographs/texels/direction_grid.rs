@@ -10,16 +10,17 @@ pub(crate) struct DirectionGrid {
 }
 
 impl DirectionGrid {
-    /// A grid with this many rows and twice as many columns.
+    /// A grid of directions with this many rows and twice as many columns.
     pub fn with_rows(rows: usize) -> Self {
         Self { columns: 2 * rows, rows }
     }
 
+    /// The number of its cells.
     pub fn count(&self) -> usize {
         self.columns * self.rows
     }
 
-    /// Unit direction of a cell's centre.
+    /// Unit direction (world) of the centre of the cell with this number; rows run from +y to −y.
     pub fn direction(&self, cell: usize) -> Vec3 {
         let (x, y) = (cell % self.columns, cell / self.columns);
         let azimuth = ((x as f32 + 0.5) / self.columns as f32 - 0.5) * std::f32::consts::TAU;

@@ -49,7 +49,8 @@ impl MemoryBudget {
         (reduction as u32, concurrent_photographs(largest, memory * WORKING_SHARE))
     }
 
-    /// For light stored at texels, with `memory` bytes.
+    /// The budget for light stored at texels, within `memory` bytes: how far pictures and atlas are reduced, how many
+    /// photographs are decoded at once.
     pub fn for_texels(scene: &Scene, atlas: &Atlas, views: &[View], memory: u64) -> Self {
         let memory = memory as f64;
         let (total, largest) = pixel_counts(views);

@@ -37,7 +37,7 @@ pub(crate) struct Texels {
 pub(crate) type TexelWeights = [(u32, f32); 4];
 
 impl Texels {
-    /// Texels of an atlas whose resolution is multiplied by `scale`.
+    /// The covered texels of an atlas whose resolution is multiplied by `scale`.
     pub fn new(scene: &Scene, atlas: &Atlas, scale: f64) -> Self {
         let side = |side: u32| (f64::from(side) * scale).ceil().max(1.0) as u32;
         let scaled = |corners: &[Vec2; 3]| corners.map(|corner| corner * scale as f32);
@@ -65,6 +65,7 @@ impl Texels {
         }
     }
 
+    /// The number of covered texels.
     pub fn count(&self) -> usize {
         self.positions.len()
     }
@@ -74,34 +75,39 @@ impl Texels {
         [self.grid.width, self.grid.height]
     }
 
+    /// The middle of the surface that a texel covers.
     pub fn point(&self, texel: usize) -> SurfacePoint {
         self.points[texel]
     }
 
+    /// The position of a texel's point, in the world.
     pub fn position(&self, texel: usize) -> DVec3 {
         self.positions[texel]
     }
 
+    /// The geometric unit normal at a texel's point.
     pub fn normal(&self, texel: usize) -> Vec3 {
         self.normals[texel]
     }
 
+    /// The interpolated unit normal at a texel's point.
     pub fn shading_normal(&self, texel: usize) -> Vec3 {
         self.shading_normals[texel]
     }
 
+    /// The area of surface that a texel covers, square scene units.
     pub fn area(&self, texel: usize) -> f32 {
         self.areas[texel]
     }
 
-    /// Column and row of a texel.
+    /// Column and row of a texel in the grid.
     pub fn place(&self, texel: usize) -> [u32; 2] {
         self.places[texel]
     }
 }
 
 impl TexelGrid {
-    /// The texel at a column and row.
+    /// The number of the texel at a column and row; `None` if none is covered there.
     pub fn at(&self, x: i64, y: i64) -> Option<usize> {
         let is_inside = x >= 0 && y >= 0 && x < i64::from(self.width) && y < i64::from(self.height);
         let number = is_inside.then(|| self.index[y as usize * self.width as usize + x as usize])?;

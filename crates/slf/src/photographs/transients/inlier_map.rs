@@ -23,6 +23,7 @@ pub(super) struct TileGrid {
 }
 
 impl TileGrid {
+    /// The tiles over a view's picture.
     pub fn new(view: &View) -> Self {
         let [width, height] = view.lens.size_px().map(f64::from);
         let side_px = (width.max(height) / TILES_PER_LONG_SIDE).max(1.0);
@@ -32,24 +33,24 @@ impl TileGrid {
 }
 
 impl InlierMap {
-    /// A map of weight 1 everywhere.
+    /// A map of weight 1 everywhere, for a view's picture.
     pub fn all_inliers(view: &View) -> Self {
         let grid = TileGrid::new(view);
         Self { grid, tiles: vec![1.0; grid.columns * grid.rows] }
     }
 
-    /// From stored tiles; `None` if their number is wrong.
+    /// A map from the stored weights of its tiles, row by row; `None` if their number does not fit the view.
     pub fn from_tiles(view: &View, tiles: Vec<f32>) -> Option<Self> {
         let grid = TileGrid::new(view);
         (tiles.len() == grid.columns * grid.rows).then_some(Self { grid, tiles })
     }
 
-    /// Weights of the tiles, row by row.
+    /// Weights of the tiles, in [0, 1], row by row.
     pub fn tiles(&self) -> &[f32] {
         &self.tiles
     }
 
-    /// Inlier weight of a pixel position, in [0, 1].
+    /// Inlier weight of a pixel position, in [0, 1]: bilinear between the tiles' middles.
     pub fn at(&self, pixel: DVec2) -> f32 {
         let TileGrid { columns, rows, side_px } = self.grid;
         let place = pixel / side_px - 0.5;

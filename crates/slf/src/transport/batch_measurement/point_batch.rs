@@ -22,12 +22,12 @@ pub(super) struct PointBatch<'a> {
 }
 
 impl PointBatch<'_> {
-    /// Light samples of a single point.
+    /// The number of light samples of a single point.
     pub fn lights_per_point(&self) -> u32 {
         self.transport.options.light_samples
     }
 
-    /// Unit normal of a point's triangle, on the front.
+    /// Unit normal of the triangle of the point with this number, on the front (world).
     pub fn geometric_normal(&self, index: usize) -> DVec3 {
         self.transport.scene().area_normal(self.points[index].point.triangle).normalize_or_zero()
     }

@@ -162,7 +162,7 @@ impl PointBatch<'_> {
 }
 
 impl LightDraws {
-    /// Reciprocal of the number of samples of this kind of light.
+    /// Reciprocal of the number of samples of this kind of light: its share of their mean.
     pub fn share(&self, sample: &LightSample) -> f64 {
         let count = if sample.punctual_index.is_some() { self.punctual_draws } else { self.area_draws };
         1.0 / f64::from(count)

@@ -49,7 +49,7 @@ pub enum GpuAbsent {
     },
 }
 
-/// All adapters, the one that would be used first.
+/// All adapters, in order of preference: the first would be used.
 pub fn adapters() -> Vec<AdapterDescription> {
     let candidates = ranked(&instance(), None);
     let described = candidates.iter().enumerate().map(|(rank, adapter)| {
@@ -103,7 +103,7 @@ impl Gpu {
     }
 }
 
-/// The adapter of this name with no more than these features.
+/// A card with this name, of which no more than these features are used; `None` if there is none.
 #[cfg(test)]
 pub fn with_features(name: &str, features: wgpu::Features) -> Option<Gpu> {
     ranked(&instance(), Some(name)).first().and_then(|adapter| Gpu::with(adapter, features).ok())

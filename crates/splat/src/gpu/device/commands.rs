@@ -11,12 +11,13 @@ pub struct Commands<'g> {
 }
 
 impl<'g> Commands<'g> {
+    /// An empty list of commands for a card.
     pub fn new(gpu: &'g Gpu) -> Self {
         let encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         Self { gpu, encoder }
     }
 
-    /// Runs a pass in this many workgroups.
+    /// Records a pass with these buffers, in `x` × `y` workgroups.
     pub fn dispatch(&mut self, pass: &Pass, bound: &BindGroup, [x, y]: [u32; 2]) {
         let mut compute = self.encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
         compute.set_pipeline(pass.pipeline(self.gpu.device()));
@@ -24,7 +25,7 @@ impl<'g> Commands<'g> {
         compute.dispatch_workgroups(x, y, 1);
     }
 
-    /// Sets a buffer to 0.
+    /// Records that a buffer is set to 0.
     pub fn clear(&mut self, buffer: &Buffer) {
         self.encoder.clear_buffer(buffer, 0, None);
     }

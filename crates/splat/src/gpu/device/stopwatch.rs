@@ -11,7 +11,10 @@ pub struct Stopwatch {
 }
 
 impl Stopwatch {
-    /// None where the card has no clock.
+    /// A stopwatch by the card's own clock; `None` where the card has none.
+    ///
+    /// # Errors
+    /// The card is lost.
     pub fn new(gpu: &Gpu) -> Result<Option<Self>, Lost> {
         if !gpu.device().features().contains(wgpu::Features::TIMESTAMP_QUERY) {
             return Ok(None);
@@ -25,12 +28,12 @@ impl Stopwatch {
         Ok(Some(Self { moments, words: gpu.buffer("moments", 4, usage)? }))
     }
 
-    /// Begins.
+    /// Takes the first moment.
     pub fn begin(&self, gpu: &Gpu) {
         self.write_timestamp(gpu, Some(0), None);
     }
 
-    /// Ends.
+    /// Takes the second moment.
     pub fn end(&self, gpu: &Gpu) {
         self.write_timestamp(gpu, None, Some(1));
     }
@@ -48,7 +51,10 @@ impl Stopwatch {
         gpu.queue().submit([encoder.finish()]);
     }
 
-    /// Seconds from the one moment to the other.
+    /// Seconds from the first to the second moment, by the card's clock.
+    ///
+    /// # Errors
+    /// The card is lost.
     pub fn seconds(&self, gpu: &Gpu) -> Result<f64, Lost> {
         let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         encoder.resolve_query_set(&self.moments, 0..2, &self.words, 0);

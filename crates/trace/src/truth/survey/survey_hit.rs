@@ -19,7 +19,7 @@ pub const WITHIN: f32 = 0.01;
 /// Radii farther apart than this, relative (absolute below 1 px), are two depths.
 const APART: f64 = 0.1;
 
-/// Whether all have the same radiance.
+/// Whether all hits have the same radiance.
 pub fn is_uniform(hits: &[SurveyHit]) -> bool {
     hits.windows(2).all(|pair| pair[0].light == pair[1].light)
 }
@@ -34,7 +34,7 @@ pub fn widest_gap(by_radius: &[SurveyHit]) -> usize {
         .unwrap_or(by_radius.len())
 }
 
-/// The sum of the light's squared deviations from its mean.
+/// The sum of the squared deviations of the hits' radiance from its mean.
 pub fn scatter(hits: &[SurveyHit]) -> f32 {
     let mean = hits.iter().map(|hit| hit.light).sum::<Vec3>() / hits.len().max(1) as f32;
     hits.iter().map(|hit| (hit.light - mean).length_squared()).sum()

@@ -71,6 +71,7 @@ struct ReflectionSample {
 type Cells = [(u32, f32); 4];
 
 impl ReflectionTexel {
+    /// What the photographs show of a texel beside its `constant` radiance. `None` if there are too few of them.
     pub fn new(
         calibrated: &CalibratedObservations<'_>,
         sphere: &DirectionGrid,
