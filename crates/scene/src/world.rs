@@ -22,7 +22,7 @@ pub struct World {
     /// What the camera sees where there is no surface. It lights nothing.
     pub backdrop: Backdrop,
     /// Maximum number of scattering events before the last one, toward the camera: 0 is direct light only; `None`: as
-    /// many as matter.
+    /// many as matter, up to a fixed limit.
     pub bounces: Option<u32>,
 }
 

@@ -15,7 +15,7 @@ pub(crate) struct Binary {
 }
 
 impl Binary {
-    /// Opens a file at its begin.
+    /// Opens a file at its beginning.
     ///
     /// # Errors
     /// It cannot be read.
@@ -23,7 +23,6 @@ impl Binary {
         let unreadable = |source| CaptureError::unreadable(file, source);
         let input = File::open(file).map_err(unreadable)?;
         let size = input.metadata().map_err(unreadable)?.len();
-        /// The next N bytes; `what` names them in errors.
         Ok(Self { file: file.into(), input: BufReader::new(input), at: 0, size })
     }
 
