@@ -78,7 +78,7 @@ impl Sight {
         }
     }
 
-    /// The agreement, for a message.
+    /// How far the mesh agrees with the photographs, as text for a message.
     pub fn share(&self) -> String {
         match self {
             Self::Unseen | Self::OnBlanks => "none".into(),

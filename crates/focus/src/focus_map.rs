@@ -121,7 +121,7 @@ impl FocusMap {
         (self.mask, self.background_mask) = (None, 1.0);
     }
 
-    /// Inverts the mask.
+    /// Replaces the mask m by 1 − m at every texel and the background; without a mask it was 1.
     pub fn invert_mask(&mut self) {
         let [width, height] = self.size();
         let inverted: Vec<f32> = match &self.mask {

@@ -63,7 +63,7 @@ impl From<ApertureShape> for Aperture {
 }
 
 impl Aperture {
-    /// Checks all fields.
+    /// Checks that all fields are within their ranges.
     ///
     /// # Errors
     /// The first field that makes the aperture invalid.

@@ -108,7 +108,7 @@ impl CalibratedLens {
         &self.intrinsics
     }
 
-    /// Its ideal projection.
+    /// Its ideal projection, before distortion.
     pub fn projection(&self) -> &Projection {
         &self.projection
     }

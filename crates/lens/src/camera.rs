@@ -53,7 +53,7 @@ impl Camera {
     /// Maximum shift, picture heights: farther from the axis light arrives at a grazing angle.
     pub const LARGEST_SHIFT: f64 = 100.0;
 
-    /// Checks all fields.
+    /// Checks that all fields are within their ranges.
     ///
     /// # Errors
     /// The first field that makes the camera invalid.
@@ -109,7 +109,8 @@ impl Camera {
         }
     }
 
-    /// The numbers of the optics.
+    /// The numbers that focusing takes, computed once: focus distance, image distance, aperture radius and angle of
+    /// view and picture height.
     pub fn optics(&self) -> Optics {
         let tan_half_yfov = (self.yfov / 2.0).tan();
         Optics {

@@ -57,17 +57,17 @@ impl LitScene {
         Arc::new(Self { tracer, options, resources, irradiance, photographs, bounce_limit, cancel })
     }
 
-    /// Traces rays in the scene.
+    /// The tracer, by which rays are traced in the scene.
     pub fn tracer(&self) -> &Arc<Tracer> {
         &self.tracer
     }
 
-    /// The scene.
+    /// The scene that is lit.
     pub fn scene(&self) -> &Arc<Scene> {
         self.tracer.scene()
     }
 
-    /// How light is modelled.
+    /// The options by which light is modelled.
     pub fn options(&self) -> LightOptions {
         self.options
     }

@@ -23,7 +23,7 @@ impl Ggx {
         Self { alpha: DVec2::new(along, across) }
     }
 
-    /// Whether it is a mirror.
+    /// Whether the surface is so smooth that it is a mirror.
     pub fn is_smooth(&self) -> bool {
         self.alpha.min_element() < SMOOTHEST
     }

@@ -40,7 +40,7 @@ pub struct SalfStatistics {
 }
 
 impl Salf {
-    /// Counts the samples by kind.
+    /// Counts the light field's samples by kind.
     pub fn statistics(&self) -> SalfStatistics {
         let [open, partial, background, carried] = self.samples.counts();
         let [bytes, partial_bytes] = self.samples.bytes();

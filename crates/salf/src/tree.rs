@@ -41,9 +41,9 @@ pub struct Node {
     pub center: Vec2,
     /// Half the sides of its footprint, px: a box of its variance.
     pub half_size: Vec2,
-    /// Mean inverse depth; 0 for the background.
+    /// Mean inverse depth, 1/length; 0 for the background.
     pub inverse_depth: f32,
-    /// How far the inverse depths below it lie apart.
+    /// How far the inverse depths of the samples below it lie apart, 1/length.
     pub inverse_depth_spread: f32,
     /// Weight toward the aperture's centre, px² (see [`crate::Sample`]).
     pub weight: f32,

@@ -273,7 +273,7 @@ impl<W: Word> Accumulator<W> {
 
 #[cfg(test)]
 impl<W: Word> Accumulator<W> {
-    /// All of it, to draw on.
+    /// A canvas over all rows of all levels, to draw on.
     pub fn canvas(&mut self) -> Canvas<'_, W> {
         self.bands(&[0]).remove(0)
     }
@@ -306,7 +306,7 @@ impl<W: Word> Rows<'_, W> {
         Rows { first, end, width, patch_bits, cells, totals, touched }
     }
 
-    /// Makes them black.
+    /// Sets all pixels of the rows to 0.
     pub fn clear(&mut self) {
         let stride = self.width + 3;
         for (place, touched) in self.touched.iter_mut().enumerate() {

@@ -128,7 +128,7 @@ impl SplatNode {
         self.cells == OPEN
     }
 
-    /// Whether it is a sample.
+    /// Whether the node is a single sample.
     #[inline(always)]
     pub fn is_leaf(&self) -> bool {
         self.child_count == 0

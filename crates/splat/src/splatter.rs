@@ -96,7 +96,7 @@ impl Splatter {
         }
     }
 
-    /// How coarse the sum may be.
+    /// How coarse the sum may be, as set by [`Self::set_tolerance`].
     pub fn tolerance(&self) -> Tolerance {
         self.tolerance
     }
@@ -133,7 +133,7 @@ impl Splatter {
         move |progress| aperture.stencils.cut_all(progress)
     }
 
-    /// The light field.
+    /// The light field that is drawn.
     pub fn salf(&self) -> &Arc<Salf> {
         &self.salf
     }

@@ -84,7 +84,7 @@ impl Tracer {
         Self { scene, space, hierarchy, triangles, outlines, has_transparency }
     }
 
-    /// The scene it traces.
+    /// The scene in which rays are traced.
     pub fn scene(&self) -> &Arc<Scene> {
         &self.scene
     }

@@ -170,7 +170,7 @@ impl<'a> Truth<'a> {
         Ok(())
     }
 
-    /// The current estimate.
+    /// The picture so far, with its standard error.
     pub fn estimate(&self) -> Estimate {
         self.statistics.estimate()
     }

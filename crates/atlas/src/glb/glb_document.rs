@@ -40,7 +40,7 @@ impl GlbDocument {
         Self { root: Map::from_iter([("buffers".to_string(), json!([{}]))]), chunk: Vec::new() }
     }
 
-    /// The document.
+    /// The JSON document, for modification.
     pub fn root_mut(&mut self) -> &mut Map<String, Value> {
         &mut self.root
     }

@@ -16,7 +16,7 @@ pub enum CameraFormat {
 }
 
 impl CameraFormat {
-    /// The program's name.
+    /// The name of the program that writes this format.
     pub fn name(self) -> &'static str {
         match self {
             Self::Colmap => "COLMAP",

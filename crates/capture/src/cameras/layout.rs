@@ -78,7 +78,7 @@ impl Cameras {
         cameras
     }
 
-    /// Their format.
+    /// The format that the cameras are stored in.
     pub fn format(&self) -> CameraFormat {
         match self {
             Self::Colmap(_) => CameraFormat::Colmap,

@@ -34,7 +34,7 @@ impl Mosaic {
         Ok(Self { file: file.into(), size, pitch })
     }
 
-    /// The file.
+    /// The picture file that holds the micro-images.
     pub fn file(&self) -> &Path {
         &self.file
     }

@@ -65,7 +65,7 @@ impl Selection {
         self.count
     }
 
-    /// All other texels.
+    /// The selection of all other texels.
     pub fn inverted(&self) -> SelectionResult {
         Self::from_bits((0..self.texel_count).map(|index| !self.contains(index)))
     }

@@ -13,7 +13,7 @@ pub enum Adjustment {
 }
 
 impl Adjustment {
-    /// Whether it can be used.
+    /// Whether its curve or plane is valid.
     pub fn is_valid(&self) -> bool {
         match self {
             Self::Curve(curve) => curve.is_valid(),

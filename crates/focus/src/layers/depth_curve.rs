@@ -25,7 +25,7 @@ impl DepthCurve {
         Some(Self { curve, anchor: 1.0 })
     }
 
-    /// Whether it can be used.
+    /// Whether its curve is valid and its anchor in [0, 1].
     pub fn is_valid(&self) -> bool {
         self.curve.is_valid() && (0.0..=1.0).contains(&self.anchor)
     }

@@ -52,7 +52,7 @@ impl FocalPlane {
         Self { points: places.map(|at| camera.world_from_camera(place(at))), curvature: 0.0 }
     }
 
-    /// Whether it can be used.
+    /// Whether its numbers are finite and its three points do not lie on one line.
     pub fn is_valid(&self) -> bool {
         /// Sine of the angle between two edges below which three points count as one line: positions in files are
         /// 32-bit floats.

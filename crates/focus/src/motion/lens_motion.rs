@@ -58,7 +58,7 @@ impl LensMotion {
         self.focus.is_empty() && self.f_number.is_empty()
     }
 
-    /// Whether it can be used.
+    /// Whether all its keys are valid: f-numbers above 0 and finite.
     pub fn is_valid(&self) -> bool {
         self.focus.is_valid(FocusTarget::is_valid)
             && self.f_number.is_valid(|number| *number > 0.0 && number.is_finite())

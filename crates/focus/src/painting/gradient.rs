@@ -81,7 +81,7 @@ mod optional {
 }
 
 impl Gradient {
-    /// Whether it can be drawn.
+    /// Whether it can be drawn: its ends are finite and apart, its focus and symmetry are valid.
     pub fn is_valid(&self) -> bool {
         let line = match self.line {
             GradientLine::World(ends) => ends.iter().all(|end| end.is_finite()) && ends[0] != ends[1],

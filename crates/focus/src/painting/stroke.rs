@@ -115,7 +115,7 @@ impl Stroke {
         }
     }
 
-    /// The stroke's brush.
+    /// The brush that the stroke paints with.
     pub fn brush(&self) -> &Brush {
         &self.brush
     }

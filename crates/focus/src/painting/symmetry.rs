@@ -77,7 +77,7 @@ impl Symmetry {
         self.mirror == [false; 3] && self.radial <= 1
     }
 
-    /// Whether it can be used.
+    /// Whether its centre is finite, its axes are orthonormal, and the number of its turns is supported.
     pub fn is_valid(&self) -> bool {
         let axes = DMat3::from_cols_array_2d(&self.axes);
         let are_square = (axes.transpose() * axes).abs_diff_eq(DMat3::IDENTITY, AXES_TOLERANCE);

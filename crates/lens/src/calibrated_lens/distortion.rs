@@ -53,7 +53,7 @@ impl Distortion {
         all.into_iter().flatten().all(|number| number.is_finite())
     }
 
-    /// Whether it is the identity.
+    /// Whether it leaves every position as it is.
     pub fn is_none(&self) -> bool {
         self.is_radial() && self.radial == [0.0; 6] && self.radial_denominator == [0.0; 3]
     }

@@ -22,7 +22,7 @@ struct KeysFile {
     f_number: Keys<f64>,
 }
 
-/// Reads keyframes of the lens.
+/// Reads keyframes of the lens: times in s, focus, f-number.
 ///
 /// # Errors
 /// The file cannot be read, has another form, or has invalid keys.
@@ -42,7 +42,7 @@ pub fn read_keys(file: &Path) -> Result<LensMotion, ProjectError> {
     }
 }
 
-/// Writes keyframes of the lens.
+/// Writes keyframes of the lens as JSON.
 ///
 /// # Errors
 /// The file cannot be written.

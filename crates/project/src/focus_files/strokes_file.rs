@@ -212,7 +212,7 @@ pub enum SelectionShape {
 }
 
 impl SelectionShape {
-    /// Whether it is valid.
+    /// Whether its numbers are finite and in range, and an outline has at least three points.
     pub fn is_valid(&self) -> bool {
         match self {
             Self::Everything | Self::Inverse | Self::Targets(_) => true,

@@ -50,7 +50,7 @@ impl PresetLibrary {
         shelf
     }
 
-    /// Reads the folder again.
+    /// Reads the user's presets from their folder again.
     pub fn reload(&mut self) {
         let files_of_kind = |kind| self.files(kind).into_iter().map(move |file| (kind, file));
         let user_files: Vec<_> = PresetKind::ALL.into_iter().flat_map(files_of_kind).collect();

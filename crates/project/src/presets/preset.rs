@@ -86,7 +86,7 @@ impl Preset {
         Ok(Self { name: name.to_string(), content })
     }
 
-    /// Its kind.
+    /// What the preset sets: a brush, a lens or a bokeh.
     pub fn kind(&self) -> PresetKind {
         match self.content {
             PresetContent::Brush(_) => PresetKind::Brush,

@@ -68,7 +68,7 @@ impl CaptureEntry {
         self.layer.is_some()
     }
 
-    /// Whether depth was repaired.
+    /// Whether depth was repaired by hand.
     pub fn has_depth_strokes(&self) -> bool {
         !self.depth_strokes.is_empty()
     }

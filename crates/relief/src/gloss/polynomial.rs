@@ -62,7 +62,7 @@ struct NormalEquations<'a> {
 }
 
 impl Regression {
-    /// For views at these positions, in [−1, 1], with the picture in the middle.
+    /// Prepares to fit what views at these positions show, in [−1, 1]², with the picture in the middle.
     pub fn new(places: &[[f32; 2]]) -> Self {
         let terms = |place: &[f32; 2]| {
             let [x, y] = place.map(f64::from);

@@ -34,7 +34,7 @@ impl OutlineBand {
         Self::from_edges(width, height, is_edge)
     }
 
-    /// Around the pixels where `is_edge` holds.
+    /// The band around the pixels where `is_edge` holds for column and row.
     pub fn from_edges(width: usize, height: usize, is_edge: impl Fn(usize, usize) -> bool) -> Self {
         let mut rows = vec![false; width * height];
         for y in 0..height {

@@ -51,7 +51,8 @@ impl Occluders {
     /// Parallax too small to separate two surfaces, px.
     pub const SAME_SURFACE_PX: f64 = 0.25;
 
-    /// From the depths of every cell of a part of the picture, its upper left corner and its size.
+    /// Finds the occluders from the depths of every cell of a part of the picture, its upper left corner (px) and its
+    /// size.
     pub fn new(
         [corner, extent]: [IVec2; 2],
         parallax_px: f64,

@@ -146,7 +146,7 @@ impl Record {
         DVec2::from_array(self.barycentric.map(|b| f64::from(b) / 65535.0))
     }
 
-    /// Whether it makes sense.
+    /// Whether its kind of sample exists and its inverse depth is finite.
     pub fn is_sound(&self) -> bool {
         Kind::from_place(self.place).is_some() && self.inverse_depth.get().is_finite()
     }

@@ -151,12 +151,12 @@ impl Samples {
         Run { samples: self, chunk: None, indices: start..end }
     }
 
-    /// The runs.
+    /// All runs, in order.
     pub fn runs(&self) -> impl Iterator<Item = Run<'_>> {
         (0..self.run_count()).map(|run| self.run(run))
     }
 
-    /// Every sample, in order.
+    /// All samples, unpacked, in order.
     pub fn iter(&self) -> impl Iterator<Item = Sample> {
         self.runs().flat_map(|run| run.iter())
     }

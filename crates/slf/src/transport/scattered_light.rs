@@ -22,7 +22,7 @@ impl ScatteredLight {
         Self { light, noisy }
     }
 
-    /// The carried part.
+    /// The carried part alone: own light is black.
     pub fn carried(self) -> Self {
         let carried = |light: Split| Split { own: DVec3::ZERO, ..light };
         Self { light: carried(self.light), noisy: carried(self.noisy) }

@@ -28,7 +28,8 @@ impl MomentSums {
     }
 }
 
-/// Of every partly occluded node, in the order of [`crate::nodes::SplatNode::cells`].
+/// The aperture moments of every partly occluded node, in the order of [`crate::nodes::SplatNode::cells`], for a lens
+/// whose aperture radius is `stop` times the baked one's.
 pub fn aperture_moments(nodes: &Nodes, shape: &Shape, stop: f64) -> Vec<ApertureMoments> {
     let cells = shape.cells(1.0 / stop);
     // Of every eight cells of a row at once.

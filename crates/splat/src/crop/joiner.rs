@@ -16,7 +16,7 @@ pub struct CropJoiner {
 }
 
 impl CropJoiner {
-    /// Of a picture of this width and height, px; anything of it is painted, or nothing.
+    /// A joiner for a picture of `size` columns and rows; `is_painted`: whether anything of it is painted.
     pub fn new(size: [u32; 2], is_painted: bool) -> Self {
         let knots = Knots::new(size.map(|side| side as usize));
         let cells = knots.spans() * knots.size[1].div_ceil(SPACING);

@@ -108,7 +108,7 @@ impl Gpu {
         Ok(gpu)
     }
 
-    /// What its driver calls it.
+    /// The card's name, as its driver calls it.
     pub fn name(&self) -> &str {
         &self.0.name
     }
@@ -118,7 +118,7 @@ impl Gpu {
         Arc::ptr_eq(&self.0, &other.0)
     }
 
-    /// Whether it no longer works.
+    /// Whether the card no longer works.
     pub fn is_lost(&self) -> bool {
         self.why_lost().is_some()
     }

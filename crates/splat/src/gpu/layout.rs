@@ -28,7 +28,7 @@ pub struct Level {
 }
 
 impl Layout {
-    /// For a picture of this size, with this many levels and words per pixel.
+    /// The layout of sums of a picture of `width` × `height` px, with this many levels and words per pixel.
     pub fn new([width, height]: [usize; 2], levels: usize, words_of_pixel: usize) -> Self {
         let mut layout = Self { levels: Vec::new(), words: 0, lines: 0 };
         for k in 0..levels {

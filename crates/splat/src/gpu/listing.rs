@@ -58,7 +58,7 @@ impl Listing {
         })
     }
 
-    /// Where listed records are.
+    /// The buffer that holds the listed records.
     pub fn records(&self) -> &Buffer {
         &self.records
     }

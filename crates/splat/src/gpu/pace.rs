@@ -37,7 +37,7 @@ pub struct Pace {
 }
 
 impl Pace {
-    /// For a card without measurements.
+    /// The pace for a card that has not been measured.
     pub fn new() -> Self {
         Self { sizes: [FIRST; 2], in_flight: VecDeque::new(), last_done: Instant::now() }
     }

@@ -158,7 +158,7 @@ pub fn list() -> String {
     joined(&[&of_pen(), &constants, FIXED, PEN, DRAW_LIST])
 }
 
-/// The module that draws.
+/// The WGSL source of the module that draws.
 pub fn draw() -> String {
     let constants = declarations!(
         PARTIAL_WORDS,

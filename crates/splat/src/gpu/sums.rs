@@ -403,6 +403,9 @@ impl GpuSums {
     }
 
     /// The sums as the processor keeps them: pixels and totals of every level, of free and of sharing samples.
+    ///
+    /// # Errors
+    /// The card is lost.
     #[cfg(test)]
     pub fn accumulated(&self, width: usize) -> Result<[crate::gpu::tests::Accumulated; 2], Lost> {
         let accumulators = &self.accumulators[width];

@@ -59,7 +59,7 @@ impl Balance {
         Self { gains: Gains::neutral(knots), knots, rest: NO_REST, rows, shared }
     }
 
-    /// Forgets the gains.
+    /// Forgets the gains: all are 1 again.
     pub fn reset(&mut self) {
         self.gains = Gains::neutral(self.knots);
     }

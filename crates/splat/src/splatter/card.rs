@@ -67,12 +67,12 @@ impl Card {
         }
     }
 
-    /// Whether the sums are on it.
+    /// Whether the sums are on the card.
     pub fn has_sums(&self) -> bool {
         self.sums.is_some()
     }
 
-    /// Whether it was lost.
+    /// Whether the card was lost.
     pub fn is_lost(&self) -> bool {
         self.is_lost
     }

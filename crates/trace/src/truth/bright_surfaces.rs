@@ -74,7 +74,7 @@ impl BrightSurfaces {
         Self { rates, senders, reach, sampler: options.sampler, seed: u64::from(options.seed) }
     }
 
-    /// Whether there are none.
+    /// Whether no surface is that bright.
     pub fn is_empty(&self) -> bool {
         self.senders.is_empty()
     }

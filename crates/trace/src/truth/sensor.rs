@@ -69,7 +69,7 @@ impl Sensor {
         Self { region, filter, quantiser, pixels, overflowed: AtomicBool::new(false) }
     }
 
-    /// The pixels that it has.
+    /// The rectangle of the picture, px, whose pixels it has.
     pub fn region(&self) -> Region {
         self.region
     }
@@ -143,7 +143,7 @@ impl Sensor {
         }
     }
 
-    /// Makes it black again.
+    /// Makes the sensor black again.
     pub fn clear(&mut self) {
         self.pixels.par_iter_mut().for_each(|sums| *sums = Default::default());
         self.overflowed = AtomicBool::new(false);

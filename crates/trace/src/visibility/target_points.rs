@@ -36,7 +36,7 @@ pub struct Bounds {
 }
 
 impl TargetPoints {
-    /// From their coordinates in [−1, 1].
+    /// The points with these coordinates on the square, in [−1, 1]².
     ///
     /// # Panics
     /// If there are more than [`PointSet::MAX`].
@@ -61,7 +61,7 @@ impl TargetPoints {
         }
     }
 
-    /// All of them.
+    /// The set of all points.
     pub fn all(&self) -> PointSet {
         self.all
     }

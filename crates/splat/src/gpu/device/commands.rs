@@ -30,7 +30,7 @@ impl<'g> Commands<'g> {
         self.encoder.clear_buffer(buffer, 0, None);
     }
 
-    /// Asks for it.
+    /// Submits the recorded commands to the card.
     pub fn submit(self) -> SubmissionIndex {
         self.gpu.queue().submit([self.encoder.finish()])
     }
