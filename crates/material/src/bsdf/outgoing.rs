@@ -42,7 +42,7 @@ impl OutgoingBsdf<'_, '_> {
     }
 
     /// Samples an incident direction nearly in proportion to the light scattered from there: one of
-    /// [`RESAMPLING_CANDIDATES`] directions of [`Self::sample`] is chosen by its weight and gets the mean of their
+    /// four directions of [`Self::sample`] is chosen by its weight and gets the mean of their
     /// weights (resampled importance sampling; Talbot, Cline and Egbert 2005). Unbiased like `sample`, but products of
     /// the weights along a path that is caught between near surfaces stay small. `random` supplies uniform numbers.
     pub fn resample(&self, mut random: impl FnMut() -> f64) -> Option<Scattered> {
