@@ -6,7 +6,7 @@ use serde::Serialize;
 /// Number of rays and samples that the cases use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Effort {
-    /// As many as the stated accuracy needs: some tens of seconds for the suite.
+    /// As many as the stated accuracy needs: some minutes for the suite.
     #[default]
     Full,
     /// A small share of these, for tests.

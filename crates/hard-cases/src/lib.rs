@@ -77,7 +77,7 @@ pub fn suite() -> Vec<Case> {
 
 /// Runs the cases whose names contain `filter` (all if it is empty).
 ///
-/// Progress is reported per case; the longest take some seconds at [`Effort::Full`].
+/// Progress is reported per case; the longest take two minutes at [`Effort::Full`].
 ///
 /// # Errors
 /// [`Cancelled`] if `progress` is cancelled.

@@ -123,7 +123,7 @@ fn matte(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> 
 }
 
 fn metal(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
-    compare(|albedo| with_lobes(albedo, 1.0, 1.0), (1, 33.0), effort, progress)
+    compare(|albedo| with_lobes(albedo, 1.0, 1.0), (1, 31.0), effort, progress)
 }
 
 fn glass(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> {
@@ -133,7 +133,7 @@ fn glass(effort: Effort, progress: &dyn Progress) -> Result<Verdict, Cancelled> 
         ior: 1.5,
         ..with_lobes(albedo, 0.0, 0.5)
     };
-    compare(white, (2, 28.0), effort, progress)
+    compare(white, (2, 27.0), effort, progress)
 }
 
 /// Compares pictures from cached light with the ground truth, for all geometries with one kind of material: `turn` is
