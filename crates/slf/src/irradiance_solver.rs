@@ -203,3 +203,91 @@ fn smoothed_indirect(patches: &Patches, patch_light: &[PatchLight], indirect: &[
     });
     sum / weights
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::TransportOptions;
+    use progress::Unwatched;
+    use scene::{Material, Scalar, Workflow};
+    use std::sync::Arc;
+    use test_scenes::{Mesh, scene_of};
+    use trace::Tracer;
+
+    /// A cube that rests on a slab, with a ball in the corner between them, of rough metal that is white in red and
+    /// darker in green and blue.
+    fn metal_shapes() -> Arc<Scene> {
+        let metal = || Material {
+            base_color: Vec3::new(1.0, 0.9, 0.3).extend(1.0),
+            workflow: Workflow::MetallicRoughness {
+                metallic: Scalar::constant(1.0),
+                roughness: Scalar::constant(1.0),
+            },
+            ..Material::default()
+        };
+        let slab = Mesh::cuboid(DVec3::new(-1.0, -0.1, -1.0), DVec3::new(1.0, 0.0, 1.0));
+        let cube = Mesh::cuboid(DVec3::ZERO, DVec3::splat(0.6));
+        let ball = Mesh::sphere(DVec3::new(-0.1, 0.1, 0.3), 0.1, 12);
+        scene_of([(slab, metal()), (cube, metal()), (ball, metal())])
+    }
+
+    #[test]
+    fn no_patch_sends_on_more_than_arrives() {
+        let scene = metal_shapes();
+        let transport = Transport::new(
+            Arc::new(Tracer::new(scene.clone())),
+            World::studio(),
+            TransportOptions::default(),
+        );
+        let patches = Patches::new(&scene, 600);
+        let rows: Vec<DVec3> = patches
+            .all()
+            .par_iter()
+            .map(|patch| row_sum(&trace_patch_rays(&transport, &patches, patch, 96).links))
+            .collect();
+        let largest = rows.iter().copied().fold(DVec3::ZERO, DVec3::max);
+        assert!(largest.cmple(DVec3::ONE).all(), "{largest}");
+        assert!(largest.x > 0.5, "some patches receive light from others alone: {largest}");
+    }
+
+    #[test]
+    fn a_row_is_scaled_to_its_bound_channel_by_channel() {
+        let links = || vec![(0, Vec3::new(0.9, 0.2, 0.0)), (1, Vec3::new(0.9, 0.1, 0.0))];
+        let mut bounded = links();
+        bound_row_sum(&mut bounded, DVec3::new(1.2, 0.5, 0.0));
+        let sum = row_sum(&bounded);
+        assert!(sum.x <= 1.2 && sum.x > 1.2 - 1e-6, "{sum}");
+        assert!((sum.y - 0.3).abs() < 1e-7 && sum.z == 0.0, "what is below its bound stays: {sum}");
+        let mut empty = Vec::new();
+        bound_row_sum(&mut empty, DVec3::ZERO);
+        assert!(empty.is_empty());
+    }
+
+    #[test]
+    fn light_in_a_closed_room_is_its_series_sum_or_cut_off() {
+        let room = Mesh::cuboid(DVec3::ZERO, DVec3::new(2.0, 1.0, 1.5)).turned();
+        let solve = |albedo: f32| {
+            let wall = Material {
+                base_color: Vec3::splat(albedo).extend(1.0),
+                emissive: Vec3::splat(1.0 - albedo + 0.001),
+                ..Material::lambertian_white()
+            };
+            let tracer = Arc::new(Tracer::new(scene_of([(&room, wall)])));
+            let transport = Transport::new(tracer, World::uniform(Vec3::ZERO), TransportOptions::default());
+            let options = IrradianceOptions { patches: 200, rays: 64 };
+            Irradiance::solve(&transport, options, &Unwatched).unwrap()
+        };
+        let mean = |irradiance: &Irradiance| {
+            let solution = irradiance.solution();
+            let all = solution.direct.iter().zip(&solution.indirect).map(|(a, b)| f64::from(a.x + b.x));
+            all.sum::<f64>() / solution.direct.len() as f64
+        };
+        let converged = solve(0.99);
+        assert!(!converged.solution().is_cut_off);
+        // Every point receives what every other sends: Le/(1 − ρ).
+        assert!((mean(&converged) / (0.011 / 0.01) - 1.0).abs() < 0.02, "{}", mean(&converged));
+        let endless = solve(1.0);
+        assert!(endless.solution().is_cut_off);
+        assert!(mean(&endless).is_finite());
+    }
+}
