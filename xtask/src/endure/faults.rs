@@ -50,7 +50,7 @@ const WRITERS: &[Writer] = &[
     writer("bake @/s.glb --camera @/cam.json -o out/l.salf", &["l.salf"]),
     writer("export @/p.fbrush --glb out/o.glb", &["o.glb"]),
     writer("export @/p.fbrush --focus-map out/m.exr", &["m.exr"]),
-    writer("export @/p.fbrush --focus-map out/m.png", &["m.png", "m.json"]),
+    writer("export @/p.fbrush --focus-map out/m.png", &["m.png", "m.png.json"]),
     writer("export @/p.fbrush --layers out/layers.exr", &["layers.exr"]),
     writer("unwrap @/s.glb -o out/o.glb", &["o.glb"]),
     writer("thumbnail @/l.salf -o out/t.png", &["t.png"]),
@@ -97,6 +97,9 @@ fn prepare(folder: &Path, context: &Context) -> Result<(), String> {
         for output in writer.outputs {
             let bytes = std::fs::read(place.own.join("out").join(output))
                 .map_err(|e| format!("{}: {output}: {e}", run.shown))?;
+            if bytes == OLD {
+                return Err(format!("{}: {output} is not written", run.shown));
+            }
             put(folder, &format!("new/{number}/{output}"), bytes)?;
         }
         plan.extend(faults_of(number, writer, &calls));
@@ -132,7 +135,11 @@ fn fail_once(case: usize, place: &Workplace, context: &Context) -> Verdict {
     let writer = &WRITERS[number];
     let (run, calls) = write_traced(writer, Some(fault), place, context)?;
     let what = |why: String| format!("{}, {}: {why}", run.shown, described(fault, &calls));
-    ended_as_documented(&run).map_err(&what)?;
+    // A number that also meets a thread's messages takes its error away: the files alone are judged then.
+    let is_mute = calls.iter().any(|call| call.injected && call.arguments.starts_with("2<"));
+    if !is_mute {
+        ended_as_documented(&run).map_err(&what)?;
+    }
     let mut replaced = 0;
     for output in writer.outputs {
         let found =
@@ -142,6 +149,8 @@ fn fail_once(case: usize, place: &Workplace, context: &Context) -> Verdict {
         match found {
             found if found == new => replaced += 1,
             found if found == OLD => {}
+            // A frame is there before it is marked as finished.
+            found if same_picture(&found, &new) && run.code != Some(0) => {}
             found => return Err(what(format!("{output} is neither old nor new: {} bytes", found.len()))),
         }
     }
@@ -166,7 +175,7 @@ fn write_traced(
         put(&place.own, &format!("out/{output}"), OLD)?;
     }
     let cache = place.own.join("cache");
-    let command = context.program.line(&place.own, &writer.command.replace('@', "../prepared"));
+    let command = context.program.line(&place.own, &writer.command.replace("@/", "../prepared/"));
     let command =
         command.env("XDG_CACHE_HOME", Some(cache.as_os_str())).env("RAYON_NUM_THREADS", Some("1".as_ref()));
     let injection = fault.and_then(|fault| fault["inject"].as_str());
@@ -180,6 +189,11 @@ fn write_traced(
         }
         None => traced(command, CALLS, injection, &place.own),
     }
+}
+
+/// Whether two files are pictures of the same pixels.
+fn same_picture(a: &[u8], b: &[u8]) -> bool {
+    matches!((image::load_from_memory(a), image::load_from_memory(b)), (Ok(a), Ok(b)) if a == b)
 }
 
 fn described(fault: &Value, calls: &[Call]) -> String {

@@ -51,7 +51,10 @@ const READABLE: &[Readable] = &[
     readable("m.png", "render @/l.salf --focus m.png --backend cpu -o o.png"),
     readable("recipe.json", "render @/l.salf --focus recipe.json --backend cpu -o o.png"),
     readable("bokeh.json", "render @/l.salf --bokeh bokeh.json --backend cpu -o o.png"),
-    readable("lens.json", "render @/l.salf --lens lens.json --backend cpu -o o.png"),
+    readable(
+        "lens.json",
+        "render @/s.glb --camera @/cam.json --lens lens.json --size 8x8 --renderer truth --spp 1 -o o.png",
+    ),
     readable("cam.json", "render @/s.glb --camera cam.json --size 8x8 --renderer truth --spp 1 -o o.png"),
     readable("strokes.json", "replay @/p.fbrush strokes.json -o o.fbrush"),
     readable("p.fbrush", "info p.fbrush"),
@@ -76,7 +79,7 @@ fn prepare(folder: &Path, context: &Context) -> Result<(), String> {
     write_all(folder, context)?;
     write_captures(folder)?;
     for Readable { file, command } in READABLE {
-        let run = context.program.line(folder, &command.replace('@', ".")).run();
+        let run = context.program.line(folder, &command.replace("@/", "./")).run();
         ended_as_documented(&run)?;
         if !matches!(run.code, Some(0 | 4)) {
             eprintln!("note: the intact {file} is refused: {}", run.last_line());
@@ -93,7 +96,7 @@ fn open_damaged(case: usize, place: &Workplace, context: &Context) -> Verdict {
     let damaged = damaged(&intact, &mut random);
     put(&place.own, file, &damaged)?;
     let limits = Limits { address_space: Some(4 << 30), cpu_s: Some(TIME_S), file_bytes: Some(1 << 28) };
-    let run = context.program.line(&place.own, &command.replace('@', "../prepared")).limited(limits).run();
+    let run = context.program.line(&place.own, &command.replace("@/", "../prepared/")).limited(limits).run();
     let verdict = ended_as_documented(&run).and_then(|()| match run.peak_bytes {
         0..=MEMORY => Ok(()),
         peak => Err(format!("{}: took {} MiB", run.shown, peak >> 20)),
@@ -107,7 +110,7 @@ fn copy_companions(file: &str, place: &Workplace) -> Verdict {
         "texture.gltf" => &["quad.bin", "t.png"],
         "t.png" => &["quad.bin", "texture.gltf"],
         "world.json" => &["sky.hdr"],
-        "m.png" => &["m.json"],
+        "m.png" => &["m.png.json"],
         "p.fbrush" | "l.salf" => &["s.glb"],
         "tiles.tile1-of-2.part" => &["tiles.tile2-of-2.part"],
         "depth" => &["depth/a.jpg", "depth/a_depth.pfm"],

@@ -42,7 +42,7 @@ fn prepare(folder: &Path, context: &Context) -> Result<(), String> {
     for (number, command) in COMMANDS.iter().enumerate() {
         let clean = folder.join(format!("../clean-{number}"));
         std::fs::create_dir_all(&clean).map_err(|e| e.to_string())?;
-        context.program.line(&clean, &command.replace('@', "../prepared")).succeed()?;
+        context.program.line(&clean, &command.replace("@/", "../prepared/")).succeed()?;
     }
     std::fs::write(folder.join("idle"), idle_mebibytes(folder, context).to_string())
         .map_err(|e| e.to_string())
@@ -65,7 +65,7 @@ fn run_short_of_memory(case: usize, place: &Workplace, context: &Context) -> Ver
     let idle: u64 = idle.parse().map_err(|_| "the idle program was not measured")?;
     let mebibytes = idle * (12 + step as u64) / 10;
     let limits = Limits { address_space: Some(mebibytes << 20), cpu_s: Some(120), file_bytes: None };
-    let command = COMMANDS[number].replace('@', "../prepared");
+    let command = COMMANDS[number].replace("@/", "../prepared/");
     let run = context.program.line(&place.own, &command).limited(limits).run();
     let what = |why: String| format!("in {mebibytes} MiB (idle {idle}): {why}");
     ended_as_documented(&run).map_err(what)?;

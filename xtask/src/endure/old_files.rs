@@ -106,13 +106,13 @@ const GOLDENS: [Golden; 17] = [
     Golden {
         what: "a preset of version 1",
         write: |place| preset(place, 1),
-        command: "render ../prepared/l.salf --lens lens.json --backend cpu -o o.png",
+        command: "render s.glb --lens lens.json --size 8x8 --backend cpu -o o.png",
         says: "",
     },
     Golden {
         what: "a preset of a later version",
         write: |place| preset(place, 99),
-        command: "render ../prepared/l.salf --lens lens.json --backend cpu -o o.png",
+        command: "render s.glb --lens lens.json --size 8x8 --backend cpu -o o.png",
         says: "update the program",
     },
 ];

@@ -39,7 +39,7 @@ const RACES: [Race; 6] = [
     Race {
         commands: [
             "render @/l.salf --backend cpu -o o.exr",
-            "render @/l.salf --backend cpu --size 16x16 -o o.exr",
+            "render @/l.salf --focus @/recipe.json --backend cpu -o o.exr",
         ],
         file: "o.exr",
     },
@@ -156,6 +156,6 @@ fn command_in(folder: &Path, command: &str, context: &Context) -> super::program
     let cache = folder.join("cache");
     context
         .program
-        .line(folder, &command.replace('@', "../../prepared"))
+        .line(folder, &command.replace("@/", "../../prepared/"))
         .env("XDG_CACHE_HOME", Some(cache.as_os_str()))
 }

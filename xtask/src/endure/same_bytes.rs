@@ -25,13 +25,16 @@ const PICTURE: &str = "render @/p.fbrush --size 80x48 --backend cpu";
 const BAKE: &str = "bake @/p.fbrush --size 80x48";
 
 fn prepare(folder: &Path, context: &Context) -> Result<(), String> {
-    if folder.join("whole.salf").exists() {
+    if folder.join("../whole/whole.salf").exists() {
         return Ok(());
     }
     write_all(folder, context)?;
+    // Beside the folders of the cases: a light field names its scene relative to itself.
+    let whole = folder.join("../whole");
+    std::fs::create_dir_all(&whole).map_err(|e| e.to_string())?;
     for (command, output) in [(FRAMES, "whole.####.exr"), (PICTURE, "whole.exr"), (BAKE, "whole.salf")] {
-        let line = format!("{} -o {output}", command.replace('@', "."));
-        context.program.line(folder, &line).env("RAYON_NUM_THREADS", Some("1".as_ref())).succeed()?;
+        let line = format!("{} -o {output}", command.replace("@/", "../prepared/"));
+        context.program.line(&whole, &line).env("RAYON_NUM_THREADS", Some("1".as_ref())).succeed()?;
     }
     Ok(())
 }
@@ -39,8 +42,8 @@ fn prepare(folder: &Path, context: &Context) -> Result<(), String> {
 fn split(case: usize, place: &Workplace, context: &Context) -> Verdict {
     let mut random = Seeded::new(case);
     let folder = &place.own;
-    let mut run = |line: String, threads: &str| {
-        let command = context.program.line(folder, &line.replace('@', "../prepared"));
+    let run = |line: String, threads: &str| {
+        let command = context.program.line(folder, &line.replace("@/", "../prepared/"));
         command.env("RAYON_NUM_THREADS", Some(threads.as_ref())).succeed()
     };
     match case % 3 {
@@ -48,7 +51,10 @@ fn split(case: usize, place: &Workplace, context: &Context) -> Verdict {
             // Shards, the last first or the first first.
             let count = 1 + random.below(4);
             for shard in turned((1..=count).collect(), &mut random) {
-                run(format!("{FRAMES} --shard {shard}/{count} -o f.####.exr"), random.one_of::<&str>(&THREADS))?;
+                run(
+                    format!("{FRAMES} --shard {shard}/{count} -o f.####.exr"),
+                    random.one_of::<&str>(&THREADS),
+                )?;
             }
             (1..=4).try_for_each(|frame| {
                 same(place, &format!("f.{frame:04}.exr"), &format!("whole.{frame:04}.exr"))
@@ -94,7 +100,7 @@ fn turned<T>(mut items: Vec<T>, random: &mut Seeded) -> Vec<T> {
 
 fn same(place: &Workplace, file: &str, whole: &str) -> Verdict {
     let read = |path: &Path| std::fs::read(path).map_err(|e| format!("{}: {e}", path.display()));
-    let (ours, theirs) = (read(&place.own.join(file))?, read(&place.prepared.join(whole))?);
+    let (ours, theirs) = (read(&place.own.join(file))?, read(&place.prepared.join("../whole").join(whole))?);
     match ours.iter().zip(&theirs).position(|(a, b)| a != b) {
         None if ours.len() == theirs.len() => Ok(()),
         at => {

@@ -135,7 +135,7 @@ fn try_without(case: usize, place: &Workplace, context: &Context) -> Verdict {
     std::fs::write(place.own.join("a-file"), "").map_err(|e| e.to_string())?;
     let read_only = std::fs::Permissions::from_mode(0o444);
     std::fs::set_permissions(place.own.join("a-file"), read_only).map_err(|e| e.to_string())?;
-    let command = context.program.line(&place.own, &command.replace('@', "../prepared"));
+    let command = context.program.line(&place.own, &command.replace("@/", "../prepared/"));
     let run = lacking(command, &place.own).run();
     ended_as_documented(&run).map_err(|why| format!("{what}: {why}"))?;
     if run.code != Some(*code) {

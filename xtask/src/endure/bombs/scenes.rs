@@ -44,7 +44,7 @@ pub const BOMBS: &[Bomb] = &[
     }),
     bomb("two billion instances", INFO, |to| {
         changed(to, |scene| {
-            scene["extensionsUsed"] = json!(["EXT_mesh_gpu_instancing"]);
+            scene["extensionsUsed"] = json!(["EXT_mesh_gpu_instancing", "KHR_materials_unlit"]);
             scene["accessors"][3] = json!({"componentType": 5126, "count": HUGE, "type": "VEC3"});
             scene["nodes"][0]["extensions"] =
                 json!({"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": 3}}});
@@ -59,7 +59,8 @@ pub const BOMBS: &[Bomb] = &[
     }),
     bomb("an animation of 2³¹ keys", INFO, |to| {
         changed(to, |scene| {
-            scene["accessors"][3] = json!({"componentType": 5126, "count": HUGE, "type": "SCALAR"});
+            scene["accessors"][3] =
+                json!({"componentType": 5126, "count": HUGE, "type": "SCALAR", "min": [0], "max": [1]});
             scene["accessors"][4] = json!({"componentType": 5126, "count": HUGE, "type": "VEC3"});
             scene["animations"] = json!([{"samplers": [{"input": 3, "output": 4}],
             "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}]}]);
@@ -111,6 +112,10 @@ fn changed(to: &Path, change: impl Fn(&mut Value)) -> Result<(), String> {
     let accessors = scene["accessors"].as_array_mut().ok_or("no accessors")?;
     accessors.extend([accessors[0].clone(), accessors[0].clone()]);
     change(&mut scene);
+    // Counts that differ from each other would be noticed first.
+    if let Some(attributes) = scene["meshes"][0]["primitives"][0]["attributes"].as_object_mut() {
+        attributes.remove("TEXCOORD_0");
+    }
     put(to, "s.glb", glb_of(&scene))
 }
 
@@ -134,7 +139,7 @@ fn ktx2(to: &Path, side: u32, levels: u32) -> Result<(), String> {
     file.extend([0; 128]);
     put(to, "t.ktx2", file)?;
     let mut scene = scene_with_texture("t.ktx2", Some("image/ktx2"));
-    scene["extensionsUsed"] = json!(["KHR_texture_basisu"]);
+    scene["extensionsUsed"] = json!(["KHR_texture_basisu", "KHR_materials_unlit"]);
     scene["textures"] = json!([{"extensions": {"KHR_texture_basisu": {"source": 0}}}]);
     put(to, "s.glb", glb_of(&scene))
 }
