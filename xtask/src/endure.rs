@@ -4,7 +4,7 @@
 //! * With `--full` each promise is continued where the last run stopped, case by case, until its full count is
 //!   reached for the present commit's state; `docs/promises.json` is written every few seconds and
 //!   `docs/promises.md` from it. A run may be stopped at any moment (Ctrl-C, SIGTERM) and started again.
-//! * `--case N` repeats one case; a violation says which.
+//! * `--case N` repeats one case; a violation says which. Its files stay in `target/endure/kept`.
 //!
 //! A promise is a file of `endure/`: it plays a range of cases, and a case depends on its number alone.
 //! `promise` has what all share, `program` runs the program and measures it, `ledger` adds counts up.

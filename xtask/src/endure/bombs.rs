@@ -1,5 +1,6 @@
 //! Bombs: small files that ask for far more than they are.
 
+mod bomb;
 mod captures;
 mod documents;
 mod pictures;
@@ -7,7 +8,6 @@ mod scenes;
 
 use super::program::Limits;
 use super::promise::{Context, Promise, Verdict, Workplace, ended_as_documented, nothing};
-use std::path::Path;
 
 /// Bombs are refused at once.
 pub const PROMISE: Promise = Promise {
@@ -30,22 +30,7 @@ const MEMORY: u64 = 1 << 30;
 /// Address space: the memory, and what the idle program maps.
 const ADDRESS_SPACE: u64 = MEMORY + (2 << 30);
 
-/// A bomb: writes its files and returns the words of a command that opens them.
-pub struct Bomb {
-    /// Where it is and what it claims.
-    pub name: &'static str,
-    /// Writes its files.
-    pub write: fn(&Path) -> Result<(), String>,
-    /// The command.
-    pub command: &'static str,
-}
-
-/// Shorthand for tables of bombs.
-pub const fn bomb(name: &'static str, command: &'static str, write: fn(&Path) -> Result<(), String>) -> Bomb {
-    Bomb { name, write, command }
-}
-
-fn all() -> impl Iterator<Item = &'static Bomb> {
+fn all() -> impl Iterator<Item = &'static bomb::Bomb> {
     pictures::BOMBS.iter().chain(scenes::BOMBS).chain(documents::BOMBS).chain(captures::BOMBS)
 }
 

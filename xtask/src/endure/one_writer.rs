@@ -92,7 +92,7 @@ fn race(case: usize, place: &Workplace, context: &Context) -> Verdict {
     let [first, second] = commands;
     let runs: [Run; 2] = std::thread::scope(|scope| {
         let other = scope.spawn(|| command_in(&folder, second, context).run());
-        std::thread::sleep(if case % 2 == 0 { Duration::ZERO } else { delay });
+        std::thread::sleep(if random.below(2) == 0 { Duration::ZERO } else { delay });
         let run = command_in(&folder, first, context).run();
         [run, other.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))]
     });

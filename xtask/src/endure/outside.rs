@@ -13,7 +13,7 @@ pub const PROMISE: Promise = Promise {
     sentence: "No file outside the input's folder is opened",
     what_is_done: "hostile names (.., absolute, links, file://, devices, UNC) in every format that names files, by \
                    strace: none is opened that the run of the harmless twin does not open",
-    full: 60,
+    full: NAMINGS.len() * FORMS.len(),
     short: 20,
     batch: 20,
     at_once: 2,
@@ -215,6 +215,14 @@ fn compare_with_twin(case: usize, place: &Workplace, context: &Context) -> Verdi
         let own = format!("{}/", folder.join("in").display());
         let output = format!("{}/o.", folder.display());
         let hidden = format!("{}/.o.", folder.display());
+        if folder.ends_with("harmless")
+            && !calls.iter().any(|call| call.result.contains(&format!("{own}{name}>")))
+        {
+            return Err(format!(
+                "{}: the command does not open what is named, so nothing was tried",
+                naming.what
+            ));
+        }
         let paths = calls.iter().filter_map(|call| {
             call.result.split_once('<').map(|(_, path)| path.trim_end_matches('>').to_owned())
         });

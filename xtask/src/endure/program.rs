@@ -204,9 +204,10 @@ impl Run {
         self.stderr = stderr.join().unwrap_or_default();
     }
 
-    /// The error, or the last line that was reported.
+    /// The error, or what was allocated in vain, or the last line that was reported.
     pub fn last_line(&self) -> &str {
-        let error = self.stderr.lines().find(|line| line.starts_with("error:"));
+        let tells = |line: &&str| line.starts_with("error:") || line.contains("memory allocation of");
+        let error = self.stderr.lines().find(tells);
         error.or_else(|| self.stderr.lines().last()).unwrap_or("(nothing was reported)")
     }
 }

@@ -96,6 +96,7 @@ impl Promise {
         if let Err(why) = (self.prepare)(&prepared, context) {
             return Ok(Outcome { skipped: Some(why), ..Outcome::default() });
         }
+        let kept = context.folder.with_file_name("kept");
         let next = AtomicUsize::new(first);
         let violations = Mutex::new(Vec::new());
         let worker = || {
@@ -110,6 +111,7 @@ impl Promise {
                 if let Err(what) = verdict.and_then(|()| (self.case)(case, &place, context)) {
                     let mut all = violations.lock().unwrap_or_else(|broken| broken.into_inner());
                     all.push(Violation { case, what });
+                    keep(&place.own, &kept.join(format!("{}-{case}", self.name)));
                 }
                 let _ = std::fs::remove_dir_all(&place.own);
             }
@@ -123,6 +125,16 @@ impl Promise {
         let mut violations = violations.into_inner().unwrap_or_else(|broken| broken.into_inner());
         violations.sort_by_key(|violation| violation.case);
         Ok(Outcome { done: count, violations, skipped: None })
+    }
+}
+
+/// Moves the files of a case that broke its promise to where they stay.
+fn keep(own: &Path, kept: &Path) {
+    let _ = std::fs::remove_dir_all(kept);
+    let moved =
+        kept.parent().map_or(Ok(()), std::fs::create_dir_all).and_then(|()| std::fs::rename(own, kept));
+    if let Err(error) = moved {
+        eprintln!("note: {}: is not kept: {error}", kept.display());
     }
 }
 

@@ -1,7 +1,7 @@
 //! Captures of other programs.
 
 use super::super::made_files::{picture, put};
-use super::{Bomb, bomb};
+use super::bomb::{Bomb, bomb};
 use std::path::Path;
 
 const INFO: &str = "info c";

@@ -2,7 +2,7 @@
 
 use super::super::archive::{Entry, zip};
 use super::super::made_files::{glb_of, put, scene};
-use super::{Bomb, bomb};
+use super::bomb::{Bomb, bomb};
 use std::path::Path;
 
 /// Bombs in the program's own files, and in what is asked for.

@@ -2,7 +2,7 @@
 
 use super::super::archive::zlib_zeros;
 use super::super::made_files::{picture, png_chunk, png_of_zeros, put};
-use super::{Bomb, bomb};
+use super::bomb::{Bomb, bomb};
 
 const COMPARE: &str = "compare a.png a.png";
 

@@ -1,7 +1,7 @@
 //! Scenes that claim huge meshes and textures.
 
 use super::super::made_files::{glb, glb_of, png_of_zeros, put, quad_bytes, scene, scene_with_texture};
-use super::{Bomb, bomb};
+use super::bomb::{Bomb, bomb};
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -57,15 +57,19 @@ pub const BOMBS: &[Bomb] = &[
             scene["meshes"][0]["weights"] = json!([1.0]);
         })
     }),
-    bomb("an animation of 2³¹ keys", INFO, |to| {
-        changed(to, |scene| {
-            scene["accessors"][3] =
-                json!({"componentType": 5126, "count": HUGE, "type": "SCALAR", "min": [0], "max": [1]});
-            scene["accessors"][4] = json!({"componentType": 5126, "count": HUGE, "type": "VEC3"});
-            scene["animations"] = json!([{"samplers": [{"input": 3, "output": 4}],
+    bomb(
+        "an animation of 2³¹ keys",
+        "render s.glb --frames 1-2 --size 8x8 --backend cpu -o o.####.png",
+        |to| {
+            changed(to, |scene| {
+                scene["accessors"][3] =
+                    json!({"componentType": 5126, "count": HUGE, "type": "SCALAR", "min": [0], "max": [1]});
+                scene["accessors"][4] = json!({"componentType": 5126, "count": HUGE, "type": "VEC3"});
+                scene["animations"] = json!([{"samplers": [{"input": 3, "output": 4}],
             "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}]}]);
-        })
-    }),
+            })
+        },
+    ),
     bomb("a meshopt view of 2³¹ vertices", INFO, |to| {
         changed(to, |scene| {
             scene["extensionsUsed"] = json!(["EXT_meshopt_compression"]);
