@@ -4,6 +4,7 @@
 //!   the demo to a picture.
 //! * `test [ARG…]` installs what is missing and runs the whole test suite.
 //! * `window` drives the real window with mouse and keyboard, under Xvfb.
+//! * `endure [--full] [PROMISE…]` tries promises of the program by number: bombs, damaged files, faults, races.
 //! * `circles [CRATE…]` lists cyclic dependencies between modules of a crate; there must be none.
 //! * `ci` runs all checks: crate directions, module cycles, licences, formatting, lints, docs, tests.
 //! * `package` builds packages for users without a compiler, and a source archive that builds without a
@@ -18,6 +19,7 @@ mod chore;
 mod ci;
 mod crate_directions;
 mod demo;
+mod endure;
 mod figures;
 mod licences;
 mod module_circles;
@@ -42,6 +44,9 @@ usage: cargo xtask CHORE
   figures [--check]
                 write the tables and plots of the performance pages from docs/figures
   window [ARG…] drive the real window under Xvfb, with a screenshot of every step
+  endure [--full] [PROMISE…]
+                keep promises by number: bombs, damaged files, faults, races …; --full
+                continues the full counts, kept in docs/promises.json
   circles [CRATE…]
                 cyclic dependencies between the modules of a crate, with the names that cause them
   lint          crate directions, paths in ARCHITECTURE.md, module cycles, licences, figures,
@@ -65,6 +70,7 @@ fn main() -> std::process::ExitCode {
         "package" => package::package(&rest),
         "lint" => ci::lint(),
         "ci" => ci::ci(),
+        "endure" => endure::endure(&rest),
         "demo" => demo::demo(sky_rays(&rest)),
         "figures" => figures::figures(&rest),
         "" | "help" | "-h" | "--help" => {

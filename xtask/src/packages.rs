@@ -43,6 +43,9 @@ pub const TO_PACKAGE: &[Package] =
 /// For driving the real window: a virtual display, mouse and keyboard input, screenshots.
 pub const TO_ACT: &[Package] = &[package("xvfb"), package("xdotool"), package("imagemagick")];
 
+/// For trying promises: system calls that are recorded, and made to fail.
+pub const TO_ENDURE: &[Package] = &[Package { name: "strace", provides: Some("strace") }];
+
 /// Installs missing packages, after confirmation if the terminal is interactive.
 ///
 /// # Errors

@@ -68,7 +68,10 @@ pub fn focus_brush(arguments: &[OsString]) -> Result<(), Failure> {
 }
 
 /// Builds the program. Returns its path.
-fn build_focus_brush() -> Result<PathBuf, Failure> {
+///
+/// # Errors
+/// The build fails.
+pub fn build_focus_brush() -> Result<PathBuf, Failure> {
     execute(cargo("build").args(["--package", "focus-brush"]))?;
     let target =
         std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| repository().join("target"), PathBuf::from);
