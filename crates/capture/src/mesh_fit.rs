@@ -60,43 +60,43 @@ impl std::fmt::Display for MeshFit {
 
 /// What photographs show of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Sight {
+pub(crate) enum MeshObservation {
     /// None shows any of it.
-    Unseen,
-    /// It is seen only where photographs are blank, though they are not so elsewhere.
+    NotVisible,
+    /// It is visible only where photographs are blank, though they are not so elsewhere.
     OnBlanks,
-    /// It is seen; how well it fits, if enough of it has a pattern and is in two photographs.
-    Seen(Option<MeshFit>),
+    /// It is visible; how well it fits, if enough of it has a pattern and is in two photographs.
+    Visible(Option<MeshFit>),
 }
 
-impl Sight {
+impl MeshObservation {
     /// How well the mesh fits; `None` if no photograph shows enough of it.
     pub fn fit(&self) -> Option<MeshFit> {
         match self {
-            Self::Unseen | Self::OnBlanks => None,
-            Self::Seen(fit) => *fit,
+            Self::NotVisible | Self::OnBlanks => None,
+            Self::Visible(fit) => *fit,
         }
     }
 
     /// How far the mesh agrees with the photographs, as text for a message.
     pub fn share(&self) -> String {
         match self {
-            Self::Unseen | Self::OnBlanks => "none".into(),
-            Self::Seen(None) => "unknown".into(),
-            Self::Seen(Some(fit)) => format!("{:.0} %", 100.0 * fit.agreement),
+            Self::NotVisible | Self::OnBlanks => "none".into(),
+            Self::Visible(None) => "unknown".into(),
+            Self::Visible(Some(fit)) => format!("{:.0} %", 100.0 * fit.agreement),
         }
     }
 
     /// Whether the mesh fits clearly better, beyond chance, than it does `elsewhere`.
-    pub fn is_better_than(&self, elsewhere: &Self) -> bool {
+    pub fn fits_better_than(&self, elsewhere: &Self) -> bool {
         /// More than chance makes of the fewest patches.
         const MARGIN: f64 = 0.15;
         match (self.fit(), elsewhere) {
             (Some(fit), _) if fit.is_contradicted() => false,
-            (Some(fit), Self::Seen(Some(other))) => fit.agreement > other.agreement + MARGIN,
+            (Some(fit), Self::Visible(Some(other))) => fit.agreement > other.agreement + MARGIN,
             (Some(_), _) => true,
-            (None, Self::Unseen | Self::OnBlanks) => matches!(self, Self::Seen(None)),
-            (None, Self::Seen(_)) => false,
+            (None, Self::NotVisible | Self::OnBlanks) => matches!(self, Self::Visible(None)),
+            (None, Self::Visible(_)) => false,
         }
     }
 }
@@ -107,8 +107,8 @@ pub(crate) fn measure(
     views: &[View],
     options: &LoadOptions,
     progress: &dyn Progress,
-) -> Result<Sight, Cancelled> {
-    let Some(pairs) = choose_pairs(scene, views) else { return Ok(Sight::Unseen) };
+) -> Result<MeshObservation, Cancelled> {
+    let Some(pairs) = choose_pairs(scene, views) else { return Ok(MeshObservation::NotVisible) };
     progress.check()?;
     progress.report(0.4);
     let mut reductions: BTreeMap<usize, f64> = BTreeMap::new();
@@ -134,9 +134,9 @@ pub(crate) fn measure(
         prepared.par_extend(chunk.par_iter().filter_map(prepare));
     }
     progress.report(0.8);
-    let both_ways: Vec<[usize; 2]> =
+    let ordered_pairs: Vec<[usize; 2]> =
         pairs.iter().map(|pair| pair.views).flat_map(|[a, b]| [[a, b], [b, a]]).collect();
-    let tallies = both_ways.par_iter().filter_map(|[from, to]| {
+    let tallies = ordered_pairs.par_iter().filter_map(|[from, to]| {
         let (from_map, from_picture) = prepared.get(from)?;
         let (to_map, to_picture) = prepared.get(to)?;
         Some(compare((&views[*from], from_map, from_picture), (&views[*to], to_map, to_picture)))
@@ -145,10 +145,14 @@ pub(crate) fn measure(
     progress.report(1.0);
     let agreement = f64::from(agreeing) / f64::from(patches.max(1));
     if patches >= MeshFit::MIN_PATCHES {
-        return Ok(Sight::Seen(Some(MeshFit { agreement, patches })));
+        return Ok(MeshObservation::Visible(Some(MeshFit { agreement, patches })));
     }
     let patterns: Patterns = prepared.values().map(|(map, picture)| patches::patterns(map, picture)).sum();
-    Ok(if patterns.is_surface_elsewhere() { Sight::OnBlanks } else { Sight::Seen(None) })
+    Ok(if patterns.is_surface_elsewhere() {
+        MeshObservation::OnBlanks
+    } else {
+        MeshObservation::Visible(None)
+    })
 }
 
 /// By how much a photograph is reduced along each side: so that the surface is some hundred pixels wide, and the error of a pose, a pixel
@@ -158,8 +162,8 @@ fn reduction(view: &View, points: &[DVec3]) -> f64 {
     const EXTENT: f64 = 320.0;
     const LONGEST: f64 = 1000.0;
     let [width, height] = view.lens.size_px().map(f64::from);
-    let seen = points.iter().filter_map(|point| view.project(*point));
-    let (low, high) = seen.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), pixel| {
+    let pixels = points.iter().filter_map(|point| view.project(*point));
+    let (low, high) = pixels.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), pixel| {
         let pixel = pixel.clamp(DVec2::ZERO, DVec2::new(width, height));
         (low.min(pixel), high.max(pixel))
     });

@@ -3,7 +3,7 @@
 use crate::cameras::pose::{Axes, from_camera_to_world};
 use crate::files::folder::Folder;
 use crate::mesh::placement::{Placement, find_placements, move_mesh};
-use crate::mesh_fit::{MeshFit, Sight, measure};
+use crate::mesh_fit::{MeshFit, MeshObservation, measure};
 use crate::{CaptureError, Remark};
 use glam::DMat4;
 use progress::{Progress, Stage};
@@ -45,15 +45,15 @@ impl MeshPlace<'_> {
             let [begin, end] = [index, index + 1].map(|n| 0.5 + 0.5 * n as f32 / placements.len() as f32);
             // Moving the cameras the other way is the same.
             let Some(moved) = moved_views(views, placement.to_cameras.inverse()) else { continue };
-            let sight = measure(scene, &moved, self.options, &Stage::new(progress, begin, end))?;
-            if sight.is_better_than(&best.0) {
-                best = (sight, Some(placement));
+            let observation = measure(scene, &moved, self.options, &Stage::new(progress, begin, end))?;
+            if observation.fits_better_than(&best.0) {
+                best = (observation, Some(placement));
             }
         }
-        let (sight, placement) = best;
+        let (observation, placement) = best;
         if let Some(Placement { file, to_cameras }) = placement {
             move_mesh(scene, *to_cameras);
-            let fits = match sight.fit() {
+            let fits = match observation.fit() {
                 Some(fit) => format!("{fit}, {} before", as_read.share()),
                 None => "no photograph shows it otherwise".into(),
             };
@@ -62,15 +62,15 @@ impl MeshPlace<'_> {
                 file.display()
             )));
         }
-        let misfit = match sight {
-            Sight::Unseen => Some("no picture shows anything of it".into()),
-            Sight::OnBlanks => {
+        let misfit = match observation {
+            MeshObservation::NotVisible => Some("no picture shows anything of it".into()),
+            MeshObservation::OnBlanks => {
                 Some("does not fit the photographs: they are blank where it is, and not elsewhere".into())
             }
-            Sight::Seen(Some(fit)) if fit.is_contradicted() => {
+            MeshObservation::Visible(Some(fit)) if fit.is_contradicted() => {
                 Some(format!("does not fit the photographs: only {fit}"))
             }
-            Sight::Seen(_) => None,
+            MeshObservation::Visible(_) => None,
         };
         remarks.extend(misfit.map(|what: String| Remark {
             text: format!(
@@ -80,7 +80,7 @@ impl MeshPlace<'_> {
             names: vec![shown.to_string()],
             is_incomplete: true,
         }));
-        Ok(sight.fit())
+        Ok(observation.fit())
     }
 }
 

@@ -21,7 +21,9 @@ pub use photograph_picture::{photograph_picture, render_photograph};
 pub use render::{
     MAX_CELLS_A_SIDE, RenderCost, RenderOptions, Rendered, light_of_photographs, render, render_input,
 };
-pub(crate) use render::{lit_scene_of, new_splatter, photographed_shares_of_pixels, sum_baked};
+pub(crate) use render::{
+    cut_off_warning, lit_scene_of, new_splatter, photographed_shares_of_pixels, sum_baked,
+};
 pub use renderer::Renderer;
 pub use stereo::{Stereo, StereoForm, render_stereo};
 pub use thumbnail::read_thumbnail;

@@ -29,14 +29,7 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure
     check_options(arguments)?;
 
     let start = Instant::now();
-    let input = open_input(
-        &arguments.file,
-        &arguments.shot.appearance,
-        arguments.layer.as_deref(),
-        console.resources(),
-        console,
-    )?;
-    console.warn(&input.warnings);
+    let input = open(arguments, console)?;
     let (camera, focus) = camera_and_focus(&input, &arguments.shot, console)?;
     let open_seconds = start.elapsed().as_secs_f64();
 
@@ -100,6 +93,18 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure
         files.iter().for_each(|file| console.note(&format!("wrote {}", file.display())));
     }
     Ok(())
+}
+
+/// Opens the file to render, and prints its warnings.
+///
+/// # Errors
+/// It cannot be opened, or has no layer of that name.
+pub fn open(arguments: &RenderArguments, console: &Console) -> Result<Input, Failure> {
+    let layer = arguments.layer.as_deref();
+    let appearance = &arguments.shot.appearance;
+    let input = open_input(&arguments.file, appearance, layer, console.resources(), console)?;
+    console.warn(&input.warnings);
+    Ok(input)
 }
 
 /// The render options that the arguments select.

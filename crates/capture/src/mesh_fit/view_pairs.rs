@@ -26,7 +26,7 @@ const POINTS: usize = 40;
 const MAX_PARTNERS: usize = 2000;
 
 /// What a photograph shows of the surface.
-struct Seen {
+struct CandidateView {
     view: usize,
     /// World points, spread over the picture.
     points: Vec<DVec3>,
@@ -39,25 +39,25 @@ pub(super) fn choose_pairs(scene: &Scene, views: &[View]) -> Option<Vec<Pair>> {
     let affordable = (MAX_TRIANGLES / scene.triangles.len().max(1)).clamp(4, MAX_CANDIDATES);
     let max_pairs = if scene.triangles.len() > LARGE_MESH { 2 } else { MAX_PAIRS };
     let step = views.len().div_ceil(affordable).max(1);
-    let candidates: Vec<usize> = (0..views.len()).step_by(step).collect();
-    let look = |view: &usize| what_is_seen(scene, &views[*view], *view);
+    let sampled: Vec<usize> = (0..views.len()).step_by(step).collect();
+    let candidate = |view: &usize| candidate_view(scene, &views[*view], *view);
     let at_once = at_once(scene);
-    let mut seen: Vec<Seen> = candidates
+    let mut candidates: Vec<CandidateView> = sampled
         .chunks(at_once)
-        .flat_map(|chunk| chunk.par_iter().filter_map(look).collect::<Vec<_>>())
+        .flat_map(|chunk| chunk.par_iter().filter_map(candidate).collect::<Vec<_>>())
         .collect();
-    if seen.is_empty() {
-        seen.extend((0..views.len()).filter(|view| view % step != 0).find_map(|view| look(&view)));
+    if candidates.is_empty() {
+        candidates.extend((0..views.len()).filter(|view| view % step != 0).find_map(|view| candidate(&view)));
     }
-    let most = seen.iter().map(|seen| seen.share).fold(0.0, f64::max);
-    if seen.is_empty() {
+    let most = candidates.iter().map(|candidate| candidate.share).fold(0.0, f64::max);
+    if candidates.is_empty() {
         return None;
     }
-    seen.retain(|seen| seen.share >= 0.25 * most);
+    candidates.retain(|candidate| candidate.share >= 0.25 * most);
     let mut pairs: Vec<Pair> = Vec::new();
-    let mut next = seen.iter().position(|seen| seen.share == most);
+    let mut next = candidates.iter().position(|candidate| candidate.share == most);
     while let Some(index) = next {
-        let first = seen.swap_remove(index);
+        let first = candidates.swap_remove(index);
         if let Some(second) = partner(views, &first) {
             let is_new = pairs.iter().all(|pair| pair.views != [second, first.view]);
             if is_new {
@@ -65,12 +65,13 @@ pub(super) fn choose_pairs(scene: &Scene, views: &[View]) -> Option<Vec<Pair>> {
             }
         }
         // Next, the photograph farthest from all that were chosen.
-        let distance = |seen: &Seen| {
-            let from = |chosen: &usize| views[seen.view].position().distance(views[*chosen].position());
+        let distance = |candidate: &CandidateView| {
+            let from = |chosen: &usize| views[candidate.view].position().distance(views[*chosen].position());
             pairs.iter().flat_map(|pair| &pair.views).map(from).fold(f64::INFINITY, f64::min)
         };
         next = match pairs.len() < max_pairs {
-            true => (0..seen.len()).max_by(|a, b| distance(&seen[*a]).total_cmp(&distance(&seen[*b]))),
+            true => (0..candidates.len())
+                .max_by(|a, b| distance(&candidates[*a]).total_cmp(&distance(&candidates[*b]))),
             false => None,
         };
     }
@@ -83,7 +84,7 @@ pub(super) fn at_once(scene: &Scene) -> usize {
 }
 
 /// What the photograph of this index shows of the surface, if anything.
-fn what_is_seen(scene: &Scene, view: &View, index: usize) -> Option<Seen> {
+fn candidate_view(scene: &Scene, view: &View, index: usize) -> Option<CandidateView> {
     /// px along the longer side
     const SIDE: f64 = 64.0;
     let [width, height] = view.lens.size_px();
@@ -93,18 +94,18 @@ fn what_is_seen(scene: &Scene, view: &View, index: usize) -> Option<Seen> {
     let share = hits.len() as f64 / (map.width * map.height) as f64;
     let step = hits.len().div_ceil(POINTS).max(1);
     let points: Vec<DVec3> = hits.iter().step_by(step).filter_map(|[x, y]| map.point(view, *x, *y)).collect();
-    (!points.is_empty()).then_some(Seen { view: index, points, share })
+    (!points.is_empty()).then_some(CandidateView { view: index, points, share })
 }
 
 /// The photograph that sees most of the same points from the most telling directions.
-fn partner(views: &[View], first: &Seen) -> Option<usize> {
+fn partner(views: &[View], first: &CandidateView) -> Option<usize> {
     let origin = views[first.view].position();
     let score = |second: usize| -> f64 {
         let view = &views[second];
         let of_point = |point: &DVec3| {
-            let is_seen = view.project(*point).is_some_and(|pixel| view.lens.is_in_picture(pixel));
+            let is_visible = view.project(*point).is_some_and(|pixel| view.lens.is_in_picture(pixel));
             let angle = (origin - *point).angle_between(view.position() - *point).to_degrees();
-            if is_seen { telling(angle) } else { 0.0 }
+            if is_visible { parallax_weight(angle) } else { 0.0 }
         };
         first.points.iter().map(of_point).sum()
     };
@@ -115,6 +116,6 @@ fn partner(views: &[View], first: &Seen) -> Option<usize> {
 }
 
 /// How much two directions that differ by `degrees` tell: less, and depth hardly moves what is seen; more, and it looks different.
-fn telling(degrees: f64) -> f64 {
+fn parallax_weight(degrees: f64) -> f64 {
     (degrees / 20.0).min((50.0 - degrees) / 25.0).clamp(0.0, 1.0)
 }

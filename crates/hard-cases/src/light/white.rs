@@ -1,6 +1,7 @@
 //! White surfaces close together: what is passed on from patch to patch must stay what arrives.
 
 use crate::case::{Case, Effort, Verdict};
+use crate::support::measure::worst;
 use crate::support::shot::picture_of;
 use focus::Focus;
 use glam::{DMat3, DMat4, DVec3, Vec3};
@@ -166,15 +167,7 @@ fn compare(
             ratios[which].push(brightest(picture) / brightest_truth);
         }
     }
-    let most = |values: &[f64]| {
-        values.iter().fold(
-            f64::NEG_INFINITY,
-            |most, &value| {
-                if value.is_nan() { f64::NAN } else { most.max(value) }
-            },
-        )
-    };
-    let values = |which: usize| [most(&shortfalls[which]), most(&ratios[which])];
+    let values = |which: usize| [largest(&shortfalls[which]), largest(&ratios[which])];
     let limits = [("below the floor by (dB)", effort.choose(0.0, REDUCED_DB)), ("brightest pixel", 2.0)];
     let expected = format!("finite, at least {floor_db} dB from the ground truth");
     Ok(Verdict::new(expected, limits, values(0), values(1)))
@@ -238,9 +231,18 @@ impl WhiteShot {
     }
 }
 
-/// The largest radiance of a picture.
+/// The largest value; NaN if any is NaN.
+fn largest(values: &[f64]) -> f64 {
+    values
+        .iter()
+        .copied()
+        .reduce(|most, value| if most < value || value.is_nan() { value } else { most })
+        .unwrap_or(f64::NAN)
+}
+
+/// The largest radiance of a picture; NaN if any is NaN.
 fn brightest(picture: &Picture) -> f64 {
-    picture.radiance.iter().flatten().fold(0.0, |most: f64, &value| most.max(f64::from(value)))
+    worst(picture.radiance.iter().flatten().map(|&value| f64::from(value)))
 }
 
 /// Peak signal-to-noise ratio of linear radiances clipped to [0, 1] from the ground truth, dB; infinite if the error is below
@@ -256,5 +258,22 @@ fn psnr(picture: &Picture, truths: &[Picture; 2]) -> f64 {
     };
     let [picture, one, other] = [picture, &truths[0], &truths[1]].map(numbers);
     let products: f64 = picture.iter().zip(one.iter().zip(&other)).map(|(p, (a, b))| (p - a) * (p - b)).sum();
-    -10.0 * (products / picture.len() as f64).max(0.0).log10()
+    let mean_square = products / picture.len() as f64;
+    if mean_square < 0.0 { f64::INFINITY } else { -10.0 * mean_square.log10() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_refused_picture_is_not_near_the_truth() {
+        let [truth, mut refused] = [Picture::black(2, 1), Picture::black(2, 1)];
+        let truths = [truth.clone(), truth.clone()];
+        assert_eq!(psnr(&truth, &truths), f64::INFINITY);
+        refused.radiance[1] = [f32::NAN; 3];
+        assert!(psnr(&refused, &truths).is_nan() && brightest(&refused).is_nan());
+        assert!(largest(&[1.0, f64::NAN, 2.0]).is_nan() && largest(&[f64::NAN, 1.0]).is_nan());
+        assert_eq!(largest(&[-3.0, -1.0, -2.0]), -1.0);
+    }
 }

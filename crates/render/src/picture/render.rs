@@ -486,15 +486,17 @@ fn finish(
         attributes.insert("focusBrush.cocConvention".into(), options.coc.name().into());
     }
     let mut warnings = mattes.map_or_else(Vec::new, |mattes| mattes.warnings);
-    warnings.extend(lit.is_cut_off().then(cut_off_warning));
+    warnings.extend(cut_off_warning(lit));
     Ok(Rendered { picture, layers, attributes, cost, warnings })
 }
 
-/// The warning about light that was cut off.
-fn cut_off_warning() -> String {
-    format!(
-        "light was cut off after {MAX_BOUNCES} bounces: it cannot get out of a closed white room (use an albedo below 1, or `bounces` in the world)"
-    )
+/// A warning if light was cut off before it had died away.
+pub(crate) fn cut_off_warning(lit: &LitScene) -> Option<String> {
+    lit.is_cut_off().then(|| {
+        format!(
+            "light was cut off after {MAX_BOUNCES} bounces: it cannot get out of a closed white room (use an albedo below 1, or `bounces` in the world)"
+        )
+    })
 }
 
 /// The unpainted pinhole picture by the same renderer, with its alpha if requested.

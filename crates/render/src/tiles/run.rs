@@ -1,7 +1,7 @@
 //! Drawing tiles one after another.
 
 use crate::error::RenderError;
-use crate::picture::{RenderOptions, lit_scene_of};
+use crate::picture::{RenderOptions, cut_off_warning, lit_scene_of};
 use crate::sequence::{Outcome, Shard, still_frame_plan};
 use crate::tiles::crop::CropFailure;
 use crate::tiles::draw::Shot;
@@ -60,6 +60,8 @@ pub struct TilesReport {
     pub tiles: Vec<TileReport>,
     /// The picture, if all tiles were merged.
     pub merged: Option<Merged>,
+    /// What the tiles that were drawn lack, one sentence each.
+    pub warnings: Vec<String>,
 }
 
 /// Draws the tiles of a picture that are not yet finished as parts. If all tiles are requested, merges them and removes the parts. If a
@@ -122,6 +124,7 @@ pub fn render_tiles(
             (options.on_tile)(&tile_report);
             report.tiles.push(tile_report);
         }
+        report.warnings.extend(cut_off_warning(&lit));
         let is_whole = report.tiles.iter().all(|tile| tile.outcome.error().is_none());
         if options.shard.is_some() || !is_whole {
             return Ok(report);

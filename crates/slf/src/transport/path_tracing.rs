@@ -18,7 +18,7 @@ pub(super) struct PathLight {
     pub distance: f64,
     /// Where the path ended at cached irradiance, and the share of it that is passed on.
     pub cached_end: Option<(CachedPlace, DVec3)>,
-    /// The product of the albedos of the surfaces that the path met, and of what refraction does to radiance.
+    /// The product of the albedos of the surfaces that a bounded path met, and of what refraction does to radiance.
     pub albedo: DVec3,
 }
 
@@ -99,10 +99,15 @@ impl Transport {
                 None => {
                     result.indirect += throughput * self.direct(point, &at, &lobes, path).total();
                     let Some(scattered) = lobes.resample(|| path.random.next()) else { return result };
-                    let albedo = lobes.albedo().total() * lobes.radiance_scale(scattered.crosses);
-                    result.albedo *= albedo;
-                    // No product of albedos exceeds 1 in a medium, whereas a product of sampled weights has no bound.
-                    throughput *= if lookup.is_bounded() { albedo } else { scattered.weight.total() };
+                    if lookup.is_bounded() {
+                        // No product of albedos exceeds 1 in a medium, whereas a product of sampled weights has no
+                        // bound.
+                        let albedo = lobes.albedo().total() * lobes.radiance_scale(scattered.crosses);
+                        result.albedo *= albedo;
+                        throughput *= albedo;
+                    } else {
+                        throughput *= scattered.weight.total();
+                    }
                     scattered
                 }
                 Some(cached) => {

@@ -1,10 +1,10 @@
 //! `focus-brush render --frame` and `--frames`.
 
-use super::{check_options, exposure, gpu, options, picture_options};
+use super::{check_options, exposure, gpu, open, options, picture_options};
 use crate::cli::arguments::RenderArguments;
 use crate::cli::console::{Console, path_text, print_json};
 use crate::cli::failure::Failure;
-use crate::cli::input::{camera_and_focus, open_input};
+use crate::cli::input::camera_and_focus;
 use crate::cli::termination;
 use focus::LensMotion;
 use project::{PictureOptions, read_keys, seal_picture, write_picture};
@@ -30,14 +30,7 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure
     let keys = sequence_arguments.keys.as_deref().map(read_keys).transpose()?;
 
     let start = Instant::now();
-    let input = open_input(
-        &arguments.file,
-        &arguments.shot.appearance,
-        arguments.layer.as_deref(),
-        console.resources(),
-        console,
-    )?;
-    console.warn(&input.warnings);
+    let input = open(arguments, console)?;
     let (camera, focus) = camera_and_focus(&input, &arguments.shot, console)?;
     let render = options(arguments, &input, gpu)?;
     let file_options = picture_options(arguments, exposure(arguments, &input));

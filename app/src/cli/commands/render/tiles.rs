@@ -1,10 +1,10 @@
 //! `focus-brush render --tiles`.
 
-use super::{check_options, exposure, options, picture_options};
+use super::{check_options, exposure, open, options, picture_options};
 use crate::cli::arguments::{BackendName, RenderArguments};
 use crate::cli::console::{Console, path_text, print_json};
 use crate::cli::failure::Failure;
-use crate::cli::input::{camera_and_focus, open_input};
+use crate::cli::input::camera_and_focus;
 use crate::cli::termination;
 use render::{Outcome, Renderer, TileGrid, TileOptions, TileReport, TilesReport, render_tiles};
 use serde_json::json;
@@ -20,18 +20,11 @@ pub fn run(arguments: &RenderArguments, grid: TileGrid, console: &Console) -> Re
     check_supported(arguments)?;
     check_options(arguments)?;
     let start = Instant::now();
-    let input = open_input(
-        &arguments.file,
-        &arguments.shot.appearance,
-        arguments.layer.as_deref(),
-        console.resources(),
-        console,
-    )?;
+    let input = open(arguments, console)?;
     if input.salf.is_some() {
         let what = "already baked, for the whole picture (leave out --tiles, or give the scene or project)";
         return Err(Failure::wrong_usage(format!("{}: {what}", arguments.file.display())));
     }
-    console.warn(&input.warnings);
     let (camera, focus) = camera_and_focus(&input, &arguments.shot, console)?;
     let camera = camera.overscanned(arguments.overscan);
     if let Err(what) = grid.tiles([camera.width, camera.height]) {
@@ -106,11 +99,12 @@ fn summarize(
     report: &TilesReport,
     start: Instant,
 ) -> Result<(), Failure> {
-    let TilesReport { tiles, merged } = report;
+    let TilesReport { tiles, merged, warnings } = report;
     let count = |state_of: &str| tiles.iter().filter(|tile| tile.outcome.name() == state_of).count();
     let [written, skipped, failed] = ["written", "skipped", "failed"].map(count);
-    let warnings = merged.as_ref().map_or(&[][..], |merged| &merged.warnings);
-    console.warn(warnings);
+    let of_merging = merged.iter().flat_map(|merged| &merged.warnings);
+    let warnings: Vec<String> = warnings.iter().chain(of_merging).cloned().collect();
+    console.warn(&warnings);
     if arguments.json {
         let tile = |tile: &TileReport| json!({ "tile": tile.tile, "file": path_text(&tile.file), "state": tile.outcome.name() });
         print_json(&json!({
