@@ -8,6 +8,7 @@
 //! holds the light of an unoccluded sky by normal (`open_sky`).
 
 mod lattice;
+mod patch_sizes;
 pub(crate) mod patches;
 pub(crate) mod place;
 
@@ -64,9 +65,9 @@ impl Irradiance {
             .max(DVec3::ZERO)
     }
 
-    /// Side of a lattice cell, world units.
-    pub(crate) fn spacing(&self) -> f64 {
-        self.patches.spacing()
+    /// Side of a lattice cell for the patches of a part, world units.
+    pub(crate) fn spacing(&self, part: u32) -> f64 {
+        self.patches.spacing(part)
     }
 
     /// Indirect irradiance/π at a place; `None` if no patch covers it.

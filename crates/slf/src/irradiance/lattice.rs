@@ -38,18 +38,18 @@ fn key(cell: IVec3) -> u64 {
 }
 
 impl Lattice {
-    /// Sorts items into cells of side `spacing` (scene units); item k lies in `cells[k]`.
-    pub fn new(spacing: f64, cells: &[IVec3]) -> Self {
-        let mut numbers: Vec<u32> = (0..cells.len() as u32).collect();
-        numbers.sort_by_key(|&number| (key(cells[number as usize]), number));
-        let mut lattice = Self { spacing, cells: HashMap::default(), numbers };
+    /// Sorts items into cells of side `spacing` (scene units): the numbers of the items, and the cell of each.
+    pub fn new(spacing: f64, items: impl IntoIterator<Item = (u32, IVec3)>) -> Self {
+        let mut items: Vec<(u64, u32)> =
+            items.into_iter().map(|(number, cell)| (key(cell), number)).collect();
+        items.sort_unstable();
+        let mut cells = HashMap::default();
         let mut begin = 0;
-        let same = |a: &u32, b: &u32| key(cells[*a as usize]) == key(cells[*b as usize]);
-        for run in lattice.numbers.chunk_by(same) {
-            lattice.cells.insert(key(cells[run[0] as usize]), (begin, run.len() as u32));
+        for run in items.chunk_by(|a, b| a.0 == b.0) {
+            cells.insert(run[0].0, (begin, run.len() as u32));
             begin += run.len() as u32;
         }
-        lattice
+        Self { spacing, cells, numbers: items.into_iter().map(|(_, number)| number).collect() }
     }
 
     /// The cell, of side `spacing`, that contains a position; both in scene units.
@@ -87,7 +87,7 @@ mod tests {
     #[test]
     fn numbers_lie_in_their_cells_and_shares_sum_to_one() {
         let cells: Vec<IVec3> = (0..27).map(|k| IVec3::new(k % 3, k / 3 % 3, k / 9) - 1).collect();
-        let lattice = Lattice::new(0.5, &cells);
+        let lattice = Lattice::new(0.5, (0..).zip(cells.iter().copied()));
         for (number, &cell) in (0..).zip(&cells) {
             assert_eq!(lattice.numbers(cell), [number]);
             assert_eq!(Lattice::cell(0.5, (cell.as_dvec3() + 0.3) * 0.5), cell);

@@ -1,6 +1,7 @@
 //! The surface divided into patches.
 
 use super::lattice::Lattice;
+use super::patch_sizes::PatchSizes;
 use super::place::Place;
 use crate::emitters::uniform_barycentric;
 use glam::{DVec2, DVec3, IVec3};
@@ -10,7 +11,9 @@ use std::collections::HashMap;
 /// Patches of a scene's lit surface.
 #[derive(Debug)]
 pub(crate) struct Patches {
-    lattice: Lattice,
+    sizes: PatchSizes,
+    /// By level: the patches of the parts of that level.
+    lattices: Vec<Lattice>,
     patches: Vec<Patch>,
     /// Points distributed over the patches, in the order of the patches.
     points: Vec<PatchPoint>,
@@ -59,11 +62,16 @@ impl Patches {
             parts.flat_map(|part| part.triangles.clone())
         };
         let sides = |triangle: u32| if scene.material_of(triangle).double_sided { 2.0 } else { 1.0 };
-        let area: f64 = lit().map(|t| scene.area_normal(t).length() / 2.0 * sides(t)).sum();
-        let mut spacing = (area / f64::from(target_count)).sqrt();
+        let area_of = |triangle: u32| scene.area_normal(triangle).length() / 2.0 * sides(triangle);
+        let mut part_areas = vec![0.0; scene.parts.len()];
+        for triangle in lit() {
+            part_areas[scene.triangles[triangle as usize].part as usize] += area_of(triangle);
+        }
+        let mut spacing = (part_areas.iter().sum::<f64>() / f64::from(target_count)).sqrt();
         loop {
-            let candidates = surface_candidates(scene, lit(), spacing);
-            let grouped = Self::group(candidates, spacing);
+            let sizes = PatchSizes::new(spacing, &part_areas, target_count);
+            let candidates = surface_candidates(scene, lit(), &sizes);
+            let grouped = Self::group(candidates, sizes);
             if grouped.patches.len() <= 2 * target_count as usize || !spacing.is_finite() {
                 return grouped;
             }
@@ -71,7 +79,7 @@ impl Patches {
         }
     }
 
-    fn group(candidates: Vec<Candidate>, spacing: f64) -> Self {
+    fn group(candidates: Vec<Candidate>, sizes: PatchSizes) -> Self {
         let mut groups: HashMap<(IVec3, u32, u8), Vec<u32>> = HashMap::new();
         for (index, candidate) in (0..).zip(&candidates) {
             groups.entry(candidate.key).or_default().push(index);
@@ -106,12 +114,23 @@ impl Patches {
             });
             cells.push(cell);
         }
-        Self { lattice: Lattice::new(spacing, &cells), patches, points }
+        let lattice = |level: u8| {
+            let numbered = (0..).zip(&patches).zip(&cells);
+            let of_level =
+                numbered.filter(|((_, patch), _): &((u32, &Patch), _)| sizes.level(patch.part) == level);
+            Lattice::new(sizes.of_level(level), of_level.map(|((number, _), &cell)| (number, cell)))
+        };
+        let lattices = (0..=sizes.max_level()).map(lattice).collect();
+        Self { lattices, sizes, patches, points }
     }
 
-    /// The side of the cells of space whose surface makes a patch, scene units.
-    pub fn spacing(&self) -> f64 {
-        self.lattice.spacing
+    /// The side of the cells of space whose surface makes a patch of a part, scene units.
+    pub fn spacing(&self, part: u32) -> f64 {
+        self.sizes.of_part(part)
+    }
+
+    fn lattice(&self, part: u32) -> &Lattice {
+        &self.lattices[usize::from(self.sizes.level(part))]
     }
 
     /// All patches, by number.
@@ -128,8 +147,9 @@ impl Patches {
     /// orientation.
     #[inline]
     pub fn visit_around(&self, place: &Place, mut visit: impl FnMut(u32, f32)) {
-        let spacing = self.lattice.spacing;
-        self.lattice.visit_around(place.position, |number, share| {
+        let lattice = self.lattice(place.part);
+        let spacing = lattice.spacing;
+        lattice.visit_around(place.position, |number, share| {
             let patch = &self.patches[number as usize];
             if patch.part != place.part {
                 return;
@@ -153,10 +173,11 @@ impl Patches {
 
     /// Visits the patches in the surrounding cells that face roughly the same direction.
     pub fn visit_neighbors(&self, patch: &Patch, mut visit: impl FnMut(u32)) {
-        let cell = Lattice::cell(self.lattice.spacing, patch.position);
+        let lattice = self.lattice(patch.part);
+        let cell = Lattice::cell(lattice.spacing, patch.position);
         for k in 0..27 {
             let around = cell + IVec3::new(k % 3, k / 3 % 3, k / 9) - 1;
-            for &number in self.lattice.numbers(around) {
+            for &number in lattice.numbers(around) {
                 let other = &self.patches[number as usize];
                 if other.part == patch.part && other.normal.dot(patch.normal) > 0.8 {
                     visit(number);
@@ -168,13 +189,18 @@ impl Patches {
 
 /// Points distributed over triangles, about [`CANDIDATES_PER_CELL`] per square of the lattice's spacing and at least
 /// one each, on every side that can be lit and visible.
-fn surface_candidates(scene: &Scene, triangles: impl Iterator<Item = u32>, spacing: f64) -> Vec<Candidate> {
+fn surface_candidates(
+    scene: &Scene,
+    triangles: impl Iterator<Item = u32>,
+    sizes: &PatchSizes,
+) -> Vec<Candidate> {
     let mut candidates = Vec::new();
     for triangle in triangles {
         let area = scene.area_normal(triangle).length() / 2.0;
         if !(area > 0.0 && area.is_finite()) {
             continue;
         }
+        let spacing = sizes.of_part(scene.triangles[triangle as usize].part);
         let count = (area / (spacing * spacing) * CANDIDATES_PER_CELL).ceil().clamp(1.0, 4e6) as u32;
         let sides: &[bool] = if scene.material_of(triangle).double_sided { &[true, false] } else { &[true] };
         for k in 0..count {

@@ -76,10 +76,11 @@ impl IrradianceLookup<'_> {
         is_front: bool,
         distance: f64,
     ) -> Option<CachedPlace> {
+        let part = scene.triangles[point.triangle as usize].part;
         let spacing = match self {
             Self::Unavailable => return None,
-            Self::Unsolved(patches) => patches.spacing(),
-            Self::Trusted(irradiance) | Self::ControlVariate(irradiance) => irradiance.spacing(),
+            Self::Unsolved(patches) => patches.spacing(part),
+            Self::Trusted(irradiance) | Self::ControlVariate(irradiance) => irradiance.spacing(part),
         };
         if distance < MIN_DISTANCE_PATCHES * spacing {
             return None;
