@@ -23,7 +23,7 @@ use commands::{
     bake, compare, doctor, export, import, info, keys, merge, new, presets, render, replay, report,
     thumbnail, unwrap,
 };
-use console::Console;
+use console::{Console, write_line};
 use document::InputKind;
 use failure::Failure;
 use light::{DiskCache, Resources};
@@ -53,7 +53,7 @@ pub fn run() -> ExitCode {
         Err(failure) => {
             let place = LAST_PANIC.lock().ok().and_then(|mut place| place.take());
             let place = place.filter(|_| failure.is_internal).map(|p| format!(" at {p}")).unwrap_or_default();
-            eprintln!("error: {}{place}", failure.message);
+            write_line(&format!("error: {}{place}", failure.message));
             ExitCode::from(failure.code)
         }
     }
@@ -185,6 +185,6 @@ fn report_usage_error(error: &clap::Error) -> ExitCode {
         .take_while(|line| !line.starts_with("Usage:") && !line.starts_with("For more"));
     let message_lines = lines.filter(|line| !line.is_empty() && !line.starts_with("tip:"));
     let message = message_lines.collect::<Vec<_>>().join(" ");
-    eprintln!("{message} (see focus-brush --help)");
+    write_line(&format!("{message} (see focus-brush --help)"));
     ExitCode::from(failure::WRONG_USAGE)
 }

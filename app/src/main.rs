@@ -1,8 +1,12 @@
 //! `focus-brush`: the window and the command line.
 
 mod headless;
+mod out_of_memory;
 
 use std::process::ExitCode;
+
+#[global_allocator]
+static ALLOCATOR: out_of_memory::EndingAllocator = out_of_memory::EndingAllocator;
 
 fn main() -> ExitCode {
     // Unwrapping runs its engines in child processes of this program.

@@ -10,11 +10,12 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("material", &[]),
     ("progress", &[]),
     ("numerics", &[]),
+    ("atomic-file", &[]),
     ("disparity", &["numerics", "progress"]),
     ("scene", &["lens", "numerics", "progress"]),
     ("capture", &["scene", "lens", "progress"]),
     ("relief", &["numerics", "progress"]),
-    ("atlas", &["scene", "progress"]),
+    ("atlas", &["atomic-file", "scene", "progress"]),
     ("trace", &["scene", "lens", "numerics", "progress"]),
     ("slf", &["material", "trace", "scene", "atlas", "numerics", "progress"]),
     ("salf", &["slf", "trace", "scene", "lens", "progress"]),
@@ -38,9 +39,9 @@ const ALLOWED: &[(&str, &[&str])] = &[
         ],
     ),
     ("baselines", &["salf", "trace", "scene", "lens", "progress"]),
-    ("project", &["scene", "relief", "focus", "atlas", "lens", "numerics"]),
+    ("project", &["atomic-file", "scene", "relief", "focus", "atlas", "lens", "numerics"]),
     ("jobs", &["progress"]),
-    ("light", &["jobs", "slf", "trace", "atlas", "scene", "lens", "progress"]),
+    ("light", &["atomic-file", "jobs", "slf", "trace", "atlas", "scene", "lens", "progress"]),
     (
         "document",
         &[
@@ -63,6 +64,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
         "render",
         &[
             "document",
+            "atomic-file",
             "light",
             "jobs",
             "baselines",
@@ -105,6 +107,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
         "report",
         &[
             "session",
+            "atomic-file",
             "render",
             "document",
             "light",

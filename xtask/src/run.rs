@@ -1,7 +1,7 @@
 //! `run` opens the program on the demo or on files; `test` runs all tests; `window` drives the real window.
 
 use crate::chore::{Failure, cargo, execute, repository};
-use crate::packages::{TO_ACT, TO_BUILD, TO_RUN, install_missing};
+use crate::packages::{TO_ACT, TO_BUILD, TO_ENDURE, TO_RUN, install_missing};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -32,7 +32,7 @@ pub fn run(arguments: &[OsString]) -> Result<(), Failure> {
 /// # Errors
 /// A package cannot be installed, or a test fails.
 pub fn test(arguments: &[OsString]) -> Result<(), Failure> {
-    install_missing(&[TO_BUILD, TO_RUN])?;
+    install_missing(&[TO_BUILD, TO_RUN, TO_ENDURE])?;
     execute(cargo("test").arg("--workspace").args(arguments))
 }
 

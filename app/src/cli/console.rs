@@ -65,7 +65,7 @@ impl Console {
         for warning in warnings {
             match self.format {
                 ProgressFormat::Json => write_json_line(&json!({ "warning": warning })),
-                _ => eprintln!("warning: {}", warning.replace('\n', " ")),
+                _ => write_line(&format!("warning: {}", warning.replace('\n', " "))),
             }
         }
     }
@@ -74,7 +74,7 @@ impl Console {
     pub fn note(&self, line: &str) {
         match self.format {
             ProgressFormat::Json => write_json_line(&json!({ "note": line })),
-            _ => eprintln!("{line}"),
+            _ => write_line(line),
         }
     }
 
@@ -82,13 +82,18 @@ impl Console {
     pub fn event(&self, line: &str, event: &Value) {
         match self.format {
             ProgressFormat::Json => write_json_line(event),
-            _ => eprintln!("{line}"),
+            _ => write_line(line),
         }
     }
 }
 
 fn write_json_line(value: &Value) {
-    let _ = writeln!(std::io::stderr(), "{value}");
+    write_line(&value.to_string());
+}
+
+/// Writes a line to stderr. The work does not depend on whether it can be written.
+pub fn write_line(line: &str) {
+    let _ = writeln!(std::io::stderr(), "{line}");
 }
 
 /// Prints a line of the result on stdout. A closed pipe is not an error.
@@ -180,7 +185,7 @@ struct LineState {
 
 impl LineStep {
     fn begin(label: &str) -> Self {
-        eprintln!("{label}…");
+        write_line(&format!("{label}…"));
         let part = label.to_owned().into();
         Self {
             last: Mutex::new(LineState {
@@ -200,14 +205,14 @@ impl Progress for LineStep {
             (last.reported_at, last.furthest) = (Instant::now(), fraction);
             let [from, to] = last.shares;
             let done = if to > from { ((fraction - from) / (to - from)).clamp(0.0, 1.0) } else { 1.0 };
-            eprintln!("{} {:.0} %", last.part, done * 100.0);
+            write_line(&format!("{} {:.0} %", last.part, done * 100.0));
         }
     }
     fn cancelled(&self) -> bool {
         termination::is_requested()
     }
     fn begin_part(&self, part: &Part) {
-        eprintln!("{}…", part.name);
+        write_line(&format!("{}…", part.name));
         if let Ok(mut last) = self.last.lock() {
             (last.part, last.shares, last.reported_at) =
                 (part.name.into(), [part.from, part.to], Instant::now());

@@ -23,6 +23,9 @@ pub enum AtlasError {
         /// The maximum side of an atlas.
         side: u32,
     },
+    /// The machine has too little memory.
+    #[error("unwrapping ran out of memory (close other programs, and try again)")]
+    OutOfMemory,
     /// Stored bytes are not an atlas, or not one of this scene.
     #[error("the stored atlas is unusable: {reason} (unwrap the scene again)")]
     Stored {

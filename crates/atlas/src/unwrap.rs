@@ -199,6 +199,7 @@ fn run_engines(
                     }
                 }
                 Err(ChildError::Cancelled) => return Err(AtlasError::Cancelled),
+                Err(ChildError::OutOfMemory) => return Err(AtlasError::OutOfMemory),
                 Err(ChildError::Unusable(reason)) => {
                     notes.push(format!("unwrapping ran in this process: {reason}"));
                     break;

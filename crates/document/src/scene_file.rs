@@ -21,6 +21,7 @@ pub fn atlas_error(path: &Path, error: AtlasError) -> DocumentError {
     match error {
         AtlasError::Cancelled => DocumentError::Cancelled,
         AtlasError::Write { path, source } => DocumentError::io(&path, &source),
+        AtlasError::OutOfMemory => DocumentError::TryAgain(format!("{}: {error}", path.display())),
         other => DocumentError::bad_file(path, other),
     }
 }

@@ -21,12 +21,19 @@ pub enum JobError {
     },
 }
 
+/// How the messages of the standard library and of Rayon begin where they panic because the system refused a thread.
+const NO_THREAD: [&str; 2] = ["failed to spawn thread", "The global thread pool has not been initialized"];
+
 impl JobError {
     /// The error for a panic of `task` with this payload.
     pub(crate) fn from_panic(task: &str, payload: &(dyn std::any::Any + Send)) -> Self {
         let message = payload.downcast_ref::<&str>().copied();
         let message = message.or_else(|| payload.downcast_ref::<String>().map(String::as_str));
         let message = message.unwrap_or("no message").lines().next().unwrap_or_default();
-        Self::Panicked { task: task.into(), message: message.into() }
+        let task = task.into();
+        match NO_THREAD.iter().any(|start| message.starts_with(start)) {
+            true => Self::NoThread { task, reason: message.into() },
+            false => Self::Panicked { task, message: message.into() },
+        }
     }
 }

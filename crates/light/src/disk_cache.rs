@@ -4,7 +4,7 @@
 //! file that cannot be read counts as missing, and a failed write only costs time later. If the files of a section exceed its budget, the
 //! least recently used are removed.
 
-use atomic_write_file::AtomicWriteFile;
+use atomic_file::AtomicFile;
 use sha2::{Digest, Sha256};
 use std::fs::File;
 use std::io::Write;
@@ -85,7 +85,7 @@ impl CacheEntry {
     pub fn write(&self, bytes: &[u8]) {
         let Some(folder) = self.path.parent() else { return };
         let written = std::fs::create_dir_all(folder).and_then(|()| {
-            let mut file = AtomicWriteFile::open(&self.path)?;
+            let mut file = AtomicFile::create(&self.path)?;
             file.write_all(bytes)?;
             file.write_all(&Sha256::digest(bytes))?;
             file.commit()

@@ -19,6 +19,7 @@ use crate::ProjectError;
 
 use crate::disk::write_bytes;
 use crate::json::{Field, Fields, Json};
+use crate::named_file::named_file;
 use glam::{DMat4, DVec2, DVec4};
 use lens::{Aperture, ApertureMask, ApertureShape, Camera};
 use mask_rows::mask_from_json;
@@ -44,14 +45,13 @@ const APERTURE_FIELDS: [&str; 6] = ["shape", "blades", "rotation", "roundness", 
 const DEFAULT_BLADES: u32 = 6;
 
 /// Reads a camera file. Missing fields take the value of `defaults`. Unknown fields are errors, since a misspelt one
-/// would otherwise go unnoticed. A mask's path is relative to the camera file.
+/// would otherwise go unnoticed. A mask lies in the folder of the camera file or below it.
 ///
 /// # Errors
 /// The file or its mask cannot be read, a field is unknown or of the wrong type, or the camera is invalid.
 pub fn read_camera(file: &Path, defaults: &Camera) -> Result<Camera, ProjectError> {
     camera_from_fields(file, &Json::read(file)?, defaults, &|path| {
-        let mask = file.parent().unwrap_or(Path::new("")).join(path);
-        read_aperture_mask(&mask, path)
+        read_aperture_mask(&named_file(file, path)?, path)
     })
 }
 

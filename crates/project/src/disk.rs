@@ -1,7 +1,7 @@
 //! Reading whole files within limits, and writing them atomically.
 
 use crate::ProjectError;
-use crate::replacement::replacement;
+use atomic_file::AtomicFile;
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -49,7 +49,7 @@ pub(crate) fn write_verified(
     verify: impl FnOnce(&[u8]) -> Result<(), String>,
 ) -> Result<(), ProjectError> {
     let error = |source| ProjectError::Write { file: file.to_owned(), source };
-    let mut new = replacement(file).map_err(error)?;
+    let mut new = AtomicFile::create(file).map_err(error)?;
     let written = new.write_all(bytes).and_then(|()| new.sync_all());
     written.map_err(error)?;
     let mut back = Vec::with_capacity(bytes.len());
@@ -57,10 +57,7 @@ pub(crate) fn write_verified(
     let problem = if back != bytes { Err("its bytes differ".to_string()) } else { verify(&back) };
     match problem {
         Ok(()) => new.commit().map_err(error),
-        Err(problem) => {
-            new.discard().map_err(error)?;
-            Err(ProjectError::Unverified { file: file.to_owned(), problem })
-        }
+        Err(problem) => Err(ProjectError::Unverified { file: file.to_owned(), problem }),
     }
 }
 

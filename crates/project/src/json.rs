@@ -3,7 +3,7 @@
 use crate::ProjectError;
 use crate::disk::read_text;
 use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// A JSON value. Objects keep the order of their keys, including duplicates.
 #[derive(Clone, Debug, PartialEq)]
@@ -263,8 +263,8 @@ impl<'a> Fields<'a> {
         ProjectError::Field { file: self.file.to_owned(), field, problem: problem.into(), cure: cure.into() }
     }
 
-    /// The folder that relative paths of the file start from.
-    pub fn folder(&self) -> PathBuf {
-        self.file.parent().unwrap_or(Path::new("")).to_owned()
+    /// The file that they are in.
+    pub fn file(&self) -> &Path {
+        self.file
     }
 }

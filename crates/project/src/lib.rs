@@ -33,12 +33,12 @@ mod environment_file;
 mod error;
 mod focus_files;
 mod json;
+mod named_file;
 mod openexr;
 mod part_file;
 mod pictures;
 mod presets;
 mod project_file;
-mod replacement;
 mod scene_path;
 mod world_file;
 

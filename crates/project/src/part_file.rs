@@ -11,8 +11,7 @@
 //! A part is written sequentially, and exists only once it is complete.
 
 use crate::ProjectError;
-use crate::replacement::replacement;
-use atomic_write_file::AtomicWriteFile;
+use atomic_file::AtomicFile;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 use std::fs::File;
@@ -20,6 +19,12 @@ use std::io::{BufReader, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 const MAGIC: &[u8] = b"focus-brush part 1\n";
+
+/// What a part of any version begins with; its version in digits and a line break follow.
+const MAGIC_OF_ANY_VERSION: &[u8] = b"focus-brush part ";
+
+/// The version that is written.
+const VERSION: u64 = 1;
 
 /// Bytes after the description: its length, and the seal.
 const END: u64 = 8 + 32;
@@ -39,7 +44,7 @@ pub struct Section {
 /// Writes a part.
 pub struct PartWriter {
     file: PathBuf,
-    out: BufWriter<AtomicWriteFile>,
+    out: BufWriter<AtomicFile>,
     hash: Sha256,
     written: u64,
 }
@@ -51,7 +56,7 @@ impl PartWriter {
     /// The file cannot be written.
     pub fn create(file: &Path) -> Result<Self, ProjectError> {
         let error = |source| ProjectError::Write { file: file.to_owned(), source };
-        let out = BufWriter::new(replacement(file).map_err(error)?);
+        let out = BufWriter::new(AtomicFile::create(file).map_err(error)?);
         let mut new = Self { file: file.to_owned(), out, hash: Sha256::new(), written: 0 };
         new.write_hashed(MAGIC)?;
         Ok(new)
@@ -103,8 +108,14 @@ impl PartWriter {
         let Self { file, out, .. } = self;
         let error = |source| ProjectError::Write { file: file.clone(), source };
         let out = out.into_inner().map_err(|failed| error(failed.into_error()))?;
-        out.sync_all().and_then(|()| out.commit()).map_err(error)
+        out.commit().map_err(error)
     }
+}
+
+/// The version of a part that begins with these bytes, if it has one.
+fn version_of(start: &[u8]) -> Option<u64> {
+    let digits = start.strip_prefix(MAGIC_OF_ANY_VERSION)?.split(|byte| *byte == b'\n').next()?;
+    std::str::from_utf8(digits).ok()?.parse().ok()
 }
 
 /// A complete part.
@@ -131,6 +142,9 @@ impl PartFile {
         let length = from.metadata().map_err(error)?.len();
         let mut magic = vec![0; MAGIC.len().min(length as usize)];
         from.read_exact(&mut magic).map_err(error)?;
+        if let Some(version) = version_of(&magic).filter(|version| *version > VERSION) {
+            return Err(ProjectError::Newer { file: file.to_owned(), version, newest: VERSION });
+        }
         if !MAGIC.starts_with(&magic) || magic.is_empty() {
             let problem = "is no part of a picture";
             return Err(ProjectError::content(
@@ -253,6 +267,10 @@ mod tests {
             let error = PartFile::open(&file).unwrap_err().to_string();
             assert!(error.contains("cut short or damaged"), "{at}: {error}");
         }
+        std::fs::write(&file, b"focus-brush part 12\nof a later program").unwrap();
+        assert!(
+            PartFile::open(&file).unwrap_err().to_string().contains("version 12, this program reads up to 1")
+        );
         std::fs::write(&file, b"something else").unwrap();
         assert!(PartFile::open(&file).unwrap_err().to_string().contains("no part of a picture"));
     }

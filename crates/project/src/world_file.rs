@@ -11,6 +11,7 @@
 use crate::ProjectError;
 use crate::environment_file::read_environment;
 use crate::json::{Field, Fields, Json};
+use crate::named_file::named_file;
 use crate::scene_path::ScenePath;
 use glam::Vec3;
 use scene::{Backdrop, Environment, Scene, World};
@@ -67,7 +68,7 @@ impl WorldFile {
     /// The file cannot be read, a field is unknown, or a value is out of range.
     pub fn read(file: &Path) -> Result<Self, ProjectError> {
         let json = Json::read(file)?;
-        Self::from_fields(&Field::root(file, &json).object()?)
+        Self::from_fields(&Field::root(file, &json).object()?, &|name| named_file(file, name))
     }
 
     /// Describes `world`, that of a `scene` which was loaded before.
@@ -96,17 +97,23 @@ impl WorldFile {
     /// The world stored in a project at `file`.
     pub(crate) fn from_value(file: &Path, value: &Value) -> Result<Self, ProjectError> {
         let json = Json::parse(file, &value.to_string())?;
-        Self::from_fields(&Field::root(file, &json).object()?)
+        // The sky of a project may lie anywhere, as its scene may.
+        let folder = file.parent().unwrap_or(Path::new(""));
+        Self::from_fields(&Field::root(file, &json).object()?, &|name| Ok(folder.join(name)))
     }
 
-    fn from_fields(fields: &Fields<'_>) -> Result<Self, ProjectError> {
+    /// The world of these fields; `find_file` finds the file of a sky by its name.
+    fn from_fields(
+        fields: &Fields<'_>,
+        find_file: &dyn Fn(&str) -> Result<PathBuf, ProjectError>,
+    ) -> Result<Self, ProjectError> {
         fields.allow_only(&FIELDS)?;
         let mut world = Self::default();
         if let Some(field) = fields.get("environment") {
             world.environment = match field.value {
                 Json::Text(text) if text == "studio" => EnvironmentChoice::Studio,
                 Json::Text(text) if text == "scene" => EnvironmentChoice::Scene,
-                Json::Text(text) => EnvironmentChoice::File(fields.folder().join(text)),
+                Json::Text(text) => EnvironmentChoice::File(find_file(text)?),
                 _ => EnvironmentChoice::Uniform(radiance(&field)?),
             };
         }

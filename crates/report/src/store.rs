@@ -1,10 +1,8 @@
 //! Results on disk: each is written immediately, so that an interrupted run resumes.
 
-use atomic_write_file::AtomicWriteFile;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use session::SessionError;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// A folder of results, each a JSON file whose name includes a fingerprint of its inputs.
@@ -58,11 +56,7 @@ pub fn to_json<T: Serialize>(value: &T) -> Result<Vec<u8>, SessionError> {
 /// # Errors
 /// The file cannot be written.
 pub fn write_atomically(file: &Path, bytes: &[u8]) -> Result<(), SessionError> {
-    let written = AtomicWriteFile::open(file).and_then(|mut new| {
-        new.write_all(bytes)?;
-        new.commit()
-    });
-    written.map_err(|error| SessionError::io(file, &error))
+    atomic_file::write(file, bytes).map_err(|error| SessionError::io(file, &error))
 }
 
 /// Writes files into `folder`. Returns them.

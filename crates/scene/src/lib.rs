@@ -61,7 +61,7 @@ pub use model::{
     SurfacePoint, Tint, Triangle, Volume, Workflow,
 };
 pub use photographs::{Mask, Photograph, PictureError, PictureGloss, PictureTexture, View};
-pub use picture_decoder::open_picture;
+pub use picture_decoder::{MAX_PNG_EXTRAS_BYTES, open_picture};
 pub use surface_mesh::SurfaceMesh;
 pub use texture::{Image, ImageLevel, TextureRef, Wrap, linear_from_srgb, srgb_from_linear};
 pub use world::{Backdrop, Environment, EnvironmentMap, World};

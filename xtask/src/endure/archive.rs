@@ -88,7 +88,7 @@ pub fn zip(entries: &[Entry<'_>]) -> Vec<u8> {
     let (mut file, mut directory) = (Vec::new(), Vec::new());
     for entry in entries {
         let offset = file.len() as u32;
-        let checksum = if entry.deflated { 0 } else { crc32(&entry.stored) };
+        let checksum = if entry.deflated { 0 } else { crc32fast::hash(&entry.stored) };
         let mut common = Vec::new();
         common.extend([20, 0, 0, 0, u8::from(entry.deflated) * 8, 0, 0, 0, 0x21, 0]);
         common.extend(checksum.to_le_bytes());
@@ -116,10 +116,4 @@ pub fn zip(entries: &[Entry<'_>]) -> Vec<u8> {
     file.extend(start.to_le_bytes());
     file.extend([0, 0]);
     file
-}
-
-/// CRC-32 as in ZIP and PNG.
-pub fn crc32(bytes: &[u8]) -> u32 {
-    let step = |crc: u32| if crc & 1 == 1 { crc >> 1 ^ 0xedb8_8320 } else { crc >> 1 };
-    !bytes.iter().fold(!0, |crc, &byte| (0..8).fold(crc ^ u32::from(byte), |crc, _| step(crc)))
 }

@@ -1,6 +1,6 @@
 //! Small files of every kind that the program reads: made here, or by the program from these.
 
-use super::archive::{crc32, zlib_zeros};
+use super::archive::zlib_zeros;
 use super::promise::Context;
 use serde_json::{Value, json};
 use std::path::Path;
@@ -83,7 +83,7 @@ pub fn png_chunk(kind: &[u8; 4], content: &[u8]) -> Vec<u8> {
     let mut chunk = (content.len() as u32).to_be_bytes().to_vec();
     chunk.extend(kind);
     chunk.extend(content);
-    let checksum = crc32(&chunk[4..]);
+    let checksum = crc32fast::hash(&chunk[4..]);
     chunk.extend(checksum.to_be_bytes());
     chunk
 }

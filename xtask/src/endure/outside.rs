@@ -227,7 +227,10 @@ fn compare_with_twin(case: usize, place: &Workplace, context: &Context) -> Verdi
             call.result.split_once('<').map(|(_, path)| path.trim_end_matches('>').to_owned())
         });
         let outside = paths.filter(|path| {
-            !format!("{path}/").starts_with(&own) && !path.starts_with(&output) && !path.starts_with(&hidden)
+            !is_unnamed(path)
+                && !format!("{path}/").starts_with(&own)
+                && !path.starts_with(&output)
+                && !path.starts_with(&hidden)
         });
         opened.push(outside.map(|path| normal(&path, &folder)).collect::<BTreeSet<String>>());
     }
@@ -239,6 +242,12 @@ fn compare_with_twin(case: usize, place: &Workplace, context: &Context) -> Verdi
             naming.what, naming.command
         )),
     }
+}
+
+/// Whether a path is Linux's description of a file without a name, which an output is until it is complete.
+fn is_unnamed(path: &str) -> bool {
+    let name = path.rsplit('/').next().unwrap_or_default();
+    name.starts_with('#') && name.ends_with("(deleted)")
 }
 
 /// The inputs in `in`, and above it the files that hostile names mean.

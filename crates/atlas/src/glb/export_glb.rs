@@ -15,7 +15,6 @@ use crate::{Atlas, AtlasError};
 use progress::{Progress, Stage};
 use scene::{GltfSource, LoadOptions, Scene, SceneError};
 use serde_json::{Map, Value};
-use std::io::Write;
 use std::path::Path;
 
 /// Fraction of the work spent on reading the file.
@@ -53,12 +52,7 @@ pub fn write_amended_glb(
 
 /// Writes a file atomically: an existing one is replaced only once the new one is complete.
 pub(crate) fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), AtlasError> {
-    let write = || {
-        let mut file = atomic_write_file::AtomicWriteFile::open(path)?;
-        file.write_all(bytes)?;
-        file.commit()
-    };
-    write().map_err(|source| AtlasError::Write { path: path.to_owned(), source })
+    atomic_file::write(path, bytes).map_err(|source| AtlasError::Write { path: path.to_owned(), source })
 }
 
 /// The bytes of the GLB file that [`write_glb`] writes. The atlas must be of this scene.

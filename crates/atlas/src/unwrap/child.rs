@@ -23,6 +23,9 @@ const CHILD_ARGUMENT: &str = "--unwrap-child";
 /// The first bytes of a child's output. A program that does not write them is no child.
 const GREETING: &[u8; 8] = b"unwrap 1";
 
+/// The exit code of a child that ran out of memory.
+const OUT_OF_MEMORY: i32 = 75;
+
 /// Interval at which the parent polls its children.
 const POLL_INTERVAL: Duration = Duration::from_millis(4);
 
@@ -80,6 +83,8 @@ pub(crate) struct ChildResults {
 pub(crate) enum ChildError {
     /// The work was cancelled; all children have been killed.
     Cancelled,
+    /// The machine has too little memory for it: another engine would have too little, too.
+    OutOfMemory,
     /// The program does not start, or is not an unwrapping child.
     Unusable(String),
 }
@@ -133,6 +138,9 @@ pub(crate) fn flatten_in_children(
                 still.push(child);
                 continue;
             }
+            if ended.is_some_and(|status| status.code() == Some(OUT_OF_MEMORY)) {
+                return Err(ChildError::OutOfMemory);
+            }
             let lost = ended.is_none_or(|status| !status.success());
             answers.lost += usize::from(lost);
             done += child.count;
@@ -144,7 +152,11 @@ pub(crate) fn flatten_in_children(
 }
 
 fn unusable(program: &Path) -> impl Fn(io::Error) -> ChildError + use<'_> {
-    move |error| ChildError::Unusable(format!("{}: {error}", program.display()))
+    move |error| match error.kind() {
+        // The last is what the system says if it has no memory for another process.
+        io::ErrorKind::OutOfMemory | io::ErrorKind::WouldBlock => ChildError::OutOfMemory,
+        _ => ChildError::Unusable(format!("{}: {error}", program.display())),
+    }
 }
 
 impl From<Cancelled> for ChildError {

@@ -33,7 +33,7 @@ pub(crate) fn header_of_bytes(bytes: &[u8]) -> Result<([u32; 2], Exif), String> 
 }
 
 fn header_of(bytes: &[u8]) -> Result<([u32; 2], Exif), image::ImageError> {
-    let mut decoder = scene::open_picture(Cursor::new(bytes), Limits::default())?;
+    let mut decoder = scene::open_picture(Cursor::new(bytes), Limits::no_limits())?;
     let (width, height) = decoder.dimensions();
     let exif = decoder.exif_metadata().ok().flatten();
     Ok(([width, height], exif.map_or_else(Exif::default, |data| Exif::parse(&data))))

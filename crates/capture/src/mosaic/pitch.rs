@@ -12,7 +12,7 @@
 //! blocks of 8 are not micro-images. The same for rows.
 
 use super::png_rows::PngRows;
-use image::{DynamicImage, ImageDecoder, Limits};
+use image::{DynamicImage, Limits};
 use scene::LoadOptions;
 use std::fs::File;
 use std::io::BufReader;
@@ -76,8 +76,7 @@ fn band(file: &Path, options: &LoadOptions) -> Option<(Vec<f32>, usize)> {
     }
     let mut limits = Limits::default();
     limits.max_alloc = Some(options.max_memory / 2);
-    let decoder = scene::open_picture(BufReader::new(File::open(file).ok()?), limits.clone()).ok()?;
-    limits.reserve(decoder.total_bytes()).ok()?;
+    let decoder = scene::open_picture(BufReader::new(File::open(file).ok()?), limits).ok()?;
     let picture = DynamicImage::from_decoder(decoder).ok()?.into_luma8();
     if !is_usable([picture.width(), picture.height()]) {
         return None;

@@ -9,6 +9,7 @@
 
 use crate::disk::extension;
 use crate::json::{Field, Fields, Json};
+use crate::named_file::named_file;
 use crate::{FocusMapFile, ProjectError};
 use focus::{FocusRecipe, RecipeEntry};
 use lens::FocusOffset;
@@ -66,7 +67,7 @@ fn read_entry(field: &Field<'_>, maps: &mut MapCache) -> Result<RecipeEntry, Pro
     if ["t", "anchor", "gloss"].iter().any(|name| fields.get(name).is_some()) {
         return Err(field.error("has a map and a value", "give either map, or t, anchor and gloss"));
     }
-    let path = fields.folder().join(map.text()?);
+    let path = named_file(fields.file(), map.text()?)?;
     if let Some(entry) = maps.get(&path) {
         return Ok(entry.clone());
     }

@@ -4,7 +4,7 @@ use crate::ProjectError;
 use crate::openexr::header;
 use crate::openexr::image::{ExrAttribute, all_attributes};
 use crate::openexr::options::{ExrOptions, to_half};
-use crate::replacement::replacement;
+use atomic_file::AtomicFile;
 use exr::block::BlockIndex;
 use exr::image::write::channels::{ChannelsWriter, WritableChannels};
 use exr::math::RoundingMode;
@@ -46,8 +46,8 @@ pub(crate) fn write_exr_in_bands<E: From<ProjectError> + Send>(
     let size = (head.size[0] as usize, head.size[1] as usize);
     let layer = ox::Layer::new(size, layer_attributes, head.form.compression.encoding(), channels);
     let image = ox::Image::new(image_attributes, layer);
-    let mut new = replacement(file).map_err(error)?;
-    let written = image.write().to_buffered(BufWriter::new(&mut *new));
+    let mut new = AtomicFile::create(file).map_err(error)?;
+    let written = image.write().to_buffered(BufWriter::new(&mut new));
     let source = image.layer_data.channel_data.source.into_inner().unwrap_or_else(PoisonError::into_inner);
     if let Some(failed) = source.failed {
         return Err(failed);
@@ -56,7 +56,7 @@ pub(crate) fn write_exr_in_bands<E: From<ProjectError> + Send>(
         exr::error::Error::Io(source) => error(source),
         problem => other(problem.to_string()),
     })?;
-    sort_attributes(&mut new).and_then(|()| new.sync_all()).and_then(|()| new.commit()).map_err(error)?;
+    sort_attributes(&mut new).and_then(|()| new.commit()).map_err(error)?;
     Ok(())
 }
 

@@ -10,8 +10,8 @@ use std::path::Path;
 /// Maximum width and height of a picture that is read.
 const MAX_SIDE: u32 = 32768;
 
-/// Maximum memory for decoding a picture, bytes.
-const MAX_MEMORY: u64 = 4 << 30;
+/// Maximum number of pixels of a picture that is read: its decoded and its linear pixels take up to 20 bytes each.
+const MAX_PIXELS: u64 = 1 << 27;
 
 /// A decoded picture.
 pub(crate) fn read_image(file: &Path) -> Result<DynamicImage, ProjectError> {
@@ -29,15 +29,22 @@ pub(crate) fn read_image(file: &Path) -> Result<DynamicImage, ProjectError> {
 /// Decodes the bytes of a picture's file.
 pub(crate) fn decode(bytes: &[u8]) -> Result<DynamicImage, String> {
     let decoded = std::panic::catch_unwind(|| {
-        let mut limits = Limits::default();
-        limits.max_image_width = Some(MAX_SIDE);
-        limits.max_image_height = Some(MAX_SIDE);
-        limits.max_alloc = Some(MAX_MEMORY);
-        let decoder = scene::open_picture(Cursor::new(bytes), limits.clone()).map_err(|e| e.to_string())?;
-        limits.reserve(decoder.total_bytes()).map_err(|e| e.to_string())?;
+        let decoder =
+            scene::open_picture(Cursor::new(bytes), Limits::no_limits()).map_err(|e| e.to_string())?;
+        check_size(decoder.dimensions())?;
         DynamicImage::from_decoder(decoder).map_err(|e| e.to_string())
     });
     decoded.unwrap_or_else(|_| Err("its content contradicts itself".to_string()))
+}
+
+/// Checks a declared size before anything of it is allocated.
+fn check_size((width, height): (u32, u32)) -> Result<(), String> {
+    let pixels = u64::from(width) * u64::from(height);
+    match (width.max(height) > MAX_SIDE, pixels > MAX_PIXELS) {
+        (true, _) => Err(format!("it has {width}×{height} pixels, more than {MAX_SIDE} a side")),
+        (_, true) => Err(format!("it has {width}×{height} pixels, more than {MAX_PIXELS} in all")),
+        _ => Ok(()),
+    }
 }
 
 /// Columns, rows and the stored red, green and blue of a picture, in [0, 1], without sRGB decoding.
@@ -149,14 +156,12 @@ pub(crate) fn read_png16(file: &Path) -> Result<StoredPng, ProjectError> {
 
 /// `None` if it is not 16-bit RGB or RGBA.
 fn decode_png16(bytes: &[u8]) -> Result<Option<StoredPng>, String> {
-    let limits = png::Limits { bytes: MAX_MEMORY as usize };
+    let limits = png::Limits { bytes: scene::MAX_PNG_EXTRAS_BYTES as usize };
     let decoder = png::Decoder::new_with_limits(Cursor::new(bytes), limits);
     let mut reader = decoder.read_info().map_err(|e| e.to_string())?;
     let info = reader.info();
     let (width, height) = (info.width, info.height);
-    if width > MAX_SIDE || height > MAX_SIDE {
-        return Err(format!("it has {width}×{height} pixels, more than {MAX_SIDE} a side"));
-    }
+    check_size((width, height))?;
     let has_color_space = info.srgb.is_some() || info.gama_chunk.is_some() || info.icc_profile.is_some();
     let channels = match (info.bit_depth, info.color_type) {
         (BitDepth::Sixteen, ColorType::Rgb) => 3,

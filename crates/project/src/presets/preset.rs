@@ -11,6 +11,7 @@ use crate::camera::mask_rows::mask_to_json;
 use crate::camera::{aperture_from_json, aperture_to_json};
 use crate::disk::{read_text, write_verified};
 use crate::json::{Field, Json};
+use crate::named_file::named_file;
 use focus::Brush;
 use lens::{Aperture, ApertureShape, Camera};
 use serde_json::{Value, json};
@@ -193,10 +194,7 @@ impl Preset {
             }
             "lens" => PresetContent::Lens(LensPreset::read(&field.object()?)?),
             _ => {
-                let mask = |name: &str| {
-                    let mask_file = file.parent().unwrap_or(Path::new("")).join(name);
-                    crate::read_aperture_mask(&mask_file, name)
-                };
+                let mask = |name: &str| crate::read_aperture_mask(&named_file(file, name)?, name);
                 let aperture = aperture_from_json(&field.object()?, &mask)?;
                 aperture.validate().map_err(|error| {
                     let problem = format!("{} cannot be used", error.field);

@@ -1,7 +1,7 @@
 //! Writing light fields to files, atomically.
 
 use crate::error::RenderError;
-use atomic_write_file::AtomicWriteFile;
+use atomic_file::AtomicFile;
 use salf::{Salf, SalfFile};
 use std::io::BufWriter;
 use std::path::{Component, Path, PathBuf};
@@ -24,10 +24,9 @@ pub fn write_salf(
         triangles: scene.triangles.len() as u32,
         salf: salf.clone(),
     };
-    let mut new = AtomicWriteFile::open(path).map_err(failed)?;
+    let mut new = AtomicFile::create(path).map_err(failed)?;
     file.write(BufWriter::with_capacity(1 << 20, &mut new)).map_err(failed)?;
-    new.as_file().sync_all().map_err(failed)?;
-    let bytes = new.as_file().metadata().map_err(failed)?.len();
+    let bytes = new.byte_len().map_err(failed)?;
     new.commit().map_err(failed)?;
     Ok(bytes)
 }

@@ -245,8 +245,8 @@ fn read_scene(
     scene.normals.iter_mut().for_each(|normal| *normal = normal.normalize_or_zero());
     add_missing_camera(&document, &mut scene);
     lint::lint(&document);
-    scene.warnings = document.warnings();
     let inspection = count_contents(&document, &hierarchy, &scene);
+    scene.warnings = document.warnings();
     Ok((scene, inspection))
 }
 

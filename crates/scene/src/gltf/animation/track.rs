@@ -39,7 +39,11 @@ impl<'a> Track<'a> {
             let what = format!("has {} values for {} times", values.count, times.count);
             return Err(sampler.malformed("output", what));
         }
-        Ok(Self { times, values, interpolation, elements, place: sampler.place.clone() })
+        let track = Self { times, values, interpolation, elements, place: sampler.place.clone() };
+        if track.times.count > 1 && track.end_seconds() <= track.time(0) {
+            document.warn(format!("{}/input: the times of its keys do not increase", track.place));
+        }
+        Ok(track)
     }
 
     fn time(&self, key: usize) -> f64 {

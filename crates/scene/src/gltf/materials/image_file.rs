@@ -3,9 +3,10 @@
 
 use crate::error::Fault;
 use crate::gltf::document::{Document, nonempty_name};
+use crate::picture_decoder::open_picture;
 use crate::{Image, ImageLevel};
 use basisu::{DecodeFlags, TargetFormat, Transcoder};
-use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
+use image::{DynamicImage, ImageDecoder, ImageFormat, Limits};
 use std::borrow::Cow;
 use std::io::Cursor;
 
@@ -55,24 +56,19 @@ impl Document<'_> {
     pub fn decode_image(&self, index: usize, place: &str) -> Result<Image, Fault> {
         let bytes = self.image_bytes(index, place)?;
         let place = format!("/images/{index}");
-        let format = match mime_type(&bytes) {
-            Some("image/png") => ImageFormat::Png,
-            Some("image/jpeg") => ImageFormat::Jpeg,
-            Some("image/webp") => ImageFormat::WebP,
+        match mime_type(&bytes) {
+            Some("image/png" | "image/jpeg" | "image/webp") => {}
             Some("image/ktx2") => return self.decode_basis_image(index, &bytes, &place),
             _ => {
                 return Err(Fault::Malformed { place, what: "is neither PNG, JPEG, WebP nor KTX 2".into() });
             }
-        };
+        }
         let broken = |error: image::ImageError| Fault::Malformed {
             place: place.clone(),
             what: format!("cannot be decoded: {error}"),
         };
-        let mut reader = ImageReader::with_format(Cursor::new(&bytes[..]), format);
-        let mut limits = Limits::default();
-        limits.max_alloc = Some(self.budget.memory_left());
-        reader.limits(limits);
-        let decoder = reader.into_decoder().map_err(broken)?;
+        // The budget limits the memory of the pixels.
+        let decoder = open_picture(Cursor::new(&bytes[..]), Limits::no_limits()).map_err(broken)?;
         let (width, height) = decoder.dimensions();
         let texels = self.checked_texel_count([width, height], bytes.len(), &place)?;
         let deep = decoder.color_type().bytes_per_pixel() / decoder.color_type().channel_count() > 1;
