@@ -123,3 +123,50 @@ pub fn crc32(bytes: &[u8]) -> u32 {
     let step = |crc: u32| if crc & 1 == 1 { crc >> 1 ^ 0xedb8_8320 } else { crc >> 1 };
     !bytes.iter().fold(!0, |crc, &byte| (0..8).fold(crc ^ u32::from(byte), |crc, _| step(crc)))
 }
+
+/// SHA-256 (FIPS 180-4), in hex.
+pub fn sha256(bytes: &[u8]) -> String {
+    // The fractional parts of the square and cube roots of the first primes.
+    let primes: Vec<u32> = (2u32..).filter(|n| (2..*n).all(|d| n % d != 0)).take(64).collect();
+    let fraction = |root: f64| ((root - root.floor()) * 4_294_967_296.0) as u32;
+    let mut state: [u32; 8] = std::array::from_fn(|k| fraction(f64::from(primes[k]).sqrt()));
+    let rounds: Vec<u32> = primes.iter().map(|prime| fraction(f64::from(*prime).cbrt())).collect();
+    let mut padded = bytes.to_vec();
+    padded.push(0x80);
+    padded.resize((padded.len() + 8).next_multiple_of(64) - 8, 0);
+    padded.extend((8 * bytes.len() as u64).to_be_bytes());
+    for block in padded.chunks_exact(64) {
+        let mut words: Vec<u32> =
+            block.chunks_exact(4).map(|w| u32::from_be_bytes([w[0], w[1], w[2], w[3]])).collect();
+        for k in 16..64 {
+            let (a, b) = (words[k - 15], words[k - 2]);
+            let low = a.rotate_right(7) ^ a.rotate_right(18) ^ (a >> 3);
+            let high = b.rotate_right(17) ^ b.rotate_right(19) ^ (b >> 10);
+            words.push(words[k - 16].wrapping_add(low).wrapping_add(words[k - 7]).wrapping_add(high));
+        }
+        let [mut a, mut b, mut c, mut d, mut e, mut f, mut g, mut h] = state;
+        for (word, round) in words.iter().zip(&rounds) {
+            let mixed = e.rotate_right(6) ^ e.rotate_right(11) ^ e.rotate_right(25);
+            let chosen = (e & f) ^ (!e & g);
+            let first = h.wrapping_add(mixed).wrapping_add(chosen).wrapping_add(*round).wrapping_add(*word);
+            let mixed = a.rotate_right(2) ^ a.rotate_right(13) ^ a.rotate_right(22);
+            let second = mixed.wrapping_add((a & b) ^ (a & c) ^ (b & c));
+            (h, g, f, e, d, c, b, a) = (g, f, e, d.wrapping_add(first), c, b, a, first.wrapping_add(second));
+        }
+        let added = [a, b, c, d, e, f, g, h];
+        state.iter_mut().zip(added).for_each(|(state, added)| *state = state.wrapping_add(added));
+    }
+    state.iter().map(|word| format!("{word:08x}")).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::sha256;
+
+    #[test]
+    fn checksums_are_those_of_the_standard() {
+        assert_eq!(sha256(b"abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+        let long = sha256(b"abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq");
+        assert_eq!(long, "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
+    }
+}
