@@ -1,6 +1,6 @@
 //! Files of every version ever written: each opens, or the program says what reads it.
 
-mod projects;
+pub mod projects;
 
 use super::archive::{Entry, zip};
 use super::made_files::{glb_of, put, scene, write_all};

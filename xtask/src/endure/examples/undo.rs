@@ -2,6 +2,7 @@
 
 use super::{build, example, verdict};
 use crate::endure::made_files::{glb, picture, put, quad_bytes, write_inputs};
+use crate::endure::old_files::projects;
 use crate::endure::promise::{Context, Promise, Verdict, Workplace};
 use crate::endure::same_bits::scenes::walls;
 use std::path::Path;
@@ -23,7 +24,7 @@ pub const PROMISE: Promise = Promise {
 
 /// Edits of a sequence.
 const EDITS: &str = "100";
-/// What is edited, in turn.
+/// What is edited, in turn; the project has layers.
 const FILES: [&str; 4] = ["walls.glb", "depth/a.jpg", "p.fbrush", "walls.glb"];
 
 fn prepare(folder: &Path, context: &Context) -> Result<(), String> {
@@ -37,8 +38,7 @@ fn prepare(folder: &Path, context: &Context) -> Result<(), String> {
     picture(&folder.join("depth/a.jpg"), [12, 8])?;
     let depths = (0..96u8).flat_map(|i| (1.0 + f32::from(i % 12) / 6.0).to_le_bytes());
     put(folder, "depth/a_depth.pfm", b"Pf\n12 8\n-1.0\n".iter().copied().chain(depths).collect::<Vec<u8>>())?;
-    context.program.line(folder, "new s.glb --camera cam.json --focus recipe.json -o p.fbrush").succeed()?;
-    Ok(())
+    projects::write(&Workplace { prepared: folder.into(), own: folder.into() }, 2)
 }
 
 fn edit(case: usize, place: &Workplace, context: &Context) -> Verdict {

@@ -36,8 +36,8 @@ const REACH: [f64; 2] = [0.1, 0.16];
 const GRID: [usize; 2] = [7, 6];
 /// Steps of the brush's blur from one end to the other: strokes that can be told apart.
 const MAX_STROKES: usize = 39;
-/// Texels of one value that are a stroke's core, not its edge.
-const MIN_CORE: usize = 4;
+/// Texels of one value that are a stroke, not a seam.
+const MIN_TEXELS: usize = 100;
 
 /// What is promised, and how much of it the program waits.
 struct Interval {
@@ -50,10 +50,10 @@ struct Interval {
 }
 
 const AS_INSTALLED: Interval =
-    Interval { delay_s: None, may_lose: Duration::from_secs(30), painting_ms: [16_000, 52_000] };
+    Interval { delay_s: None, may_lose: Duration::from_secs(30), painting_ms: [32_000, 52_000] };
 /// Twice the delay, as with the program's own, and a little for a slow machine.
 const SHORTENED: Interval =
-    Interval { delay_s: Some("2"), may_lose: Duration::from_secs(6), painting_ms: [2_000, 14_000] };
+    Interval { delay_s: Some("2"), may_lose: Duration::from_secs(6), painting_ms: [7_000, 16_000] };
 
 fn prepare(folder: &Path, context: &Context) -> Result<(), String> {
     super::check_programs()?;
@@ -66,7 +66,7 @@ fn prepare(folder: &Path, context: &Context) -> Result<(), String> {
     put(folder, "cam.json", camera.to_string())?;
     // A first stroke, in a corner of the wall, that leaves its brush behind: small, and blurred as near as can be.
     let stroke = json!({"layer": "Paint",
-        "brush": {"radius": 0.08, "hardness": 0.9, "mode": "set", "target": {"t": 0.2, "anchor": 1}},
+        "brush": {"radius": 0.08, "hardness": 1.0, "mode": "set", "target": {"t": 0.2, "anchor": 1}},
         "view": {"camera_to_world": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 3, 1], "yfov": 0.8, "aspect": 1.0},
         "points": [[0.18, 0.18, 1.0]]});
     let strokes = json!({"format": "focus-brush strokes", "version": 2, "steps": [{"stroke": stroke}]});
@@ -103,7 +103,8 @@ fn kill_while_painting(case: usize, place: &Workplace, context: &Context) -> Ver
     let killed = AtomicBool::new(false);
     let (strokes, killed_at) = std::thread::scope(|scope| {
         let killer = scope.spawn(|| {
-            wait_for_moment(start + painting, waits_for_file.then_some(&*recovery_folder));
+            let watched = waits_for_file.then_some((start + interval.may_lose, &*recovery_folder));
+            wait_for_moment(start + painting, watched);
             let at = Instant::now();
             let sent = Command::new("kill").args(["-KILL", &window.process_id().to_string()]).status();
             killed.store(true, Ordering::Relaxed);
@@ -146,6 +147,9 @@ fn kill_while_painting(case: usize, place: &Workplace, context: &Context) -> Ver
     };
     // The first stroke was painted before the clock started.
     let expected = old + usize::from(start + interval.may_lose <= killed_at);
+    if there > strokes.len() + 2 {
+        return Err(format!("{what}: {there} strokes are there, but {} were painted", strokes.len() + 1));
+    }
     if there < expected {
         let first_lost = strokes.get(there.saturating_sub(1)).map(|ended| seconds(killed_at - *ended));
         return Err(format!(
@@ -173,17 +177,17 @@ fn in_own_home(command: Invocation, own: &Path) -> Invocation {
     folders.iter().fold(command, |command, (name, folder)| command.env(name, Some(folder.as_os_str())))
 }
 
-/// Waits until a time or, in the last two thirds before it, until a file appears in a folder.
-fn wait_for_moment(end: Instant, folder: Option<&Path>) {
+/// Waits until a time or, from another time on, until a file appears in a folder.
+fn wait_for_moment(end: Instant, watched: Option<(Instant, &Path)>) {
     let names = |folder: &Path| {
         let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-        entries.map(|entry| entry.file_name()).collect::<Vec<_>>()
+        entries.map(|entry| (entry.file_name(), entry.metadata().and_then(|data| data.modified()).ok()))
     };
-    let total = end.saturating_duration_since(Instant::now());
-    std::thread::sleep(if folder.is_some() { total / 3 } else { total });
-    let Some(folder) = folder else { return };
-    let before = names(folder);
-    while Instant::now() < end && names(folder).iter().all(|name| before.contains(name)) {
+    let sleep = |until: Instant| std::thread::sleep(until.saturating_duration_since(Instant::now()));
+    let Some((since, folder)) = watched else { return sleep(end) };
+    sleep(since);
+    let before: Vec<_> = names(folder).collect();
+    while Instant::now() < end && names(folder).all(|name| before.contains(&name)) {
         std::thread::sleep(Duration::from_micros(300));
     }
 }
@@ -229,7 +233,7 @@ fn strokes_of(folder: &Path, project: &str, context: &Context) -> Result<usize, 
     for pixel in map.pixels() {
         *texels.entry([pixel[0], pixel[1]]).or_default() += 1;
     }
-    let is_stroke = |(value, count): (&[u16; 2], &usize)| value[1] == u16::MAX && *count >= MIN_CORE;
+    let is_stroke = |(value, count): (&[u16; 2], &usize)| value[1] == u16::MAX && *count >= MIN_TEXELS;
     Ok(texels.iter().filter(|entry| is_stroke(*entry)).count())
 }
 
