@@ -392,7 +392,7 @@ impl UndoHistory {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use focus::{FocusLayer, FocusMap, LayerEdit};
+    use focus::{Ease, FocusLayer, FocusMap, FocusTarget, Key, LayerEdit};
     use lens::FocusOffset;
 
     /// The state of a document that can be undone.
@@ -452,6 +452,22 @@ mod tests {
         assert_eq!(state.undo(), None);
         state.redo();
         assert_eq!(state.camera.focus_distance, 8.0);
+    }
+
+    #[test]
+    fn keys_that_are_taken_back_bring_the_camera_back() {
+        let mut state = State::new();
+        let without_keys = KeyedLens { motion: LensMotion::default(), camera: state.camera.clone() };
+        let mut motion = LensMotion::default();
+        let value = FocusTarget::Distance(5.0);
+        assert!(motion.focus.insert(Key { seconds: 0.0, value, ease: Ease::default() }));
+        (state.lens_motion, state.camera) = (motion.clone(), camera_focused_at(5.0));
+        let keyed = KeyedLens { motion: motion.clone(), camera: state.camera.clone() };
+        state.undo.push_lens_motion("Key lens", 2.0, without_keys, keyed);
+        assert_eq!(state.undo(), Some(StepEffect::LensMotion { seconds: 2.0 }));
+        assert_eq!((state.camera.focus_distance, state.lens_motion.is_empty()), (3.0, true));
+        state.redo();
+        assert_eq!((state.camera.focus_distance, &state.lens_motion), (5.0, &motion));
     }
 
     #[test]

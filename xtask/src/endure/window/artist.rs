@@ -36,9 +36,9 @@ const SIZE: [u32; 2] = [1200, 760];
 /// The middles of the paint view and the picture on the screen.
 const PAINT_VIEW: [f64; 2] = [0.17, 0.51];
 const PICTURE: [f64; 2] = [0.547, 0.51];
-/// How often, and how long each time, an exported picture is waited for.
-const EXPORT_TRIES: usize = 12;
-const EXPORT_WAIT: Duration = Duration::from_secs(10);
+/// How often, and how long each time, a file is waited for.
+const TRIES: usize = 12;
+const WAIT: Duration = Duration::from_secs(10);
 const MAX_GROWTH: f64 = 1.05;
 const MAX_FRAME_MS: f64 = 250.0;
 
@@ -218,10 +218,10 @@ impl Artist<'_> {
     fn export(&mut self, keys: &str, extension: &str) -> Verdict {
         self.exports += 1;
         let file = self.folder.join(format!("picture-{}.{extension}", self.exports));
-        for _ in 0..EXPORT_TRIES {
+        for _ in 0..TRIES {
             self.type_path(keys, &file)?;
             let start = Instant::now();
-            while start.elapsed() < EXPORT_WAIT && self.window.is_alive() {
+            while start.elapsed() < WAIT && self.window.is_alive() {
                 if file.exists() {
                     return std::fs::remove_file(&file).map_err(|e| format!("{}: {e}", file.display()));
                 }
@@ -231,11 +231,20 @@ impl Artist<'_> {
         Err(format!("no picture is exported by {keys}; the title is {:?}", self.window.title()))
     }
 
-    /// Saves the project under its name.
+    /// Saves the project under its name; again if a key was lost to whatever had the keyboard.
     fn save(&mut self) -> Verdict {
-        self.window.press("Escape")?;
-        self.window.press("ctrl+s")?;
-        self.window.wait_until("it is saved", |window| !window.title().contains('*'))
+        for _ in 0..TRIES {
+            self.window.press("Escape")?;
+            self.window.press("ctrl+s")?;
+            let start = Instant::now();
+            while start.elapsed() < WAIT && self.window.is_alive() {
+                if !self.window.title().contains('*') {
+                    return Ok(());
+                }
+                pause(100);
+            }
+        }
+        Err(format!("it is not saved; the title is {:?}", self.window.title()))
     }
 
     /// Saves, and opens the other project.
