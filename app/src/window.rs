@@ -16,7 +16,8 @@
 //! * `layout`: where the panes are: docked, in tabs, floating, or one over all.
 //! * `graphics`: the wgpu device; `blit` puts pictures on the screen, `soft_painter` draws egui's shapes on a
 //!   software adapter.
-//! * `stroke_player`: plays a recording in the window, timed. `demo`: the scene at first start.
+//! * `stroke_player`: plays a recording in the window, timed. `frame_log`: writes how long frames take. `demo`: the
+//!   scene at first start.
 //!
 //! A module uses only modules below it in this list.
 
@@ -24,6 +25,7 @@ mod action;
 mod chrome;
 pub(crate) mod demo;
 mod dialogs;
+mod frame_log;
 mod graphics;
 mod layout;
 mod options;

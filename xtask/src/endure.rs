@@ -11,6 +11,7 @@
 
 mod archive;
 mod bombs;
+mod examples;
 mod faults;
 mod ledger;
 mod made_files;
@@ -21,13 +22,16 @@ mod one_writer;
 mod outside;
 mod program;
 mod promise;
+mod same_bits;
 mod same_bytes;
 mod seeded;
 mod surroundings;
 mod system_calls;
+mod unwrapping;
+mod window;
 
 use crate::chore::{Failure, repository};
-use crate::packages::{TO_ENDURE, install_missing};
+use crate::packages::{TO_ACT, TO_ENDURE, TO_RUN, install_missing};
 use crate::run;
 use ledger::Ledger;
 use promise::{Context, Outcome, Promise};
@@ -35,7 +39,7 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 
 /// All promises, in the order in which they are run.
-const PROMISES: [Promise; 9] = [
+const PROMISES: [Promise; 15] = [
     bombs::PROMISE,
     malformed::PROMISE,
     faults::PROMISE,
@@ -45,6 +49,12 @@ const PROMISES: [Promise; 9] = [
     surroundings::PROMISE,
     memory::PROMISE,
     old_files::PROMISE,
+    window::crash::PROMISE,
+    unwrapping::PROMISE,
+    same_bits::PROMISE,
+    examples::lost_card::PROMISE,
+    examples::undo::PROMISE,
+    window::artist::PROMISE,
 ];
 
 /// Violations that are printed of a promise; all are counted.
@@ -66,7 +76,9 @@ pub fn endure(arguments: &[OsString]) -> Result<(), Failure> {
         eprintln!("SKIPPED: promises are measured through /proc, prlimit and strace, which only Linux has");
         return Ok(());
     }
-    if let Err(failure) = install_missing(&[TO_ENDURE]) {
+    // A short run skips what it cannot try.
+    let packages = if options.full { &[TO_ENDURE, TO_RUN, TO_ACT][..] } else { &[TO_ENDURE] };
+    if let Err(failure) = install_missing(packages) {
         eprintln!("note: {failure}");
     }
     let context = Context::new(program()?)?;

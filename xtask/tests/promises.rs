@@ -70,3 +70,33 @@ fn memory_has_a_limit() {
 fn old_files_open() {
     keeps("old-files");
 }
+
+#[test]
+fn a_crash_loses_little() {
+    keeps("crash");
+}
+
+#[test]
+fn unwrapping_ends() {
+    keeps("unwrapping");
+}
+
+#[test]
+fn processor_and_card_give_the_same_bits() {
+    keeps("same-bits");
+}
+
+#[test]
+fn a_lost_card_loses_nothing() {
+    keeps("lost-card");
+}
+
+#[test]
+fn undo_is_exact() {
+    keeps("undo");
+}
+
+#[test]
+fn the_window_stays() {
+    keeps("window");
+}

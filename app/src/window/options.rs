@@ -34,6 +34,10 @@ pub struct WindowOptions {
     pub replay: Option<Vec<project::RecordedStep>>,
     /// Output file for the latencies of the recording; the window closes after writing it.
     pub trace: Option<PathBuf>,
+    /// Delay from a change to writing the recovery file (`FOCUS_BRUSH_RECOVERY_DELAY`, in seconds).
+    pub recovery_delay: Duration,
+    /// Output file for the durations of frames (`FOCUS_BRUSH_FRAME_LOG`); see [`super::frame_log`].
+    pub frame_log: Option<PathBuf>,
 }
 
 impl Default for WindowOptions {
@@ -53,8 +57,17 @@ impl Default for WindowOptions {
             presets: project::PresetLibrary::default_folder(),
             replay: None,
             trace: None,
+            recovery_delay: recovery_delay(),
+            frame_log: std::env::var_os("FOCUS_BRUSH_FRAME_LOG").map(PathBuf::from),
         }
     }
+}
+
+/// What `FOCUS_BRUSH_RECOVERY_DELAY` says, or the session's default.
+fn recovery_delay() -> Duration {
+    let seconds = std::env::var("FOCUS_BRUSH_RECOVERY_DELAY").ok().and_then(|text| text.parse().ok());
+    let delay = seconds.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
+    delay.unwrap_or(session::SessionOptions::default().recovery_delay)
 }
 
 /// Whether to try the system's file dialogs: not without a session bus, because there is no portal then, and

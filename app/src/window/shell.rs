@@ -24,6 +24,7 @@ use super::dialogs::depth_polarity_dialog::DepthPolarityDialog;
 use super::dialogs::file_dialog::{FileDialog, Purpose};
 use super::dialogs::preset_name_dialog::PresetNameDialog;
 use super::dialogs::unsaved_changes_dialog::{PendingAction, UnsavedChangesDialog};
+use super::frame_log::FrameLog;
 use super::graphics::blit::Blitter;
 use super::graphics::{device, soft_painter};
 use super::layout::{Layout, Pane};
@@ -92,6 +93,7 @@ pub struct Shell {
     player: Option<Player>,
     /// Output file for the player's latencies.
     trace: Option<PathBuf>,
+    frame_log: Option<FrameLog>,
 }
 
 impl Shell {
@@ -122,6 +124,7 @@ impl Shell {
             light_field_store: options.light_fields,
             resources: options.resources,
             gpu: gpu.ok().flatten(),
+            recovery_delay: options.recovery_delay,
             waker: Arc::new(move || context.request_repaint()),
             ..SessionOptions::default()
         })?;
@@ -159,7 +162,14 @@ impl Shell {
             drawing_since: None,
             player: options.replay.map(Player::new),
             trace: options.trace,
+            frame_log: None,
         };
+        if let Some(file) = &options.frame_log {
+            match FrameLog::create(file) {
+                Ok(log) => shell.frame_log = Some(log),
+                Err(error) => shell.toasts.error(format!("{}: {error}", file.display())),
+            }
+        }
         if let Some(what) = gpu_error {
             shell.toasts.error(what);
         }
@@ -378,6 +388,16 @@ impl Shell {
         }
     }
 
+    /// Logs how long the last frame took, if that was requested.
+    fn log_frame(&mut self, frame: &Frame) {
+        let jobs = self.session.jobs().len();
+        let seconds = frame.info().cpu_usage;
+        if let Some(Err(error)) = self.frame_log.as_mut().map(|log| log.count(seconds, jobs)) {
+            self.frame_log = None;
+            self.toasts.error(format!("frames are no longer logged: {error}"));
+        }
+    }
+
     /// Passes the display settings to the session.
     fn update_display(&mut self) {
         let display = self.settings.display();
@@ -418,7 +438,8 @@ impl Shell {
 }
 
 impl eframe::App for Shell {
-    fn logic(&mut self, context: &Context, _frame: &mut Frame) {
+    fn logic(&mut self, context: &Context, frame: &mut Frame) {
+        self.log_frame(frame);
         self.update_display();
         self.handle_events(context);
         self.advance_playback(context);

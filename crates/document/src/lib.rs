@@ -81,4 +81,4 @@ pub use relief::{DepthRepair, DepthStroke};
 pub use scene_camera::shot_camera_from;
 pub use scene_file::{atlas_error, load_scene};
 pub use stage::{Stage, build_canvas};
-pub use undo::{HistoryStep, StepEffect, UndoHistory, UndoState};
+pub use undo::{HistoryStep, KeyedLens, StepEffect, UndoHistory, UndoState};

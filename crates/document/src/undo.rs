@@ -16,8 +16,8 @@ enum Change {
     Layers { before: Box<LayerStack>, after: Box<LayerStack> },
     /// The camera.
     Camera { before: Box<Camera>, after: Box<Camera> },
-    /// The keys of the lens.
-    LensMotion { before: Box<LensMotion>, after: Box<LensMotion> },
+    /// The keys of the lens, at a time in seconds.
+    LensMotion { seconds: f64, before: Box<KeyedLens>, after: Box<KeyedLens> },
     /// The selection.
     Selection { before: Option<Selection>, after: Option<Selection> },
     /// The scene's variant, by name. Undoing it requires the caller to read the scene again.
@@ -33,8 +33,8 @@ impl Change {
             Self::Paint { edit, .. } => edit.bytes(),
             Self::Layers { before, after } => before.unshared_bytes(after) + after.unshared_bytes(before),
             Self::Camera { .. } => 2 * size_of::<Camera>(),
-            Self::LensMotion { before, after } => {
-                [before, after].into_iter().map(|motion| motion.bytes()).sum()
+            Self::LensMotion { before, after, .. } => {
+                [before, after].into_iter().map(|lens| size_of::<Camera>() + lens.motion.bytes()).sum()
             }
             Self::Selection { before, after } => selection_bytes(before) + selection_bytes(after),
             // Each list has one stroke more than the previous, so that only `after` is counted.
@@ -83,8 +83,11 @@ pub enum StepEffect {
     Layers,
     /// The camera.
     Camera,
-    /// The keys of the lens.
-    LensMotion,
+    /// The keys of the lens, and the camera as it was with them at a time.
+    LensMotion {
+        /// The time, s.
+        seconds: f64,
+    },
     /// The selection.
     Selection,
     /// The variant that the scene must have now, by name.
@@ -122,6 +125,22 @@ pub struct UndoState<'a> {
     pub selection: &'a mut Option<Selection>,
     /// The strokes that repair depth.
     pub depth_strokes: &'a mut Arc<Vec<DepthStroke>>,
+}
+
+/// The keys of the lens, and the camera beside them: a lens without keys has no other record of its focus.
+#[derive(Clone, Debug)]
+pub struct KeyedLens {
+    /// The keys.
+    pub motion: LensMotion,
+    /// The camera.
+    pub camera: Camera,
+}
+
+impl KeyedLens {
+    fn restore(&self, state: UndoState<'_>) {
+        state.lens_motion.clone_from(&self.motion);
+        state.camera.clone_from(&self.camera);
+    }
 }
 
 /// The undo history: steps that can be undone, and those that can be redone.
@@ -166,9 +185,9 @@ impl UndoHistory {
         self.is_run_open = false;
     }
 
-    /// Adds a change of the keys of the lens.
-    pub fn push_lens_motion(&mut self, name: &str, before: LensMotion, after: LensMotion) {
-        let change = Change::LensMotion { before: before.into(), after: after.into() };
+    /// Adds a change of the keys of the lens, which was made at a time, s.
+    pub fn push_lens_motion(&mut self, name: &str, seconds: f64, before: KeyedLens, after: KeyedLens) {
+        let change = Change::LensMotion { seconds, before: before.into(), after: after.into() };
         self.push(Step::new(name.into(), change, None));
         self.is_run_open = false;
     }
@@ -289,9 +308,9 @@ impl UndoHistory {
                 *state.camera = (**before).clone();
                 StepEffect::Camera
             }
-            Change::LensMotion { before, .. } => {
-                *state.lens_motion = (**before).clone();
-                StepEffect::LensMotion
+            Change::LensMotion { seconds, before, .. } => {
+                before.restore(state);
+                StepEffect::LensMotion { seconds: *seconds }
             }
             Change::Selection { before, .. } => {
                 *state.selection = before.clone();
@@ -325,9 +344,9 @@ impl UndoHistory {
                 *state.camera = (**after).clone();
                 StepEffect::Camera
             }
-            Change::LensMotion { after, .. } => {
-                *state.lens_motion = (**after).clone();
-                StepEffect::LensMotion
+            Change::LensMotion { seconds, after, .. } => {
+                after.restore(state);
+                StepEffect::LensMotion { seconds: *seconds }
             }
             Change::Selection { after, .. } => {
                 *state.selection = after.clone();
@@ -373,7 +392,7 @@ impl UndoHistory {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use focus::{FocusLayer, FocusMap, LayerEdit};
+    use focus::{Ease, FocusLayer, FocusMap, FocusTarget, Key, LayerEdit};
     use lens::FocusOffset;
 
     /// The state of a document that can be undone.
@@ -433,6 +452,22 @@ mod tests {
         assert_eq!(state.undo(), None);
         state.redo();
         assert_eq!(state.camera.focus_distance, 8.0);
+    }
+
+    #[test]
+    fn keys_that_are_taken_back_bring_the_camera_back() {
+        let mut state = State::new();
+        let without_keys = KeyedLens { motion: LensMotion::default(), camera: state.camera.clone() };
+        let mut motion = LensMotion::default();
+        let value = FocusTarget::Distance(5.0);
+        assert!(motion.focus.insert(Key { seconds: 0.0, value, ease: Ease::default() }));
+        (state.lens_motion, state.camera) = (motion.clone(), camera_focused_at(5.0));
+        let keyed = KeyedLens { motion: motion.clone(), camera: state.camera.clone() };
+        state.undo.push_lens_motion("Key lens", 2.0, without_keys, keyed);
+        assert_eq!(state.undo(), Some(StepEffect::LensMotion { seconds: 2.0 }));
+        assert_eq!((state.camera.focus_distance, state.lens_motion.is_empty()), (3.0, true));
+        state.redo();
+        assert_eq!((state.camera.focus_distance, &state.lens_motion), (5.0, &motion));
     }
 
     #[test]

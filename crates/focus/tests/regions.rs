@@ -137,6 +137,13 @@ fn what_is_not_selected_is_never_painted() {
     let mut map = blank();
     let mut stroke = Stroke::begin(&map, canvas.clone(), tiny).unwrap().with_selection(Some(left));
     assert!(stroke.extend(&mut map, hit(2.0, 0.5), PenSample::default()).is_empty());
+    // One that has no neighbours to be sharpened against.
+    let tiny = Brush { radius: 1e-4, ..brush(BrushMode::Sharpen) };
+    let mut map = blank();
+    let before = map.to_rows();
+    let mut stroke = Stroke::begin(&map, canvas.clone(), tiny).unwrap();
+    let _ = stroke.extend(&mut map, hit(2.0, 0.5), PenSample::default());
+    assert_eq!(map.to_rows(), before);
 }
 
 #[test]

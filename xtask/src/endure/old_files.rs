@@ -1,5 +1,7 @@
 //! Files of every version ever written: each opens, or the program says what reads it.
 
+pub mod projects;
+
 use super::archive::{Entry, zip};
 use super::made_files::{glb_of, put, scene, write_all};
 use super::promise::{Context, Promise, Verdict, Workplace, ended_as_documented};
@@ -10,8 +12,8 @@ use serde_json::{Value, json};
 pub const PROMISE: Promise = Promise {
     name: "old-files",
     sentence: "Old files open, or it says which version reads them",
-    what_is_done: "a file of each version: strokes 1 to 5, presets 1, light fields 1 to 6, parts 1, recipes and \
-                   cameras, the project of the first demo, and of a version that does not exist yet",
+    what_is_done: "a file of each version: projects 1 to 8 and that of the first demo, strokes 1 to 5, presets 1, light \
+                   fields 1 to 6, and of versions that do not exist yet",
     full: GOLDENS.len(),
     short: GOLDENS.len(),
     batch: GOLDENS.len(),
@@ -33,8 +35,58 @@ struct Golden {
 
 const REPLAY: &str = "replay s.glb strokes.json -o o.fbrush";
 
-const GOLDENS: [Golden; 17] = [
-    Golden { what: "a project of version 1", write: demo, command: "info demo.fbrush", says: "" },
+const OPEN: &str = "render p.fbrush --size 8x8 --backend cpu -o o.png";
+
+const GOLDENS: [Golden; 25] = [
+    Golden { what: "the project of the first demo", write: demo, command: "info demo.fbrush", says: "" },
+    Golden {
+        what: "a project of version 1",
+        write: |place| projects::write(place, 1),
+        command: OPEN,
+        says: "",
+    },
+    Golden {
+        what: "a project of version 2",
+        write: |place| projects::write(place, 2),
+        command: OPEN,
+        says: "",
+    },
+    Golden {
+        what: "a project of version 3",
+        write: |place| projects::write(place, 3),
+        command: OPEN,
+        says: "",
+    },
+    Golden {
+        what: "a project of version 4",
+        write: |place| projects::write(place, 4),
+        command: OPEN,
+        says: "",
+    },
+    Golden {
+        what: "a project of version 5",
+        write: |place| projects::write(place, 5),
+        command: OPEN,
+        says: "",
+    },
+    Golden {
+        what: "a project of version 6",
+        write: |place| projects::write(place, 6),
+        command: OPEN,
+        says: "",
+    },
+    Golden {
+        what: "a project of version 7",
+        write: |place| projects::write(place, 7),
+        command: OPEN,
+        says: "",
+    },
+    Golden {
+        what: "a project of version 8",
+        write: |place| projects::write(place, 8),
+        command: OPEN,
+        says: "",
+    },
     Golden {
         what: "a project of a later version",
         write: |place| {

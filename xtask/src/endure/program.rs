@@ -69,6 +69,17 @@ impl Program {
         Ok(Self { path, home: folder.join("home") })
     }
 
+    /// Another program in the same surroundings: `name`, in a folder beside this one.
+    pub fn beside(&self, folder: &str, name: &str) -> Self {
+        let parent = self.path.parent().unwrap_or(Path::new("."));
+        Self { path: parent.join(folder).join(name), home: self.home.clone() }
+    }
+
+    /// Whether it can be started.
+    pub fn is_there(&self) -> bool {
+        self.path.is_file()
+    }
+
     /// The program with these arguments, in this folder.
     pub fn with<A: AsRef<OsStr>>(&self, folder: &Path, arguments: impl IntoIterator<Item = A>) -> Invocation {
         let variable = |name: &str, value: Option<OsString>| (OsString::from(name), value);
@@ -119,8 +130,9 @@ impl Invocation {
 
     /// As typed in a shell.
     pub fn shown(&self) -> String {
-        let words = self.arguments.iter().map(|word| word.to_string_lossy());
-        format!("focus-brush {}", words.collect::<Vec<_>>().join(" "))
+        let program = self.program.file_name().unwrap_or_default();
+        let words = std::iter::once(program).chain(self.arguments.iter().map(|word| word.as_os_str()));
+        words.map(|word| word.to_string_lossy()).collect::<Vec<_>>().join(" ")
     }
 
     /// Starts it.
@@ -212,7 +224,8 @@ impl Run {
     }
 }
 
-fn read_aside(pipe: Option<impl Read + Send + 'static>) -> std::thread::JoinHandle<String> {
+/// Reads what a program prints, so that it never waits to be read.
+pub fn read_aside(pipe: Option<impl Read + Send + 'static>) -> std::thread::JoinHandle<String> {
     std::thread::spawn(move || {
         let mut bytes = Vec::new();
         if let Some(mut pipe) = pipe {
@@ -234,8 +247,23 @@ fn state_and_time(id: u32) -> (u8, f64) {
 
 /// The largest resident memory of a process so far, bytes; 0 once it has ended.
 fn peak_memory(id: u32) -> u64 {
+    memory(id, "VmHWM:")
+}
+
+/// The resident memory of a process, bytes; 0 once it has ended.
+pub fn resident_memory(id: u32) -> u64 {
+    memory(id, "VmRSS:")
+}
+
+fn memory(id: u32, field: &str) -> u64 {
     let status = std::fs::read_to_string(format!("/proc/{id}/status")).unwrap_or_default();
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+    let line = status.lines().find_map(|line| line.strip_prefix(field));
     let kilobytes = line.and_then(|line| line.trim().trim_end_matches(" kB").parse::<u64>().ok());
     kilobytes.unwrap_or(0) * 1024
+}
+
+/// Whether a program of this name can be started.
+pub fn is_installed(name: &str) -> bool {
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    std::env::split_paths(&path).any(|folder| folder.join(name).is_file())
 }

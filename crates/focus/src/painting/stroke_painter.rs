@@ -89,8 +89,11 @@ impl StrokePainter<'_> {
                     let mean = smoothed.value_at(canvas.offset_from(index, dab.center), from);
                     let moved = [0, 1, 2, 3].map(|k| match brush.mode {
                         // Away from the mean, but within the range of the neighbourhood: a ramp becomes a step,
-                        // without a rim.
-                        BrushMode::Sharpen => (from[k] + (from[k] - mean[k]) * share).clamp(low[k], high[k]),
+                        // without a rim. A dab smaller than a texel has no neighbourhood but the texel itself.
+                        BrushMode::Sharpen => {
+                            let sharpened = from[k] + (from[k] - mean[k]) * share;
+                            sharpened.clamp(low[k].min(from[k]), high[k].max(from[k]))
+                        }
                         _ => lerp_toward(from[k], mean[k], share),
                     });
                     write(map, index, moved);

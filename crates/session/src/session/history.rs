@@ -56,9 +56,15 @@ impl Session {
                 self.show_camera();
                 self.update_adjustment_layers()
             }
-            Some(StepEffect::LensMotion) => {
-                self.document_mut()?.revision += 1;
-                self.show_time()
+            Some(StepEffect::LensMotion { seconds }) => {
+                let document = self.document_mut()?;
+                document.revision += 1;
+                let is_same_time = document.seconds == seconds;
+                self.events.push(Event::CameraChanged);
+                self.show_camera();
+                self.update_adjustment_layers()?;
+                // At another time the keys say what the lens is.
+                if is_same_time { Ok(()) } else { self.show_lens_keys() }
             }
             Some(StepEffect::Paint { texels, .. }) => {
                 self.document_mut()?.revision += 1;

@@ -7,7 +7,7 @@
 use crate::commands::Event;
 use crate::error::SessionError;
 use crate::session::state::Session;
-use document::SurfaceHit;
+use document::{KeyedLens, SurfaceHit};
 use focus::{Ease, FocusTarget, Key, LensMotion};
 use scene::SurfacePoint;
 
@@ -17,11 +17,12 @@ impl Session {
             return Err(SessionError::BadInput(format!("{seconds} s is not a valid time")));
         }
         self.document_mut()?.seconds = seconds;
-        self.show_time()
+        self.show_lens_keys()?;
+        self.show_layer_keys()
     }
 
-    /// Gives lens and layers what their keys say now.
-    pub(super) fn show_time(&mut self) -> Result<(), SessionError> {
+    /// Gives the lens what its keys say now.
+    pub(super) fn show_lens_keys(&mut self) -> Result<(), SessionError> {
         let document = self.document_mut()?;
         let (seconds, scene) = (document.seconds, document.stage.scene.clone());
         let position = |point: SurfacePoint| point.checked_position(&scene);
@@ -29,7 +30,17 @@ impl Session {
         let is_moved = camera != document.camera && camera.validate().is_ok();
         if is_moved {
             document.camera = camera;
+            self.events.push(Event::CameraChanged);
+            self.show_camera();
+            self.update_adjustment_layers()?;
         }
+        Ok(())
+    }
+
+    /// Gives the layers what their keys say now.
+    fn show_layer_keys(&mut self) -> Result<(), SessionError> {
+        let document = self.document_mut()?;
+        let seconds = document.seconds;
         let mut is_faded = false;
         for index in 0..document.layers.layers().len() {
             let Some(layer) = document.layers.layer_mut(index) else { continue };
@@ -39,11 +50,6 @@ impl Session {
             };
             is_faded |= layer.opacity != opacity;
             layer.opacity = opacity;
-        }
-        if is_moved {
-            self.events.push(Event::CameraChanged);
-            self.show_camera();
-            self.update_adjustment_layers()?;
         }
         if is_faded {
             self.events.push(Event::LayersChanged);
@@ -61,10 +67,15 @@ impl Session {
         if document.lens_motion == motion {
             return Ok(());
         }
+        let (seconds, camera) = (document.seconds, document.camera.clone());
         let before = std::mem::replace(&mut document.lens_motion, motion.clone());
-        document.undo.push_lens_motion(name, before, motion);
+        let before = KeyedLens { motion: before, camera };
+        self.show_lens_keys()?;
+        let document = self.document_mut()?;
+        let after = KeyedLens { motion, camera: document.camera.clone() };
+        document.undo.push_lens_motion(name, seconds, before, after);
         document.revision += 1;
-        self.show_time()
+        Ok(())
     }
 
     pub(super) fn rack(
