@@ -245,8 +245,9 @@ fn read_scene(
     scene.normals.iter_mut().for_each(|normal| *normal = normal.normalize_or_zero());
     add_missing_camera(&document, &mut scene);
     lint::lint(&document);
-    let inspection = count_contents(&document, &hierarchy, &scene);
+    let animations = animation::list_animations(&document);
     scene.warnings = document.warnings();
+    let inspection = count_contents(&document, &hierarchy, &scene, animations);
     Ok((scene, inspection))
 }
 
@@ -467,7 +468,12 @@ fn add_missing_camera(document: &Document<'_>, scene: &mut Scene) {
 }
 
 /// Counts the file's contents.
-fn count_contents(document: &Document<'_>, hierarchy: &Hierarchy, scene: &Scene) -> Inspection {
+fn count_contents(
+    document: &Document<'_>,
+    hierarchy: &Hierarchy,
+    scene: &Scene,
+    animation_list: Vec<Animation>,
+) -> Inspection {
     let mut primitives = [0; 7];
     for mesh in document.typed().meshes() {
         for primitive in mesh.primitives() {
@@ -490,7 +496,7 @@ fn count_contents(document: &Document<'_>, hierarchy: &Hierarchy, scene: &Scene)
         lights: document.len("lights"),
         skins: document.len("skins"),
         animations: document.len("animations"),
-        animation_list: animation::list_animations(document),
+        animation_list,
         triangles: scene.triangles.len(),
         extensions_used: extension::used(document).map(String::from).collect(),
         extensions_required: extension::required(document).map(String::from).collect(),
