@@ -36,7 +36,7 @@ pub struct WindowOptions {
     pub trace: Option<PathBuf>,
     /// Delay from a change to writing the recovery file (`FOCUS_BRUSH_RECOVERY_DELAY`, in seconds).
     pub recovery_delay: Duration,
-    /// Output file for the durations of frames (`FOCUS_BRUSH_FRAME_LOG`); see [`super::frame_log`].
+    /// Output file for the durations of frames (`FOCUS_BRUSH_FRAME_LOG`): a line a second.
     pub frame_log: Option<PathBuf>,
 }
 
