@@ -1,8 +1,8 @@
 //! Writes how long frames take and how many jobs are at work, to watch a window over hours.
 //!
 //! A line for every second in which a frame was drawn, and for every change of the jobs at work: seconds since the
-//! start, frames since the last line, the longest of them in ms, jobs at its end. Nothing is written while nothing is
-//! drawn.
+//! start, frames since the last line, the longest of them in ms, jobs at its end (other than the light's refinement).
+//! Nothing is written while nothing is drawn.
 
 use std::fs::File;
 use std::io::Write;

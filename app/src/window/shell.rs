@@ -390,7 +390,9 @@ impl Shell {
 
     /// Logs how long the last frame took, if that was requested.
     fn log_frame(&mut self, frame: &Frame) {
-        let jobs = self.session.jobs().len();
+        // Refining the light is what the window does at rest.
+        let is_waited_for = |job: &jobs::JobStatus| job.id != Session::LIGHT_REFINEMENT;
+        let jobs = self.session.jobs().iter().filter(|job| is_waited_for(job)).count();
         let seconds = frame.info().cpu_usage;
         if let Some(Err(error)) = self.frame_log.as_mut().map(|log| log.count(seconds, jobs)) {
             self.frame_log = None;

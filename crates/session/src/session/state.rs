@@ -236,6 +236,9 @@ impl Session {
         self.jobs.is_empty() && self.preview_thread.is_settled(self.last_preview_id)
     }
 
+    /// The job that refines the light while nothing changes. It may go on for minutes, and gives way to everything else.
+    pub const LIGHT_REFINEMENT: JobId = LIGHT_JOB;
+
     /// The state of all background work in progress.
     pub fn jobs(&self) -> Vec<JobStatus> {
         let (activity, progress) = self.preview_thread.activity();

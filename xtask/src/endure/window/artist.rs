@@ -16,8 +16,8 @@ pub const PROMISE: Promise = Promise {
     sentence: "The window stays: in memory, in time, with nothing left over",
     what_is_done: "an artist's hours in the real window (paint, undo, redo, layers, lens, camera, bake, open, save, \
                    export; something every 10 s), eight times as fast: a quarter of an hour in 2 minutes, two hours in \
-                   15 minutes. From two thirds on memory grows by 5 % at most; in two hours no frame beside a bake \
-                   takes over 250 ms; no job is left over",
+                   15 minutes. No job is left over; in two hours memory grows by 5 % at most from two thirds on, and no \
+                   frame beside a bake takes over 250 ms",
     full: SITTINGS.len(),
     short: 1,
     batch: 1,
@@ -110,16 +110,16 @@ fn work(case: usize, place: &Workplace, context: &Context) -> Verdict {
     if !status.success() {
         return Err(format!("the window ended with {status}"));
     }
-    // The clock of a short run is that of whatever else the machine does.
-    let max_frame_ms = if case == 0 { f64::INFINITY } else { MAX_FRAME_MS };
-    judge(&seconds, &memory, total, max_frame_ms)
+    // A short run shares the machine with whatever else is at work, and ends before the undo history is full.
+    let is_judged = case > 0;
+    judge(&seconds, &memory, total, is_judged)
 }
 
-/// Judges what was measured.
-fn judge(seconds: &[Second], memory: &[(Duration, u64)], total: Duration, max_frame_ms: f64) -> Verdict {
+/// Prints what was measured and, in a long sitting, judges it.
+fn judge(seconds: &[Second], memory: &[(Duration, u64)], total: Duration, is_judged: bool) -> Verdict {
     let beside_jobs = seconds.windows(2).filter(|pair| pair.iter().any(|second| second.jobs > 0));
     let beside_jobs: Vec<Second> = beside_jobs.map(|pair| pair[1]).collect();
-    let slow: Vec<_> = beside_jobs.iter().filter(|second| second.longest_ms > max_frame_ms).collect();
+    let slow: Vec<_> = beside_jobs.iter().filter(|second| second.longest_ms > MAX_FRAME_MS).collect();
     if beside_jobs.is_empty() {
         return Err("no frame was drawn beside a job".into());
     }
@@ -131,9 +131,12 @@ fn judge(seconds: &[Second], memory: &[(Duration, u64)], total: Duration, max_fr
         "  at most {early:.0} MB until two thirds, {late:.0} MB after; the longest frame beside a job took {:.0} ms",
         beside_jobs.iter().map(|second| second.longest_ms).fold(0.0, f64::max)
     );
+    if !is_judged {
+        return Ok(());
+    }
     if let Some(worst) = slow.iter().max_by(|a, b| a.longest_ms.total_cmp(&b.longest_ms)) {
         return Err(format!(
-            "a frame beside a job took {:.0} ms, {:.0} s after the start ({} of {} seconds had one over {max_frame_ms} ms)",
+            "a frame beside a job took {:.0} ms, {:.0} s after the start ({} of {} seconds had one over {MAX_FRAME_MS} ms)",
             worst.longest_ms,
             worst.at,
             slow.len(),
