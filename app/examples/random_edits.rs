@@ -20,6 +20,7 @@ use session::{Command, Event, Session, SessionOptions};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
+use test_scenes::Random;
 
 /// More than anything takes on these small scenes.
 const PATIENCE: Duration = Duration::from_secs(120);
@@ -231,48 +232,20 @@ fn map_hash(map: &FocusMap) -> u64 {
     hash.0
 }
 
-/// SplitMix64 (Steele, Lea, Flood 2014).
-struct Random(u64);
+/// A place in the picture, (0, 0) its upper left corner, (1, 1) its lower right.
+fn random_position(random: &mut Random) -> DVec2 {
+    DVec2::new(random.unit(), random.unit())
+}
 
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
-    }
-
-    fn below(&mut self, n: u64) -> u64 {
-        self.next() % n.max(1)
-    }
-
-    fn one_in(&mut self, n: u64) -> bool {
-        self.below(n) == 0
-    }
-
-    fn one_of<T: Copy>(&mut self, choices: &[T]) -> T {
-        choices[self.below(choices.len() as u64) as usize]
-    }
-
-    /// In [0, 1).
-    fn unit(&mut self) -> f64 {
-        (self.next() >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn position(&mut self) -> DVec2 {
-        DVec2::new(self.unit(), self.unit())
-    }
-
-    fn focus(&mut self) -> FocusOffset {
-        let gloss = if self.one_in(3) { self.unit() } else { 0.0 };
-        FocusOffset::new(0.8 + 0.4 * self.unit(), self.below(3) as f64 / 2.0).with_gloss(gloss)
-    }
+/// A focus near sharp, anchored to the lens, the point or between.
+fn random_focus(random: &mut Random) -> FocusOffset {
+    let gloss = if random.one_in(3) { random.unit() } else { 0.0 };
+    FocusOffset::new(0.8 + 0.4 * random.unit(), random.below(3) as f64 / 2.0).with_gloss(gloss)
 }
 
 /// Makes an edit, which may turn out to change nothing or to be refused. Returns its name.
 fn edit(session: &mut Session, random: &mut Random) -> Result<String, String> {
-    let position = random.position();
+    let position = random_position(random);
     let hit = session.picture_ray(position).and_then(|ray| session.pick(&ray));
     let kind = random.below(12);
     let made = match (kind, hit) {
@@ -324,7 +297,7 @@ fn stroke(session: &mut Session, random: &mut Random, position: DVec2) -> String
         strength: 0.3 + 0.7 * random.unit(),
         flow: random.one_of(&[1.0, 0.5]),
         mode: random.one_of(&modes),
-        target: random.focus(),
+        target: random_focus(random),
         clone_offset: [0.3 * random.unit(), 0.1, 0.0],
         channels: if random.one_in(2) { Channels::All } else { random.one_of(&channels) },
         normal_limit_degrees: random.one_of(&[90.0, 180.0]),
@@ -346,7 +319,7 @@ fn stroke(session: &mut Session, random: &mut Random, position: DVec2) -> String
     let first = point(position, random);
     let began = session.apply(Command::BeginStroke(first));
     for _ in 0..random.below(4) {
-        let next = StrokePoint { pressure: 1.0, ..point(random.position(), random) };
+        let next = StrokePoint { pressure: 1.0, ..point(random_position(random), random) };
         let _ = session.apply(Command::ExtendStroke(next));
     }
     let end = match random.below(12) {
@@ -362,16 +335,16 @@ fn stroke(session: &mut Session, random: &mut Random, position: DVec2) -> String
 fn gradient(session: &mut Session, random: &mut Random) -> String {
     let line = match random.below(2) {
         0 => GradientLine::World([DVec3::ZERO, DVec3::new(random.unit(), 0.1, -4.0)]),
-        _ => GradientLine::View(view(session), [random.position(), random.position()]),
+        _ => GradientLine::View(view(session), [random_position(random), random_position(random)]),
     };
     let gradient = Gradient {
         shape: random.one_of(&[GradientShape::Linear, GradientShape::Radial]),
         line,
-        from: random.focus(),
-        to: if random.one_in(3) { None } else { Some(random.focus()) },
+        from: random_focus(random),
+        to: if random.one_in(3) { None } else { Some(random_focus(random)) },
         symmetry: Symmetry { mirror: [random.one_in(3), false, false], ..Symmetry::default() },
     };
-    let _ = session.apply(Command::DragGradient(Gradient { from: random.focus(), ..gradient }));
+    let _ = session.apply(Command::DragGradient(Gradient { from: random_focus(random), ..gradient }));
     let drawn = apply(session, Command::DragGradient(gradient));
     let end = if random.one_in(8) { Command::AbortStroke } else { Command::CommitStroke };
     format!("{drawn}, {}", apply(session, end))
@@ -386,7 +359,7 @@ fn select(session: &mut Session, random: &mut Random, hit: Option<SurfaceHit>) -
     ]);
     let outline = |random: &mut Random, view| SelectionShape::Outline {
         view,
-        points: (0..3 + random.below(4)).map(|_| random.position()).collect(),
+        points: (0..3 + random.below(4)).map(|_| random_position(random)).collect(),
         through: random.one_in(2),
     };
     let command = match (random.below(7), hit) {
@@ -419,7 +392,7 @@ fn region(random: &mut Random, hit: SurfaceHit) -> FillRegion {
 
 fn fill(session: &mut Session, random: &mut Random, hit: Option<SurfaceHit>) -> String {
     let command = match (random.below(3), hit) {
-        (0, _) => Command::SetBackgroundFocus(random.focus()),
+        (0, _) => Command::SetBackgroundFocus(random_focus(random)),
         (1, _) => {
             let layers = session.document().map(|document| document.layers.layers());
             let layer =
@@ -429,11 +402,11 @@ fn fill(session: &mut Session, random: &mut Random, hit: Option<SurfaceHit>) -> 
             Command::ApplyRecordedStep(RecordedStep::Fill(RecordedFill {
                 layer,
                 targets,
-                focus: random.focus(),
+                focus: random_focus(random),
             }))
         }
-        (_, Some(hit)) => Command::Fill(region(random, hit), random.focus()),
-        (_, None) => Command::Fill(FillRegion::All, random.focus()),
+        (_, Some(hit)) => Command::Fill(region(random, hit), random_focus(random)),
+        (_, None) => Command::Fill(FillRegion::All, random_focus(random)),
     };
     apply(session, command)
 }
@@ -502,7 +475,7 @@ fn edit_camera(session: &mut Session, random: &mut Random, hit: Option<SurfaceHi
         }
         4 => CameraEdit::YFov(0.4 + 0.4 * random.unit()),
         5 => CameraEdit::SensorHeight(0.01 + 0.02 * random.unit()),
-        6 => CameraEdit::Shift(0.2 * (random.position() - DVec2::splat(0.5))),
+        6 => CameraEdit::Shift(0.2 * (random_position(random) - DVec2::splat(0.5))),
         7 => CameraEdit::Background(random.one_of(&[None, Some([0.1, 0.2, 0.3]), Some([1.0; 3])])),
         8 => CameraEdit::Size(32 + random.below(64) as u32, 32 + random.below(64) as u32),
         9 => CameraEdit::Pose(DMat4::from_translation(
@@ -533,7 +506,7 @@ fn edit_keys(session: &mut Session, random: &mut Random, hit: Option<SurfaceHit>
             let _ = motion.f_number.insert(Key { seconds, value: 1.0 + 8.0 * random.unit(), ease });
         }
         (3, Some(hit)) => {
-            let position = random.position();
+            let position = random_position(random);
             let other = session.picture_ray(position).and_then(|ray| session.pick(&ray)).unwrap_or(hit);
             let seconds = [seconds, seconds + 1.0];
             return apply(session, Command::RackFocus { points: [hit, other], seconds, ease });
@@ -572,7 +545,7 @@ fn edit_all(session: &mut Session, random: &mut Random) -> String {
                 strength: 1.0,
             })
         }
-        _ if variants.is_empty() => Command::Fill(FillRegion::All, random.focus()),
+        _ if variants.is_empty() => Command::Fill(FillRegion::All, random_focus(random)),
         _ => {
             let choice = random.below(variants.len() as u64 + 1) as usize;
             Command::SetVariant(variants.get(choice).cloned())

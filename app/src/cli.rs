@@ -4,7 +4,7 @@
 //!   variants for frames and tiles.
 //! * `input`: opens the scene, camera and focus that the arguments describe. `termination`: handling of
 //!   SIGTERM.
-//! * `console`: progress on stderr, results on stdout. `failure`: errors and exit codes.
+//! * `console`: progress on stderr, results on stdout. `stderr`: lines there that may fail. `failure`: errors and exit codes.
 
 mod arguments;
 mod camera_presets;
@@ -12,6 +12,7 @@ mod commands;
 mod console;
 mod failure;
 mod input;
+mod stderr;
 mod termination;
 
 use crate::window;
@@ -23,12 +24,14 @@ use commands::{
     bake, compare, doctor, export, import, info, keys, merge, new, presets, render, replay, report,
     thumbnail, unwrap,
 };
-use console::{Console, write_line};
+use console::Console;
 use document::InputKind;
 use failure::Failure;
+pub use failure::TRY_AGAIN;
 use light::{DiskCache, Resources};
 use std::process::ExitCode;
 use std::sync::Mutex;
+use stderr::write_line;
 
 /// Stack size of the worker thread: deeply nested scenes must not overflow it.
 const WORKER_STACK_BYTES: usize = 64 << 20;

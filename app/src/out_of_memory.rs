@@ -6,6 +6,8 @@
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::io::Write;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 /// The system's allocator; where it has no memory left, the program ends.
 pub struct EndingAllocator;
@@ -45,6 +47,11 @@ fn or_end(pointer: *mut u8, bytes: usize) -> *mut u8 {
 /// Ends the program with one line. Nothing in here allocates.
 #[cold]
 fn end_without_memory(bytes: usize) -> ! {
+    // Several threads may run out at once; the first one speaks for all.
+    static IS_ENDING: AtomicBool = AtomicBool::new(false);
+    while IS_ENDING.swap(true, Ordering::Relaxed) {
+        std::thread::sleep(Duration::from_secs(1));
+    }
     let mut line = [0; 128];
     let mut rest = &mut line[..];
     let mebibytes = bytes.div_ceil(1 << 20);
@@ -64,15 +71,12 @@ fn end(line: &[u8]) -> ! {
     let stderr = std::io::stderr();
     let _ = stderr.lock().write_all(line);
     // SAFETY: it takes a number and does not return.
-    unsafe { libc::_exit(EXIT_CODE) }
+    unsafe { libc::_exit(focus_brush::cli::TRY_AGAIN.into()) }
 }
 
 /// The same elsewhere.
 #[cfg(not(unix))]
 fn end(line: &[u8]) -> ! {
     let _ = std::io::stderr().lock().write_all(line);
-    std::process::exit(EXIT_CODE)
+    std::process::exit(focus_brush::cli::TRY_AGAIN.into())
 }
-
-/// The exit code of temporary problems (`focus_brush::cli`).
-const EXIT_CODE: i32 = 75;

@@ -7,34 +7,28 @@
 //! * `--case N` repeats one case; a violation says which. Its files stay in `target/endure/kept`.
 //!
 //! A promise is a file of `endure/`: it plays a range of cases, and a case depends on its number alone.
-//! `promise` has what all share, `program` runs the program and measures it, `ledger` adds counts up.
+//! `harness` has what all share.
 
-mod archive;
 mod bombs;
 mod examples;
 mod faults;
-mod ledger;
-mod made_files;
+mod harness;
 mod malformed;
 mod memory;
 mod old_files;
 mod one_writer;
 mod outside;
-mod program;
-mod promise;
 mod same_bits;
 mod same_bytes;
-mod seeded;
 mod surroundings;
-mod system_calls;
 mod unwrapping;
 mod window;
 
 use crate::chore::{Failure, repository};
 use crate::packages::{TO_ACT, TO_ENDURE, TO_RUN, install_missing};
 use crate::run;
-use ledger::Ledger;
-use promise::{Context, Outcome, Promise};
+use harness::ledger::Ledger;
+use harness::promise::{Context, Outcome, Promise};
 use std::ffi::OsString;
 use std::path::PathBuf;
 

@@ -1,6 +1,7 @@
 //! Progress on stderr, results on stdout.
 
 use super::arguments::ProgressName;
+use super::stderr::write_line;
 use super::termination;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use light::{Resources, Steps};
@@ -89,11 +90,6 @@ impl Console {
 
 fn write_json_line(value: &Value) {
     write_line(&value.to_string());
-}
-
-/// Writes a line to stderr. The work does not depend on whether it can be written.
-pub fn write_line(line: &str) {
-    let _ = writeln!(std::io::stderr(), "{line}");
 }
 
 /// Prints a line of the result on stdout. A closed pipe is not an error.

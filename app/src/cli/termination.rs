@@ -2,6 +2,7 @@
 //! are kept.
 
 use super::failure::{Failure, TRY_AGAIN};
+use super::stderr::write_line;
 use signal_hook::consts::SIGTERM;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
@@ -30,7 +31,7 @@ pub fn install_handler() -> Result<(), Failure> {
             std::thread::sleep(POLL_INTERVAL);
         }
         std::thread::sleep(GRACE_PERIOD);
-        eprintln!("error: {}", Failure::terminated().message);
+        write_line(&format!("error: {}", Failure::terminated().message));
         std::process::exit(TRY_AGAIN.into());
     };
     let thread = std::thread::Builder::new().name("signals".into()).spawn(watch);

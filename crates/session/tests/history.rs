@@ -9,34 +9,13 @@ use lens::FocusOffset;
 use project::SelectionShape;
 use session::{Command, Session, SessionOptions};
 use std::time::{Duration, Instant};
+use test_scenes::Random;
 
 /// Memory that the steps may keep alive here: a few hundred of them.
 const BUDGET_BYTES: usize = 8 << 20;
 
-/// Numbers that look random (Steele et al. 2014, SplitMix64).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
-    }
-
-    fn below(&mut self, n: u64) -> u64 {
-        self.next() % n
-    }
-
-    /// In [0, 1).
-    fn unit(&mut self) -> f64 {
-        (self.next() >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn focus(&mut self) -> FocusOffset {
-        FocusOffset::new(0.8 + 0.4 * self.unit(), self.below(3) as f64 / 2.0)
-    }
+fn random_focus(random: &mut Random) -> FocusOffset {
+    FocusOffset::new(0.8 + 0.4 * random.unit(), random.below(3) as f64 / 2.0)
 }
 
 /// All that undo is about, as one number.
@@ -79,7 +58,7 @@ fn edit(session: &mut Session, random: &mut Random) {
         (0..=5, _) => {
             let modes = [BrushMode::Set, BrushMode::Add, BrushMode::Smooth, BrushMode::Reset];
             let mode = modes[random.below(4) as usize];
-            let (radius, target) = (0.1 + 0.4 * random.unit(), random.focus());
+            let (radius, target) = (0.1 + 0.4 * random.unit(), random_focus(random));
             let mirror = [random.below(4) == 0, false, false];
             let brush = Brush { radius, mode, target, mirror, ..Brush::default() };
             session.apply(Command::SetBrush(brush)).unwrap();
@@ -90,11 +69,11 @@ fn edit(session: &mut Session, random: &mut Random) {
             session.apply(end).unwrap();
             began
         }
-        (6, Some(hit)) => session.apply(Command::Fill(FillRegion::Node(hit), random.focus())),
-        (7, _) => session.apply(Command::SetBackgroundFocus(random.focus())),
+        (6, Some(hit)) => session.apply(Command::Fill(FillRegion::Node(hit), random_focus(random))),
+        (7, _) => session.apply(Command::SetBackgroundFocus(random_focus(random))),
         (8, _) => {
             let line = GradientLine::World([DVec3::ZERO, DVec3::new(random.unit(), 0.1, -4.0)]);
-            let (from, to) = (random.focus(), Some(random.focus()));
+            let (from, to) = (random_focus(random), Some(random_focus(random)));
             let shape = GradientShape::Linear;
             let gradient = Gradient { shape, line, from, to, symmetry: Default::default() };
             let _ = session.apply(Command::DragGradient(Gradient { from: to.unwrap(), ..gradient }));

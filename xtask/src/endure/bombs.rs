@@ -6,8 +6,8 @@ mod documents;
 mod pictures;
 mod scenes;
 
-use super::program::Limits;
-use super::promise::{Context, Promise, Verdict, Workplace, ended_as_documented, nothing};
+use super::harness::program::Limits;
+use super::harness::promise::{Context, Promise, Verdict, Workplace, ended_as_documented, nothing};
 
 /// Bombs are refused at once.
 pub const PROMISE: Promise = Promise {

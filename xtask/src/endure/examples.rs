@@ -3,8 +3,8 @@
 pub mod lost_card;
 pub mod undo;
 
-use super::program::{Program, Run};
-use super::promise::{Context, Verdict};
+use super::harness::program::{Program, Run};
+use super::harness::promise::{Context, Verdict};
 use crate::chore::{cargo, execute};
 
 /// The example of this name, which lies beside the program.

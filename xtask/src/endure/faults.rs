@@ -1,9 +1,9 @@
 //! Saving under failing system calls: afterwards the old file or the complete new one is there.
 
-use super::made_files::{glb_of, picture, put, scene, write_all};
-use super::program::{Limits, Run};
-use super::promise::{Context, Promise, Verdict, Workplace, ended_as_documented};
-use super::system_calls::{Call, check_strace, traced};
+use super::harness::made_files::{glb_of, picture_with_depth, put, scene, write_all};
+use super::harness::program::{Limits, Run};
+use super::harness::promise::{Context, Promise, Verdict, Workplace, ended_as_documented};
+use super::harness::system_calls::{Call, check_strace, traced};
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -81,9 +81,7 @@ fn prepare(folder: &Path, context: &Context) -> Result<(), String> {
     lit["materials"][0]["extensions"] = json!({});
     put(folder, "lit.glb", glb_of(&lit))?;
     put(folder, "depth/readme.txt", "")?;
-    picture(&folder.join("depth/a.jpg"), [12, 8])?;
-    let depths = (0..96u8).flat_map(|i| (1.0 + f32::from(i % 12) / 6.0).to_le_bytes());
-    put(folder, "depth/a_depth.pfm", b"Pf\n12 8\n-1.0\n".iter().copied().chain(depths).collect::<Vec<u8>>())?;
+    picture_with_depth(&folder.join("depth"), [12, 8])?;
     let mut plan = Vec::new();
     for (number, writer) in WRITERS.iter().enumerate() {
         let own = folder.join(format!("../clean-{number}"));

@@ -1,9 +1,9 @@
 //! Damaged files: each is refused or read, but never takes the program down.
 
-use super::made_files::{picture, put, write_all};
-use super::program::Limits;
-use super::promise::{Context, Promise, Verdict, Workplace, ended_as_documented};
-use super::seeded::Seeded;
+use super::harness::made_files::{picture, picture_with_depth, put, write_all};
+use super::harness::program::Limits;
+use super::harness::promise::{Context, Promise, Verdict, Workplace, ended_as_documented};
+use super::harness::seeded::Seeded;
 use serde_json::json;
 use std::path::Path;
 
@@ -239,9 +239,7 @@ fn write_captures(folder: &Path) -> Result<(), String> {
     put(folder, "bundler/mesh.ply", PLY)?;
 
     put(folder, "depth/readme.txt", "")?;
-    picture(&folder.join("depth/a.jpg"), [12, 8])?;
-    let depths = (0..96u8).flat_map(|i| (1.0 + f32::from(i % 12) / 6.0).to_le_bytes());
-    put(folder, "depth/a_depth.pfm", b"Pf\n12 8\n-1.0\n".iter().copied().chain(depths).collect::<Vec<u8>>())?;
+    picture_with_depth(&folder.join("depth"), [12, 8])?;
 
     put(folder, "views/readme.txt", "")?;
     for view in 0..4 {

@@ -1,8 +1,8 @@
 //! A limit on memory: the program stops with one line, and nothing half written.
 
-use super::made_files::write_all;
-use super::program::Limits;
-use super::promise::{Context, Promise, Verdict, Workplace, ended_as_documented};
+use super::harness::made_files::write_all;
+use super::harness::program::Limits;
+use super::harness::promise::{Context, Promise, Verdict, Workplace, ended_as_documented};
 use std::path::Path;
 
 /// Memory has a limit.

@@ -2,9 +2,9 @@
 
 pub mod projects;
 
-use super::archive::{Entry, zip};
-use super::made_files::{glb_of, put, scene, write_all};
-use super::promise::{Context, Promise, Verdict, Workplace, ended_as_documented};
+use super::harness::archive::{Entry, zip};
+use super::harness::made_files::{glb_of, put, scene, write_all};
+use super::harness::promise::{Context, Promise, Verdict, Workplace, ended_as_documented};
 use crate::chore::repository;
 use serde_json::{Value, json};
 
@@ -24,167 +24,105 @@ pub const PROMISE: Promise = Promise {
     case: open,
 };
 
-/// A file of a version, the command that reads it, and what is said if it cannot be read.
+/// A file of a version, the command that reads it, and what the message contains if it cannot be read.
 struct Golden {
     what: &'static str,
-    write: fn(&Workplace) -> Result<(), String>,
+    version: u64,
+    write: fn(&Workplace, u64) -> Verdict,
     command: &'static str,
     /// Empty if it opens.
     says: &'static str,
 }
 
-const REPLAY: &str = "replay s.glb strokes.json -o o.fbrush";
+/// A version that no program has written yet.
+const LATER: u64 = 99;
+const UPDATE: &str = "update the program";
 
-const OPEN: &str = "render p.fbrush --size 8x8 --backend cpu -o o.png";
+const fn project(version: u64) -> Golden {
+    let command = "render p.fbrush --size 8x8 --backend cpu -o o.png";
+    Golden { what: "a project", version, write: projects::write, command, says: "" }
+}
+
+const fn strokes(version: u64) -> Golden {
+    let says = if version == LATER { UPDATE } else { "" };
+    let command = "replay s.glb strokes.json -o o.fbrush";
+    Golden { what: "strokes", version, write: write_strokes, command, says }
+}
+
+const fn light_field(version: u64) -> Golden {
+    let says = if version == 6 { "" } else { "version" };
+    Golden { what: "a light field", version, write: write_salf, command: "info l.salf", says }
+}
+
+const fn preset(version: u64) -> Golden {
+    let says = if version == LATER { UPDATE } else { "" };
+    let command = "render s.glb --lens lens.json --size 8x8 --backend cpu -o o.png";
+    Golden { what: "a preset", version, write: write_preset, command, says }
+}
 
 const GOLDENS: [Golden; 25] = [
-    Golden { what: "the project of the first demo", write: demo, command: "info demo.fbrush", says: "" },
     Golden {
-        what: "a project of version 1",
-        write: |place| projects::write(place, 1),
-        command: OPEN,
+        what: "the project of the first demo",
+        version: 1,
+        write: copy_demo,
+        command: "info demo.fbrush",
         says: "",
     },
+    project(1),
+    project(2),
+    project(3),
+    project(4),
+    project(5),
+    project(6),
+    project(7),
+    project(8),
     Golden {
-        what: "a project of version 2",
-        write: |place| projects::write(place, 2),
-        command: OPEN,
-        says: "",
-    },
-    Golden {
-        what: "a project of version 3",
-        write: |place| projects::write(place, 3),
-        command: OPEN,
-        says: "",
-    },
-    Golden {
-        what: "a project of version 4",
-        write: |place| projects::write(place, 4),
-        command: OPEN,
-        says: "",
-    },
-    Golden {
-        what: "a project of version 5",
-        write: |place| projects::write(place, 5),
-        command: OPEN,
-        says: "",
-    },
-    Golden {
-        what: "a project of version 6",
-        write: |place| projects::write(place, 6),
-        command: OPEN,
-        says: "",
-    },
-    Golden {
-        what: "a project of version 7",
-        write: |place| projects::write(place, 7),
-        command: OPEN,
-        says: "",
-    },
-    Golden {
-        what: "a project of version 8",
-        write: |place| projects::write(place, 8),
-        command: OPEN,
-        says: "",
-    },
-    Golden {
-        what: "a project of a later version",
-        write: |place| {
-            let manifest =
-                json!({"format": "focus-brush project", "version": 99, "scene": {"path": "s.glb"}})
-                    .to_string();
-            put(&place.own, "p.fbrush", zip(&[Entry::plain("manifest.json", manifest.as_bytes())]))
-        },
+        what: "a project",
+        version: LATER,
+        write: write_later_project,
         command: "info p.fbrush",
-        says: "update the program",
+        says: UPDATE,
     },
-    Golden { what: "strokes of version 1", write: |place| strokes(place, 1), command: REPLAY, says: "" },
-    Golden { what: "strokes of version 2", write: |place| strokes(place, 2), command: REPLAY, says: "" },
-    Golden { what: "strokes of version 3", write: |place| strokes(place, 3), command: REPLAY, says: "" },
-    Golden { what: "strokes of version 4", write: |place| strokes(place, 4), command: REPLAY, says: "" },
-    Golden { what: "strokes of version 5", write: |place| strokes(place, 5), command: REPLAY, says: "" },
+    strokes(1),
+    strokes(2),
+    strokes(3),
+    strokes(4),
+    strokes(5),
+    strokes(LATER),
+    light_field(1),
+    light_field(2),
+    light_field(3),
+    light_field(4),
+    light_field(5),
+    light_field(6),
     Golden {
-        what: "strokes of a later version",
-        write: |place| strokes(place, 99),
-        command: REPLAY,
-        says: "update the program",
-    },
-    Golden {
-        what: "a light field of version 1",
-        write: |place| salf(place, 1),
-        command: "info l.salf",
-        says: "version",
-    },
-    Golden {
-        what: "a light field of version 2",
-        write: |place| salf(place, 2),
-        command: "info l.salf",
-        says: "version",
-    },
-    Golden {
-        what: "a light field of version 3",
-        write: |place| salf(place, 3),
-        command: "info l.salf",
-        says: "version",
-    },
-    Golden {
-        what: "a light field of version 4",
-        write: |place| salf(place, 4),
-        command: "info l.salf",
-        says: "version",
-    },
-    Golden {
-        what: "a light field of version 5",
-        write: |place| salf(place, 5),
-        command: "info l.salf",
-        says: "version",
-    },
-    Golden {
-        what: "a light field of version 6",
-        write: |place| salf(place, 6),
-        command: "info l.salf",
-        says: "",
-    },
-    Golden {
-        what: "a part of a later version",
-        write: |place| {
-            let part =
-                std::fs::read(place.prepared.join("tiles.tile1-of-2.part")).map_err(|e| e.to_string())?;
-            put(&place.own, "a.part", [b"focus-brush part 9", &part[18..]].concat())
-        },
+        what: "a part",
+        version: 9,
+        write: write_later_part,
         command: "merge -o o.exr a.part",
         says: "version",
     },
-    Golden {
-        what: "a preset of version 1",
-        write: |place| preset(place, 1),
-        command: "render s.glb --lens lens.json --size 8x8 --backend cpu -o o.png",
-        says: "",
-    },
-    Golden {
-        what: "a preset of a later version",
-        write: |place| preset(place, 99),
-        command: "render s.glb --lens lens.json --size 8x8 --backend cpu -o o.png",
-        says: "update the program",
-    },
+    preset(1),
+    preset(LATER),
 ];
 
 fn open(case: usize, place: &Workplace, context: &Context) -> Verdict {
-    let Golden { what, write, command, says } = &GOLDENS[case % GOLDENS.len()];
+    let Golden { what, version, write, command, says } = &GOLDENS[case % GOLDENS.len()];
+    let what = |why: String| format!("{what} of version {version}: {why}");
     put(&place.own, "s.glb", glb_of(&scene()))?;
-    write(place)?;
+    write(place, *version)?;
     let run = context.program.line(&place.own, command).run();
-    ended_as_documented(&run).map_err(|why| format!("{what}: {why}"))?;
+    ended_as_documented(&run).map_err(what)?;
     match (run.code, says.is_empty()) {
         (Some(0), true) => Ok(()),
         (Some(3), false) if run.last_line().contains(says) => Ok(()),
         (code, _) => {
-            Err(format!("{what}: {}: exit code {code:?}: {} (expected {says:?})", run.shown, run.last_line()))
+            Err(what(format!("{}: exit code {code:?}: {} (expected {says:?})", run.shown, run.last_line())))
         }
     }
 }
 
-fn demo(place: &Workplace) -> Verdict {
+fn copy_demo(place: &Workplace, _: u64) -> Verdict {
     for name in ["demo.fbrush", "demo.glb"] {
         let file = repository().join("assets/demo").join(name);
         let bytes = std::fs::read(&file).map_err(|e| format!("{}: {e}", file.display()))?;
@@ -193,9 +131,19 @@ fn demo(place: &Workplace) -> Verdict {
     Ok(())
 }
 
+fn write_later_project(place: &Workplace, version: u64) -> Verdict {
+    let manifest = json!({"format": "focus-brush project", "version": version, "scene": {"path": "s.glb"}});
+    put(&place.own, "p.fbrush", zip(&[Entry::plain("manifest.json", manifest.to_string().as_bytes())]))
+}
+
+fn write_later_part(place: &Workplace, version: u64) -> Verdict {
+    let part = std::fs::read(place.prepared.join("tiles.tile1-of-2.part")).map_err(|e| e.to_string())?;
+    put(&place.own, "a.part", [format!("focus-brush part {version}").as_bytes(), &part[18..]].concat())
+}
+
 /// The same stroke as each version writes it.
-fn strokes(place: &Workplace, version: u64) -> Verdict {
-    let mut stroke = super::made_files::strokes()["strokes"][0].take();
+fn write_strokes(place: &Workplace, version: u64) -> Verdict {
+    let mut stroke = super::harness::made_files::strokes()["strokes"][0].take();
     let file: Value = match version {
         1 => json!({"format": "focus-brush strokes", "version": 1, "strokes": [stroke]}),
         _ => {
@@ -208,13 +156,13 @@ fn strokes(place: &Workplace, version: u64) -> Verdict {
     put(&place.own, "strokes.json", file.to_string())
 }
 
-fn salf(place: &Workplace, version: u8) -> Verdict {
+fn write_salf(place: &Workplace, version: u64) -> Verdict {
     let mut bytes = std::fs::read(place.prepared.join("l.salf")).map_err(|e| e.to_string())?;
-    bytes[8] = version;
+    bytes[8] = version as u8;
     put(&place.own, "l.salf", bytes)
 }
 
-fn preset(place: &Workplace, version: u64) -> Verdict {
+fn write_preset(place: &Workplace, version: u64) -> Verdict {
     let lens = json!({"focal_length": 0.085, "f_number": 1.4, "sensor_height": 0.024});
     put(
         &place.own,

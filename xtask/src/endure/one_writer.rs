@@ -1,9 +1,9 @@
 //! Races of two programs on one file: one of them wins, the other is as it would be alone or says so.
 
-use super::made_files::{glb_of, put, scene, write_all};
-use super::program::Run;
-use super::promise::{Context, Promise, Verdict, Workplace, ended_as_documented};
-use super::seeded::Seeded;
+use super::harness::made_files::{glb_of, put, scene, write_all};
+use super::harness::program::Run;
+use super::harness::promise::{Context, Promise, Verdict, Workplace, ended_as_documented};
+use super::harness::seeded::Seeded;
 use serde_json::json;
 use std::path::Path;
 use std::time::Duration;
@@ -152,7 +152,7 @@ fn start_from_a_project(folder: &Path, place: &Workplace) -> Verdict {
     Ok(())
 }
 
-fn command_in(folder: &Path, command: &str, context: &Context) -> super::program::Invocation {
+fn command_in(folder: &Path, command: &str, context: &Context) -> super::harness::program::Invocation {
     let cache = folder.join("cache");
     context
         .program

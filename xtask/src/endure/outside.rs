@@ -1,8 +1,8 @@
 //! Hostile names in files that name files: nothing outside the input's folder is opened for them.
 
-use super::made_files::{camera, picture, put, quad_bytes, scene, scene_with_texture, write_inputs};
-use super::promise::{Context, Promise, Verdict, Workplace, ended_as_documented};
-use super::system_calls::{check_strace, traced};
+use super::harness::made_files::{camera, picture, put, quad_bytes, scene, scene_with_texture, write_inputs};
+use super::harness::promise::{Context, Promise, Verdict, Workplace, ended_as_documented};
+use super::harness::system_calls::{check_strace, traced};
 use serde_json::json;
 use std::collections::BTreeSet;
 use std::path::Path;

@@ -3,7 +3,7 @@
 mod captures;
 pub mod scenes;
 
-use super::promise::{Context, Promise, Verdict, Workplace};
+use super::harness::promise::{Context, Promise, Verdict, Workplace};
 use std::collections::BTreeSet;
 use std::path::Path;
 

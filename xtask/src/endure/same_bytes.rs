@@ -1,8 +1,8 @@
 //! The split does not show: frames, tiles and light fields from any number of threads, in any order.
 
-use super::made_files::write_all;
-use super::promise::{Context, Promise, Verdict, Workplace};
-use super::seeded::Seeded;
+use super::harness::made_files::write_all;
+use super::harness::promise::{Context, Promise, Verdict, Workplace};
+use super::harness::seeded::Seeded;
 use std::path::Path;
 
 /// Any split, order, number of threads: the same bytes.

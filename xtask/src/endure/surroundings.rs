@@ -1,8 +1,8 @@
 //! Poor surroundings: the program does its work without them, or says in a line what it lacks.
 
-use super::made_files::write_all;
-use super::program::Invocation;
-use super::promise::{Context, Promise, Verdict, Workplace, ended_as_documented};
+use super::harness::made_files::write_all;
+use super::harness::program::Invocation;
+use super::harness::promise::{Context, Promise, Verdict, Workplace, ended_as_documented};
 use std::ffi::OsStr;
 use std::os::unix::fs::PermissionsExt;
 use std::path::Path;

@@ -3,8 +3,8 @@
 mod meshes;
 mod unwrapped;
 
-use super::made_files::{glb, put};
-use super::promise::{Context, Promise, Verdict, Workplace, ended_as_documented, nothing};
+use super::harness::made_files::{glb, put};
+use super::harness::promise::{Context, Promise, Verdict, Workplace, ended_as_documented, nothing};
 use meshes::Mesh;
 use serde_json::{Value, json};
 use unwrapped::Unwrapped;

@@ -1,6 +1,6 @@
 //! Captures of other programs.
 
-use super::super::made_files::{picture, put};
+use super::super::harness::made_files::{picture, put};
 use super::bomb::{Bomb, bomb};
 use std::path::Path;
 

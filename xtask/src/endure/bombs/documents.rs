@@ -1,7 +1,7 @@
 //! Projects, light fields, parts, recipes, and what is asked on the command line.
 
-use super::super::archive::{Entry, zip};
-use super::super::made_files::{glb_of, put, scene};
+use super::super::harness::archive::{Entry, zip};
+use super::super::harness::made_files::{glb_of, put, scene};
 use super::bomb::{Bomb, bomb};
 use std::path::Path;
 

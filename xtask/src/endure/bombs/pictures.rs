@@ -1,7 +1,7 @@
 //! Pictures that claim to be huge.
 
-use super::super::archive::zlib_zeros;
-use super::super::made_files::{picture, png_chunk, png_of_zeros, put};
+use super::super::harness::archive::zlib_zeros;
+use super::super::harness::made_files::{picture, png_chunk, png_of_zeros, put};
 use super::bomb::{Bomb, bomb};
 
 const COMPARE: &str = "compare a.png a.png";
@@ -27,7 +27,11 @@ pub const BOMBS: &[Bomb] = &[
         put(to, "a.webp", webp())
     }),
     bomb("a sky of 200,000 × 100,000 pixels", "info s.glb --world a.hdr", |to| {
-        put(to, "s.glb", super::super::made_files::glb_of(&super::super::made_files::scene()))?;
+        put(
+            to,
+            "s.glb",
+            super::super::harness::made_files::glb_of(&super::super::harness::made_files::scene()),
+        )?;
         put(to, "a.hdr", b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 100000 +X 200000\n\x02\x02\xff\xff")
     }),
     bomb("an EXR with a window of 2³⁰ squared", "compare a.exr a.exr", |to| {

@@ -1,6 +1,8 @@
 //! Scenes that claim huge meshes and textures.
 
-use super::super::made_files::{glb, glb_of, png_of_zeros, put, quad_bytes, scene, scene_with_texture};
+use super::super::harness::made_files::{
+    glb, glb_of, png_of_zeros, put, quad_bytes, scene, scene_with_texture,
+};
 use super::bomb::{Bomb, bomb};
 use serde_json::{Value, json};
 use std::path::Path;

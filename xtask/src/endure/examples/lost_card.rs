@@ -1,8 +1,8 @@
 //! The graphics card goes away at a random moment: the session goes on with the same picture, and no paint is lost.
 
 use super::{build, example, verdict};
-use crate::endure::made_files::{glb_of, put, scene, write_inputs};
-use crate::endure::promise::{Context, Promise, Verdict, Workplace};
+use crate::endure::harness::made_files::{glb_of, put, scene, write_inputs};
+use crate::endure::harness::promise::{Context, Promise, Verdict, Workplace};
 use serde_json::json;
 use std::path::Path;
 

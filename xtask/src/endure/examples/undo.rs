@@ -1,9 +1,9 @@
 //! Random edits, undone and redone: every state comes back bit for bit.
 
 use super::{build, example, verdict};
-use crate::endure::made_files::{glb, picture, put, quad_bytes, write_inputs};
+use crate::endure::harness::made_files::{glb, picture_with_depth, put, quad_bytes, write_inputs};
+use crate::endure::harness::promise::{Context, Promise, Verdict, Workplace};
 use crate::endure::old_files::projects;
-use crate::endure::promise::{Context, Promise, Verdict, Workplace};
 use crate::endure::same_bits::scenes::walls;
 use std::path::Path;
 
@@ -35,9 +35,7 @@ fn prepare(folder: &Path, context: &Context) -> Result<(), String> {
     write_inputs(folder)?;
     put(folder, "walls.glb", glb(&walls().to_string(), &quad_bytes()))?;
     put(folder, "depth/readme.txt", "")?;
-    picture(&folder.join("depth/a.jpg"), [12, 8])?;
-    let depths = (0..96u8).flat_map(|i| (1.0 + f32::from(i % 12) / 6.0).to_le_bytes());
-    put(folder, "depth/a_depth.pfm", b"Pf\n12 8\n-1.0\n".iter().copied().chain(depths).collect::<Vec<u8>>())?;
+    picture_with_depth(&folder.join("depth"), [12, 8])?;
     projects::write(&Workplace { prepared: folder.into(), own: folder.into() }, 2)
 }
 

@@ -4,9 +4,9 @@
 //! version that can express a project. So each of these has what made its version necessary, and the manifest's fields
 //! of that time.
 
-use crate::endure::archive::{Entry, zip};
-use crate::endure::made_files::{camera, glb_of, picture, put, scene};
-use crate::endure::promise::Workplace;
+use crate::endure::harness::archive::{Entry, zip};
+use crate::endure::harness::made_files::{camera, glb_of, picture_with_depth, put, scene};
+use crate::endure::harness::promise::Workplace;
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 
@@ -130,10 +130,7 @@ fn of_scene(place: &Workplace, version: u64) -> Result<Project, String> {
 fn of_picture(place: &Workplace, version: u64) -> Result<Project, String> {
     let (scene, bytes) = match version {
         7 => {
-            picture(&place.own.join("a.jpg"), [12, 8])?;
-            let depths = (0..96u8).flat_map(|i| (1.0 + f32::from(i % 12) / 6.0).to_le_bytes());
-            let head = b"Pf\n12 8\n-1.0\n".iter().copied();
-            put(&place.own, "a_depth.pfm", head.chain(depths).collect::<Vec<u8>>())?;
+            picture_with_depth(&place.own, [12, 8])?;
             ("a.jpg", std::fs::read(place.own.join("a.jpg")).map_err(|e| format!("a.jpg: {e}"))?)
         }
         _ => {

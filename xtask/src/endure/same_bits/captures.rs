@@ -1,20 +1,15 @@
 //! Captures of made-up places: a light field, photographs with cameras and a mesh, a picture with depth.
 
-use crate::endure::made_files::{picture, put};
+use crate::endure::harness::made_files::{pfm, picture_with_depth, put};
 use image::{Rgb, RgbImage};
 use std::path::Path;
 
 /// Writes all of them.
 pub fn write(folder: &Path) -> Result<(), String> {
-    picture_with_depth(folder)?;
+    put(folder, "depth/readme.txt", "")?;
+    picture_with_depth(&folder.join("depth"), [60, 40])?;
     light_field(folder)?;
     photographs(folder)
-}
-
-fn picture_with_depth(folder: &Path) -> Result<(), String> {
-    put(folder, "depth/readme.txt", "")?;
-    picture(&folder.join("depth/a.jpg"), [60, 40])?;
-    put(folder, "depth/a_depth.pfm", pfm([60, 40], |x, y| 1.0 + (x / 12 + y / 20) as f32 / 6.0))
 }
 
 /// 3 × 3 views of a card before a wall.
@@ -72,13 +67,4 @@ fn photographs(folder: &Path) -> Result<(), String> {
 
 fn save(picture: &RgbImage, file: &Path) -> Result<(), String> {
     picture.save(file).map_err(|e| format!("{}: {e}", file.display()))
-}
-
-/// A PFM of one channel; its rows run upwards.
-fn pfm([width, height]: [u32; 2], value: impl Fn(u32, u32) -> f32) -> Vec<u8> {
-    let mut bytes = format!("Pf\n{width} {height}\n-1.0\n").into_bytes();
-    for y in (0..height).rev() {
-        bytes.extend((0..width).flat_map(|x| value(x, y).to_le_bytes()));
-    }
-    bytes
 }

@@ -1,7 +1,7 @@
 //! Scenes with something to see: walls behind each other, light, metal, paint.
 
-use crate::endure::made_files::{camera, glb, glb_of, put, quad_bytes, scene, write_all};
-use crate::endure::promise::Context;
+use crate::endure::harness::made_files::{camera, glb, glb_of, put, quad_bytes, scene, write_all};
+use crate::endure::harness::promise::Context;
 use serde_json::{Value, json};
 use std::path::Path;
 

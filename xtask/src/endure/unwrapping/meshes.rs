@@ -1,6 +1,6 @@
 //! Twenty kinds of meshes that are hard to flatten.
 
-use crate::endure::seeded::Seeded;
+use crate::endure::harness::seeded::Seeded;
 use std::f64::consts::{PI, TAU};
 
 /// How many kinds there are.

@@ -3,9 +3,9 @@
 use super::display::Display;
 use super::frames::Second;
 use super::open_window::OpenWindow;
-use crate::endure::made_files::{camera, glb_of, put, scene, write_inputs};
-use crate::endure::promise::{Context, Promise, Verdict, Workplace};
-use crate::endure::seeded::Seeded;
+use crate::endure::harness::made_files::{camera, glb_of, put, scene, write_inputs};
+use crate::endure::harness::promise::{Context, Promise, Verdict, Workplace};
+use crate::endure::harness::seeded::Seeded;
 use serde_json::json;
 use std::path::Path;
 use std::time::{Duration, Instant};

@@ -2,10 +2,10 @@
 
 use super::display::Display;
 use super::open_window::OpenWindow;
-use crate::endure::made_files::{put, write_inputs};
-use crate::endure::program::Invocation;
-use crate::endure::promise::{Context, Promise, Verdict, Workplace};
-use crate::endure::seeded::Seeded;
+use crate::endure::harness::made_files::{put, write_inputs};
+use crate::endure::harness::program::Invocation;
+use crate::endure::harness::promise::{Context, Promise, Verdict, Workplace};
+use crate::endure::harness::seeded::Seeded;
 use serde_json::json;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -61,7 +61,7 @@ fn prepare(folder: &Path, context: &Context) -> Result<(), String> {
         return Ok(());
     }
     write_inputs(folder)?;
-    let mut camera = crate::endure::made_files::camera();
+    let mut camera = crate::endure::harness::made_files::camera();
     (camera["width"], camera["height"]) = (json!(128), json!(128));
     put(folder, "cam.json", camera.to_string())?;
     // A first stroke, in a corner of the wall, that leaves its brush behind: small, and blurred as near as can be.

@@ -2,7 +2,7 @@
 
 use super::display::Display;
 use super::frames;
-use crate::endure::program::{Invocation, read_aside, resident_memory};
+use crate::endure::harness::program::{Invocation, read_aside, resident_memory};
 use std::path::{Path, PathBuf};
 use std::process::{Child, ExitStatus};
 use std::thread::JoinHandle;

@@ -185,3 +185,19 @@ pub fn write_all(folder: &Path, context: &Context) -> Result<(), String> {
     }
     Ok(())
 }
+
+/// A picture `a.jpg` of this size, and beside it its depth, which rises in steps to the right.
+pub fn picture_with_depth(folder: &Path, [width, height]: [u32; 2]) -> Result<(), String> {
+    picture(&folder.join("a.jpg"), [width, height])?;
+    let depth = |x: u32, y: u32| 1.0 + (12 * x / width + 2 * y / height) as f32 / 6.0;
+    put(folder, "a_depth.pfm", pfm([width, height], depth))
+}
+
+/// A PFM of one channel; its rows run upwards.
+pub fn pfm([width, height]: [u32; 2], value: impl Fn(u32, u32) -> f32) -> Vec<u8> {
+    let mut bytes = format!("Pf\n{width} {height}\n-1.0\n").into_bytes();
+    for y in (0..height).rev() {
+        bytes.extend((0..width).flat_map(|x| value(x, y).to_le_bytes()));
+    }
+    bytes
+}
