@@ -1,13 +1,17 @@
 //! A change of one property of the camera.
 
+use crate::focus_hold::HeldCamera;
 use glam::{DMat4, DVec2};
 use lens::{Aperture, Camera};
+use project::FocusHold;
 
 /// A change of one property of the camera.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CameraEdit {
     /// Axial distance of the focus plane, > 0; may be infinite.
     FocusDistance(f64),
+    /// What the focus is held on, which is focused at once.
+    FocusOn(FocusHold),
     /// R, ≥ 0.
     ApertureRadius(f64),
     /// f/(2R), > 0: sets R. Infinity closes the aperture to a pinhole.
@@ -28,59 +32,65 @@ pub enum CameraEdit {
     Pose(DMat4),
     /// All properties at once: a camera of the scene, a preset.
     Whole(Camera),
+    /// All properties, and what the focus is held on: a bookmark.
+    Held(Box<HeldCamera>),
 }
 
 impl CameraEdit {
-    /// The edit's name in the undo list, and the changed camera, which may be invalid.
-    pub fn applied_to(self, camera: &Camera) -> (&'static str, Camera) {
-        let mut after = camera.clone();
-        let name = match self {
+    /// Changes the camera, which may be invalid then; returns the edit's name in the undo list.
+    pub(crate) fn apply_to(self, camera: &mut Camera) -> &'static str {
+        match self {
             Self::FocusDistance(distance) => {
-                after.focus_distance = distance;
+                camera.focus_distance = distance;
                 "Focus distance"
             }
             Self::ApertureRadius(radius) => {
-                after.aperture_radius = radius;
+                camera.aperture_radius = radius;
                 "Aperture radius"
             }
             Self::FNumber(number) => {
-                after.aperture_radius = camera.optics().focal_length() / (2.0 * number);
+                camera.aperture_radius = camera.optics().focal_length() / (2.0 * number);
                 "f-number"
             }
             Self::Aperture(aperture) => {
-                after.aperture = aperture;
+                camera.aperture = aperture;
                 "Aperture shape"
             }
             Self::YFov(yfov) => {
-                after.yfov = yfov;
+                camera.yfov = yfov;
                 "Angle of view"
             }
             Self::SensorHeight(height) => {
-                after.sensor_height = height;
+                camera.sensor_height = height;
                 "Sensor height"
             }
             Self::Shift(shift) => {
-                after.shift = shift;
+                camera.shift = shift;
                 "Sensor shift"
             }
             Self::Background(radiance) => {
-                after.background = radiance;
+                camera.background = radiance;
                 "Background"
             }
             Self::Size(width, height) => {
-                (after.width, after.height) = (width, height);
+                (camera.width, camera.height) = (width, height);
                 "Picture size"
             }
             Self::Pose(pose) => {
-                after.camera_to_world = pose;
+                camera.camera_to_world = pose;
                 "Camera pose"
             }
             Self::Whole(whole) => {
-                after = whole;
+                *camera = whole;
                 "Camera"
             }
-        };
-        (name, after)
+            // What they do besides is done by `HeldCamera::edited`.
+            Self::FocusOn(_) => "Focus",
+            Self::Held(held) => {
+                *camera = held.camera;
+                "Bookmark"
+            }
+        }
     }
 }
 
@@ -90,10 +100,11 @@ mod tests {
 
     #[test]
     fn an_f_number_round_trips() {
-        let (_, camera) = CameraEdit::FNumber(1.4).applied_to(&Camera::default());
+        let mut camera = Camera::default();
+        CameraEdit::FNumber(1.4).apply_to(&mut camera);
         assert!((camera.f_number() - 1.4).abs() < 1e-12);
-        let (_, pinhole) = CameraEdit::FNumber(f64::INFINITY).applied_to(&camera);
-        assert_eq!(pinhole.aperture_radius, 0.0);
-        pinhole.validate().unwrap();
+        CameraEdit::FNumber(f64::INFINITY).apply_to(&mut camera);
+        assert_eq!(camera.aperture_radius, 0.0);
+        camera.validate().unwrap();
     }
 }

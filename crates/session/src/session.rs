@@ -6,6 +6,7 @@ mod command_dispatch;
 mod files;
 mod history;
 mod job_outcome;
+mod memory;
 mod opening_preview;
 mod painting;
 mod picture_export;
@@ -22,5 +23,6 @@ mod timeline;
 mod verification;
 mod watched_file;
 
+pub use memory::MemoryPart;
 pub use picture_export::FullSizeFieldState;
 pub use state::{Session, SessionOptions};
