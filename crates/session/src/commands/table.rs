@@ -408,7 +408,6 @@ impl CommandId {
                 | FocusNearer
                 | FocusFarther
                 | CameraFromView
-                | BookmarkCamera
                 | KeyLens
                 | KeyLayer
                 | RemoveKeys
