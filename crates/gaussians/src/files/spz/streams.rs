@@ -84,10 +84,9 @@ pub(super) fn inflate_gzip(reading: &Reading<'_>, bytes: &[u8]) -> Result<(Heade
     for size in sizes(&header) {
         streams.push(read_exactly(&mut input, size).map_err(cut)?);
     }
+    // To the end of the stream, where its checksum is.
     let mut extensions = Vec::new();
-    if header.has_extensions {
-        input.take(MAX_EXTENSIONS).read_to_end(&mut extensions).map_err(cut)?;
-    }
+    input.take(MAX_EXTENSIONS).read_to_end(&mut extensions).map_err(cut)?;
     Ok((header, collect(streams, extensions)))
 }
 
