@@ -7,16 +7,19 @@
 //! DIR has `NAME.truth.npy` (64 views through the aperture), `NAME.painted.npy`, `NAME.pinhole.npy`, `NAME.ewa.npy` (as viewers project
 //! splats, decoded) and `NAME.dilated*.npy` (blurred by dilation), height × width × 4 floats each: linear radiance and coverage.
 
+#[path = "../tests/gaussians/camera_file.rs"]
+mod camera_file;
 #[path = "../tests/gaussians/comparison.rs"]
 #[allow(dead_code, reason = "shared with the tests, which compare pictures of our own, too")]
 mod comparison;
 
+use camera_file::{number, read_camera, read_json};
 use comparison::{Reference, each_splat_decoded, interleaved, scalar_last};
 use gaussians::{
     GaussianCloud, GaussianPicture, GaussianView, Placement, ReadOptions, TruthOptions, open, render_pinhole,
     render_truth,
 };
-use glam::{DMat4, DVec3, Vec3};
+use glam::{DVec3, Vec3};
 use lens::{Camera, FocusOffset};
 use progress::Unwatched;
 use serde_json::Value;
@@ -37,7 +40,12 @@ fn main() {
     let begun = Instant::now();
     let file = open(scene, &ReadOptions::default(), &Unwatched).unwrap_or_else(|e| panic!("{e}"));
     let cloud = &file.cloud;
-    println!("{name}: {} splats of degree {}, opened in {:.2?}", cloud.len(), cloud.degree(), begun.elapsed());
+    println!(
+        "{name}: {} splats of degree {}, opened in {:.2?}",
+        cloud.len(),
+        cloud.degree(),
+        begun.elapsed()
+    );
     let camera = read_camera(Path::new(camera));
     let view = GaussianView::new(cloud, &Placement::IDENTITY, &camera);
     let truth = reference("truth");
@@ -54,7 +62,8 @@ fn main() {
     if let Some(paint) = paint {
         let focus = read_paint(Path::new(paint), cloud, &camera);
         let begun = Instant::now();
-        let ours = render_truth(&view, Some(&focus), &TruthOptions::default(), &Unwatched).expect("not cancelled");
+        let ours =
+            render_truth(&view, Some(&focus), &TruthOptions::default(), &Unwatched).expect("not cancelled");
         compare("aperture, painted, conserved, 42 dB", &ours, &reference("painted"), Some(42.0));
         println!("    in {:.2?}", begun.elapsed());
         println!("    normalised {:.2} dB", reference("painted").normalised_psnr(&ours));
@@ -72,35 +81,11 @@ fn main() {
         println!("    {what:<42} {:6.2} dB of the pinhole's", pinhole_reference.psnr(picture));
     };
     control("each splat decoded", &each_splat_decoded(&view));
-    for (what, wrong) in [("coefficients interleaved", interleaved(cloud)), ("quaternion x y z w", scalar_last(cloud))] {
+    for (what, wrong) in
+        [("coefficients interleaved", interleaved(cloud)), ("quaternion x y z w", scalar_last(cloud))]
+    {
         let view = GaussianView::new(&wrong, &Placement::IDENTITY, &camera);
         control(what, &render_pinhole(&view, 2, &Unwatched).expect("not cancelled"));
-    }
-}
-
-fn read_json(file: &Path) -> Value {
-    let text = std::fs::read(file).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
-    serde_json::from_slice(&text).unwrap_or_else(|e| panic!("{}: {e}", file.display()))
-}
-
-fn number(value: &Value) -> f64 {
-    value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
-}
-
-fn read_camera(file: &Path) -> Camera {
-    let json = read_json(file);
-    let pose = &json["camera_to_world"];
-    let rows: Vec<f64> = (0..16).map(|k| number(&pose[k / 4][k % 4])).collect();
-    Camera {
-        width: number(&json["width"]) as u32,
-        height: number(&json["height"]) as u32,
-        yfov: number(&json["yfov"]),
-        focus_distance: json["focus_distance"].as_f64().unwrap_or(f64::INFINITY),
-        aperture_radius: number(&json["aperture_radius"]),
-        sensor_height: number(&json["sensor_height"]),
-        camera_to_world: DMat4::from_cols_slice(&rows).transpose(),
-        background: Some([0, 1, 2].map(|k| number(&json["background"][k]))),
-        ..Camera::default()
     }
 }
 
@@ -117,7 +102,9 @@ fn read_paint(file: &Path, cloud: &GaussianCloud, camera: &Camera) -> Vec<FocusO
             in_z && (ball.is_null() || point.distance(center()) < number(&ball[3]))
         };
         let entry = entries.iter().rfind(is_painted);
-        entry.map_or(FocusOffset::STANDARD, |e| FocusOffset::new(number(&e["t"]), e["anchor"].as_f64().unwrap_or(0.0)))
+        entry.map_or(FocusOffset::STANDARD, |e| {
+            FocusOffset::new(number(&e["t"]), e["anchor"].as_f64().unwrap_or(0.0))
+        })
     };
     cloud.means().iter().map(offset).collect()
 }

@@ -11,6 +11,7 @@
 //! * [`CameraList`]: the views of `cameras.json`. [`Placement`]: where a cloud stands in the world.
 //! * [`GaussianView`], [`Eye`], [`Hit`], [`RayLight`]: which splats a ray meets, and what it brings.
 //! * [`render_truth`], [`render_pinhole`]: the ground truth, unpainted or with a focus for each splat.
+//! * [`cluster_picture`], [`aperture_images`]: the splats of chief rays as samples of a light field.
 //! * [`write_ply`], [`write_focus_table`], [`read_focus_table`]: scenes and focus out, focus in.
 //!
 //! The image formation is that of training, not of viewers: responses at each ray's greatest, in the order of the means' depth, the sum of a
@@ -43,16 +44,16 @@ mod error;
 mod files;
 mod placement;
 mod render;
+mod samples;
 mod view;
 
-pub use cloud::{
-    Axes, CloudBuilder, CloudTraits, ColorSpace, GaussianCloud, LeftOut, Reason, Splat, Toward,
-};
+pub use cloud::{Axes, CloudBuilder, CloudTraits, ColorSpace, GaussianCloud, LeftOut, Reason, Splat, Toward};
 pub use error::GaussianError;
 pub use files::{
-    CameraList, CapturedView, GltfAttributes, ReadOptions, SplatFile, SplatFormat, open, read, read_focus_table,
-    read_gltf_attributes, write_focus_table, write_ply,
+    CameraList, CapturedView, GltfAttributes, ReadOptions, SplatFile, SplatFormat, open, read,
+    read_focus_table, read_gltf_attributes, write_focus_table, write_ply,
 };
 pub use placement::Placement;
 pub use render::{GaussianPicture, TruthOptions, render_pinhole, render_truth};
+pub use samples::{ApertureImage, Cluster, ClusterOptions, Clusters, aperture_images, cluster_picture};
 pub use view::{Eye, GaussianView, Hit, LOW_PASS_PX2, RayLight, median_depth};

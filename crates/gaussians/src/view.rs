@@ -13,7 +13,7 @@ mod tiles;
 
 pub use eye::{Eye, Hit};
 pub use ray_light::{RayLight, median_depth};
-pub(crate) use tiles::{RayGrid, TileRow};
+pub(crate) use tiles::{Outlines, RayGrid, TileRow};
 
 use crate::cloud::GaussianCloud;
 use crate::placement::Placement;

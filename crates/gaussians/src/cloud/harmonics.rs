@@ -61,12 +61,12 @@ pub fn harmonics(direction: Vec3, degree: u32) -> [f32; MAX_COEFFICIENTS] {
         basis[15] = 2.503_343 * x * y * (xx - yy);
         basis[16] = -1.770_130_8 * y * z * (3.0 * xx - yy);
         basis[17] = 0.946_174_7 * x * y * (7.0 * zz - 1.0);
-        basis[18] = -0.669_046_54 * y * z * (7.0 * zz - 3.0);
+        basis[18] = -0.669_046_5 * y * z * (7.0 * zz - 3.0);
         basis[19] = 0.105_785_55 * (zz * (35.0 * zz - 30.0) + 3.0);
-        basis[20] = -0.669_046_54 * x * z * (7.0 * zz - 3.0);
+        basis[20] = -0.669_046_5 * x * z * (7.0 * zz - 3.0);
         basis[21] = 0.473_087_35 * (xx - yy) * (7.0 * zz - 1.0);
         basis[22] = -1.770_130_8 * x * z * (xx - 3.0 * yy);
-        basis[23] = 0.625_835_74 * (xx * (xx - 3.0 * yy) - yy * (3.0 * xx - yy));
+        basis[23] = 0.625_835_7 * (xx * (xx - 3.0 * yy) - yy * (3.0 * xx - yy));
     }
     basis
 }
@@ -91,17 +91,17 @@ mod tests {
                 let weight = 4.0 * std::f64::consts::PI / (STEPS * STEPS) as f64;
                 for a in 0..MAX_COEFFICIENTS {
                     mean[a] += weight * basis[a];
-                    for b in 0..MAX_COEFFICIENTS {
-                        product[a][b] += weight * basis[a] * basis[b];
+                    for (sum, y) in product[a].iter_mut().zip(basis) {
+                        *sum += weight * basis[a] * y;
                     }
                 }
             }
         }
-        for a in 0..MAX_COEFFICIENTS {
-            assert!(mean[a].abs() < 0.01, "{a}: {}", mean[a]);
-            for b in 0..MAX_COEFFICIENTS {
+        for (a, (mean, products)) in mean.iter().zip(&product).enumerate() {
+            assert!(mean.abs() < 0.01, "{a}: {mean}");
+            for (b, product) in products.iter().enumerate() {
                 let expected = f64::from(u8::from(a == b));
-                assert!((product[a][b] - expected).abs() < 0.02, "{a} {b}: {}", product[a][b]);
+                assert!((product - expected).abs() < 0.02, "{a} {b}: {product}");
             }
         }
     }

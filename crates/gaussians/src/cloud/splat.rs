@@ -25,7 +25,8 @@ impl Splat {
 
     /// The logit of an opacity; finite, that of the nearest float of 32 bits at 0 and 1. Inverse of [`Self::opacity_of_logit`].
     pub fn logit_of_opacity(opacity: f32) -> f32 {
-        let opacity = f64::from(opacity).clamp(f64::from(f32::MIN_POSITIVE), 1.0 - f64::from(f32::EPSILON) / 2.0);
+        let opacity =
+            f64::from(opacity).clamp(f64::from(f32::MIN_POSITIVE), 1.0 - f64::from(f32::EPSILON) / 2.0);
         (opacity / (1.0 - opacity)).ln() as f32
     }
 

@@ -19,7 +19,10 @@ mod tests {
     #[test]
     fn the_curve_inverts() {
         for encoded in [0.0, 0.01, 0.04, 0.0405, 0.5, 1.0, 1.7, 20.0] {
-            assert!((linear_to_srgb(srgb_to_linear(encoded)) / encoded.max(1e-9) - 1.0).abs() < 1e-5 || encoded == 0.0);
+            assert!(
+                (linear_to_srgb(srgb_to_linear(encoded)) / encoded.max(1e-9) - 1.0).abs() < 1e-5
+                    || encoded == 0.0
+            );
         }
         assert!((srgb_to_linear(0.5) - 0.214_041_14).abs() < 1e-6);
         assert_eq!(srgb_to_linear(1.0), 1.0);

@@ -62,7 +62,11 @@ impl CameraList {
         let folder = scene.parent()?;
         let is_iteration = folder.file_name()?.to_string_lossy().starts_with("iteration_");
         let model = folder.parent().and_then(Path::parent).filter(|_| is_iteration);
-        [Some(folder), model].into_iter().flatten().map(|folder| folder.join("cameras.json")).find(|file| file.is_file())
+        [Some(folder), model]
+            .into_iter()
+            .flatten()
+            .map(|folder| folder.join("cameras.json"))
+            .find(|file| file.is_file())
     }
 
     /// Reads a list.
@@ -74,7 +78,11 @@ impl CameraList {
         const MAX_BYTES: u64 = 50_000_000;
         let unreadable = |source| GaussianError::unreadable(file, source);
         let mut text = Vec::new();
-        File::open(file).map_err(unreadable)?.take(MAX_BYTES + 1).read_to_end(&mut text).map_err(unreadable)?;
+        File::open(file)
+            .map_err(unreadable)?
+            .take(MAX_BYTES + 1)
+            .read_to_end(&mut text)
+            .map_err(unreadable)?;
         if text.len() as u64 > MAX_BYTES {
             return Err(GaussianError::malformed(file, "size", "is longer than any list of cameras"));
         }
@@ -82,7 +90,8 @@ impl CameraList {
     }
 
     fn parse(file: &Path, text: &[u8]) -> Result<Self, GaussianError> {
-        let malformed = |e: serde_json::Error| GaussianError::malformed(file, format!("line {}", e.line()), e);
+        let malformed =
+            |e: serde_json::Error| GaussianError::malformed(file, format!("line {}", e.line()), e);
         let entries: Vec<Entry> = serde_json::from_slice(text).map_err(malformed)?;
         let count = entries.len();
         let view = |entry| match entry {
@@ -106,7 +115,8 @@ impl CapturedView {
     fn new(raw: RawView) -> Option<Self> {
         let RawView { img_name: name, width, height, position, rotation, fy } = raw;
         let side = |pixels: f64| {
-            let is_valid = pixels >= 1.0 && pixels <= f64::from(Camera::LARGEST_SIDE_PX) && pixels.fract() == 0.0;
+            let is_valid =
+                pixels >= 1.0 && pixels <= f64::from(Camera::LARGEST_SIDE_PX) && pixels.fract() == 0.0;
             is_valid.then_some(pixels as u32)
         };
         let (width, height) = (side(width)?, side(height)?);
@@ -131,7 +141,11 @@ impl CapturedView {
         let position = placement.point(self.camera_to_file.w_axis.truncate());
         // A reflected cloud is seen by a camera whose right is left.
         let turned = placement.rotation * DMat3::from_mat4(self.camera_to_file);
-        let turned = if turned.determinant() < 0.0 { turned * DMat3::from_diagonal(DVec3::new(-1.0, 1.0, 1.0)) } else { turned };
+        let turned = if turned.determinant() < 0.0 {
+            turned * DMat3::from_diagonal(DVec3::new(-1.0, 1.0, 1.0))
+        } else {
+            turned
+        };
         Camera {
             width: self.width,
             height: self.height,
@@ -165,7 +179,9 @@ mod tests {
         // The camera of the trainer looks along +z of the file, with y down.
         let camera = view.camera(&Placement::IDENTITY, &Camera::default());
         camera.validate().unwrap();
-        assert!(camera.camera_from_world(DVec3::new(1.0, 2.0, 7.0)).distance(DVec3::new(0.0, 0.0, 4.0)) < 1e-6);
+        assert!(
+            camera.camera_from_world(DVec3::new(1.0, 2.0, 7.0)).distance(DVec3::new(0.0, 0.0, 4.0)) < 1e-6
+        );
         assert!(camera.camera_from_world(DVec3::new(1.0, 3.0, 7.0)).y < 0.0);
         // Upright, the same point is ahead all the same.
         let placement = Placement::upright(Axes::RIGHT_DOWN_FORWARD);
@@ -174,7 +190,9 @@ mod tests {
         assert!(camera.camera_from_world(ahead).distance(DVec3::new(0.0, 0.0, 4.0)) < 1e-6);
         // The last one looks along +x: its forward column is (1, 0, 0).
         let sideways = list.views[1].camera(&Placement::IDENTITY, &Camera::default());
-        assert!(sideways.camera_from_world(DVec3::new(5.0, 0.0, 0.0)).distance(DVec3::new(0.0, 0.0, 5.0)) < 1e-6);
+        assert!(
+            sideways.camera_from_world(DVec3::new(5.0, 0.0, 0.0)).distance(DVec3::new(0.0, 0.0, 5.0)) < 1e-6
+        );
         assert!(list.up().unwrap().distance(DVec3::NEG_Y) < 1e-12);
     }
 

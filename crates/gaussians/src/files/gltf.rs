@@ -51,7 +51,8 @@ pub fn read_gltf_attributes(
     progress: &dyn Progress,
 ) -> Result<SplatFile, GaussianError> {
     let mut reading = Reading::new(file, options, progress);
-    let extension = Extension::deserialize(extension).map_err(|e| reading.malformed("KHR_gaussian_splatting", e))?;
+    let extension =
+        Extension::deserialize(extension).map_err(|e| reading.malformed("KHR_gaussian_splatting", e))?;
     if extension.kernel != "ellipse" {
         let what = format!("its splats have the unknown kernel {}", quoted(&extension.kernel));
         return Err(GaussianError::unsupported(file, what, "export them with the kernel ellipse"));

@@ -67,17 +67,22 @@ pub(super) fn is_plausible(bytes: &[u8]) -> bool {
 /// # Errors
 /// The header is none, a section does not fit the file, or the limits are exceeded.
 pub(super) fn read(reading: Reading<'_>, bytes: &[u8]) -> Result<SplatFile, GaussianError> {
-    let header = Header::new(bytes).ok_or_else(|| reading.malformed("header", "is none of version 0.1 of ksplat"))?;
+    let header =
+        Header::new(bytes).ok_or_else(|| reading.malformed("header", "is none of version 0.1 of ksplat"))?;
     let mut rest = Bytes::new(&bytes[HEADER_BYTES..]);
-    let headers = rest
-        .take(header.sections * SECTION_HEADER_BYTES)
-        .ok_or_else(|| reading.malformed("header", format!("{} sections do not fit the file", header.sections)))?;
+    let headers = rest.take(header.sections * SECTION_HEADER_BYTES).ok_or_else(|| {
+        reading.malformed("header", format!("{} sections do not fit the file", header.sections))
+    })?;
     let mut sections = Vec::new();
     for (index, section) in headers.chunks_exact(SECTION_HEADER_BYTES as usize).enumerate() {
         if u32_at(section, 0) > 0 || u32_at(section, 4) > 0 {
             let place = format!("section {index}");
             let section = Section::new(&header, section, &mut rest);
-            sections.push(section.ok_or_else(|| reading.malformed(place, "does not fit the file, or contradicts itself"))?);
+            sections.push(
+                section.ok_or_else(|| {
+                    reading.malformed(place, "does not fit the file, or contradicts itself")
+                })?,
+            );
         }
     }
     let count: u64 = sections.iter().map(Section::count).sum();

@@ -27,7 +27,11 @@ pub(super) fn is_ply(beginning: &[u8]) -> bool {
 ///
 /// # Errors
 /// The header is malformed, the file has no splats or fewer rows than declared, or exceeds the limits.
-pub(super) fn read(reading: Reading<'_>, mut input: impl BufRead, size: u64) -> Result<SplatFile, GaussianError> {
+pub(super) fn read(
+    reading: Reading<'_>,
+    mut input: impl BufRead,
+    size: u64,
+) -> Result<SplatFile, GaussianError> {
     let header = Header::read(&reading, &mut input)?;
     let is_compressed = header.vertices(&reading)?.column("packed_position").is_some();
     let rows = Rows::new(&header, input, size);

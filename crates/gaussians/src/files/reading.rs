@@ -88,7 +88,10 @@ impl<'a> Reading<'a> {
         let cloud = builder.finish(traits);
         if let Some(description) = cloud.left_out().description() {
             if cloud.is_empty() {
-                return Err(GaussianError::no_splats(self.file, format!("no splat can be drawn: {description}")));
+                return Err(GaussianError::no_splats(
+                    self.file,
+                    format!("no splat can be drawn: {description}"),
+                ));
             }
             self.warn(&description, "they would not be visible or cannot be drawn; all others are");
         }

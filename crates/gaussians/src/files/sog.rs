@@ -39,7 +39,11 @@ pub(super) fn read_archive(reading: Reading<'_>, bytes: &[u8]) -> Result<SplatFi
     read(reading, container, SplatFormat::Sog)
 }
 
-fn read(mut reading: Reading<'_>, mut container: Container<'_>, format: SplatFormat) -> Result<SplatFile, GaussianError> {
+fn read(
+    mut reading: Reading<'_>,
+    mut container: Container<'_>,
+    format: SplatFormat,
+) -> Result<SplatFile, GaussianError> {
     let meta = Meta::read(&mut reading, &mut container)?;
     let count = meta.count;
     let mut texture = |file: &str| Texture::read(&reading, &mut container, file, count);
@@ -59,7 +63,7 @@ fn read(mut reading: Reading<'_>, mut container: Container<'_>, format: SplatFor
     for index in 0..count as usize {
         reading.at_row(index as u64, count)?;
         if let Some(palette) = &palette {
-            palette.look_up(index, &mut coefficients);
+            palette.decode(index, &mut coefficients);
         }
         let color = colors.pixel(index);
         let splat = Splat {

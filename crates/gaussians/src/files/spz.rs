@@ -46,7 +46,9 @@ pub(super) fn read(mut reading: Reading<'_>, bytes: &[u8]) -> Result<SplatFile, 
         for (value, byte) in coefficients.iter_mut().zip(&streams.coefficients[index * each..]) {
             *value = (f32::from(*byte) - 128.0) / 128.0;
         }
-        let three = |bytes: &[u8]| Vec3::new(bytes[3 * index].into(), bytes[3 * index + 1].into(), bytes[3 * index + 2].into());
+        let three = |bytes: &[u8]| {
+            Vec3::new(bytes[3 * index].into(), bytes[3 * index + 1].into(), bytes[3 * index + 2].into())
+        };
         let splat = Splat {
             mean: mean(&header, &streams, index),
             rotation: rotation(&header, &streams, index),

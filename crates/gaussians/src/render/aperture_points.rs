@@ -30,7 +30,8 @@ mod tests {
     #[test]
     fn points_are_even() {
         let hexagon = ApertureShape::Polygon { blades: 6, rotation: 0.3, roundness: 0.0 };
-        for aperture in [Aperture::default(), Aperture::from(hexagon), Aperture::from(ApertureShape::Square)] {
+        for aperture in [Aperture::default(), Aperture::from(hexagon), Aperture::from(ApertureShape::Square)]
+        {
             let points = aperture_points(&aperture, 256);
             assert!(points.iter().all(|u| aperture.transmission(*u * 0.999) == 1.0), "{aperture:?}");
             let mean = points.iter().sum::<DVec2>() / 256.0;

@@ -64,7 +64,8 @@ pub fn render_truth(
         true => aperture_points(&view.camera().aperture, options.aperture_points.max(1)),
         false => vec![DVec2::ZERO],
     };
-    let focus = focus.map(|focus| (0..view.len() as u32).map(|splat| focus[view.cloud_index(splat)]).collect());
+    let focus =
+        focus.map(|focus| (0..view.len() as u32).map(|splat| focus[view.cloud_index(splat)]).collect());
     let points: Vec<DVec2> = points.into_iter().map(|u| u * radius).collect();
     Truth::new(view, focus, options).render(&points, progress)
 }
@@ -158,7 +159,7 @@ impl<'v> Truth<'v> {
                 for column in columns.clone() {
                     let pixel = self.grid.pixel(column, row);
                     let direction = self.view.direction(eye.point(), pixel);
-                    let rest = eye.hits_among(candidates.iter().copied(), direction, &mut hits);
+                    let rest = eye.collect_hits(candidates.iter().copied(), direction, &mut hits);
                     self.add_ray(eye, colors, pixel, &hits, rest, &mut sums);
                 }
             }

@@ -71,13 +71,33 @@ impl<'v> Eye<'v> {
     /// means. Tests every splat: for single rays.
     pub fn hits(&self, direction: DVec3) -> Vec<Hit> {
         let mut hits = Vec::new();
-        self.hits_among(0..self.view.len() as u32, direction, &mut hits);
+        self.collect_hits(0..self.view.len() as u32, direction, &mut hits);
         hits
     }
 
     /// The same for a ray that meets no splat but `candidates`, which are in order; into `hits`. Returns what is left of the ray.
     #[inline]
-    pub fn hits_among(
+    pub fn collect_hits(
+        &self,
+        candidates: impl IntoIterator<Item = u32>,
+        direction: DVec3,
+        hits: &mut Vec<Hit>,
+    ) -> f64 {
+        self.trace::<true>(candidates, direction, hits)
+    }
+
+    /// The same, however little is left of the ray.
+    pub fn collect_all_hits(
+        &self,
+        candidates: impl IntoIterator<Item = u32>,
+        direction: DVec3,
+        hits: &mut Vec<Hit>,
+    ) -> f64 {
+        self.trace::<false>(candidates, direction, hits)
+    }
+
+    #[inline]
+    fn trace<const STOPS: bool>(
         &self,
         candidates: impl IntoIterator<Item = u32>,
         direction: DVec3,
@@ -101,7 +121,7 @@ impl<'v> Eye<'v> {
             }
             hits.push(Hit { splat, alpha, weight: alpha * transmittance, depth: pq / qq });
             transmittance *= 1.0 - alpha;
-            if transmittance < MIN_TRANSMITTANCE {
+            if STOPS && transmittance < MIN_TRANSMITTANCE {
                 break;
             }
         }

@@ -45,7 +45,8 @@ impl CameraShape {
         let low_pass = super::LOW_PASS_PX2 * (mean.z / focal_px).powi(2);
         let scale = splat.log_scale.as_dvec3().exp();
         let scale = scale.max(DVec3::splat(MIN_AXIS * scale.max_element().max(low_pass.sqrt())));
-        let rotation = DMat3::from_quat(DQuat::from_array(splat.rotation.to_array().map(f64::from)).normalize());
+        let rotation =
+            DMat3::from_quat(DQuat::from_array(splat.rotation.to_array().map(f64::from)).normalize());
         let m = *camera_from_file * rotation * DMat3::from_diagonal(scale);
         let (e1, e2) = mean.normalize().any_orthonormal_pair();
         let (spread1, spread2) = (low_pass.sqrt() * e1, low_pass.sqrt() * e2);

@@ -7,6 +7,7 @@ use super::eye::Eye;
 use super::shape::CameraShape;
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Rays of a side of a tile.
 const TILE: u32 = 8;
@@ -28,7 +29,7 @@ pub(crate) struct RayGrid {
 pub(crate) struct TileRow<'g> {
     grid: &'g RayGrid,
     /// Its rows of rays.
-    pub rays: std::ops::Range<u32>,
+    pub rays: Range<u32>,
     /// The splats that it meets, in order, with the columns of tiles.
     splats: Vec<(u32, [u16; 2])>,
 }
@@ -54,8 +55,16 @@ impl RayGrid {
 
     /// The pixel position of a ray.
     pub fn pixel(&self, column: u32, row: u32) -> DVec2 {
-        let at = |index: u32| (f64::from(index) + 0.5) / f64::from(self.rays_per_px) - f64::from(self.margin_px);
+        let at =
+            |index: u32| (f64::from(index) + 0.5) / f64::from(self.rays_per_px) - f64::from(self.margin_px);
         DVec2::new(at(column), at(row))
+    }
+
+    /// The tile (column, row) of a pixel position; the nearest for those outside.
+    pub fn tile_at(&self, pixel: DVec2) -> [u32; 2] {
+        let ray = (pixel + f64::from(self.margin_px)) * f64::from(self.rays_per_px);
+        let tile = |ray: f64, count: u32| ray.clamp(0.0, f64::from(count - 1)) as u32 / TILE;
+        [tile(ray.x, self.columns), tile(ray.y, self.rows)]
     }
 
     /// The number of rows of tiles.
@@ -107,14 +116,19 @@ impl RayGrid {
 
 impl TileRow<'_> {
     /// Visits the tiles from left to right: their columns of rays, and the splats that these can meet, in order.
-    pub fn for_each_tile(&self, mut visit: impl FnMut(std::ops::Range<u32>, &[u32])) {
+    pub fn for_each_tile(&self, mut visit: impl FnMut(Range<u32>, &[u32])) {
         let mut candidates = Vec::new();
         for tile in 0..self.grid.columns.div_ceil(TILE) {
-            let is_met = |columns: &[u16; 2]| u32::from(columns[0]) <= tile && tile <= u32::from(columns[1]);
-            candidates.clear();
-            candidates.extend(self.splats.iter().filter(|(_, columns)| is_met(columns)).map(|(splat, _)| *splat));
+            self.candidates(tile, &mut candidates);
             visit(tile * TILE..(tile * TILE + TILE).min(self.grid.columns), &candidates);
         }
+    }
+
+    /// The splats that the rays of a tile can meet, in order.
+    pub fn candidates(&self, tile: u32, candidates: &mut Vec<u32>) {
+        let is_met = |columns: &[u16; 2]| u32::from(columns[0]) <= tile && tile <= u32::from(columns[1]);
+        candidates.clear();
+        candidates.extend(self.splats.iter().filter(|(_, columns)| is_met(columns)).map(|(splat, _)| *splat));
     }
 }
 

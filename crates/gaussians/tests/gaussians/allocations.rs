@@ -1,6 +1,9 @@
 //! How much memory a thread holds.
 
-#![allow(unsafe_code, reason = "an allocator is unsafe by its trait; this one forwards to the system's and counts")]
+#![allow(
+    unsafe_code,
+    reason = "an allocator is unsafe by its trait; this one forwards to the system's and counts"
+)]
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;

@@ -18,7 +18,8 @@ impl Reference {
         let header = usize::from(u16::from_le_bytes([bytes[8], bytes[9]]));
         let text = String::from_utf8_lossy(&bytes[10..10 + header]);
         assert!(text.contains("'<f4'") && text.contains("'fortran_order': False"), "{text}");
-        let floats = bytes[10 + header..].chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]]));
+        let floats =
+            bytes[10 + header..].chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]]));
         let floats: Vec<f32> = floats.collect();
         Self { rgbc: floats.chunks_exact(4).map(|p| [p[0], p[1], p[2], p[3]]).collect() }
     }
@@ -49,6 +50,14 @@ impl Reference {
 /// Of two pictures of ours.
 pub fn psnr_between(a: &GaussianPicture, b: &GaussianPicture) -> f64 {
     psnr(a.picture.radiance.iter().copied().zip(b.picture.radiance.iter().copied()))
+}
+
+/// The same of radiance over coverage.
+pub fn normalised_psnr_between(a: &GaussianPicture, b: &GaussianPicture) -> f64 {
+    let normal = |picture: &GaussianPicture, k: usize| {
+        picture.picture.radiance[k].map(|c| c / picture.picture.coverage[k].max(1e-3))
+    };
+    psnr((0..a.alpha.len()).map(|k| (normal(a, k), normal(b, k))))
 }
 
 /// Of linear values in [0, 1], dB.

@@ -4,11 +4,11 @@ use crate::comparison::psnr_between;
 use crate::encode::{
     Numbers, SpzVersion, compressed_ply, ksplat, ply, ply_in_other_order, raw_splat, sog_files, spz, zipped,
 };
-use crate::scene::{camera, scattered};
 use crate::read_bytes;
+use crate::scene::{camera, scattered};
 use gaussians::{
-    Axes, CloudTraits, ColorSpace, GaussianCloud, GaussianPicture, GaussianView, GltfAttributes, Placement, ReadOptions, Splat,
-    SplatFile, SplatFormat, open, read_gltf_attributes, render_pinhole,
+    Axes, CloudTraits, ColorSpace, GaussianCloud, GaussianPicture, GaussianView, GltfAttributes, Placement,
+    ReadOptions, Splat, SplatFile, SplatFormat, open, read_gltf_attributes, render_pinhole,
 };
 use progress::Unwatched;
 use serde_json::json;
@@ -33,7 +33,14 @@ fn differences(original: &GaussianCloud, file: &SplatFile) -> (f32, f64) {
 }
 
 /// Reads bytes and checks how near they are to the scene of a degree.
-fn check(bytes: &[u8], name: &str, format: SplatFormat, original: &GaussianCloud, reach: f32, floor: f64) -> SplatFile {
+fn check(
+    bytes: &[u8],
+    name: &str,
+    format: SplatFormat,
+    original: &GaussianCloud,
+    reach: f32,
+    floor: f64,
+) -> SplatFile {
     let file = read_bytes(bytes, name).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(file.format, format, "{name}");
     assert_eq!(file.cloud.degree(), original.degree(), "{name}");
@@ -141,7 +148,8 @@ fn sog_archives_and_folders() {
                 std::fs::write(folder.path().join(name), bytes).expect("the folder can be written");
             }
             for path in [folder.path().to_path_buf(), folder.path().join("meta.json")] {
-                let in_folder = open(&path, &ReadOptions::default(), &Unwatched).unwrap_or_else(|e| panic!("{e}"));
+                let in_folder =
+                    open(&path, &ReadOptions::default(), &Unwatched).unwrap_or_else(|e| panic!("{e}"));
                 assert_eq!((in_folder.format, &in_folder.cloud), (SplatFormat::SogFolder, &file.cloud));
             }
         }
@@ -151,7 +159,8 @@ fn sog_archives_and_folders() {
 #[test]
 fn sog_archives_with_a_folder_inside() {
     let original = antialiased(scattered(50, 1), true);
-    let files: Vec<_> = sog_files(&original, 2).into_iter().map(|(name, bytes)| (format!("scan/{name}"), bytes)).collect();
+    let files: Vec<_> =
+        sog_files(&original, 2).into_iter().map(|(name, bytes)| (format!("scan/{name}"), bytes)).collect();
     check(&zipped(&files), "scene.zip", SplatFormat::Sog, &original, 2e-3, 35.0);
 }
 
@@ -196,7 +205,13 @@ fn gltf_attributes() {
         coefficients: &coefficients,
     };
     let read = |attributes: &GltfAttributes<'_>, extension: serde_json::Value| {
-        read_gltf_attributes(attributes, &extension, Path::new("scene.glb"), &ReadOptions::default(), &Unwatched)
+        read_gltf_attributes(
+            attributes,
+            &extension,
+            Path::new("scene.glb"),
+            &ReadOptions::default(),
+            &Unwatched,
+        )
     };
     let extension = |space: &str| json!({"kernel": "ellipse", "colorSpace": space});
     let file = read(&attributes, extension("srgb_rec709_display")).unwrap();

@@ -9,6 +9,8 @@ mod malformed;
 mod mutations;
 mod pictures;
 mod real_files;
+mod sample_sum;
+mod samples;
 mod scene;
 
 use gaussians::{GaussianError, ReadOptions, SplatFile, read};

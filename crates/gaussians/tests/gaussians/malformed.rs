@@ -29,7 +29,8 @@ const SHAPE: [&str; 11] =
 fn point_clouds_and_meshes_say_so() {
     let points = ascii(&["x", "y", "z"], &["1 2 3"], "");
     assert!(error(&points, "a.ply").contains("is a point cloud without splats"));
-    let mesh = ascii(&["x", "y", "z"], &["1 2 3"], "element face 1\nproperty list uchar int vertex_indices\n");
+    let mesh =
+        ascii(&["x", "y", "z"], &["1 2 3"], "element face 1\nproperty list uchar int vertex_indices\n");
     assert!(error(&mesh, "a.ply").contains("is a mesh without splats"));
     assert!(error(b"ply\nformat ascii 1.0\nend_header\n", "a.ply").contains("without vertices"));
     assert!(error(b"glTF....", "a.glb").contains("is a glTF scene"));
@@ -45,7 +46,10 @@ fn colours_as_red_green_blue_are_read() {
     let color = file.cloud.color(0, glam::Vec3::Z);
     assert!((color - glam::Vec3::new(1.0, 0.5, 0.0)).abs().max_element() < 1e-6);
     let text = String::from_utf8(bytes).unwrap();
-    let bytes = text.replace("float red", "uchar red").replace("float green", "uchar green").replace("float blue", "uchar blue");
+    let bytes = text
+        .replace("float red", "uchar red")
+        .replace("float green", "uchar green")
+        .replace("float blue", "uchar blue");
     let file = read_bytes(bytes.replace("1 0.5 0\n", "255 0 51\n").as_bytes(), "a.ply").unwrap();
     let color = file.cloud.color(0, glam::Vec3::Z);
     assert!((color - glam::Vec3::new(1.0, 0.0, 0.2)).abs().max_element() < 1e-6);
@@ -69,9 +73,15 @@ fn plain_values_and_flat_splats_are_read_with_a_warning() {
 #[test]
 fn incomplete_columns_are_named() {
     let names: Vec<&str> = SHAPE.into_iter().filter(|name| *name != "rot_2").collect();
-    assert!(error(&ascii(&names, &["0 0 1 2 -3 -3 -3 1 0 0"], ""), "a.ply").contains("has no property rot_2"));
-    let names: Vec<&str> = SHAPE.into_iter().chain(["f_dc_0", "f_dc_1", "f_dc_2", "f_rest_0", "f_rest_1"]).collect();
-    assert!(error(&ascii(&names, &["0 0 1 2 -3 -3 -3 1 0 0 0 0 0 0 0 0"], ""), "a.ply").contains("has 2 properties f_rest"));
+    assert!(
+        error(&ascii(&names, &["0 0 1 2 -3 -3 -3 1 0 0"], ""), "a.ply").contains("has no property rot_2")
+    );
+    let names: Vec<&str> =
+        SHAPE.into_iter().chain(["f_dc_0", "f_dc_1", "f_dc_2", "f_rest_0", "f_rest_1"]).collect();
+    assert!(
+        error(&ascii(&names, &["0 0 1 2 -3 -3 -3 1 0 0 0 0 0 0 0 0"], ""), "a.ply")
+            .contains("has 2 properties f_rest")
+    );
 }
 
 #[test]
@@ -105,7 +115,8 @@ fn counts_beyond_the_bytes_are_refused() {
     payload[8..12].copy_from_slice(&u32::MAX.to_le_bytes());
     assert!(error(&crate::encode::gzipped(payload), "a.spz").contains("more than its"));
     let mut files = sog_files(&cloud, 2);
-    files[0].1 = String::from_utf8_lossy(&files[0].1).replace("\"count\":60", "\"count\":4000000000").into_bytes();
+    files[0].1 =
+        String::from_utf8_lossy(&files[0].1).replace("\"count\":60", "\"count\":4000000000").into_bytes();
     error(&zipped(&files), "a.sog");
 }
 
@@ -149,8 +160,13 @@ fn links_out_of_the_folder_are_refused() {
 fn limits_and_cancelling_hold() {
     let cloud = scattered(200, 3);
     let options = ReadOptions { max_memory: 20_000 };
-    for (name, bytes) in [("a.ply", ply(&cloud)), ("a.spz", spz(&cloud, SpzVersion::Four)), ("a.sog", zipped(&sog_files(&cloud, 2)))] {
-        let error = read(&bytes, Path::new(name), &options, &Unwatched).map(|file| file.cloud.len()).unwrap_err();
+    for (name, bytes) in [
+        ("a.ply", ply(&cloud)),
+        ("a.spz", spz(&cloud, SpzVersion::Four)),
+        ("a.sog", zipped(&sog_files(&cloud, 2))),
+    ] {
+        let error =
+            read(&bytes, Path::new(name), &options, &Unwatched).map(|file| file.cloud.len()).unwrap_err();
         assert!(matches!(error, GaussianError::TooBig { .. }), "{error}");
     }
     struct Cancelling;

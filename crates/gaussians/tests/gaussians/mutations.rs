@@ -2,8 +2,8 @@
 
 use crate::allocations::peak_bytes;
 use crate::encode::{
-    Numbers, SpzVersion, compressed_ply, gzipped, ksplat, ply, ply_in_other_order, raw_splat, sog_files, spz, spz_payload,
-    zipped,
+    Numbers, SpzVersion, compressed_ply, gzipped, ksplat, ply, ply_in_other_order, raw_splat, sog_files, spz,
+    spz_payload, zipped,
 };
 use crate::read_bytes;
 use crate::scene::{Random, scattered};
@@ -30,7 +30,8 @@ fn mutate(bytes: &mut Vec<u8>, random: &mut Random) {
             bytes[at..end].fill(value);
         }
         4 => {
-            let value = [u32::MAX, 0x7fc0_0000, 0x7f80_0000, 0x8000_0000, 1 << 24][random.below(5)].to_le_bytes();
+            let value =
+                [u32::MAX, 0x7fc0_0000, 0x7f80_0000, 0x8000_0000, 1 << 24][random.below(5)].to_le_bytes();
             let end = (at + 4).min(bytes.len());
             bytes[at..end].copy_from_slice(&value[..end - at]);
         }
@@ -45,7 +46,8 @@ fn mutate(bytes: &mut Vec<u8>, random: &mut Random) {
         }
         _ => {
             // A digit of a header, of a description or anywhere.
-            let digits: Vec<usize> = (0..bytes.len().min(4096)).filter(|k| bytes[*k].is_ascii_digit()).collect();
+            let digits: Vec<usize> =
+                (0..bytes.len().min(4096)).filter(|k| bytes[*k].is_ascii_digit()).collect();
             if !digits.is_empty() {
                 bytes[digits[random.below(digits.len())]] = b'0' + random.below(10) as u8;
             }

@@ -35,7 +35,11 @@ fn small_files_have_their_splats() {
     ] {
         let Some(path) = shared(name) else { continue };
         let file = opened(&path);
-        assert_eq!((file.format, file.cloud.file_rows(), file.cloud.degree()), (format, count, degree), "{name}");
+        assert_eq!(
+            (file.format, file.cloud.file_rows(), file.cloud.degree()),
+            (format, count, degree),
+            "{name}"
+        );
     }
 }
 

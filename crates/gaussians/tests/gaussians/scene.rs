@@ -36,7 +36,8 @@ pub fn scattered(count: usize, degree: u32) -> GaussianCloud {
         let mut centered = |reach: f32| random.between(-reach, reach);
         let splat = Splat {
             mean: Vec3::new(centered(1.0), centered(0.8), 2.5 + centered(0.7)),
-            rotation: Quat::from_xyzw(centered(1.0), centered(1.0), centered(1.0), 0.3 + centered(0.2)).normalize(),
+            rotation: Quat::from_xyzw(centered(1.0), centered(1.0), centered(1.0), 0.3 + centered(0.2))
+                .normalize(),
             log_scale: Vec3::new(-2.3 + centered(0.5), -2.8 + centered(0.5), -4.0 + centered(1.0)),
             opacity: 0.6 + centered(0.35),
             base_color: Vec3::new(centered(1.5), centered(1.5), centered(1.5)),
@@ -59,7 +60,8 @@ pub fn still_life() -> GaussianCloud {
             opacity,
             base_color: (color - 0.5) / 0.282_094_8,
         };
-        let coefficients: Vec<f32> = [lobe.y, lobe.z, lobe.x].into_iter().flat_map(|k| [k, k, 0.5 * k]).collect();
+        let coefficients: Vec<f32> =
+            [lobe.y, lobe.z, lobe.x].into_iter().flat_map(|k| [k, k, 0.5 * k]).collect();
         builder.push(splat, &coefficients);
     };
     // Three layers, so that next to nothing of the background is visible.

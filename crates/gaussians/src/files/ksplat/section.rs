@@ -64,7 +64,8 @@ impl<'a> Section<'a> {
             Level::Halves => 2,
             Level::Bytes => 1,
         };
-        let each = Self::least_bytes_each(header.level) + 3 * coefficient_count(degree) as u64 * coefficient_bytes;
+        let each =
+            Self::least_bytes_each(header.level) + 3 * coefficient_count(degree) as u64 * coefficient_bytes;
         let partial_lengths = rest.take(partial * 4)?;
         let centers = rest.take(buckets.checked_mul(bytes_per_bucket)?)?;
         let splats = rest.take(max_count.checked_mul(each)?)?;

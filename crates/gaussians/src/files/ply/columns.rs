@@ -2,8 +2,8 @@
 
 use super::super::reading::Reading;
 use super::header::{DataType, Element, Header};
-use crate::cloud::harmonics::{coefficient_count, degree_of};
 use crate::cloud::Splat;
+use crate::cloud::harmonics::{coefficient_count, degree_of};
 use crate::error::GaussianError;
 use glam::{Quat, Vec3};
 
@@ -55,12 +55,14 @@ impl Columns {
             return Err(GaussianError::no_splats(reading.file(), what));
         }
         let column = |name: &str| {
-            let missing = || reading.malformed("vertex", format!("has no property {name}, which splats have"));
+            let missing =
+                || reading.malformed("vertex", format!("has no property {name}, which splats have"));
             vertices.column(name).ok_or_else(missing)
         };
         let rest: Vec<usize> = (0..).map_while(|k| vertices.column(&format!("f_rest_{k}"))).collect();
         let degree = degree_of(rest.len() / 3).filter(|_| rest.len().is_multiple_of(3)).ok_or_else(|| {
-            let what = format!("has {} properties f_rest, where 0, 9, 24, 45 or 72 belong to a degree", rest.len());
+            let what =
+                format!("has {} properties f_rest, where 0, 9, 24, 45 or 72 belong to a degree", rest.len());
             reading.malformed("vertex", what)
         })?;
         Ok(Self {
@@ -90,7 +92,11 @@ impl Columns {
             let scales = self.scale.iter().chain(&self.normal_scale);
             scales.into_iter().all(|&column| row[column] > 0.0) && (0.0..=1.0).contains(&row[self.opacity])
         };
-        if rows.len() >= MIN_ROWS && rows.iter().all(is_plain) { Activation::Plain } else { Activation::Trained }
+        if rows.len() >= MIN_ROWS && rows.iter().all(is_plain) {
+            Activation::Plain
+        } else {
+            Activation::Trained
+        }
     }
 
     /// The splat of a row; its coefficients beyond degree 0 go to `coefficients`, those of a colour beside each other.
@@ -139,9 +145,9 @@ impl BaseColor {
     fn coefficients(&self, row: &[f64]) -> Vec3 {
         match self {
             Self::Harmonics(columns) => Vec3::from_array(columns.map(|column| row[column] as f32)),
-            Self::Rgb(columns) => {
-                Vec3::from_array(columns.map(|(column, white)| Splat::base_of_color((row[column] / white) as f32)))
-            }
+            Self::Rgb(columns) => Vec3::from_array(
+                columns.map(|(column, white)| Splat::base_of_color((row[column] / white) as f32)),
+            ),
         }
     }
 }

@@ -94,7 +94,8 @@ fn read_chunks(
     let mut row = Vec::new();
     for _ in 0..element.count {
         rows.next(reading, element, &mut row)?;
-        let ends = |range: [[usize; 3]; 2]| range.map(|end| Vec3::from_array(end.map(|column| row[column] as f32)));
+        let ends =
+            |range: [[usize; 3]; 2]| range.map(|end| Vec3::from_array(end.map(|column| row[column] as f32)));
         let color = color.map_or([Vec3::ZERO, Vec3::ONE], ends);
         chunks.push(Chunk { mean: ends(mean), log_scale: ends(log_scale), color });
     }
@@ -118,14 +119,23 @@ fn read_packed(
     let column = |name: &str| {
         element.column(name).ok_or_else(|| reading.malformed("vertex", format!("has no property {name}")))
     };
-    let columns =
-        [column("packed_position")?, column("packed_rotation")?, column("packed_scale")?, column("packed_color")?];
+    let columns = [
+        column("packed_position")?,
+        column("packed_rotation")?,
+        column("packed_scale")?,
+        column("packed_color")?,
+    ];
     rows.check_count(reading, element)?;
     if element.count.div_ceil(CHUNK) != chunks {
-        let what = format!("{} rows need {} chunks, but {chunks} come before them", element.count, element.count.div_ceil(CHUNK));
+        let what = format!(
+            "{} rows need {} chunks, but {chunks} come before them",
+            element.count,
+            element.count.div_ceil(CHUNK)
+        );
         return Err(reading.malformed("vertex", what));
     }
-    reading.check_memory("the packed splats take", element.count.saturating_mul(size_of::<Packed>() as u64))?;
+    reading
+        .check_memory("the packed splats take", element.count.saturating_mul(size_of::<Packed>() as u64))?;
     let mut packed = Vec::with_capacity(element.count as usize);
     let mut row = Vec::new();
     for index in 0..element.count {
@@ -151,7 +161,8 @@ fn three_shares(value: u32) -> Vec3 {
 impl Packed {
     fn decode(&self, chunk: &Chunk) -> Splat {
         let between = |[from, to]: [Vec3; 2], at: Vec3| from * (1.0 - at) + to * at;
-        let color = Vec3::new(share(self.color >> 24, 8), share(self.color >> 16, 8), share(self.color >> 8, 8));
+        let color =
+            Vec3::new(share(self.color >> 24, 8), share(self.color >> 16, 8), share(self.color >> 8, 8));
         let component = |shift: u32| f64::from(share(self.rotation >> shift, 10)) * 2.0 - 1.0;
         Splat {
             mean: between(chunk.mean, three_shares(self.position)),
@@ -182,7 +193,10 @@ impl Coefficients {
         match degree_of(columns.len() / 3).filter(|_| columns.len().is_multiple_of(3)) {
             Some(degree) => Ok(Self { degree, columns }),
             None => {
-                let what = format!("has {} properties f_rest, where 9, 24, 45 or 72 belong to a degree", columns.len());
+                let what = format!(
+                    "has {} properties f_rest, where 9, 24, 45 or 72 belong to a degree",
+                    columns.len()
+                );
                 Err(reading.malformed("sh", what))
             }
         }

@@ -21,7 +21,11 @@ use std::path::Path;
 ///
 /// # Panics
 /// `focus` is not as long as the cloud.
-pub fn write_focus_table(out: &mut impl Write, cloud: &GaussianCloud, focus: &[FocusOffset]) -> io::Result<()> {
+pub fn write_focus_table(
+    out: &mut impl Write,
+    cloud: &GaussianCloud,
+    focus: &[FocusOffset],
+) -> io::Result<()> {
     assert_eq!(focus.len(), cloud.len());
     write_header(out, "", cloud.file_rows(), ["t", "anchor", "gloss"].map(String::from).into_iter())?;
     let mut rows = vec![FocusOffset::STANDARD; cloud.file_rows()];

@@ -126,8 +126,13 @@ impl Header {
         const MAX_LINES: u64 = 1000;
         const MAX_LINE_BYTES: u64 = 4096;
         let mut encoding = None;
-        let mut header =
-            Self { encoding: Encoding::Ascii, elements: Vec::new(), is_antialiased: false, bytes: 0, lines: 0 };
+        let mut header = Self {
+            encoding: Encoding::Ascii,
+            elements: Vec::new(),
+            is_antialiased: false,
+            bytes: 0,
+            lines: 0,
+        };
         while header.lines < MAX_LINES {
             header.lines += 1;
             let mut line = Vec::new();

@@ -43,7 +43,10 @@ impl<R: BufRead> Rows<R> {
         match element.count.checked_mul(element.least_bytes(self.encoding)) {
             Some(bytes) if bytes <= left => Ok(()),
             _ => {
-                let what = format!("{} rows of {} do not fit the {left} bytes that are left", element.count, element.name);
+                let what = format!(
+                    "{} rows of {} do not fit the {left} bytes that are left",
+                    element.count, element.name
+                );
                 Err(self.malformed(reading, what))
             }
         }
@@ -98,7 +101,8 @@ impl<R: BufRead> Rows<R> {
                             let count = self.scalar(reading, count)?;
                             let left = self.size.saturating_sub(self.at);
                             if !(count >= 0.0 && count * item.size() as f64 <= left as f64) {
-                                let what = format!("a list of {count} does not fit the {left} bytes that are left");
+                                let what =
+                                    format!("a list of {count} does not fit the {left} bytes that are left");
                                 return Err(self.malformed(reading, what));
                             }
                             self.fill(reading, count as u64 * item.size() as u64)?;

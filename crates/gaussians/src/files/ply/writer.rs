@@ -11,7 +11,8 @@ use std::io::{self, Write};
 pub fn write_ply(out: &mut impl Write, cloud: &GaussianCloud) -> io::Result<()> {
     let rest = (0..cloud_coefficients(cloud)).map(|k| format!("f_rest_{k}"));
     let names = ["x", "y", "z", "nx", "ny", "nz", "f_dc_0", "f_dc_1", "f_dc_2"].map(String::from).into_iter();
-    let shape = ["opacity", "scale_0", "scale_1", "scale_2", "rot_0", "rot_1", "rot_2", "rot_3"].map(String::from);
+    let shape =
+        ["opacity", "scale_0", "scale_1", "scale_2", "rot_0", "rot_1", "rot_2", "rot_3"].map(String::from);
     let comment = if cloud.traits().is_antialiased { "comment SplatRenderMode: mip\n" } else { "" };
     write_header(out, comment, cloud.len(), names.chain(rest).chain(shape))?;
     let count = cloud_coefficients(cloud) / 3;
@@ -19,7 +20,8 @@ pub fn write_ply(out: &mut impl Write, cloud: &GaussianCloud) -> io::Result<()> 
         let Splat { mean, rotation: q, log_scale, opacity, base_color } = cloud.splat(index);
         let coefficients = cloud.coefficients(index);
         let by_channel = (0..3 * count).map(|k| coefficients[k % count * 3 + k / count].to_f32());
-        let numbers = mean.to_array().into_iter().chain([0.0; 3]).chain(base_color.to_array()).chain(by_channel);
+        let numbers =
+            mean.to_array().into_iter().chain([0.0; 3]).chain(base_color.to_array()).chain(by_channel);
         let numbers = numbers
             .chain([Splat::logit_of_opacity(opacity)])
             .chain(log_scale.to_array())

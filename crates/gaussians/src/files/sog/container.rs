@@ -29,15 +29,17 @@ impl<'a> Container<'a> {
     /// # Errors
     /// It is malformed, or has no description.
     pub fn archive(reading: &Reading<'_>, bytes: &'a [u8]) -> Result<Self, GaussianError> {
-        let archive =
-            ZipArchive::new(Cursor::new(bytes)).map_err(|e| reading.malformed("zip archive", e))?;
+        let archive = ZipArchive::new(Cursor::new(bytes)).map_err(|e| reading.malformed("zip archive", e))?;
         let is_meta = |name: &String| {
             name.strip_suffix(META).is_some_and(|folder| folder.is_empty() || folder.ends_with('/'))
         };
         let names = archive.file_names().filter_map(|name| Some(name.ok()?.into_owned()));
         // That of the root, or else the outermost.
         let Some(meta) = names.filter(is_meta).min_by_key(String::len) else {
-            return Err(GaussianError::no_splats(reading.file(), "is a zip archive without a meta.json of SOG"));
+            return Err(GaussianError::no_splats(
+                reading.file(),
+                "is a zip archive without a meta.json of SOG",
+            ));
         };
         let prefix = meta[..meta.len() - META.len()].to_string();
         Ok(Self::Archive(archive, prefix))
@@ -57,9 +59,16 @@ impl<'a> Container<'a> {
     ///
     /// # Errors
     /// It is missing, outside the scene's folder, or larger.
-    pub fn read(&mut self, reading: &Reading<'_>, name: &str, max_bytes: u64) -> Result<Vec<u8>, GaussianError> {
-        let missing = |e: &dyn std::fmt::Display| reading.malformed(quoted(name), format!("cannot be read: {e}"));
-        let is_inside = Path::new(name).components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
+    pub fn read(
+        &mut self,
+        reading: &Reading<'_>,
+        name: &str,
+        max_bytes: u64,
+    ) -> Result<Vec<u8>, GaussianError> {
+        let missing =
+            |e: &dyn std::fmt::Display| reading.malformed(quoted(name), format!("cannot be read: {e}"));
+        let is_inside =
+            Path::new(name).components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
         let outside = || GaussianError::Outside { file: reading.file().into(), name: quoted(name) };
         if !is_inside || name.contains('\\') {
             return Err(outside());
@@ -82,7 +91,8 @@ impl<'a> Container<'a> {
             }
         }
         if bytes.len() as u64 > max_bytes {
-            return Err(reading.malformed(quoted(name), format!("is larger than the {max_bytes} bytes that it needs")));
+            return Err(reading
+                .malformed(quoted(name), format!("is larger than the {max_bytes} bytes that it needs")));
         }
         Ok(bytes)
     }

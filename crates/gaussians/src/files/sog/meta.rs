@@ -117,7 +117,11 @@ impl Meta {
         let raw: RawMeta = serde_json::from_slice(&bytes).map_err(|e| reading.malformed("meta.json", e))?;
         if let Some(version) = raw.version.filter(|version| ![1, 2].contains(version)) {
             let what = format!("is SOG of version {version}, 1 and 2 are read");
-            return Err(GaussianError::unsupported(reading.file(), what, "convert it to version 2, or to .ply"));
+            return Err(GaussianError::unsupported(
+                reading.file(),
+                what,
+                "convert it to version 2, or to .ply",
+            ));
         }
         let is_first = raw.version != Some(2);
         let missing = |what: &str| reading.malformed("meta.json", format!("has no {what}"));
@@ -127,16 +131,24 @@ impl Meta {
             image.files.get(index).cloned().ok_or_else(|| missing(&format!("file {index} of {name}")))
         };
         let range = |image: &RawImage, name: &str| -> Result<[DVec3; 2], GaussianError> {
-            let end = |numbers: &Numbers| numbers.at_least_three().ok_or_else(|| missing(&format!("mins and maxs of {name}")));
+            let end = |numbers: &Numbers| {
+                numbers.at_least_three().ok_or_else(|| missing(&format!("mins and maxs of {name}")))
+            };
             Ok([end(&image.mins)?, end(&image.maxs)?])
         };
-        let levels = |image: &RawImage, name: &str| -> Result<Levels, GaussianError> { match is_first {
-            true => Ok(Levels::Range(range(image, name)?.map(|end| end.as_vec3()))),
-            false => Ok(Levels::Codebook(codebook(image).ok_or_else(|| missing(&format!("codebook of {name}")))?)),
-        } };
+        let levels = |image: &RawImage, name: &str| -> Result<Levels, GaussianError> {
+            match is_first {
+                true => Ok(Levels::Range(range(image, name)?.map(|end| end.as_vec3()))),
+                false => Ok(Levels::Codebook(
+                    codebook(image).ok_or_else(|| missing(&format!("codebook of {name}")))?,
+                )),
+            }
+        };
         let opacity = match is_first {
             true => {
-                let fourth = |numbers: &Numbers| numbers.get(3).ok_or_else(|| missing("fourth of mins and maxs of sh0"));
+                let fourth = |numbers: &Numbers| {
+                    numbers.get(3).ok_or_else(|| missing("fourth of mins and maxs of sh0"))
+                };
                 Opacity::Logit([fourth(&raw.sh0.mins)?, fourth(&raw.sh0.maxs)?])
             }
             false => Opacity::Plain,

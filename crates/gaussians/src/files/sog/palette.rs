@@ -42,8 +42,12 @@ impl Palette {
         let labels = Texture::read(reading, container, labels, count)?;
         let width_of = |degree: u32| ENTRIES_PER_ROW * coefficient_count(degree) as u32;
         let degree = (1..=MAX_DEGREE).find(|degree| width_of(*degree) == centroids.width);
-        let Some(degree) = degree.filter(|degree| meta.degree.is_none_or(|declared| declared == *degree)) else {
-            let what = format!("is {} pixels wide, which 64 entries of no degree (or not of the declared) are", centroids.width);
+        let Some(degree) = degree.filter(|degree| meta.degree.is_none_or(|declared| declared == *degree))
+        else {
+            let what = format!(
+                "is {} pixels wide, which 64 entries of no degree (or not of the declared) are",
+                centroids.width
+            );
             return Err(reading.malformed(place, what));
         };
         let rows = u64::from(ENTRIES_PER_ROW) * u64::from(centroids.height);
@@ -62,7 +66,7 @@ impl Palette {
     }
 
     /// The coefficients of a splat; 0 where its label is none of the palette.
-    pub fn look_up(&self, index: usize, coefficients: &mut [f32]) {
+    pub fn decode(&self, index: usize, coefficients: &mut [f32]) {
         let [low, high, _, _] = self.labels.pixel(index);
         let label = u32::from(u16::from_le_bytes([low, high]));
         if u64::from(label) >= self.entries {

@@ -61,7 +61,8 @@ impl Texture {
             return Err(malformed(&format!("has only {} bytes, fewer than its splats need", bytes.len())));
         }
         let format = image::guess_format(&bytes).ok();
-        if !matches!(format, Some(ImageFormat::WebP | ImageFormat::Png)) || bytes.get(12..16) == Some(b"VP8 ") {
+        if !matches!(format, Some(ImageFormat::WebP | ImageFormat::Png)) || bytes.get(12..16) == Some(b"VP8 ")
+        {
             return Err(malformed("is no lossless WebP or PNG picture"));
         }
         let undecodable = |e: image::ImageError| malformed(&format!("cannot be decoded: {e}"));

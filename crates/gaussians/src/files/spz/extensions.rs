@@ -22,14 +22,22 @@ pub(super) fn read(reading: &mut Reading<'_>, is_declared: bool, records: &[u8])
     let mut unknown = None;
     while !bytes.rest().is_empty() {
         let mut record = || Some((bytes.u32()?, bytes.u32()?));
-        let Some((kind, content)) = record().and_then(|(kind, length)| Some((kind, bytes.take(length.into())?))) else {
-            reading.warn("its extensions are cut", "axes may be wrong: choose them if the scene lies on its side");
+        let Some((kind, content)) =
+            record().and_then(|(kind, length)| Some((kind, bytes.take(length.into())?)))
+        else {
+            reading.warn(
+                "its extensions are cut",
+                "axes may be wrong: choose them if the scene lies on its side",
+            );
             break;
         };
         match (kind, Bytes::new(content).u32().and_then(axes_of)) {
             (COORDINATE_SYSTEM, Some(axes)) => extensions.axes = axes,
             (COORDINATE_SYSTEM, None) => {
-                reading.warn("its axes are none of SPZ's", "right, up, back are assumed: choose others if needed");
+                reading.warn(
+                    "its axes are none of SPZ's",
+                    "right, up, back are assumed: choose others if needed",
+                );
             }
             (ORBIT_LIMITS, _) => {}
             _ => unknown = Some(kind),
@@ -52,7 +60,11 @@ fn axes_of(number: u32) -> Option<Axes> {
     let x = if bit(0) { Right } else { Left };
     let depth = |plain, set| if bit(2) { set } else { plain };
     let vertical = if bit(1) { Up } else { Down };
-    Some(Axes(if bits < 8 { [x, vertical, depth(Back, Forward)] } else { [x, depth(Forward, Back), vertical] }))
+    Some(Axes(if bits < 8 {
+        [x, vertical, depth(Back, Forward)]
+    } else {
+        [x, depth(Forward, Back), vertical]
+    }))
 }
 
 #[cfg(test)]

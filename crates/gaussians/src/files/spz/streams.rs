@@ -29,20 +29,24 @@ pub(super) struct Streams {
 impl Streams {
     /// The bytes that they take.
     pub fn bytes(&self) -> u64 {
-        let all = [&self.means, &self.opacities, &self.colors, &self.scales, &self.rotations, &self.coefficients];
+        let all =
+            [&self.means, &self.opacities, &self.colors, &self.scales, &self.rotations, &self.coefficients];
         all.iter().map(|stream| stream.len() as u64).sum()
     }
 }
 
 /// The bytes of each attribute, in the order of the file.
 fn sizes(header: &Header) -> [u64; 6] {
-    let each = [header.mean_bytes(), 1, 3, 3, header.rotation_bytes(), 3 * coefficient_count(header.degree) as u64];
+    let each =
+        [header.mean_bytes(), 1, 3, 3, header.rotation_bytes(), 3 * coefficient_count(header.degree) as u64];
     each.map(|bytes| bytes * u64::from(header.count))
 }
 
 /// Reads the beginning that all versions share: 16 bytes, the last of which is returned.
 fn read_header(reading: &Reading<'_>, bytes: &mut Bytes<'_>) -> Result<(Header, u8), GaussianError> {
-    let mut numbers = || Some((bytes.u32()?, bytes.u32()?, bytes.u32()?, bytes.u8()?, bytes.u8()?, bytes.u8()?, bytes.u8()?));
+    let mut numbers = || {
+        Some((bytes.u32()?, bytes.u32()?, bytes.u32()?, bytes.u8()?, bytes.u8()?, bytes.u8()?, bytes.u8()?))
+    };
     let (magic, version, count, degree, fractional_bits, flags, last) =
         numbers().ok_or_else(|| reading.malformed("header", "the file ends in it"))?;
     if magic != MAGIC {
@@ -50,7 +54,11 @@ fn read_header(reading: &Reading<'_>, bytes: &mut Bytes<'_>) -> Result<(Header, 
     }
     if !(1..=4).contains(&version) {
         let what = format!("is SPZ of version {version}, 1 to 4 are read");
-        return Err(GaussianError::unsupported(reading.file(), what, "convert it to version 3 or 4, or to .ply"));
+        return Err(GaussianError::unsupported(
+            reading.file(),
+            what,
+            "convert it to version 3 or 4, or to .ply",
+        ));
     }
     let degree = u32::from(degree);
     if degree > MAX_DEGREE {
@@ -91,7 +99,10 @@ pub(super) fn inflate_gzip(reading: &Reading<'_>, bytes: &[u8]) -> Result<(Heade
 }
 
 /// Version 4: a plain header and a zstd frame for each attribute that has bytes.
-pub(super) fn inflate_frames(reading: &Reading<'_>, bytes: &[u8]) -> Result<(Header, Streams), GaussianError> {
+pub(super) fn inflate_frames(
+    reading: &Reading<'_>,
+    bytes: &[u8],
+) -> Result<(Header, Streams), GaussianError> {
     let mut beginning = Bytes::new(bytes);
     let (header, frames) = read_header(reading, &mut beginning)?;
     let wrong = |what: &str| reading.malformed("table of streams", what);

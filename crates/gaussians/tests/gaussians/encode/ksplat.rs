@@ -31,7 +31,14 @@ pub fn ksplat(cloud: &GaussianCloud, level: u16) -> Vec<u8> {
         let buckets = full + usize::from(rest > 0);
         let mut header = vec![0; 1024];
         let mut put = |at: usize, value: &[u8]| header[at..at + value.len()].copy_from_slice(value);
-        let numbers = [(0, section.len()), (4, section.len()), (8, BUCKET), (12, buckets), (32, full), (36, buckets - full)];
+        let numbers = [
+            (0, section.len()),
+            (4, section.len()),
+            (8, BUCKET),
+            (12, buckets),
+            (32, full),
+            (36, buckets - full),
+        ];
         numbers.iter().for_each(|(at, number)| put(*at, &(*number as u32).to_le_bytes()));
         put(16, &BLOCK.to_le_bytes());
         put(20, &12u16.to_le_bytes());

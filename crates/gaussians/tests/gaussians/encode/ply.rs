@@ -14,12 +14,15 @@ pub enum Numbers {
 
 /// A standard file with its properties in another order, among others, after a table that is none of splats, with comments.
 pub fn ply_in_other_order(cloud: &GaussianCloud, numbers: Numbers) -> Vec<u8> {
-    let names = ["rot_0", "scale_1", "f_dc_2", "z", "extra", "opacity", "f_dc_0", "x", "scale_0", "rot_3", "y", "rot_1"]
-        .into_iter()
-        .map(String::from)
-        .chain(["scale_2", "f_dc_1", "rot_2"].map(String::from))
-        .chain((0..cloud.coefficients(0).len()).rev().map(|k| format!("f_rest_{k}")))
-        .collect::<Vec<_>>();
+    let names = [
+        "rot_0", "scale_1", "f_dc_2", "z", "extra", "opacity", "f_dc_0", "x", "scale_0", "rot_3", "y",
+        "rot_1",
+    ]
+    .into_iter()
+    .map(String::from)
+    .chain(["scale_2", "f_dc_1", "rot_2"].map(String::from))
+    .chain((0..cloud.coefficients(0).len()).rev().map(|k| format!("f_rest_{k}")))
+    .collect::<Vec<_>>();
     let (format, data_type) = match numbers {
         Numbers::Ascii => ("ascii", "float"),
         Numbers::BigEndianDoubles => ("binary_big_endian", "double"),
@@ -89,7 +92,9 @@ pub fn compressed_ply(cloud: &GaussianCloud, has_color_ranges: bool) -> Vec<u8> 
         }
     }
     header += &format!("element vertex {}\n", cloud.len());
-    ["position", "rotation", "scale", "color"].iter().for_each(|name| header += &format!("property uint packed_{name}\n"));
+    ["position", "rotation", "scale", "color"]
+        .iter()
+        .for_each(|name| header += &format!("property uint packed_{name}\n"));
     let rest = cloud.coefficients(0).len();
     if rest > 0 {
         header += &format!("element sh {}\n", cloud.len());
@@ -104,23 +109,36 @@ pub fn compressed_ply(cloud: &GaussianCloud, has_color_ranges: bool) -> Vec<u8> 
         [least, most]
     };
     let (mean, scale): (&dyn Fn(&Splat) -> Vec3, &dyn Fn(&Splat) -> Vec3) = (&|s| s.mean, &|s| s.log_scale);
-    let color_range = |chunk: &[Splat]| if has_color_ranges { ends(&color, chunk) } else { [Vec3::ZERO, Vec3::ONE] };
+    let color_range =
+        |chunk: &[Splat]| if has_color_ranges { ends(&color, chunk) } else { [Vec3::ZERO, Vec3::ONE] };
     for chunk in &chunks {
-        for range in [ends(mean, chunk), ends(scale, chunk), color_range(chunk)].iter().take(2 + usize::from(has_color_ranges)) {
+        for range in [ends(mean, chunk), ends(scale, chunk), color_range(chunk)]
+            .iter()
+            .take(2 + usize::from(has_color_ranges))
+        {
             bytes.extend(range.iter().flat_map(|end| end.to_array()).flat_map(f32::to_le_bytes));
         }
     }
     for chunk in &chunks {
-        let (mean_range, scale_range, color_range) = (ends(mean, chunk), ends(scale, chunk), color_range(chunk));
+        let (mean_range, scale_range, color_range) =
+            (ends(mean, chunk), ends(scale, chunk), color_range(chunk));
         for splat in *chunk {
-            let share = |value: Vec3, [least, most]: [Vec3; 2]| (value - least) / (most - least).max(Vec3::splat(1e-9));
+            let share = |value: Vec3, [least, most]: [Vec3; 2]| {
+                (value - least) / (most - least).max(Vec3::splat(1e-9))
+            };
             let bits = |share: f32, bits: u32| (share * ((1u32 << bits) - 1) as f32).round() as u32;
             let three = |share: Vec3| bits(share.x, 11) << 21 | bits(share.y, 10) << 11 | bits(share.z, 11);
             let (largest, others) = smallest_three(splat);
-            let rotation = others.iter().fold(largest as u32, |packed, x| packed << 10 | bits((x + 1.0) / 2.0, 10));
+            let rotation =
+                others.iter().fold(largest as u32, |packed, x| packed << 10 | bits((x + 1.0) / 2.0, 10));
             let rgb = share(color(splat), color_range).to_array().map(unit_byte);
             let color = u32::from_be_bytes([rgb[0], rgb[1], rgb[2], unit_byte(splat.opacity)]);
-            let words = [three(share(splat.mean, mean_range)), rotation, three(share(splat.log_scale, scale_range)), color];
+            let words = [
+                three(share(splat.mean, mean_range)),
+                rotation,
+                three(share(splat.log_scale, scale_range)),
+                color,
+            ];
             bytes.extend(words.into_iter().flat_map(u32::to_le_bytes));
         }
     }

@@ -17,15 +17,25 @@ pub fn sog_files(cloud: &GaussianCloud, version: u32) -> Vec<(String, Vec<u8>)> 
     let (mean_mins, mean_maxs) = ends(&means);
     let shares: Vec<[u16; 3]> = means
         .iter()
-        .map(|mean| [0, 1, 2].map(|k| ((mean[k] - mean_mins[k]) / (mean_maxs[k] - mean_mins[k]) * 65535.0).round() as u16))
+        .map(|mean| {
+            [0, 1, 2]
+                .map(|k| ((mean[k] - mean_mins[k]) / (mean_maxs[k] - mean_mins[k]) * 65535.0).round() as u16)
+        })
         .collect();
     let bytes_of = |high: bool| {
         let part = move |share: u16| share.to_le_bytes()[usize::from(high)];
         shares.iter().map(move |[x, y, z]| [part(*x), part(*y), part(*z), 255]).collect::<Vec<_>>()
     };
-    let scales = Quantised::new(splats.iter().map(|splat| splat.log_scale.to_array().map(f64::from)).collect(), version);
-    let colors = Quantised::new(splats.iter().map(|splat| splat.base_color.to_array().map(f64::from)).collect(), version);
-    let logits: Vec<[f64; 1]> = splats.iter().map(|s| [f64::from(Splat::logit_of_opacity(s.opacity))]).collect();
+    let scales = Quantised::new(
+        splats.iter().map(|splat| splat.log_scale.to_array().map(f64::from)).collect(),
+        version,
+    );
+    let colors = Quantised::new(
+        splats.iter().map(|splat| splat.base_color.to_array().map(f64::from)).collect(),
+        version,
+    );
+    let logits: Vec<[f64; 1]> =
+        splats.iter().map(|s| [f64::from(Splat::logit_of_opacity(s.opacity))]).collect();
     let (logit_min, logit_max) = ends(&logits);
     let opacity = |index: usize| match version {
         1 => unit_byte(((logits[index][0] - logit_min[0]) / (logit_max[0] - logit_min[0])) as f32),
@@ -36,7 +46,8 @@ pub fn sog_files(cloud: &GaussianCloud, version: u32) -> Vec<(String, Vec<u8>)> 
         let [a, b, c] = others.map(|x| unit_byte((x + 1.0) / 2.0));
         [a, b, c, 252 + largest as u8]
     });
-    let color_pixels = colors.pixels.iter().enumerate().map(|(index, [r, g, b])| [*r, *g, *b, opacity(index)]);
+    let color_pixels =
+        colors.pixels.iter().enumerate().map(|(index, [r, g, b])| [*r, *g, *b, opacity(index)]);
     let mut files = vec![
         ("means_l.webp".to_string(), picture(bytes_of(false))),
         ("means_u.webp".into(), picture(bytes_of(true))),
@@ -69,14 +80,17 @@ pub fn sog_files(cloud: &GaussianCloud, version: u32) -> Vec<(String, Vec<u8>)> 
 /// An entry of the palette for each splat.
 fn palette(cloud: &GaussianCloud, version: u32, files: &mut Vec<(String, Vec<u8>)>) -> Value {
     let count = cloud.coefficients(0).len() / 3;
-    let all: Vec<f64> = (0..cloud.len()).flat_map(|k| cloud.coefficients(k).iter().map(|x| x.to_f64())).collect();
-    let (least, most) = all.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(*x), b.max(*x)));
+    let all: Vec<f64> =
+        (0..cloud.len()).flat_map(|k| cloud.coefficients(k).iter().map(|x| x.to_f64())).collect();
+    let (least, most) =
+        all.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(*x), b.max(*x)));
     let rows = cloud.len().div_ceil(64);
     let mut centroids = vec![[0, 0, 0, 255]; 64 * count * rows];
     for (index, rgb) in all.chunks(3).enumerate() {
         let (splat, k) = (index / count, index % count);
         let byte = |x: f64| unit_byte(((x - least) / (most - least)) as f32);
-        centroids[splat / 64 * 64 * count + splat % 64 * count + k] = [byte(rgb[0]), byte(rgb[1]), byte(rgb[2]), 255];
+        centroids[splat / 64 * 64 * count + splat % 64 * count + k] =
+            [byte(rgb[0]), byte(rgb[1]), byte(rgb[2]), 255];
     }
     files.push(("shN_centroids.webp".into(), webp(&centroids, 64 * count, rows)));
     let label = |index: usize| [(index & 255) as u8, (index >> 8) as u8, 0, 255];
@@ -85,7 +99,8 @@ fn palette(cloud: &GaussianCloud, version: u32, files: &mut Vec<(String, Vec<u8>
     match version {
         1 => json!({"mins": least, "maxs": most, "files": names}),
         _ => {
-            let codebook: Vec<f64> = (0..256).map(|k| least + (most - least) * f64::from(k) / 255.0).collect();
+            let codebook: Vec<f64> =
+                (0..256).map(|k| least + (most - least) * f64::from(k) / 255.0).collect();
             json!({"count": cloud.len(), "bands": cloud.degree(), "codebook": codebook, "files": names})
         }
     }
@@ -107,7 +122,8 @@ impl Quantised {
             mins = [mins.into_iter().fold(f64::INFINITY, f64::min); 3];
             maxs = [maxs.into_iter().fold(f64::NEG_INFINITY, f64::max); 3];
         }
-        let byte = |value: &[f64; 3], k: usize| unit_byte(((value[k] - mins[k]) / (maxs[k] - mins[k])) as f32);
+        let byte =
+            |value: &[f64; 3], k: usize| unit_byte(((value[k] - mins[k]) / (maxs[k] - mins[k])) as f32);
         let pixels = values.iter().map(|value| [0, 1, 2].map(|k| byte(value, k))).collect();
         Self { pixels, mins, maxs, version }
     }

@@ -55,7 +55,8 @@ fn attributes(cloud: &GaussianCloud, version: SpzVersion) -> [Vec<u8>; 6] {
         for x in splat.mean.to_array() {
             match version {
                 SpzVersion::One => means.extend(f16::from_f32(x).to_le_bytes()),
-                _ => means.extend(&((x * f32::from(1u16 << FRACTIONAL_BITS)).round() as i32).to_le_bytes()[..3]),
+                _ => means
+                    .extend(&((x * f32::from(1u16 << FRACTIONAL_BITS)).round() as i32).to_le_bytes()[..3]),
             }
         }
         opacities.push(unit_byte(splat.opacity));
@@ -71,7 +72,9 @@ fn attributes(cloud: &GaussianCloud, version: SpzVersion) -> [Vec<u8>; 6] {
             let largest = (0..4).max_by(|a, b| xyzw[*a].abs().total_cmp(&xyzw[*b].abs())).expect("four");
             let others = (0..4).filter(|k| *k != largest).map(|k| xyzw[k] * xyzw[largest].signum());
             let pack = |packed: u32, x: f32| {
-                packed << 10 | u32::from(x < 0.0) << 9 | (x.abs() * std::f32::consts::SQRT_2 * 511.0).round().min(511.0) as u32
+                packed << 10
+                    | u32::from(x < 0.0) << 9
+                    | (x.abs() * std::f32::consts::SQRT_2 * 511.0).round().min(511.0) as u32
             };
             rotations.extend(others.fold(largest as u32, pack).to_le_bytes());
         }
