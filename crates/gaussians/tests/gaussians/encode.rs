@@ -37,7 +37,7 @@ pub fn raw_splat(cloud: &GaussianCloud) -> Vec<u8> {
 /// The colour of degree 0 and the opacity as bytes.
 fn rgba(splat: &Splat) -> [u8; 4] {
     let color = color(splat);
-    [color.x, color.y, color.z, splat.opacity].map(|c| unit_byte(c))
+    [color.x, color.y, color.z, splat.opacity].map(unit_byte)
 }
 
 fn color(splat: &Splat) -> Vec3 {

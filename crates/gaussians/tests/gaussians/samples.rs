@@ -1,6 +1,6 @@
 //! Splats as samples: their sum is the picture, and white stays white.
 
-use crate::comparison::psnr_between;
+use crate::comparison::{normalised_psnr_between, psnr_between};
 use crate::sample_sum::{clusters, margin_px, splat_samples, white};
 use crate::scene::{camera, scattered, still_life};
 use gaussians::{
@@ -17,14 +17,16 @@ fn samples_sum_to_the_aperture_picture() {
     let truth = render_truth(&view, None, &TruthOptions::default(), &Unwatched).expect("not cancelled");
     let clusters = clusters(&view, &ClusterOptions::default());
     let pixels = f64::from((camera.width + 2 * margin_px(&view)) * (camera.height + 2 * margin_px(&view)));
-    let figures = [4, 8].map(|cells| psnr_between(&truth, &splat_samples(&view, &clusters, cells, 256)));
+    let [coarse, fine] = [4, 8].map(|cells| splat_samples(&view, &clusters, cells, 256));
+    let figures = [&coarse, &fine].map(|samples| psnr_between(&truth, samples));
+    let normalised = normalised_psnr_between(&truth, &fine);
     println!(
-        "{:.2} clusters a pixel, {:.1} and {:.1} dB with 4 and 8 cells",
+        "{:.2} clusters a pixel, {:.1} and {:.1} dB with 4 and 8 cells, normalised {normalised:.1} dB",
         clusters.list.len() as f64 / pixels,
         figures[0],
         figures[1]
     );
-    assert!(figures[1] >= 42.0 && figures[1] > figures[0], "{figures:?}");
+    assert!(figures[1] >= 42.0 && figures[1] > figures[0] && normalised >= 42.0, "{figures:?} {normalised}");
     // Control: without the aperture.
     let pinhole = psnr_between(&truth, &render_pinhole(&view, 2, &Unwatched).expect("not cancelled"));
     println!("control, no aperture: {pinhole:.1} dB");

@@ -108,11 +108,12 @@ pub fn compressed_ply(cloud: &GaussianCloud, has_color_ranges: bool) -> Vec<u8> 
         }
         [least, most]
     };
-    let (mean, scale): (&dyn Fn(&Splat) -> Vec3, &dyn Fn(&Splat) -> Vec3) = (&|s| s.mean, &|s| s.log_scale);
+    let mean = |splat: &Splat| splat.mean;
+    let scale = |splat: &Splat| splat.log_scale;
     let color_range =
         |chunk: &[Splat]| if has_color_ranges { ends(&color, chunk) } else { [Vec3::ZERO, Vec3::ONE] };
     for chunk in &chunks {
-        for range in [ends(mean, chunk), ends(scale, chunk), color_range(chunk)]
+        for range in [ends(&mean, chunk), ends(&scale, chunk), color_range(chunk)]
             .iter()
             .take(2 + usize::from(has_color_ranges))
         {
@@ -121,7 +122,7 @@ pub fn compressed_ply(cloud: &GaussianCloud, has_color_ranges: bool) -> Vec<u8> 
     }
     for chunk in &chunks {
         let (mean_range, scale_range, color_range) =
-            (ends(mean, chunk), ends(scale, chunk), color_range(chunk));
+            (ends(&mean, chunk), ends(&scale, chunk), color_range(chunk));
         for splat in *chunk {
             let share = |value: Vec3, [least, most]: [Vec3; 2]| {
                 (value - least) / (most - least).max(Vec3::splat(1e-9))
