@@ -7,13 +7,17 @@
 //! ```
 
 mod eye;
+mod eye_raster;
 mod ray_light;
 mod shape;
+mod tile_tracer;
 mod tiles;
 
 pub use eye::{Eye, Hit};
+pub(crate) use eye_raster::EyeRaster;
 pub use ray_light::{RayLight, median_depth};
-pub(crate) use tiles::{Outlines, RayGrid, TileRow};
+pub(crate) use tile_tracer::{Follow, LANES, LaneHits};
+pub(crate) use tiles::{RayGrid, TileRow};
 
 use crate::cloud::GaussianCloud;
 use crate::placement::Placement;

@@ -11,7 +11,7 @@
 
 use super::aperture_points::aperture_points;
 use super::pixel_box::cover_pixels;
-use crate::view::{Eye, GaussianView, Hit, RayGrid, RayLight, TileRow};
+use crate::view::{EyeRaster, Follow, GaussianView, Hit, LaneHits, RayGrid, TileRow};
 use glam::{DVec2, Vec3};
 use lens::{FocusOffset, Picture};
 use progress::{Cancelled, Progress};
@@ -101,9 +101,6 @@ struct Truth<'v> {
     size: [u32; 2],
 }
 
-/// What an eye sees: the colours of splats, as they are blended and as light.
-struct EyeColors(Vec<(Vec3, Vec3)>);
-
 impl<'v> Truth<'v> {
     fn new(view: &'v GaussianView<'v>, focus: Option<Vec<FocusOffset>>, options: &TruthOptions) -> Self {
         let camera = view.camera();
@@ -119,19 +116,13 @@ impl<'v> Truth<'v> {
         let mut sums = vec![Sum::default(); width as usize * height as usize];
         let rows = self.grid.tile_rows();
         for (index, point) in points.iter().enumerate() {
-            let eye = Eye::new(self.view, *point);
-            let outlines = self.grid.outlines(&eye);
-            let color = |splat: u32| {
-                let color = if outlines.is_met(splat) { eye.color(splat) } else { Vec3::ZERO };
-                (color, eye.decoded(color))
-            };
-            let colors = EyeColors((0..self.view.len() as u32).into_par_iter().map(color).collect());
+            let raster = EyeRaster::new(self.view, *point, &self.grid);
             for first in (0..rows).step_by(BATCH as usize) {
                 progress.check()?;
                 progress.report((index as f32 + first as f32 / rows as f32) / points.len() as f32);
                 let batch: Vec<RowSums> = (first..(first + BATCH).min(rows))
                     .into_par_iter()
-                    .map(|row| self.trace(&eye, &colors, &self.grid.tile_row(&outlines, row)))
+                    .map(|row| self.trace(&raster, &raster.tile_row(row)))
                     .collect();
                 for (row, values) in batch.into_iter().flatten() {
                     let start = row as usize * width as usize;
@@ -151,16 +142,18 @@ impl<'v> Truth<'v> {
     }
 
     /// The light of the rays of a row of tiles.
-    fn trace(&self, eye: &Eye<'_>, colors: &EyeColors, tiles: &TileRow<'_>) -> RowSums {
-        let mut sums = RowSums::new();
-        let mut hits = Vec::new();
-        tiles.for_each_tile(|columns, candidates| {
+    fn trace(&self, raster: &EyeRaster<'_>, tiles: &TileRow<'_>) -> RowSums {
+        let (mut sums, mut lanes) = (RowSums::new(), LaneHits::default());
+        let (mut pixels, mut directions) = (Vec::new(), Vec::new());
+        tiles.for_each_tile(&raster.eye, |columns, tracer| {
             for row in tiles.rays.clone() {
-                for column in columns.clone() {
-                    let pixel = self.grid.pixel(column, row);
-                    let direction = self.view.direction(eye.point(), pixel);
-                    let rest = eye.collect_hits(candidates.iter().copied(), direction, &mut hits);
-                    self.add_ray(eye, colors, pixel, &hits, rest, &mut sums);
+                pixels.clear();
+                pixels.extend(columns.clone().map(|column| self.grid.pixel(column, row)));
+                directions.clear();
+                directions.extend(pixels.iter().map(|pixel| self.view.direction(raster.eye.point(), *pixel)));
+                tracer.trace(&directions, Follow::Visible, &mut lanes);
+                for (pixel, (hits, rest)) in pixels.iter().zip(lanes.hits.iter().zip(lanes.rest)) {
+                    self.add_ray(raster, *pixel, hits, rest, &mut sums);
                 }
             }
         });
@@ -168,29 +161,21 @@ impl<'v> Truth<'v> {
     }
 
     /// Adds the light of a ray, of which `rest` passes all splats.
-    fn add_ray(
-        &self,
-        eye: &Eye<'_>,
-        colors: &EyeColors,
-        pixel: DVec2,
-        hits: &[Hit],
-        rest: f64,
-        sums: &mut RowSums,
-    ) {
-        let space = self.view.cloud().traits().color_space;
-        let light = RayLight::new(hits, |splat| colors.0[splat as usize], space);
+    fn add_ray(&self, raster: &EyeRaster<'_>, pixel: DVec2, hits: &[Hit], rest: f64, sums: &mut RowSums) {
+        let light = raster.light(hits);
+        let u = raster.eye.point();
+        let direction = self.view.direction(u, pixel);
         // What no paint moves stays in the ray's own pixel: with the background, and with the splats' alpha.
         let mut own = Sum::default();
         add(&mut own, self.background * rest as f32, rest, 0.0);
-        let direction = self.view.direction(eye.point(), pixel);
         for hit in hits {
-            let radiance = hit.weight as f32 * colors.0[hit.splat as usize].1 * light.gain;
+            let radiance = hit.weight as f32 * raster.radiance(hit.splat) * light.gain;
             match &self.focus {
                 Some(focus) if !focus[hit.splat as usize].is_standard() => {
                     let optics = self.view.optics();
-                    let point = eye.point().extend(0.0) + direction * hit.depth;
+                    let point = u.extend(0.0) + direction * hit.depth;
                     let kappa = optics.kappa(1.0 / hit.depth, focus[hit.splat as usize]);
-                    let landing = optics.landing(point, eye.point(), kappa);
+                    let landing = optics.landing(point, u, kappa);
                     let center = self.view.camera().pixel_from_q(landing);
                     self.add_box(center, radiance, hit.weight, sums);
                 }

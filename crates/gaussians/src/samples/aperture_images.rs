@@ -1,8 +1,8 @@
 //! What of each cluster each cell of the aperture sees.
 
 use super::clusters::{Cluster, Clusters};
-use crate::view::{Eye, GaussianView, Hit, RayGrid, RayLight, TileRow};
-use glam::{DVec2, Vec3};
+use crate::view::{EyeRaster, Follow, GaussianView, Hit, LANES, LaneHits, RayGrid, TileRow};
+use glam::{DVec2, DVec3, Vec3};
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;
 
@@ -85,35 +85,24 @@ fn grid_of_all(view: &GaussianView<'_>, clusters: &Clusters) -> RayGrid {
 
 /// The rays of one cell.
 struct CellBake<'v> {
-    eye: Eye<'v>,
+    raster: EyeRaster<'v>,
     clusters: &'v Clusters,
-    grid: &'v RayGrid,
-    /// The colours of splats, as they are blended and as light.
-    colors: Vec<(Vec3, Vec3)>,
-    outlines: crate::view::Outlines,
     /// In the order of tiles.
     targets: Vec<Target>,
 }
 
 impl<'v> CellBake<'v> {
     fn new(view: &'v GaussianView<'v>, clusters: &'v Clusters, grid: &'v RayGrid, u: DVec2) -> Self {
-        let eye = Eye::new(view, u);
-        let outlines = grid.outlines(&eye);
-        let color = |splat: u32| {
-            let color = if outlines.is_met(splat) { eye.color(splat) } else { Vec3::ZERO };
-            (color, eye.decoded(color))
-        };
-        let colors = (0..view.len() as u32).into_par_iter().map(color).collect();
         let optics = view.optics();
         let target = |(index, cluster): (usize, &Cluster)| {
-            let shift = optics.standard_kappa(cluster.inverse_depth) * u / optics.tan_half_yfov
-                * optics.half_height_px;
+            let kappa = optics.standard_kappa(cluster.inverse_depth);
+            let shift = kappa * u / optics.tan_half_yfov * optics.half_height_px;
             let [tile_column, tile_row] = grid.tile_at(cluster.pixel + DVec2::new(shift.x, -shift.y));
             Target { tile_row, tile_column, cluster: index }
         };
         let mut targets: Vec<Target> = clusters.list.par_iter().enumerate().map(target).collect();
         targets.par_sort_unstable_by_key(|target| (target.tile_row, target.tile_column, target.cluster));
-        Self { eye, clusters, grid, colors, outlines, targets }
+        Self { raster: EyeRaster::new(view, u, grid), clusters, targets }
     }
 
     /// Share and light of each cluster that the cell sees.
@@ -121,45 +110,49 @@ impl<'v> CellBake<'v> {
         let rows: Vec<&[Target]> = self.targets.chunk_by(|a, b| a.tile_row == b.tile_row).collect();
         let row = |targets: &&[Target]| {
             progress.check()?;
-            let tiles = self.grid.tile_row(&self.outlines, targets[0].tile_row);
-            Ok(self.run_row(&tiles, targets))
+            Ok(self.run_row(&self.raster.tile_row(targets[0].tile_row), targets))
         };
         let results: Result<Vec<_>, Cancelled> = rows.par_iter().map(row).collect();
         Ok(results?.into_iter().flatten().collect())
     }
 
     fn run_row(&self, tiles: &TileRow<'_>, targets: &[Target]) -> Vec<(usize, f32, Vec3)> {
-        let (mut results, mut candidates, mut hits) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut results, mut directions, mut lanes) = (Vec::new(), Vec::new(), LaneHits::default());
         for tile in targets.chunk_by(|a, b| a.tile_column == b.tile_column) {
-            tiles.candidates(tile[0].tile_column, &mut candidates);
-            for target in tile {
-                let (share, light) = self.share(target.cluster, &candidates, &mut hits);
-                if share > 0.0 {
-                    results.push((target.cluster, share, light));
+            let tracer = tiles.tracer(&self.raster.eye, tile[0].tile_column);
+            for targets in tile.chunks(LANES) {
+                directions.clear();
+                directions.extend(targets.iter().map(|target| self.direction(target)));
+                tracer.trace(&directions, Follow::Visible, &mut lanes);
+                for (target, hits) in targets.iter().zip(&lanes.hits) {
+                    let (share, light) = self.share(target.cluster, hits);
+                    if share > 0.0 {
+                        results.push((target.cluster, share, light));
+                    }
                 }
             }
         }
         results
     }
 
+    /// The direction of the ray through a cluster.
+    fn direction(&self, target: &Target) -> DVec3 {
+        let cluster = &self.clusters.list[target.cluster];
+        let chief = self.raster.eye.view().direction(DVec2::ZERO, cluster.pixel);
+        chief - (self.raster.eye.point() * cluster.inverse_depth).extend(0.0)
+    }
+
     /// What the members of a cluster send along the ray through it, and its light.
-    fn share(&self, index: usize, candidates: &[u32], hits: &mut Vec<Hit>) -> (f32, Vec3) {
+    fn share(&self, index: usize, hits: &[Hit]) -> (f32, Vec3) {
         let cluster = &self.clusters.list[index];
-        let view = self.eye.view();
-        let u = self.eye.point();
-        let chief = view.direction(DVec2::ZERO, cluster.pixel);
-        let direction = chief - (u * cluster.inverse_depth).extend(0.0);
-        self.eye.collect_hits(candidates.iter().copied(), direction, hits);
         let members = self.clusters.members(cluster);
-        let area = (1.0 - u.dot(cluster.gradient)).max(0.0);
+        let area = (1.0 - self.raster.eye.point().dot(cluster.gradient)).max(0.0);
         let (mut share, mut light) = (0.0, Vec3::ZERO);
         for hit in hits.iter().filter(|hit| members.binary_search(&hit.splat).is_ok()) {
             let weight = (hit.weight * area) as f32;
             share += weight;
-            light += weight * self.colors[hit.splat as usize].1;
+            light += weight * self.raster.radiance(hit.splat);
         }
-        let space = view.cloud().traits().color_space;
-        let gain = RayLight::new(hits, |splat| self.colors[splat as usize], space).gain;
-        (share, light * gain)
+        (share, light * self.raster.light(hits).gain)
     }
 }

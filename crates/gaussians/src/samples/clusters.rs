@@ -1,6 +1,6 @@
 //! Parting the splats of chief rays.
 
-use crate::view::{Eye, GaussianView, Hit, RayGrid};
+use crate::view::{Eye, EyeRaster, Follow, GaussianView, Hit, LaneHits, RayGrid};
 use glam::{DVec2, DVec3};
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;
@@ -121,21 +121,21 @@ pub fn cluster_picture(
 ) -> Result<Clusters, Cancelled> {
     let camera = view.camera();
     let grid = RayGrid::new(camera.width, camera.height, options.margin_px, 1);
-    let eye = Eye::new(view, DVec2::ZERO);
-    let outlines = grid.outlines(&eye);
+    let raster = EyeRaster::new(view, DVec2::ZERO, &grid);
     let rows: Vec<Clusters> = (0..grid.tile_rows())
         .into_par_iter()
         .map(|index| {
             progress.check()?;
-            let tiles = grid.tile_row(&outlines, index);
-            let (mut clusters, mut hits) = (Clusters::default(), Vec::new());
-            tiles.for_each_tile(|columns, candidates| {
+            let tiles = raster.tile_row(index);
+            let (mut clusters, mut lanes) = (Clusters::default(), LaneHits::default());
+            tiles.for_each_tile(&raster.eye, |columns, tracer| {
                 for row in tiles.rays.clone() {
-                    for column in columns.clone() {
-                        let pixel = grid.pixel(column, row);
-                        let direction = view.direction(DVec2::ZERO, pixel);
-                        eye.collect_all_hits(candidates.iter().copied(), direction, &mut hits);
-                        clusters.push_ray(&eye, pixel, &mut hits, options);
+                    let pixels: Vec<DVec2> = columns.clone().map(|column| grid.pixel(column, row)).collect();
+                    let directions: Vec<DVec3> =
+                        pixels.iter().map(|pixel| view.direction(DVec2::ZERO, *pixel)).collect();
+                    tracer.trace(&directions, Follow::All, &mut lanes);
+                    for (pixel, hits) in pixels.iter().zip(&mut lanes.hits) {
+                        clusters.push_ray(&raster.eye, *pixel, hits, options);
                     }
                 }
             });

@@ -24,10 +24,10 @@ use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 
 /// The most that a splat stops, as in training.
-const MAX_ALPHA: f64 = 0.99;
+pub(super) const MAX_ALPHA: f64 = 0.99;
 
 /// A ray of which so little is left that what follows does not count.
-const MIN_TRANSMITTANCE: f64 = 1e-4;
+pub(super) const MIN_TRANSMITTANCE: f64 = 1e-4;
 
 /// A splat that a ray meets.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,47 +67,21 @@ impl<'v> Eye<'v> {
         self.view
     }
 
-    /// All splats that the ray in `direction` (camera space, z = 1) meets until nearly nothing of it is left, in order of the depth of their
-    /// means. Tests every splat: for single rays.
+    /// The splats that the ray in `direction` (camera space, z = 1) meets until nearly nothing of it is left, in order of the depth of their means.
+    /// Tests every splat: for single rays.
     pub fn hits(&self, direction: DVec3) -> Vec<Hit> {
-        let mut hits = Vec::new();
-        self.collect_hits(0..self.view.len() as u32, direction, &mut hits);
-        hits
-    }
-
-    /// The same for a ray that meets no splat but `candidates`, which are in order; into `hits`. Returns what is left of the ray.
-    #[inline]
-    pub fn collect_hits(
-        &self,
-        candidates: impl IntoIterator<Item = u32>,
-        direction: DVec3,
-        hits: &mut Vec<Hit>,
-    ) -> f64 {
-        self.trace::<true>(candidates, direction, hits)
+        self.trace(direction, MIN_TRANSMITTANCE)
     }
 
     /// The same, however little is left of the ray.
-    pub fn collect_all_hits(
-        &self,
-        candidates: impl IntoIterator<Item = u32>,
-        direction: DVec3,
-        hits: &mut Vec<Hit>,
-    ) -> f64 {
-        self.trace::<false>(candidates, direction, hits)
+    pub fn all_hits(&self, direction: DVec3) -> Vec<Hit> {
+        self.trace(direction, 0.0)
     }
 
-    #[inline]
-    fn trace<const STOPS: bool>(
-        &self,
-        candidates: impl IntoIterator<Item = u32>,
-        direction: DVec3,
-        hits: &mut Vec<Hit>,
-    ) -> f64 {
-        hits.clear();
-        let mut transmittance = 1.0;
-        for splat in candidates {
+    fn trace(&self, direction: DVec3, min_transmittance: f64) -> Vec<Hit> {
+        let (mut hits, mut transmittance) = (Vec::new(), 1.0);
+        for (splat, p) in (0..).zip(&self.whitened_means) {
             let shape = &self.view.splats()[splat as usize].shape;
-            let p = self.whitened_means[splat as usize];
             let q = shape.whitened(direction);
             let (qq, pq) = (q.length_squared(), p.dot(q));
             // d² > cutoff, without the division; and what is behind the aperture is not met.
@@ -121,11 +95,16 @@ impl<'v> Eye<'v> {
             }
             hits.push(Hit { splat, alpha, weight: alpha * transmittance, depth: pq / qq });
             transmittance *= 1.0 - alpha;
-            if STOPS && transmittance < MIN_TRANSMITTANCE {
+            if transmittance < min_transmittance {
                 break;
             }
         }
-        transmittance
+        hits
+    }
+
+    /// W (m − U) of a splat.
+    pub(super) fn whitened_mean(&self, splat: u32) -> DVec3 {
+        self.whitened_means[splat as usize]
     }
 
     /// The gradient of 1/z of the splat's greatest response over the direction's x and y:

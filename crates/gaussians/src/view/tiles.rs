@@ -5,12 +5,13 @@
 
 use super::eye::Eye;
 use super::shape::CameraShape;
+use super::tile_tracer::{LANES, TileTracer};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Rays of a side of a tile.
-const TILE: u32 = 8;
+/// Rays of a side of a tile: a row of them is traced at once.
+const TILE: u32 = LANES as u32;
 
 /// Rays through a picture and a margin about it, evenly spaced.
 #[derive(Clone, Copy, Debug)]
@@ -31,13 +32,13 @@ pub(crate) struct TileRow<'g> {
     /// Its rows of rays.
     pub rays: Range<u32>,
     /// The splats that it meets, in order, with the columns of tiles.
-    splats: Vec<(u32, [u16; 2])>,
+    splats: Vec<(u32, [u32; 2])>,
 }
 
 /// The bounds of each splat of a view, in tiles: first and last column, first and last row; the first is after the last where it is not visible.
-pub(crate) struct Outlines(Vec<[u16; 4]>);
+pub(crate) struct Outlines(Vec<[u32; 4]>);
 
-const HIDDEN: [u16; 4] = [1, 0, 1, 0];
+const HIDDEN: [u32; 4] = [1, 0, 1, 0];
 
 impl Outlines {
     /// Whether a ray of the grid can meet a splat.
@@ -49,7 +50,7 @@ impl Outlines {
 impl RayGrid {
     /// The rays of a picture of `width` × `height` px.
     pub fn new(width: u32, height: u32, margin_px: u32, rays_per_px: u32) -> Self {
-        let rays = |side: u32| side.saturating_add(2 * margin_px).saturating_mul(rays_per_px);
+        let rays = |side: u32| side.saturating_add(margin_px.saturating_mul(2)).saturating_mul(rays_per_px);
         Self { rays_per_px, margin_px, columns: rays(width), rows: rays(height) }
     }
 
@@ -77,7 +78,7 @@ impl RayGrid {
         Outlines(eye.view().splats().par_iter().map(|splat| self.outline(eye, &splat.shape)).collect())
     }
 
-    fn outline(&self, eye: &Eye<'_>, shape: &CameraShape) -> [u16; 4] {
+    fn outline(&self, eye: &Eye<'_>, shape: &CameraShape) -> [u32; 4] {
         let (view, u) = (eye.view(), eye.point());
         let whole = [0.0, f64::from(self.columns - 1), 0.0, f64::from(self.rows - 1)];
         let [left, right, top, bottom] = match slope_bounds(shape, u) {
@@ -95,16 +96,14 @@ impl RayGrid {
         if right < 0.0 || bottom < 0.0 || left > whole[1] || top > whole[3] {
             return HIDDEN;
         }
-        // Pictures have at most 16,384 px a side, so that tiles fit 16 bits; casts saturate.
-        let tile = |ray: f64, last: f64| (ray.clamp(0.0, last) as u32 / TILE) as u16;
+        let tile = |ray: f64, last: f64| ray.clamp(0.0, last) as u32 / TILE;
         [tile(left, whole[1]), tile(right, whole[1]), tile(top, whole[3]), tile(bottom, whole[3])]
     }
 
     /// A row of tiles with the splats that it meets.
     pub fn tile_row<'g>(&'g self, outlines: &Outlines, index: u32) -> TileRow<'g> {
-        let is_met = |[left, right, top, bottom]: &[u16; 4]| {
-            left <= right && u32::from(*top) <= index && index <= u32::from(*bottom)
-        };
+        let is_met =
+            |[left, right, top, bottom]: &[u32; 4]| left <= right && *top <= index && index <= *bottom;
         let splats = outlines.0.iter().enumerate().filter(|(_, bounds)| is_met(bounds));
         TileRow {
             grid: self,
@@ -115,20 +114,20 @@ impl RayGrid {
 }
 
 impl TileRow<'_> {
-    /// Visits the tiles from left to right: their columns of rays, and the splats that these can meet, in order.
-    pub fn for_each_tile(&self, mut visit: impl FnMut(Range<u32>, &[u32])) {
-        let mut candidates = Vec::new();
+    /// Visits the tiles from left to right: their columns of rays, and what these can meet.
+    pub fn for_each_tile(&self, eye: &Eye<'_>, mut visit: impl FnMut(Range<u32>, &TileTracer)) {
         for tile in 0..self.grid.columns.div_ceil(TILE) {
-            self.candidates(tile, &mut candidates);
-            visit(tile * TILE..(tile * TILE + TILE).min(self.grid.columns), &candidates);
+            visit(tile * TILE..(tile * TILE + TILE).min(self.grid.columns), &self.tracer(eye, tile));
         }
     }
 
-    /// The splats that the rays of a tile can meet, in order.
-    pub fn candidates(&self, tile: u32, candidates: &mut Vec<u32>) {
-        let is_met = |columns: &[u16; 2]| u32::from(columns[0]) <= tile && tile <= u32::from(columns[1]);
-        candidates.clear();
-        candidates.extend(self.splats.iter().filter(|(_, columns)| is_met(columns)).map(|(splat, _)| *splat));
+    /// What the rays of a tile can meet.
+    pub fn tracer(&self, eye: &Eye<'_>, tile: u32) -> TileTracer {
+        let is_met = |columns: &[u32; 2]| columns[0] <= tile && tile <= columns[1];
+        let met = self.splats.iter().filter(|(_, columns)| is_met(columns));
+        let candidates: Vec<u32> = met.map(|(splat, _)| *splat).collect();
+        let middle = self.grid.pixel(tile * TILE + TILE / 2, self.rays.start + TILE / 2);
+        TileTracer::new(eye, eye.view().direction(eye.point(), middle), &candidates)
     }
 }
 

@@ -164,7 +164,7 @@ fn tiles_lose_no_splat() {
     for (index, alpha) in picture.alpha.iter().enumerate() {
         let pixel = DVec2::new((index % 40) as f64 + 0.5, (index / 40) as f64 + 0.5);
         let all: f64 = eye.hits(view.direction(DVec2::ZERO, pixel)).iter().map(|hit| hit.weight).sum();
-        assert!((f64::from(*alpha) - all).abs() < 1e-6, "{pixel}: {alpha} {all}");
+        assert!((f64::from(*alpha) - all).abs() < 1e-5, "{pixel}: {alpha} {all}");
     }
 }
 

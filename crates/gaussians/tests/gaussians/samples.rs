@@ -62,13 +62,12 @@ fn every_splat_of_a_chief_ray_is_in_one_cluster() {
     let view = GaussianView::new(&cloud, &Placement::IDENTITY, &camera);
     let eye = gaussians::Eye::new(&view, DVec2::ZERO);
     let clusters = cluster_picture(&view, &ClusterOptions::default(), &Unwatched).expect("not cancelled");
-    let mut hits = Vec::new();
     for pixel in clusters.list.chunk_by(|a, b| a.pixel == b.pixel) {
         let mut members: Vec<u32> =
             pixel.iter().flat_map(|cluster| clusters.members(cluster)).copied().collect();
         members.sort_unstable();
         let direction = view.direction(DVec2::ZERO, pixel[0].pixel);
-        eye.collect_all_hits(0..view.len() as u32, direction, &mut hits);
+        let hits = eye.all_hits(direction);
         assert_eq!(members, hits.iter().map(|hit| hit.splat).collect::<Vec<_>>());
         assert!(pixel.is_sorted_by(|a, b| a.inverse_depth >= b.inverse_depth));
         for cluster in pixel {
