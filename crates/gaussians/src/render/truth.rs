@@ -12,7 +12,7 @@
 use super::aperture_points::aperture_points;
 use super::pixel_box::cover_pixels;
 use crate::view::{EyeRaster, Follow, GaussianView, Hit, LaneHits, RayGrid, TileRow};
-use glam::{DVec2, Vec3};
+use glam::{DVec2, DVec3, Vec3};
 use lens::{FocusOffset, Picture};
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;
@@ -86,8 +86,28 @@ pub fn render_pinhole(
 /// Rows of tiles that are traced at once, whatever the number of threads: sums are added in their order.
 const BATCH: u32 = 8;
 
-/// Radiance, coverage and alpha of a pixel.
-type Sum = [f64; 5];
+/// What rays bring to a pixel.
+#[derive(Clone, Copy, Default)]
+struct Sum {
+    radiance: DVec3,
+    coverage: f64,
+    alpha: f64,
+}
+
+impl Sum {
+    /// A share of the light of a splat.
+    #[inline]
+    fn of_splat(radiance: Vec3, weight: f64) -> Self {
+        Self { radiance: radiance.as_dvec3(), coverage: weight, alpha: weight }
+    }
+
+    #[inline]
+    fn add(&mut self, other: Self) {
+        self.radiance += other.radiance;
+        self.coverage += other.coverage;
+        self.alpha += other.alpha;
+    }
+}
 
 /// Sums of the rows of pixels that some rays reach.
 type RowSums = BTreeMap<i64, Vec<Sum>>;
@@ -97,7 +117,7 @@ struct Truth<'v> {
     /// The focus of each splat of the view, where any is painted.
     focus: Option<Vec<FocusOffset>>,
     grid: RayGrid,
-    background: Vec3,
+    background: DVec3,
     size: [u32; 2],
 }
 
@@ -107,7 +127,7 @@ impl<'v> Truth<'v> {
         let focus = focus.filter(|focus| focus.iter().any(|offset| !offset.is_standard()));
         let margin = focus.as_ref().map_or(0, |focus| margin_px(view, focus, options.max_margin_px));
         let grid = RayGrid::new(camera.width, camera.height, margin, options.rays_per_px.max(1));
-        let background = camera.background.unwrap_or_default().map(|c| c as f32).into();
+        let background = camera.background.unwrap_or_default().into();
         Self { view, focus, grid, background, size: [camera.width, camera.height] }
     }
 
@@ -126,19 +146,17 @@ impl<'v> Truth<'v> {
                     .collect();
                 for (row, values) in batch.into_iter().flatten() {
                     let start = row as usize * width as usize;
-                    for (sum, value) in sums[start..].iter_mut().zip(values) {
-                        (0..5).for_each(|channel| sum[channel] += value[channel]);
-                    }
+                    sums[start..].iter_mut().zip(values).for_each(|(sum, value)| sum.add(value));
                 }
             }
         }
         let rays = f64::from(self.grid.rays_per_px).powi(2) * points.len() as f64;
         let mut picture = Picture::black(width, height);
         for (index, sum) in sums.iter().enumerate() {
-            picture.radiance[index] = [0, 1, 2].map(|channel| (sum[channel] / rays) as f32);
-            picture.coverage[index] = (sum[3] / rays) as f32;
+            picture.radiance[index] = (sum.radiance / rays).as_vec3().to_array();
+            picture.coverage[index] = (sum.coverage / rays) as f32;
         }
-        Ok(GaussianPicture { picture, alpha: sums.iter().map(|sum| (sum[4] / rays) as f32).collect() })
+        Ok(GaussianPicture { picture, alpha: sums.iter().map(|sum| (sum.alpha / rays) as f32).collect() })
     }
 
     /// The light of the rays of a row of tiles.
@@ -166,8 +184,7 @@ impl<'v> Truth<'v> {
         let u = raster.eye.point();
         let direction = self.view.direction(u, pixel);
         // What no paint moves stays in the ray's own pixel: with the background, and with the splats' alpha.
-        let mut own = Sum::default();
-        add(&mut own, self.background * rest as f32, rest, 0.0);
+        let mut own = Sum { radiance: self.background * rest, coverage: rest, alpha: 0.0 };
         for hit in hits {
             let radiance = hit.weight as f32 * raster.radiance(hit.splat) * light.gain;
             match &self.focus {
@@ -179,14 +196,13 @@ impl<'v> Truth<'v> {
                     let center = self.view.camera().pixel_from_q(landing);
                     self.add_box(center, radiance, hit.weight, sums);
                 }
-                _ => add(&mut own, radiance, hit.weight, hit.weight),
+                _ => own.add(Sum::of_splat(radiance, hit.weight)),
             }
         }
         let [width, height] = self.size.map(f64::from);
         if pixel.x >= 0.0 && pixel.y >= 0.0 && pixel.x < width && pixel.y < height {
             let row = sums.entry(pixel.y as i64).or_insert_with(|| self.empty_row());
-            let sum = &mut row[pixel.x as usize];
-            (0..5).for_each(|channel| sum[channel] += own[channel]);
+            row[pixel.x as usize].add(own);
         }
     }
 
@@ -196,20 +212,13 @@ impl<'v> Truth<'v> {
         let side = 1.0 / f64::from(self.grid.rays_per_px);
         cover_pixels(center, side, 0..width, 0..height, |column, row, share| {
             let sums = sums.entry(row).or_insert_with(|| self.empty_row());
-            let share_of = weight * share;
-            add(&mut sums[column as usize], radiance * share as f32, share_of, share_of);
+            sums[column as usize].add(Sum::of_splat(radiance * share as f32, weight * share));
         });
     }
 
     fn empty_row(&self) -> Vec<Sum> {
         vec![Sum::default(); self.size[0] as usize]
     }
-}
-
-fn add(sum: &mut Sum, radiance: Vec3, coverage: f64, alpha: f64) {
-    (0..3).for_each(|channel| sum[channel] += f64::from(radiance[channel]));
-    sum[3] += coverage;
-    sum[4] += alpha;
 }
 
 /// How far paint moves light, px: max |κ − κ_standard| R / tanθ over the splats, taken at their means.

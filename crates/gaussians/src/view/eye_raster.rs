@@ -37,11 +37,13 @@ impl<'v> EyeRaster<'v> {
     }
 
     /// The light of a ray.
+    #[inline]
     pub fn light(&self, hits: &[Hit]) -> RayLight {
         RayLight::new(hits, |splat| self.colors[splat as usize], self.space)
     }
 
     /// The linear light of a splat.
+    #[inline]
     pub fn radiance(&self, splat: u32) -> Vec3 {
         self.colors[splat as usize].1
     }

@@ -25,6 +25,7 @@ pub struct RayLight {
 
 impl RayLight {
     /// The light of a ray with these hits; `colors` has the colour of a splat of the view as it is blended and as linear light.
+    #[inline]
     pub fn new(hits: &[Hit], colors: impl Fn(u32) -> (Vec3, Vec3), space: ColorSpace) -> Self {
         let alpha: f64 = hits.iter().map(|hit| hit.weight).sum();
         if space == ColorSpace::Linear || hits.is_empty() {
@@ -40,8 +41,8 @@ impl RayLight {
         let decoded = share * (blended / share).map(srgb_to_linear);
         // Where all splats are black there is nothing to share.
         let gain = |decoded: f32, linear: f32| if linear > 0.0 { decoded / linear } else { 1.0 };
-        let gain = [0, 1, 2].map(|channel| gain(decoded[channel], linear[channel]));
-        Self { alpha, gain: Vec3::from_array(gain) }
+        let gain = Vec3::new(gain(decoded.x, linear.x), gain(decoded.y, linear.y), gain(decoded.z, linear.z));
+        Self { alpha, gain }
     }
 }
 

@@ -62,20 +62,24 @@ impl TileTracer {
     pub fn trace(&self, directions: &[DVec3], follow: Follow, lanes: &mut LaneHits) {
         lanes.hits.iter_mut().for_each(Vec::clear);
         lanes.rest = [1.0; LANES];
-        let offset =
-            |lane: usize| directions.get(lane).map_or(DVec3::ZERO, |direction| *direction - self.middle);
-        let x: [f32; LANES] = std::array::from_fn(|lane| offset(lane).x as f32);
-        let y: [f32; LANES] = std::array::from_fn(|lane| offset(lane).y as f32);
-        let mut is_active: [bool; LANES] = std::array::from_fn(|lane| lane < directions.len());
+        let (mut x, mut y) = ([0.0; LANES], [0.0; LANES]);
+        for (lane, direction) in directions.iter().enumerate() {
+            let offset = *direction - self.middle;
+            (x[lane], y[lane]) = (offset.x as f32, offset.y as f32);
+        }
+        // A bit for each ray of which something is left.
+        let mut active = (1u32 << directions.len()) - 1;
         for splat in &self.splats {
-            let (distances, squares) = splat.responses(&x, &y);
-            let is_near: [bool; LANES] = std::array::from_fn(|lane| {
-                is_active[lane] & (distances[lane] <= splat.cutoff * squares[lane])
-            });
-            if !is_near.contains(&true) {
-                continue;
+            let distances = squared_lengths(&splat.cross, &x, &y);
+            let squares = squared_lengths(&splat.q, &x, &y);
+            let mut near = 0;
+            for lane in 0..LANES {
+                near |= u32::from(distances[lane] <= splat.cutoff * squares[lane]) << lane;
             }
-            for lane in (0..LANES).filter(|lane| is_near[*lane]) {
+            near &= active;
+            while near != 0 {
+                let lane = near.trailing_zeros() as usize;
+                near &= near - 1;
                 let depth = splat.depth(x[lane], y[lane], squares[lane]);
                 let alpha =
                     (splat.opacity * (-0.5 * distances[lane] / squares[lane]).exp()).min(MAX_ALPHA as f32);
@@ -91,13 +95,28 @@ impl TileTracer {
                     depth: depth.into(),
                 });
                 *rest *= 1.0 - alpha;
-                is_active[lane] = follow == Follow::All || *rest >= MIN_TRANSMITTANCE;
+                if follow == Follow::Visible && *rest < MIN_TRANSMITTANCE {
+                    active &= !(1 << lane);
+                }
             }
-            if !is_active.contains(&true) {
+            if active == 0 {
                 break;
             }
         }
     }
+}
+
+/// |v + x vₓ + y vᵧ|² of rays with offsets x and y, of the vectors v, vₓ and vᵧ.
+#[inline(always)]
+fn squared_lengths([v, vx, vy]: &[[f32; 3]; 3], x: &[f32; LANES], y: &[f32; LANES]) -> [f32; LANES] {
+    let mut sums = [0.0; LANES];
+    for lane in 0..LANES {
+        let a = v[0] + x[lane] * vx[0] + y[lane] * vy[0];
+        let b = v[1] + x[lane] * vx[1] + y[lane] * vy[1];
+        let c = v[2] + x[lane] * vx[2] + y[lane] * vy[2];
+        sums[lane] = a * a + b * b + c * c;
+    }
+    sums
 }
 
 impl TileSplat {
@@ -106,12 +125,11 @@ impl TileSplat {
         let q = shape.whitened(middle);
         let unit = q.length().recip();
         let (p, q) = (eye.whitened_mean(index), q * unit);
-        let columns = [DVec3::X, DVec3::Y].map(|axis| shape.whitened(axis) * unit);
-        let vectors = [q, columns[0], columns[1]];
+        let (qx, qy) = (shape.whitened(DVec3::X) * unit, shape.whitened(DVec3::Y) * unit);
         let narrow = |v: DVec3| v.as_vec3().to_array();
         Self {
-            cross: vectors.map(|vector| narrow(p.cross(vector))),
-            q: vectors.map(narrow),
+            cross: [narrow(p.cross(q)), narrow(p.cross(qx)), narrow(p.cross(qy))],
+            q: [narrow(q), narrow(qx), narrow(qy)],
             p: narrow(p * unit),
             cutoff: shape.cutoff as f32,
             opacity: shape.opacity as f32,
@@ -119,27 +137,12 @@ impl TileSplat {
         }
     }
 
-    /// |p × q|² and q·q of rays, both in units of |W D₀|².
-    #[inline(always)]
-    fn responses(&self, x: &[f32; LANES], y: &[f32; LANES]) -> ([f32; LANES], [f32; LANES]) {
-        let square = |[middle, with_x, with_y]: &[[f32; 3]; 3]| {
-            let mut sums = [0.0; LANES];
-            for axis in 0..3 {
-                for lane in 0..LANES {
-                    let value = middle[axis] + x[lane] * with_x[axis] + y[lane] * with_y[axis];
-                    sums[lane] += value * value;
-                }
-            }
-            sums
-        };
-        (square(&self.cross), square(&self.q))
-    }
-
     /// p·q / q·q.
+    #[inline]
     fn depth(&self, x: f32, y: f32, square: f32) -> f32 {
-        let [middle, with_x, with_y] = &self.q;
-        let along: f32 = (0..3).map(|k| self.p[k] * (middle[k] + x * with_x[k] + y * with_y[k])).sum();
-        along / square
+        let [q, qx, qy] = &self.q;
+        let along = |k: usize| self.p[k] * (q[k] + x * qx[k] + y * qy[k]);
+        (along(0) + along(1) + along(2)) / square
     }
 }
 
