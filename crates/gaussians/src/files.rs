@@ -6,6 +6,7 @@
 mod bounded;
 mod bytes;
 mod cameras_json;
+mod detection;
 mod format;
 mod gltf;
 mod ksplat;
@@ -14,45 +15,22 @@ mod quaternion;
 mod raw_splat;
 mod reading;
 mod sog;
+mod splat_file;
 mod spz;
 
 pub use cameras_json::{CameraList, CapturedView};
 pub use format::SplatFormat;
 pub use gltf::{GltfAttributes, read_gltf_attributes};
 pub use ply::{read_focus_table, write_focus_table, write_ply};
+pub use splat_file::{ReadOptions, SplatFile};
 
-use crate::cloud::GaussianCloud;
 use crate::error::GaussianError;
+use detection::detect;
 use progress::Progress;
 use reading::Reading;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
-
-/// Limits of reading.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ReadOptions {
-    /// Maximum bytes held at once: the cloud, and what is read and inflated on the way to it.
-    pub max_memory: u64,
-}
-
-impl Default for ReadOptions {
-    /// 2 GiB: 6 million splats of degree 3, with what reading them takes.
-    fn default() -> Self {
-        Self { max_memory: 2 << 30 }
-    }
-}
-
-/// A file that was read.
-#[derive(Clone, Debug)]
-pub struct SplatFile {
-    /// Its splats.
-    pub cloud: GaussianCloud,
-    /// Its format.
-    pub format: SplatFormat,
-    /// What was irregular, sentences of one line: `FILE: what (what to do)`.
-    pub warnings: Vec<String>,
-}
 
 /// Reads a file of splats, or a folder (or its `meta.json`) of SOG. The format follows from the content.
 ///
@@ -73,7 +51,7 @@ pub fn open(path: &Path, options: &ReadOptions, progress: &dyn Progress) -> Resu
     reading.check_memory("the file takes", size)?;
     let mut bytes = Vec::new();
     input.take(size).read_to_end(&mut bytes).map_err(unreadable)?;
-    if SplatFormat::detect(&bytes, path) == Some(SplatFormat::SogFolder) {
+    if detect(&bytes, path) == Some(SplatFormat::SogFolder) {
         let folder = path.parent().unwrap_or(Path::new("."));
         return sog::read_folder(reading, folder);
     }
@@ -98,7 +76,7 @@ pub fn read(
 }
 
 fn read_whole(reading: Reading<'_>, bytes: &[u8]) -> Result<SplatFile, GaussianError> {
-    match SplatFormat::detect(bytes, reading.file()) {
+    match detect(bytes, reading.file()) {
         Some(SplatFormat::Spz) => spz::read(reading, bytes),
         Some(SplatFormat::Sog) => sog::read_archive(reading, bytes),
         Some(SplatFormat::Ksplat) => ksplat::read(reading, bytes),

@@ -25,9 +25,7 @@ use glam::{DMat3, DVec2, DVec3};
 use lens::{Camera, Optics};
 use rayon::prelude::*;
 use shape::CameraShape;
-
-/// Variance of the low-pass through which a cloud is trained, px².
-pub const LOW_PASS_PX2: f64 = 0.3;
+pub use shape::LOW_PASS_PX2;
 
 /// A splat whose mean is nearer than this many aperture radii is left out: it would cover the aperture.
 const NEAREST_RADII: f64 = 0.6;

@@ -1,6 +1,9 @@
 //! Filling a cloud, row by row.
 
-use super::{CloudTraits, GaussianCloud, LeftOut, Reason, Splat, harmonics};
+use super::gaussian_cloud::{CloudTraits, GaussianCloud};
+use super::harmonics;
+use super::left_out::{LeftOut, Reason};
+use super::splat::Splat;
 use glam::{Quat, Vec3};
 use half::f16;
 
@@ -37,13 +40,6 @@ impl CloudBuilder {
             },
             rows: 0,
         }
-    }
-
-    /// The bytes that `count` splats of a degree take in memory.
-    pub fn bytes(degree: u32, count: u64) -> u64 {
-        let splat = 3 * size_of::<Vec3>() + size_of::<Quat>() + size_of::<f32>();
-        let each = splat + 3 * harmonics::coefficient_count(degree) * size_of::<f16>();
-        count.saturating_mul(each as u64)
     }
 
     /// The coefficients beyond degree 0 that each splat has, all channels.
@@ -148,6 +144,10 @@ mod tests {
 
     #[test]
     fn two_million_splats_of_degree_3_fit() {
-        assert!(CloudBuilder::bytes(3, 2_000_000) < 600_000_000, "{}", CloudBuilder::bytes(3, 2_000_000));
+        assert!(
+            GaussianCloud::bytes_of(3, 2_000_000) < 600_000_000,
+            "{}",
+            GaussianCloud::bytes_of(3, 2_000_000)
+        );
     }
 }

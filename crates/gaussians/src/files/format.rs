@@ -1,8 +1,5 @@
 //! Which format a file has.
 
-use super::{ksplat, raw_splat};
-use std::path::Path;
-
 /// A format of splats.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SplatFormat {
@@ -25,22 +22,6 @@ pub enum SplatFormat {
 }
 
 impl SplatFormat {
-    /// The format of a file's bytes, but for [`Self::Ply`] and [`Self::CompressedPly`], which their header tells apart. `.splat` has no
-    /// signature and `.ksplat` a weak one: their numbers must be plausible, unless the name says it.
-    pub(super) fn detect(bytes: &[u8], file: &Path) -> Option<Self> {
-        let extension = file.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
-        match bytes {
-            [b'p', b'l', b'y', b'\n' | b'\r', ..] => Some(Self::Ply),
-            [0x1f, 0x8b, ..] | [b'N', b'G', b'S', b'P', ..] => Some(Self::Spz),
-            [b'P', b'K', 3, 4, ..] => Some(Self::Sog),
-            [b'g', b'l', b'T', b'F', ..] => Some(Self::Gltf),
-            _ if extension == "ksplat" || ksplat::is_plausible(bytes) => Some(Self::Ksplat),
-            _ if extension == "splat" || raw_splat::is_plausible(bytes) => Some(Self::Splat),
-            _ if bytes.trim_ascii_start().first() == Some(&b'{') => Some(Self::SogFolder),
-            _ => None,
-        }
-    }
-
     /// The usual name of the format.
     pub fn name(self) -> &'static str {
         match self {

@@ -2,8 +2,9 @@
 //!
 //! Scales are linear, opacities as they are, rotations x y z w; a coefficient of the colour is an attribute of its own.
 
+use super::format::SplatFormat;
 use super::reading::Reading;
-use super::{ReadOptions, SplatFile, SplatFormat};
+use super::splat_file::{ReadOptions, SplatFile};
 use crate::cloud::harmonics::degree_of;
 use crate::cloud::{Axes, CloudTraits, ColorSpace, Splat};
 use crate::error::{GaussianError, quoted};

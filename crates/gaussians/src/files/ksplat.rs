@@ -4,56 +4,19 @@
 //! bucket, and scales (not logarithms) and rotations (w x y z) are 16-bit floats. Colours are four bytes. Coefficients beyond degree 0 (all of red, then green, then
 //! blue, degree by degree) are 32-bit floats, 16-bit floats, or bytes between a least and a largest value.
 
+mod header;
 mod section;
 
-use super::bytes::{Bytes, f32_at, u16_at, u32_at};
+use super::bytes::{Bytes, u32_at};
+use super::format::SplatFormat;
 use super::reading::Reading;
-use super::{SplatFile, SplatFormat};
+use super::splat_file::SplatFile;
 use crate::cloud::CloudTraits;
 use crate::error::GaussianError;
+use header::{HEADER_BYTES, Header};
 use section::Section;
 
-const HEADER_BYTES: usize = 4096;
 const SECTION_HEADER_BYTES: u64 = 1024;
-
-/// What holds for all sections.
-struct Header {
-    sections: u64,
-    count: u32,
-    level: Level,
-    /// What the bytes of coefficients lie between.
-    coefficient_range: [f32; 2],
-}
-
-/// How numbers are packed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Level {
-    Floats,
-    Halves,
-    Bytes,
-}
-
-impl Header {
-    fn new(bytes: &[u8]) -> Option<Self> {
-        let bytes = bytes.get(..HEADER_BYTES)?;
-        let level = match u16_at(bytes, 20) {
-            0 => Level::Floats,
-            1 => Level::Halves,
-            2 => Level::Bytes,
-            _ => return None,
-        };
-        let range = [f32_at(bytes, 36), f32_at(bytes, 40)];
-        let is_set = range.iter().all(|end| end.is_finite()) && range[0] < range[1];
-        let header = Self {
-            sections: u32_at(bytes, 4).into(),
-            count: u32_at(bytes, 16),
-            level,
-            coefficient_range: if is_set { range } else { [-1.5, 1.5] },
-        };
-        // Version 0.1 is the only one there is.
-        (bytes[0] == 0 && bytes[1] >= 1).then_some(header)
-    }
-}
 
 /// Whether bytes may be such a file: a header, whose sections and splats have room in it.
 pub(super) fn is_plausible(bytes: &[u8]) -> bool {

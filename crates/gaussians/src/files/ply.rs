@@ -11,8 +11,8 @@ mod writer;
 pub use focus_table::{read_focus_table, write_focus_table};
 pub use writer::write_ply;
 
-use super::SplatFile;
 use super::reading::Reading;
+use super::splat_file::SplatFile;
 use crate::error::GaussianError;
 use header::Header;
 use rows::Rows;

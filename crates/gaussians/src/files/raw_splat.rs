@@ -4,9 +4,10 @@
 //! bytes (128 is 0). No colour beyond degree 0.
 
 use super::bytes::f32_at;
+use super::format::SplatFormat;
 use super::quaternion::from_wxyz;
 use super::reading::Reading;
-use super::{SplatFile, SplatFormat};
+use super::splat_file::SplatFile;
 use crate::cloud::{CloudTraits, Splat};
 use crate::error::GaussianError;
 use glam::Vec3;

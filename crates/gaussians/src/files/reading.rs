@@ -1,7 +1,8 @@
 //! What every reader needs: names for messages, limits, progress, warnings.
 
-use super::{ReadOptions, SplatFile, SplatFormat};
-use crate::cloud::{CloudBuilder, CloudTraits};
+use super::format::SplatFormat;
+use super::splat_file::{ReadOptions, SplatFile};
+use crate::cloud::{CloudBuilder, CloudTraits, GaussianCloud};
 use crate::error::GaussianError;
 use progress::{Cancelled, Progress};
 use std::path::Path;
@@ -53,7 +54,7 @@ impl<'a> Reading<'a> {
         if count == 0 {
             return Err(GaussianError::no_splats(self.file, "has no splats"));
         }
-        let bytes = CloudBuilder::bytes(degree, count).saturating_add(beside);
+        let bytes = GaussianCloud::bytes_of(degree, count).saturating_add(beside);
         self.check_memory(&format!("{count} splats take"), bytes)?;
         if count >= u64::from(u32::MAX) {
             return Err(self.malformed("count", format!("{count} splats are more than 32 bits can number")));

@@ -10,9 +10,10 @@ mod meta;
 mod palette;
 mod texture;
 
+use super::format::SplatFormat;
 use super::quaternion::from_smallest_three;
 use super::reading::Reading;
-use super::{SplatFile, SplatFormat};
+use super::splat_file::SplatFile;
 use crate::cloud::{CloudTraits, Splat};
 use crate::error::GaussianError;
 use container::Container;

@@ -13,16 +13,19 @@
 //! header of 32 bytes, extensions, and a table of sizes. Axes are right, up, back, unless an extension of Adobe names others.
 
 mod extensions;
+mod header;
 mod streams;
 
 use super::bytes::{u16_at, u32_at};
+use super::format::SplatFormat;
 use super::quaternion::from_xyz;
 use super::reading::Reading;
-use super::{SplatFile, SplatFormat};
+use super::splat_file::SplatFile;
 use crate::cloud::{CloudTraits, ColorSpace, Splat};
 use crate::error::GaussianError;
 use glam::{Quat, Vec3};
 use half::f16;
+use header::Header;
 use streams::Streams;
 
 /// The factor of the colour of degree 0: it has room for values a bit beyond black and white.
@@ -64,28 +67,6 @@ pub(super) fn read(mut reading: Reading<'_>, bytes: &[u8]) -> Result<SplatFile, 
         axes: extensions.axes,
     };
     reading.finish(builder, traits, SplatFormat::Spz)
-}
-
-/// What a file says of itself.
-struct Header {
-    version: u32,
-    count: u32,
-    degree: u32,
-    fractional_bits: u8,
-    is_antialiased: bool,
-    has_extensions: bool,
-}
-
-impl Header {
-    /// Bytes of a splat's mean.
-    fn mean_bytes(&self) -> u64 {
-        if self.version == 1 { 6 } else { 9 }
-    }
-
-    /// Bytes of a splat's rotation.
-    fn rotation_bytes(&self) -> u64 {
-        if self.version < 3 { 3 } else { 4 }
-    }
 }
 
 fn mean(header: &Header, streams: &Streams, index: usize) -> Vec3 {

@@ -12,6 +12,9 @@
 use crate::cloud::Splat;
 use glam::{DMat3, DQuat, DVec3};
 
+/// Variance of the low-pass through which a cloud is trained, px².
+pub const LOW_PASS_PX2: f64 = 0.3;
+
 /// The thinnest axis of a splat, as a share of its longest: thinner ones look the same.
 const MIN_AXIS: f64 = 1e-4;
 
@@ -42,7 +45,7 @@ impl CameraShape {
         focal_px: f64,
         is_antialiased: bool,
     ) -> Option<Self> {
-        let low_pass = super::LOW_PASS_PX2 * (mean.z / focal_px).powi(2);
+        let low_pass = LOW_PASS_PX2 * (mean.z / focal_px).powi(2);
         let scale = splat.log_scale.as_dvec3().exp();
         let scale = scale.max(DVec3::splat(MIN_AXIS * scale.max_element().max(low_pass.sqrt())));
         let rotation =

@@ -2,7 +2,7 @@
 
 use super::super::bytes::{Bytes, f32_at, u16_at, u32_at};
 use super::super::quaternion::from_wxyz;
-use super::{Header, Level};
+use super::header::{Header, Level};
 use crate::cloud::Splat;
 use crate::cloud::harmonics::coefficient_count;
 use glam::Vec3;

@@ -4,9 +4,10 @@
 //! that is left out and 10 for each of the others; colour and opacity (as it is) 8 bits each. Coefficients beyond degree 0 are bytes, all of
 //! red, then green, then blue.
 
+use super::super::format::SplatFormat;
 use super::super::quaternion::from_smallest_three;
 use super::super::reading::Reading;
-use super::super::{SplatFile, SplatFormat};
+use super::super::splat_file::SplatFile;
 use super::header::{Element, Header};
 use super::rows::Rows;
 use crate::cloud::harmonics::degree_of;

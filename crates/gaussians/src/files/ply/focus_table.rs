@@ -1,7 +1,7 @@
 //! Focus paint as a table: t, anchor and gloss for each splat of a file.
 
-use super::super::ReadOptions;
 use super::super::reading::Reading;
+use super::super::splat_file::ReadOptions;
 use super::header::Header;
 use super::rows::Rows;
 use super::writer::{write_header, write_row};

@@ -2,8 +2,9 @@
 //!
 //! Scales are logarithms, opacity is a logit, the rotation is w x y z of any length. `f_rest` has all of red, then green, then blue.
 
+use super::super::format::SplatFormat;
 use super::super::reading::Reading;
-use super::super::{SplatFile, SplatFormat};
+use super::super::splat_file::SplatFile;
 use super::columns::{Activation, Columns};
 use super::header::Header;
 use super::rows::Rows;

@@ -3,7 +3,7 @@
 use super::super::bounded::{MAX_DEFLATE_RATIO, inflate_zstd, read_exactly};
 use super::super::bytes::Bytes;
 use super::super::reading::Reading;
-use super::Header;
+use super::header::Header;
 use crate::cloud::harmonics::{MAX_DEGREE, coefficient_count};
 use crate::error::GaussianError;
 use flate2::bufread::GzDecoder;
