@@ -1,0 +1,115 @@
+//! Pictures as WebP, as small as a given error allows.
+
+use crate::error::WebPageError;
+use crate::screen_picture::ScreenPicture;
+use webp::{Decoder, Encoder, WebPConfig};
+
+/// A picture as WebP.
+#[derive(Clone, Debug)]
+pub struct EncodedPicture {
+    /// The file.
+    pub webp: Vec<u8>,
+    /// PSNR of what a browser decodes, dB; 200 if it is equal.
+    pub psnr: f64,
+    /// libwebp's quality, 1 to 100; one more: lossless.
+    pub quality: u8,
+    /// What a browser decodes.
+    pub(crate) decoded: ScreenPicture,
+}
+
+/// The range of libwebp's quality, and the one after it, which stands for lossless.
+const MIN_QUALITY: u8 = 1;
+const MAX_QUALITY: u8 = 100;
+const LOSSLESS: u8 = MAX_QUALITY + 1;
+
+/// The first quality that is tried for a picture without a neighbour.
+pub(crate) const USUAL_QUALITY: u8 = 75;
+
+/// Encodes with the lowest quality whose PSNR is at least `min_psnr`, dB; losslessly if there is none. The search starts at
+/// `first_quality`, that of a similar picture.
+///
+/// # Errors
+/// [`WebPageError::Encoder`]: libwebp refuses the picture.
+pub fn encode_picture(
+    picture: &ScreenPicture,
+    min_psnr: f64,
+    first_quality: u8,
+) -> Result<EncodedPicture, WebPageError> {
+    let (mut too_low, mut high_enough) = (MIN_QUALITY - 1, LOSSLESS);
+    let (mut quality, mut step) = (first_quality.clamp(MIN_QUALITY, MAX_QUALITY), 4);
+    let mut smallest = None;
+    while high_enough - too_low > 1 {
+        let encoded = encode(picture, quality)?;
+        if encoded.psnr >= min_psnr {
+            high_enough = quality;
+            smallest = Some(encoded);
+        } else {
+            too_low = quality;
+        }
+        quality = if high_enough == LOSSLESS {
+            quality.saturating_add(step).min(MAX_QUALITY)
+        } else if too_low < MIN_QUALITY {
+            quality.saturating_sub(step).max(MIN_QUALITY)
+        } else {
+            too_low.midpoint(high_enough)
+        };
+        step = step.saturating_mul(2);
+    }
+    smallest.map_or_else(|| encode(picture, LOSSLESS), Ok)
+}
+
+fn encode(picture: &ScreenPicture, quality: u8) -> Result<EncodedPicture, WebPageError> {
+    let failed = |what: String| WebPageError::Encoder(what);
+    let mut config =
+        WebPConfig::new().map_err(|()| failed("libwebp is of another version than its header".into()))?;
+    config.lossless = i32::from(quality == LOSSLESS);
+    config.quality = f32::from(quality.min(MAX_QUALITY));
+    let [width, height] = picture.size();
+    let encoder = Encoder::from_rgb(picture.pixels().as_flattened(), width, height);
+    let webp = encoder.encode_advanced(&config).map_err(|error| failed(format!("{error:?}")))?.to_vec();
+    let image = Decoder::new(&webp).decode().ok_or_else(|| failed("it cannot be read back".into()))?;
+    let pixels = image.as_chunks::<3>().0.to_vec();
+    let decoded = ScreenPicture::new([image.width(), image.height()], pixels)?;
+    Ok(EncodedPicture { psnr: decoded.psnr(picture), webp, quality, decoded })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Waves of colours with some grain.
+    fn waves() -> ScreenPicture {
+        let wave = |x: u32, y: u32, k: u32| {
+            let phase = f64::from(x * (k + 1) + y * 2) * 0.11;
+            (120.0 + 90.0 * phase.sin() + f64::from((x * 7 + y * 13 + k * 5) % 11)) as u8
+        };
+        let pixel = |k: u32| std::array::from_fn(|c| wave(k % 80, k / 80, c as u32));
+        ScreenPicture::new([80, 48], (0..80 * 48).map(pixel).collect()).unwrap()
+    }
+
+    #[test]
+    fn the_lowest_quality_that_is_good_enough_is_found_from_anywhere() {
+        let picture = waves();
+        for min_psnr in [30.0, 38.0] {
+            let encoded = encode_picture(&picture, min_psnr, 75).unwrap();
+            assert!(encoded.psnr >= min_psnr && encoded.quality > 1, "{min_psnr}: {}", encoded.quality);
+            assert!(encode(&picture, encoded.quality - 1).unwrap().psnr < min_psnr);
+            assert_eq!(encoded.psnr, encoded.decoded.psnr(&picture));
+            for first_quality in [0, 20, 100, 255] {
+                let again = encode_picture(&picture, min_psnr, first_quality).unwrap();
+                assert!(again.psnr >= min_psnr && again.quality.abs_diff(encoded.quality) <= 2);
+            }
+        }
+    }
+
+    #[test]
+    fn what_no_quality_reaches_is_lossless() {
+        // Chroma is stored at half the size: red and blue pixels side by side are lost.
+        let pixel = |k: u32| if (k + k / 64) % 2 == 0 { [255, 0, 0] } else { [0, 0, 255] };
+        let picture = ScreenPicture::new([64, 64], (0..64 * 64).map(pixel).collect()).unwrap();
+        let encoded = encode_picture(&picture, 40.0, 75).unwrap();
+        assert_eq!((encoded.quality, encoded.psnr), (LOSSLESS, 200.0));
+        assert_eq!(encoded.decoded, picture);
+        assert!(encode(&picture, MAX_QUALITY).unwrap().psnr < 20.0);
+    }
+}
