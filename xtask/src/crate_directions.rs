@@ -11,6 +11,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("progress", &[]),
     ("numerics", &[]),
     ("atomic-file", &[]),
+    ("web-page", &["numerics"]),
     ("disparity", &["numerics", "progress"]),
     ("scene", &["lens", "numerics", "progress"]),
     ("capture", &["scene", "lens", "progress"]),
@@ -65,6 +66,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
         &[
             "document",
             "atomic-file",
+            "web-page",
             "light",
             "jobs",
             "baselines",
@@ -161,6 +163,7 @@ const RESERVED: &[(&str, &[&str])] = &[
     ("anyhow", &["focus-brush"]),
     ("clap", &["focus-brush"]),
     ("xatlas", &["atlas"]),
+    ("webp", &["web-page"]),
 ];
 
 /// Checks the workspace.

@@ -279,7 +279,8 @@ mod tests {
         let o = optics();
         for z in [0.5, 3.0, 40.0, f64::INFINITY] {
             assert_eq!(o.sharp_inverse_focus_distance(1.0 / z, FocusOffset::STANDARD), Some(1.0 / z));
-            for focus in [FocusOffset::new(0.9, 0.0), FocusOffset::new(1.1, 0.7), FocusOffset::new(-2.0, 0.2)] {
+            for focus in [FocusOffset::new(0.9, 0.0), FocusOffset::new(1.1, 0.7), FocusOffset::new(-2.0, 0.2)]
+            {
                 let inverse_focus_distance = o.sharp_inverse_focus_distance(1.0 / z, focus).unwrap();
                 let focused = Optics { inverse_focus_distance, ..o };
                 assert!(focused.kappa(1.0 / z, focus).abs() < 1e-11, "{z} {focus:?}");

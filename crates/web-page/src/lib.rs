@@ -25,7 +25,7 @@ mod template;
 
 pub use encoding::{EncodedPicture, encode_picture};
 pub use error::WebPageError;
-pub use page::{Caption, OpeningSlice, PublicAddress, Slice, SliceStack, WebPage};
+pub use page::{Caption, OpeningSlice, PaintMaps, PublicAddress, Slice, SliceStack, WebPage};
 pub use pixel_map::{DistanceRange, PixelMap, paint_code};
 pub use placement::{PlacedSlices, PlacementOptions, PsnrSummary, place_slices, slice_distances};
 pub use screen_picture::ScreenPicture;

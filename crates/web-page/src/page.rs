@@ -51,6 +51,28 @@ pub struct PublicAddress {
     pub poster: String,
 }
 
+impl PublicAddress {
+    /// The address of a page, with that of a file beside it. `None` if `page` is no address of a page on a server.
+    pub fn new(page: &str, poster_file_name: &str) -> Option<Self> {
+        let (scheme, rest) = page.split_once("://")?;
+        let path = rest.split(['?', '#']).next().unwrap_or_default();
+        let (folder, _) = path.rsplit_once('/')?;
+        let is_on_server =
+            matches!(scheme, "http" | "https") && !folder.is_empty() && !folder.starts_with('/');
+        let poster = format!("{scheme}://{folder}/{}", percent_encoded(poster_file_name));
+        is_on_server.then(|| Self { page: page.into(), poster })
+    }
+}
+
+/// A file's name as a part of an address.
+fn percent_encoded(name: &str) -> String {
+    let encoded = |byte: u8| match byte {
+        b'A'..=b'Z' | b'a'..=b'z' | b'0'..=b'9' | b'-' | b'.' | b'_' | b'~' => char::from(byte).to_string(),
+        _ => format!("%{byte:02X}"),
+    };
+    name.bytes().map(encoded).collect()
+}
+
 /// The picture at one focus distance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Slice {
@@ -180,10 +202,7 @@ impl WebPage {
     fn check(&self) -> Result<(), WebPageError> {
         let require = |holds: bool, what| if holds { Ok(()) } else { Err(WebPageError::Inconsistent(what)) };
         let opening = self.stacks.get(self.opening.stack).map(|stack| stack.slices.len());
-        require(
-            opening.is_some_and(|slices| self.opening.slice < slices),
-            "there is no slice to open with",
-        )?;
+        require(opening.is_some_and(|slices| self.opening.slice < slices), "there is no slice to open with")?;
         require(self.opening_picture.size() == self.size, "the opening picture is of another size")?;
         for stack in &self.stacks {
             require(!stack.slices.is_empty(), "a stack has no slice")?;

@@ -17,14 +17,21 @@ impl ScreenPicture {
     /// # Errors
     /// A side has no pixel or more than WebP allows, or the number of pixels is another.
     pub fn new(size: [u32; 2], pixels: Vec<[u8; 3]>) -> Result<Self, WebPageError> {
+        Self::check_size(size)?;
         let [width, height] = size;
-        if !size.iter().all(|side| (1..=MAX_SIDE_PX).contains(side)) {
-            return Err(WebPageError::Size(width, height));
-        }
         if pixels.len() != width as usize * height as usize {
             return Err(WebPageError::Inconsistent("a picture has another number of pixels than its size"));
         }
         Ok(Self { size, pixels })
+    }
+
+    /// Checks that a picture may have `size` columns and rows.
+    ///
+    /// # Errors
+    /// A side has no pixel or more than WebP allows.
+    pub fn check_size(size: [u32; 2]) -> Result<(), WebPageError> {
+        let fits = size.iter().all(|side| (1..=MAX_SIDE_PX).contains(side));
+        if fits { Ok(()) } else { Err(WebPageError::Size(size[0], size[1])) }
     }
 
     /// Columns and rows.
@@ -99,7 +106,10 @@ mod tests {
 
     #[test]
     fn half_way_lies_between() {
-        assert_eq!(grey(&[0, 255, 10, 255]).half_way(&grey(&[255, 255, 13, 254])), grey(&[128, 255, 12, 255]));
+        assert_eq!(
+            grey(&[0, 255, 10, 255]).half_way(&grey(&[255, 255, 13, 254])),
+            grey(&[128, 255, 12, 255])
+        );
     }
 
     #[test]

@@ -7,7 +7,8 @@ use crate::error::WebPageError;
 /// # Errors
 /// [`WebPageError::Template`]: a hole without a value, or a value without a hole.
 pub fn fill_template(template: &str, values: &[(&str, &str)]) -> Result<String, WebPageError> {
-    let mut filled = String::with_capacity(template.len() + values.iter().map(|(_, v)| v.len()).sum::<usize>());
+    let mut filled =
+        String::with_capacity(template.len() + values.iter().map(|(_, v)| v.len()).sum::<usize>());
     let mut is_used = vec![false; values.len()];
     let mut rest = template;
     while let Some((before, from_name)) = rest.split_once("{{") {

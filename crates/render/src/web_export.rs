@@ -1,0 +1,16 @@
+//! Web pages: a picture that anyone can refocus, drawn at many focus distances.
+//!
+//! ```text
+//! first surfaces ─▶ range of distances, maps ──────────────────────────┐
+//!        └─▶ for each aperture: bake once ─▶ sum at each distance ─▶ slices ─▶ page
+//! ```
+
+mod export;
+mod first_surfaces;
+mod options;
+mod report;
+
+pub use export::export_web_page;
+pub use options::WebPageOptions;
+pub use report::{StackReport, WebPageReport};
+pub use web_page::Caption;
