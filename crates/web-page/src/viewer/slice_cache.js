@@ -27,19 +27,17 @@ class SliceCache {
     if (picture) {
       this.decoded.delete(key);
     } else {
-      this.makeRoom();
-      const bytes = decodeBase64(this.stacks[stack].slices[slice] ?? this.poster);
-      picture = createImageBitmap(new Blob([bytes], { type: "image/webp" }));
+      const base64 = this.stacks[stack].slices[slice] ?? this.poster;
+      picture = this.makeRoom().then(() => createImageBitmap(new Blob([decodeBase64(base64)], { type: "image/webp" })));
     }
     this.decoded.set(key, picture);
     return picture;
   }
 
-  makeRoom() {
-    for (const [key, picture] of this.decoded) {
-      if (this.decoded.size < MOST_DECODED) return;
-      this.decoded.delete(key);
-      picture.then((bitmap) => bitmap.close(), () => {});
-    }
+  /** Closes what was not used for longest. */
+  async makeRoom() {
+    const oldest = [...this.decoded].slice(0, Math.max(this.decoded.size - MOST_DECODED + 1, 0));
+    oldest.forEach(([key]) => this.decoded.delete(key));
+    await Promise.all(oldest.map(([, picture]) => picture.then((bitmap) => bitmap.close(), () => {})));
   }
 }
