@@ -41,4 +41,6 @@ pub use sequence::{
     TakeOptions, render_frames,
 };
 pub use tiles::{Merged, TileGrid, TileOptions, TileReport, TilesReport, merge_tiles, render_tiles};
-pub use web_export::{Caption, StackReport, WebPageOptions, WebPageReport, export_web_page};
+pub use web_export::{
+    Caption, StackReport, WebPageEstimate, WebPageOptions, WebPageReport, estimate_web_page, export_web_page,
+};

@@ -5,11 +5,13 @@
 //!        └─▶ for each aperture: bake once ─▶ sum at each distance ─▶ slices ─▶ page
 //! ```
 
+mod estimate;
 mod export;
 mod first_surfaces;
 mod options;
 mod report;
 
+pub use estimate::{WebPageEstimate, estimate_web_page};
 pub use export::export_web_page;
 pub use options::WebPageOptions;
 pub use report::{StackReport, WebPageReport};

@@ -21,6 +21,7 @@ mod state;
 mod timeline;
 mod verification;
 mod watched_file;
+mod web_page_export;
 
 pub use picture_export::FullSizeFieldState;
 pub use state::{Session, SessionOptions};

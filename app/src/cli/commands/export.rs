@@ -143,6 +143,7 @@ fn export_page(
     for stack in &report.stacks {
         console.note(&stack.to_string());
     }
+    console.warn(&report.warnings());
     Ok(report)
 }
 

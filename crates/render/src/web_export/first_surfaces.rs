@@ -63,6 +63,11 @@ impl FirstSurfaces {
         DistanceRange { farthest: all().fold(opening, f64::min), nearest: all().fold(opening, f64::max) }
     }
 
+    /// Whether any of the surfaces is not focused by the ordinary lens.
+    pub fn is_painted(&self) -> bool {
+        !self.focus.iter().all(|focus| focus.is_standard())
+    }
+
     /// Codes of the distances that make the surfaces sharp for the ordinary lens.
     pub fn sharp_distances(&self, range: DistanceRange) -> PixelMap {
         let codes = self.inverse_depths.iter().map(|&inverse| range.code(Some(inverse)));

@@ -3,7 +3,7 @@
 use serde::Serialize;
 use std::fmt;
 use std::path::PathBuf;
-use web_page::{PlacedSlices, PsnrSummary};
+use web_page::{PlacedSlices, PlacementOptions, PsnrSummary};
 
 /// A web page that was written.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -14,6 +14,23 @@ pub struct WebPageReport {
     pub bytes: u64,
     /// Its stacks.
     pub stacks: Vec<StackReport>,
+}
+
+impl WebPageReport {
+    /// What is not as good as it should be, one sentence each.
+    pub fn warnings(&self) -> Vec<String> {
+        let wanted = PlacementOptions::default().half_way_psnr;
+        let poor = |stack: &StackReport| {
+            let half_way = stack.half_way.filter(|half_way| half_way.lowest < wanted)?;
+            Some(format!(
+                "{}: while the focus moves at {}, cross-fades are as far as {:.1} dB from the picture, not {wanted} dB (at rest it is right)",
+                self.files.first()?.display(),
+                stack.aperture,
+                half_way.lowest
+            ))
+        };
+        self.stacks.iter().filter_map(poor).collect()
+    }
 }
 
 /// The slices of one aperture.
