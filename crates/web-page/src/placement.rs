@@ -22,12 +22,6 @@ pub struct PlacementOptions {
     pub most_bytes: u64,
 }
 
-impl Default for PlacementOptions {
-    fn default() -> Self {
-        Self { rest_psnr: 40.0, half_way_psnr: 38.0, most_halvings: 5, most_bytes: u64::MAX }
-    }
-}
-
 /// Measured PSNRs, dB.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct PsnrSummary {
@@ -182,6 +176,9 @@ impl Placed {
 mod tests {
     use super::*;
 
+    const OPTIONS: PlacementOptions =
+        PlacementOptions { rest_psnr: 45.0, half_way_psnr: 42.0, most_halvings: 5, most_bytes: u64::MAX };
+
     /// A bar whose brightness follows a function of the distance.
     fn bar(level: f64) -> ScreenPicture {
         let pixel = |k: u32| if (16..48).contains(&(k % 64)) { [level.round() as u8; 3] } else { [20; 3] };
@@ -207,8 +204,7 @@ mod tests {
         // Linear up to 0.5, so that cross-fades are right; then bent.
         let level = |u: f64| 40.0 + 100.0 * u + if u > 0.5 { 400.0 * (u - 0.5).powi(2) } else { 0.0 };
         let draw = |u: f64| Ok::<_, WebPageError>(bar(level(u)));
-        let options = PlacementOptions { rest_psnr: 45.0, half_way_psnr: 42.0, ..Default::default() };
-        let placed = place_slices(&[0.0, 0.5, 1.0], &options, draw).unwrap();
+        let placed = place_slices(&[0.0, 0.5, 1.0], &OPTIONS, draw).unwrap();
         let distances: Vec<_> = placed.slices.iter().map(|slice| slice.inverse_distance).collect();
         assert!(distances.windows(2).all(|pair| pair[0] < pair[1]), "{distances:?}");
         assert_eq!(distances[..2], [0.0, 0.5], "{distances:?}");
@@ -217,7 +213,7 @@ mod tests {
         assert!(placed.half_way.unwrap().lowest >= 42.0);
         assert_eq!(placed.bytes(), placed.slices.iter().map(|slice| slice.webp.len() as u64).sum::<u64>());
 
-        let few = PlacementOptions { most_halvings: 0, ..options };
+        let few = PlacementOptions { most_halvings: 0, ..OPTIONS };
         let coarse = place_slices(&[0.0, 0.5, 1.0], &few, draw).unwrap();
         assert_eq!(coarse.slices.len(), 3);
         assert!(coarse.half_way.unwrap().lowest < 42.0, "the error is measured, not assumed");
@@ -225,13 +221,13 @@ mod tests {
 
     #[test]
     fn limits_and_errors_end_it() {
-        let options = PlacementOptions { most_bytes: 100, ..PlacementOptions::default() };
+        let options = PlacementOptions { most_bytes: 100, ..OPTIONS };
         let draw = |_| Ok::<_, WebPageError>(bar(100.0));
         let distances = [0.0, 0.2, 0.4, 0.6];
         assert_eq!(place_slices(&distances, &options, draw).unwrap_err(), WebPageError::TooLarge);
-        let stopped = place_slices(&distances, &Default::default(), |_| Err(WebPageError::Size(0, 0)));
+        let stopped = place_slices(&distances, &OPTIONS, |_| Err(WebPageError::Size(0, 0)));
         assert_eq!(stopped.unwrap_err(), WebPageError::Size(0, 0));
-        let single = place_slices(&[0.5], &Default::default(), draw).unwrap();
+        let single = place_slices(&[0.5], &OPTIONS, draw).unwrap();
         assert_eq!((single.slices.len(), single.half_way), (1, None));
     }
 }

@@ -125,6 +125,8 @@ fn export_page(
     let [width, height] = arguments.size.unwrap_or([input.camera.width, input.camera.height]);
     let camera = Camera { width, height, ..input.camera.clone() };
     let file_name = || input.path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let gpu = open_gpu(BackendName::Auto, None)?;
+    let defaults = WebPageOptions::default();
     let options = WebPageOptions {
         caption: Caption {
             title: arguments.title.clone().unwrap_or_else(file_name),
@@ -135,7 +137,7 @@ fn export_page(
         has_ordinary_focus: !arguments.painted_only,
         is_autoplaying: arguments.autoplay,
         tone: Tone { exposure: input.exposure(), ..Tone::default() },
-        render: RenderOptions { gpu: open_gpu(BackendName::Auto, None)?, ..RenderOptions::default() },
+        render: RenderOptions { gpu, ..defaults.render },
         address: arguments.url.clone(),
         is_large_allowed: arguments.large,
     };

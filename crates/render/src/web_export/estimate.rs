@@ -44,3 +44,44 @@ pub fn estimate_web_page(
     let pixels = f64::from(camera.width) * f64::from(camera.height);
     WebPageEstimate { slices: slices as u64, bytes: (slices * pixels * BYTES_PER_PIXEL) as u64 }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::web_export::export_web_page;
+    use document::load_scene;
+    use focus::{Focus, FocusSource};
+    use light::{LightOptions, Resources};
+    use std::sync::Arc;
+    use trace::Tracer;
+
+    #[test]
+    fn the_estimate_counts_the_slices_that_are_drawn_at_least() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("quads.glb");
+        crate::tiny_glb::write(&file);
+        let scene = load_scene(&file, &Unwatched).unwrap();
+        let tracer = Arc::new(Tracer::new(scene.clone()));
+        let lit = LitScene::new(tracer, LightOptions::default(), &Resources::default());
+        let camera =
+            Camera { width: 96, height: 64, focus_distance: 3.0, aperture_radius: 0.3, ..Camera::default() };
+        let mut focus = Focus::constant(scene, FocusOffset::STANDARD);
+        let options = WebPageOptions { aperture_divisors: vec![1.0, 2.0], ..WebPageOptions::default() };
+        let plain = estimate_web_page(&lit, &camera, &focus, &options);
+        focus.parts[1] = FocusSource::Constant(FocusOffset::SHARP);
+        let painted = estimate_web_page(&lit, &camera, &focus, &options);
+        assert!(painted.slices > plain.slices && painted.bytes > plain.bytes, "{plain:?} {painted:?}");
+
+        let page = folder.path().join("page.html");
+        let report = export_web_page(&page, &lit, &camera, &focus, &options, &Unwatched).unwrap();
+        let slices: usize = report.stacks.iter().map(|stack| stack.slices).sum();
+        assert!(slices as u64 >= painted.slices - 3, "{slices}, about {}", painted.slices);
+        assert_eq!(report.bytes, page.metadata().unwrap().len());
+        assert!(
+            report.stacks.iter().all(|stack| stack.largest_step_px <= 2.0 && stack.at_rest.lowest >= 40.0)
+        );
+        let [widest, half] = [0, 2].map(|k| &report.stacks[k]);
+        assert!(widest.aperture != half.aperture && widest.slices > half.slices, "{report:?}");
+        assert!(widest.to_string().contains("painted") && report.stacks[1].to_string().contains("ordinary"));
+    }
+}

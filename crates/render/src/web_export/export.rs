@@ -15,8 +15,8 @@ use scene::SurfaceField;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use web_page::{
-    DistanceRange, OpeningSlice, PlacedSlices, PlacementOptions, PublicAddress, ScreenPicture, SliceStack,
-    WebPage, WebPageError, place_slices, slice_distances,
+    DistanceRange, OpeningSlice, PlacedSlices, PublicAddress, ScreenPicture, SliceStack, WebPage,
+    WebPageError, place_slices, slice_distances,
 };
 
 /// Adjacent apertures differ at least by this factor, so that their names differ.
@@ -222,11 +222,12 @@ impl Drawing<'_> {
             Ok(picture)
         };
         let most_bytes = (options.most_bytes() / 4 * 3).saturating_sub(self.used_bytes);
-        let placement = PlacementOptions { most_bytes, ..PlacementOptions::default() };
-        let placed = place_slices(distances, &placement, draw).map_err(|error| match error {
-            StackError::Drawing(error) => error,
-            StackError::Page(error) => page_error(self.path, error),
-        })?;
+        let placed = place_slices(distances, &WebPageOptions::placement(most_bytes), draw).map_err(
+            |error| match error {
+                StackError::Drawing(error) => error,
+                StackError::Page(error) => page_error(self.path, error),
+            },
+        )?;
         if self.opening.is_none() {
             let slice = placed.slices.iter().position(|slice| slice.inverse_distance == opening);
             self.opening = slice.zip(opening_picture);
@@ -266,7 +267,11 @@ fn focused(camera: &Camera, inverse_distance: f64) -> Camera {
 
 /// An f-number with three digits.
 fn aperture_name(f_number: f64) -> String {
-    let decimals = (2.0 - f_number.log10().floor()).clamp(0.0, 2.0) as usize;
+    let decimals = match f_number {
+        ..9.995 => 2,
+        ..99.95 => 1,
+        _ => 0,
+    };
     format!("f/{f_number:.decimals$}")
 }
 
@@ -295,4 +300,25 @@ fn png(path: &Path, picture: &ScreenPicture) -> Result<Vec<u8>, RenderError> {
 fn write(path: &Path, bytes: &[u8]) -> Result<PathBuf, RenderError> {
     atomic_file::write(path, bytes).map_err(|error| RenderError::io(path, &error))?;
     Ok(path.to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn apertures_are_named_with_three_digits() {
+        assert_eq!([1.079, 9.996, 22.04, 128.0].map(aperture_name), ["f/1.08", "f/10.0", "f/22.0", "f/128"]);
+    }
+
+    #[test]
+    fn a_page_that_is_too_large_names_the_cures() {
+        let RenderError::BadInput(text) = page_error(Path::new("page.html"), WebPageError::TooLarge) else {
+            panic!("it is the input's fault")
+        };
+        assert!(
+            text.starts_with("page.html: ") && text.contains("30 MB") && text.contains("--large"),
+            "{text}"
+        );
+    }
 }

@@ -95,3 +95,90 @@ impl FirstSurfaces {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use document::load_scene;
+    use focus::{Focus, FocusSource};
+    use progress::Unwatched;
+    use scene::Scene;
+    use std::sync::Arc;
+
+    /// A wall at 4 and, left of the middle, a card at 2.
+    fn quads() -> Arc<Scene> {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("quads.glb");
+        crate::tiny_glb::write(&file);
+        load_scene(&file, &Unwatched).unwrap()
+    }
+
+    fn camera() -> Camera {
+        Camera { width: 96, height: 64, focus_distance: 2.5, aperture_radius: 0.1, ..Camera::default() }
+    }
+
+    /// The first surfaces where the card is painted, and their codes at a place of the picture, from 0 to 1.
+    fn painted(card: FocusOffset) -> (FirstSurfaces, impl Fn(&PixelMap, f64, f64) -> u8) {
+        let scene = quads();
+        let mut focus = Focus::constant(scene.clone(), FocusOffset::STANDARD);
+        focus.parts[1] = FocusSource::Constant(card);
+        let surfaces = FirstSurfaces::trace(&Tracer::new(scene), &camera(), &focus, &Unwatched).unwrap();
+        let code = |map: &PixelMap, x: f64, y: f64| {
+            let [column, row] =
+                [x * f64::from(map.size[0]), y * f64::from(map.size[1])].map(|at| at as usize);
+            map.codes[row * map.size[0] as usize + column]
+        };
+        (surfaces, code)
+    }
+
+    /// On the card and on the wall.
+    const CARD: (f64, f64) = (0.2, 0.5);
+    const WALL: (f64, f64) = (0.75, 0.9);
+
+    #[test]
+    fn surfaces_are_sharp_at_their_distance_or_where_paint_moves_it() {
+        let camera = camera();
+        let optics = camera.optics();
+        // Sharp at 4, where the wall is.
+        let t = 1.0 / (1.0 + (0.25 - 0.5) * optics.image_distance);
+        let (surfaces, code) = painted(FocusOffset::new(t, 0.0));
+        let range = surfaces.range(&camera);
+        assert!((range.farthest - 0.25).abs() < 1e-9 && (range.nearest - 0.5).abs() < 1e-9, "{range:?}");
+        let ordinary = surfaces.sharp_distances(range);
+        assert_eq!(ordinary.size, [48, 32]);
+        assert_eq!((code(&ordinary, CARD.0, CARD.1), code(&ordinary, WALL.0, WALL.1)), (255, 1));
+        let maps = surfaces.paint_maps(range, &optics);
+        let sharp = &maps.sharp_distances;
+        assert_eq!((code(sharp, CARD.0, CARD.1), code(sharp, WALL.0, WALL.1)), (1, 1));
+        assert!(surfaces.is_painted());
+        let (blurred, unpainted) = (code(&maps.paint, CARD.0, CARD.1), code(&maps.paint, WALL.0, WALL.1));
+        assert!(
+            (1..128).contains(&blurred) && unpainted == 0,
+            "{blurred} {unpainted}: t below 1 blurs as near"
+        );
+    }
+
+    #[test]
+    fn what_no_distance_makes_sharp_has_no_code() {
+        let camera = camera();
+        for (card, paint) in [(FocusOffset::SHARP, 128..=128), (FocusOffset::new(1.2, 1.0), 129..=255)] {
+            let (surfaces, code) = painted(card);
+            let maps = surfaces.paint_maps(surfaces.range(&camera), &camera.optics());
+            assert_eq!(code(&maps.sharp_distances, CARD.0, CARD.1), 0);
+            assert!(paint.contains(&code(&maps.paint, CARD.0, CARD.1)), "{card:?}");
+        }
+        assert!(!painted(FocusOffset::STANDARD).0.is_painted());
+    }
+
+    #[test]
+    fn the_grid_of_a_large_picture_is_coarse_and_the_camera_widens_the_range() {
+        let scene = quads();
+        let focus = Focus::constant(scene.clone(), FocusOffset::STANDARD);
+        let wide = Camera { width: 4001, height: 9, focus_distance: 1.0, ..camera() };
+        let surfaces = FirstSurfaces::trace(&Tracer::new(scene), &wide, &focus, &Unwatched).unwrap();
+        assert_eq!(surfaces.size, [1001, 3]);
+        assert_eq!(surfaces.inverse_depths.len(), 3003);
+        assert_eq!(surfaces.range(&wide).nearest, 1.0);
+        assert_eq!(surfaces.range(&wide).farthest, 0.0, "beside the wall there is nothing");
+    }
+}

@@ -1,7 +1,8 @@
 //! What a web page shows, and how large it may be.
 
 use crate::picture::{RenderOptions, Tone};
-use web_page::Caption;
+use splat::Tolerance;
+use web_page::{Caption, PlacementOptions};
 
 /// What a web page shows, and how large it may be.
 #[derive(Clone, Debug)]
@@ -33,6 +34,23 @@ impl WebPageOptions {
     pub(crate) const MOST_SLICES: usize = 100_000;
     /// The radius by which the blur of anything unpainted may differ between two slices, px.
     pub(crate) const LARGEST_STEP_PX: f64 = 2.0;
+    /// The tolerance of the sums, px: many times as fast as exact ones, which are at 56 dB from them (the demo, 1280 × 720).
+    const TOLERANCE_PX: f64 = 2.0;
+    /// PSNR of slices at rest against exact pictures, and of cross-fades half way, dB.
+    const REST_PSNR: f64 = 40.0;
+    pub(crate) const HALF_WAY_PSNR: f64 = 38.0;
+    /// What the tolerance may take from it, dB.
+    const MARGIN_OF_TOLERANCE: f64 = 0.2;
+
+    /// How good the slices are to be; together they may take `most_bytes`.
+    pub(crate) fn placement(most_bytes: u64) -> PlacementOptions {
+        PlacementOptions {
+            rest_psnr: Self::REST_PSNR + Self::MARGIN_OF_TOLERANCE,
+            half_way_psnr: Self::HALF_WAY_PSNR + Self::MARGIN_OF_TOLERANCE,
+            most_halvings: 5,
+            most_bytes,
+        }
+    }
 
     pub(crate) fn most_bytes(&self) -> u64 {
         if self.is_large_allowed { u64::MAX } else { Self::USUAL_BYTES }
@@ -47,7 +65,10 @@ impl Default for WebPageOptions {
             has_ordinary_focus: true,
             is_autoplaying: false,
             tone: Tone::default(),
-            render: RenderOptions::default(),
+            render: RenderOptions {
+                splat_tolerance: Tolerance::px(Self::TOLERANCE_PX),
+                ..RenderOptions::default()
+            },
             address: None,
             is_large_allowed: false,
         }

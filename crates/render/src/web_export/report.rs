@@ -1,9 +1,10 @@
 //! What was measured of a web page.
 
+use crate::web_export::options::WebPageOptions;
 use serde::Serialize;
 use std::fmt;
 use std::path::PathBuf;
-use web_page::{PlacedSlices, PlacementOptions, PsnrSummary};
+use web_page::{PlacedSlices, PsnrSummary};
 
 /// A web page that was written.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -19,7 +20,7 @@ pub struct WebPageReport {
 impl WebPageReport {
     /// What is not as good as it should be, one sentence each.
     pub fn warnings(&self) -> Vec<String> {
-        let wanted = PlacementOptions::default().half_way_psnr;
+        let wanted = WebPageOptions::HALF_WAY_PSNR;
         let poor = |stack: &StackReport| {
             let half_way = stack.half_way.filter(|half_way| half_way.lowest < wanted)?;
             Some(format!(

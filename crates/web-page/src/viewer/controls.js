@@ -54,7 +54,18 @@ class Message {
 
   /** @param {string} text */
   show(text) {
+    this.speak(text);
+    this.paragraph.classList.remove("spoken");
+  }
+
+  /**
+   * Tells screen readers alone what others see.
+   *
+   * @param {string} text
+   */
+  speak(text) {
     clearTimeout(this.timer);
+    this.paragraph.classList.add("spoken");
     this.paragraph.textContent = text;
     this.timer = setTimeout(() => (this.paragraph.textContent = ""), MESSAGE_TIME);
   }

@@ -65,7 +65,7 @@ function showPage(page) {
       message.show("Painted, stays so");
     } else {
       rack.rest(inverseDistance);
-      message.show(`Focused at ${distanceText(rack.inverseDistance)}`);
+      message.speak(`Focused at ${distanceText(rack.inverseDistance)}`);
     }
   }
 

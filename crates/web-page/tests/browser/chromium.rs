@@ -140,9 +140,7 @@ impl Chromium {
             let parameters = &event["params"];
             match event["method"].as_str()? {
                 "Runtime.exceptionThrown" | "Runtime.consoleAPICalled" => Some(parameters.to_string()),
-                "Log.entryAdded" => {
-                    (parameters["entry"]["level"] == "error").then(|| parameters.to_string())
-                }
+                "Log.entryAdded" => (parameters["entry"]["level"] == "error").then(|| parameters.to_string()),
                 "Network.requestWillBeSent" => {
                     let address = parameters["request"]["url"].as_str()?;
                     let is_own = address.starts_with("data:") || own_addresses.contains(&address);
