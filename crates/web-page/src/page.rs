@@ -204,6 +204,10 @@ impl WebPage {
         let opening = self.stacks.get(self.opening.stack).map(|stack| stack.slices.len());
         require(opening.is_some_and(|slices| self.opening.slice < slices), "there is no slice to open with")?;
         require(self.opening_picture.size() == self.size, "the opening picture is of another size")?;
+        require(
+            (self.range.nearest - self.range.farthest).is_finite(),
+            "the range of distances is not finite",
+        )?;
         for stack in &self.stacks {
             require(!stack.slices.is_empty(), "a stack has no slice")?;
             let are_ascending =
@@ -300,4 +304,90 @@ impl WebPage {
 
 fn data_uri(webp: &[u8]) -> String {
     format!("data:image/webp;base64,{}", STANDARD.encode(webp))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A page of three slices at one aperture.
+    fn page() -> WebPage {
+        let grain = |k: u8| [k.wrapping_mul(37) % 40; 3];
+        let grey = |level: u8| {
+            ScreenPicture::new([8, 4], (0..32).map(|k| grain(k).map(|g| level + g)).collect()).unwrap()
+        };
+        let slice = |k: u8| Slice {
+            inverse_distance: f64::from(k),
+            webp: encode_picture(&grey(40 * k), 40.0, 75).unwrap().webp,
+        };
+        WebPage {
+            size: [8, 4],
+            caption: Caption { title: "Fox & <owl>".into(), author: String::new(), licence: "CC0".into() },
+            opening: OpeningSlice { stack: 0, slice: 1 },
+            opening_picture: grey(40),
+            stacks: vec![SliceStack {
+                aperture: "f/2".into(),
+                is_painted: false,
+                slices: (0..3).map(slice).collect(),
+            }],
+            range: DistanceRange { farthest: 0.0, nearest: 2.0 },
+            sharp_distances: PixelMap { size: [4, 2], codes: vec![1; 8] },
+            paint: None,
+            is_autoplaying: false,
+            address: None,
+        }
+    }
+
+    #[test]
+    fn a_slice_is_stored_once_and_links_lead_nowhere() {
+        let html = page().to_html().unwrap();
+        for slice in &page().stacks[0].slices {
+            assert_eq!(html.matches(&STANDARD.encode(&slice.webp)).count(), 1);
+        }
+        assert!(html.contains("<title>Fox &amp; &lt;owl&gt;</title>"));
+        assert!(html.contains(
+            "<span class=\"title\">Fox &amp; &lt;owl&gt;</span><span class=\"licence\">CC0</span></footer>"
+        ));
+        assert!(html.contains("property=\"og:image\" content=\"data:image/webp;base64,"));
+        assert!(!html.contains("og:url") && !html.contains("https://"));
+        assert_eq!(html.matches("http://").count(), 1, "the name space of the icon");
+    }
+
+    #[test]
+    fn a_published_page_names_its_poster() {
+        let address = PublicAddress::new("https://example.org/a/?x=1/2#top", "der Fuchs.png").unwrap();
+        assert_eq!(address.poster, "https://example.org/a/der%20Fuchs.png");
+        let html = WebPage { address: Some(address.clone()), ..page() }.to_html().unwrap();
+        assert!(html.contains(&format!("property=\"og:image\" content=\"{}\"", address.poster)));
+        assert!(html.contains("property=\"og:url\" content=\"https://example.org/a/?x=1/2#top\""));
+        for wrong in ["page.html", "ftp://example.org/page.html", "https://example.org", "https:///page.html"]
+        {
+            assert_eq!(PublicAddress::new(wrong, "p.png"), None, "{wrong}");
+        }
+    }
+
+    #[test]
+    fn contradictions_are_refused() {
+        let is_refused = |change: &dyn Fn(&mut WebPage)| {
+            let mut wrong = page();
+            change(&mut wrong);
+            matches!(wrong.to_html(), Err(WebPageError::Inconsistent(_)))
+        };
+        assert!(!is_refused(&|_| {}));
+        assert!(is_refused(&|page| page.opening.slice = 3));
+        assert!(is_refused(&|page| page.opening.stack = 1));
+        assert!(is_refused(&|page| page.size = [4, 8]));
+        assert!(is_refused(&|page| page.stacks[0].slices.reverse()));
+        assert!(is_refused(&|page| page.stacks[0].slices[2].inverse_distance = f64::NAN));
+        assert!(is_refused(&|page| page
+            .stacks
+            .push(SliceStack { slices: Vec::new(), ..page.stacks[0].clone() })));
+        assert!(is_refused(&|page| page.range.nearest = f64::INFINITY));
+        assert!(is_refused(&|page| page.sharp_distances.codes.push(1)));
+        assert!(is_refused(&|page| {
+            let sharp_distances = page.sharp_distances.clone();
+            let paint = PixelMap { size: [2, 4], ..sharp_distances.clone() };
+            page.paint = Some(PaintMaps { sharp_distances, paint });
+        }));
+    }
 }

@@ -150,7 +150,9 @@ impl Drawing<'_> {
         let salf = Arc::new(self.bake(&camera, shown)?);
         let draw_stack = |&(is_painted, focus): &(bool, &Focus)| {
             let aperture = aperture_name(camera.f_number());
-            let placed = self.place(&salf, &camera, focus, &distances, &aperture)?;
+            let focusing = if is_painted { "painted" } else { "ordinary focus" };
+            let label = format!("slices at {aperture}, {focusing}");
+            let placed = self.place(&salf, &camera, focus, &distances, &label)?;
             let report = StackReport::new(&aperture, is_painted, &placed, px_per_kappa);
             self.used_bytes += placed.bytes();
             Ok((SliceStack { aperture, is_painted, slices: placed.slices }, report))
@@ -193,11 +195,11 @@ impl Drawing<'_> {
         camera: &Camera,
         focus: &Focus,
         distances: &[f64],
-        aperture: &str,
+        label: &str,
     ) -> Result<PlacedSlices, RenderError> {
         let options = self.options;
         let cells_a_side = options.render.cells_a_side;
-        let progress = self.steps.begin(&format!("slices at {aperture}"));
+        let progress = self.steps.begin(label);
         let mut splatter = new_splatter(salf.clone(), &options.render);
         let mut is_summed = false;
         let mut opening_picture = None;

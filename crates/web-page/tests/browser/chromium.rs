@@ -3,7 +3,6 @@
 use serde_json::{Value, json};
 use std::fs::File;
 use std::io::{BufRead, BufReader, Write};
-use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
@@ -188,14 +187,6 @@ impl Chromium {
         let is_mobile = width < 600;
         let metrics = json!({"width": width, "height": height, "deviceScaleFactor": 1, "mobile": is_mobile});
         self.call("Emulation.setDeviceMetricsOverride", metrics);
-    }
-
-    /// Writes what is shown as PNG.
-    pub fn photograph(&mut self, file: &Path) {
-        use base64::Engine;
-        let picture = self.call("Page.captureScreenshot", json!({"format": "png"}));
-        let data = picture["data"].as_str().unwrap();
-        std::fs::write(file, base64::engine::general_purpose::STANDARD.decode(data).unwrap()).unwrap();
     }
 }
 
