@@ -1,5 +1,6 @@
 //! `export --web`, end to end: the slices are what `render` draws, and clicks in a browser focus on what is there.
 
+#[allow(dead_code, reason = "shared with the tests of `web-page`")]
 #[path = "../../../crates/web-page/tests/browser/chromium.rs"]
 mod chromium;
 mod exported_page;

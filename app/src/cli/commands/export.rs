@@ -5,6 +5,7 @@ use crate::cli::commands::render::open_gpu;
 use crate::cli::console::{Console, path_texts, print_json};
 use crate::cli::failure::Failure;
 use crate::cli::input::{check_folder, unwrap_options};
+use crate::cli::termination;
 use document::{Input, InputKind};
 use focus::FocusMap;
 use lens::{Camera, FocusOffset, Picture};
@@ -29,6 +30,7 @@ pub fn run(arguments: &ExportArguments, console: &Console) -> Result<(), Failure
     }
     if let Some(page) = &arguments.page.web {
         check_page(page)?;
+        termination::install_handler()?;
     }
     let mut input = Input::open(project, console.resources(), console)?;
     input.transfer_paint_if_changed(&unwrap_options(None), console)?;

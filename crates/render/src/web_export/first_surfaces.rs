@@ -1,4 +1,4 @@
-//! The first surface of each pixel of a coarse grid: how far it is, and how it is painted.
+//! The first surfaces of a picture, in cells of a few pixels: how far they are, and how they are painted.
 
 use crate::picture::blur_scale;
 use glam::DVec2;
@@ -9,13 +9,14 @@ use scene::SurfaceField;
 use trace::{Ray, Tracer};
 use web_page::{DistanceRange, PaintMaps, PixelMap, paint_code};
 
-/// Pixels of the picture per pixel of the grid, along each side.
+/// Pixels along a side of a cell, at least.
 const PIXELS_A_SIDE: u32 = 2;
-/// The longest side of the grid.
-const LONGEST_SIDE: u32 = 1024;
+/// Cells along a side of the picture, at most.
+const MOST_CELLS: u32 = 1024;
 
-/// What the chief rays of a grid of pixels meet first, row by row from the top.
+/// What the chief rays of the pixels of each cell meet first: of all the one in the middle by depth. Row by row from the top.
 pub struct FirstSurfaces {
+    /// Columns and rows of cells.
     size: [u32; 2],
     /// 1/z, 1/length; 0 where there is no surface.
     inverse_depths: Vec<f64>,
@@ -34,22 +35,30 @@ impl FirstSurfaces {
         progress: &dyn Progress,
     ) -> Result<Self, Cancelled> {
         let longest = camera.width.max(camera.height);
-        let pixels_a_side = longest.div_ceil(LONGEST_SIDE).max(PIXELS_A_SIDE);
+        let pixels_a_side = longest.div_ceil(MOST_CELLS).max(PIXELS_A_SIDE);
         let size = [camera.width, camera.height].map(|side| side.div_ceil(pixels_a_side));
-        let pixels_per_cell = DVec2::new(camera.width.into(), camera.height.into())
-            / DVec2::new(size[0].into(), size[1].into());
-        let surface = |cell: u64| {
-            let [x, y] = [cell % u64::from(size[0]), cell / u64::from(size[0])];
-            let pixel = (DVec2::new(x as f64, y as f64) + 0.5) * pixels_per_cell;
+        let surface = |[x, y]: [u32; 2]| {
+            let pixel = DVec2::new(x.into(), y.into()) + 0.5;
             match tracer.first_hit(&Ray::pinhole(camera, DVec2::ZERO, pixel)) {
                 Some(hit) => (1.0 / hit.t, focus.at(hit.point).or_standard()),
                 None => (0.0, focus.at_infinity().or_standard()),
             }
         };
-        let rows = (0..u64::from(size[1])).into_par_iter().map(|row| {
+        let cell = |column: u32, row: u32| {
+            let pixels = |cell: u32, side: u32| {
+                let first = cell * pixels_a_side;
+                first..(first + pixels_a_side).min(side)
+            };
+            let rows = pixels(row, camera.height);
+            let all = rows.flat_map(|y| pixels(column, camera.width).map(move |x| surface([x, y])));
+            let mut by_depth: Vec<(f64, FocusOffset)> = all.collect();
+            let middle = by_depth.len() / 2;
+            // Of two in the middle the nearer one.
+            *by_depth.select_nth_unstable_by(middle, |a, b| a.0.total_cmp(&b.0)).1
+        };
+        let rows = (0..size[1]).into_par_iter().map(|row| {
             progress.check()?;
-            let columns = u64::from(size[0]);
-            Ok((row * columns..(row + 1) * columns).map(surface).collect::<Vec<_>>())
+            Ok((0..size[0]).map(|column| cell(column, row)).collect::<Vec<_>>())
         });
         let rows = rows.collect::<Result<Vec<_>, Cancelled>>()?;
         let (inverse_depths, focus) = rows.into_iter().flatten().unzip();
@@ -168,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn the_grid_of_a_large_picture_is_coarse_and_the_camera_widens_the_range() {
+    fn a_large_picture_has_large_cells_and_the_camera_widens_the_range() {
         let scene = quads();
         let focus = Focus::constant(scene.clone(), FocusOffset::STANDARD);
         let wide = Camera { width: 4001, height: 9, focus_distance: 1.0, ..camera() };
