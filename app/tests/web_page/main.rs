@@ -87,7 +87,7 @@ fn the_demo_as_a_page() {
         let number = |value: &Value| value.as_f64().unwrap();
         assert!(number(&stack["largest_step_px"]) <= 2.0, "{stack}");
         assert!(number(&stack["at_rest"]["lowest"]) >= 40.0, "{stack}");
-        assert!(number(&stack["half_way"]["lowest"]) >= 38.0, "{stack}");
+        assert!(number(&stack["midway"]["lowest"]) >= 38.0, "{stack}");
     }
 
     // Slices are what `render` draws, exactly.

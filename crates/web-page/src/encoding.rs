@@ -39,23 +39,23 @@ pub fn encode_picture(
     min_psnr: f64,
     first_quality: u8,
 ) -> Result<EncodedPicture, WebPageError> {
-    let (mut too_low, mut high_enough) = (MIN_QUALITY - 1, NEARLY_LOSSLESS);
+    let (mut failing, mut passing) = (MIN_QUALITY - 1, NEARLY_LOSSLESS);
     let (mut quality, mut step) = (first_quality.clamp(MIN_QUALITY, MAX_QUALITY), 4);
     let mut smallest = None;
-    while high_enough - too_low > 1 {
+    while passing - failing > 1 {
         let encoded = encode(picture, quality)?;
         if encoded.psnr >= min_psnr {
-            high_enough = quality;
+            passing = quality;
             smallest = Some(encoded);
         } else {
-            too_low = quality;
+            failing = quality;
         }
-        quality = if high_enough == NEARLY_LOSSLESS {
+        quality = if passing == NEARLY_LOSSLESS {
             quality.saturating_add(step).min(MAX_QUALITY)
-        } else if too_low < MIN_QUALITY {
+        } else if failing < MIN_QUALITY {
             quality.saturating_sub(step).max(MIN_QUALITY)
         } else {
-            too_low.midpoint(high_enough)
+            failing.midpoint(passing)
         };
         step = step.saturating_mul(2);
     }
@@ -125,7 +125,7 @@ mod tests {
         // Red and blue pixels side by side are lost where colours have half the resolution.
         let pixel = |k: u32| {
             let [bright, dark] = [150 + k % 64 + k * k / 7 % 13, k / 64].map(|level| level as u8);
-            if (k + k / 64) % 2 == 0 { [bright, dark, 0] } else { [0, dark, bright] }
+            if (k + k / 64).is_multiple_of(2) { [bright, dark, 0] } else { [0, dark, bright] }
         };
         let picture = ScreenPicture::new([64, 64], (0..64 * 64).map(pixel).collect()).unwrap();
         assert!(encode(&picture, MAX_QUALITY).unwrap().psnr < 20.0);

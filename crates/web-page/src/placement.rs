@@ -15,7 +15,7 @@ pub struct PlacementOptions {
     /// Minimum PSNR of each slice against the picture at its distance, dB.
     pub rest_psnr: f64,
     /// PSNR that a cross-fade half way between two slices should have against the picture there, dB.
-    pub half_way_psnr: f64,
+    pub midway_psnr: f64,
     /// How often a step may be halved. Cross-fades of steps this small are kept as they are.
     pub most_halvings: u32,
     /// Bytes that the slices may take together.
@@ -47,7 +47,7 @@ pub struct PlacedSlices {
     /// Of the slices at rest.
     pub at_rest: PsnrSummary,
     /// Of the cross-fades half way between slices; `None` for a single slice.
-    pub half_way: Option<PsnrSummary>,
+    pub midway: Option<PsnrSummary>,
 }
 
 impl PlacedSlices {
@@ -68,7 +68,8 @@ pub fn slice_distances(
     let mut distances = vec![range.farthest];
     for (from, to) in [(range.farthest, opening), (opening, range.nearest)] {
         let steps = ((to - from) / largest_step).ceil();
-        if !(steps + distances.len() as f64 <= most as f64) {
+        // Not a number for a step of 0 over nothing.
+        if steps.is_nan() || steps + distances.len() as f64 > most as f64 {
             return None;
         }
         let share = |step: usize| step as f64 / steps;
@@ -111,23 +112,23 @@ pub fn place_slices<E: From<WebPageError>>(
             placed.push(next.inverse_distance, encoded, options)?;
             continue;
         };
-        let half_way_distance = last_distance.midpoint(next.inverse_distance);
-        let half_way = draw(half_way_distance)?;
-        let psnr = last.half_way(&encoded.decoded).psnr(&half_way);
-        if psnr < options.half_way_psnr && next.halvings < options.most_halvings {
+        let midway_distance = last_distance.midpoint(next.inverse_distance);
+        let midway = draw(midway_distance)?;
+        let psnr = last.cross_fade(&encoded.decoded).psnr(&midway);
+        if psnr < options.midway_psnr && next.halvings < options.most_halvings {
             let halvings = next.halvings + 1;
-            let middle = Some(placed.encode(&half_way, options)?);
+            let middle = Some(placed.encode(&midway, options)?);
             pending.push(PendingSlice { encoded: Some(encoded), halvings, ..next });
-            pending.push(PendingSlice { inverse_distance: half_way_distance, encoded: middle, halvings });
+            pending.push(PendingSlice { inverse_distance: midway_distance, encoded: middle, halvings });
             continue;
         }
-        placed.half_way_psnrs.push(psnr);
+        placed.midway_psnrs.push(psnr);
         placed.push(next.inverse_distance, encoded, options)?;
     }
     let no_distance = WebPageError::Inconsistent("a stack has no slice");
     Ok(PlacedSlices {
         at_rest: PsnrSummary::of(&placed.rest_psnrs).ok_or(no_distance)?,
-        half_way: PsnrSummary::of(&placed.half_way_psnrs),
+        midway: PsnrSummary::of(&placed.midway_psnrs),
         slices: placed.slices,
     })
 }
@@ -138,7 +139,7 @@ struct Placed {
     slices: Vec<Slice>,
     bytes: u64,
     rest_psnrs: Vec<f64>,
-    half_way_psnrs: Vec<f64>,
+    midway_psnrs: Vec<f64>,
     /// Distance and picture of the last one.
     last: Option<(f64, ScreenPicture)>,
     last_quality: Option<u8>,
@@ -177,7 +178,7 @@ mod tests {
     use super::*;
 
     const OPTIONS: PlacementOptions =
-        PlacementOptions { rest_psnr: 45.0, half_way_psnr: 42.0, most_halvings: 5, most_bytes: u64::MAX };
+        PlacementOptions { rest_psnr: 45.0, midway_psnr: 42.0, most_halvings: 5, most_bytes: u64::MAX };
 
     /// A bar whose brightness follows a function of the distance.
     fn bar(level: f64) -> ScreenPicture {
@@ -210,13 +211,13 @@ mod tests {
         assert_eq!(distances[..2], [0.0, 0.5], "{distances:?}");
         assert!(distances.len() > 4, "{distances:?}");
         assert!(placed.at_rest.lowest >= 45.0 && placed.at_rest.mean >= placed.at_rest.lowest);
-        assert!(placed.half_way.unwrap().lowest >= 42.0);
+        assert!(placed.midway.unwrap().lowest >= 42.0);
         assert_eq!(placed.bytes(), placed.slices.iter().map(|slice| slice.webp.len() as u64).sum::<u64>());
 
         let few = PlacementOptions { most_halvings: 0, ..OPTIONS };
         let coarse = place_slices(&[0.0, 0.5, 1.0], &few, draw).unwrap();
         assert_eq!(coarse.slices.len(), 3);
-        assert!(coarse.half_way.unwrap().lowest < 42.0, "the error is measured, not assumed");
+        assert!(coarse.midway.unwrap().lowest < 42.0, "the error is measured, not assumed");
     }
 
     #[test]
@@ -228,6 +229,6 @@ mod tests {
         let stopped = place_slices(&distances, &OPTIONS, |_| Err(WebPageError::Size(0, 0)));
         assert_eq!(stopped.unwrap_err(), WebPageError::Size(0, 0));
         let single = place_slices(&[0.5], &OPTIONS, draw).unwrap();
-        assert_eq!((single.slices.len(), single.half_way), (1, None));
+        assert_eq!((single.slices.len(), single.midway), (1, None));
     }
 }

@@ -53,7 +53,7 @@ impl ScreenPicture {
     }
 
     /// What a browser shows half way through a cross-fade of two pictures of the same size.
-    pub(crate) fn half_way(&self, other: &Self) -> Self {
+    pub(crate) fn cross_fade(&self, other: &Self) -> Self {
         let mean = |a: u8, b: u8| u16::from(a).midpoint(u16::from(b) + 1) as u8;
         let mean_color = |(a, b): (&[u8; 3], &[u8; 3])| std::array::from_fn(|c| mean(a[c], b[c]));
         Self { size: self.size, pixels: self.pixels.iter().zip(&other.pixels).map(mean_color).collect() }
@@ -105,9 +105,9 @@ mod tests {
     }
 
     #[test]
-    fn half_way_lies_between() {
+    fn midway_lies_between() {
         assert_eq!(
-            grey(&[0, 255, 10, 255]).half_way(&grey(&[255, 255, 13, 254])),
+            grey(&[0, 255, 10, 255]).cross_fade(&grey(&[255, 255, 13, 254])),
             grey(&[128, 255, 12, 255])
         );
     }

@@ -38,7 +38,7 @@ impl WebPageOptions {
     const TOLERANCE_PX: f64 = 2.0;
     /// PSNR of slices at rest against exact pictures, and of cross-fades half way, dB.
     const REST_PSNR: f64 = 40.0;
-    pub(crate) const HALF_WAY_PSNR: f64 = 38.0;
+    pub(crate) const MIDWAY_PSNR: f64 = 38.0;
     /// What the tolerance may take from it, dB.
     const MARGIN_OF_TOLERANCE: f64 = 0.2;
 
@@ -46,7 +46,7 @@ impl WebPageOptions {
     pub(crate) fn placement(most_bytes: u64) -> PlacementOptions {
         PlacementOptions {
             rest_psnr: Self::REST_PSNR + Self::MARGIN_OF_TOLERANCE,
-            half_way_psnr: Self::HALF_WAY_PSNR + Self::MARGIN_OF_TOLERANCE,
+            midway_psnr: Self::MIDWAY_PSNR + Self::MARGIN_OF_TOLERANCE,
             most_halvings: 5,
             most_bytes,
         }

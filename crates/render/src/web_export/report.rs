@@ -20,14 +20,14 @@ pub struct WebPageReport {
 impl WebPageReport {
     /// What is not as good as it should be, one sentence each.
     pub fn warnings(&self) -> Vec<String> {
-        let wanted = WebPageOptions::HALF_WAY_PSNR;
+        let wanted = WebPageOptions::MIDWAY_PSNR;
         let poor = |stack: &StackReport| {
-            let half_way = stack.half_way.filter(|half_way| half_way.lowest < wanted)?;
+            let midway = stack.midway.filter(|midway| midway.lowest < wanted)?;
             Some(format!(
                 "{}: while the focus moves at {}, cross-fades are as far as {:.1} dB from the picture, not {wanted} dB (at rest it is right)",
                 self.files.first()?.display(),
                 stack.aperture,
-                half_way.lowest
+                midway.lowest
             ))
         };
         self.stacks.iter().filter_map(poor).collect()
@@ -50,7 +50,7 @@ pub struct StackReport {
     /// PSNR of the slices against the rendered pictures, 8-bit sRGB, dB.
     pub at_rest: PsnrSummary,
     /// The same of the cross-fades half way between neighbours; `None` for a single slice.
-    pub half_way: Option<PsnrSummary>,
+    pub midway: Option<PsnrSummary>,
 }
 
 impl StackReport {
@@ -63,7 +63,7 @@ impl StackReport {
             bytes: placed.bytes(),
             largest_step_px: px_per_kappa * steps.fold(0.0, f64::max),
             at_rest: placed.at_rest,
-            half_way: placed.half_way,
+            midway: placed.midway,
         }
     }
 }
@@ -76,8 +76,8 @@ impl fmt::Display for StackReport {
         write!(f, "{aperture}, {focusing}: {slices} slices, {megabytes:.2} MB, ")?;
         write!(f, "steps of at most {largest_step_px:.2} px of blur; ")?;
         write!(f, "at rest at least {:.1} dB (mean {:.1})", at_rest.lowest, at_rest.mean)?;
-        match self.half_way {
-            Some(half_way) => write!(f, ", half way {:.1} dB (mean {:.1})", half_way.lowest, half_way.mean),
+        match self.midway {
+            Some(midway) => write!(f, ", half way {:.1} dB (mean {:.1})", midway.lowest, midway.mean),
             None => Ok(()),
         }
     }
