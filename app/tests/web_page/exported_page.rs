@@ -2,7 +2,6 @@
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use image::{ImageFormat, RgbImage};
 use serde_json::Value;
 use std::path::Path;
 
@@ -16,7 +15,7 @@ pub struct ExportedPage {
 /// A slice.
 pub struct Shown {
     pub inverse_distance: f64,
-    pub picture: RgbImage,
+    pub webp: Vec<u8>,
 }
 
 impl ExportedPage {
@@ -39,11 +38,11 @@ impl ExportedPage {
         let stack = &self.data["stacks"][stack];
         let poster = self.html.split_once("id=\"poster\" src=\"data:image/webp;base64,").unwrap().1;
         let poster = poster.split_once('"').unwrap().0;
-        let webp = STANDARD.decode(stack["slices"][slice].as_str().unwrap_or(poster)).unwrap();
-        Shown {
-            inverse_distance: stack["inverseDistances"][slice].as_f64().unwrap(),
-            picture: image::load_from_memory_with_format(&webp, ImageFormat::WebP).unwrap().to_rgb8(),
-        }
+        let webp = match stack["slices"][slice].as_str() {
+            Some(text) => decode_base91(text),
+            None => STANDARD.decode(poster).unwrap(),
+        };
+        Shown { inverse_distance: stack["inverseDistances"][slice].as_f64().unwrap(), webp }
     }
 
     /// The slice nearest to a reciprocal distance.
@@ -54,10 +53,19 @@ impl ExportedPage {
     }
 }
 
-/// The PSNR of two pictures of one size, 8-bit sRGB, dB.
-pub fn psnr(a: &RgbImage, b: &RgbImage) -> f64 {
-    assert_eq!(a.dimensions(), b.dimensions());
-    let squares = a.iter().zip(b.iter()).map(|(a, b)| f64::from(a.abs_diff(*b)).powi(2));
-    let mean_square = squares.sum::<f64>() / a.as_raw().len() as f64;
-    numerics::psnr(mean_square / 255f64.powi(2))
+/// Bytes of text in base 91: 13 bits in two characters, the lowest first.
+fn decode_base91(text: &str) -> Vec<u8> {
+    let digits: Vec<u8> = (b'!'..=b'~').filter(|c| !b"\"<\\".contains(c)).collect();
+    let number = |c: &u8| digits.iter().position(|digit| digit == c).unwrap() as u32;
+    let (mut bytes, mut bits, mut count) = (Vec::new(), 0, 0);
+    for pair in text.as_bytes().chunks(2) {
+        bits |= pair.iter().rev().fold(0, |value, c| 91 * value + number(c)) << count;
+        count += if pair.len() == 2 { 13 } else { 6 };
+        while count >= 8 {
+            bytes.push(bits as u8);
+            bits >>= 8;
+            count -= 8;
+        }
+    }
+    bytes
 }

@@ -1,5 +1,5 @@
 //! Small numerical routines that several crates share: order statistics, robust scale, Cholesky solves, luminance,
-//! smooth steps, PSNR.
+//! smooth steps, PSNR, the sRGB curve.
 //!
 //! Results are bitwise reproducible. The order of the floating-point operations is part of each function's contract;
 //! values are compared by [`f64::total_cmp`], so that NaN and signed zeros have a place, too.
@@ -23,6 +23,7 @@ mod psnr;
 mod real;
 mod robust_scale;
 mod smoothstep;
+mod srgb;
 
 pub use cholesky::{back_substitute, decompose_positive, forward_substitute, solve_positive};
 pub use luminance::{REC709_LUMINANCE, luminance};
@@ -33,3 +34,4 @@ pub use psnr::psnr;
 pub use real::Real;
 pub use robust_scale::{MAD_OF_NORMAL, MAD_SCALE, scaled_mad};
 pub use smoothstep::{smooth_fraction, smoothstep};
+pub use srgb::{linear_from_srgb, srgb_from_linear};

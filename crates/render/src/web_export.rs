@@ -9,7 +9,9 @@ mod estimate;
 mod export;
 mod first_surfaces;
 mod options;
+mod page_error;
 mod report;
+mod stacks;
 
 pub use estimate::{WebPageEstimate, estimate_web_page};
 pub use export::export_web_page;

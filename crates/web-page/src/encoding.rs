@@ -40,7 +40,7 @@ pub fn encode_picture(
     first_quality: u8,
 ) -> Result<EncodedPicture, WebPageError> {
     let (mut failing, mut passing) = (MIN_QUALITY - 1, NEARLY_LOSSLESS);
-    let (mut quality, mut step) = (first_quality.clamp(MIN_QUALITY, MAX_QUALITY), 4);
+    let (mut quality, mut step) = (first_quality.clamp(MIN_QUALITY, MAX_QUALITY), 1);
     let mut smallest = None;
     while passing - failing > 1 {
         let encoded = encode(picture, quality)?;
@@ -115,7 +115,9 @@ mod tests {
             assert_eq!(encoded.psnr, encoded.decoded.psnr(&picture));
             for first_quality in [0, 20, 100, 255] {
                 let again = encode_picture(&picture, min_psnr, first_quality).unwrap();
-                assert!(again.psnr >= min_psnr && again.quality.abs_diff(encoded.quality) <= 2);
+                // PSNR does not rise with every step of quality.
+                let larger = again.webp.len() as f64 / encoded.webp.len() as f64;
+                assert!(again.psnr >= min_psnr && (0.85..1.15).contains(&larger), "{larger}");
             }
         }
     }

@@ -14,6 +14,7 @@
 //!
 //! The crate draws nothing itself: pictures come from a function, already encoded for the screen.
 
+mod base91;
 mod encoding;
 mod error;
 mod escaping;

@@ -1,5 +1,6 @@
 //! The page: its data, and how it is written.
 
+use crate::base91::encode_base91;
 use crate::encoding::encode_picture;
 use crate::error::WebPageError;
 use crate::escaping::{escape_html, script_value};
@@ -12,8 +13,9 @@ use serde::Serialize;
 use std::borrow::Cow;
 
 /// The parts of the viewer, in the order in which they are joined to one script.
-const VIEWER: [&str; 10] = [
+const VIEWER: [&str; 11] = [
     include_str!("viewer/page_data.js"),
+    include_str!("viewer/base91.js"),
     include_str!("viewer/slice_cache.js"),
     include_str!("viewer/pixel_map.js"),
     include_str!("viewer/rack.js"),
@@ -154,7 +156,7 @@ struct StackData<'a> {
     aperture: &'a str,
     is_painted: bool,
     inverse_distances: Vec<f64>,
-    /// In base64; the opening slice is `null`, since the document shows it before the script runs.
+    /// In base 91; the opening slice is `null`, since the document shows it before the script runs.
     slices: Vec<Option<String>>,
 }
 
@@ -222,7 +224,7 @@ impl WebPage {
     }
 
     fn data(&self) -> Result<PageData<'_>, WebPageError> {
-        let packed = |map: &PixelMap| map.packed().map(|bytes| STANDARD.encode(bytes));
+        let packed = |map: &PixelMap| map.packed().map(|bytes| encode_base91(&bytes));
         let stack_data = |(index, stack)| self.stack_data(index, stack);
         Ok(PageData {
             title: self.title(),
@@ -247,7 +249,7 @@ impl WebPage {
     fn stack_data<'a>(&self, index: usize, stack: &'a SliceStack) -> StackData<'a> {
         let picture = |(slice_index, slice): (usize, &Slice)| {
             let is_opening = self.opening == OpeningSlice { stack: index, slice: slice_index };
-            (!is_opening).then(|| STANDARD.encode(&slice.webp))
+            (!is_opening).then(|| encode_base91(&slice.webp))
         };
         StackData {
             aperture: &stack.aperture,
@@ -341,9 +343,12 @@ mod tests {
     #[test]
     fn a_slice_is_stored_once_and_links_lead_nowhere() {
         let html = page().to_html().unwrap();
-        for slice in &page().stacks[0].slices {
-            assert_eq!(html.matches(&STANDARD.encode(&slice.webp)).count(), 1);
+        let page = page();
+        let [first, opening, last] = [0, 1, 2].map(|k| &page.stacks[0].slices[k].webp);
+        for slice in [encode_base91(first), STANDARD.encode(opening), encode_base91(last)] {
+            assert_eq!(html.matches(&slice).count(), 1);
         }
+        assert!(!html.contains(&encode_base91(opening)));
         assert!(html.contains("<title>Fox &amp; &lt;owl&gt;</title>"));
         assert!(html.contains(
             "<span class=\"title\">Fox &amp; &lt;owl&gt;</span><span class=\"licence\">CC0</span></footer>"

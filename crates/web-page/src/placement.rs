@@ -1,7 +1,8 @@
 //! Where the slices of a stack are placed: where the error is.
 //!
-//! Slices are at most a given step apart. Half way between two of them, their cross-fade is compared with the picture there; where it is
-//! not good enough, that picture becomes a slice, and both halves are examined in turn.
+//! Whatever can be sharp is nearly so at some slice: across distances at which nothing is, there are none yet. Half way between two
+//! slices, their cross-fade is compared with the picture there; where it is not good enough, that picture becomes a slice, and both halves are
+//! examined in turn.
 
 use crate::encoding::{EncodedPicture, USUAL_QUALITY, encode_picture};
 use crate::error::WebPageError;
@@ -57,28 +58,32 @@ impl PlacedSlices {
     }
 }
 
-/// Reciprocal distances at most `largest_step` (> 0, 1/length) apart that include the ends of `range` and `opening`, ascending. `None` if
-/// they are more than `most`.
+/// Reciprocal distances, ascending, of the slices that a stack needs before any error is measured: the ends of `range`, `opening` (in
+/// it), and as few others as bring each of `sharp`, the ascending distances in the range at which something is sharp, within `reach` (> 0,
+/// 1/length) of one. `None` if they are more than `most`.
 pub fn slice_distances(
+    sharp: &[f64],
     range: DistanceRange,
     opening: f64,
-    largest_step: f64,
+    reach: f64,
     most: usize,
 ) -> Option<Vec<f64>> {
     let mut distances = vec![range.farthest];
-    for (from, to) in [(range.farthest, opening), (opening, range.nearest)] {
-        let steps = ((to - from) / largest_step).ceil();
-        // Not a number for a step of 0 over nothing.
-        if steps.is_nan() || steps + distances.len() as f64 > most as f64 {
-            return None;
+    let mut uncovered = sharp.iter().copied().peekable();
+    for end in [opening, range.nearest] {
+        while let Some(distance) = uncovered.next_if(|&distance| distance + reach < end) {
+            if distances.last().is_none_or(|last| distance > last + reach) {
+                distances.push(distance + reach);
+            }
+            if distances.len() > most {
+                return None;
+            }
         }
-        let share = |step: usize| step as f64 / steps;
-        distances.extend((1..steps as usize).map(|step| from + (to - from) * share(step)));
-        if to > from {
-            distances.push(to);
+        if distances.last() != Some(&end) {
+            distances.push(end);
         }
     }
-    Some(distances)
+    (distances.len() <= most).then_some(distances)
 }
 
 /// A slice that is still to be measured against its neighbour.
@@ -187,17 +192,29 @@ mod tests {
     }
 
     #[test]
-    fn distances_hold_the_ends_and_the_opening() {
+    fn whatever_is_sharp_is_within_reach_of_a_slice() {
         let range = DistanceRange { farthest: 0.0, nearest: 1.0 };
-        let distances = slice_distances(range, 0.3, 0.25, 100).unwrap();
-        assert_eq!(distances.first().copied().zip(distances.last().copied()), Some((0.0, 1.0)));
-        assert!(distances.contains(&0.3) && distances.len() == 6, "{distances:?}");
-        assert!(distances.windows(2).all(|pair| pair[0] < pair[1] && pair[1] - pair[0] <= 0.25));
-        assert_eq!(slice_distances(range, 0.0, 0.25, 100).unwrap(), [0.0, 0.25, 0.5, 0.75, 1.0]);
-        assert_eq!(slice_distances(range, 0.0, 0.25, 4), None);
-        assert_eq!(slice_distances(range, 0.5, 0.0, 1000), None, "a step of 0");
+        let sharp: Vec<f64> =
+            (0..=1000).map(|k| f64::from(k) / 1000.0).filter(|u| !(0.4..0.8).contains(u)).collect();
+        let (opening, reach) = (0.3, 0.05);
+        let distances = slice_distances(&sharp, range, opening, reach, 100).unwrap();
+        assert!(distances.windows(2).all(|pair| pair[0] < pair[1]), "{distances:?}");
+        assert!([0.0, opening, 1.0].iter().all(|needed| distances.contains(needed)), "{distances:?}");
+        let miss = |u: &f64| distances.iter().map(|d| (d - u).abs()).fold(f64::INFINITY, f64::min);
+        assert!(sharp.iter().map(miss).fold(0.0, f64::max) <= reach + 1e-12, "{distances:?}");
+        let in_gap = distances.iter().filter(|d| (0.46..0.8).contains(*d)).count();
+        assert!(in_gap == 0 && distances.len() <= 9, "{distances:?}");
+        assert_eq!(slice_distances(&sharp, range, opening, reach, 5), None);
+        assert_eq!(slice_distances(&sharp, range, opening, 1e-300, 100), None);
+    }
+
+    #[test]
+    fn a_flat_range_has_one_slice_and_a_pinhole_three() {
         let flat = DistanceRange { farthest: 0.5, nearest: 0.5 };
-        assert_eq!(slice_distances(flat, 0.5, 0.25, 100).unwrap(), [0.5]);
+        assert_eq!(slice_distances(&[0.5; 7], flat, 0.5, 0.1, 100).unwrap(), [0.5]);
+        let range = DistanceRange { farthest: 0.0, nearest: 1.0 };
+        assert_eq!(slice_distances(&[0.1, 0.7], range, 0.2, f64::INFINITY, 100).unwrap(), [0.0, 0.2, 1.0]);
+        assert_eq!(slice_distances(&[], range, 1.0, 0.1, 100).unwrap(), [0.0, 1.0]);
     }
 
     #[test]

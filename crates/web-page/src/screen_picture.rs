@@ -1,6 +1,12 @@
 //! Pictures encoded for the screen, and their differences.
 
 use crate::error::{MAX_SIDE_PX, WebPageError};
+use std::sync::LazyLock;
+
+/// The linear light of each level, in [0, 1].
+static LIGHT: LazyLock<[f64; 256]> = LazyLock::new(|| {
+    std::array::from_fn(|level| f64::from(numerics::linear_from_srgb(level as f64 / 255.0)))
+});
 
 /// A picture encoded for the screen: 8-bit sRGB, row by row from the top.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -44,12 +50,13 @@ impl ScreenPicture {
         &self.pixels
     }
 
-    /// The peak signal-to-noise ratio against a picture of the same size, dB; 200 for equal pictures.
+    /// The peak signal-to-noise ratio against a picture of the same size, dB, of linear light as elsewhere in the program; 200 for equal
+    /// pictures.
     pub(crate) fn psnr(&self, reference: &Self) -> f64 {
+        let light = &*LIGHT;
         let pairs = self.pixels.as_flattened().iter().zip(reference.pixels.as_flattened());
-        let squares: u64 = pairs.map(|(a, b)| u64::from(a.abs_diff(*b)).pow(2)).sum();
-        let mean_square = squares as f64 / (3 * self.pixels.len()) as f64;
-        numerics::psnr(mean_square / f64::from(u8::MAX).powi(2))
+        let squares = pairs.map(|(&a, &b)| (light[usize::from(a)] - light[usize::from(b)]).powi(2));
+        numerics::psnr(squares.sum::<f64>() / (3 * self.pixels.len()) as f64)
     }
 
     /// What a browser shows half way through a cross-fade of two pictures of the same size.
@@ -97,9 +104,10 @@ mod tests {
     }
 
     #[test]
-    fn a_difference_of_one_step_everywhere_has_48_decibels() {
-        let (a, b) = (grey(&[10, 200, 7]), grey(&[11, 199, 8]));
-        assert!((a.psnr(&b) - 20.0 * 255f64.log10()).abs() < 1e-9, "{}", a.psnr(&b));
+    fn differences_are_those_of_light() {
+        // Levels 188 and 255 are the light 0.5029 and 1.
+        let (a, b) = (grey(&[188, 255]), grey(&[255, 188]));
+        assert!((a.psnr(&b) + 20.0 * (1.0 - 0.5029f64).log10()).abs() < 1e-3, "{}", a.psnr(&b));
         assert_eq!(a.psnr(&a), 200.0);
         assert_eq!(grey(&[0]).psnr(&grey(&[255])), 0.0);
     }

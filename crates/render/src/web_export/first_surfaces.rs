@@ -79,29 +79,38 @@ impl FirstSurfaces {
 
     /// Codes of the distances that make the surfaces sharp for the ordinary lens.
     pub fn sharp_distances(&self, range: DistanceRange) -> PixelMap {
-        let codes = self.inverse_depths.iter().map(|&inverse| range.code(Some(inverse)));
-        PixelMap { size: self.size, codes: codes.collect() }
+        self.map(|inverse_depth, _| range.code(Some(inverse_depth)))
     }
 
     /// Codes of the distances that make them sharp as painted, and of the paint.
     pub fn paint_maps(&self, range: DistanceRange, optics: &Optics) -> PaintMaps {
-        let map = |code: &dyn Fn(f64, FocusOffset) -> u8| {
-            let surfaces = self.inverse_depths.iter().zip(&self.focus);
-            PixelMap {
-                size: self.size,
-                codes: surfaces.map(|(&inverse, &focus)| code(inverse, focus)).collect(),
-            }
-        };
         PaintMaps {
-            sharp_distances: map(&|inverse_depth, focus| {
+            sharp_distances: self.map(|inverse_depth, focus| {
                 range.code(optics.sharp_inverse_focus_distance(inverse_depth, focus))
             }),
-            paint: map(&|_, focus| {
+            paint: self.map(|_, focus| {
                 // What the paint adds to the defocus at the anchor.
                 let circle_px = 2.0 * optics.splat_radius_px((focus.t - 1.0) / optics.image_distance);
                 paint_code((!focus.is_standard()).then(|| blur_scale::position(circle_px)))
             }),
         }
+    }
+
+    /// The distances in `range` that make some surface sharp, as painted or for the ordinary lens, ascending.
+    pub fn all_sharp_distances(&self, range: DistanceRange, optics: &Optics, is_painted: bool) -> Vec<f64> {
+        let surfaces = self.inverse_depths.iter().zip(&self.focus);
+        let sharp = surfaces.filter_map(|(&inverse_depth, &focus)| {
+            let focus = if is_painted { focus } else { FocusOffset::STANDARD };
+            optics.sharp_inverse_focus_distance(inverse_depth, focus)
+        });
+        let mut all: Vec<f64> = sharp.filter(|d| (range.farthest..=range.nearest).contains(d)).collect();
+        all.sort_unstable_by(f64::total_cmp);
+        all
+    }
+
+    fn map(&self, code: impl Fn(f64, FocusOffset) -> u8) -> PixelMap {
+        let surfaces = self.inverse_depths.iter().zip(&self.focus);
+        PixelMap { size: self.size, codes: surfaces.map(|(&inverse, &focus)| code(inverse, focus)).collect() }
     }
 }
 
@@ -160,6 +169,8 @@ mod tests {
         let sharp = &maps.sharp_distances;
         assert_eq!((code(sharp, CARD.0, CARD.1), code(sharp, WALL.0, WALL.1)), (1, 1));
         assert!(surfaces.is_painted());
+        let all = |is_painted| surfaces.all_sharp_distances(range, &optics, is_painted);
+        assert!(all(false).iter().any(|d| (d - 0.5).abs() < 1e-9) && all(true).iter().all(|d| *d < 0.26));
         let (blurred, unpainted) = (code(&maps.paint, CARD.0, CARD.1), code(&maps.paint, WALL.0, WALL.1));
         assert!(blurred > 128 && unpainted == 0, "{blurred} {unpainted}: t above 1 blurs as far");
     }

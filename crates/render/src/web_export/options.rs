@@ -29,18 +29,19 @@ impl WebPageOptions {
     /// The bytes that a page may have unless larger ones are allowed: phones run out of memory on more.
     pub const USUAL_BYTES: u64 = 30_000_000;
     /// The slices that a stack may have unless larger pages are allowed.
-    pub(crate) const USUAL_SLICES: usize = 1000;
+    const USUAL_SLICES: usize = 1000;
     /// The slices that a stack may have at all.
-    pub(crate) const MOST_SLICES: usize = 100_000;
-    /// The radius by which the blur of anything unpainted may differ between two slices, px.
-    pub(crate) const LARGEST_STEP_PX: f64 = 2.0;
+    const MOST_SLICES: usize = 100_000;
+    /// The radius of the blur that may remain at the slice that shows a surface best, px: neighbouring slices are two of it apart, where
+    /// anything is sharp between them.
+    pub(crate) const LARGEST_BLUR_PX: f64 = 1.0;
     /// The tolerance of the sums, px: many times as fast as exact ones, which are at 56 dB from them (the demo, 1280 × 720).
     const TOLERANCE_PX: f64 = 2.0;
-    /// PSNR of slices at rest against exact pictures, and of cross-fades half way, dB.
+    /// PSNR, as `compare` measures it, of slices at rest against exact pictures, and of cross-fades half way, dB.
     const REST_PSNR: f64 = 40.0;
     pub(crate) const MIDWAY_PSNR: f64 = 38.0;
     /// What the tolerance may take from it, dB.
-    const MARGIN_OF_TOLERANCE: f64 = 0.2;
+    const MARGIN_OF_TOLERANCE: f64 = 0.1;
 
     /// How good the slices are to be; together they may take `most_bytes`.
     pub(crate) fn placement(most_bytes: u64) -> PlacementOptions {
@@ -50,6 +51,10 @@ impl WebPageOptions {
             most_halvings: 5,
             most_bytes,
         }
+    }
+
+    pub(crate) fn most_slices(&self) -> usize {
+        if self.is_large_allowed { Self::MOST_SLICES } else { Self::USUAL_SLICES }
     }
 
     pub(crate) fn most_bytes(&self) -> u64 {

@@ -45,23 +45,37 @@ pub struct StackReport {
     pub slices: usize,
     /// Bytes of their pictures, before they are encoded as text.
     pub bytes: u64,
-    /// The largest difference in blur radius between two neighbours, of what is not painted, px.
-    pub largest_step_px: f64,
-    /// PSNR of the slices against the rendered pictures, 8-bit sRGB, dB.
+    /// The radius of the blur that remains at the slice that shows a surface best, px: the largest of all surfaces that some distance makes
+    /// sharp.
+    pub largest_blur_px: f64,
+    /// PSNR of the slices against the rendered pictures, dB, as `compare` measures it.
     pub at_rest: PsnrSummary,
     /// The same of the cross-fades half way between neighbours; `None` for a single slice.
     pub midway: Option<PsnrSummary>,
 }
 
 impl StackReport {
-    pub(super) fn new(aperture: &str, painted: bool, placed: &PlacedSlices, px_per_kappa: f64) -> Self {
-        let steps = placed.slices.windows(2).map(|pair| pair[1].inverse_distance - pair[0].inverse_distance);
+    /// `sharp` are the reciprocal distances that make some surface sharp, at which the blur grows by `px_per_kappa`.
+    pub(super) fn new(
+        aperture: &str,
+        painted: bool,
+        placed: &PlacedSlices,
+        sharp: &[f64],
+        px_per_kappa: f64,
+    ) -> Self {
+        let slices: Vec<f64> = placed.slices.iter().map(|slice| slice.inverse_distance).collect();
+        let blur_px = |&distance: &f64| {
+            let next = slices.partition_point(|&slice| slice < distance);
+            let neighbours = &slices[next.saturating_sub(1)..slices.len().min(next + 1)];
+            let apart = neighbours.iter().map(|slice| (slice - distance).abs());
+            px_per_kappa * apart.fold(f64::INFINITY, f64::min)
+        };
         Self {
             aperture: aperture.into(),
             painted,
             slices: placed.slices.len(),
             bytes: placed.bytes(),
-            largest_step_px: px_per_kappa * steps.fold(0.0, f64::max),
+            largest_blur_px: sharp.iter().map(blur_px).fold(0.0, f64::max),
             at_rest: placed.at_rest,
             midway: placed.midway,
         }
@@ -71,10 +85,10 @@ impl StackReport {
 impl fmt::Display for StackReport {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let focusing = if self.painted { "painted" } else { "ordinary focus" };
-        let Self { aperture, slices, largest_step_px, at_rest, .. } = self;
+        let Self { aperture, slices, largest_blur_px, at_rest, .. } = self;
         let megabytes = self.bytes as f64 / 1e6;
         write!(f, "{aperture}, {focusing}: {slices} slices, {megabytes:.2} MB, ")?;
-        write!(f, "steps of at most {largest_step_px:.2} px of blur; ")?;
+        write!(f, "surfaces at most {largest_blur_px:.2} px from sharp; ")?;
         write!(f, "at rest at least {:.1} dB (mean {:.1})", at_rest.lowest, at_rest.mean)?;
         match self.midway {
             Some(midway) => write!(f, ", half way {:.1} dB (mean {:.1})", midway.lowest, midway.mean),

@@ -5,7 +5,7 @@
  * @property {string} aperture
  * @property {boolean} isPainted Whether it is focused as painted, or by the ordinary lens.
  * @property {number[]} inverseDistances Ascending: from the farthest slice to the nearest.
- * @property {(string | null)[]} slices WebP in base64; `null` for the one that the poster holds.
+ * @property {(string | null)[]} slices WebP in base 91; `null` for the one that the poster shows.
  *
  * @typedef {object} MapData Packed maps of one byte a pixel (`PixelMap`).
  * @property {[number, number]} size Columns and rows.
@@ -35,17 +35,6 @@ function element(id, type) {
   const found = document.getElementById(id);
   if (!(found instanceof type)) throw new Error(`the page has no ${id}`);
   return /** @type {InstanceType<T>} */ (found);
-}
-
-/**
- * @param {string} base64
- * @returns {Uint8Array}
- */
-function decodeBase64(base64) {
-  const text = atob(base64);
-  const bytes = new Uint8Array(text.length);
-  for (let k = 0; k < text.length; k++) bytes[k] = text.charCodeAt(k);
-  return bytes;
 }
 
 /**

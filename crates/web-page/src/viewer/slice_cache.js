@@ -5,7 +5,7 @@ const MOST_DECODED = 8;
 class SliceCache {
   /**
    * @param {StackData[]} stacks
-   * @param {string} poster The slice that the page shows before the script runs, in base64.
+   * @param {HTMLImageElement} poster The slice that the page shows before the script runs.
    */
   constructor(stacks, poster) {
     this.stacks = stacks;
@@ -27,11 +27,20 @@ class SliceCache {
     if (picture) {
       this.decoded.delete(key);
     } else {
-      const base64 = this.stacks[stack].slices[slice] ?? this.poster;
-      picture = this.makeRoom().then(() => createImageBitmap(new Blob([decodeBase64(base64)], { type: "image/webp" })));
+      picture = this.makeRoom().then(() => this.decode(this.stacks[stack].slices[slice]));
     }
     this.decoded.set(key, picture);
     return picture;
+  }
+
+  /**
+   * @param {string | null} text `null`: the poster.
+   * @returns {Promise<ImageBitmap>}
+   */
+  async decode(text) {
+    if (text !== null) return createImageBitmap(new Blob([decodeBase91(text)], { type: "image/webp" }));
+    await this.poster.decode();
+    return createImageBitmap(this.poster);
   }
 
   /** Closes what was not used for longest. */

@@ -15,7 +15,7 @@ function showPage(page) {
     controls.update();
     draw();
   });
-  const slices = new SliceCache(page.stacks, poster.src.slice(poster.src.indexOf(",") + 1));
+  const slices = new SliceCache(page.stacks, poster);
   const screen = new PictureScreen(canvas, slices, rack, () => {
     poster.remove();
     const { aperture, isPainted } = page.stacks[rack.stack];
