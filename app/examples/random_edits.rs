@@ -171,7 +171,7 @@ fn state(session: &Session) -> State {
         parts.push(("a layer's paint", map_hash(&layer.map)));
         parts.push(("a layer's settings", text_hash(&format!("{settings:?}"))));
     }
-    parts.push(("the camera", text_hash(&format!("{:?}", document.camera))));
+    parts.push(("the camera", text_hash(&format!("{:?}", document.held_camera()))));
     parts.push(("the lens's keys", text_hash(&format!("{:?}", document.lens_motion))));
     parts.push(("the variant", text_hash(&format!("{:?}", document.scene().variant))));
     parts.push(("the depth's repairs", text_hash(&format!("{:?}", document.depth_strokes))));

@@ -1,6 +1,7 @@
 //! `focus-brush`: the window and the command line.
 
 mod headless;
+mod heap;
 mod out_of_memory;
 
 use std::process::ExitCode;
@@ -9,6 +10,7 @@ use std::process::ExitCode;
 static ALLOCATOR: out_of_memory::EndingAllocator = out_of_memory::EndingAllocator;
 
 fn main() -> ExitCode {
+    heap::configure();
     // Unwrapping runs its engines in child processes of this program.
     atlas::child::run_if_child();
     headless::restart_if_headless();

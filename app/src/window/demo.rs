@@ -31,7 +31,7 @@ mod tests {
         let atlas = input.atlas(&Default::default(), &Unwatched).unwrap();
         let stage = Stage::new(input.lit_scene().unwrap(), atlas, &Unwatched).unwrap();
         let map = input.project.unwrap().focus_map.expect("it is painted");
-        let sharp = stage.canvas.texels().iter().filter(|t| map.at(t.x, t.y) == lens::FocusOffset::SHARP);
+        let sharp = stage.canvas.texels().filter(|t| map.at(t.x, t.y) == lens::FocusOffset::SHARP);
         let share = sharp.count() as f64 / stage.canvas.texels().len() as f64;
         assert!(share > 0.01 && share < 0.9, "some of it is painted sharp: {share}");
     }

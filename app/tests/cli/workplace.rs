@@ -79,7 +79,7 @@ impl Workplace {
         let map = focus.bake(&atlas.texel_map(&loaded));
         let defaults = document::shot_camera_from(&loaded.cameras[0], &Default::default());
         let camera = project::read_camera(&self.path("camera.json"), &defaults).unwrap();
-        let cameras = vec![NamedCamera { name: "shot".into(), camera }];
+        let cameras = vec![NamedCamera { name: "shot".into(), camera, focus_hold: None }];
         let file = self.path(name);
         let new = ProjectFile::new(&scene, cameras).unwrap();
         let painted = ProjectFile { atlas: Some(atlas.to_bytes()), focus_map: Some(map), ..new };

@@ -151,7 +151,7 @@ fn selections_by_object_facing_and_depth_and_a_mask_of_them() {
     let selected = |person: &Person| {
         let document = person.document();
         let selection = document.selection.as_ref().expect("something is selected");
-        let texels = document.stage.canvas.texels().iter().enumerate();
+        let texels = document.stage.canvas.texels().enumerate();
         let depths: Vec<f64> =
             texels.filter(|(k, _)| selection.contains(*k)).map(|(_, texel)| -texel.position.z).collect();
         depths
@@ -174,7 +174,7 @@ fn selections_by_object_facing_and_depth_and_a_mask_of_them() {
     person.chooses(CommandId::MaskFromSelection);
     person.window.state_mut().apply(Command::Select(project::SelectionShape::Everything, Default::default()));
     let layer = &person.document().layers.active().map;
-    let masked = person.document().stage.canvas.texels().iter().filter(|t| layer.mask_at(t.x, t.y) == 1.0);
+    let masked = person.document().stage.canvas.texels().filter(|t| layer.mask_at(t.x, t.y) == 1.0);
     assert_eq!(masked.count(), on_card.len());
     assert!(person.complaints().is_empty(), "{:?}", person.complaints());
 }

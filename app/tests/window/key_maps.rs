@@ -89,6 +89,31 @@ fn each_map_has_its_keys_and_its_mouse() {
 }
 
 #[test]
+fn the_same_drags_move_the_camera_in_the_picture_and_space_the_picture() {
+    let (mut person, _folder) = opened();
+    let rect = person.picture_rect();
+    let path = [at(rect, 0.4, 0.5), at(rect, 0.5, 0.55)];
+    let start = person.document().held_camera();
+    person.drags_with(PointerButton::Middle, Modifiers::NONE, false, path);
+    let turned = person.document().held_camera();
+    assert_ne!(turned.camera.camera_to_world, start.camera.camera_to_world);
+    assert_eq!(turned.focus_hold, start.focus_hold, "the focus stays where it was");
+    person.drags_with(PointerButton::Middle, Modifiers::COMMAND, false, path);
+    let near = person.document().held_camera();
+    assert_ne!(near.camera.position(), turned.camera.position());
+    person.presses(Modifiers::COMMAND, Key::Z);
+    assert_eq!(person.document().held_camera(), turned, "a drag is one step");
+    person.presses(Modifiers::COMMAND, Key::Z);
+    assert_eq!(person.document().held_camera(), start);
+    person.drags_with(PointerButton::Primary, Modifiers::NONE, true, path);
+    assert_eq!(person.document().held_camera(), start);
+    assert_ne!(person.picture_rect(), rect, "Space slides the picture");
+    person.runs(CommandId::PictureFit);
+    person.runs(CommandId::BookmarkCamera);
+    assert_eq!(person.document().bookmarks().count(), 1);
+}
+
+#[test]
 fn the_key_map_is_kept_between_starts() {
     let (mut person, _folder) = opened();
     person.runs(CommandId::KeysKrita);

@@ -77,7 +77,7 @@ fn the_atlas_is_painted_on_in_2d() {
     person.window.run_steps(30);
     // The screen position of a texel of the card.
     let document = person.document();
-    let card = document.stage.canvas.texels().iter().find(|texel| texel.position.z > -3.0).unwrap();
+    let card = document.stage.canvas.texels().find(|texel| texel.position.z > -3.0).unwrap();
     let chart = &document.stage.atlas.charts[card.chart as usize];
     let middle = [0, 1].map(|axis| (chart.bounds[axis].start + chart.bounds[axis].end) as f32 / 2.0);
     let [width, height] = document.map.size().map(|side| side as f32);

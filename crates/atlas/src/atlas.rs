@@ -75,6 +75,11 @@ impl Atlas {
         Self { width, height, corners, chart_of, charts, hash, density, notes: Vec::new() }
     }
 
+    /// The memory that it takes, in bytes.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&*self.corners) + size_of_val(&*self.chart_of) + size_of_val(&*self.charts)
+    }
+
     /// The position of a surface point in the atlas, in texels from the upper left corner.
     pub fn position_of(&self, point: SurfacePoint) -> DVec2 {
         let [a, b, c] = self.corners[point.triangle as usize].map(Vec2::as_dvec2);

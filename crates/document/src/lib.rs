@@ -13,7 +13,7 @@
 //! | `open_document`, `undo` | the document and its undo history |
 //! | `editing` | edits of paint, as undo steps that can be recorded and replayed |
 //! | `scene_reload`, `paint_transfer` | paint on a scene whose file has changed |
-//! | `picking`, `camera_path`, `scene_camera`, `camera_edit` | rays and cameras |
+//! | `picking`, `camera_path`, `scene_camera`, `camera_edit`, `focus_hold`, `bookmarks` | rays and cameras |
 //!
 //! To support another kind of file, add a variant to [`InputKind`]. Nothing here starts a thread of its own or knows of rendered pictures.
 //!
@@ -48,10 +48,12 @@
 //! ```
 
 mod adjustment_view;
+mod bookmarks;
 mod camera_edit;
 mod camera_path;
 mod editing;
 mod error;
+mod focus_hold;
 mod input;
 mod open_document;
 mod paint_transfer;
@@ -63,6 +65,7 @@ mod stage;
 mod undo;
 
 pub use adjustment_view::AdjustmentView;
+pub use bookmarks::BookmarkEdit;
 pub use camera_edit::CameraEdit;
 pub use camera_path::camera_between;
 pub use editing::{
@@ -70,6 +73,7 @@ pub use editing::{
     rectangle_outline, replay,
 };
 pub use error::{DocumentError, IoFault, file_name};
+pub use focus_hold::HeldCamera;
 pub use input::{
     CameraChoice, DepthPolarityRequest, DisparityError, Input, InputKind, VariantChoice,
     camera_from_photograph, find_photograph, is_capture,

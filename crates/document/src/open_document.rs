@@ -2,6 +2,7 @@
 
 use crate::adjustment_view::AdjustmentView;
 use crate::error::{DocumentError, file_name};
+use crate::focus_hold::HeldCamera;
 use crate::input::{CameraChoice, Input, InputKind, VariantChoice, camera_from_photograph, prefix_with_path};
 use crate::paint_transfer::TransferredPaint;
 use crate::picking::SurfaceHit;
@@ -15,7 +16,7 @@ use focus::{
 };
 use lens::{Camera, Exposure, FocusOffset};
 use light::{Resources, Steps};
-use project::{CaptureChoices, FocusFile, NamedCamera, ProjectFile, TexelSet, WorldFile};
+use project::{CaptureChoices, FocusFile, FocusHold, NamedCamera, ProjectFile, TexelSet, WorldFile};
 use relief::DepthStroke;
 use scene::{Scene, View};
 use std::path::{Path, PathBuf};
@@ -45,6 +46,8 @@ pub struct Document {
     pub map: FocusMap,
     /// The shot camera.
     pub camera: Camera,
+    /// What its focus is held on while it moves.
+    pub focus_hold: FocusHold,
     /// How the lens moves over time. The motion of layers is stored in the layers.
     pub lens_motion: LensMotion,
     /// The time shown, s: camera and layers have the values of their keys at this time. Neither saved nor undone.
@@ -69,7 +72,7 @@ pub struct Document {
     /// The view that the adjustment layers were evaluated for.
     pub adjustment_view: AdjustmentView,
     /// Everything saved besides the fields above.
-    template: ProjectFile,
+    pub(crate) template: ProjectFile,
     /// The undo history.
     pub undo: UndoHistory,
     /// The map after the latest step, which the next thumbnail is compared with.
@@ -260,7 +263,11 @@ impl Document {
         let template = match &input.project {
             Some(project) => project.clone(),
             None => {
-                let shot_camera = NamedCamera { name: SHOT_CAMERA_NAME.into(), camera: input.camera.clone() };
+                let shot_camera = NamedCamera {
+                    name: SHOT_CAMERA_NAME.into(),
+                    camera: input.camera.clone(),
+                    focus_hold: None,
+                };
                 let (low, high) = input.scene.bounds();
                 let radius = brush_radius(&input.camera, (high - low).length());
                 let mut brush = Brush { radius, ..Brush::default() };
@@ -272,6 +279,8 @@ impl Document {
                 ProjectFile { brush, capture, ..ProjectFile::new(&input.scene.path, vec![shot_camera])? }
             }
         };
+        let shot = &template.cameras[template.active_camera];
+        let stored_hold = shot.focus_hold.clone().filter(|_| shot.camera == input.camera);
         let selection = template.selection.as_ref().and_then(|saved| selection_from_texels(&stage, saved));
         let mut undo = UndoHistory::new(Self::UNDO_BUDGET_BYTES);
         if input.paint_transfer.is_some() {
@@ -287,6 +296,7 @@ impl Document {
             thumbnail_base: map.clone(),
             map,
             adjustment_view: AdjustmentView::from_camera(&input.camera),
+            focus_hold: stored_hold.unwrap_or_else(|| HeldCamera::on_axis(input.camera.clone()).focus_hold),
             camera: input.camera.clone(),
             lens_motion: template.lens_motion.clone(),
             seconds: 0.0,
@@ -308,7 +318,8 @@ impl Document {
     pub fn to_project(&self) -> ProjectFile {
         let scene = &self.stage.scene;
         let mut project = self.template.clone();
-        project.cameras[project.active_camera].camera = self.camera.clone();
+        let shot = &mut project.cameras[project.active_camera];
+        (shot.camera, shot.focus_hold) = (self.camera.clone(), Some(self.focus_hold.clone()));
         project.lens_motion = self.lens_motion.clone();
         project.exposure = self.exposure;
         project.back_faces = scene.back_faces;
@@ -447,6 +458,16 @@ impl Document {
         })
     }
 
+    /// The shot camera with what its focus is held on.
+    pub fn held_camera(&self) -> HeldCamera {
+        HeldCamera { camera: self.camera.clone(), focus_hold: self.focus_hold.clone() }
+    }
+
+    /// Sets the shot camera with what its focus is held on.
+    pub fn set_held_camera(&mut self, held: HeldCamera) {
+        (self.camera, self.focus_hold) = (held.camera, held.focus_hold);
+    }
+
     /// The photograph whose pose the camera has, if any.
     pub fn photograph(&self) -> Option<&View> {
         let scene = &self.stage.scene;
@@ -457,7 +478,7 @@ impl Document {
 
 /// A selection as the atlas coordinates of its texels.
 fn selection_to_texels(stage: &Stage, selection: &Selection) -> TexelSet {
-    let texels = stage.canvas.texels().iter().enumerate();
+    let texels = stage.canvas.texels().enumerate();
     let selected = texels.filter(|(index, _)| selection.contains(*index));
     TexelSet::new([stage.atlas.width, stage.atlas.height], selected.map(|(_, texel)| [texel.x, texel.y]))
 }

@@ -1,8 +1,9 @@
 //! Undo and redo of paint, selection, lens, depth repair and the scene's variant, in chronological order.
 
+use crate::focus_hold::HeldCamera;
 use focus::{Edit, EditThumbnail, LayerStack, LensMotion, Selection};
 use lens::Camera;
-use project::RecordedStep;
+use project::{FocusHold, RecordedStep};
 use relief::DepthStroke;
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -14,8 +15,8 @@ enum Change {
     Paint { layer: usize, edit: Edit },
     /// The stack of layers.
     Layers { before: Box<LayerStack>, after: Box<LayerStack> },
-    /// The camera.
-    Camera { before: Box<Camera>, after: Box<Camera> },
+    /// The camera, and what its focus is held on.
+    Camera { before: Box<HeldCamera>, after: Box<HeldCamera> },
     /// The keys of the lens, at a time in seconds.
     LensMotion { seconds: f64, before: Box<KeyedLens>, after: Box<KeyedLens> },
     /// The selection.
@@ -32,7 +33,7 @@ impl Change {
         match self {
             Self::Paint { edit, .. } => edit.bytes(),
             Self::Layers { before, after } => before.unshared_bytes(after) + after.unshared_bytes(before),
-            Self::Camera { .. } => 2 * size_of::<Camera>(),
+            Self::Camera { .. } => 2 * size_of::<HeldCamera>(),
             Self::LensMotion { before, after, .. } => {
                 [before, after].into_iter().map(|lens| size_of::<Camera>() + lens.motion.bytes()).sum()
             }
@@ -119,6 +120,8 @@ pub struct UndoState<'a> {
     pub layers: &'a mut LayerStack,
     /// The shot camera.
     pub camera: &'a mut Camera,
+    /// What its focus is held on.
+    pub focus_hold: &'a mut FocusHold,
     /// The keys of the lens.
     pub lens_motion: &'a mut LensMotion,
     /// The texels that may be painted; `None` for all.
@@ -140,6 +143,13 @@ impl KeyedLens {
     fn restore(&self, state: UndoState<'_>) {
         state.lens_motion.clone_from(&self.motion);
         state.camera.clone_from(&self.camera);
+    }
+}
+
+impl HeldCamera {
+    fn restore(&self, state: UndoState<'_>) {
+        state.camera.clone_from(&self.camera);
+        state.focus_hold.clone_from(&self.focus_hold);
     }
 }
 
@@ -244,7 +254,7 @@ impl UndoHistory {
     }
 
     /// Adds a change of the camera; consecutive edits of one name are one step.
-    pub fn push_camera(&mut self, name: &str, before: Camera, after: Camera) {
+    pub fn push_camera(&mut self, name: &str, before: HeldCamera, after: HeldCamera) {
         let before = match self.pop_if_continued(|last| last.name == name) {
             Some(Step { change: Change::Camera { before, .. }, .. }) => before,
             _ => before.into(),
@@ -305,7 +315,7 @@ impl UndoHistory {
                 StepEffect::Layers
             }
             Change::Camera { before, .. } => {
-                *state.camera = (**before).clone();
+                before.restore(state);
                 StepEffect::Camera
             }
             Change::LensMotion { seconds, before, .. } => {
@@ -341,7 +351,7 @@ impl UndoHistory {
                 StepEffect::Layers
             }
             Change::Camera { after, .. } => {
-                *state.camera = (**after).clone();
+                after.restore(state);
                 StepEffect::Camera
             }
             Change::LensMotion { seconds, after, .. } => {
@@ -400,6 +410,7 @@ mod tests {
         undo: UndoHistory,
         layers: LayerStack,
         camera: Camera,
+        focus_hold: FocusHold,
         lens_motion: LensMotion,
         selection: Option<Selection>,
         depth_strokes: Arc<Vec<DepthStroke>>,
@@ -413,6 +424,7 @@ mod tests {
                 undo: UndoHistory::new(1 << 20),
                 layers,
                 camera: camera_focused_at(3.0),
+                focus_hold: FocusHold::Distance,
                 lens_motion,
                 selection,
                 depth_strokes,
@@ -420,18 +432,20 @@ mod tests {
         }
 
         fn undo(&mut self) -> Option<StepEffect> {
-            let Self { undo, layers, camera, lens_motion, selection, depth_strokes } = self;
-            undo.undo(UndoState { layers, camera, lens_motion, selection, depth_strokes })
+            let Self { undo, layers, camera, focus_hold, lens_motion, selection, depth_strokes } = self;
+            undo.undo(UndoState { layers, camera, focus_hold, lens_motion, selection, depth_strokes })
         }
 
         fn redo(&mut self) -> Option<StepEffect> {
-            let Self { undo, layers, camera, lens_motion, selection, depth_strokes } = self;
-            undo.redo(UndoState { layers, camera, lens_motion, selection, depth_strokes })
+            let Self { undo, layers, camera, focus_hold, lens_motion, selection, depth_strokes } = self;
+            undo.redo(UndoState { layers, camera, focus_hold, lens_motion, selection, depth_strokes })
         }
 
         fn set_focus(&mut self, at: f64) {
+            let held =
+                |camera: &Camera| HeldCamera { camera: camera.clone(), focus_hold: FocusHold::Distance };
             let before = std::mem::replace(&mut self.camera, camera_focused_at(at));
-            self.undo.push_camera("Focus distance", before, self.camera.clone());
+            self.undo.push_camera("Focus distance", held(&before), held(&self.camera));
         }
     }
 

@@ -9,6 +9,7 @@ use crate::{ChangedTexels, FocusMap};
 use atlas::{Atlas, AtlasTexel};
 use glam::{DVec3, Vec3};
 use lens::FocusOffset;
+use rayon::prelude::*;
 use scene::Scene;
 use texel_tree::TexelTree;
 
@@ -31,6 +32,17 @@ pub struct CanvasTexel {
     pub chart: u32,
 }
 
+/// What is stored of a texel beside its point in the tree.
+#[derive(Clone, Copy, Debug)]
+struct StoredTexel {
+    x: u32,
+    y: u32,
+    normal: Vec3,
+    area: f32,
+    part: u32,
+    chart: u32,
+}
+
 /// All covered texels of an atlas in the order of a spatial tree, with the gutter texels that copy them.
 ///
 /// A brush selects its texels here by distance in world space, so chart seams, mirrored texture coordinates and
@@ -42,7 +54,7 @@ pub struct Canvas {
     origin: DVec3,
     tree: TexelTree,
     /// In the tree's order.
-    texels: Vec<CanvasTexel>,
+    texels: Vec<StoredTexel>,
     /// Where each texel's gutters start in `gutters`; one entry more than there are texels.
     gutter_starts: Vec<u32>,
     gutters: Vec<[u32; 2]>,
@@ -90,9 +102,9 @@ impl Canvas {
         let origin = if texels.is_empty() { DVec3::ZERO } else { (bounds.0 + bounds.1) / 2.0 };
         let points: Vec<Vec3> = texels.iter().map(|texel| (texel.position - origin).as_vec3()).collect();
         let (tree, order) = TexelTree::new(&points);
-        let texels: Vec<CanvasTexel> = order.iter().map(|&i| texels[i as usize]).collect();
+        let texels: Vec<StoredTexel> = order.iter().map(|&i| StoredTexel::from(texels[i as usize])).collect();
         let (gutter_starts, gutters) = gutters_by_texel(size, &texels, gutters);
-        let largest_texel = texels.iter().map(|texel| texel.area.sqrt() as f32).fold(0.0, f32::max);
+        let largest_texel = texels.iter().map(|texel| texel.area.sqrt()).fold(0.0, f32::max);
         Self { size, origin, tree, texels, gutter_starts, gutters, largest_texel, part_owners }
     }
 
@@ -108,8 +120,20 @@ impl Canvas {
     }
 
     /// The covered texels, in tree order: neighbours in space are near each other.
-    pub fn texels(&self) -> &[CanvasTexel] {
-        &self.texels
+    pub fn texels(&self) -> impl ExactSizeIterator<Item = CanvasTexel> {
+        (0..self.texels.len()).map(|index| self.texel(index))
+    }
+
+    /// The same, by several threads.
+    pub(crate) fn par_texels(&self) -> impl IndexedParallelIterator<Item = CanvasTexel> {
+        (0..self.texels.len()).into_par_iter().map(|index| self.texel(index))
+    }
+
+    /// The texel with this index. Its position is stored in f32, relative to the middle of the surface.
+    pub fn texel(&self, index: usize) -> CanvasTexel {
+        let StoredTexel { x, y, normal, area, part, chart } = self.texels[index];
+        let position = self.origin + self.tree.points()[index].as_dvec3();
+        CanvasTexel { x, y, position, normal, area: area.into(), part, chart }
     }
 
     /// The index of the scene node that a texel belongs to.
@@ -177,11 +201,20 @@ impl Canvas {
         let mut best: Option<(f32, usize)> = None;
         self.visit_within(center, radius, |index, distance| {
             let nearer = best.is_none_or(|(least, _)| distance < least);
-            if nearer && accept(&self.texels[index], distance) {
+            if nearer && accept(&self.texel(index), distance) {
                 best = Some((distance, index));
             }
         });
         best.map(|(_, index)| index)
+    }
+
+    /// The memory that it takes, in bytes.
+    pub fn bytes(&self) -> usize {
+        self.tree.bytes()
+            + size_of_val(&*self.texels)
+            + size_of_val(&*self.gutter_starts)
+            + size_of_val(&*self.gutters)
+            + size_of_val(&*self.part_owners)
     }
 
     /// World-space offset of a texel from a point.
@@ -191,7 +224,7 @@ impl Canvas {
 
     /// [t, anchor, gloss, mask] of a texel.
     pub(crate) fn value(&self, map: &FocusMap, index: usize) -> [f32; 4] {
-        let CanvasTexel { x, y, .. } = self.texels[index];
+        let StoredTexel { x, y, .. } = self.texels[index];
         let [t, anchor] = map.texel(x, y);
         [t, anchor, map.gloss_at(x, y), map.mask_at(x, y)]
     }
@@ -252,6 +285,13 @@ impl Canvas {
     }
 }
 
+impl From<CanvasTexel> for StoredTexel {
+    fn from(texel: CanvasTexel) -> Self {
+        let CanvasTexel { x, y, position: _, normal, area, part, chart } = texel;
+        Self { x, y, normal, area: area as f32, part, chart }
+    }
+}
+
 /// Node and material of each part.
 fn part_owners(scene: &Scene) -> Vec<[u32; 2]> {
     scene.parts.iter().map(|part| [part.node, part.material]).collect()
@@ -261,7 +301,7 @@ fn part_owners(scene: &Scene) -> Vec<[u32; 2]> {
 /// are dropped.
 fn gutters_by_texel(
     [width, height]: [u32; 2],
-    texels: &[CanvasTexel],
+    texels: &[StoredTexel],
     gutters: &[[[u32; 2]; 2]],
 ) -> (Vec<u32>, Vec<[u32; 2]>) {
     const NOT_COVERED: u32 = u32::MAX;

@@ -38,7 +38,7 @@ fn a_brush_takes_the_gloss_along_and_leaves_none_behind_when_undone() {
     assert_eq!(middle(&map), GLOSSY);
     assert!(map.has_gloss() && map != without);
     assert!(edit.bytes() > plain.bytes(), "its tiles count");
-    let fading = strip().texels().iter().filter(|t| (0.01..0.99).contains(&map.gloss_at(t.x, t.y))).count();
+    let fading = strip().texels().filter(|t| (0.01..0.99).contains(&map.gloss_at(t.x, t.y))).count();
     assert!(fading > 20, "it fades toward the rim: {fading} texels");
     let painted = map.clone();
     let changed = edit.revert(&mut map);

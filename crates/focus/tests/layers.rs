@@ -190,7 +190,7 @@ fn sharpening_makes_a_ramp_steeper_without_a_rim_and_flow_builds_up() {
         |map: &FocusMap| (0..SIZE[0] - 6).map(|x| map.at(x + 4, 30).t - map.at(x, 30).t).fold(0.0, f64::max);
     assert!(slope(&map) > 1.5 * slope(&ramp), "{} {}", slope(&map), slope(&ramp));
     let range = |map: &FocusMap| {
-        let t = canvas.texels().iter().map(|texel| map.at(texel.x, texel.y).t);
+        let t = canvas.texels().map(|texel| map.at(texel.x, texel.y).t);
         t.fold((f64::INFINITY, 0.0f64), |(low, high), t| (t.min(low), t.max(high)))
     };
     let ((low, high), (least, most)) = (range(&map), range(&ramp));

@@ -14,7 +14,7 @@ use strip::{DENSITY, SIZE, blank, brush, hit, strip};
 /// Of the front, by x and y.
 fn t_at(canvas: &Canvas, map: &FocusMap, x: f64, y: f64) -> f64 {
     let place = DVec3::new(x, y, 0.0);
-    let front = canvas.texels().iter().filter(|texel| texel.normal == Vec3::Z);
+    let front = canvas.texels().filter(|texel| texel.normal == Vec3::Z);
     let nearest = front
         .min_by(|a, b| a.position.distance(place).total_cmp(&b.position.distance(place)))
         .expect("the strip has a front");
@@ -95,7 +95,7 @@ fn on_a_layer_a_gradient_fades_by_its_mask() {
     let canvas = strip();
     let mut map = FocusMap::transparent(SIZE[0], SIZE[1]);
     draw_gradient(&mut map, &canvas, &WORLD, Channels::All, None).unwrap();
-    for texel in canvas.texels().iter().filter(|texel| texel.normal == Vec3::Z) {
+    for texel in canvas.texels().filter(|texel| texel.normal == Vec3::Z) {
         let along = ((texel.position.x - 1.0) / 2.0).clamp(0.0, 1.0);
         let mask = map.mask_at(texel.x, texel.y);
         assert!((mask as f64 - (1.0 - along)).abs() < 1e-6);
@@ -158,7 +158,7 @@ fn radial_symmetry_turns_strokes_about_the_vertical() {
     let mut map = blank();
     let mut stroke = Stroke::begin(&map, canvas.clone(), turned).unwrap();
     stroke.extend(&mut map, hit(0.6, 0.5), PenSample::default());
-    let back = canvas.texels().iter().filter(|texel| texel.normal == -Vec3::Z);
+    let back = canvas.texels().filter(|texel| texel.normal == -Vec3::Z);
     let painted: Vec<_> = back.filter(|t| map.at(t.x, t.y).t > 1.0).map(|texel| texel.position.x).collect();
     assert!(painted.len() > 20 && painted.iter().all(|x| (x - 3.4).abs() < 0.26), "half a turn: the back");
     assert!(t_at(&canvas, &map, 0.6, 0.5) > 1.4 && t_at(&canvas, &map, 3.4, 0.5) == 1.0);
@@ -174,7 +174,7 @@ fn a_drawn_falloff_is_followed_to_the_rim() {
     let mut map = blank();
     let mut stroke = Stroke::begin(&map, canvas.clone(), drawn.clone()).unwrap();
     stroke.extend(&mut map, hit(1.0, 0.5), PenSample::default());
-    for texel in canvas.texels().iter().filter(|texel| texel.normal == Vec3::Z) {
+    for texel in canvas.texels().filter(|texel| texel.normal == Vec3::Z) {
         let distance = texel.position.distance(DVec3::new(1.0, 0.5, 0.0)) / 0.4;
         let expected = if distance <= 1.0 { 1.0 + 0.5 * ring.evaluate(distance) } else { 1.0 };
         assert!((map.at(texel.x, texel.y).t - expected).abs() < 1e-5, "{distance}");

@@ -56,6 +56,18 @@ impl IrradianceCache {
         worlds.iter().find(|entry| entry.world == *world)?.available(LightQuality::Rough).cloned()
     }
 
+    /// The memory of all solutions, in bytes.
+    pub fn bytes(&self) -> usize {
+        let solutions = |entry: &Arc<WorldIrradiance>| -> usize {
+            [&entry.rough, &entry.fine]
+                .into_iter()
+                .filter_map(OnceLock::get)
+                .map(|solved| solved.bytes())
+                .sum()
+        };
+        self.lock().iter().map(solutions).sum()
+    }
+
     /// Waits for the irradiance in `world`, of at least `quality`, and starts solving it if nobody has.
     ///
     /// # Errors

@@ -77,6 +77,11 @@ impl LitScene {
         &self.resources
     }
 
+    /// The memory of the cached irradiance, in bytes; light from photographs is not counted.
+    pub fn irradiance_bytes(&self) -> usize {
+        self.irradiance.bytes()
+    }
+
     /// The light that leaves the scene, for a camera; light from photographs, if the scene has any. It is solved for once per world, reporting
     /// to `progress`, and then serves every camera. As long as light from photographs is not solved, rough light is that of the bare surface.
     ///

@@ -32,6 +32,7 @@ mod disk;
 mod environment_file;
 mod error;
 mod focus_files;
+mod focus_hold;
 mod json;
 mod named_file;
 mod openexr;
@@ -50,6 +51,7 @@ pub use focus_files::{
     SelectionShape, StrokeView, read_focus, read_keys, read_recipe, read_strokes, write_focus_map,
     write_keys, write_strokes,
 };
+pub use focus_hold::FocusHold;
 pub use openexr::Compression;
 pub use part_file::{NumberReader, PartFile, PartWriter, Section};
 pub use pictures::{

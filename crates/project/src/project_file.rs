@@ -45,7 +45,7 @@ use manifest::{CameraEntry, MANIFEST, Manifest, MapEntry, SceneReference, sha256
 use scene_checksum::scene_checksum;
 use texel_bytes::{bytes_from_floats, floats_from_bytes, pairs_from_bytes};
 
-use crate::{ProjectError, WorldFile};
+use crate::{FocusHold, ProjectError, WorldFile};
 use focus::{Brush, FocusLayer, FocusMap, LayerStack, LensMotion};
 use lens::{ApertureMask, ApertureShape, Camera, Exposure, FocusOffset};
 use scene::BackFaces;
@@ -75,6 +75,8 @@ pub struct NamedCamera {
     pub name: String,
     /// The camera.
     pub camera: Camera,
+    /// What its focus is held on; `None`: the point of its axis at the focus distance.
+    pub focus_hold: Option<FocusHold>,
 }
 
 /// A saved document.
@@ -254,7 +256,7 @@ impl ProjectFile {
     fn to_bytes(&self, file: &Path) -> Result<Vec<u8>, std::io::Error> {
         let mut entries: Vec<(String, Vec<u8>)> = Vec::new();
         let mut cameras = Vec::new();
-        for (index, NamedCamera { name, camera }) in self.cameras.iter().enumerate() {
+        for (index, NamedCamera { name, camera, focus_hold }) in self.cameras.iter().enumerate() {
             let mut value = camera_to_json(camera);
             if let ApertureShape::Mask(mask) = &camera.aperture.shape {
                 let entry = format!("masks/{index}.f32");
@@ -262,7 +264,7 @@ impl ProjectFile {
                 value["aperture"]["mask_file"] = Value::from(mask.file.as_str());
                 entries.push((entry, mask_to_bytes(mask)));
             }
-            cameras.push(CameraEntry { name: name.clone(), camera: value });
+            cameras.push(CameraEntry { name: name.clone(), camera: value, focus_hold: focus_hold.clone() });
         }
         if let Some(atlas) = &self.atlas {
             entries.push((ATLAS.to_string(), atlas.clone()));
@@ -333,10 +335,16 @@ impl ProjectFile {
         };
 
         let mut cameras = Vec::new();
-        for CameraEntry { name, camera } in &manifest.cameras {
+        for CameraEntry { name, camera, focus_hold } in &manifest.cameras {
+            if !focus_hold.as_ref().is_none_or(FocusHold::is_valid) {
+                return Err(error(format!(
+                    "the focus of camera \"{name}\" is held on a point that is not finite"
+                )));
+            }
             cameras.push(NamedCamera {
                 name: name.clone(),
                 camera: read_camera(file, camera.clone(), &manifest, &mut container)?,
+                focus_hold: focus_hold.clone(),
             });
         }
         if manifest.active_camera >= cameras.len() {

@@ -39,7 +39,7 @@ fn document(folder: &Path) -> ProjectFile {
         map.set(i, i, [i as f32 / 7.0, 1.0 / (1.0 + i as f32)]);
     }
     let cameras = [("shot", Camera::default()), ("masked", masked)];
-    let cameras = cameras.map(|(name, camera)| NamedCamera { name: name.into(), camera });
+    let cameras = cameras.map(|(name, camera)| NamedCamera { name: name.into(), camera, focus_hold: None });
     ProjectFile {
         active_camera: 1,
         exposure: Exposure::Conserve,

@@ -54,6 +54,7 @@ mod summary;
 pub use engine::{Check, EngineRecord, EngineReport, run_engine};
 pub use measurement::contender::Contender;
 pub use measurement::machine::Machine;
+pub use measurement::memory::resident_bytes;
 pub use measurement::record::{Record, Series};
 pub use options::{ReportOptions, SceneRequest};
 pub use report::Report;

@@ -5,6 +5,7 @@ mod glare;
 mod live_picture;
 mod picture_ring;
 mod screen;
+mod sharp_layer;
 mod thumbnails;
 
 pub use enlarging::enlarged;
@@ -17,3 +18,4 @@ pub(crate) use glare::darkening_stops;
 pub(crate) use live_picture::PictureSource;
 pub(crate) use picture_ring::{PictureRing, Rectangle, whole};
 pub(crate) use screen::{Content, Patch};
+pub(crate) use sharp_layer::SharpLayer;

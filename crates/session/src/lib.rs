@@ -34,5 +34,5 @@ pub use error::SessionError;
 pub use light_field::{ApertureCell, ApertureImage, BakedVisibility};
 pub use preview::{DrawingCosts, PictureTimes, Preview, PreviewActivity, PreviewKind, Quality};
 pub use reference::{Reference, ReferenceKind};
-pub use session::{FullSizeFieldState, Session, SessionOptions};
+pub use session::{FullSizeFieldState, MemoryPart, Session, SessionOptions};
 pub use verification::{Verification, VerifiedError};

@@ -25,6 +25,7 @@ mod light_refinement;
 mod mailbox;
 mod picture;
 mod picture_sizes;
+mod pinhole;
 mod presenter;
 mod request;
 mod thread;

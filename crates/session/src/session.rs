@@ -6,6 +6,7 @@ mod command_dispatch;
 mod files;
 mod history;
 mod job_outcome;
+mod memory;
 mod opening_preview;
 mod painting;
 mod picture_export;
@@ -23,5 +24,6 @@ mod verification;
 mod watched_file;
 mod web_page_export;
 
+pub use memory::MemoryPart;
 pub use picture_export::FullSizeFieldState;
 pub use state::{Session, SessionOptions};

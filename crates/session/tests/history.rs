@@ -36,6 +36,7 @@ fn hash(session: &Session) -> u64 {
     }
     eat(document.camera.focus_distance.to_bits());
     eat(document.camera.aperture_radius.to_bits());
+    format!("{:?}", document.focus_hold).bytes().for_each(|byte| eat(u64::from(byte)));
     let texels = document.stage.canvas.texels().len();
     if let Some(selection) = &document.selection {
         (0..texels).for_each(|index| eat(u64::from(selection.contains(index))));

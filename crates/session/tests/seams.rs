@@ -176,7 +176,7 @@ fn coverage(document: &Document, map: &FocusMap, camera: &Camera) -> Vec<f64> {
 fn cracked(document: &Document, width: f64) -> FocusMap {
     let mut map = document.map.clone();
     let canvas = &document.stage.canvas;
-    for (index, texel) in canvas.texels().iter().enumerate() {
+    for (index, texel) in canvas.texels().enumerate() {
         if SEAMS.iter().any(|seam| (texel.position.x - seam).abs() < width) {
             for &[x, y] in [[texel.x, texel.y]].iter().chain(canvas.gutters_of(index)) {
                 map.set(x, y, [1.0, 0.0]);

@@ -53,6 +53,11 @@ impl Irradiance {
         &self.solution
     }
 
+    /// The memory that it takes, in bytes.
+    pub fn bytes(&self) -> usize {
+        self.patches.bytes() + size_of_val(&*self.solution.direct) + size_of_val(&*self.solution.indirect)
+    }
+
     /// Irradiance/π that an unoccluded environment sends to a surface with this normal; `None` if the environment is
     /// not sampled as a light.
     pub(crate) fn unshaded(&self, world: &World, normal: DVec3) -> Option<DVec3> {

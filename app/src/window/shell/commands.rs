@@ -9,7 +9,7 @@ use crate::window::views::paint_view::PaintView;
 use crate::window::views::picture_view::TRUTH_SAMPLES;
 use crate::window::widgets::brush_controls::{largest_radius, signed_circle_px};
 use crate::window::{Tool, ViewSettings};
-use document::{CameraEdit, FillRegion};
+use document::{BookmarkEdit, CameraEdit, FillRegion};
 use egui::{Context, ViewportCommand};
 use focus::{Brush, BrushMode, CombineMode, LayerEdit};
 use lens::{Exposure, FocusOffset};
@@ -193,6 +193,7 @@ impl Shell {
                 let pose = self.paint.camera().pose();
                 self.edit_camera(|_| CameraEdit::Pose(pose));
             }
+            CommandId::BookmarkCamera => self.apply(Command::EditBookmarks(BookmarkEdit::Add)),
             CommandId::OrbitAperture => {
                 let toggled = self.aperture_orbit.toggle(&mut self.session, context);
                 self.show_failure(toggled);

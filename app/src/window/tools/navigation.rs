@@ -37,7 +37,7 @@ fn motion(map: KeyMap, button: PointerButton, modifiers: Modifiers, space: bool)
 }
 
 /// Whether Space is held to move the view, not typed into a text field.
-fn is_space_held(context: &Context) -> bool {
+pub fn is_space_held(context: &Context) -> bool {
     !context.text_edit_focused() && context.input(|input| input.key_down(Key::Space))
 }
 
@@ -62,7 +62,7 @@ pub fn view_drag(ui: &Ui, response: &Response) -> Option<(Motion, Vec2)> {
 }
 
 /// The gestures of a key map, for the help window.
-pub fn gestures(map: KeyMap) -> [(&'static str, &'static str); 4] {
+pub fn gestures(map: KeyMap) -> [(&'static str, &'static str); 5] {
     let [orbit, slide, nearer] = match map {
         KeyMap::Blender => ["Middle drag", "Shift+middle drag", "Ctrl+middle drag"],
         KeyMap::Substance => ["Alt+left drag, middle drag", "Alt+middle drag", "Alt+right drag"],
@@ -73,10 +73,11 @@ pub fn gestures(map: KeyMap) -> [(&'static str, &'static str); 4] {
         KeyMap::Blender | KeyMap::Substance => "turns; with Shift slides; with Ctrl comes nearer",
     };
     [
-        (orbit, "turn the paint view; slide the picture"),
-        (slide, "slide either view"),
-        (nearer, "bring the view nearer"),
+        (orbit, "turn the paint view; orbit the camera in the picture"),
+        (slide, "slide the paint view; move the camera sideways in the picture"),
+        (nearer, "bring the view or the camera nearer"),
         ("Alt+drag, Space+drag", pen),
+        ("Space+drag in the picture", "slide the picture; with Ctrl enlarge it"),
     ]
 }
 

@@ -1,12 +1,14 @@
 //! The inspector: the settings of the document, section by section. Panels read the document and emit actions.
 
 mod brush_panel;
+mod cameras_panel;
 mod curve_editor;
 mod falloff_editor;
 mod focus_panel;
 mod history_panel;
 mod layers_panel;
 mod lens_panel;
+mod memory_panel;
 mod modelled_panel;
 mod plane_editor;
 mod preset_row;
@@ -29,6 +31,7 @@ use session::Session;
 #[derive(Default)]
 pub struct Inspector {
     scene: scene_panel::ScenePanel,
+    cameras: cameras_panel::CamerasPanel,
 }
 
 /// Inputs of the inspector.
@@ -67,6 +70,7 @@ impl Inspector {
                 });
             }
             section(ui, "Lens", true, |ui| lens_panel::lens_panel(ui, document, presets, actions));
+            section(ui, "Cameras", false, |ui| self.cameras.ui(ui, document, actions));
             section(ui, "Focus", true, |ui| focus_panel::focus_panel(ui, document, actions));
             section(ui, "Layers", true, |ui| layers_panel::layers_panel(ui, document, actions));
             section(ui, "Brush", true, |ui| {
@@ -85,6 +89,7 @@ impl Inspector {
             section(ui, "What was modelled", false, |ui| {
                 modelled_panel::modelled_panel(ui, session, document)
             });
+            section(ui, "Memory", false, |ui| memory_panel::memory_panel(ui, session));
             section(ui, "History", false, |ui| history_panel::history_panel(ui, document, actions));
         });
     }

@@ -24,4 +24,4 @@ pub use focus_texture::FocusTexture;
 pub use orbit_camera::OrbitCamera;
 pub use surface_mesh::SurfaceMesh;
 pub use surface_renderer::{Stale, SurfaceFrame, SurfaceRenderer};
-pub use view::{PaintView, paint_hint};
+pub use view::{PIVOT_AT_INFINITY, PaintView, paint_hint};

@@ -7,7 +7,7 @@ mod wipe;
 
 pub use displayed_picture::DisplayedPicture;
 
-use super::paint_view::paint_hint;
+use super::paint_view::{OrbitCamera, PIVOT_AT_INFINITY, paint_hint};
 use crate::window::Action;
 use crate::window::graphics::blit::{Blitter, Filter};
 use crate::window::tools::active_tool::ActiveTool;
@@ -18,7 +18,7 @@ use crate::window::tools::region_highlight::RegionHighlight;
 use crate::window::tools::stroke_input::StrokeInput;
 use crate::window::widgets::{controls, theme};
 use displayed_picture::Textures;
-use document::SurfaceHit;
+use document::{CameraEdit, SurfaceHit};
 use egui::{PointerButton, Pos2, Rect, Response, Sense, Ui, Vec2, vec2};
 use focus::ViewFrame;
 use glam::{DVec2, DVec3};
@@ -59,6 +59,8 @@ pub struct PictureView {
     stroke: StrokeInput,
     hover: Option<SurfaceHit>,
     highlight: RegionHighlight,
+    /// The shot camera while a drag moves it.
+    orbit: Option<OrbitCamera>,
     rect: Rect,
     image: Rect,
 }
@@ -76,6 +78,7 @@ impl PictureView {
             stroke: StrokeInput::default(),
             hover: None,
             highlight: RegionHighlight::default(),
+            orbit: None,
             rect: Rect::NOTHING,
             image: Rect::NOTHING,
         }
@@ -181,7 +184,7 @@ impl PictureView {
             return;
         };
         let size = vec2(document.camera.width as f32, document.camera.height as f32);
-        self.navigate(ui, &response, size);
+        self.navigate(ui, &response, session, size, actions);
         self.image = self.picture_rect(size);
         paint_surroundings(ui, rect, self.whole_rect());
         let tone = Tone { exposure: document.exposure, display };
@@ -300,19 +303,33 @@ impl PictureView {
         is_shown && session.reference(kind).is_some() && !session.is_reference_current(kind)
     }
 
-    /// Navigation: drags pan or zoom according to the key map, the wheel zooms at the pointer, a double click
-    /// with the middle button fits.
-    fn navigate(&mut self, ui: &Ui, response: &Response, size: Vec2) {
+    /// Navigation: drags move the shot camera, or with Space the picture, according to the key map; the wheel zooms the picture at the
+    /// pointer, a double click with the middle button fits it.
+    fn navigate(
+        &mut self,
+        ui: &Ui,
+        response: &Response,
+        session: &Session,
+        size: Vec2,
+        actions: &mut Vec<Action>,
+    ) {
         if response.double_clicked_by(PointerButton::Middle) {
             self.zoom = Zoom::Fit;
             return;
         }
-        let dragged = navigation::view_drag(ui, response);
-        if let Some((Motion::Orbit | Motion::Slide, delta)) = dragged {
-            let image = self.picture_rect(size);
-            self.zoom = self.zoom_showing(image.translate(delta), size);
+        let mut nearer = 0.0;
+        match navigation::view_drag(ui, response) {
+            Some((motion, delta)) if self.orbit.is_some() || !navigation::is_space_held(ui.ctx()) => {
+                self.move_camera(motion, delta, session, actions);
+            }
+            Some((Motion::Nearer, delta)) => nearer = -2.0 * delta.y,
+            Some((Motion::Orbit | Motion::Slide, delta)) => {
+                let image = self.picture_rect(size);
+                self.zoom = self.zoom_showing(image.translate(delta), size);
+            }
+            None if self.orbit.take().is_some() => actions.push(Command::FinishEdit.into()),
+            None => {}
         }
-        let nearer = dragged.filter(|(motion, _)| *motion == Motion::Nearer).map_or(0.0, |(_, d)| -2.0 * d.y);
         let Some(pointer) = response.hover_pos().or_else(|| response.interact_pointer_pos()) else { return };
         let (scroll, pinch) = match response.contains_pointer() {
             true => ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta())),
@@ -328,6 +345,20 @@ impl PictureView {
                 pointer + (image.max - pointer) * factor,
             );
             self.zoom = self.zoom_showing(zoomed, size);
+        }
+    }
+
+    /// Moves the shot camera by a drag: about the surface in the picture's middle, or the focus plane where there is none.
+    fn move_camera(&mut self, motion: Motion, delta: Vec2, session: &Session, actions: &mut Vec<Action>) {
+        let Some(document) = session.document() else { return };
+        let camera = &document.camera;
+        let orbit =
+            self.orbit.get_or_insert_with(|| OrbitCamera::from_shot(camera, pivot_distance(session, camera)));
+        let before = *orbit;
+        let delta = DVec2::new(f64::from(delta.x), f64::from(delta.y));
+        orbit.drag(motion, delta, f64::from(self.image.height()));
+        if *orbit != before {
+            actions.push(Command::EditCamera(CameraEdit::Pose(orbit.pose())).into());
         }
     }
 
@@ -387,6 +418,14 @@ impl PictureView {
         let font = egui::FontId::proportional(12.0);
         ui.painter().text(at, egui::Align2::LEFT_BOTTOM, text, font, egui::Color32::from_gray(200));
     }
+}
+
+/// How far ahead of the shot camera lies what it turns about.
+fn pivot_distance(session: &Session, camera: &Camera) -> f64 {
+    let ahead = session.picture_ray(DVec2::splat(0.5)).and_then(|ray| session.pick(&ray));
+    let depth = ahead.map(|hit| camera.camera_from_world(hit.position).z);
+    let is_ahead = |distance: &f64| *distance > 0.0 && distance.is_finite();
+    depth.filter(is_ahead).or(Some(camera.focus_distance).filter(is_ahead)).unwrap_or(PIVOT_AT_INFINITY)
 }
 
 /// Fills the view around the picture. No pixel is drawn twice, which would be slow on a software adapter.

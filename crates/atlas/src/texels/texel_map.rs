@@ -2,14 +2,12 @@
 
 use crate::texels::dilation::{Dilation, dilations};
 use crate::{Atlas, AtlasTexel};
-use glam::{DVec3, Vec3};
-use rayon::prelude::*;
 use scene::Scene;
 
 /// The index of texels that cover no surface.
 pub const NO_TEXEL: u32 = u32::MAX;
 
-/// What every texel of an atlas covers, its position in the world, and how the gutter is filled.
+/// What every texel of an atlas covers, and how the gutter is filled.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TexelMap {
     /// Columns.
@@ -20,10 +18,6 @@ pub struct TexelMap {
     pub texels: Vec<AtlasTexel>,
     /// For each texel of the atlas, row by row, its index in `texels`, or [`NO_TEXEL`].
     pub index: Vec<u32>,
-    /// World position of each covered texel's centroid.
-    pub positions: Vec<DVec3>,
-    /// Unit geometric normal of each covered texel, on the front; zero only if the triangle's is not finite.
-    pub normals: Vec<Vec3>,
     /// Gutter texels and their sources, sorted by source.
     pub dilations: Vec<Dilation>,
 }
@@ -35,6 +29,11 @@ impl TexelMap {
             return None;
         }
         self.texels.get(self.index[y as usize * self.width as usize + x as usize] as usize)
+    }
+
+    /// The memory that it takes, in bytes.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&*self.texels) + size_of_val(&*self.index) + size_of_val(&*self.dilations)
     }
 
     /// The gutter texels that copy a covered texel (`y · width + x`): what to update after painting it.
@@ -54,13 +53,8 @@ impl Atlas {
         for (i, texel) in texels.iter().enumerate() {
             index[texel.y as usize * width as usize + texel.x as usize] = i as u32;
         }
-        let surface = |texel: &AtlasTexel| {
-            let normal = scene.area_normal(texel.centroid.triangle).normalize_or_zero();
-            (texel.centroid.position(scene), normal.as_vec3())
-        };
-        let (positions, normals) = texels.par_iter().map(surface).unzip();
         let dilations = dilations(width, height, |at| index[at] != NO_TEXEL);
-        TexelMap { width, height, texels, index, positions, normals, dilations }
+        TexelMap { width, height, texels, index, dilations }
     }
 
     /// Copies to every gutter texel within [`crate::DILATION_RADIUS`] of a chart the value of the nearest covered

@@ -43,7 +43,7 @@ impl Document {
         let hit_target = target(stage.scene.triangles[triangle].part, stage.atlas.chart_of[triangle]);
         let mirrored_targets = images[1..].iter().filter_map(|image| {
             let index = stage.canvas.nearest(image.point(hit.position), |_| true)?;
-            let texel = &stage.canvas.texels()[index];
+            let texel = stage.canvas.texel(index);
             Some(target(texel.part, texel.chart))
         });
         let mut targets: Vec<_> = std::iter::once(hit_target).chain(mirrored_targets).collect();

@@ -66,7 +66,8 @@ pub(crate) fn find_correspondences(
         .into_iter()
         .filter(|(node, _)| old_groups.contains_key(&group_name(new, *node)))
         .collect();
-    let whole_scene_motion = estimate_scene_motion(old, texels, &node_texels);
+    let new_surface = TexelSurface { scene: new, texels };
+    let whole_scene_motion = estimate_scene_motion(old, new_surface, &node_texels);
 
     let mut source_positions = vec![None; texels.texels.len()];
     for (node, texel_indices) in node_texels {
@@ -77,14 +78,15 @@ pub(crate) fn find_correspondences(
         let node_motion =
             group.worlds.get(rank).map(|old_world| *old_world * new.nodes[node as usize].world.inverse());
         let candidates: Vec<DMat4> = node_motion.into_iter().chain([whole_scene_motion]).collect();
-        let bounds = bounding_box(texel_indices.iter().map(|&texel| texels.positions[texel]));
-        let motion = group.motion(&sample_points(texels, &texel_indices, SAMPLE_COUNT), bounds, &candidates);
+        let bounds = bounding_box(texel_indices.iter().map(|&texel| new_surface.position(texel)));
+        let motion =
+            group.motion(&new_surface.sample_points(&texel_indices, SAMPLE_COUNT), bounds, &candidates);
         let max_distance = MAX_DISTANCE_SHARE * group.extent();
         let node_positions: Vec<Option<DVec2>> = texel_indices
             .par_iter()
             .map(|&texel| {
-                let position = motion.transform_point3(texels.positions[texel]);
-                let normal = motion.transform_vector3(texels.normals[texel].as_dvec3()).normalize_or_zero();
+                let position = motion.transform_point3(new_surface.position(texel));
+                let normal = motion.transform_vector3(new_surface.normal(texel)).normalize_or_zero();
                 group
                     .surface
                     .nearest(position, normal, max_distance)
@@ -113,20 +115,38 @@ fn group_by_node_name(old: &Scene, group_name: &dyn Fn(&Scene, u32) -> String) -
 }
 
 /// The motion of all matched nodes together: it determines the rotation of round or flat objects, which their own shape does not.
-fn estimate_scene_motion(old: &Scene, texels: &TexelMap, node_texels: &[(u32, Vec<usize>)]) -> DMat4 {
+fn estimate_scene_motion(old: &Scene, new: TexelSurface, node_texels: &[(u32, Vec<usize>)]) -> DMat4 {
     let group = NodeGroup::new(old, (0..old.triangles.len() as u32).collect(), Vec::new());
     let samples_per_node = (SAMPLE_COUNT / node_texels.len().max(1)).max(MIN_SAMPLES_PER_NODE);
     let points: Vec<_> = node_texels
         .iter()
-        .flat_map(|(_, texel_indices)| sample_points(texels, texel_indices, samples_per_node))
+        .flat_map(|(_, texel_indices)| new.sample_points(texel_indices, samples_per_node))
         .collect();
     let all_texels = node_texels.iter().flat_map(|(_, texel_indices)| texel_indices);
-    group.motion(&points, bounding_box(all_texels.map(|&texel| texels.positions[texel])), &[])
+    group.motion(&points, bounding_box(all_texels.map(|&texel| new.position(texel))), &[])
 }
 
-/// About `sample_count` points of a node, with their normals.
-fn sample_points(texels: &TexelMap, texel_indices: &[usize], sample_count: usize) -> Vec<(DVec3, DVec3)> {
-    let step = texel_indices.len().div_ceil(sample_count).max(1);
-    let selected = texel_indices.iter().step_by(step);
-    selected.map(|&texel| (texels.positions[texel], texels.normals[texel].as_dvec3())).collect()
+/// What the texels of an atlas cover, in the world.
+#[derive(Clone, Copy)]
+struct TexelSurface<'a> {
+    scene: &'a Scene,
+    texels: &'a TexelMap,
+}
+
+impl TexelSurface<'_> {
+    fn position(self, texel: usize) -> DVec3 {
+        self.texels.texels[texel].centroid.position(self.scene)
+    }
+
+    /// The unit geometric normal; zero if the triangle's is not finite.
+    fn normal(self, texel: usize) -> DVec3 {
+        self.scene.area_normal(self.texels.texels[texel].centroid.triangle).normalize_or_zero()
+    }
+
+    /// About `sample_count` points of a node, with their normals.
+    fn sample_points(self, texel_indices: &[usize], sample_count: usize) -> Vec<(DVec3, DVec3)> {
+        let step = texel_indices.len().div_ceil(sample_count).max(1);
+        let selected = texel_indices.iter().step_by(step);
+        selected.map(|&texel| (self.position(texel), self.normal(texel))).collect()
+    }
 }

@@ -37,7 +37,7 @@ impl CombineMode {
 impl Selection {
     /// Selects the texels of a canvas for which `is_selected` is true.
     pub fn from_predicate(canvas: &Canvas, is_selected: impl Fn(&CanvasTexel) -> bool) -> SelectionResult {
-        Self::from_bits(canvas.texels().iter().map(is_selected))
+        Self::from_bits(canvas.texels().map(|texel| is_selected(&texel)))
     }
 
     fn from_bits(bits: impl ExactSizeIterator<Item = bool>) -> SelectionResult {
@@ -81,7 +81,7 @@ impl FocusMap {
     pub fn set_mask_from_selection(&mut self, canvas: &Canvas, selection: &Selection) {
         let [width, height] = self.size();
         let mut mask = TileGrid::new(width, height, 0.0);
-        for (index, texel) in canvas.texels().iter().enumerate() {
+        for (index, texel) in canvas.texels().enumerate() {
             if selection.contains(index) {
                 mask.set(texel.x, texel.y, 1.0);
                 canvas.gutters_of(index).iter().for_each(|&[x, y]| mask.set(x, y, 1.0));

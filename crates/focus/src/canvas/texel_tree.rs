@@ -41,6 +41,11 @@ impl TexelTree {
         &self.points
     }
 
+    /// The memory that it takes, in bytes.
+    pub(crate) fn bytes(&self) -> usize {
+        size_of_val(&*self.points) + size_of_val(&*self.nodes)
+    }
+
     /// Calls `visit` with the index (in the tree's order) and squared distance of every point at most
     /// `radius` from `center`, in order.
     pub(crate) fn visit_within(&self, center: Vec3, radius: f32, visit: &mut impl FnMut(usize, f32)) {

@@ -38,8 +38,7 @@ impl DepthCurve {
     /// The focus of every texel of a canvas, by its depth in front of `camera`.
     pub fn evaluate(&self, canvas: &Canvas, camera: &Camera) -> FocusMap {
         let values: Vec<[f32; 2]> = canvas
-            .texels()
-            .par_iter()
+            .par_texels()
             .map(|texel| {
                 crate::focus_map::to_texel(self.at_depth(camera.camera_from_world(texel.position).z))
             })

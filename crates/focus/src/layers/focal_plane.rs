@@ -123,8 +123,7 @@ impl FocalPlane {
     pub fn evaluate(&self, canvas: &Canvas, camera: &Camera) -> FocusMap {
         let plane = CameraSpacePlane::new(self, camera);
         let values: Vec<[f32; 2]> = canvas
-            .texels()
-            .par_iter()
+            .par_texels()
             .map(|texel| {
                 crate::focus_map::to_texel(self.offset_at(&plane, camera.camera_from_world(texel.position)))
             })

@@ -230,7 +230,7 @@ fn unique_name(layers: &LayerStack, base_name: &str) -> String {
 
 /// The depths of the nearest and the farthest texel in front of the camera; the first is infinite if there is none.
 fn depth_range(canvas: &Canvas, camera: &Camera) -> [f64; 2] {
-    let depths = canvas.texels().iter().map(|texel| camera.camera_from_world(texel.position).z);
+    let depths = canvas.texels().map(|texel| camera.camera_from_world(texel.position).z);
     let before = depths.filter(|depth| *depth > 0.0);
     before.fold([f64::INFINITY, 0.0], |[near, far], depth| [depth.min(near), depth.max(far)])
 }

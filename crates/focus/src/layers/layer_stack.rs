@@ -252,31 +252,39 @@ impl LayerStack {
 
     /// The memory, in bytes, of the tiles that are not shared with `other`, a newer state.
     pub fn unshared_bytes(&self, other: &Self) -> usize {
-        let mut shared = BTreeSet::new();
-        for layer in &other.layers {
-            shared.extend(layer.map.texels.tiles().iter().map(|tile| Arc::as_ptr(tile) as usize));
-            shared.extend(share_tiles(layer).map(|tile| Arc::as_ptr(tile) as usize));
-        }
-        shared.insert(Arc::as_ptr(&blank()) as usize);
-        let mut bytes = 0;
-        for layer in &self.layers {
-            let unshared = |pointer: usize, bytes: usize| if shared.contains(&pointer) { 0 } else { bytes };
-            let mut counted = BTreeSet::new();
-            for tile in layer.map.texels.tiles() {
-                let pointer = Arc::as_ptr(tile) as usize;
-                bytes += if counted.insert(pointer) { unshared(pointer, size_of_val(&**tile)) } else { 0 };
-            }
-            for tile in share_tiles(layer) {
-                let pointer = Arc::as_ptr(tile) as usize;
-                bytes += if counted.insert(pointer) { unshared(pointer, size_of_val(&**tile)) } else { 0 };
-            }
-            bytes += size_of::<FocusLayer>() + 2 * layer.map.texels.tiles().len() * size_of::<usize>();
-        }
-        bytes
+        let mut shared: TileSet = other.layers.iter().flat_map(|layer| layer.map.tile_sizes()).collect();
+        shared.insert(blank_tile());
+        let own = self.layers.iter().map(|layer| {
+            let tiles: TileSet = layer.map.tile_sizes().collect();
+            let unshared: usize = tiles.difference(&shared).map(|(_, bytes)| bytes).sum();
+            unshared + size_of::<FocusLayer>() + 2 * layer.map.texels.tiles().len() * size_of::<usize>()
+        });
+        own.sum()
+    }
+
+    /// The memory, in bytes, of the tiles of all layers and of `map`, their composite: shared ones once.
+    pub fn bytes_with(&self, map: &FocusMap) -> usize {
+        let maps = self.layers.iter().map(|layer| &layer.map).chain([map]);
+        let tiles: TileSet = maps.flat_map(FocusMap::tile_sizes).collect();
+        tiles.iter().map(|(_, bytes)| bytes).sum()
     }
 }
 
-/// The tiles of mask and gloss.
-fn share_tiles(layer: &FocusLayer) -> impl Iterator<Item = &Arc<Tile<f32>>> {
-    layer.map.mask.iter().chain([&layer.map.gloss]).flat_map(TileGrid::tiles)
+/// Tiles by address, with their sizes in bytes.
+type TileSet = BTreeSet<(usize, usize)>;
+
+/// The tile that all blank maps share.
+fn blank_tile() -> (usize, usize) {
+    let tile = blank();
+    (Arc::as_ptr(&tile) as usize, size_of_val(&*tile))
+}
+
+impl FocusMap {
+    /// The addresses of all tiles, with their sizes in bytes.
+    fn tile_sizes(&self) -> impl Iterator<Item = (usize, usize)> {
+        fn sizes<T: Copy + PartialEq>(grid: &TileGrid<T>) -> impl Iterator<Item = (usize, usize)> {
+            grid.tiles().iter().map(|tile| (Arc::as_ptr(tile) as usize, size_of_val(&**tile)))
+        }
+        sizes(&self.texels).chain(self.mask.iter().chain([&self.gloss]).flat_map(sizes))
+    }
 }

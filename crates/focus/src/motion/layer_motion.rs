@@ -42,7 +42,7 @@ impl LayerMotion {
         let mut rows = map.mask_rows().unwrap_or_else(|| vec![1.0; width as usize * height as usize]);
         let mut scale =
             |[x, y]: [u32; 2], share: f32| rows[y as usize * width as usize + x as usize] *= share;
-        for (index, texel) in canvas.texels().iter().enumerate() {
+        for (index, texel) in canvas.texels().enumerate() {
             let share = share_at(&span, camera.camera_from_world(texel.position).z);
             scale([texel.x, texel.y], share);
             canvas.gutters_of(index).iter().for_each(|&gutter| scale(gutter, share));

@@ -43,7 +43,7 @@ impl Dab {
         let mut any_within = false;
         let is_selected = |index: usize| selection.is_none_or(|selection| selection.contains(index));
         canvas.visit_within(self.center, self.radius, |index, distance| {
-            if self.accepts_normal(brush, &canvas.texels()[index]) {
+            if self.accepts_normal(brush, &canvas.texel(index)) {
                 any_within = true;
                 let share = brush.falloff(distance as f64 / self.radius);
                 if share > 0.0 && is_selected(index) {

@@ -80,8 +80,8 @@ pub fn fill_selected(
     }
     let [t, anchor, gloss] = to_numbers(value);
     let mut changed = Vec::new();
-    for (index, texel) in canvas.texels().iter().enumerate() {
-        let is_inside = targets.iter().any(|target| target.contains(canvas, texel));
+    for (index, texel) in canvas.texels().enumerate() {
+        let is_inside = targets.iter().any(|target| target.contains(canvas, &texel));
         if is_inside && selection.is_none_or(|selection| selection.contains(index)) {
             canvas.write_channels(map, index, [t, anchor, gloss, 1.0], touches, &mut changed);
         }

@@ -139,7 +139,7 @@ pub fn draw_gradient(
         return Err(FocusError::SizesDiffer { map: map.size(), canvas: canvas.size() });
     }
     let positions: Vec<f64> =
-        canvas.texels().par_iter().map(|texel| gradient.position_along(texel.position)).collect();
+        canvas.par_texels().map(|texel| gradient.position_along(texel.position)).collect();
     let from = to_numbers(gradient.from);
     let mut changed = Vec::new();
     for (index, position) in positions.into_iter().enumerate() {

@@ -31,7 +31,7 @@ impl SmoothedValues {
         let mut area = 0.0;
         let mut count = 0.0;
         canvas.visit_within(dab.center, dab.radius, |index, _| {
-            area += canvas.texels()[index].area;
+            area += canvas.texel(index).area;
             count += 1.0;
         });
         // A cell smaller than two texels would contain no neighbours to average with.
@@ -44,8 +44,8 @@ impl SmoothedValues {
         let mut smoothed = Self { reference: [0.0; 4], bounds, cell_side, side, cells: empty };
         let mut reference = None;
         canvas.visit_within(dab.center, reach as f64, |index, _| {
-            let texel = &canvas.texels()[index];
-            if !dab.accepts_normal(brush, texel) {
+            let texel = canvas.texel(index);
+            if !dab.accepts_normal(brush, &texel) {
                 return;
             }
             let value = canvas.value(map, index);

@@ -52,7 +52,7 @@ impl StrokePainter<'_> {
                     let before = self.coverage[index];
                     // The surface there may lie a little off the exact position: it need not be parallel to the one
                     // here.
-                    let texel = &canvas.texels()[index];
+                    let texel = canvas.texel(index);
                     let source =
                         canvas.nearest_within(texel.position + offset, texel.area.sqrt(), dab.radius);
                     if let Some(source) = source.filter(|_| ceiling > before) {

@@ -1,5 +1,6 @@
 //! The manifest of a project and its format versions.
 
+use crate::FocusHold;
 use crate::ProjectError;
 use crate::project_file::capture_choices::CaptureEntry;
 use crate::project_file::container::{Container, DAMAGED_CURE};
@@ -100,6 +101,8 @@ pub(crate) struct SceneReference {
 pub(crate) struct CameraEntry {
     pub name: String,
     pub camera: Value,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub focus_hold: Option<FocusHold>,
 }
 
 /// A container entry with a value for every texel, row by row: the focus map's t and anchor, f32 little endian; or

@@ -209,7 +209,7 @@ mod tests {
         // Its texels are where the surface is: a curve over depth follows the card.
         let canvas = now.canvas(&atlas);
         let depth = |part: u32, canvas: &Canvas| {
-            let of_part = canvas.texels().iter().filter(|texel| texel.part == part);
+            let of_part = canvas.texels().filter(|texel| texel.part == part);
             of_part.map(|texel| texel.position.x).fold(f64::NEG_INFINITY, f64::max)
         };
         let still = SceneInTime::at_rest(still);

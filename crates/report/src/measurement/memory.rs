@@ -19,6 +19,11 @@ impl PeakMemory {
     }
 }
 
+/// The resident memory of the process, in bytes; `None` where it cannot be read.
+pub fn resident_bytes() -> Option<u64> {
+    status_bytes("VmRSS:")
+}
+
 /// A value of /proc/self/status, bytes.
 fn status_bytes(name: &str) -> Option<u64> {
     parse_kilobytes(&std::fs::read_to_string("/proc/self/status").ok()?, name)

@@ -1,7 +1,7 @@
 //! Commands to a session.
 
 use crate::reference::ReferenceKind;
-use document::{CameraEdit, FillRegion, StrokePoint, SurfaceHit};
+use document::{BookmarkEdit, CameraEdit, FillRegion, StrokePoint, SurfaceHit};
 use focus::{Brush, CombineMode, Ease, Gradient, LayerEdit, LensMotion};
 use glam::DVec2;
 use jobs::JobId;
@@ -52,6 +52,10 @@ pub enum Command {
 
     /// Changes the camera. Consecutive edits of one field are one undo step until [`Command::FinishEdit`].
     EditCamera(CameraEdit),
+    /// Changes the bookmarked cameras, which are saved with the document; not an undo step.
+    EditBookmarks(BookmarkEdit),
+    /// Makes the shot camera that of a bookmark, by its number in [`document::Document::bookmarks`].
+    GoToBookmark(usize),
     /// Ends a run of edits (a slider was released): the next edit is a separate undo step.
     FinishEdit,
     /// Shows the document at a time, s: lens and layers follow their keys. Not an undo step.

@@ -113,6 +113,7 @@ pub enum CommandId {
     FocusNearer,
     FocusFarther,
     CameraFromView,
+    BookmarkCamera,
     SaveLensPreset,
     SaveBokehPreset,
     OrbitAperture,
@@ -199,6 +200,9 @@ impl Shortcut {
     }
     pub(crate) const fn command_shift(key: &'static str) -> Option<Self> {
         Some(Self { command: true, shift: true, alt: false, key })
+    }
+    pub(crate) const fn command_alt(key: &'static str) -> Option<Self> {
+        Some(Self { command: true, shift: false, alt: true, key })
     }
     pub(crate) const fn shift(key: &'static str) -> Option<Self> {
         Some(Self { command: false, shift: true, alt: false, key })
@@ -361,7 +365,8 @@ pub const COMMANDS: &[CommandInfo] = &[
     command_info(CommandId::CloseAperture, Menu::Lens, Shortcut::key("Minus"), "Close aperture", "Close the aperture by a third of a stop."),
     command_info(CommandId::FocusNearer, Menu::Lens, Shortcut::shift("Comma"), "Focus nearer", "Focus the lens a twentieth nearer."),
     command_info(CommandId::FocusFarther, Menu::Lens, Shortcut::shift("Period"), "Focus farther", "Focus the lens a twentieth farther."),
-    command_info(CommandId::CameraFromView, Menu::Lens, None, "Camera from view", "Move the shot camera to where the paint view looks from."),
+    command_info(CommandId::CameraFromView, Menu::Lens, Shortcut::command_alt("0"), "Camera from view", "Move the shot camera to where the paint view looks from."),
+    command_info(CommandId::BookmarkCamera, Menu::Lens, Shortcut::command_alt("B"), "Bookmark camera", "Keep this camera, with its lens and focus, under a name (section Cameras)."),
     command_info(CommandId::SaveLensPreset, Menu::Lens, None, "Save lens preset…", "Keep focal length, f-number and sensor under a name."),
     command_info(CommandId::SaveBokehPreset, Menu::Lens, None, "Save bokeh preset…", "Keep the aperture's shape under a name, a mask with it."),
     command_info(CommandId::OrbitAperture, Menu::Lens, Shortcut::key("J"), "Look round the aperture", "Show the picture through one point of the aperture that runs round its rim; again or Esc ends it."),

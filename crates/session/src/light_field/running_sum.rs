@@ -117,6 +117,13 @@ impl LightField {
         })
     }
 
+    /// The memory of the light field with its index, and of the sum, in bytes.
+    pub fn bytes(&self) -> [usize; 2] {
+        let samples = self.splatter.salf().statistics().bytes;
+        let [nodes, sums] = self.splatter.bytes();
+        [samples + self.index.bytes(), nodes + sums]
+    }
+
     /// The light field, with the number of passes by which its light was refined.
     pub fn refined(self, light_passes: u32) -> Self {
         Self { light_passes, ..self }

@@ -25,6 +25,11 @@ impl SampleIndex {
         Self { salf, atlas, own, carried: OnceLock::new() }
     }
 
+    /// The memory that it takes, in bytes.
+    pub fn bytes(&self) -> usize {
+        self.own.bytes() + self.carried.get().map_or(0, Tiles::bytes)
+    }
+
     /// The samples of own light whose bilinear lookup may read one of `texels` (column and row), each once, in no order.
     pub fn samples_reading(&self, texels: &[[u32; 2]]) -> Vec<u32> {
         self.own.samples_reading(texels)
@@ -50,6 +55,10 @@ struct Tiles {
 }
 
 impl Tiles {
+    fn bytes(&self) -> usize {
+        size_of_val(&*self.starts) + size_of_val(&*self.entries)
+    }
+
     /// Sorts the samples of `salf` that `wanted` chooses into the tiles of `atlas`.
     fn from_samples(salf: &Salf, atlas: &Atlas, selects: impl Fn(&Address) -> bool) -> Self {
         let mut addresses = salf.samples.addresses();

@@ -20,6 +20,8 @@ pub(crate) struct Shared {
     wake: Condvar,
     /// Progress of the thread's own work: short.
     pub quick: JobProgress,
+    /// Whether the thread makes a picture that is shown even if the camera moves on.
+    is_following: AtomicBool,
     /// Progress of its helper's work: long.
     pub progress: JobProgress,
     /// Progress of the exact picture.
@@ -33,6 +35,8 @@ pub(crate) struct Shared {
     exports: AtomicUsize,
     activity: AtomicU8,
     helper: AtomicU8,
+    /// Memory of the light fields that are worked with, and of their sums, bytes.
+    field_bytes: [AtomicUsize; 2],
     /// The light field that the helper makes.
     pub field: FieldWatch,
     published: Mutex<Published>,
@@ -53,6 +57,7 @@ impl Shared {
             request: Mutex::default(),
             wake: Condvar::new(),
             quick: JobProgress::default(),
+            is_following: AtomicBool::new(false),
             progress: JobProgress::default(),
             refining: JobProgress::default(),
             is_refining: AtomicBool::new(false),
@@ -61,6 +66,7 @@ impl Shared {
             exports: AtomicUsize::new(0),
             activity: AtomicU8::new(PreviewActivity::Idle as u8),
             helper: AtomicU8::new(PreviewActivity::Idle as u8),
+            field_bytes: Default::default(),
             field: FieldWatch::default(),
             published: Mutex::default(),
             waker,
@@ -93,6 +99,16 @@ impl Shared {
         (!request.quit).then_some(request)
     }
 
+    /// Notes the memory of the light fields that are worked with, and of their sums, in bytes.
+    pub fn note_field_bytes(&self, bytes: [usize; 2]) {
+        self.field_bytes.iter().zip(bytes).for_each(|(noted, bytes)| noted.store(bytes, Ordering::Relaxed));
+    }
+
+    /// The memory of the light fields that are worked with, and of their sums, in bytes.
+    pub fn field_bytes(&self) -> [usize; 2] {
+        self.field_bytes.each_ref().map(|noted| noted.load(Ordering::Relaxed))
+    }
+
     /// Merges a change into the pending request, and cancels work that it makes useless.
     pub fn post(&self, scope: StopScope, change: impl FnOnce(&mut PreviewRequest)) {
         let mut request = lock(&self.request);
@@ -101,11 +117,13 @@ impl Shared {
         if scope != StopScope::Nothing {
             self.refining.cancel();
         }
-        if scope == StopScope::Everything {
+        if matches!(scope, StopScope::View | StopScope::Everything) {
             request.is_stopping = true;
-            self.quick.cancel();
             self.progress.cancel();
             self.light.cancel();
+            if scope == StopScope::Everything || !self.is_following.load(Ordering::Relaxed) {
+                self.quick.cancel();
+            }
         }
         self.wake.notify_one();
     }
@@ -119,6 +137,19 @@ impl Shared {
         self.quick.begin_step("", 0.0, 1.0);
         self.activity.store(activity as u8, Ordering::Relaxed);
         Ok(())
+    }
+
+    /// Notes that the thread begins a picture that is shown even if the camera moves on.
+    pub fn begin_following(&self) {
+        let _request = lock(&self.request);
+        self.is_following.store(true, Ordering::Relaxed);
+    }
+
+    /// Notes that such a picture is finished; false if there is a new request.
+    pub fn end_following(&self) -> bool {
+        let request = lock(&self.request);
+        self.is_following.store(false, Ordering::Relaxed);
+        !request.is_posted
     }
 
     /// Notes that the helper begins; false if its work is already useless.

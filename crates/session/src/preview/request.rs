@@ -52,5 +52,7 @@ pub(crate) enum StopScope {
     Nothing,
     /// The exact picture.
     Refining,
+    /// All but a picture without blur, which is soon there: a camera that moves on is followed by pictures of where it just was.
+    View,
     Everything,
 }

@@ -61,7 +61,7 @@ impl PreviewThread {
 
     /// Another camera, at the preview's size. `keeps_light_field`: the light field is compatible with it.
     pub fn set_camera(&self, camera: Camera, keeps_light_field: bool) {
-        let scope = if keeps_light_field { StopScope::Refining } else { StopScope::Everything };
+        let scope = if keeps_light_field { StopScope::Refining } else { StopScope::View };
         self.shared.post(scope, |request| {
             request.camera = Some(camera);
             request.edit_done = true;
@@ -114,6 +114,11 @@ impl PreviewThread {
     /// The newest picture, if there is one newer than `id`, and what happened meanwhile.
     pub fn take(&self, id: u64) -> (Option<Preview>, PreviewEvents) {
         self.shared.take(id)
+    }
+
+    /// The memory of the light fields that are worked with, and of their sums, in bytes.
+    pub fn field_bytes(&self) -> [usize; 2] {
+        self.shared.field_bytes()
     }
 
     /// Sets how linear light is shown on the screen.

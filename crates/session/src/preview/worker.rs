@@ -11,14 +11,14 @@ use crate::preview::light_field_maker::{FieldOrder, FieldOrigin, LightFieldMaker
 use crate::preview::light_refinement::LightRefinement;
 use crate::preview::mailbox::Shared;
 use crate::preview::picture::{PreviewKind, Quality};
-use crate::preview::picture_sizes::{coarse_cameras, interim_camera};
+use crate::preview::picture_sizes::{coarse_cameras, interim_camera, moving_camera, resting_camera};
+use crate::preview::pinhole::{PinholeTracer, is_same_view};
 use crate::preview::presenter::{NewPicture, Presenter, Relation};
 use crate::preview::request::PreviewRequest;
-use baselines::FirstHits;
 use document::Stage;
 use focus::{Focus, FocusMap};
 use jobs::catch_panics;
-use lens::Camera;
+use lens::{Camera, Picture};
 use light::LightQuality;
 use render::{LightFieldStore, Modelled};
 use splat::Tolerance;
@@ -62,6 +62,8 @@ pub(crate) struct Worker {
     is_painting: bool,
     /// Tolerance of sums.
     tolerance: Tolerance,
+    /// Traces pictures without blur.
+    pinhole: PinholeTracer,
     /// Counts new scenes and requested bakes: results of an older epoch are discarded.
     epoch: u64,
     /// An edit is complete, and whether the fine light field still fits it has not been looked at.
@@ -102,6 +104,7 @@ impl Worker {
             exact_after,
             is_painting: false,
             tolerance: Tolerance::VIEWING,
+            pinhole: PinholeTracer::default(),
             epoch: 0,
             is_edit_done: false,
             bakes_anew: false,
@@ -117,6 +120,7 @@ impl Worker {
             self.presenter.begun = Instant::now();
             let outcome = catch_panics("drawing the preview", || self.process(request));
             self.report_loss();
+            self.note_memory();
             match outcome {
                 Ok(()) | Err(SessionError::Cancelled) => {}
                 Err(error) => {
@@ -132,6 +136,11 @@ impl Worker {
         self.maker.join();
         self.refinement.join();
         self.light.join();
+    }
+
+    fn note_memory(&self) {
+        let fields = [&self.coarse, &self.fine].into_iter().flatten().map(LightField::bytes);
+        self.shared.note_field_bytes(fields.fold([0, 0], |[a, b], [c, d]| [a + c, b + d]));
     }
 
     /// Tells the user once that the card was lost.
@@ -176,7 +185,9 @@ impl Worker {
         {
             return self.show_fine(plan, &stage, &camera, focus);
         }
-        self.show_pinhole(&stage, &camera, &focus)?;
+        if !self.show_pinhole(&stage, &camera, &focus)? {
+            return Ok(());
+        }
         // What is kept is there sooner than the coarse picture.
         let is_stored = self.fine.is_none() && !self.bakes_anew && self.maker.has_stored(&stage, &camera);
         if !is_stored {
@@ -205,6 +216,7 @@ impl Worker {
         let is_opened = request.stage.is_some();
         if let Some((stage, generation)) = request.stage {
             self.stage = Some(stage);
+            self.pinhole.forget();
             self.presenter.open(generation);
         }
         if is_opened || request.bake {
@@ -334,6 +346,7 @@ impl Worker {
                 picture: fine.source(),
                 camera,
                 enlarged_to: None,
+                sharp_layer: None,
                 kind: PreviewKind::from(&update),
                 quality: if is_exact { Quality::Exact } else { Quality::Viewing },
                 seconds: start.elapsed().as_secs_f64() + elsewhere,
@@ -355,33 +368,51 @@ impl Worker {
         Ok(())
     }
 
-    /// The picture without blur, if the view is new; of fewer pixels where one between is due.
-    fn show_pinhole(&mut self, stage: &Stage, camera: &Camera, focus: &Focus) -> Result<(), SessionError> {
+    /// A picture without blur that is there at once, if the view is new. Returns whether the camera rests.
+    fn show_pinhole(&mut self, stage: &Stage, camera: &Camera, focus: &Focus) -> Result<bool, SessionError> {
         if self.presenter.shown().is_some_and(|shown| is_same_view(&shown.camera, camera)) {
-            return Ok(());
+            return Ok(true);
         }
-        self.shared.begin(PreviewActivity::Tracing)?;
+        let camera = &moving_camera(camera, self.pinhole.pace());
+        self.shared.begin_following();
         let start = Instant::now();
-        let camera = &interim_camera(camera).unwrap_or_else(|| camera.clone());
-        let radiance = stage.lit.solve(camera, LightQuality::Rough, &self.shared.quick)?;
-        let hits = FirstHits::trace(stage.tracer(), &*radiance, focus, camera, &self.shared.quick)?;
+        let traced = self.trace_pinhole(stage, camera, focus);
+        let rests = self.shared.end_following();
         self.presenter.show(NewPicture {
-            picture: PictureSource::InMemory(&hits.picture()),
+            picture: PictureSource::InMemory(&traced?),
             camera,
             enlarged_to: None,
+            sharp_layer: None,
             relation: Relation::New,
             kind: PreviewKind::Pinhole,
             quality: Quality::Coarse,
             seconds: start.elapsed().as_secs_f64(),
             modelled: Modelled::default(),
         });
-        Ok(())
+        Ok(rests)
+    }
+
+    fn trace_pinhole(
+        &mut self,
+        stage: &Stage,
+        camera: &Camera,
+        focus: &Focus,
+    ) -> Result<Picture, SessionError> {
+        self.shared.begin(PreviewActivity::Tracing)?;
+        let Some(map) = &self.map else { return Err(SessionError::NothingOpen) };
+        self.pinhole.trace(stage, camera, (focus, map), &self.shared.quick)
     }
 
     /// Pictures of few pixels, each of more than the one before; begins with the best that need not be baked, and ends there
     /// while a stroke waits for more.
     fn show_coarse(&mut self, stage: &Stage, camera: &Camera, focus: &Focus) -> Result<(), SessionError> {
         let size = [camera.width, camera.height];
+        let resting = resting_camera(camera, self.pinhole.pace());
+        let has_layer = self.map.as_ref().is_some_and(|map| self.pinhole.shows(&resting, map));
+        if !has_layer && !self.is_painting && !coarse_cameras(camera).is_empty() {
+            // What is laid over them.
+            self.trace_pinhole(stage, &resting, focus)?;
+        }
         let can_show = |small: &Camera| self.coarse.as_ref().is_some_and(|coarse| coarse.can_show(small));
         if let Some(interim) = interim_camera(camera).filter(can_show) {
             return self.show_small(stage, &interim, size, focus);
@@ -401,6 +432,7 @@ impl Worker {
         focus: &Focus,
     ) -> Result<(), SessionError> {
         self.coarse.take_if(|coarse| !coarse.can_show(small));
+        let sharp_layer = self.map.as_ref().and_then(|map| self.pinhole.layer_over(small, size, map));
         let coarse = match &mut self.coarse {
             Some(coarse) => coarse,
             None => {
@@ -422,6 +454,7 @@ impl Worker {
                 picture: coarse.source(),
                 camera: small,
                 enlarged_to: Some(size),
+                sharp_layer,
                 kind: PreviewKind::from(&update),
                 quality: Quality::Coarse,
                 seconds: start.elapsed().as_secs_f64(),
@@ -522,6 +555,7 @@ impl Worker {
             picture: field.source(),
             camera: &exact.camera,
             enlarged_to: None,
+            sharp_layer: None,
             relation: Relation::Overlay,
             kind: PreviewKind::Splat,
             quality: Quality::Exact,
@@ -531,10 +565,4 @@ impl Worker {
         self.refinement.tidy(self.fine.as_ref());
         Ok(())
     }
-}
-
-/// Whether the two show the same view, whatever their lens and size.
-fn is_same_view(a: &Camera, b: &Camera) -> bool {
-    (a.yfov, a.shift, a.camera_to_world) == (b.yfov, b.shift, b.camera_to_world)
-        && (a.aspect() - b.aspect()).abs() < 0.1 * b.aspect()
 }

@@ -6,6 +6,7 @@ use crate::session::stage_change::{ChangeCause, StageChange};
 use crate::session::state::{LIGHT_JOB, PREVIEW_JOB, Session};
 use document::CameraEdit;
 use focus::FillTarget;
+use project::FocusHold;
 
 impl Session {
     /// Carries out `command`, or starts it in the background.
@@ -23,6 +24,11 @@ impl Session {
             Command::GoToHistoryStep(steps) => self.go_to(steps),
             Command::ApplyRecordedStep(step) => self.apply_recorded_step(&step),
             Command::EditCamera(edit) => self.edit_camera(edit),
+            Command::EditBookmarks(edit) => {
+                self.document_mut()?.edit_bookmarks(edit);
+                Ok(())
+            }
+            Command::GoToBookmark(number) => self.go_to_bookmark(number),
             Command::FinishEdit => {
                 self.document_mut()?.undo.finish_run();
                 Ok(())
@@ -86,8 +92,7 @@ impl Session {
             Command::MaskFromSelection => self.mask_selected(),
             Command::SelectRegion(region, combine) => self.select_region(region, combine),
             Command::FocusHere(hit) => {
-                let depth = self.document_mut()?.camera.camera_from_world(hit.position).z;
-                self.edit_camera(CameraEdit::FocusDistance(depth))?;
+                self.edit_camera(CameraEdit::FocusOn(FocusHold::Point(hit.position)))?;
                 self.document_mut()?.undo.finish_run();
                 Ok(())
             }

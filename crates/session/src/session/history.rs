@@ -14,8 +14,10 @@ impl Session {
             return self.abort_stroke();
         }
         let document = self.document_mut()?;
-        let Document { undo, layers, camera, lens_motion, selection, depth_strokes, .. } = document;
-        let effect = undo.undo(UndoState { layers, camera, lens_motion, selection, depth_strokes });
+        let Document { undo, layers, camera, focus_hold, lens_motion, selection, depth_strokes, .. } =
+            document;
+        let effect =
+            undo.undo(UndoState { layers, camera, focus_hold, lens_motion, selection, depth_strokes });
         self.finish_history_step(effect)
     }
 
@@ -24,8 +26,10 @@ impl Session {
             return Ok(());
         }
         let document = self.document_mut()?;
-        let Document { undo, layers, camera, lens_motion, selection, depth_strokes, .. } = document;
-        let effect = undo.redo(UndoState { layers, camera, lens_motion, selection, depth_strokes });
+        let Document { undo, layers, camera, focus_hold, lens_motion, selection, depth_strokes, .. } =
+            document;
+        let effect =
+            undo.redo(UndoState { layers, camera, focus_hold, lens_motion, selection, depth_strokes });
         self.finish_history_step(effect)
     }
 

@@ -14,17 +14,28 @@ use std::collections::BTreeMap;
 impl Session {
     pub(super) fn edit_camera(&mut self, edit: CameraEdit) -> Result<(), SessionError> {
         let document = self.document_mut()?;
-        let (name, after) = edit.applied_to(&document.camera);
-        after.validate().map_err(|error| SessionError::BadInput(error.to_string()))?;
-        if after == document.camera {
+        let before = document.held_camera();
+        let (name, after) = before.edited(edit, &document.stage.scene);
+        after.camera.validate().map_err(|error| SessionError::BadInput(error.to_string()))?;
+        if after == before {
             return Ok(());
         }
-        let before = std::mem::replace(&mut document.camera, after.clone());
+        document.set_held_camera(after.clone());
         document.undo.push_camera(name, before, after);
         document.revision += 1;
         self.events.push(Event::CameraChanged);
         self.show_camera();
         self.update_adjustment_layers()
+    }
+
+    /// Makes the shot camera that of a bookmark: an undo step.
+    pub(super) fn go_to_bookmark(&mut self, number: usize) -> Result<(), SessionError> {
+        let Some(held) = self.document_mut()?.bookmark(number) else {
+            return Err(SessionError::BadInput(format!("there is no bookmark {}", number + 1)));
+        };
+        self.edit_camera(CameraEdit::Held(held.into()))?;
+        self.document_mut()?.undo.finish_run();
+        Ok(())
     }
 
     /// Adjustment layers follow the shot camera.

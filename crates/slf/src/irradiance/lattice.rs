@@ -38,6 +38,11 @@ fn key(cell: IVec3) -> u64 {
 }
 
 impl Lattice {
+    /// The memory that it takes, in bytes.
+    pub fn bytes(&self) -> usize {
+        self.cells.capacity() * size_of::<(u64, (u32, u32))>() + size_of_val(&*self.numbers)
+    }
+
     /// Sorts items into cells of side `spacing` (scene units): the numbers of the items, and the cell of each.
     pub fn new(spacing: f64, items: impl IntoIterator<Item = (u32, IVec3)>) -> Self {
         let mut items: Vec<(u64, u32)> =

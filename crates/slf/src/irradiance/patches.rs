@@ -133,6 +133,13 @@ impl Patches {
         &self.lattices[usize::from(self.sizes.level(part))]
     }
 
+    /// The memory that they take, in bytes.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&*self.patches)
+            + size_of_val(&*self.points)
+            + self.lattices.iter().map(Lattice::bytes).sum::<usize>()
+    }
+
     /// All patches, by number.
     pub fn all(&self) -> &[Patch] {
         &self.patches

@@ -127,8 +127,8 @@ impl AtlasView {
         let pixel = |index: u32| {
             let [x, y] = [index % size[0] * step, index / size[0] * step];
             let Some(covered) = texels.index.get((y * width + x) as usize) else { return empty };
-            let Some(position) = texels.positions.get(*covered as usize) else { return empty };
-            let depth = camera.camera_from_world(*position).z;
+            let Some(texel) = texels.texels.get(*covered as usize) else { return empty };
+            let depth = camera.camera_from_world(texel.centroid.position(document.scene())).z;
             if depth <= 0.0 {
                 return Color32::from_gray(90);
             }

@@ -7,10 +7,12 @@ use crate::window::widgets::controls::{self, finish_edit, format_number, proport
 use crate::window::{Action, ViewSettings};
 use document::{CameraEdit, Document};
 use egui::{Button, ComboBox, DragValue, Slider, Ui};
+use glam::DVec3;
 use lens::{Camera, Exposure};
-use project::{PresetKind, PresetLibrary};
+use project::{FocusHold, PresetKind, PresetLibrary};
 use render::{OcioViews, ToneCurve};
 use session::{Command, CommandId, Session};
+use std::collections::BTreeSet;
 
 /// Full stops in the f-number's menu.
 const STOPS: [f64; 9] = [0.7, 1.0, 1.4, 2.0, 2.8, 4.0, 5.6, 8.0, 16.0];
@@ -70,6 +72,7 @@ pub fn lens_panel(ui: &mut Ui, document: &Document, presets: &PresetLibrary, act
             ui.label(format!("{} mm", controls::significant_digits(optics.focal_length() * 1e3)))
         });
         focus_distance_row(ui, document, actions);
+        focus_hold_row(ui, document, actions);
 
         let mut degrees = camera.yfov.to_degrees();
         let response = row(ui, "Angle of view", "Full vertical angle of view.", |ui| {
@@ -149,6 +152,40 @@ fn focus_distance_row(ui: &mut Ui, document: &Document, actions: &mut Vec<Action
         actions.push(Command::EditCamera(CameraEdit::FocusDistance(distance)).into());
     }
     finish_edit(&response, actions);
+}
+
+fn focus_hold_row(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) {
+    let camera = &document.camera;
+    let tip = "What stays in focus when the camera moves: a point of the scene (Focus here chooses another), an object, or \
+               nothing, so that the distance stays.";
+    let shown = match &document.focus_hold {
+        FocusHold::Point(_) => "a point",
+        FocusHold::Object(name) => name,
+        FocusHold::Distance => "the distance",
+    };
+    let mut choose = |ui: &mut Ui, label: &str, hold: FocusHold| {
+        if ui.selectable_label(label == shown, label).clicked() {
+            actions.push(Command::EditCamera(CameraEdit::FocusOn(hold)).into());
+            actions.push(Command::FinishEdit.into());
+        }
+    };
+    row(ui, "Focus held on", tip, |ui| {
+        let combo = ComboBox::from_id_salt("focus hold").selected_text(shown).width(150.0).truncate();
+        combo
+            .show_ui(ui, |ui| {
+                let ahead = camera.world_from_camera(DVec3::Z * camera.focus_distance);
+                if ahead.is_finite() {
+                    choose(ui, "a point", FocusHold::Point(ahead));
+                }
+                choose(ui, "the distance", FocusHold::Distance);
+                let names: BTreeSet<&str> =
+                    document.scene().nodes.iter().map(|node| node.name.as_str()).collect();
+                for name in names.into_iter().filter(|name| !name.is_empty()) {
+                    choose(ui, name, FocusHold::Object(name.into()));
+                }
+            })
+            .response
+    });
 }
 
 fn scene_camera_row(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) {

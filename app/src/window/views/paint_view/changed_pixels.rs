@@ -2,6 +2,7 @@
 
 use super::{OrbitCamera, Stale};
 use atlas::TexelMap;
+use scene::Scene;
 use std::ops::Range;
 
 /// How far from the centre of a texel its value has an effect, in texels: values are interpolated, and charts
@@ -10,6 +11,7 @@ const REACH_TEXELS: f64 = 2.0;
 
 /// The pixels of a view of `size` px that show these rectangles of the atlas (columns and rows), with a margin.
 pub fn changed_pixels(
+    scene: &Scene,
     texels: &TexelMap,
     rectangles: &[[Range<u32>; 2]],
     camera: &OrbitCamera,
@@ -25,14 +27,11 @@ pub fn changed_pixels(
             let first = row as usize * texels.width as usize;
             let row_texels = &texels.index[first + columns.start as usize..first + columns.end as usize];
             for &index in row_texels {
-                let (Some(position), Some(texel)) =
-                    (texels.positions.get(index as usize), texels.texels.get(index as usize))
-                else {
-                    continue;
-                };
+                let Some(texel) = texels.texels.get(index as usize) else { continue };
+                let position = texel.centroid.position(scene);
                 // A texel beside the eye may cover much of the view.
-                let Some(at) = camera.project(*position, width / height) else { return Stale::AllColors };
-                let reach = REACH_TEXELS * texel.area.sqrt() * camera.pixels_per_unit(*position, height);
+                let Some(at) = camera.project(position, width / height) else { return Stale::AllColors };
+                let reach = REACH_TEXELS * texel.area.sqrt() * camera.pixels_per_unit(position, height);
                 let at = [(at.x + 1.0) / 2.0 * width, (1.0 - at.y) / 2.0 * height];
                 for axis in [0, 1] {
                     low[axis] = low[axis].min(at[axis] - reach);

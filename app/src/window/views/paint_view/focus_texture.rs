@@ -49,7 +49,7 @@ impl FocusTexture {
         self.frozen = document.selection.as_ref().map(|selection| {
             let width = map.width() as usize;
             let mut frozen = vec![false; width * map.height() as usize];
-            for (index, texel) in canvas.texels().iter().enumerate() {
+            for (index, texel) in canvas.texels().enumerate() {
                 if !selection.contains(index) {
                     let own = [[texel.x, texel.y]];
                     for [x, y] in own.iter().chain(canvas.gutters_of(index)) {

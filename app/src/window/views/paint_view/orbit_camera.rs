@@ -1,5 +1,6 @@
 //! The camera of the paint view: orbits around a pivot, pans and zooms. Not part of the document.
 
+use crate::window::tools::navigation::Motion;
 use focus::ViewFrame;
 use glam::{DMat4, DQuat, DVec2, DVec3, DVec4};
 use lens::Camera;
@@ -9,6 +10,8 @@ use serde::{Deserialize, Serialize};
 const ORBIT_RAD_PER_POINT: f64 = 0.008;
 /// Factor of the distance for one wheel step.
 const ZOOM_PER_STEP: f64 = 0.88;
+/// Scroll distance of one wheel step, points.
+pub const POINTS_PER_STEP: f64 = 40.0;
 /// Smallest angle between the line of sight and the vertical, rad: keeps the horizon level.
 const POLE_MARGIN_RAD: f64 = 0.02;
 
@@ -83,6 +86,15 @@ impl OrbitCamera {
     /// Zooms in by `steps` wheel steps (negative: out).
     pub fn zoom(&mut self, steps: f64) {
         self.distance = (self.distance * ZOOM_PER_STEP.powf(steps)).clamp(1e-6, 1e9);
+    }
+
+    /// Moves by a drag, in points (y down), in a view of this height.
+    pub fn drag(&mut self, motion: Motion, delta: DVec2, view_height: f64) {
+        match motion {
+            Motion::Orbit => self.orbit(delta),
+            Motion::Slide => self.pan(delta, view_height),
+            Motion::Nearer => self.zoom(-delta.y / POINTS_PER_STEP * 2.0),
+        }
     }
 
     /// Frames a box from the current direction.

@@ -2,6 +2,7 @@
 
 use super::changed_pixels::changed_pixels;
 use super::legend;
+use super::orbit_camera::POINTS_PER_STEP;
 use super::surface_overlay::{OverlayKind, SurfaceOverlay};
 use super::{FocusTexture, GraphicsError, OrbitCamera, Stale, SurfaceFrame, SurfaceMesh, SurfaceRenderer};
 use crate::window::Action;
@@ -9,7 +10,7 @@ use crate::window::graphics::blit::{self, Blitter, Drawable, Filter};
 use crate::window::tools::active_tool::ActiveTool;
 use crate::window::tools::brush_ring;
 use crate::window::tools::drag_tool::DragView;
-use crate::window::tools::navigation::{self, Motion};
+use crate::window::tools::navigation;
 use crate::window::tools::region_highlight::RegionHighlight;
 use crate::window::tools::stroke_input::StrokeInput;
 use crate::window::view_settings::SurfaceAppearance;
@@ -23,16 +24,13 @@ use session::Session;
 use std::ops::Range;
 use std::sync::{Arc, mpsc};
 
-/// Scroll distance of one wheel step, points.
-const POINTS_PER_STEP: f64 = 40.0;
-
 /// Margin around the picture when looking through the shot camera, as a factor.
 const FRAME_MARGIN: f64 = 1.06;
 
 /// Key of the viewpoint in the saved document.
 const VIEWPOINT_KEY: &str = "paint_view";
 /// Pivot distance for a shot camera that focuses at infinity.
-const PIVOT_AT_INFINITY: f64 = 10.0;
+pub const PIVOT_AT_INFINITY: f64 = 10.0;
 
 /// The 3D view for painting.
 pub struct PaintView {
@@ -181,7 +179,13 @@ impl PaintView {
     pub fn map_changed(&mut self, document: &Document, rectangles: Vec<[Range<u32>; 2]>) {
         let (Some(renderer), Some(focus)) = (&self.renderer, &self.focus) else { return };
         let size = self.drawn.as_ref().map_or([0; 2], |_| self.size);
-        self.stale.join(changed_pixels(&document.stage.texels, &rectangles, &self.camera, size));
+        self.stale.join(changed_pixels(
+            &document.stage.scene,
+            &document.stage.texels,
+            &rectangles,
+            &self.camera,
+            size,
+        ));
         for [columns, rows] in rectangles {
             focus.update(renderer.device().1, &document.map, columns, rows);
         }
@@ -353,11 +357,7 @@ impl PaintView {
     fn navigate(&mut self, ui: &Ui, response: &Response) {
         if let Some((motion, delta)) = navigation::view_drag(ui, response) {
             let delta = DVec2::new(delta.x as f64, delta.y as f64);
-            match motion {
-                Motion::Orbit => self.camera.orbit(delta),
-                Motion::Slide => self.camera.pan(delta, self.rect.height() as f64),
-                Motion::Nearer => self.camera.zoom(-delta.y / POINTS_PER_STEP * 2.0),
-            }
+            self.camera.drag(motion, delta, self.rect.height() as f64);
         }
         if response.contains_pointer() {
             let (scroll, touch) =

@@ -51,15 +51,16 @@ impl Texels {
             density: atlas.density * scale,
             notes: Vec::new(),
         };
-        let TexelMap { width, height, texels, index, positions, normals, .. } = finer.texel_map(scene);
+        let TexelMap { width, height, texels, index, .. } = finer.texel_map(scene);
+        let normal = |point: SurfacePoint| scene.area_normal(point.triangle).normalize_or_zero().as_vec3();
         let shading_normals =
             texels.par_iter().map(|texel| scene.shading_normal(texel.centroid).as_vec3()).collect();
         Self {
             grid: TexelGrid { scale, width, height, corners: atlas.corners.clone(), index },
             places: texels.iter().map(|texel| [texel.x, texel.y]).collect(),
             points: texels.iter().map(|texel| texel.centroid).collect(),
-            positions,
-            normals,
+            positions: texels.par_iter().map(|texel| texel.centroid.position(scene)).collect(),
+            normals: texels.par_iter().map(|texel| normal(texel.centroid)).collect(),
             shading_normals,
             areas: texels.iter().map(|texel| texel.area as f32).collect(),
         }

@@ -1,0 +1,16 @@
+//! A cloud of splats, as it is kept in memory.
+
+mod axes;
+mod builder;
+mod gaussian_cloud;
+pub mod harmonics;
+mod left_out;
+mod splat;
+mod srgb;
+
+pub use axes::{Axes, Toward};
+pub use builder::CloudBuilder;
+pub use gaussian_cloud::{CloudTraits, ColorSpace, GaussianCloud};
+pub use left_out::{LeftOut, Reason};
+pub use splat::Splat;
+pub use srgb::{linear_to_srgb, srgb_to_linear};

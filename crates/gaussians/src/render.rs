@@ -1,0 +1,7 @@
+//! Pictures of splats: through a pinhole, and through an aperture, by tracing rays.
+
+mod aperture_points;
+mod pixel_box;
+mod truth;
+
+pub use truth::{GaussianPicture, TruthOptions, render_pinhole, render_truth};

@@ -1,0 +1,153 @@
+//! Which splats the rays of a part of the picture can meet.
+//!
+//! Rays form a grid. A splat's outline as an eye sees it is a conic; the tiles that its bounds meet are those whose rays must test it. Splats are
+//! filtered by rows of tiles, then by tiles, when these are drawn: nothing grows with splats times tiles.
+
+use super::eye::Eye;
+use super::shape::CameraShape;
+use super::tile_tracer::{LANES, TileTracer};
+use glam::{DVec2, DVec3};
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Rays of a side of a tile: a row of them is traced at once.
+const TILE: u32 = LANES as u32;
+
+/// Rays through a picture and a margin about it, evenly spaced.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RayGrid {
+    /// Rays of a pixel's side, at least 1.
+    pub rays_per_px: u32,
+    /// Pixels about the picture.
+    pub margin_px: u32,
+    /// Rays of a row.
+    pub columns: u32,
+    /// Rows of rays.
+    pub rows: u32,
+}
+
+/// A row of tiles.
+pub(crate) struct TileRow<'g> {
+    grid: &'g RayGrid,
+    /// Its rows of rays.
+    pub rays: Range<u32>,
+    /// The splats that it meets, in order, with the columns of tiles.
+    splats: Vec<(u32, [u32; 2])>,
+}
+
+/// The bounds of each splat of a view, in tiles: first and last column, first and last row; the first is after the last where it is not visible.
+pub(crate) struct Outlines(Vec<[u32; 4]>);
+
+const HIDDEN: [u32; 4] = [1, 0, 1, 0];
+
+impl Outlines {
+    /// Whether a ray of the grid can meet a splat.
+    pub fn is_met(&self, splat: u32) -> bool {
+        self.0[splat as usize] != HIDDEN
+    }
+}
+
+impl RayGrid {
+    /// The rays of a picture of `width` × `height` px.
+    pub fn new(width: u32, height: u32, margin_px: u32, rays_per_px: u32) -> Self {
+        let rays = |side: u32| side.saturating_add(margin_px.saturating_mul(2)).saturating_mul(rays_per_px);
+        Self { rays_per_px, margin_px, columns: rays(width), rows: rays(height) }
+    }
+
+    /// The pixel position of a ray.
+    pub fn pixel(&self, column: u32, row: u32) -> DVec2 {
+        let at =
+            |index: u32| (f64::from(index) + 0.5) / f64::from(self.rays_per_px) - f64::from(self.margin_px);
+        DVec2::new(at(column), at(row))
+    }
+
+    /// The tile (column, row) of a pixel position; the nearest for those outside.
+    pub fn tile_at(&self, pixel: DVec2) -> [u32; 2] {
+        let ray = (pixel + f64::from(self.margin_px)) * f64::from(self.rays_per_px);
+        let tile = |ray: f64, count: u32| ray.clamp(0.0, f64::from(count - 1)) as u32 / TILE;
+        [tile(ray.x, self.columns), tile(ray.y, self.rows)]
+    }
+
+    /// The number of rows of tiles.
+    pub fn tile_rows(&self) -> u32 {
+        self.rows.div_ceil(TILE)
+    }
+
+    /// The bounds of all splats as an eye sees them.
+    pub fn outlines(&self, eye: &Eye<'_>) -> Outlines {
+        Outlines(eye.view().splats().par_iter().map(|splat| self.outline(eye, &splat.shape)).collect())
+    }
+
+    fn outline(&self, eye: &Eye<'_>, shape: &CameraShape) -> [u32; 4] {
+        let (view, u) = (eye.view(), eye.point());
+        let whole = [0.0, f64::from(self.columns - 1), 0.0, f64::from(self.rows - 1)];
+        let [left, right, top, bottom] = match slope_bounds(shape, u) {
+            None => whole,
+            Some([least, most]) => {
+                let ray = |slope: DVec2| {
+                    let slope = slope + u * view.optics().inverse_focus_distance;
+                    let pixel = view.camera().pixel_from_q(slope / view.optics().tan_half_yfov);
+                    (pixel + f64::from(self.margin_px)) * f64::from(self.rays_per_px) - 0.5
+                };
+                let (from, to) = (ray(DVec2::new(least.x, most.y)), ray(DVec2::new(most.x, least.y)));
+                [from.x.floor(), to.x.ceil(), from.y.floor(), to.y.ceil()]
+            }
+        };
+        if right < 0.0 || bottom < 0.0 || left > whole[1] || top > whole[3] {
+            return HIDDEN;
+        }
+        let tile = |ray: f64, last: f64| ray.clamp(0.0, last) as u32 / TILE;
+        [tile(left, whole[1]), tile(right, whole[1]), tile(top, whole[3]), tile(bottom, whole[3])]
+    }
+
+    /// A row of tiles with the splats that it meets.
+    pub fn tile_row<'g>(&'g self, outlines: &Outlines, index: u32) -> TileRow<'g> {
+        let is_met =
+            |[left, right, top, bottom]: &[u32; 4]| left <= right && *top <= index && index <= *bottom;
+        let splats = outlines.0.iter().enumerate().filter(|(_, bounds)| is_met(bounds));
+        TileRow {
+            grid: self,
+            rays: index * TILE..(index * TILE + TILE).min(self.rows),
+            splats: splats.map(|(splat, bounds)| (splat as u32, [bounds[0], bounds[1]])).collect(),
+        }
+    }
+}
+
+impl TileRow<'_> {
+    /// Visits the tiles from left to right: their columns of rays, and what these can meet.
+    pub fn for_each_tile(&self, eye: &Eye<'_>, mut visit: impl FnMut(Range<u32>, &TileTracer)) {
+        for tile in 0..self.grid.columns.div_ceil(TILE) {
+            visit(tile * TILE..(tile * TILE + TILE).min(self.grid.columns), &self.tracer(eye, tile));
+        }
+    }
+
+    /// What the rays of a tile can meet.
+    pub fn tracer(&self, eye: &Eye<'_>, tile: u32) -> TileTracer {
+        let is_met = |columns: &[u32; 2]| columns[0] <= tile && tile <= columns[1];
+        let met = self.splats.iter().filter(|(_, columns)| is_met(columns));
+        let candidates: Vec<u32> = met.map(|(splat, _)| *splat).collect();
+        let middle = self.grid.pixel(tile * TILE + TILE / 2, self.rays.start + TILE / 2);
+        TileTracer::new(eye, eye.view().direction(eye.point(), middle), &candidates)
+    }
+}
+
+/// The least and the largest slopes (x/z, y/z) of rays from the aperture point `u` that meet a splat's ellipsoid at its cutoff; `None` if it reaches
+/// the plane of the aperture, so that they are unbounded.
+///
+/// The rays' slopes form a conic, whose dual is C = r² S − v vᵀ with v = m − U; its bounds are the roots of C₃₃ x² − 2 C₁₃ x + C₁₁ = 0.
+fn slope_bounds(shape: &CameraShape, u: DVec2) -> Option<[DVec2; 2]> {
+    let v = shape.mean - u.extend(0.0);
+    let [xx, _, yy, xz, yz, zz] = shape.covariance().map(|element| element * shape.cutoff);
+    let DVec3 { x, y, z } = v;
+    let c33 = zz - z * z;
+    // Nearly there, the bounds are nearly infinite, and rounding decides.
+    if c33 > -1e-9 * z * z {
+        return None;
+    }
+    let bounds = |c13: f64, c11: f64| {
+        let (middle, half) = (c13 / c33, (c13 * c13 - c11 * c33).max(0.0).sqrt() / -c33);
+        (middle - half, middle + half)
+    };
+    let (horizontal, vertical) = (bounds(xz - x * z, xx - x * x), bounds(yz - y * z, yy - y * y));
+    Some([DVec2::new(horizontal.0, vertical.0), DVec2::new(horizontal.1, vertical.1)])
+}
