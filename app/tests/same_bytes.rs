@@ -15,7 +15,7 @@ const RECIPE: &str = r#"{"background": {"t": 0.9, "anchor": 0.5},
 const STROKES: &str = r#"{"format": "focus-brush strokes", "version": 3, "steps": [
     {"fill": {"layer": "Paint", "targets": [{"node": 1}], "focus": {"t": 1.1, "anchor": 0.5}}}]}"#;
 
-const COMMANDS: [&str; 13] = [
+const COMMANDS: [&str; 14] = [
     "render scene.glb --camera camera.json --focus recipe.json -o picture.exr --aov coverage,coc,depth,t",
     "render scene.glb --camera camera.json --focus recipe.json -o picture.png --aov coc",
     "render scene.glb --camera camera.json --focus recipe.json -o layers.exr --aov alpha,crypto,pinhole \
@@ -28,6 +28,7 @@ const COMMANDS: [&str; 13] = [
     "bake scene.glb --camera camera.json -o field.salf",
     "export painted.fbrush --focus-map map.exr --glb export.glb --layers layers.exr",
     "export painted.fbrush --focus-map map.png",
+    "export painted.fbrush --web page.html --apertures 1,2",
     "compare picture.exr truth.exr --error-map errors.exr",
     "compare picture.exr truth.exr --error-map errors.png",
 ];

@@ -12,6 +12,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("progress", &[]),
     ("numerics", &[]),
     ("atomic-file", &[]),
+    ("web-page", &["numerics"]),
     ("disparity", &["numerics", "progress"]),
     ("scene", &["lens", "numerics", "progress"]),
     ("capture", &["scene", "lens", "progress"]),
@@ -66,6 +67,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
         &[
             "document",
             "atomic-file",
+            "web-page",
             "light",
             "jobs",
             "baselines",
@@ -162,6 +164,7 @@ const RESERVED: &[(&str, &[&str])] = &[
     ("anyhow", &["focus-brush"]),
     ("clap", &["focus-brush"]),
     ("xatlas", &["atlas"]),
+    ("webp", &["web-page"]),
 ];
 
 /// Checks the workspace.

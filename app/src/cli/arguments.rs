@@ -3,6 +3,7 @@
 mod names;
 mod parsers;
 mod sequence;
+mod web_page;
 
 pub use names::{BackendName, EstimatorName, ExposureName, KindName, ProgressName, SamplerName, StereoName};
 
@@ -11,6 +12,7 @@ use parsers::{
     parse_photograph_output, parse_position, parse_positive, parse_size,
 };
 pub use sequence::{KeysArguments, SequenceArguments};
+pub use web_page::WebPageArguments;
 
 use clap::{Args, Parser};
 use document::{CameraChoice, VariantChoice};
@@ -79,7 +81,7 @@ pub enum Subcommand {
     /// Measure every renderer against the ground truth: speed, error and memory as tables, plots and an HTML
     /// page
     Report(ReportArguments),
-    /// Write parts of a project: its focus map, its unwrapped scene, its picture in layers
+    /// Write parts of a project: its focus map, its unwrapped scene, its picture in layers, a web page to refocus
     Export(ExportArguments),
     /// List the presets for brushes, lenses and bokeh
     Presets(PresetsArguments),
@@ -507,7 +509,7 @@ pub struct ExportArguments {
     /// The project (.fbrush)
     pub project: PathBuf,
     /// Write the focus map: EXR, or 16-bit PNG with a .json beside it
-    #[arg(long, value_name = "MAP.exr|png", required_unless_present_any = ["glb", "layers", "photo"])]
+    #[arg(long, value_name = "MAP.exr|png", required_unless_present_any = ["glb", "layers", "photo", "web"])]
     pub focus_map: Option<PathBuf>,
     /// Write the scene with the atlas as its second UV set
     #[arg(long, value_name = "OUT.glb")]
@@ -519,6 +521,11 @@ pub struct ExportArguments {
     /// solved exposure and the layer seen
     #[arg(long, value_name = "NAME=OUT.exr", value_parser = parse_photograph_output)]
     pub photo: Vec<(String, PathBuf)>,
+    #[command(flatten)]
+    pub page: WebPageArguments,
+    /// Write the files, and what was measured of a web page, as JSON to stdout
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// `presets`.

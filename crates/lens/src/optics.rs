@@ -147,6 +147,20 @@ impl Optics {
         t.is_finite().then_some(t)
     }
 
+    /// The 1/s, in 1/length, of the focus distance that makes a point of depth 1/`inverse_depth`, painted `focus`, sharp:
+    ///
+    /// ```text
+    /// 1/s = 1/z − (t − 1)/(d·t·(1 − a))
+    /// ```
+    ///
+    /// The zero of [`Self::kappa`] as a function of 1/s; 1/z for an unpainted point. Below 0 the point is sharp for no real focus distance.
+    /// `None` where κ does not depend on the focus distance (a = 1 or t = 0).
+    pub fn sharp_inverse_focus_distance(&self, inverse_depth: f64, focus: FocusOffset) -> Option<f64> {
+        let FocusOffset { t, anchor: a, .. } = focus.or_standard();
+        let inverse_distance = inverse_depth - (t - 1.0) / (self.image_distance * t * (1.0 - a));
+        inverse_distance.is_finite().then_some(inverse_distance)
+    }
+
     /// The focal length f of the thin lens, in scene units: 1/f = 1/s + 1/d.
     pub fn focal_length(&self) -> f64 {
         1.0 / (self.inverse_focus_distance + 1.0 / self.image_distance)
@@ -258,6 +272,24 @@ mod tests {
         let t = o.offset_for_kappa(0.0, at_focal_length, 0.0);
         assert!(t.is_none_or(|t| t.abs() > 1e12), "no finite t brings z = f into focus: {t:?}");
         assert_eq!(o.offset_for_kappa(0.0, at_focal_length, 1.0), Some(1.0));
+    }
+
+    #[test]
+    fn the_sharp_focus_distance_leaves_no_defocus() {
+        let o = optics();
+        for z in [0.5, 3.0, 40.0, f64::INFINITY] {
+            assert_eq!(o.sharp_inverse_focus_distance(1.0 / z, FocusOffset::STANDARD), Some(1.0 / z));
+            for focus in [FocusOffset::new(0.9, 0.0), FocusOffset::new(1.1, 0.7), FocusOffset::new(-2.0, 0.2)]
+            {
+                let inverse_focus_distance = o.sharp_inverse_focus_distance(1.0 / z, focus).unwrap();
+                let focused = Optics { inverse_focus_distance, ..o };
+                assert!(focused.kappa(1.0 / z, focus).abs() < 1e-11, "{z} {focus:?}");
+                assert!(o.kappa(1.0 / z, focus).abs() > 1e-3, "{z} {focus:?}: another distance blurs");
+            }
+            for focus in [FocusOffset::SHARP, FocusOffset::new(1.2, 1.0), FocusOffset::new(0.0, 0.3)] {
+                assert_eq!(o.sharp_inverse_focus_distance(1.0 / z, focus), None, "{z} {focus:?}");
+            }
+        }
     }
 
     #[test]

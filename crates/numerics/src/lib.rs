@@ -1,5 +1,5 @@
 //! Small numerical routines that several crates share: order statistics, robust scale, Cholesky solves, luminance,
-//! smooth steps.
+//! smooth steps, PSNR, the sRGB curve.
 //!
 //! Results are bitwise reproducible. The order of the floating-point operations is part of each function's contract;
 //! values are compared by [`f64::total_cmp`], so that NaN and signed zeros have a place, too.
@@ -19,15 +19,19 @@
 mod cholesky;
 mod luminance;
 mod order_statistics;
+mod psnr;
 mod real;
 mod robust_scale;
 mod smoothstep;
+mod srgb;
 
 pub use cholesky::{back_substitute, decompose_positive, forward_substitute, solve_positive};
 pub use luminance::{REC709_LUMINANCE, luminance};
 pub use order_statistics::{
     median, order_statistic, quantile, quantile_of_sorted, upper_median, upper_quantile_of_sorted,
 };
+pub use psnr::psnr;
 pub use real::Real;
 pub use robust_scale::{MAD_OF_NORMAL, MAD_SCALE, scaled_mad};
 pub use smoothstep::{smooth_fraction, smoothstep};
+pub use srgb::{linear_from_srgb, srgb_from_linear};

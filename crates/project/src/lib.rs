@@ -56,7 +56,7 @@ pub use openexr::Compression;
 pub use part_file::{NumberReader, PartFile, PartWriter, Section};
 pub use pictures::{
     Comparison, Cryptomatte, ErrorMaps, Layer, LinearPicture, PictureOptions, RankedCoverage, ZAgreement,
-    compare, error_maps, false_color_error_map, is_finished, psnr, read_picture, seal_picture, texture_png,
+    compare, error_maps, false_color_error_map, is_finished, read_picture, seal_picture, texture_png,
     write_error_map, write_picture, write_picture_in_bands, write_rgb, z_test,
 };
 pub use presets::{LensPreset, LibraryEntry, Preset, PresetContent, PresetKind, PresetLibrary};

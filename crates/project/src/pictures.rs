@@ -10,7 +10,7 @@ pub(crate) mod png_file;
 pub(crate) mod seal;
 pub(crate) mod z_agreement;
 
-pub use compare::{Comparison, ErrorMaps, compare, error_maps, psnr};
+pub use compare::{Comparison, ErrorMaps, compare, error_maps};
 pub use cryptomatte::{Cryptomatte, RankedCoverage};
 pub use error_map::{false_color_error_map, write_error_map};
 pub use layer::Layer;

@@ -3,11 +3,12 @@
 //! ```text
 //! Input (document) ─▶ LitScene (light) ─▶ bake ─▶ picture ─▶ files
 //!                                                  │ with mattes, AOVs
-//!                          sequence: one a frame ◀─┴─▶ tiles: one in parts
+//!                          sequence: one a frame ◀─┼─▶ tiles: one in parts
+//!                                                  └─▶ web page: one for each focus distance
 //! ```
 //!
-//! [`RenderOptions`] configure a picture; [`render`] and [`render_input`] render one, [`render_frames`] a sequence, and [`render_tiles`] a
-//! large picture in tiles. `examples/refocus.rs` bakes a light field once and refocuses it.
+//! [`RenderOptions`] configure a picture; [`render`] and [`render_input`] render one, [`render_frames`] a sequence, [`render_tiles`] a large
+//! picture in tiles, and [`export_web_page`] a page that can be refocused. `examples/refocus.rs` bakes a light field once and refocuses it.
 
 mod bake;
 mod error;
@@ -20,6 +21,7 @@ mod tiles;
 #[allow(dead_code, reason = "shared with the tests of `session`")]
 #[path = "../../session/tests/tiny_glb/mod.rs"]
 mod tiny_glb;
+mod web_export;
 
 pub use bake::{
     DENSE_SAMPLE_BYTES, LightFieldStore, Modelled, ModelledRow, TexelStatistics, bake, bake_unpacked,
@@ -31,11 +33,14 @@ pub use export::{export_glb, write_scene, write_unwrapped};
 pub use picture::{
     Aov, CocConvention, Display, LeftOut, LeftOutPicture, LeftOutPrediction, MAX_CELLS_A_SIDE, OcioViews,
     RenderCost, RenderOptions, Rendered, Renderer, ScreenPixel, Stereo, StereoForm, Tone, ToneCurve,
-    leave_photographs_out, light_of_photographs, photograph_picture, read_thumbnail, render, render_input,
-    render_photograph, render_stereo, to_screen,
+    blur_scale, leave_photographs_out, light_of_photographs, photograph_picture, read_thumbnail, render,
+    render_input, render_photograph, render_stereo, to_screen,
 };
 pub use sequence::{
     Baking, FrameFiles, FrameList, FrameReport, Outcome, SequenceOptions, SequenceReport, Shard, Take,
     TakeOptions, render_frames,
 };
 pub use tiles::{Merged, TileGrid, TileOptions, TileReport, TilesReport, merge_tiles, render_tiles};
+pub use web_export::{
+    Caption, StackReport, WebPageEstimate, WebPageOptions, WebPageReport, estimate_web_page, export_web_page,
+};

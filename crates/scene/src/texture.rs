@@ -1,9 +1,8 @@
 //! Images, references to them as textures, and their sampling.
 
 mod lookup;
-mod srgb;
 
-pub use srgb::{linear_from_srgb, srgb_from_linear};
+pub use numerics::{linear_from_srgb, srgb_from_linear};
 
 use glam::Mat3;
 

@@ -22,6 +22,7 @@ mod state;
 mod timeline;
 mod verification;
 mod watched_file;
+mod web_page_export;
 
 pub use memory::MemoryPart;
 pub use picture_export::FullSizeFieldState;

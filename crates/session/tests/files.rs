@@ -54,6 +54,14 @@ fn what_is_saved_is_opened_again() {
     again.apply(Command::ImportFocusMap(exported)).unwrap();
     settle(&mut again);
     assert!(again.document().unwrap().map == map);
+    let page = folder.path().join("page.html");
+    let estimate = again.web_page_estimate().unwrap();
+    assert!(estimate.slices >= 3 && estimate.bytes > 0, "{estimate:?}");
+    again.apply(Command::ExportWebPage(page.clone())).unwrap();
+    assert!(again.jobs().pop().is_some_and(|job| job.label.contains("page.html") && job.can_cancel));
+    assert!(settle(&mut again).contains(&Event::FileWritten(page.clone())));
+    let html = std::fs::read_to_string(page).unwrap();
+    assert!(html.contains("<title>quads</title>") && html.contains("\"isPainted\":true"), "as it is painted");
     let shot = folder.path().join("shot.png");
     again.apply(Command::ExportPicture(shot.clone())).unwrap();
     settle(&mut again);

@@ -21,6 +21,15 @@ pub fn parse_positive(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| "a number above 0".into())
 }
 
+/// A finite number of at least 1.
+///
+/// # Errors
+/// The text is not such a number.
+pub fn parse_divisor(text: &str) -> Result<f64, String> {
+    let number = text.trim().parse().ok().filter(|x: &f64| *x >= 1.0 && x.is_finite());
+    number.ok_or_else(|| "a number of 1 or more".into())
+}
+
 /// A position in a picture, px.
 ///
 /// # Errors

@@ -26,6 +26,8 @@ pub enum Purpose {
     ExportPicture,
     /// The picture as it is on screen.
     ExportShown,
+    /// The web page.
+    ExportWebPage,
     /// The focus map.
     ExportFocusMap,
     /// The unwrapped scene.
@@ -52,6 +54,7 @@ impl Purpose {
             Self::SaveAs => "Save the project as",
             Self::ExportPicture => "Export the picture",
             Self::ExportShown => "Export the picture as shown",
+            Self::ExportWebPage => "Export a web page to refocus",
             Self::ExportFocusMap => "Export the focus map",
             Self::ExportScene => "Export the unwrapped scene",
             Self::ExportStrokes => "Export the strokes",
@@ -70,6 +73,7 @@ impl Purpose {
             Self::SaveAs => &["fbrush"],
             Self::ExportPicture | Self::ExportShown | Self::ExportFocusMap => &["exr", "png"],
             Self::ImportFocusMap => &["exr", "png", "json"],
+            Self::ExportWebPage => &["html"],
             Self::ExportScene => &["glb"],
             Self::ExportStrokes | Self::ImportPreset | Self::ExportPreset => &["json"],
             Self::Environment => &["hdr", "exr"],
@@ -104,6 +108,7 @@ impl Purpose {
             Self::SaveAs
                 | Self::ExportPicture
                 | Self::ExportShown
+                | Self::ExportWebPage
                 | Self::ExportFocusMap
                 | Self::ExportScene
                 | Self::ExportStrokes

@@ -40,6 +40,7 @@ impl Shell {
             CommandId::SaveAs => self.open_file_dialog(Purpose::SaveAs, context),
             CommandId::ExportPicture => self.open_file_dialog(Purpose::ExportPicture, context),
             CommandId::ExportShown => self.open_file_dialog(Purpose::ExportShown, context),
+            CommandId::ExportWebPage => self.open_file_dialog(Purpose::ExportWebPage, context),
             CommandId::ExportFocusMap => self.open_file_dialog(Purpose::ExportFocusMap, context),
             CommandId::ExportScene => self.open_file_dialog(Purpose::ExportScene, context),
             CommandId::ExportStrokes => self.open_file_dialog(Purpose::ExportStrokes, context),

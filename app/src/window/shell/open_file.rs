@@ -4,6 +4,7 @@ use super::Shell;
 use crate::window::dialogs::file_dialog::Purpose;
 use crate::window::dialogs::unsaved_changes_dialog::{Answer, PendingAction};
 use crate::window::layout::Pane;
+use crate::window::widgets::controls;
 use crate::window::{Tool, demo};
 use document::{DepthPolarityRequest, is_capture};
 use egui::{Context, ViewportCommand};
@@ -85,6 +86,7 @@ impl Shell {
         let name = match purpose {
             Purpose::SaveAs => format!("{stem}.fbrush"),
             Purpose::ExportPicture | Purpose::ExportShown => format!("{stem}.png"),
+            Purpose::ExportWebPage => format!("{stem}.html"),
             Purpose::ExportFocusMap => format!("{stem}-focus.exr"),
             Purpose::ExportScene => format!("{stem}-unwrapped.glb"),
             Purpose::ExportStrokes => format!("{stem}-strokes.json"),
@@ -125,6 +127,14 @@ impl Shell {
                      long. For {shown} immediately: File, Export as shown."
                 ),
             }),
+            Purpose::ExportWebPage => self.session.web_page_estimate().map(|estimate| {
+                format!(
+                    "About {}: {} pictures of {full} at three apertures, each at its focus distance. They are drawn in \
+                     the background; the status line shows how long that takes.",
+                    controls::bytes_text(estimate.bytes as usize),
+                    estimate.slices
+                )
+            }),
             _ => None,
         }
     }
@@ -138,6 +148,7 @@ impl Shell {
             }
             Purpose::ExportPicture => self.apply(Command::ExportPicture(path)),
             Purpose::ExportShown => self.apply(Command::ExportShown(path)),
+            Purpose::ExportWebPage => self.apply(Command::ExportWebPage(path)),
             Purpose::ExportFocusMap => self.apply(Command::ExportFocusMap(path)),
             Purpose::ExportScene => self.apply(Command::ExportScene(path)),
             Purpose::ExportStrokes => self.apply(Command::ExportStrokes(path)),

@@ -5,9 +5,7 @@
 //! The position on the map is logarithmic in the circle of confusion: the first pixels matter most.
 
 use egui::{Color32, Mesh, Painter, Rect, Shape, pos2};
-
-/// The circle of confusion at the ends of the map, px.
-pub const LARGEST_CIRCLE_PX: f64 = 96.0;
+pub use render::blur_scale::{LARGEST_CIRCLE_PX, circle_px, position};
 
 /// The map's colours from the nearest blur over sharp to the farthest: sRGB-encoded, equally spaced.
 pub const STOPS: [[f32; 3]; 7] = [
@@ -19,20 +17,6 @@ pub const STOPS: [[f32; 3]; 7] = [
     [0.20, 0.50, 0.80],
     [0.06, 0.22, 0.48],
 ];
-
-/// Where a signed circle of confusion (px; negative near, positive far) lies on the map, in [−1, 1]:
-///
-/// ```text
-/// sign(c)·ln(1 + |c|) / ln(1 + LARGEST_CIRCLE_PX)
-/// ```
-pub fn position(circle_px: f64) -> f64 {
-    (circle_px.abs().ln_1p() / LARGEST_CIRCLE_PX.ln_1p()).min(1.0) * circle_px.signum()
-}
-
-/// The signed circle of confusion at a position of the map. Inverse of [`position`] on [−1, 1].
-pub fn circle_px(position: f64) -> f64 {
-    (position.abs() * LARGEST_CIRCLE_PX.ln_1p()).exp_m1() * position.signum()
-}
 
 /// The colour at a position of the map, sRGB-encoded.
 pub fn color_at(position: f64) -> [f32; 3] {
@@ -102,13 +86,8 @@ mod tests {
     use numerics::luminance;
 
     #[test]
-    fn position_inverts_and_sharp_is_the_middle() {
-        assert_eq!(position(0.0), 0.0);
+    fn sharp_is_the_middle() {
         assert_eq!(color_at(0.0), STOPS[3]);
-        for px in [-96.0, -4.0, -0.25, 0.5, 16.0, 90.0] {
-            assert!((circle_px(position(px)) - px).abs() < 1e-9, "{px}");
-        }
-        assert_eq!(position(-1e9), -1.0);
         let end = color_at(1.0).iter().zip(STOPS[6]).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
         assert!(end < 1e-6, "{end}");
     }

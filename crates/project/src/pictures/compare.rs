@@ -2,14 +2,12 @@
 
 use crate::pictures::output::srgb_bytes;
 use crate::{LinearPicture, ProjectError};
+use numerics::psnr;
 use nv_flip::{FlipImageRgb8, FlipPool};
 use serde::Serialize;
 
 /// Added to the square of the reference in relMSE, so that black does not divide by 0.
 const RELATIVE_FLOOR: f64 = 1e-2;
-
-/// The PSNR of equal pictures: that of a mean square error of 1e-20.
-const MAX_PSNR: f64 = 200.0;
 
 /// The differences between a picture and a reference. "Clipped": of linear values clipped to [0, 1].
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -47,11 +45,6 @@ pub struct ErrorMaps {
     pub difference: Vec<[f32; 3]>,
     /// FLIP in [0, 1].
     pub flip: Vec<f32>,
-}
-
-/// The peak signal-to-noise ratio, in dB, of a mean square error for a peak of 1: −10 log₁₀, at most 200.
-pub fn psnr(mean_square: f64) -> f64 {
-    if mean_square < 1e-20 { MAX_PSNR } else { -10.0 * mean_square.log10() }
 }
 
 /// Compares `a` with the reference `b`. Values that are not finite make every figure that they enter not finite.

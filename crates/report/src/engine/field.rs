@@ -164,7 +164,7 @@ impl LightFieldCase {
             coc_px: self.coc_px,
             samples: 0,
             spp: Some(traced.spp),
-            psnr: Some(project::psnr(rmse.powi(2))),
+            psnr: Some(numerics::psnr(rmse.powi(2))),
             ..record
         }
     }

@@ -83,7 +83,7 @@ fn squared_difference((a, b): (&[f32; 3], &[f32; 3])) -> f64 {
 
 /// PSNR from the sum of squared differences, dB.
 fn psnr_from_sum(sum: f64, pixels: usize) -> f64 {
-    project::psnr(sum / (3 * pixels) as f64)
+    numerics::psnr(sum / (3 * pixels) as f64)
 }
 
 /// 1/z of the nearest surface at the middle of each pixel; 0 where there is none.

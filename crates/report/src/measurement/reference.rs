@@ -63,7 +63,7 @@ pub fn trace_reference(
         spp: 2 * half_spp,
         seconds: start.elapsed().as_secs_f64(),
         rmse,
-        psnr: project::psnr(rmse * rmse),
+        psnr: numerics::psnr(rmse * rmse),
     };
     Ok((LinearPicture { width: a.width, height: a.height, rgb, ..LinearPicture::default() }, error))
 }

@@ -116,7 +116,7 @@ impl Photographs {
         let of_method =
             || self.reconstructions.iter().filter(|reconstruction| reconstruction.method == method);
         let squares: f64 = of_method().map(|reconstruction| 10f64.powf(-reconstruction.psnr / 10.0)).sum();
-        project::psnr(squares / of_method().count().max(1) as f64)
+        numerics::psnr(squares / of_method().count().max(1) as f64)
     }
 }
 

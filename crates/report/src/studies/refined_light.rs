@@ -58,8 +58,8 @@ impl RefinedLight {
         let errors = LightErrors::from_mean_squares(from_last, from_standing);
         Ok(Self {
             passes,
-            at_once_psnr: project::psnr(errors.displayed),
-            noise_psnr: project::psnr(errors.refined),
+            at_once_psnr: numerics::psnr(errors.displayed),
+            noise_psnr: numerics::psnr(errors.refined),
             at_once_mean,
             seconds: [seconds_at_once, seconds],
         })

@@ -4,9 +4,9 @@
 //! decoded from sRGB for each texel *before* filtering, opacity is linear. There are no mip-maps: callers that need
 //! texels over an area average them.
 
-use super::srgb::linear_from_srgb;
 use crate::{Image, ImageLevel, Wrap};
 use glam::{Vec2, Vec4};
+use numerics::linear_from_srgb;
 use std::sync::LazyLock;
 
 /// sRGB decoding of 8-bit values.

@@ -30,6 +30,8 @@ pub enum Command {
     ExportPicture(PathBuf),
     /// Writes the live picture as it is on screen, unless it is still coarse.
     ExportShown(PathBuf),
+    /// Writes a web page on which anyone can refocus the picture, in the background.
+    ExportWebPage(PathBuf),
     /// Writes the focus map as EXR or 16-bit PNG, by the file's extension.
     ExportFocusMap(PathBuf),
     /// Writes the scene as GLB with the atlas as a second UV set.

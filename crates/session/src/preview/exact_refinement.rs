@@ -137,7 +137,7 @@ fn draw(field: &mut LightField, task: ExactTask, shared: &Shared) -> Result<Exac
 
 /// How far `picture` is from `exact`, of the same size: PSNR in dB of linear values clipped to [0, 1].
 fn psnr_between(picture: &Picture, exact: &Picture, exposure: Exposure) -> f64 {
-    project::psnr(mean_square_difference(picture, exact, exposure))
+    numerics::psnr(mean_square_difference(picture, exact, exposure))
 }
 
 /// The mean square of how far two pictures of one size are apart, of linear values clipped to [0, 1].

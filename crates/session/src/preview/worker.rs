@@ -305,7 +305,7 @@ impl Worker {
         }
         self.maker.save(stage, &field, seconds);
         if displayed_passes == 0 {
-            self.presenter.costs.light_psnr = errors.map(|errors| project::psnr(errors.displayed));
+            self.presenter.costs.light_psnr = errors.map(|errors| numerics::psnr(errors.displayed));
         }
         field.set_tolerance(self.tolerance);
         self.shared.publish_field(self.presenter.generation, field.baked());

@@ -133,6 +133,7 @@ impl Session {
             Command::SaveAs(path) => self.save(Some(path)),
             Command::ExportPicture(path) => self.export_picture(path),
             Command::ExportShown(path) => self.export_shown(path),
+            Command::ExportWebPage(path) => self.export_web_page(path),
             Command::ExportFocusMap(path) => self.export_focus_map(path),
             Command::ExportScene(path) => self.export_scene(path),
             Command::ExportStrokes(path) => self.export_strokes(&path),

@@ -1,0 +1,71 @@
+//! Reads what an exported page holds.
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use serde_json::Value;
+use std::path::Path;
+
+/// A page that was exported.
+pub struct ExportedPage {
+    pub html: String,
+    /// What its viewer shows.
+    pub data: Value,
+}
+
+/// A slice.
+pub struct Shown {
+    pub inverse_distance: f64,
+    pub webp: Vec<u8>,
+}
+
+impl ExportedPage {
+    pub fn read(file: &Path) -> Self {
+        let html = std::fs::read_to_string(file).unwrap();
+        let (_, data) = html.rsplit_once("\nshowPage(").unwrap();
+        let (data, _) = data.split_once(");\n</script>").unwrap();
+        Self { data: serde_json::from_str(data).unwrap(), html }
+    }
+
+    /// What is shown first; its picture is in the document.
+    pub fn opening(&self) -> Shown {
+        let [stack, slice] =
+            ["stack", "slice"].map(|name| self.data["opening"][name].as_u64().unwrap() as usize);
+        assert_eq!(self.data["stacks"][stack]["slices"][slice], Value::Null);
+        self.slice(stack, slice)
+    }
+
+    pub fn slice(&self, stack: usize, slice: usize) -> Shown {
+        let stack = &self.data["stacks"][stack];
+        let poster = self.html.split_once("id=\"poster\" src=\"data:image/webp;base64,").unwrap().1;
+        let poster = poster.split_once('"').unwrap().0;
+        let webp = match stack["slices"][slice].as_str() {
+            Some(text) => decode_base91(text),
+            None => STANDARD.decode(poster).unwrap(),
+        };
+        Shown { inverse_distance: stack["inverseDistances"][slice].as_f64().unwrap(), webp }
+    }
+
+    /// The slice nearest to a reciprocal distance.
+    pub fn nearest_slice(&self, stack: usize, inverse_distance: f64) -> usize {
+        let distances = self.data["stacks"][stack]["inverseDistances"].as_array().unwrap();
+        let off = |index: &usize| (distances[*index].as_f64().unwrap() - inverse_distance).abs();
+        (0..distances.len()).min_by(|a, b| off(a).total_cmp(&off(b))).unwrap()
+    }
+}
+
+/// Bytes of text in base 91: 13 bits in two characters, the lowest first.
+fn decode_base91(text: &str) -> Vec<u8> {
+    let digits: Vec<u8> = (b'!'..=b'~').filter(|c| !b"\"<\\".contains(c)).collect();
+    let number = |c: &u8| digits.iter().position(|digit| digit == c).unwrap() as u32;
+    let (mut bytes, mut bits, mut count) = (Vec::new(), 0, 0);
+    for pair in text.as_bytes().chunks(2) {
+        bits |= pair.iter().rev().fold(0, |value, c| 91 * value + number(c)) << count;
+        count += if pair.len() == 2 { 13 } else { 6 };
+        while count >= 8 {
+            bytes.push(bits as u8);
+            bits >>= 8;
+            count -= 8;
+        }
+    }
+    bytes
+}

@@ -1,0 +1,57 @@
+/**
+ * What a page shows. Distances are reciprocals 1/s, in 1/length: 0 is infinitely far.
+ *
+ * @typedef {object} StackData The pictures of one aperture at all focus distances.
+ * @property {string} aperture
+ * @property {boolean} isPainted Whether it is focused as painted, or by the ordinary lens.
+ * @property {number[]} inverseDistances Ascending: from the farthest slice to the nearest.
+ * @property {(string | null)[]} slices WebP in base 91; `null` for the one that the poster shows.
+ *
+ * @typedef {object} MapData Packed maps of one byte a pixel (`PixelMap`).
+ * @property {[number, number]} size Columns and rows.
+ * @property {string} sharpDistances Which distance makes a pixel sharp, for the ordinary lens.
+ * @property {string | null} paintedSharpDistances The same, as painted.
+ * @property {string | null} paint How the paint blurs.
+ *
+ * @typedef {object} PageData
+ * @property {string} title
+ * @property {[number, number]} size Columns and rows.
+ * @property {{stack: number, slice: number}} opening What is shown first.
+ * @property {StackData[]} stacks
+ * @property {[number, number]} range The farthest and the nearest distance.
+ * @property {MapData} maps
+ * @property {boolean} autoplays
+ */
+
+/**
+ * The element with an id, which the page has.
+ *
+ * @template {typeof HTMLElement} T
+ * @param {string} id
+ * @param {T} type
+ * @returns {InstanceType<T>}
+ */
+function element(id, type) {
+  const found = document.getElementById(id);
+  if (!(found instanceof type)) throw new Error(`the page has no ${id}`);
+  return /** @type {InstanceType<T>} */ (found);
+}
+
+/**
+ * @param {number} x
+ * @param {number} low
+ * @param {number} high
+ */
+function clamp(x, low, high) {
+  return Math.min(Math.max(x, low), high);
+}
+
+/**
+ * A distance as text: three digits, in metres.
+ *
+ * @param {number} inverseDistance
+ */
+function distanceText(inverseDistance) {
+  const distance = Number((1 / inverseDistance).toPrecision(3));
+  return distance < 1e5 ? `${distance} m` : "∞";
+}

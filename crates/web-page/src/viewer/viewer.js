@@ -1,0 +1,136 @@
+/**
+ * Shows a page. The poster is on the screen already; it stays until the first slice is drawn.
+ *
+ * @param {PageData} page
+ */
+function showPage(page) {
+  const viewer = element("viewer", HTMLElement);
+  const view = element("view", HTMLDivElement);
+  const canvas = element("screen", HTMLCanvasElement);
+  const poster = element("poster", HTMLImageElement);
+  const message = new Message();
+  const { maps } = page;
+
+  const rack = new Rack(page, () => {
+    controls.update();
+    draw();
+  });
+  const slices = new SliceCache(page.stacks, poster);
+  const screen = new PictureScreen(canvas, slices, rack, () => {
+    poster.remove();
+    const { aperture, isPainted } = page.stacks[rack.stack];
+    const distance = distanceText(rack.inverseDistance);
+    canvas.setAttribute("aria-label", `${page.title}: focused at ${distance}, ${aperture}${isPainted ? ", as painted" : ""}`);
+    viewer.dataset.drawn = screen.drawn;
+    viewer.dataset.inverseDistance = String(rack.inverseDistance);
+  });
+  /** @type {Player} */
+  const player = new Player(rack, (isPlaying) => controls.showPlaying(isPlaying));
+  /** @type {Controls} */
+  const controls = new Controls(page, rack, player);
+  const zoom = new Zoom(view, element("stage", HTMLDivElement));
+  const gestures = new Gestures(view, zoom, rack, { begin, click: focusOn });
+  addEventListener("resize", () => zoom.apply());
+
+  const sharpDistances = PixelMap.unpack(maps.size, maps.sharpDistances);
+  const paintedSharpDistances = PixelMap.unpack(maps.size, maps.paintedSharpDistances);
+  PixelMap.unpack(maps.size, maps.paint).then((paint) => paint && drawTint(controls.tint, paint));
+
+  function draw() {
+    screen.draw().catch(() => message.show("This browser cannot show the pictures of this page (WebP)"));
+  }
+
+  /** Somebody touches the page. */
+  function begin() {
+    player.stop();
+    element("hint", HTMLParagraphElement).classList.add("done");
+  }
+
+  /**
+   * Focuses on what is at a point of the window.
+   *
+   * @param {{clientX: number, clientY: number}} point
+   */
+  async function focusOn(point) {
+    const [x, y] = zoom.place(point);
+    if (!(x >= 0 && x < 1 && y >= 0 && y < 1)) return;
+    const map = await (page.stacks[rack.stack].isPainted ? paintedSharpDistances : sharpDistances);
+    if (!map) {
+      message.show("This browser cannot focus by a click: drag from side to side");
+      return;
+    }
+    const inverseDistance = distanceOfCode(map.at(x, y), page.range);
+    showMark(point, inverseDistance !== null);
+    if (inverseDistance === null) {
+      message.show("Painted, stays so");
+    } else {
+      rack.rest(inverseDistance);
+      message.speak(`Focused at ${distanceText(rack.inverseDistance)}`);
+    }
+  }
+
+  /**
+   * Draws a ring at a point of the window.
+   *
+   * @param {{clientX: number, clientY: number}} point
+   * @param {boolean} hasFocused
+   */
+  function showMark({ clientX, clientY }, hasFocused) {
+    const mark = element("mark", HTMLDivElement);
+    const { left, top } = view.getBoundingClientRect();
+    mark.hidden = true;
+    mark.classList.toggle("unchanged", !hasFocused);
+    mark.style.left = `${clientX - left}px`;
+    mark.style.top = `${clientY - top}px`;
+    // Read, so that the animation starts anew.
+    void mark.offsetWidth;
+    mark.hidden = false;
+  }
+
+  /** @param {number} factor */
+  function magnifyMiddle(factor) {
+    zoom.magnify(factor, middle());
+    gestures.allowScrolling();
+  }
+
+  function middle() {
+    const { left, top, width, height } = view.getBoundingClientRect();
+    return { clientX: left + width / 2, clientY: top + height / 2 };
+  }
+
+  /** @type {{[key: string]: () => void}} */
+  const actions = {
+    ArrowLeft: () => rack.step(-1),
+    ArrowRight: () => rack.step(1),
+    Home: () => rack.rest(rack.nearest),
+    End: () => rack.rest(rack.farthest),
+    "+": () => magnifyMiddle(1.25),
+    "=": () => magnifyMiddle(1.25),
+    "-": () => magnifyMiddle(0.8),
+    0: () => magnifyMiddle(0),
+    "[": () => controls.stepAperture(-1),
+    "]": () => controls.stepAperture(1),
+    p: () => controls.toggleKind(),
+    t: () => controls.togglePaint(),
+    f: () => controls.toggleFullScreen(),
+    " ": () => controls.togglePlaying(),
+    Enter: () => focusOn(middle()),
+  };
+
+  addEventListener("keydown", (event) => {
+    const { target, key } = event;
+    if (event.ctrlKey || event.altKey || event.metaKey) return;
+    // Buttons are pressed by space and enter, radio buttons chosen by arrows; the slider has no use for either.
+    const isButton = target instanceof HTMLButtonElement && (key === " " || key === "Enter");
+    const isChoice = target instanceof HTMLInputElement && target.type === "radio" && /^(Arrow|Home|End| )/.test(key);
+    const action = actions[key.length === 1 ? key.toLowerCase() : key];
+    if (isButton || isChoice || !action) return;
+    event.preventDefault();
+    // Space stops a rack by itself.
+    if (key !== " ") begin();
+    action();
+  });
+
+  draw();
+  if (page.autoplays && !matchMedia("(prefers-reduced-motion: reduce)").matches) player.play();
+}
