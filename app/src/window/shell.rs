@@ -340,6 +340,10 @@ impl Shell {
             self.update_brush_gesture(context);
             return;
         }
+        if self.picture.walk.is_on() && !context.text_edit_focused() {
+            self.picture.walk.handle_keys(context, actions);
+            return;
+        }
         let escape = context.input(|input| input.key_pressed(egui::Key::Escape));
         if escape && self.session.is_painting() {
             actions.push(Command::AbortStroke.into());
@@ -390,8 +394,7 @@ impl Shell {
 
     /// Logs how long the last frame took, if that was requested.
     fn log_frame(&mut self, frame: &Frame) {
-        // Refining the light is what the window does at rest.
-        let is_waited_for = |job: &jobs::JobStatus| job.id != Session::LIGHT_REFINEMENT;
+        let is_waited_for = |job: &jobs::JobStatus| !Session::BACKGROUND_JOBS.contains(&job.id);
         let jobs = self.session.jobs().iter().filter(|job| is_waited_for(job)).count();
         let seconds = frame.info().cpu_usage;
         if let Some(Err(error)) = self.frame_log.as_mut().map(|log| log.count(seconds, jobs)) {
@@ -480,9 +483,7 @@ impl eframe::App for Shell {
         // The panels fill the whole area.
         CentralPanel::default().frame(egui::Frame::NONE).show(ui, |ui| self.panels(ui, &mut actions));
         self.first_hint(&context);
-        if let Some(id) = self.palette.show(&context) {
-            actions.push(id.into());
-        }
+        actions.extend(self.palette.show(&context, self.session.document(), &self.presets));
         self.help.show(&context, &self.adapter);
         self.show_dialogs(&context);
         self.show_preset_name_dialog(&context);

@@ -29,6 +29,10 @@ pub struct ViewSettings {
     pub photograph_counts: bool,
     /// Whether to show the depth of a picture's surface.
     pub depth: bool,
+    /// Whether to draw frame and thirds over the picture.
+    pub guides: bool,
+    /// Whether to draw the line of the focus plane over the picture.
+    pub focus_plane: bool,
     /// Longest side of the preview, px.
     pub preview_size: u32,
     /// Side of the merged samples of the live picture where the circle of confusion is 16 px wide, px; 0:
@@ -63,6 +67,8 @@ impl Default for ViewSettings {
             contours: appearance.contours,
             photograph_counts: appearance.photograph_counts,
             depth: appearance.depth,
+            guides: false,
+            focus_plane: false,
             preview_size: 960,
             tolerance_px: TOLERANCE_PX,
             display_stops: 0.0,

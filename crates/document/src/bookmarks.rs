@@ -55,7 +55,7 @@ impl Document {
                 self.template.active_camera -= usize::from(index < self.template.active_camera);
             }
         }
-        self.revision += 1;
+        self.note_unrecorded_change();
     }
 
     /// The places of the bookmarks among the project's cameras.

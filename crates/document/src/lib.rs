@@ -53,6 +53,7 @@ mod camera_edit;
 mod camera_path;
 mod editing;
 mod error;
+mod first_view;
 mod focus_hold;
 mod input;
 mod open_document;
@@ -78,7 +79,7 @@ pub use input::{
     CameraChoice, DepthPolarityRequest, DisparityError, Input, InputKind, VariantChoice,
     camera_from_photograph, find_photograph, is_capture,
 };
-pub use open_document::{Document, NewDocumentOptions};
+pub use open_document::{Document, NewDocumentOptions, SavedState};
 pub use paint_transfer::{TransferredPaint, UnmatchedNode};
 pub use picking::{SurfaceHit, chief_ray, depth_in_direction, pick, view_ray};
 pub use relief::{DepthRepair, DepthStroke};

@@ -2,6 +2,7 @@
 
 use crate::adjustment_view::AdjustmentView;
 use crate::error::{DocumentError, file_name};
+use crate::first_view::first_view;
 use crate::focus_hold::HeldCamera;
 use crate::input::{CameraChoice, Input, InputKind, VariantChoice, camera_from_photograph, prefix_with_path};
 use crate::paint_transfer::TransferredPaint;
@@ -79,8 +80,19 @@ pub struct Document {
     thumbnail_base: FocusMap,
     /// Incremented by every change that is saved.
     pub revision: u64,
-    /// The revision in the project file.
-    pub saved_revision: u64,
+    /// The state that is in the project file.
+    saved: SavedState,
+    /// Number of changes that are saved and not in the undo history.
+    pub(crate) unrecorded_changes: u64,
+}
+
+/// A state of a document, to be told from others.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SavedState {
+    /// [`Document::revision`].
+    pub revision: u64,
+    /// The latest step of undo, and the number of changes beside them.
+    change: [u64; 2],
 }
 
 /// The name of the saved camera of a new document.
@@ -90,7 +102,7 @@ impl Document {
     /// The default memory budget of the undo history, bytes.
     pub const UNDO_BUDGET_BYTES: usize = 256 << 20;
 
-    /// Opens a scene or a project. Work that was unsaved when the program last ended is restored: the document is then unsaved, and its warnings
+    /// Opens a scene or a project. A scene without a camera is framed so that its depth shows. Work that was unsaved when the program last ended is restored: the document is then unsaved, and its warnings
     /// say so.
     ///
     /// # Errors
@@ -115,7 +127,15 @@ impl Document {
             Some(project) => Input::open_project(path, project, &VariantChoice::AsSaved, resources, steps)?,
             None => Input::open(path, resources, steps)?,
         };
+        let has_own_camera = input.project.is_some() || !input.scene.has_default_camera;
         let mut document = Self::from_input(input, unwrap, steps)?;
+        if !has_own_camera {
+            let first = first_view(document.stage.tracer(), &document.camera);
+            document.adjustment_view = AdjustmentView::from_camera(&first.camera);
+            let (low, high) = document.stage.scene.bounds();
+            document.brush.radius = brush_radius(&first.camera, (high - low).length());
+            document.set_held_camera(first);
+        }
         document.path = (is_project && document.paint_transfer.is_none()).then(|| path.into());
         if is_recovered {
             document.note_recovery(path);
@@ -238,7 +258,7 @@ impl Document {
     }
 
     fn note_recovery(&mut self, path: &Path) {
-        self.revision += 1;
+        self.note_unrecorded_change();
         let message = "unsaved work from the last session was restored (save it to keep it)";
         self.warnings.push(format!("{}: {message}", path.display()));
     }
@@ -309,8 +329,9 @@ impl Document {
             undo,
             selection,
             revision: u64::from(input.paint_transfer.is_some()),
+            unrecorded_changes: u64::from(input.paint_transfer.is_some()),
             paint_transfer: input.paint_transfer,
-            saved_revision: 0,
+            saved: SavedState::default(),
         })
     }
 
@@ -390,7 +411,29 @@ impl Document {
 
     /// Whether the document differs from its project file, or before the first save, from the scene as it was opened.
     pub fn is_unsaved(&self) -> bool {
-        self.revision != self.saved_revision
+        self.state().change != self.saved.change
+    }
+
+    /// The state as it is now.
+    pub fn state(&self) -> SavedState {
+        let change = [self.undo.latest_change(), self.unrecorded_changes];
+        SavedState { revision: self.revision, change }
+    }
+
+    /// Notes that a state is in the project file.
+    pub fn set_saved(&mut self, state: SavedState) {
+        self.saved = state;
+    }
+
+    /// The revision in the project file.
+    pub fn saved_revision(&self) -> u64 {
+        self.saved.revision
+    }
+
+    /// Notes a change that is saved and not in the undo history.
+    pub(crate) fn note_unrecorded_change(&mut self) {
+        self.revision += 1;
+        self.unrecorded_changes += 1;
     }
 
     /// The document's name: the project's file name, or else the scene's.

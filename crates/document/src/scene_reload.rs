@@ -113,7 +113,9 @@ impl Document {
             input.camera = shot_camera_from(camera, shot);
         }
         let mut document = Self::from_input(input, unwrap, steps)?;
-        (document.path, document.revision) = (path, 1);
+        document.path = path;
+        document.revision = 0;
+        document.note_unrecorded_change();
         Ok(document)
     }
 }

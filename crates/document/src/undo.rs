@@ -60,13 +60,20 @@ struct Step {
     thumbnail: Option<EditThumbnail>,
     /// Memory used.
     bytes: usize,
+    /// Its number in the order in which steps were made.
+    number: u64,
 }
 
 impl Step {
+    /// Whether it makes the document unsaved.
+    fn is_change(&self) -> bool {
+        !matches!(self.change, Change::Selection { .. })
+    }
+
     fn new(name: String, change: Change, record: Option<RecordedStep>) -> Self {
         let record_bytes = record.as_ref().map_or(0, RecordedStep::bytes);
         let bytes = size_of::<Self>() + name.len() + change.bytes() + record_bytes;
-        Self { name, change, record: record.map(Box::new), thumbnail: None, bytes }
+        Self { name, change, record: record.map(Box::new), thumbnail: None, bytes, number: 0 }
     }
 }
 
@@ -163,12 +170,24 @@ pub struct UndoHistory {
     /// Memory that the steps may use; beyond it, the oldest are dropped.
     budget_bytes: usize,
     bytes: usize,
+    /// Number of steps that were ever made.
+    made: u64,
+    /// Number of the last change among the steps that were dropped; 0 for none.
+    dropped_change: u64,
 }
 
 impl UndoHistory {
     /// A history without steps.
     pub(crate) fn new(budget_bytes: usize) -> Self {
-        Self { done: VecDeque::new(), undone: Vec::new(), is_run_open: false, budget_bytes, bytes: 0 }
+        Self {
+            done: VecDeque::new(),
+            undone: Vec::new(),
+            is_run_open: false,
+            budget_bytes,
+            bytes: 0,
+            made: 0,
+            dropped_change: 0,
+        }
     }
 
     /// Sets the memory budget, bytes; the oldest steps beyond it are dropped.
@@ -276,7 +295,16 @@ impl UndoHistory {
         self.is_run_open = false;
     }
 
+    /// The number of the latest step that is done and changes more than the selection; 0 if there never was one. Equal numbers mean equal
+    /// documents, apart from what the history does not hold.
+    pub(crate) fn latest_change(&self) -> u64 {
+        let latest = self.done.iter().rev().find(|step| step.is_change());
+        latest.map_or(self.dropped_change, |step| step.number)
+    }
+
     fn push(&mut self, step: Step) {
+        self.made += 1;
+        let step = Step { number: self.made, ..step };
         self.bytes -= self.undone.drain(..).map(|step| step.bytes).sum::<usize>();
         self.bytes += step.bytes;
         self.done.push_back(step);
@@ -285,7 +313,11 @@ impl UndoHistory {
 
     fn forget_beyond_budget(&mut self) {
         while self.bytes > self.budget_bytes && self.done.len() > 1 {
-            self.bytes -= self.done.pop_front().map_or(0, |step| step.bytes);
+            let Some(dropped) = self.done.pop_front() else { return };
+            self.bytes -= dropped.bytes;
+            if dropped.is_change() {
+                self.dropped_change = dropped.number;
+            }
         }
     }
 

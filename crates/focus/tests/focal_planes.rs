@@ -57,6 +57,8 @@ fn a_tilted_plane_blurs_as_a_lens_focused_where_the_ray_meets_it() {
         })
         .collect();
     let map = map_of(&plane, &places, &camera);
+    // Positions are 32-bit floats from the middle of the surface: half a unit in the last place of its extent.
+    let extent = places.iter().map(|place| place.distance(places[0])).fold(0.0, f64::max);
     for (x, place) in places.iter().enumerate() {
         let seen = camera.camera_from_world(*place);
         let share = normal.dot(a) / normal.dot(seen);
@@ -64,6 +66,7 @@ fn a_tilted_plane_blurs_as_a_lens_focused_where_the_ray_meets_it() {
         let found = optics.kappa(1.0 / seen.z, map.at(x as u32, 0));
         // Values are 32-bit floats of t ≈ 1: half a unit in the last place, over d.
         let rounding = 6e-8 * (1.0 + wanted.abs() * optics.image_distance) / optics.image_distance;
+        let rounding = rounding + 6e-8 * extent / seen.z.powi(2);
         assert!((found - wanted).abs() <= rounding + 1e-12, "{place}: {found}, not {wanted}");
     }
     // What lies in it is sharp, wherever the lens focuses.

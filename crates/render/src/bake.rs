@@ -8,7 +8,7 @@ mod salf_file;
 
 pub(crate) use baking::bake_with;
 pub use baking::{bake, bake_unpacked};
-pub use camera_compatibility::is_compatible;
+pub use camera_compatibility::{is_baked_for, is_compatible};
 pub use light_field_store::LightFieldStore;
 pub use modelled::{DENSE_SAMPLE_BYTES, Modelled, ModelledRow, TexelStatistics};
 pub use salf_file::write_salf;

@@ -25,7 +25,7 @@ mod web_export;
 
 pub use bake::{
     DENSE_SAMPLE_BYTES, LightFieldStore, Modelled, ModelledRow, TexelStatistics, bake, bake_unpacked,
-    is_compatible, write_salf,
+    is_baked_for, is_compatible, write_salf,
 };
 pub use baselines::{LayeredOptions, ScatterOptions, ViewsOptions};
 pub use error::RenderError;

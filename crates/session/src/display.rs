@@ -1,5 +1,6 @@
 //! Showing pictures on a screen: tone-mapped pixels, and which of them changed since the last frame.
 
+mod antialiasing;
 mod enlarging;
 mod glare;
 mod live_picture;
@@ -13,6 +14,7 @@ pub use live_picture::LivePicture;
 pub use screen::Screen;
 pub use thumbnails::{Thumbnail, ThumbnailResult, Thumbnails};
 
+pub(crate) use antialiasing::antialiased;
 pub(crate) use enlarging::{enlarged_part, enlarged_rectangle};
 pub(crate) use glare::darkening_stops;
 pub(crate) use live_picture::PictureSource;

@@ -1,5 +1,6 @@
 //! The light field of an open document: its running sum, and what it contains at a surface point.
 
+mod aperture_fit;
 mod aperture_image;
 mod changes;
 mod field_watch;
@@ -7,6 +8,7 @@ mod margin_reach;
 mod running_sum;
 mod sample_index;
 
+pub(crate) use aperture_fit::{ApertureFit, is_spare_for, spare_camera};
 pub use aperture_image::{ApertureCell, ApertureImage, BakedVisibility};
 pub(crate) use changes::Changes;
 pub(crate) use field_watch::{BakeState, FieldWatch};

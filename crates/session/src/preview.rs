@@ -28,6 +28,7 @@ mod picture_sizes;
 mod pinhole;
 mod presenter;
 mod request;
+mod spare_field;
 mod thread;
 mod waiting;
 mod worker;

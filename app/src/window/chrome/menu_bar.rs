@@ -55,6 +55,7 @@ fn begins_group(id: CommandId) -> bool {
         Save | ExportPicture
             | Quit
             | PictureFit
+            | ShowGuides
             | ShowFocus
             | ShowAtlas
             | EnlargePanel
@@ -84,7 +85,7 @@ fn command_item(ui: &mut Ui, info: &CommandInfo, state: &MenuState<'_>, actions:
         (CommandId::Redo, Some(document)) => with_step_name(info.name, document.redo_name()),
         _ => info.name.to_string(),
     };
-    let mut button = Button::new(name);
+    let mut button = Button::new(name).selected(is_on(info.id, state.settings));
     let key = keys::shortcut_text(ui.ctx(), info.id);
     if !key.is_empty() {
         button = button.shortcut_text(key);
@@ -93,6 +94,15 @@ fn command_item(ui: &mut Ui, info: &CommandInfo, state: &MenuState<'_>, actions:
     if response.on_disabled_hover_text(info.tooltip).clicked() {
         actions.push(info.id.into());
         ui.close();
+    }
+}
+
+/// Whether a command is the choice that is made, or what it shows is shown.
+fn is_on(id: CommandId, settings: &ViewSettings) -> bool {
+    match id {
+        CommandId::ShowGuides => settings.guides,
+        CommandId::ShowFocusPlane => settings.focus_plane,
+        _ => settings.key_map.command() == id,
     }
 }
 
@@ -105,7 +115,8 @@ pub fn is_possible(id: CommandId, state: &MenuState<'_>) -> bool {
     use CommandId::*;
     match id {
         Open | OpenCapture | OpenDemo | Quit | ResetLayout | EnlargePanel | FloatPanel | FullScreen
-        | ShowInspector | NextToneCurve | LightOrDark | ScaleUp | ScaleDown | KeysBlender | KeysSubstance
+        | ShowInspector | NextToneCurve | LightOrDark | ScaleUp | ScaleDown | ScaleReset | ShowGuides
+        | ShowFocusPlane | KeysBlender | KeysSubstance
         | KeysKrita | ImportPreset | Palette | Shortcuts | About => true,
         SelectAll | InvertSelection | MaskFromSelection => {
             state.document.is_some_and(|document| document.selection.is_some())

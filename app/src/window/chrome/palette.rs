@@ -1,8 +1,14 @@
-//! The command palette: finds commands by a part of their names and shows their keys.
+//! The command palette: finds commands, presets and cameras by a part of their names and shows their keys.
 
-use crate::window::widgets::{controls, keys};
+mod entries;
+mod synonyms;
+
+use crate::window::Action;
+use crate::window::widgets::controls;
+use document::Document;
 use egui::{Align2, Context, Id, Key, RichText};
-use session::{COMMANDS, CommandId, CommandInfo};
+use entries::{PaletteEntry, all_entries, matching};
+use project::PresetLibrary;
 
 /// The palette's state between frames.
 #[derive(Default)]
@@ -23,12 +29,17 @@ impl Palette {
         self.open
     }
 
-    /// Draws the palette and returns the chosen command, if any.
-    pub fn show(&mut self, context: &Context) -> Option<CommandId> {
+    /// Draws the palette and returns what was chosen, if anything.
+    pub fn show(
+        &mut self,
+        context: &Context,
+        document: Option<&Document>,
+        presets: &PresetLibrary,
+    ) -> Option<Action> {
         if !self.open {
             return None;
         }
-        let matching = find_commands(&self.query);
+        let matching = matching(all_entries(context, document, presets), &self.query);
         let mut run = None;
         context.input_mut(|input| {
             if input.consume_key(egui::Modifiers::NONE, Key::Escape) {
@@ -41,7 +52,7 @@ impl Palette {
                 self.chosen = self.chosen.saturating_sub(1);
             }
             if input.consume_key(egui::Modifiers::NONE, Key::Enter) {
-                run = matching.get(self.chosen).map(|info| info.id);
+                run = matching.get(self.chosen).map(|entry| entry.action.clone());
             }
         });
         self.chosen = self.chosen.min(matching.len().saturating_sub(1));
@@ -49,7 +60,7 @@ impl Palette {
             egui::Window::new("Command palette").id(Id::unique("palette")).title_bar(false).resizable(false);
         window.anchor(Align2::CENTER_TOP, [0.0, 70.0]).fixed_size([460.0, 380.0]).show(context, |ui| {
             let edit = egui::TextEdit::singleline(&mut self.query);
-            let hint = "Type a part of a command's name";
+            let hint = "Type a part of a name: a command, a preset, a camera";
             let response = ui.add(edit.hint_text(hint).desired_width(f32::INFINITY));
             controls::set_accessible_name(&response, "Find a command");
             response.request_focus();
@@ -58,20 +69,20 @@ impl Palette {
             }
             ui.add_space(4.0);
             egui::ScrollArea::vertical().auto_shrink([false; 2]).show(ui, |ui| {
-                for (index, info) in matching.iter().enumerate() {
+                for (index, entry) in matching.iter().enumerate() {
                     let chosen = index == self.chosen;
-                    let response = row(ui, info, chosen);
+                    let response = row(ui, entry, chosen);
                     if chosen
                         && ui.input(|input| input.key_down(Key::ArrowDown) || input.key_down(Key::ArrowUp))
                     {
                         response.scroll_to_me(None);
                     }
                     if response.clicked() {
-                        run = Some(info.id);
+                        run = Some(entry.action.clone());
                     }
                 }
                 if matching.is_empty() {
-                    ui.weak("No matching command.");
+                    ui.weak("Nothing of that name.");
                 }
             });
         });
@@ -82,43 +93,8 @@ impl Palette {
     }
 }
 
-fn row(ui: &mut egui::Ui, info: &CommandInfo, chosen: bool) -> egui::Response {
-    let shortcut = keys::shortcut_text(ui.ctx(), info.id);
-    let label = format!("{}: {}", info.menu.title(), info.name);
+fn row(ui: &mut egui::Ui, entry: &PaletteEntry, chosen: bool) -> egui::Response {
     let layout = egui::Layout::top_down_justified(egui::Align::LEFT);
-    let button = egui::Button::selectable(chosen, label).right_text(RichText::new(shortcut).weak());
-    ui.with_layout(layout, |ui| ui.add(button)).inner.on_hover_text(info.tooltip)
-}
-
-/// The commands whose menu, name or tooltip contains every word of the query, the best matches first.
-fn find_commands(query: &str) -> Vec<&'static CommandInfo> {
-    let query = query.trim().to_lowercase();
-    let words: Vec<_> = query.split_whitespace().collect();
-    let rank = |info: &CommandInfo| {
-        let name = info.name.to_lowercase();
-        let text = format!("{} {name} {}", info.menu.title().to_lowercase(), info.tooltip.to_lowercase());
-        match () {
-            _ if name.starts_with(&query) => Some(0),
-            _ if words.iter().all(|word| name.contains(word)) => Some(1),
-            _ if words.iter().all(|word| text.contains(word)) => Some(2),
-            _ => None,
-        }
-    };
-    let mut ranked: Vec<_> = COMMANDS.iter().filter_map(|info| Some((rank(info)?, info))).collect();
-    ranked.sort_by_key(|(rank, _)| *rank);
-    ranked.into_iter().map(|(_, info)| info).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn finds_by_start_by_words_and_by_what_it_does() {
-        assert_eq!(find_commands("").len(), COMMANDS.len());
-        assert_eq!(find_commands("und")[0].id, CommandId::Undo);
-        assert!(find_commands("focus map export").iter().any(|info| info.id == CommandId::ExportFocusMap));
-        assert!(find_commands("16-bit").iter().any(|info| info.id == CommandId::ExportFocusMap));
-        assert!(find_commands("no such thing").is_empty());
-    }
+    let button = egui::Button::selectable(chosen, &entry.label).right_text(RichText::new(&entry.key).weak());
+    ui.with_layout(layout, |ui| ui.add(button)).inner.on_hover_text(&entry.tooltip)
 }

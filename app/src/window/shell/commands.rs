@@ -86,6 +86,14 @@ impl Shell {
             CommandId::LightOrDark => self.settings.light_theme = !self.settings.light_theme,
             CommandId::ScaleUp => self.change_scale(1),
             CommandId::ScaleDown => self.change_scale(-1),
+            CommandId::ScaleReset => self.settings.scale = 1.0,
+            CommandId::ShowGuides => self.settings.guides = !self.settings.guides,
+            CommandId::ShowFocusPlane => self.settings.focus_plane = !self.settings.focus_plane,
+            CommandId::Walk => {
+                if let Some(document) = self.session.document() {
+                    self.picture.walk.start(document);
+                }
+            }
             CommandId::KeysBlender => self.settings.key_map = KeyMap::Blender,
             CommandId::KeysSubstance => self.settings.key_map = KeyMap::Substance,
             CommandId::KeysKrita => self.settings.key_map = KeyMap::Krita,

@@ -194,7 +194,7 @@ impl PaneContents for PanelContents<'_> {
         let dragged = ViewHeader { pane, docked, session, settings, picture }.show(ui, actions);
         match pane {
             Pane::Paint => self.paint.ui(ui, session, active_tool, settings.surface_appearance(), actions),
-            Pane::Picture => picture.ui(ui, session, active_tool, settings.display(), actions),
+            Pane::Picture => picture.ui(ui, session, active_tool, settings, actions),
             Pane::Inspector
             | Pane::Atlas
             | Pane::Aperture

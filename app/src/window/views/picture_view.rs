@@ -1,14 +1,16 @@
 //! The picture view: the latest refocused picture from the shot camera, which can be painted on directly.
 
 mod displayed_picture;
+mod guides;
 mod tone_mapper;
 mod verify;
+mod walk;
 mod wipe;
 
 pub use displayed_picture::DisplayedPicture;
 
 use super::paint_view::{OrbitCamera, PIVOT_AT_INFINITY, paint_hint};
-use crate::window::Action;
+use crate::window::{Action, ViewSettings};
 use crate::window::graphics::blit::{Blitter, Filter};
 use crate::window::tools::active_tool::ActiveTool;
 use crate::window::tools::brush_ring;
@@ -23,9 +25,11 @@ use egui::{PointerButton, Pos2, Rect, Response, Sense, Ui, Vec2, vec2};
 use focus::ViewFrame;
 use glam::{DVec2, DVec3};
 use lens::Camera;
-use render::{Display, Tone};
+use render::Tone;
 use session::{Command, PreviewActivity, PreviewKind, ReferenceKind, Session};
+use guides::Guides;
 use verify::Verify;
+use walk::Walk;
 use wipe::Wipe;
 
 /// Scroll distance that doubles the zoom, points.
@@ -61,6 +65,9 @@ pub struct PictureView {
     highlight: RegionHighlight,
     /// The shot camera while a drag moves it.
     orbit: Option<OrbitCamera>,
+    /// The walk mode.
+    pub walk: Walk,
+    guides: Guides,
     rect: Rect,
     image: Rect,
 }
@@ -79,6 +86,8 @@ impl PictureView {
             hover: None,
             highlight: RegionHighlight::default(),
             orbit: None,
+            walk: Walk::default(),
+            guides: Guides::default(),
             rect: Rect::NOTHING,
             image: Rect::NOTHING,
         }
@@ -165,9 +174,10 @@ impl PictureView {
         ui: &mut Ui,
         session: &Session,
         active_tool: &ActiveTool,
-        display: Display,
+        settings: &ViewSettings,
         actions: &mut Vec<Action>,
     ) {
+        let display = settings.display();
         let (rect, response) =
             ui.allocate_exact_size(ui.available_size().max(vec2(8.0, 8.0)), Sense::click_and_drag());
         self.rect = rect;
@@ -199,9 +209,12 @@ impl PictureView {
         }
         self.request_pictures(session, actions);
         let image = self.image;
+        if !is_pair {
+            self.guides.paint(&painter, image, session, settings);
+        }
         let shot = &document.camera;
         let frame = ViewFrame::from_camera(shot);
-        let is_selecting = self.verify.is_selecting();
+        let is_selecting = self.verify.is_selecting() || self.walk.is_on();
         let whole = self.whole_rect();
         let position = |at: Pos2| picture_position(image, in_left_picture(is_pair, image, at));
         let screen = |at: DVec2| image.min + vec2(at.x as f32, at.y as f32) * image.size();
@@ -313,6 +326,13 @@ impl PictureView {
         size: Vec2,
         actions: &mut Vec<Action>,
     ) {
+        if self.walk.is_on() {
+            self.walk.turn(response.drag_delta(), actions);
+            if response.contains_pointer() {
+                self.walk.scroll(ui.input(|input| input.smooth_scroll_delta().y));
+            }
+            return;
+        }
         if response.double_clicked_by(PointerButton::Middle) {
             self.zoom = Zoom::Fit;
             return;
@@ -400,6 +420,7 @@ impl PictureView {
     fn paint_notice(&self, ui: &Ui, session: &Session) {
         let pinhole = session.preview().is_some_and(|preview| preview.kind == PreviewKind::Pinhole);
         let text = match session.preview_activity() {
+            _ if self.walk.is_on() => walk::HINT,
             _ if self.verify.is_selecting() => "drag a rectangle to verify it by ray tracing (Esc: cancel)",
             activity if activity.is_baking() && pinhole => {
                 "rebuilding the light field, shown without blur meanwhile"

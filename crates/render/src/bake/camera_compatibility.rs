@@ -13,3 +13,9 @@ pub fn is_compatible(baked: &Camera, camera: &Camera) -> bool {
     };
     like == *baked && camera.aperture_radius <= baked.aperture_radius
 }
+
+/// Whether such a light field also has the aperture radius of `camera`: with that of a wider one, it tells what of the aperture is hidden more
+/// coarsely than one that is baked for `camera`.
+pub fn is_baked_for(baked: &Camera, camera: &Camera) -> bool {
+    is_compatible(baked, camera) && baked.aperture_radius == camera.aperture_radius
+}

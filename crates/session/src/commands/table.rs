@@ -53,6 +53,10 @@ pub enum CommandId {
     LightOrDark,
     ScaleUp,
     ScaleDown,
+    ScaleReset,
+    ShowGuides,
+    ShowFocusPlane,
+    Walk,
     NextToneCurve,
     KeysBlender,
     KeysSubstance,
@@ -219,6 +223,7 @@ impl std::fmt::Display for Shortcut {
             f.write_str(name)?;
         }
         f.write_str(match self.key {
+            "Backtick" => "`",
             "OpenBracket" => "[",
             "CloseBracket" => "]",
             "Comma" => ",",
@@ -291,6 +296,9 @@ pub const COMMANDS: &[CommandInfo] = &[
     command_info(CommandId::Verify, Menu::View, Shortcut::key("R"), "Verify a rectangle", "Drag a rectangle in the picture: rays check the picture there."),
     command_info(CommandId::PictureFit, Menu::View, None, "Fit picture", "Scale the picture to its panel."),
     command_info(CommandId::PictureActualSize, Menu::View, Shortcut::key("1"), "Picture at 100 %", "Show one picture pixel as one screen pixel."),
+    command_info(CommandId::ShowGuides, Menu::View, None, "Frame and thirds", "Draw the frame, its thirds and its middle over the picture; or leave them out."),
+    command_info(CommandId::ShowFocusPlane, Menu::View, None, "Focus plane", "Draw the line where the lens's focus plane cuts the scene over the picture; or leave it out."),
+    command_info(CommandId::Walk, Menu::View, Shortcut::shift("Backtick"), "Walk", "Walk through the scene in the picture: W, A, S, D, down and up by Q, E, drag to look round, wheel for the pace. Enter stays there, Esc goes back."),
     command_info(CommandId::ShowFocus, Menu::View, Shortcut::key("C"), "Show focus", "Colour the paint view by the blur that the focus gives."),
     command_info(CommandId::ShowSurface, Menu::View, Shortcut::key("V"), "Show surface", "Show the scene's own colours in the paint view."),
     command_info(CommandId::ShowAtlas, Menu::View, Shortcut::key("F7"), "Atlas", "Show the focus map flat, chart by chart, to paint on it in 2D; or fold it away."),
@@ -307,6 +315,7 @@ pub const COMMANDS: &[CommandInfo] = &[
     command_info(CommandId::LightOrDark, Menu::View, None, "Light or dark", "Draw the window light on dark, or dark on light."),
     command_info(CommandId::ScaleUp, Menu::View, Shortcut::command("Plus"), "Larger window contents", "Draw text and controls larger."),
     command_info(CommandId::ScaleDown, Menu::View, Shortcut::command("Minus"), "Smaller window contents", "Draw text and controls smaller."),
+    command_info(CommandId::ScaleReset, Menu::View, Shortcut::command("0"), "Window contents at 100 %", "Draw text and controls at the system's size again."),
     command_info(CommandId::KeysBlender, Menu::View, None, "Keys as in Blender", "Keys and mouse as in Blender."),
     command_info(CommandId::KeysSubstance, Menu::View, None, "Keys as in Substance", "Keys and mouse as in Substance 3D Painter."),
     command_info(CommandId::KeysKrita, Menu::View, None, "Keys as in Krita", "Keys and mouse as in Krita."),

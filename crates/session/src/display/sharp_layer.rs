@@ -3,6 +3,7 @@
 //! A rough picture has few pixels, and shows what is in focus as blocks. Where the circle of confusion is small, and no blur of something
 //! nearer reaches, the picture without blur is closer to the exact one.
 
+use crate::display::antialiasing::antialiased;
 use crate::display::enlarging::enlarged;
 use crate::display::picture_ring::Rectangle;
 use baselines::FirstHits;
@@ -48,7 +49,7 @@ impl SharpLayer {
             1.0 - ((circle - SHARP_CIRCLE) / (ROUGH_CIRCLE - SHARP_CIRCLE)).clamp(0.0, 1.0)
         };
         let shares = (0..size[0] as usize * size[1] as usize).map(share).collect();
-        let picture = hits.picture();
+        let picture = antialiased(&hits.picture());
         let is_of_size = [picture.width, picture.height] == size;
         Self { picture: if is_of_size { picture } else { enlarged(&picture, size) }, shares }
     }

@@ -2,7 +2,7 @@
 
 use document::Stage;
 use lens::Camera;
-use render::is_compatible;
+use render::is_baked_for;
 use salf::Salf;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, Weak};
 use std::time::Duration;
@@ -61,7 +61,7 @@ impl FieldWatch {
         let Some(baked) = &latest.baked else { return BakeState::InProgress };
         let is_same_stage =
             latest.stage.upgrade().is_some_and(|baked_stage| Arc::ptr_eq(&baked_stage, stage));
-        let baked = baked.upgrade().filter(|salf| is_same_stage && is_compatible(&salf.camera, camera));
+        let baked = baked.upgrade().filter(|salf| is_same_stage && is_baked_for(&salf.camera, camera));
         baked.map_or(BakeState::Absent, BakeState::Baked)
     }
 

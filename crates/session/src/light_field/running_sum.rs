@@ -2,6 +2,7 @@
 
 use crate::display::{PictureSource, Rectangle};
 use crate::error::SessionError;
+use crate::light_field::aperture_fit::{ApertureFit, is_spare_for};
 use crate::light_field::changes::Changes;
 use crate::light_field::margin_reach::MarginReach;
 use crate::light_field::sample_index::SampleIndex;
@@ -20,10 +21,6 @@ use std::time::Instant;
 /// The margin is baked this much wider than the paint needs, in picture heights, so that the next strokes find
 /// room: a tenth of the height is a circle of confusion as wide as paint usually gives.
 const MARGIN_HEADROOM: f64 = 0.1;
-
-/// Below this share of the baked aperture's radius another light field would be better: half of the cells of its
-/// masks are closed then.
-const SMALLER_APERTURE: f64 = 0.7;
 
 /// When more than this share of the samples move, a whole sum is quicker: it runs on all cores, and removes nothing.
 const LARGEST_UPDATE: f64 = 0.25;
@@ -192,13 +189,23 @@ impl LightField {
         }
     }
 
-    /// Whether the light field can show what `camera` sees.
+    /// Whether the light field holds all that `camera` sees.
     pub fn can_show(&self, camera: &Camera) -> bool {
         is_compatible(&self.splatter.salf().camera, camera)
     }
 
+    /// How well its aperture fits that of `camera`; `None` if it cannot show what `camera` sees, not even with its aperture stretched.
+    pub fn aperture_fit(&self, camera: &Camera) -> Option<ApertureFit> {
+        ApertureFit::new(&self.splatter.salf().camera, camera)
+    }
+
+    /// Whether the lens of `camera` can be opened by a stop, and the light field still holds all that it sees.
+    pub fn is_spare_for(&self, camera: &Camera) -> bool {
+        is_spare_for(&self.splatter.salf().camera, camera)
+    }
+
     /// Whether another bake would be better: paint or lens spreads light from further outside the
-    /// frame, the aperture has become much smaller than the one whose cells were looked through, or paint has come to move
+    /// frame, the aperture has become much smaller or larger than the one whose cells were looked through, or paint has come to move
     /// carried light, which was told only as finely as the ordinary lens shows it. The least margin, px, of that bake.
     ///
     /// Quick after an update; after a whole sum every sample is looked at, unless [`Self::survey`] has done it.
@@ -206,10 +213,10 @@ impl LightField {
         self.survey(camera, focus);
         let salf = self.splatter.salf();
         let exceeded = self.reach.as_ref().filter(|reach| reach.is_exceeded());
-        let is_stopped_down = camera.aperture_radius < SMALLER_APERTURE * salf.camera.aperture_radius;
+        let is_poor = ApertureFit::new(&salf.camera, camera).is_some_and(ApertureFit::is_poor);
         let needed_px = exceeded.map(|reach| reach.needed_px(salf, camera, focus));
         let is_coarse = salf.carried < Carried::for_focus(focus);
-        needed_px.or((is_stopped_down || is_coarse).then_some(0.0))
+        needed_px.or((is_poor || is_coarse).then_some(0.0))
     }
 
     /// Looks how far samples reach, those of which that is not known. It must be summed for this lens and focus.

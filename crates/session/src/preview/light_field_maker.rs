@@ -1,7 +1,8 @@
 //! Making the light field of the preview: a thread of its own bakes and sums it.
 
 use crate::error::SessionError;
-use crate::light_field::{Changes, FieldOptions, LightField};
+use crate::light_field::{Changes, FieldOptions, LightField, spare_camera};
+use crate::preview::activity::PreviewActivity;
 use crate::preview::deliveries::{BAKE_SHARE, FieldDelivery, INTERIM_SHARE, InterimField};
 use crate::preview::mailbox::Shared;
 use document::Stage;
@@ -59,6 +60,11 @@ impl LightFieldMaker {
         self.store.as_ref().is_some_and(|store| store.has(stage, camera))
     }
 
+    /// Where light fields are kept.
+    pub fn store(&self) -> Option<LightFieldStore> {
+        self.store.clone()
+    }
+
     /// Keeps a light field of refined light, if there is a store.
     pub fn save(&self, stage: &Arc<Stage>, field: &LightField, bake_seconds: f64) {
         if let Some(store) = &self.store {
@@ -74,12 +80,13 @@ impl LightFieldMaker {
 
     /// Begins, unless that is already known to be useless. What is made is delivered to `shared`.
     pub fn start(&mut self, shared: &Arc<Shared>, order: FieldOrder) {
-        if !shared.begin_helper() {
+        let is_baked = matches!(order.origin, FieldOrigin::Resum(_));
+        let activity = if is_baked { PreviewActivity::Splatting } else { PreviewActivity::Baking };
+        if !shared.begin_helper(activity) {
             return;
         }
         self.pending_changes = Changes::default();
         let (thread_shared, epoch, store) = (shared.clone(), order.epoch, self.store.clone());
-        let is_baked = matches!(order.origin, FieldOrigin::Resum(_));
         if !is_baked {
             // Whoever asks from now on waits for it.
             shared.field.begin(&order.stage);
@@ -153,13 +160,15 @@ fn make(
         let mut done_share = 0.0;
         if let Some(interim) = &interim {
             let share = Share::new(&shared.progress, 0.0, INTERIM_SHARE);
-            let field = LightField::bake(&stage, interim, &focus, options_with_margin(0.0), &share)?;
+            let opened = spare_camera(interim).unwrap_or_else(|| interim.clone());
+            let field = LightField::bake(&stage, &opened, &focus, options_with_margin(0.0), &share)?;
             shared.deliver_interim(InterimField { field, epoch });
             done_share = INTERIM_SHARE;
         }
         let start = Instant::now();
         let share = Share::new(&shared.progress, done_share, BAKE_SHARE);
         let field = LightField::bake(&stage, &camera, &focus, options_with_margin(least_margin_px), &share)?;
+        shared.count_bake();
         if let Some(store) = store {
             store.save(&stage, &field.baked().salf, 0, start.elapsed());
         }

@@ -31,6 +31,9 @@ pub(crate) struct Shared {
     pub light: JobProgress,
     /// Number of passes by which light is being refined; 0: none.
     light_passes: AtomicU32,
+    /// Progress of the spare.
+    pub spare: JobProgress,
+    makes_spare: AtomicBool,
     /// Number of exports that the exact picture on screen waits for.
     exports: AtomicUsize,
     activity: AtomicU8,
@@ -39,6 +42,8 @@ pub(crate) struct Shared {
     field_bytes: [AtomicUsize; 2],
     /// The light field that the helper makes.
     pub field: FieldWatch,
+    /// Number of light fields of full size that were baked.
+    bakes: AtomicUsize,
     published: Mutex<Published>,
     gpu: Option<Gpu>,
     waker: Waker,
@@ -63,11 +68,14 @@ impl Shared {
             is_refining: AtomicBool::new(false),
             light: JobProgress::default(),
             light_passes: AtomicU32::new(0),
+            spare: JobProgress::default(),
+            makes_spare: AtomicBool::new(false),
             exports: AtomicUsize::new(0),
             activity: AtomicU8::new(PreviewActivity::Idle as u8),
             helper: AtomicU8::new(PreviewActivity::Idle as u8),
             field_bytes: Default::default(),
             field: FieldWatch::default(),
+            bakes: AtomicUsize::new(0),
             published: Mutex::default(),
             waker,
         }
@@ -109,6 +117,16 @@ impl Shared {
         self.field_bytes.each_ref().map(|noted| noted.load(Ordering::Relaxed))
     }
 
+    /// Counts a light field of full size that was baked.
+    pub fn count_bake(&self) {
+        self.bakes.fetch_add(1, Ordering::Relaxed);
+    }
+
+    /// Number of light fields of full size that were baked.
+    pub fn bakes(&self) -> usize {
+        self.bakes.load(Ordering::Relaxed)
+    }
+
     /// Merges a change into the pending request, and cancels work that it makes useless.
     pub fn post(&self, scope: StopScope, change: impl FnOnce(&mut PreviewRequest)) {
         let mut request = lock(&self.request);
@@ -117,10 +135,14 @@ impl Shared {
         if scope != StopScope::Nothing {
             self.refining.cancel();
         }
+        if scope == StopScope::Aperture && PreviewActivity::load(&self.helper) == PreviewActivity::Baking {
+            self.progress.cancel();
+        }
         if matches!(scope, StopScope::View | StopScope::Everything) {
             request.is_stopping = true;
             self.progress.cancel();
             self.light.cancel();
+            self.spare.cancel();
             if scope == StopScope::Everything || !self.is_following.load(Ordering::Relaxed) {
                 self.quick.cancel();
             }
@@ -153,13 +175,13 @@ impl Shared {
     }
 
     /// Notes that the helper begins; false if its work is already useless.
-    pub fn begin_helper(&self) -> bool {
+    pub fn begin_helper(&self, activity: PreviewActivity) -> bool {
         let request = lock(&self.request);
         if request.is_stopping {
             return false;
         }
         self.progress.reset();
-        self.helper.store(PreviewActivity::Baking as u8, Ordering::Relaxed);
+        self.helper.store(activity as u8, Ordering::Relaxed);
         true
     }
 
@@ -177,6 +199,19 @@ impl Shared {
             self.light.reset();
             self.light_passes.store(passes, Ordering::Relaxed);
         })
+    }
+
+    /// Notes that a spare is begun; false if there is a new request.
+    pub fn begin_spare(&self) -> bool {
+        self.begin_if_quiet(|| {
+            self.spare.reset();
+            self.makes_spare.store(true, Ordering::Relaxed);
+        })
+    }
+
+    /// Progress of the spare, while one is made.
+    pub fn spare_progress(&self) -> Option<&JobProgress> {
+        self.makes_spare.load(Ordering::Relaxed).then_some(&self.spare)
     }
 
     fn begin_if_quiet(&self, begin: impl FnOnce()) -> bool {
@@ -199,6 +234,12 @@ impl Shared {
     pub fn refining_light(&self) -> Option<(u32, &JobProgress)> {
         let passes = self.light_passes.load(Ordering::Relaxed);
         (passes > 0).then_some((passes, &self.light))
+    }
+
+    /// Delivers a spare, or the failure to make it, to the preview's thread.
+    pub fn deliver_spare(&self, spare: FieldDelivery) {
+        self.makes_spare.store(false, Ordering::Relaxed);
+        self.post(StopScope::Nothing, |request| request.spare = Some(spare));
     }
 
     /// Delivers the exact picture, or the failure to draw it, to the preview's thread.
@@ -292,6 +333,7 @@ impl Shared {
         self.exports.fetch_add(1, Ordering::Relaxed);
         self.refining.cancel();
         self.light.cancel();
+        self.spare.cancel();
     }
 
     /// It is made: there is time again.

@@ -1,7 +1,7 @@
 //! Pictures without blur: those that follow a moving camera, and what is laid over rough pictures.
 
 use super::picture_sizes::pixel_count;
-use crate::display::SharpLayer;
+use crate::display::{SharpLayer, antialiased};
 use crate::error::SessionError;
 use baselines::FirstHits;
 use document::Stage;
@@ -53,7 +53,7 @@ impl PinholeTracer {
         let start = Instant::now();
         let hits = FirstHits::trace(stage.tracer(), &*radiance, focus, camera, progress)?;
         self.pace = Some(start.elapsed().as_secs_f64() / pixel_count(camera));
-        let picture = hits.picture();
+        let picture = antialiased(&hits.picture());
         self.last = Some(Pinhole { hits, camera: camera.clone(), map: map.clone() });
         Ok(picture)
     }

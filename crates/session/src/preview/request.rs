@@ -38,8 +38,10 @@ pub(crate) struct PreviewRequest {
     pub refined: Option<ExactDelivery>,
     /// The result of refining light.
     pub refined_light: Option<RefinedLightDelivery>,
-    /// Pause refining light.
-    pub pause_light: bool,
+    /// The finished spare.
+    pub spare: Option<FieldDelivery>,
+    /// Pause what is done while nothing changes.
+    pub pause_background: bool,
     /// Current work was cancelled by this request.
     pub is_stopping: bool,
     pub is_posted: bool,
@@ -52,6 +54,8 @@ pub(crate) enum StopScope {
     Nothing,
     /// The exact picture.
     Refining,
+    /// That, and what is baked for a smaller aperture.
+    Aperture,
     /// All but a picture without blur, which is soon there: a camera that moves on is followed by pictures of where it just was.
     View,
     Everything,

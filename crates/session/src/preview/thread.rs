@@ -1,7 +1,7 @@
 //! The session's handle to the preview thread: posts requests and takes results.
 
 use crate::error::SessionError;
-use crate::light_field::Changes;
+use crate::light_field::{ApertureFit, Changes};
 use crate::preview::activity::PreviewActivity;
 use crate::preview::events::PreviewEvents;
 use crate::preview::mailbox::Shared;
@@ -59,9 +59,13 @@ impl PreviewThread {
         });
     }
 
-    /// Another camera, at the preview's size. `keeps_light_field`: the light field is compatible with it.
-    pub fn set_camera(&self, camera: Camera, keeps_light_field: bool) {
-        let scope = if keeps_light_field { StopScope::Refining } else { StopScope::View };
+    /// Another camera, at the preview's size. `fit`: how well a light field of the camera before fits it.
+    pub fn set_camera(&self, camera: Camera, fit: Option<ApertureFit>) {
+        let scope = match fit {
+            Some(fit) if fit.is_covering() => StopScope::Refining,
+            Some(_) => StopScope::Aperture,
+            None => StopScope::View,
+        };
         self.shared.post(scope, |request| {
             request.camera = Some(camera);
             request.edit_done = true;
@@ -95,10 +99,16 @@ impl PreviewThread {
         self.shared.post(StopScope::Everything, |request| request.pause = true);
     }
 
-    /// Pauses refining light until scene or camera change.
-    pub fn pause_light(&self) {
-        self.shared.post(StopScope::Nothing, |request| request.pause_light = true);
+    /// Pauses what is done while nothing changes, until scene or camera change.
+    pub fn pause_background(&self) {
+        self.shared.post(StopScope::Nothing, |request| request.pause_background = true);
         self.shared.light.cancel();
+        self.shared.spare.cancel();
+    }
+
+    /// Progress of the light field for a wider aperture, while it is baked.
+    pub fn spare_progress(&self) -> Option<&JobProgress> {
+        self.shared.spare_progress()
     }
 
     /// The number of passes by which light is being refined, and the progress; `None` if it is not being refined.
@@ -119,6 +129,11 @@ impl PreviewThread {
     /// The memory of the light fields that are worked with, and of their sums, in bytes.
     pub fn field_bytes(&self) -> [usize; 2] {
         self.shared.field_bytes()
+    }
+
+    /// Number of light fields of full size that were baked.
+    pub fn bakes(&self) -> usize {
+        self.shared.bakes()
     }
 
     /// Sets how linear light is shown on the screen.

@@ -3,7 +3,7 @@
 use super::light_refinement;
 use crate::display::PictureSource;
 use crate::error::SessionError;
-use crate::light_field::{FieldOptions, LightField, Plan, SumUpdate};
+use crate::light_field::{ApertureFit, FieldOptions, LightField, Plan, SumUpdate, spare_camera};
 use crate::preview::activity::PreviewActivity;
 use crate::preview::deliveries::{ExactDelivery, FieldDelivery, FinerField, InterimField};
 use crate::preview::exact_refinement::{ExactRefinement, ExactTask};
@@ -15,6 +15,7 @@ use crate::preview::picture_sizes::{coarse_cameras, interim_camera, moving_camer
 use crate::preview::pinhole::{PinholeTracer, is_same_view};
 use crate::preview::presenter::{NewPicture, Presenter, Relation};
 use crate::preview::request::PreviewRequest;
+use crate::preview::spare_field::{SpareField, SpareTask};
 use document::Stage;
 use focus::{Focus, FocusMap};
 use jobs::catch_panics;
@@ -52,10 +53,12 @@ pub(crate) struct Worker {
     refinement: ExactRefinement,
     /// Refines the light of the fine light field.
     light: LightRefinement,
+    /// Bakes one for a wider aperture.
+    spare: SpareField,
     /// By how many passes at most.
     light_passes: u32,
-    /// Refining light is paused until scene or camera change.
-    is_light_paused: bool,
+    /// What is done while nothing changes is paused until scene or camera change.
+    is_background_paused: bool,
     /// For how long nothing must change until either is done; none: never.
     exact_after: Option<Duration>,
     /// A stroke is in progress.
@@ -99,8 +102,9 @@ impl Worker {
             delivery: None,
             refinement: ExactRefinement::default(),
             light: LightRefinement::default(),
+            spare: SpareField::default(),
             light_passes,
-            is_light_paused: false,
+            is_background_paused: false,
             exact_after,
             is_painting: false,
             tolerance: Tolerance::VIEWING,
@@ -136,10 +140,12 @@ impl Worker {
         self.maker.join();
         self.refinement.join();
         self.light.join();
+        self.spare.join();
     }
 
-    fn note_memory(&self) {
-        let fields = [&self.coarse, &self.fine].into_iter().flatten().map(LightField::bytes);
+    fn note_memory(&mut self) {
+        let spare = self.spare.field().map(|spare| spare.bytes());
+        let fields = [&self.coarse, &self.fine].into_iter().flatten().map(LightField::bytes).chain(spare);
         self.shared.note_field_bytes(fields.fold([0, 0], |[a, b], [c, d]| [a + c, b + d]));
     }
 
@@ -170,14 +176,24 @@ impl Worker {
             self.refine(camera, focus);
             return Ok(());
         }
+        if is_idle && self.may_make_fields() {
+            if !self.has_close_aperture() {
+                self.make_field(FieldOrigin::LoadOrBake { least_margin_px: 0.0 }, &stage, &camera, focus);
+                return Ok(());
+            }
+            if let Some(baked_camera) = self.missing_spare() {
+                let (tolerance, epoch) = (self.tolerance, self.epoch);
+                let task = SpareTask { stage, baked_camera, camera, focus, tolerance, epoch };
+                self.spare.start(&self.shared, self.maker.store(), task);
+                return Ok(());
+            }
+        }
         if is_idle && let Some(passes) = self.refinable_passes() {
             self.refine_light(passes, stage, camera, focus);
             return Ok(());
         }
 
-        if self.fine.take_if(|fine| !fine.can_show(&camera)).is_some() {
-            self.refinement.forget();
-        }
+        self.choose_field(&camera);
         let plan =
             self.fine.as_ref().map(|fine| (fine.plan(&camera, &focus), fine.whole_seconds() < QUICK_SECONDS));
         if let Some((plan, is_quick)) = plan
@@ -204,14 +220,29 @@ impl Worker {
         Ok(())
     }
 
+    /// Works with the light field whose aperture fits the lens best; gives up those of another view.
+    fn choose_field(&mut self, camera: &Camera) {
+        self.spare.tidy(camera);
+        // What is being made may be the light field itself, with another sum.
+        if !self.maker.is_at_work()
+            && self.spare.exchange(&mut self.fine, camera)
+            && let Some(fine) = &self.fine
+        {
+            self.shared.publish_field(self.presenter.generation, fine.baked());
+            self.refinement.tidy(self.fine.as_ref());
+        }
+        if self.fine.take_if(|fine| fine.aperture_fit(camera).is_none()).is_some() {
+            self.refinement.forget();
+        }
+    }
+
     /// Takes up what changed, and what was made.
     fn apply_request(&mut self, request: PreviewRequest) -> Result<(), SessionError> {
         if let Some(tolerance) = request.tolerance.filter(|tolerance| *tolerance != self.tolerance) {
             self.tolerance = tolerance;
             (self.presenter.costs.viewing_psnr, self.presenter.costs.viewing_seconds) = (None, None);
-            for field in [&mut self.coarse, &mut self.fine].into_iter().flatten() {
-                field.set_tolerance(tolerance);
-            }
+            let fields = [self.coarse.as_mut(), self.fine.as_mut(), self.spare.field()];
+            fields.into_iter().flatten().for_each(|field| field.set_tolerance(tolerance));
         }
         let is_opened = request.stage.is_some();
         if let Some((stage, generation)) = request.stage {
@@ -223,13 +254,14 @@ impl Worker {
             (self.coarse, self.fine) = (None, None);
             self.refinement.forget();
             self.light.forget();
+            self.spare.forget();
             self.epoch += 1;
             self.bakes_anew = request.bake;
         }
         let resumes_work =
             self.stage.is_some() && (request.camera.is_some() || request.bake || request.edit_done);
         self.is_paused = request.pause || (self.is_paused && !resumes_work);
-        self.is_light_paused = request.pause_light || (self.is_light_paused && !resumes_work);
+        self.is_background_paused = request.pause_background || (self.is_background_paused && !resumes_work);
         let is_complete = request.edit_done || is_opened;
         self.is_painting = !is_complete && (self.is_painting || request.map.is_some());
         // A stroke that goes on is no time for more.
@@ -248,14 +280,16 @@ impl Worker {
         self.maker.note(&request.changed);
         self.refinement.note(&request.changed);
         self.light.note(&request.changed);
+        self.spare.note(&request.changed);
         if let Some(refined_light) = request.refined_light {
             self.light.take_back(refined_light);
         }
+        let spare = request.spare.map(|spare| self.spare.take_up(spare, self.epoch));
         if let Some(interim) = request.interim {
             self.take_up_interim(interim);
         }
         self.delivery = request.delivery.or(self.delivery.take());
-        let taken_up = self.take_up().and_then(|()| self.take_up_light());
+        let taken_up = spare.unwrap_or(Ok(())).and_then(|()| self.take_up()).and_then(|()| self.take_up_light());
         self.refinement.tidy(self.fine.as_ref());
         taken_up
     }
@@ -278,7 +312,9 @@ impl Worker {
                 field.set_tolerance(self.tolerance);
                 self.presenter.check_glare(&field.baked().salf);
                 self.shared.publish_field(self.presenter.generation, field.baked());
-                self.fine = Some(field);
+                if let (Some(replaced), Some(camera)) = (self.fine.replace(field), &self.camera) {
+                    self.spare.offer(replaced, camera);
+                }
                 self.is_new = true;
                 // One from the store may be of another focus.
                 self.is_edit_done = true;
@@ -440,7 +476,9 @@ impl Worker {
                 let (tolerance, gpu) = (self.tolerance, self.shared.gpu());
                 let options =
                     FieldOptions { least_margin_px: 0.0, tolerance, gpu, light: LightQuality::Rough };
-                let coarse = LightField::bake(stage, small, focus, options, &self.shared.quick)?;
+                // Rough as it is, it serves a lens that is opened, too.
+                let opened = spare_camera(small).unwrap_or_else(|| small.clone());
+                let coarse = LightField::bake(stage, &opened, focus, options, &self.shared.quick)?;
                 self.presenter.check_glare(&coarse.baked().salf);
                 self.coarse.insert(coarse)
             }
@@ -482,24 +520,45 @@ impl Worker {
     fn may_refine(&self) -> bool {
         let is_viewing = self.presenter.shown().is_some_and(|shown| shown.quality == Quality::Viewing);
         let field = self.fine.as_ref().zip(self.camera.as_ref());
-        let is_up_to_date = field.is_some_and(|(fine, camera)| fine.is_up_to_date(camera));
-        let is_quiet = !self.is_paused && !self.is_painting && !self.maker.is_at_work();
-        let is_quiet = is_quiet && !self.shared.is_exporting();
-        is_viewing && is_up_to_date && is_quiet && !self.refinement.is_at_work()
+        let is_complete = field.is_some_and(|(fine, camera)| fine.is_up_to_date(camera) && fine.can_show(camera));
+        is_viewing && is_complete && self.is_quiet() && !self.refinement.is_at_work()
+    }
+
+    /// Whether nobody waits for anything else.
+    fn is_quiet(&self) -> bool {
+        !self.is_paused && !self.is_painting && !self.maker.is_at_work() && !self.shared.is_exporting()
+    }
+
+    /// Whether light fields may be made that are not needed for the picture that is shown.
+    fn may_make_fields(&self) -> bool {
+        let is_quiet = self.is_quiet() && !self.is_background_paused;
+        is_quiet && self.fine.is_some() && !self.spare.is_at_work() && !self.refinement.is_at_work()
+    }
+
+    /// Whether the fine light field is as good as one of the lens's own aperture.
+    fn has_close_aperture(&self) -> bool {
+        let fine = self.fine.as_ref().zip(self.camera.as_ref());
+        fine.and_then(|(fine, camera)| fine.aperture_fit(camera)).is_some_and(ApertureFit::is_close)
+    }
+
+    /// The camera of the spare that is missing, if one is.
+    fn missing_spare(&self) -> Option<Camera> {
+        let camera = self.camera.as_ref()?;
+        spare_camera(camera).filter(|_| !self.spare.is_ready_for(camera))
     }
 
     /// Whether there is work to do while there are no requests.
     fn has_idle_work(&self) -> bool {
-        self.may_refine() || self.refinable_passes().is_some()
+        let lacks_field = || !self.has_close_aperture() || self.missing_spare().is_some();
+        self.may_refine() || (self.may_make_fields() && lacks_field()) || self.refinable_passes().is_some()
     }
 
     /// By how many passes the light of the picture may be refined, which is exact but for that.
     fn refinable_passes(&self) -> Option<u32> {
         let (fine, camera, stage) = (self.fine.as_ref()?, self.camera.as_ref()?, self.stage.as_ref()?);
         let is_exact = self.presenter.shown().is_some_and(|shown| shown.quality == Quality::Exact);
-        let is_quiet =
-            !self.is_paused && !self.is_light_paused && !self.is_painting && !self.maker.is_at_work();
-        let is_quiet = is_quiet && !self.shared.is_exporting() && !self.light.is_at_work();
+        let is_quiet = self.is_quiet() && !self.is_background_paused;
+        let is_quiet = is_quiet && !self.spare.is_at_work() && !self.light.is_at_work();
         let is_allowed = is_exact && is_quiet && fine.is_up_to_date(camera) && stage.lit.can_be_refined();
         self.light.next_passes(camera, fine.light_passes(), self.light_passes).filter(|_| is_allowed)
     }

@@ -3,7 +3,7 @@
 use crate::commands::{Command, Event};
 use crate::error::SessionError;
 use crate::session::stage_change::{ChangeCause, StageChange};
-use crate::session::state::{LIGHT_JOB, PREVIEW_JOB, Session};
+use crate::session::state::{LIGHT_JOB, PREVIEW_JOB, SPARE_JOB, Session};
 use document::CameraEdit;
 use focus::FillTarget;
 use project::FocusHold;
@@ -116,8 +116,8 @@ impl Session {
                 self.preview_thread.cancel();
                 Ok(())
             }
-            Command::Cancel(LIGHT_JOB) => {
-                self.preview_thread.pause_light();
+            Command::Cancel(LIGHT_JOB | SPARE_JOB) => {
+                self.preview_thread.pause_background();
                 Ok(())
             }
             Command::Cancel(id) => {

@@ -84,7 +84,7 @@ impl Session {
             let what = "no project file yet (choose one with Save as)";
             return Err(SessionError::bad_file(&document.stage.scene.path, what));
         };
-        let (mut project, revision) = (document.to_project(), document.revision);
+        let (mut project, state) = (document.to_project(), document.state());
         let (tone, preview) = (self.tone(), self.preview.as_ref());
         let preview_picture = preview.map(|preview| preview.picture.clone());
         self.start_job(format!("{SAVE_JOB_PREFIX} {}", file_name(&path)), move |_| {
@@ -94,13 +94,18 @@ impl Session {
                 project.thumbnail = Some(Thumbnail::from_linear(width, height, tone.displayed(&picture)));
             }
             project.save(&path)?;
-            Ok(JobOutcome::Saved { path, revision, generation })
+            Ok(JobOutcome::Saved { path, state, generation })
         })?;
         Ok(())
     }
 
     /// Writes unsaved work to its recovery file when it has waited long enough. Called at every poll.
     pub(super) fn save_recovery_if_due(&mut self) {
+        let Some(document) = &self.document else { return };
+        if !document.is_unsaved() && self.recovery.file.is_some() {
+            // What it holds was undone.
+            self.remove_recovery_file();
+        }
         let Some(document) = &self.document else { return };
         let is_recovery_current = document.revision == self.recovery.saved_revision || !document.is_unsaved();
         if is_recovery_current || self.jobs.iter().any(|job| job.label == RECOVERY_JOB) {

@@ -2,7 +2,7 @@
 
 use crate::reference::Reference;
 use crate::session::stage_change::RebuiltStage;
-use document::{DepthPolarityRequest, Document};
+use document::{DepthPolarityRequest, Document, SavedState};
 use lens::Picture;
 use std::path::PathBuf;
 use trace::truth::Estimate;
@@ -22,10 +22,10 @@ pub(super) enum JobOutcome {
     OpeningPicture(Picture),
     /// The stage of the document, seen or lit in another way.
     StageRebuilt(Box<RebuiltStage>),
-    /// A project file that holds this revision of this document.
+    /// A project file that holds this state of this document.
     Saved {
         path: PathBuf,
-        revision: u64,
+        state: SavedState,
         generation: u64,
     },
     /// A recovery file that holds this revision.

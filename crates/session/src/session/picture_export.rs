@@ -11,7 +11,7 @@ use focus::Focus;
 use lens::{Camera, Picture};
 use light::Steps;
 use project::{Layer, PictureOptions, write_picture, write_rgb};
-use render::{Aov, LightFieldStore, RenderOptions, Rendered, Tone, bake, is_compatible};
+use render::{Aov, LightFieldStore, RenderOptions, Rendered, Tone, bake, is_baked_for};
 use salf::{BakeOptions, Carried, Salf};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -42,7 +42,7 @@ pub(super) struct AvailableFields {
 impl AvailableFields {
     /// One that shows what `camera` sees of `focus`, the margin included.
     fn find_covering(&self, camera: &Camera, focus: &Focus) -> Option<Arc<Salf>> {
-        let from_preview = self.preview_field.clone().filter(|salf| is_compatible(&salf.camera, camera));
+        let from_preview = self.preview_field.clone().filter(|salf| is_baked_for(&salf.camera, camera));
         let candidate = from_preview.or_else(|| {
             let store = self.store.as_ref()?;
             store.find(&self.stage, camera, 0.0, Carried::for_focus(focus)).map(|(salf, _)| Arc::new(salf))
@@ -98,13 +98,13 @@ impl Session {
     /// Whether a picture at full size has to wait for a light field, judged without the paint.
     pub fn full_size_field_state(&self) -> FullSizeFieldState {
         let Some(document) = &self.document else { return FullSizeFieldState::Missing };
-        let is_compatible = |baked: &Camera| is_compatible(baked, &document.camera);
+        let is_baked_for = |baked: &Camera| is_baked_for(baked, &document.camera);
         let is_preview_compatible =
-            self.light_field.as_ref().is_some_and(|field| is_compatible(&field.salf.camera));
+            self.light_field.as_ref().is_some_and(|field| is_baked_for(&field.salf.camera));
         let store = self.options.light_field_store.as_ref();
         if is_preview_compatible || store.is_some_and(|store| store.has(&document.stage, &document.camera)) {
             FullSizeFieldState::Ready
-        } else if self.preview_camera.as_ref().is_some_and(is_compatible)
+        } else if self.preview_camera.as_ref().is_some_and(is_baked_for)
             && self.preview_thread.shared().is_at_work()
         {
             FullSizeFieldState::InProgress

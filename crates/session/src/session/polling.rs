@@ -87,7 +87,7 @@ impl Session {
         self.recovery = Recovery {
             file: document.is_unsaved().then(|| document.recovery_path()),
             saved_revision: if document.paint_transfer.is_some() {
-                document.saved_revision
+                document.saved_revision()
             } else {
                 document.revision
             },
@@ -113,14 +113,14 @@ impl Session {
                     self.events.push(Event::Failed(error.to_string()));
                 }
             }
-            JobOutcome::Saved { path, revision, generation } => {
+            JobOutcome::Saved { path, state, generation } => {
                 if generation == self.generation {
                     self.remove_recovery_file();
                     if let Some(document) = &mut self.document {
-                        document.saved_revision = revision;
+                        document.set_saved(state);
                         document.path = Some(path.clone());
                     }
-                    self.recovery.saved_revision = revision;
+                    self.recovery.saved_revision = state.revision;
                 }
                 self.events.push(Event::FileWritten(path));
             }

@@ -2,13 +2,12 @@
 
 use crate::commands::Event;
 use crate::error::SessionError;
-use crate::light_field::Changes;
+use crate::light_field::{ApertureFit, Changes};
 use crate::session::state::Session;
 use document::{AdjustmentView, CameraEdit};
 use focus::{ChangedTexels, rectangle_union};
 use glam::DVec2;
 use lens::{Aperture, Camera};
-use render::is_compatible;
 use std::collections::BTreeMap;
 
 impl Session {
@@ -98,10 +97,9 @@ impl Session {
     pub(super) fn show_camera(&mut self) {
         let Some(document) = &self.document else { return };
         let camera = self.preview_camera_from(&document.camera);
-        let keeps_light_field =
-            self.preview_camera.as_ref().is_some_and(|before| is_compatible(before, &camera));
+        let fit = self.preview_camera.as_ref().and_then(|before| ApertureFit::new(before, &camera));
         self.preview_camera = Some(camera.clone());
-        self.preview_thread.set_camera(camera, keeps_light_field);
+        self.preview_thread.set_camera(camera, fit);
     }
 
     /// Shows the scene through one aperture point, or through all of the aperture again.

@@ -6,6 +6,7 @@ use crate::session::state::Session;
 use document::{SurfaceHit, chief_ray, pick};
 use glam::DVec2;
 use lens::FocusOffset;
+use rayon::prelude::*;
 use trace::Ray;
 
 impl Session {
@@ -17,6 +18,20 @@ impl Session {
     /// The ray of a position in the picture: (0, 0) its upper left corner, (1, 1) its lower right.
     pub fn picture_ray(&self, position: DVec2) -> Option<Ray> {
         Some(chief_ray(&self.document.as_ref()?.camera, position))
+    }
+
+    /// Axial depths, scene units, at a grid of [columns, rows] points from corner to corner of the picture, row by row; infinite where there is
+    /// no surface. `None` if nothing is open.
+    pub fn depth_grid(&self, [columns, rows]: [usize; 2]) -> Option<Vec<f64>> {
+        let document = self.document.as_ref()?;
+        let (tracer, camera) = (document.stage.tracer(), &document.camera);
+        let last = DVec2::new((columns - 1).max(1) as f64, (rows - 1).max(1) as f64);
+        let depth = |index: usize| {
+            let position = DVec2::new((index % columns) as f64, (index / columns) as f64) / last;
+            let hit = pick(tracer, &chief_ray(camera, position));
+            hit.map_or(f64::INFINITY, |hit| camera.camera_from_world(hit.position).z)
+        };
+        Some((0..columns * rows).into_par_iter().map(depth).collect())
     }
 
     /// The focus at a surface point; `None` if nothing is open.

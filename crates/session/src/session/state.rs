@@ -69,8 +69,9 @@ impl Default for SessionOptions {
 /// The job id of the preview's own work.
 pub(super) const PREVIEW_JOB: JobId = JobId(0);
 
-/// And light that is refined another.
+/// What is done while nothing changes: refining light, and baking a light field for a wider aperture.
 pub(super) const LIGHT_JOB: JobId = JobId(u64::MAX);
+pub(super) const SPARE_JOB: JobId = JobId(u64::MAX - 1);
 
 /// An open document and the work on it. See the crate's documentation.
 pub struct Session {
@@ -226,6 +227,11 @@ impl Session {
         self.preview_thread.refining()
     }
 
+    /// Number of light fields that were baked for the live picture since the session began, apart from those of few pixels.
+    pub fn baked_light_fields(&self) -> usize {
+        self.preview_thread.bakes()
+    }
+
     /// Whether a stroke or gradient is in progress.
     pub fn is_painting(&self) -> bool {
         self.active_edit.is_some()
@@ -236,8 +242,8 @@ impl Session {
         self.jobs.is_empty() && self.preview_thread.is_settled(self.last_preview_id)
     }
 
-    /// The job that refines the light while nothing changes. It may go on for minutes, and gives way to everything else.
-    pub const LIGHT_REFINEMENT: JobId = LIGHT_JOB;
+    /// The jobs that are done while nothing changes. They may go on for minutes, and give way to everything else.
+    pub const BACKGROUND_JOBS: [JobId; 2] = [LIGHT_JOB, SPARE_JOB];
 
     /// The state of all background work in progress.
     pub fn jobs(&self) -> Vec<JobStatus> {
@@ -264,7 +270,13 @@ impl Session {
                 can_cancel: true,
             }
         });
-        baking.into_iter().chain(light).chain(self.jobs.iter().map(Job::status)).collect()
+        let spare = self.preview_thread.spare_progress().map(|progress| {
+            let (_, seconds_left) = progress.step_status();
+            let (label, step) = ("preparing a wider aperture".into(), String::new());
+            let fraction = progress.fraction();
+            JobStatus { id: SPARE_JOB, label, step, fraction, seconds_left, can_cancel: true }
+        });
+        baking.into_iter().chain(light).chain(spare).chain(self.jobs.iter().map(Job::status)).collect()
     }
 
     /// The document, to be changed.
