@@ -99,9 +99,9 @@ fn room_pose(tracer: &Tracer, framing: &Camera) -> Option<DMat4> {
     }
     let height = low.y + EYE_HEIGHT.min(size.y / 2.0);
     let shares = [0.25, 0.5, 0.75];
-    let eyes = shares.into_iter().flat_map(|x| {
-        shares.map(|z| DVec3::new(low.x + x * size.x, height, low.z + z * size.z))
-    });
+    let eyes = shares
+        .into_iter()
+        .flat_map(|x| shares.map(|z| DVec3::new(low.x + x * size.x, height, low.z + z * size.z)));
     let enclosed = eyes.filter_map(|eye| enclosure(tracer, eye).map(|clearance| (eye, clearance)));
     let (eye, _) = enclosed.max_by(|(_, a), (_, b)| a.total_cmp(b))?;
     let headings = (0..32).map(|k| {
@@ -150,7 +150,6 @@ fn ray(origin: DVec3, direction: DVec3) -> Ray {
 mod tests {
     use super::*;
     use scene::Material;
-    use std::sync::Arc;
     use test_scenes::{Mesh, scene_of};
 
     /// A view from the front, at this distance.
@@ -161,7 +160,7 @@ mod tests {
 
     fn tracer(meshes: impl IntoIterator<Item = Mesh>) -> Tracer {
         let material = || Material { double_sided: false, ..Material::lambertian_white() };
-        Tracer::new(Arc::new(scene_of(meshes.into_iter().map(|mesh| (mesh, material())))))
+        Tracer::new(scene_of(meshes.into_iter().map(|mesh| (mesh, material()))))
     }
 
     fn cube(center: DVec3, half: f64) -> Mesh {

@@ -8,7 +8,7 @@ mod margin_reach;
 mod running_sum;
 mod sample_index;
 
-pub(crate) use aperture_fit::{ApertureFit, is_spare_for, spare_camera};
+pub(crate) use aperture_fit::{ApertureFit, spare_camera};
 pub use aperture_image::{ApertureCell, ApertureImage, BakedVisibility};
 pub(crate) use changes::Changes;
 pub(crate) use field_watch::{BakeState, FieldWatch};

@@ -34,17 +34,21 @@ fn psnr(a: &Picture, b: &Picture) -> f64 {
 
 /// Edits the camera; the fine picture that shows the edit.
 fn edited(session: &mut Session, edit: CameraEdit) -> (Camera, Picture) {
-    let last = session.preview().unwrap().id;
+    let (begun, last) = (Instant::now(), session.preview().unwrap().id);
     session.apply(Command::EditCamera(edit)).unwrap();
     session.apply(Command::FinishEdit).unwrap();
+    let is_new = |session: &Session| session.preview().is_some_and(|preview| preview.id > last);
+    wait(session, "a picture", is_new);
+    let first = begun.elapsed();
     wait(session, "a fine picture", |session| {
-        session.preview().is_some_and(|preview| preview.id > last && preview.quality > Quality::Coarse)
+        is_new(session) && session.preview().is_some_and(|preview| preview.quality > Quality::Coarse)
     });
+    println!("a picture after {first:.0?}, a fine one after {:.0?}", begun.elapsed());
     (camera(session), (*session.preview().unwrap().picture.fetch().unwrap()).clone())
 }
 
 fn opened(project: &Path, exact_delay: Option<Duration>) -> Session {
-    let options = SessionOptions { preview_size: 320, exact_delay, ..SessionOptions::default() };
+    let options = SessionOptions { preview_size: 160, exact_delay, ..SessionOptions::default() };
     let mut session = Session::new(options).unwrap();
     session.apply(Command::Open(project.into())).unwrap();
     at_work::settle(&mut session);
@@ -73,20 +77,17 @@ fn a_stop_up_and_a_rack_need_no_bake() {
     };
     let wide = Camera { aperture_radius: start.aperture_radius * 1.41, ..start.clone() };
     let edits = [
-        ("a rack", CameraEdit::Whole(rack(&start, 0.8)), 43.0),
-        ("back", CameraEdit::Whole(start.clone()), 44.0),
-        ("a stop up", CameraEdit::Whole(wide.clone()), 43.0),
-        ("that one racked", CameraEdit::Whole(rack(&wide, 1.2)), 43.0),
-        ("a stop down", CameraEdit::ApertureRadius(start.aperture_radius * 0.71), 40.0),
+        ("a rack", CameraEdit::Whole(rack(&start, 0.8))),
+        ("back", CameraEdit::Whole(start.clone())),
+        ("a stop up", CameraEdit::Whole(wide.clone())),
+        ("that one racked", CameraEdit::Whole(rack(&wide, 1.2))),
     ];
     let shown: Vec<_> = edits
         .into_iter()
-        .map(|(what, edit, least_db)| {
-            let begun = Instant::now();
+        .map(|(what, edit)| {
             let (camera, picture) = edited(&mut session, edit);
-            println!("{what}: after {:.0?}", begun.elapsed());
             assert_eq!(session.baked_light_fields(), 2, "{what} baked something");
-            (what, camera, picture, least_db)
+            (what, camera, picture, 2.0)
         })
         .collect();
     // Beyond the spare, too, something is there at once; what it lacks is baked.
@@ -97,12 +98,15 @@ fn a_stop_up_and_a_rack_need_no_bake() {
     let (_, own) = (camera(&session), session.preview().unwrap().picture.fetch().unwrap());
 
     let mut reference = opened(&project, None);
-    let beyond = [("two stops up", twice.clone(), picture, 30.0), ("two stops up, baked", twice, (*own).clone(), 44.0)];
-    for (what, camera, picture, least_db) in shown.into_iter().chain(beyond) {
+    let beyond =
+        [("two stops up", twice.clone(), picture, 12.0), ("two stops up, baked", twice, (*own).clone(), 0.1)];
+    for (what, camera, picture, loss_db) in shown.into_iter().chain(beyond) {
         reference.apply(Command::EditCamera(CameraEdit::Whole(camera))).unwrap();
         at_work::settle(&mut reference);
-        let db = psnr(&picture, &reference.exact_picture().unwrap());
-        println!("{what}: {db:.1} dB");
-        assert!(db >= least_db, "{what}: {db:.1} dB");
+        let exact = reference.exact_picture().unwrap();
+        let own = psnr(&reference.preview().unwrap().picture.fetch().unwrap(), &exact);
+        let db = psnr(&picture, &exact);
+        println!("{what}: {db:.1} dB, {own:.1} with a light field of its own");
+        assert!(db >= own - loss_db, "{what}: {db:.1} dB, {own:.1} with a light field of its own");
     }
 }

@@ -9,7 +9,6 @@ use at_work::{opened, settle};
 use document::{BookmarkEdit, CameraEdit, FillRegion};
 use focus::CombineMode;
 use lens::FocusOffset;
-use project::SelectionShape;
 use session::{Command, Session};
 
 fn is_unsaved(session: &Session) -> bool {
@@ -22,6 +21,7 @@ fn what_was_undone_is_as_it_was_saved() {
     let scene = folder.path().join("quads.glb");
     tiny_glb::write(&scene);
     let mut session = opened(&scene);
+    let wall = session.pick(&session.picture_ray(at_work::ON_WALL).unwrap()).unwrap();
     let mut after = |command: Command| {
         session.apply(command).unwrap();
         settle(&mut session);
@@ -34,7 +34,10 @@ fn what_was_undone_is_as_it_was_saved() {
     assert!(!after(Command::SaveAs(folder.path().join("a.fbrush"))));
     assert!(after(Command::Undo), "the file has it");
     assert!(!after(Command::Redo));
-    assert!(!after(Command::Select(SelectionShape::Inverse, CombineMode::Replace)), "no change of the picture");
+    assert!(
+        !after(Command::SelectRegion(FillRegion::Node(wall), CombineMode::Replace)),
+        "no change of the picture"
+    );
     assert!(after(Command::EditCamera(CameraEdit::FocusDistance(2.5))));
     assert!(!after(Command::Undo));
     assert!(!after(Command::Undo), "the selection");

@@ -25,7 +25,8 @@ pub(crate) fn antialiased(picture: &Picture) -> Picture {
     };
     let rows: Vec<Vec<[f32; 4]>> = (0..height).into_par_iter().map(row_of).collect();
     let values = (0..height).flat_map(|row| {
-        let [before, own, after] = [row.saturating_sub(1), row, (row + 1).min(height - 1)].map(|row| &rows[row]);
+        let [before, own, after] =
+            [row.saturating_sub(1), row, (row + 1).min(height - 1)].map(|row| &rows[row]);
         (0..width).map(move |x| mix(before[x], own[x], after[x]))
     });
     let (radiance, coverage) = values.map(|[r, g, b, coverage]| ([r, g, b], coverage)).unzip();

@@ -64,7 +64,8 @@ pub(crate) fn spare_camera(camera: &Camera) -> Option<Camera> {
 
 /// Whether a light field baked for `baked` is still a spare for `camera`: the lens can be opened by a stop.
 pub(crate) fn is_spare_for(baked: &Camera, camera: &Camera) -> bool {
-    let opened = Camera { aperture_radius: camera.aperture_radius * std::f64::consts::SQRT_2, ..camera.clone() };
+    let opened =
+        Camera { aperture_radius: camera.aperture_radius * std::f64::consts::SQRT_2, ..camera.clone() };
     is_compatible(baked, &opened)
 }
 

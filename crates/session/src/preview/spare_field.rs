@@ -76,7 +76,8 @@ impl SpareField {
         let (thread_shared, epoch) = (shared.clone(), task.epoch);
         let work = move || {
             let make = || make(task, store.as_ref(), &thread_shared);
-            let result = catch_panics("baking a spare light field", || run_in_own_pool(Urgency::Background, make));
+            let result =
+                catch_panics("baking a spare light field", || run_in_own_pool(Urgency::Background, make));
             thread_shared.deliver_spare(FieldDelivery { result, epoch });
         };
         match std::thread::Builder::new().name("spare light field".into()).stack_size(16 << 20).spawn(work) {
@@ -145,7 +146,11 @@ impl SpareField {
     }
 }
 
-fn make(task: SpareTask, store: Option<&LightFieldStore>, shared: &Shared) -> Result<LightField, SessionError> {
+fn make(
+    task: SpareTask,
+    store: Option<&LightFieldStore>,
+    shared: &Shared,
+) -> Result<LightField, SessionError> {
     let SpareTask { stage, baked_camera, camera, focus, tolerance, .. } = task;
     let stored = store.and_then(|store| store.find(&stage, &baked_camera, 0.0, Carried::for_focus(&focus)));
     let mut field = match stored {

@@ -230,6 +230,8 @@ impl Worker {
         {
             self.shared.publish_field(self.presenter.generation, fine.baked());
             self.refinement.tidy(self.fine.as_ref());
+            // Its sum may be up to date, and another picture shown.
+            self.is_new = true;
         }
         if self.fine.take_if(|fine| fine.aperture_fit(camera).is_none()).is_some() {
             self.refinement.forget();
@@ -289,7 +291,8 @@ impl Worker {
             self.take_up_interim(interim);
         }
         self.delivery = request.delivery.or(self.delivery.take());
-        let taken_up = spare.unwrap_or(Ok(())).and_then(|()| self.take_up()).and_then(|()| self.take_up_light());
+        let taken_up =
+            spare.unwrap_or(Ok(())).and_then(|()| self.take_up()).and_then(|()| self.take_up_light());
         self.refinement.tidy(self.fine.as_ref());
         taken_up
     }
@@ -454,7 +457,12 @@ impl Worker {
             return self.show_small(stage, &interim, size, focus);
         }
         let sizes = coarse_cameras(camera);
-        let first = sizes.iter().rposition(can_show).unwrap_or(0);
+        let shown = sizes.iter().rposition(can_show);
+        if shown.is_none() && self.fine.is_some() {
+            // The fine one is summed sooner than a coarse one is baked.
+            return Ok(());
+        }
+        let first = shown.unwrap_or(0);
         let count = if self.is_painting { 1 } else { sizes.len() };
         sizes[first..].iter().take(count).try_for_each(|small| self.show_small(stage, small, size, focus))
     }
@@ -520,7 +528,8 @@ impl Worker {
     fn may_refine(&self) -> bool {
         let is_viewing = self.presenter.shown().is_some_and(|shown| shown.quality == Quality::Viewing);
         let field = self.fine.as_ref().zip(self.camera.as_ref());
-        let is_complete = field.is_some_and(|(fine, camera)| fine.is_up_to_date(camera) && fine.can_show(camera));
+        let is_complete =
+            field.is_some_and(|(fine, camera)| fine.is_up_to_date(camera) && fine.can_show(camera));
         is_viewing && is_complete && self.is_quiet() && !self.refinement.is_at_work()
     }
 
