@@ -158,12 +158,7 @@ fn click_points(file: &Path, page: &ExportedPage, points: &[KnownPoint]) {
 
 /// A project of the small scene, whose camera has an aperture radius of `radius`.
 fn small_project(place: &Path, radius: f64) {
-    let lens = json!({"width": 96, "height": 64, "focus_distance": 2.0, "aperture_radius": radius, "sensor_height": 0.1});
-    project_of(place, &lens);
-}
-
-/// A project of the small scene.
-fn project_of(place: &Path, camera: &Value) {
+    let camera = json!({"width": 96, "height": 64, "focus_distance": 2.0, "aperture_radius": radius, "sensor_height": 0.1});
     tiny_glb::write(&place.join("quads.glb"));
     std::fs::write(place.join("camera.json"), camera.to_string()).unwrap();
     std::fs::write(place.join("focus.json"), r#"{"nodes": {"card": {"t": 1.2, "anchor": 1}}}"#).unwrap();
@@ -195,14 +190,13 @@ fn what_cannot_be_a_page_is_refused_with_a_cure() {
     }
     small_project(place, 0.0);
     fails("export p.fbrush --web page.html", 3, ["pinhole", "aperture radius"]);
-    // Looked along, the wall has another depth in each of 2000 columns.
-    let (sin, cos) = 0.5f64.sin_cos();
-    let turned = json!([[cos, 0, -sin, 0], [0, 1, 0, 0], [sin, 0, cos, 0], [0, 0, 0, 1]]);
-    project_of(
-        place,
-        &json!({"width": 2000, "height": 8, "yfov": 0.004, "aperture_radius": 1e4, "camera_to_world": turned}),
-    );
-    fails("export p.fbrush --web page.html", 3, ["1000 slices", "smaller aperture"]);
+    // The demo's depth is continuous.
+    let text = std::fs::read_to_string(demo().join("demo.camera.json")).unwrap();
+    let mut camera: Value = serde_json::from_str(&text).unwrap();
+    camera["aperture_radius"] = json!(30.0);
+    std::fs::write(place.join("camera.json"), camera.to_string()).unwrap();
+    done(place, &format!("new {}/demo.glb --camera camera.json -o wide.fbrush", demo().display()));
+    fails("export wide.fbrush --web page.html", 3, ["1000 slices", "smaller aperture"]);
 }
 
 #[test]
