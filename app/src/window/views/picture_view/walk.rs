@@ -30,7 +30,8 @@ const KEYS: [(Key, DVec3); 6] = [
 ];
 
 /// What the mode tells while it is on.
-pub const HINT: &str = "walking: W A S D, Q E down and up, drag to look round, wheel for the pace, Enter to stay, Esc to go back";
+pub const HINT: &str =
+    "walking: W A S D Q E, drag to look round, wheel for the pace (Enter: stay, Esc: go back)";
 
 /// The walk mode, on or off.
 #[derive(Default)]
