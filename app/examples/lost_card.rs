@@ -111,7 +111,7 @@ impl AtWork {
                 self.apply(Command::EditCamera(distance))?;
                 self.apply(Command::FinishEdit)?;
             }
-            Work::Export => self.apply(Command::ExportPicture(self.export.clone()))?,
+            Work::Export => self.apply(Command::ExportPicture(self.export.clone(), Default::default()))?,
         }
         self.settle()
     }

@@ -1,28 +1,40 @@
-//! How the C library's heap keeps what was freed.
-//!
-//! By default glibc raises the size from which blocks are mapped on their own to that of the largest block that was freed, up to 32 MiB, and
-//! gives each thread a heap of its own. Light fields and sums come and go by the hundred megabytes: smaller pieces of what lives between them
-//! would keep freed memory from the system.
+//! How the C library's heap keeps what was freed. Heaps other than glibc's need nothing.
+
+/// Heaps that threads share: by default glibc gives each thread one of its own.
+const HEAPS: i32 = 4;
 
 /// Blocks of at least this many bytes are returned to the system as soon as they are freed.
-#[cfg(all(target_os = "linux", target_env = "gnu"))]
-const MAPPED_BYTES: libc::c_int = 1 << 20;
+const MAPPED_BYTES: i32 = 1 << 20;
 
-/// Heaps that threads share.
-#[cfg(all(target_os = "linux", target_env = "gnu"))]
-const HEAPS: libc::c_int = 4;
+/// Lets all threads share a few heaps; to be called before there are threads.
+pub fn share_heaps() {
+    set(Parameter::Heaps, HEAPS);
+}
 
-/// Sets the heap up; to be called before there are threads.
+/// Returns large blocks to the system as soon as they are freed. By default glibc raises the size from which it does so to that of the largest block that
+/// was freed, up to 32 MiB. In the window, light fields and sums come and go by the hundred megabytes, and smaller pieces of what lives
+/// between them would keep freed memory from the system. For one picture that costs more than it gives: new blocks are cleared page by page.
+pub fn return_freed_blocks() {
+    set(Parameter::MappedBytes, MAPPED_BYTES);
+}
+
+enum Parameter {
+    Heaps,
+    MappedBytes,
+}
+
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
 #[allow(unsafe_code, reason = "the standard library does not reach the heap's parameters")]
-pub fn configure() {
+fn set(parameter: Parameter, value: i32) {
+    let number = match parameter {
+        Parameter::Heaps => libc::M_ARENA_MAX,
+        Parameter::MappedBytes => libc::M_MMAP_THRESHOLD,
+    };
     // SAFETY: it takes two numbers; an unknown one is refused, which leaves the heap as it was.
     unsafe {
-        libc::mallopt(libc::M_MMAP_THRESHOLD, MAPPED_BYTES);
-        libc::mallopt(libc::M_ARENA_MAX, HEAPS);
+        libc::mallopt(number, value);
     }
 }
 
-/// Other heaps need nothing.
 #[cfg(not(all(target_os = "linux", target_env = "gnu")))]
-pub fn configure() {}
+fn set(_parameter: Parameter, _value: i32) {}

@@ -1,7 +1,6 @@
 //! `focus-brush`: the window and the command line.
 
 mod headless;
-mod heap;
 mod out_of_memory;
 
 use std::process::ExitCode;
@@ -10,7 +9,7 @@ use std::process::ExitCode;
 static ALLOCATOR: out_of_memory::EndingAllocator = out_of_memory::EndingAllocator;
 
 fn main() -> ExitCode {
-    heap::configure();
+    focus_brush::heap::share_heaps();
     // Unwrapping runs its engines in child processes of this program.
     atlas::child::run_if_child();
     headless::restart_if_headless();

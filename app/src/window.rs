@@ -52,6 +52,7 @@ pub use views::picture_view::{DisplayedPicture, PictureView};
 /// # Errors
 /// There is no window system or no graphics device.
 pub fn run(options: WindowOptions) -> anyhow::Result<()> {
+    crate::heap::return_freed_blocks();
     let icon = eframe::icon_data::from_png_bytes(include_bytes!("../../assets/desktop/focus-brush.png"))?;
     let native = eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()

@@ -98,9 +98,9 @@ pub struct AppearanceArguments {
     /// specifies). Use show for files with inverted faces, or to compare with renderers that show back faces
     #[arg(long, value_name = "show|hide", value_parser = choice_parser(BackFaces::ALL))]
     pub back_faces: Option<BackFaces>,
-    /// The environment that surrounds and lights the scene: a world file, or an equirectangular .hdr or .exr
+    /// The environment that surrounds and lights the scene: a world file, an equirectangular .hdr or .exr, or studio, overcast or evening
     /// (default: the project's, or the scene's own; a scene without any light gets a studio)
-    #[arg(long, value_name = "WORLD.json|SKY.hdr|exr")]
+    #[arg(long, value_name = "WORLD.json|SKY.hdr|exr|NAME")]
     pub world: Option<PathBuf>,
     /// The variant of the scene's materials (KHR_materials_variants), by name; info lists them. "" selects the
     /// default materials (default: the project's variant, or the default materials; a light field has the

@@ -9,7 +9,8 @@ use document::{Input, InputKind};
 use focus::Focus;
 use lens::Camera;
 use light::{Resources, Steps};
-use project::{CaptureChoices, WorldFile};
+use project::{CaptureChoices, EnvironmentChoice, WorldFile};
+use scene::BuiltInEnvironment;
 use std::path::Path;
 
 /// The options for unwrapping; the engines run in child processes of this program.
@@ -70,6 +71,11 @@ pub fn open_input(
 /// The environment map is not of a supported type.
 pub fn read_world(appearance: &AppearanceArguments) -> Result<Option<WorldFile>, Failure> {
     let Some(file) = &appearance.world else { return Ok(None) };
+    let built_in = file.to_str().and_then(BuiltInEnvironment::from_name);
+    if let Some(built_in) = built_in.filter(|_| !file.exists()) {
+        let environment = EnvironmentChoice::BuiltIn(built_in);
+        return Ok(Some(WorldFile { environment, ..WorldFile::default() }));
+    }
     let is_picture = file.extension().is_some_and(|e| {
         ["hdr", "exr"].iter().any(|picture_extension| e.eq_ignore_ascii_case(picture_extension))
     });

@@ -21,6 +21,7 @@ use super::chrome::status_line::{StatusNotes, status_line};
 use super::chrome::toasts::{Severity, Toasts};
 use super::chrome::tool_bar::tool_bar;
 use super::dialogs::depth_polarity_dialog::DepthPolarityDialog;
+use super::dialogs::export_dialog::ExportDialog;
 use super::dialogs::file_dialog::{FileDialog, Purpose};
 use super::dialogs::preset_name_dialog::PresetNameDialog;
 use super::dialogs::unsaved_changes_dialog::{PendingAction, UnsavedChangesDialog};
@@ -43,7 +44,9 @@ use document::{CameraEdit, SurfaceHit};
 use eframe::{CreationContext, Frame, Storage};
 use egui::{CentralPanel, Context, Panel, Ui, ViewportCommand};
 use project::{Preset, PresetLibrary};
-use session::{Command, CommandId, Event, ReferenceKind, Session, SessionError, SessionOptions};
+use session::{
+    Command, CommandId, Event, PictureExport, ReferenceKind, Session, SessionError, SessionOptions,
+};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -69,6 +72,11 @@ pub struct Shell {
     help: Help,
     gesture: BrushGesture,
     aperture_orbit: ApertureOrbit,
+    export_dialog: ExportDialog,
+    /// What the file dialog chooses a file for.
+    picture_export: PictureExport,
+    /// The name suggested for that file.
+    export_file_name: String,
     file_dialog: FileDialog,
     unsaved_dialog: UnsavedChangesDialog,
     depth_polarity: DepthPolarityDialog,
@@ -145,6 +153,9 @@ impl Shell {
             help: Help::default(),
             gesture: BrushGesture::default(),
             aperture_orbit: ApertureOrbit::default(),
+            export_dialog: ExportDialog::default(),
+            picture_export: PictureExport::default(),
+            export_file_name: String::new(),
             file_dialog: FileDialog::new(options.system_dialogs),
             unsaved_dialog: UnsavedChangesDialog::default(),
             depth_polarity: DepthPolarityDialog::default(),
@@ -330,6 +341,7 @@ impl Shell {
     fn handle_keys(&mut self, context: &Context, actions: &mut Vec<Action>) {
         if self.palette.is_open()
             || self.file_dialog.is_open()
+            || self.export_dialog.is_open()
             || self.unsaved_dialog.is_open()
             || self.depth_polarity.is_open()
             || self.preset_name_dialog.is_open()
@@ -345,6 +357,9 @@ impl Shell {
             return;
         }
         let escape = context.input(|input| input.key_pressed(egui::Key::Escape));
+        if escape && (self.help.close() || std::mem::take(&mut self.toasts.is_list_open)) {
+            return;
+        }
         if escape && self.session.is_painting() {
             actions.push(Command::AbortStroke.into());
         } else if escape && self.session.sub_aperture_point().is_some() {

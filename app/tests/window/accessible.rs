@@ -65,7 +65,7 @@ fn every_control_has_a_name_whatever_is_open() {
             person.presses(egui::Modifiers::NONE, egui::Key::Escape);
         }
     }
-    for section in ["Scene", "What was modelled", "History"] {
+    for section in ["Scene", "Statistics", "History"] {
         person.scrolls_to(section);
         person.window.get_all_by_label(section).last().unwrap().click();
         person.window.run_steps(20);

@@ -35,9 +35,9 @@ fn the_picture_becomes_exact_by_itself_and_the_status_line_says_so() {
     let options = WindowOptions { exact_after, ..Person::usual(Some(&file)) };
     let mut person = Person::starts_with(options);
     person.waits_for(Quality::Viewing);
-    assert!(person.reads("live · "));
+    assert!(person.reads("live picture"));
     person.waits_for(Quality::Exact);
-    assert!(person.reads("exact · ") && !person.reads("live · "));
+    assert!(person.reads("exact picture") && !person.reads("live picture"));
     let known = person.shell().session().preview().unwrap().costs;
     assert!(known.viewing_psnr > Some(20.0) && known.exact_seconds > Some(0.0), "{known:?}");
 
@@ -45,7 +45,7 @@ fn the_picture_becomes_exact_by_itself_and_the_status_line_says_so() {
     person.paints(&[wall]);
     assert_eq!(person.quality(), Quality::Viewing);
     person.window.run_steps(2);
-    assert!(person.reads("live · "));
+    assert!(person.reads("live picture"));
     person.waits_for(Quality::Exact);
 
     // Without tolerance, every picture is exact at once.

@@ -1,7 +1,7 @@
 //! World files, and the world of a project: environment and backdrop.
 //!
 //! ```json
-//! {"environment": "FILE.hdr" | "FILE.exr" | "studio" | "scene" | [r, g, b], "rotation": rad, "strength": 1.0,
+//! {"environment": "FILE.hdr" | "FILE.exr" | "studio" | "overcast" | "evening" | "scene" | [r, g, b], "rotation": rad, "strength": 1.0,
 //!  "backdrop": "environment" | [r, g, b], "bounces": null}
 //! ```
 //!
@@ -14,7 +14,7 @@ use crate::json::{Field, Fields, Json};
 use crate::named_file::named_file;
 use crate::scene_path::ScenePath;
 use glam::Vec3;
-use scene::{Backdrop, Environment, Scene, World};
+use scene::{Backdrop, BuiltInEnvironment, Environment, Scene, World};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -41,8 +41,8 @@ pub struct WorldFile {
 pub enum EnvironmentChoice {
     /// An equirectangular picture, .hdr or .exr.
     File(PathBuf),
-    /// The built-in studio.
-    Studio,
+    /// One that comes with the program.
+    BuiltIn(BuiltInEnvironment),
     /// The one embedded in the scene's file ([`Scene::embedded_world`]).
     Scene,
     /// The same radiance from everywhere.
@@ -52,7 +52,7 @@ pub enum EnvironmentChoice {
 impl Default for WorldFile {
     fn default() -> Self {
         Self {
-            environment: EnvironmentChoice::Studio,
+            environment: EnvironmentChoice::BuiltIn(BuiltInEnvironment::Studio),
             rotation: 0.0,
             strength: 1.0,
             backdrop: None,
@@ -76,9 +76,11 @@ impl WorldFile {
         let embedded = scene.embedded_world.as_ref().map(|own| &own.environment);
         let environment = match &world.environment {
             environment if Some(environment) == embedded => EnvironmentChoice::Scene,
-            Environment::Uniform(color) => EnvironmentChoice::Uniform(*color),
-            environment if *environment == World::studio().environment => EnvironmentChoice::Studio,
-            Environment::Map(map) => EnvironmentChoice::File(PathBuf::from(&map.name)),
+            environment => match (BuiltInEnvironment::of(environment), environment) {
+                (Some(built_in), _) => EnvironmentChoice::BuiltIn(built_in),
+                (None, Environment::Map(map)) => EnvironmentChoice::File(PathBuf::from(&map.name)),
+                (None, Environment::Uniform(color)) => EnvironmentChoice::Uniform(*color),
+            },
         };
         Self {
             environment,
@@ -111,9 +113,11 @@ impl WorldFile {
         let mut world = Self::default();
         if let Some(field) = fields.get("environment") {
             world.environment = match field.value {
-                Json::Text(text) if text == "studio" => EnvironmentChoice::Studio,
                 Json::Text(text) if text == "scene" => EnvironmentChoice::Scene,
-                Json::Text(text) => EnvironmentChoice::File(find_file(text)?),
+                Json::Text(text) => match BuiltInEnvironment::from_name(text) {
+                    Some(built_in) => EnvironmentChoice::BuiltIn(built_in),
+                    None => EnvironmentChoice::File(find_file(text)?),
+                },
                 _ => EnvironmentChoice::Uniform(radiance(&field)?),
             };
         }
@@ -144,7 +148,7 @@ impl WorldFile {
     /// As JSON; a file's path becomes relative to `from`, the file that will contain it.
     pub fn to_json(&self, from: &Path) -> Value {
         let environment = match &self.environment {
-            EnvironmentChoice::Studio => json!("studio"),
+            EnvironmentChoice::BuiltIn(built_in) => json!(built_in.name()),
             EnvironmentChoice::Scene => json!("scene"),
             EnvironmentChoice::Uniform(color) => json!(color.to_array()),
             EnvironmentChoice::File(file) => {
@@ -172,9 +176,9 @@ impl WorldFile {
     pub fn load(&self, scene: &Scene) -> Result<(World, Vec<String>), ProjectError> {
         let mut warnings = Vec::new();
         let (environment, default_backdrop) = match &self.environment {
-            EnvironmentChoice::Studio => {
-                let studio = World::studio();
-                (studio.environment, studio.backdrop)
+            EnvironmentChoice::BuiltIn(built_in) => {
+                let world = built_in.world();
+                (world.environment, world.backdrop)
             }
             EnvironmentChoice::Scene => match &scene.embedded_world {
                 Some(own) => (own.environment.clone(), own.backdrop),
@@ -292,7 +296,12 @@ mod tests {
             WorldFile::from_world(&world, &scene).to_json(Path::new("x.fbrush"))["environment"],
             "scene"
         );
-        assert_eq!(WorldFile::from_world(&World::studio(), &scene).environment, EnvironmentChoice::Studio);
+        for built_in in BuiltInEnvironment::ALL {
+            let stored = WorldFile::from_world(&built_in.world(), &scene);
+            assert_eq!(stored.environment, EnvironmentChoice::BuiltIn(built_in));
+            let json = stored.to_json(Path::new("world.json")).to_string();
+            assert_eq!(read(&json).unwrap().load(&scene).unwrap().0, built_in.world(), "{json}");
+        }
         let without = Scene { path: "dark.glb".into(), ..Scene::default() };
         let error = world_file.load(&without).unwrap_err().to_string();
         assert!(error.contains("dark.glb") && error.contains("EXT_lights_image_based"), "{error}");

@@ -64,4 +64,4 @@ pub use photographs::{Mask, Photograph, PictureError, PictureGloss, PictureTextu
 pub use picture_decoder::{MAX_PNG_EXTRAS_BYTES, open_picture};
 pub use surface_mesh::SurfaceMesh;
 pub use texture::{Image, ImageLevel, TextureRef, Wrap, linear_from_srgb, srgb_from_linear};
-pub use world::{Backdrop, Environment, EnvironmentMap, World};
+pub use world::{Backdrop, BuiltInEnvironment, Environment, EnvironmentMap, World};

@@ -1,9 +1,12 @@
 //! The world beyond all surfaces: it lights them, and is the backdrop.
 
+mod built_in;
 mod cube_map;
 mod environment_map;
+mod sky;
 mod studio;
 
+pub use built_in::BuiltInEnvironment;
 pub(crate) use cube_map::CubeMap;
 pub use environment_map::EnvironmentMap;
 
@@ -61,11 +64,7 @@ impl World {
 
     /// A soft neutral studio for scenes without any light, with a neutral grey backdrop.
     pub fn studio() -> Self {
-        Self {
-            environment: Environment::Map(EnvironmentMap::studio()),
-            backdrop: Backdrop::Color(Vec3::splat(NEUTRAL_GREY)),
-            ..Self::uniform(Vec3::ZERO)
-        }
+        BuiltInEnvironment::Studio.world()
     }
 
     /// The radiance (linear RGB) that arrives from a direction (world, unit).

@@ -63,7 +63,7 @@ fn what_is_saved_is_opened_again() {
     let html = std::fs::read_to_string(page).unwrap();
     assert!(html.contains("<title>quads</title>") && html.contains("\"isPainted\":true"), "as it is painted");
     let shot = folder.path().join("shot.png");
-    again.apply(Command::ExportPicture(shot.clone())).unwrap();
+    again.apply(Command::ExportPicture(shot.clone(), Default::default())).unwrap();
     settle(&mut again);
     assert!(shot.is_file());
 }

@@ -121,7 +121,7 @@ fn an_export_takes_the_light_field_that_is_being_made() {
     session.apply(Command::EditCamera(CameraEdit::Size(240, 160))).unwrap();
     assert_eq!(session.full_size_field_state(), FullSizeFieldState::InProgress);
     let path = folder.path().join("picture.png");
-    session.apply(Command::ExportPicture(path.clone())).unwrap();
+    session.apply(Command::ExportPicture(path.clone(), Default::default())).unwrap();
     let mut steps = std::collections::BTreeSet::new();
     let start = Instant::now();
     while !path.exists() {

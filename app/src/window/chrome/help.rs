@@ -26,6 +26,13 @@ pub struct Help {
 }
 
 impl Help {
+    /// Closes the windows that are open; returns whether any was.
+    pub fn close(&mut self) -> bool {
+        let was_open = self.shortcuts || self.about;
+        *self = Self::default();
+        was_open
+    }
+
     /// Draws the windows that are open.
     pub fn show(&mut self, context: &Context, adapter: &str) {
         let shortcuts =

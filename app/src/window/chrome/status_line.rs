@@ -41,30 +41,21 @@ pub struct StatusNotes<'a> {
 pub fn status_line(ui: &mut Ui, session: &Session, notes: StatusNotes<'_>, actions: &mut Vec<Action>) {
     ui.horizontal(|ui| {
         if let Some(preview) = session.preview().filter(|_| session.document().is_some()) {
-            ui.label(quality_summary(preview, session.exact_picture_progress())).on_hover_text(
-                "Quality of the picture and the time it took. Rough: few pixels or no blur, until there is a \
-                 better one. Live: drawn within the tolerance (section Picture) while you work. Exact: without tolerance, \
-                 once nothing changes. dB: PSNR of live against exact; from about 45 dB no difference is visible.",
+            let tip = format!(
+                "{} Rough: few pixels or no blur, until there is a better one. Live: drawn within the tolerance (section \
+                 Picture) while you work. Exact: without tolerance, once nothing changes. dB: PSNR of live against exact; from \
+                 about 45 dB no difference is visible. More figures: section Statistics.",
+                quality_figures(preview)
             );
+            ui.label(quality_text(preview, session.exact_picture_progress())).on_hover_text(tip);
             ui.separator();
-            let samples = preview.modelled.sample_count();
-            if samples > 0 {
-                ui.label(format!("{} samples", controls::count_text(samples)))
-                    .on_hover_text("Light-field samples that the picture is summed from.");
-                ui.separator();
-            }
         }
         if let Some(document) = session.document() {
-            let [held, budget] = document.undo_bytes().map(controls::bytes_text);
-            ui.label(format!("undo {held} of {budget}")).on_hover_text(
-                "Memory used by the undo steps, and the limit beyond which the oldest are dropped.",
-            );
             if document.selection.is_some() {
-                ui.separator();
                 ui.label(format!("painting {}", selection_summary(document)))
                     .on_hover_text("Only the selection can be painted (Select menu).");
+                ui.separator();
             }
-            ui.separator();
         }
         if session.sub_aperture_point().is_some() {
             ui.label("through one point of the aperture")
@@ -83,20 +74,19 @@ pub fn status_line(ui: &mut Ui, session: &Session, notes: StatusNotes<'_>, actio
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             if let Some(hover) = &notes.hover {
                 let becomes = hover.becomes_px.map(|px| format!(" becomes {}", controls::circle_text(px)));
-                let gloss = if hover.gloss > 0.0 { format!(" · gloss {:.2}", hover.gloss) } else { String::new() };
                 let text = format!(
-                    "{} · {} deep · {}{} · t {:.4} · anchor {:.2}{gloss}",
+                    "{} · {} · {}{}",
                     hover.object,
                     controls::length_text(hover.depth),
                     controls::circle_text(hover.circle_px),
                     becomes.unwrap_or_default(),
-                    hover.t,
-                    hover.anchor
                 );
-                ui.label(text).on_hover_text(
-                    "The object under the pointer: name, depth, current blur, blur after using the tool, and \
-                     painted focus.",
+                let tip = format!(
+                    "The object under the pointer: name, depth, current blur, and blur after using the tool. Painted: t {:.4}, anchor \
+                     {:.2}, gloss {:.2}.",
+                    hover.t, hover.anchor, hover.gloss
                 );
+                ui.add(egui::Label::new(text).truncate()).on_hover_text(tip);
                 ui.separator();
             }
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
@@ -106,27 +96,26 @@ pub fn status_line(ui: &mut Ui, session: &Session, notes: StatusNotes<'_>, actio
     });
 }
 
-/// The quality of the picture and its draw time, as text.
-fn quality_summary(preview: &Preview, drawing_exactly: Option<f32>) -> String {
-    let took = controls::seconds_text(preview.seconds);
-    let close = preview.costs.viewing_psnr.map(|psnr| format!(" · {psnr:.0} dB")).unwrap_or_default();
-    let exact = drawing_exactly.map(|share| format!(" · exact {:.0} %", 100.0 * share)).unwrap_or_default();
-    let light = light_summary(preview.costs);
+/// The quality of the picture, and the progress of a better one.
+fn quality_text(preview: &Preview, drawing_exactly: Option<f32>) -> String {
+    let exact = drawing_exactly.map(|share| format!(", exact {:.0} %", 100.0 * share)).unwrap_or_default();
     match (preview.kind, preview.quality) {
-        (PreviewKind::Pinhole, _) => format!("no blur yet · {took}"),
-        (_, Quality::Coarse) => format!("rough · {took}"),
-        (_, Quality::Viewing) => format!("live · {took}{close}{exact}{light}"),
-        (_, Quality::Exact) => format!("exact · {took}{light}"),
+        (PreviewKind::Pinhole, _) => "no blur yet".into(),
+        (_, Quality::Coarse) => "rough picture".into(),
+        (_, Quality::Viewing) => format!("live picture{exact}"),
+        (_, Quality::Exact) => "exact picture".into(),
     }
 }
 
-/// Number of light passes, and the PSNR of the unrefined light against them.
-fn light_summary(costs: DrawingCosts) -> String {
-    let at_once = costs.light_psnr.map(|psnr| format!(", at once {psnr:.0} dB")).unwrap_or_default();
-    if costs.light_passes == 0 {
-        return String::new();
-    }
-    format!(" · light of {} passes{at_once}", costs.light_passes)
+/// Time, error and light of the picture, a sentence.
+fn quality_figures(preview: &Preview) -> String {
+    let DrawingCosts { viewing_psnr, light_psnr, light_passes, .. } = preview.costs;
+    let took = controls::seconds_text(preview.seconds);
+    let close = viewing_psnr.map(|psnr| format!(", live at {psnr:.0} dB")).unwrap_or_default();
+    let at_once = light_psnr.map(|psnr| format!(", light at once at {psnr:.0} dB")).unwrap_or_default();
+    let light =
+        if light_passes > 0 { format!(", light of {light_passes} passes{at_once}") } else { String::new() };
+    format!("Drawn in {took}{close}{light}.")
 }
 
 fn show_job(ui: &mut Ui, job: &JobStatus, actions: &mut Vec<Action>) {

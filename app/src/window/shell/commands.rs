@@ -38,7 +38,7 @@ impl Shell {
             CommandId::OpenDemo => self.confirm_then(PendingAction::OpenDemo, context),
             CommandId::Save => self.save(context),
             CommandId::SaveAs => self.open_file_dialog(Purpose::SaveAs, context),
-            CommandId::ExportPicture => self.open_file_dialog(Purpose::ExportPicture, context),
+            CommandId::ExportPicture => self.open_export_dialog(),
             CommandId::ExportShown => self.open_file_dialog(Purpose::ExportShown, context),
             CommandId::ExportWebPage => self.open_file_dialog(Purpose::ExportWebPage, context),
             CommandId::ExportFocusMap => self.open_file_dialog(Purpose::ExportFocusMap, context),
@@ -234,6 +234,7 @@ impl Shell {
             CommandId::Stop => self.apply(Command::CancelAll),
             CommandId::Palette => self.palette.toggle(),
             CommandId::Shortcuts => self.help.shortcuts = !self.help.shortcuts,
+            CommandId::ShowMessages => self.toasts.is_list_open = !self.toasts.is_list_open,
             CommandId::About => self.help.about = !self.help.about,
         }
     }

@@ -9,7 +9,7 @@ use crate::window::{Tool, demo};
 use document::{DepthPolarityRequest, is_capture};
 use egui::{Context, ViewportCommand};
 use project::CaptureChoices;
-use session::{Command, FullSizeFieldState};
+use session::{Command, FullSizeFieldState, PictureExport};
 use std::path::{Path, PathBuf};
 
 impl Shell {
@@ -85,7 +85,8 @@ impl Shell {
         };
         let name = match purpose {
             Purpose::SaveAs => format!("{stem}.fbrush"),
-            Purpose::ExportPicture | Purpose::ExportShown => format!("{stem}.png"),
+            Purpose::ExportPicture => self.export_file_name.clone(),
+            Purpose::ExportShown => format!("{stem}.png"),
             Purpose::ExportWebPage => format!("{stem}.html"),
             Purpose::ExportFocusMap => format!("{stem}-focus.exr"),
             Purpose::ExportScene => format!("{stem}-unwrapped.glb"),
@@ -114,19 +115,7 @@ impl Shell {
         let full = self.session.document().map(|document| size(&document.camera))?;
         match purpose {
             Purpose::ExportShown => Some(format!("{shown}, as displayed.")),
-            Purpose::ExportPicture => Some(match self.session.full_size_field_state() {
-                FullSizeFieldState::Ready => {
-                    format!("{full}, exact: rendered in the background from the existing light field.")
-                }
-                FullSizeFieldState::InProgress => format!(
-                    "{full}, exact: rendered in the background, as soon as the light field of the live picture is \
-                     baked. The status line shows how long that takes."
-                ),
-                FullSizeFieldState::Missing => format!(
-                    "{full}, exact. Its light field is baked first, in the background: the status line shows how \
-                     long. For {shown} immediately: File, Export as shown."
-                ),
-            }),
+            Purpose::ExportPicture => Some(self.export_note(&self.picture_export)),
             Purpose::ExportWebPage => self.session.web_page_estimate().map(|estimate| {
                 format!(
                     "About {}: {} pictures of {full} at three apertures, each at its focus distance. They are drawn in \
@@ -139,6 +128,36 @@ impl Shell {
         }
     }
 
+    /// Opens the dialog for what is exported of the picture.
+    pub(super) fn open_export_dialog(&mut self) {
+        let Some(document) = self.session.document() else { return };
+        let base = document.path.as_ref().unwrap_or(&document.scene().path);
+        let stem = base.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+        self.export_dialog.open(&document.camera, stem);
+    }
+
+    /// What has to be computed for an exported picture.
+    fn export_note(&self, export: &PictureExport) -> String {
+        match self.session.export_field_state(export) {
+            FullSizeFieldState::Ready => {
+                "Exact: rendered in the background from the existing light field.".into()
+            }
+            FullSizeFieldState::InProgress => {
+                "Exact: rendered in the background, as soon as the light field of the live picture is baked. The status \
+                 line shows how long that takes."
+                    .into()
+            }
+            FullSizeFieldState::Missing => {
+                let shown = self.session.preview().map_or([0; 2], |shown| [shown.camera.width, shown.camera.height]);
+                let [width, height] = shown;
+                format!(
+                    "Exact. Its light field is baked first, in the background: the status line shows how long. For \
+                     {width} × {height} px immediately: File, Export as shown."
+                )
+            }
+        }
+    }
+
     pub(super) fn file_chosen(&mut self, purpose: Purpose, path: PathBuf) {
         match purpose {
             Purpose::Open | Purpose::OpenCapture => self.open(path),
@@ -146,7 +165,10 @@ impl Shell {
                 self.store_viewpoint();
                 self.apply(Command::SaveAs(path));
             }
-            Purpose::ExportPicture => self.apply(Command::ExportPicture(path)),
+            Purpose::ExportPicture => {
+                let export = std::mem::take(&mut self.picture_export);
+                self.apply(Command::ExportPicture(path, export));
+            }
             Purpose::ExportShown => self.apply(Command::ExportShown(path)),
             Purpose::ExportWebPage => self.apply(Command::ExportWebPage(path)),
             Purpose::ExportFocusMap => self.apply(Command::ExportFocusMap(path)),
@@ -235,6 +257,14 @@ impl Shell {
         if let Some((DepthPolarityRequest { capture, .. }, near)) = self.depth_polarity.show(context) {
             let choices = CaptureChoices { near: Some(near.into()), ..CaptureChoices::default() };
             self.apply(Command::OpenCapture(capture, choices));
+        }
+        let mut dialog = std::mem::take(&mut self.export_dialog);
+        let note = |size| self.export_note(&PictureExport { size: Some(size), layers: Vec::new() });
+        let chosen = dialog.show(context, note);
+        self.export_dialog = dialog;
+        if let Some((export, name)) = chosen {
+            (self.picture_export, self.export_file_name) = (export, name);
+            self.open_file_dialog(Purpose::ExportPicture, context);
         }
         let was_open = self.file_dialog.is_open();
         match self.file_dialog.show(context) {

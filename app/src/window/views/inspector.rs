@@ -86,9 +86,7 @@ impl Inspector {
             }
             section(ui, "World", true, |ui| world_panel::world_panel(ui, document, actions));
             section(ui, "Scene", false, |ui| self.scene.ui(ui, document, actions));
-            section(ui, "What was modelled", false, |ui| {
-                modelled_panel::modelled_panel(ui, session, document)
-            });
+            section(ui, "Statistics", false, |ui| modelled_panel::modelled_panel(ui, session, document));
             section(ui, "Memory", false, |ui| memory_panel::memory_panel(ui, session));
             section(ui, "History", false, |ui| history_panel::history_panel(ui, document, actions));
         });

@@ -1,9 +1,7 @@
 //! A procedural photographer's studio: soft boxes in a grey room.
 
-use super::EnvironmentMap;
 use glam::{DVec3, Vec3};
 use numerics::smooth_fraction;
-use std::sync::{Arc, LazyLock};
 
 /// A soft box: a rectangular light with fading edges.
 struct SoftBox {
@@ -24,26 +22,7 @@ const SOFT_BOXES: [SoftBox; 4] = [
     SoftBox { toward: DVec3::new(0.0, 1.0, 0.05), half: [0.5, 0.5], radiance: 1.2 },
 ];
 
-const WIDTH: u32 = 512;
-const HEIGHT: u32 = 256;
-
-impl EnvironmentMap {
-    /// A soft neutral studio. Its front is +Z, as for glTF's models.
-    pub fn studio() -> Arc<Self> {
-        static STUDIO: LazyLock<Arc<EnvironmentMap>> = LazyLock::new(|| Arc::new(render_studio()));
-        STUDIO.clone()
-    }
-}
-
-fn render_studio() -> EnvironmentMap {
-    let mut map = EnvironmentMap { name: "studio".into(), width: WIDTH, height: HEIGHT, texels: Vec::new() };
-    let cells =
-        (0..HEIGHT).flat_map(|y| (0..WIDTH).map(move |x| glam::DVec2::new(f64::from(x), f64::from(y)) + 0.5));
-    map.texels = cells.map(|position| studio_radiance(map.direction_at(position)).to_array()).collect();
-    map
-}
-
-fn studio_radiance(direction: DVec3) -> Vec3 {
+pub(super) fn studio_radiance(direction: DVec3) -> Vec3 {
     // Walls, lighter above than below.
     let height = (direction.y as f32 + 1.0) / 2.0;
     let room = 0.16 + 0.3 * height * height;

@@ -1,5 +1,6 @@
 //! Commands to a session.
 
+use crate::exported_picture::PictureExport;
 use crate::reference::ReferenceKind;
 use document::{BookmarkEdit, CameraEdit, FillRegion, StrokePoint, SurfaceHit};
 use focus::{Brush, CombineMode, Ease, Gradient, LayerEdit, LensMotion};
@@ -27,7 +28,7 @@ pub enum Command {
     /// Saves to this file, which becomes the project's file.
     SaveAs(PathBuf),
     /// Renders the picture at full size and writes it, in the background.
-    ExportPicture(PathBuf),
+    ExportPicture(PathBuf, PictureExport),
     /// Writes the live picture as it is on screen, unless it is still coarse.
     ExportShown(PathBuf),
     /// Writes a web page on which anyone can refocus the picture, in the background.

@@ -134,6 +134,7 @@ pub enum CommandId {
     Stop,
     Palette,
     Shortcuts,
+    ShowMessages,
     About,
 }
 
@@ -389,6 +390,7 @@ pub const COMMANDS: &[CommandInfo] = &[
     command_info(CommandId::Stop, Menu::Render, Shortcut::command("Period"), "Stop", "Cancel the work that is going on."),
     command_info(CommandId::Palette, Menu::Help, Shortcut::command_shift("P"), "Command palette…", "Find any command by typing part of its name."),
     command_info(CommandId::Shortcuts, Menu::Help, Shortcut::key("F1"), "Keyboard shortcuts", "List every shortcut."),
+    command_info(CommandId::ShowMessages, Menu::Help, None, "Messages", "List the messages that were shown."),
     command_info(CommandId::About, Menu::Help, None, "About Focus Brush", "Version, licence and what draws the pictures."),
 ];
 

@@ -131,7 +131,7 @@ impl Session {
             }
             Command::Save => self.save(None),
             Command::SaveAs(path) => self.save(Some(path)),
-            Command::ExportPicture(path) => self.export_picture(path),
+            Command::ExportPicture(path, export) => self.export_picture(path, export),
             Command::ExportShown(path) => self.export_shown(path),
             Command::ExportWebPage(path) => self.export_web_page(path),
             Command::ExportFocusMap(path) => self.export_focus_map(path),

@@ -1,6 +1,7 @@
 //! Exporting pictures: rendered at full size, from an existing light field if one is compatible, or as they are on screen.
 
 use crate::error::SessionError;
+use crate::exported_picture::PictureExport;
 use crate::job_steps::JobSteps;
 use crate::light_field::MarginReach;
 use crate::preview::{Exporting, Quality, Shared};
@@ -95,14 +96,15 @@ impl Session {
         AvailableFields { stage, preview_field, store, preview }
     }
 
-    /// Whether a picture at full size has to wait for a light field, judged without the paint.
-    pub fn full_size_field_state(&self) -> FullSizeFieldState {
+    /// Whether an exported picture has to wait for a light field, judged without the paint.
+    pub fn export_field_state(&self, export: &PictureExport) -> FullSizeFieldState {
         let Some(document) = &self.document else { return FullSizeFieldState::Missing };
-        let is_baked_for = |baked: &Camera| is_baked_for(baked, &document.camera);
+        let camera = export.camera(&document.camera);
+        let is_baked_for = |baked: &Camera| is_baked_for(baked, &camera);
         let is_preview_compatible =
             self.light_field.as_ref().is_some_and(|field| is_baked_for(&field.salf.camera));
         let store = self.options.light_field_store.as_ref();
-        if is_preview_compatible || store.is_some_and(|store| store.has(&document.stage, &document.camera)) {
+        if is_preview_compatible || store.is_some_and(|store| store.has(&document.stage, &camera)) {
             FullSizeFieldState::Ready
         } else if self.preview_camera.as_ref().is_some_and(is_baked_for)
             && self.preview_thread.shared().is_at_work()
@@ -129,17 +131,23 @@ impl Session {
         Ok(available_fields.render(&preview.camera, &focus, &options, &progress::Unwatched)?.picture)
     }
 
-    pub(super) fn export_picture(&mut self, path: PathBuf) -> Result<(), SessionError> {
+    pub(super) fn export_picture(
+        &mut self,
+        path: PathBuf,
+        export: PictureExport,
+    ) -> Result<(), SessionError> {
         let tone = self.tone();
         let document = self.document_mut()?;
-        let (stage, camera) = (document.stage.clone(), document.camera.clone());
+        let (stage, camera) = (document.stage.clone(), export.camera(&document.camera));
+        camera.validate().map_err(|error| SessionError::BadInput(error.to_string()))?;
         let focus =
             Focus::from_atlas_map(stage.scene.clone(), stage.atlas.clone(), Arc::new(document.map.clone()));
         let available_fields = self.available_fields(stage);
         let exporting = Exporting::new(&available_fields.preview);
         self.start_job(format!("rendering {}", file_name(&path)), move |progress| {
             let _export_guard = exporting;
-            let options = RenderOptions { aovs: vec![Aov::Coverage], ..RenderOptions::default() };
+            let aovs = [vec![Aov::Coverage], export.layers].concat();
+            let options = RenderOptions { aovs, ..RenderOptions::default() };
             let rendered = available_fields.render(&camera, &focus, &options, &JobSteps { progress })?;
             write_displayed(&path, &rendered.picture, &rendered.layers, tone)?;
             Ok(JobOutcome::FileWritten(path, Vec::new()))

@@ -1,11 +1,14 @@
 //! The world: the environment that lights the scene and is visible behind all surfaces.
 
+mod environment_picture;
+
 use crate::window::Action;
 use crate::window::widgets::controls::{proportional_value, row, rows};
 use document::Document;
 use egui::{Button, ComboBox, DragValue, Ui};
+use environment_picture::{thumbnail_button, turning_strip};
 use glam::{DVec3, Vec3};
-use scene::{Backdrop, Environment, Scene, World};
+use scene::{Backdrop, BuiltInEnvironment, Environment, Scene, World};
 use session::Command;
 use std::sync::Arc;
 
@@ -13,7 +16,7 @@ use std::sync::Arc;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum EnvironmentKind {
     Own,
-    Studio,
+    BuiltIn(BuiltInEnvironment),
     Color,
     File,
 }
@@ -28,12 +31,28 @@ pub fn world_panel(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) 
         let tip = "The environment that lights the scene. Drop an equirectangular .hdr or .exr on the window \
                    to use it.";
         row(ui, "Environment", tip, |ui| environment_choice(ui, kind, &shown, actions));
+        row(ui, "Comes with", "Environments that come with the program.", |ui| {
+            ui.horizontal(|ui| {
+                for built_in in BuiltInEnvironment::ALL {
+                    let is_chosen = kind == EnvironmentKind::BuiltIn(built_in);
+                    if thumbnail_button(ui, built_in, is_chosen).clicked() && !is_chosen {
+                        actions.push(Command::SetWorld(Some(built_in.world())).into());
+                    }
+                }
+            })
+            .response
+        });
         if let Some(source) = source_name(&shown, scene) {
             row(ui, "Source", "Source of the environment.", |ui| ui.add(egui::Label::new(source).truncate()));
         }
         let mut world = shown.clone();
         if let Environment::Uniform(color) = &mut world.environment {
             row(ui, "Color", "Linear radiance.", |ui| color_edit(ui, color));
+        }
+        if let Environment::Map(map) = &shown.environment {
+            row(ui, "Picture", "Drag it to turn the environment.", |ui| {
+                turning_strip(ui, map, &mut world.rotation)
+            });
         }
         let mut degrees = world.rotation.to_degrees();
         let tip = "Rotates the environment about the vertical axis.";
@@ -67,8 +86,9 @@ fn environment_kind(scene: &Scene) -> EnvironmentKind {
         None => EnvironmentKind::Own,
         Some(environment) if is_scene_environment(environment, scene) => EnvironmentKind::Own,
         Some(Environment::Uniform(_)) => EnvironmentKind::Color,
-        Some(environment) if *environment == World::studio().environment => EnvironmentKind::Studio,
-        Some(_) => EnvironmentKind::File,
+        Some(environment) => {
+            BuiltInEnvironment::of(environment).map_or(EnvironmentKind::File, EnvironmentKind::BuiltIn)
+        }
     }
 }
 
@@ -105,7 +125,13 @@ fn environment_choice(
             "The environment of the scene's file (EXT_lights_image_based); a scene without light gets the \
              studio.",
         ),
-        (EnvironmentKind::Studio, "Studio", "A soft neutral studio."),
+        (EnvironmentKind::BuiltIn(BuiltInEnvironment::Studio), "Studio", "A soft neutral studio."),
+        (
+            EnvironmentKind::BuiltIn(BuiltInEnvironment::Overcast),
+            "Overcast",
+            "A cloudy sky over open ground.",
+        ),
+        (EnvironmentKind::BuiltIn(BuiltInEnvironment::Evening), "Evening", "A low sun and its sky."),
         (EnvironmentKind::Color, "Color", "The same radiance from all directions."),
         (EnvironmentKind::File, "Picture…", "An equirectangular image, .hdr or .exr."),
     ];
@@ -123,7 +149,9 @@ fn environment_choice(
         .response;
     match chosen {
         Some(EnvironmentKind::Own) => actions.push(Command::SetWorld(None).into()),
-        Some(EnvironmentKind::Studio) => actions.push(Command::SetWorld(Some(World::studio())).into()),
+        Some(EnvironmentKind::BuiltIn(built_in)) => {
+            actions.push(Command::SetWorld(Some(built_in.world())).into());
+        }
         Some(EnvironmentKind::Color) => {
             let color = match shown.environment {
                 Environment::Uniform(color) if color != Vec3::ZERO => color,
