@@ -119,7 +119,7 @@ fn an_export_takes_the_light_field_that_is_being_made() {
     session.apply(Command::Open(scene)).unwrap();
     wait(&mut session, "a document", |session| session.document().is_some());
     session.apply(Command::EditCamera(CameraEdit::Size(240, 160))).unwrap();
-    assert_eq!(session.full_size_field_state(), FullSizeFieldState::InProgress);
+    assert_eq!(session.export_field_state(&Default::default()), FullSizeFieldState::InProgress);
     let path = folder.path().join("picture.png");
     session.apply(Command::ExportPicture(path.clone(), Default::default())).unwrap();
     let mut steps = std::collections::BTreeSet::new();
@@ -135,7 +135,7 @@ fn an_export_takes_the_light_field_that_is_being_made() {
     }
     assert!(steps.contains("baking the live picture") && !steps.contains("baking"), "{steps:?}");
     fine(&mut session);
-    assert_eq!(session.full_size_field_state(), FullSizeFieldState::Ready);
+    assert_eq!(session.export_field_state(&Default::default()), FullSizeFieldState::Ready);
     session.apply(Command::EditCamera(CameraEdit::Size(480, 320))).unwrap();
-    assert_eq!(session.full_size_field_state(), FullSizeFieldState::Missing, "the live picture is smaller");
+    assert_eq!(session.export_field_state(&Default::default()), FullSizeFieldState::Missing, "the live picture is smaller");
 }
