@@ -76,7 +76,7 @@ impl WorldFile {
         let embedded = scene.embedded_world.as_ref().map(|own| &own.environment);
         let environment = match &world.environment {
             environment if Some(environment) == embedded => EnvironmentChoice::Scene,
-            environment => match (BuiltInEnvironment::of(environment), environment) {
+            environment => match (environment.built_in(), environment) {
                 (Some(built_in), _) => EnvironmentChoice::BuiltIn(built_in),
                 (None, Environment::Map(map)) => EnvironmentChoice::File(PathBuf::from(&map.name)),
                 (None, Environment::Uniform(color)) => EnvironmentChoice::Uniform(*color),
@@ -177,7 +177,7 @@ impl WorldFile {
         let mut warnings = Vec::new();
         let (environment, default_backdrop) = match &self.environment {
             EnvironmentChoice::BuiltIn(built_in) => {
-                let world = built_in.world();
+                let world = World::built_in(*built_in);
                 (world.environment, world.backdrop)
             }
             EnvironmentChoice::Scene => match &scene.embedded_world {
@@ -297,10 +297,10 @@ mod tests {
             "scene"
         );
         for built_in in BuiltInEnvironment::ALL {
-            let stored = WorldFile::from_world(&built_in.world(), &scene);
+            let stored = WorldFile::from_world(&World::built_in(built_in), &scene);
             assert_eq!(stored.environment, EnvironmentChoice::BuiltIn(built_in));
             let json = stored.to_json(Path::new("world.json")).to_string();
-            assert_eq!(read(&json).unwrap().load(&scene).unwrap().0, built_in.world(), "{json}");
+            assert_eq!(read(&json).unwrap().load(&scene).unwrap().0, World::built_in(built_in), "{json}");
         }
         let without = Scene { path: "dark.glb".into(), ..Scene::default() };
         let error = world_file.load(&without).unwrap_err().to_string();

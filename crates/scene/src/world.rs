@@ -38,6 +38,14 @@ pub enum Environment {
     Map(Arc<EnvironmentMap>),
 }
 
+impl Environment {
+    /// The built-in environment that it is; `None` if it is another.
+    pub fn built_in(&self) -> Option<BuiltInEnvironment> {
+        let Self::Map(map) = self else { return None };
+        BuiltInEnvironment::ALL.into_iter().find(|built_in| Arc::ptr_eq(&built_in.map(), map))
+    }
+}
+
 /// What the camera sees at infinity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Backdrop {
@@ -62,9 +70,18 @@ impl World {
         }
     }
 
+    /// A world with the light of a built-in environment. The studio has a neutral grey backdrop; the skies are seen.
+    pub fn built_in(environment: BuiltInEnvironment) -> Self {
+        let backdrop = match environment {
+            BuiltInEnvironment::Studio => Backdrop::Color(Vec3::splat(NEUTRAL_GREY)),
+            BuiltInEnvironment::Overcast | BuiltInEnvironment::Evening => Backdrop::Environment,
+        };
+        Self { environment: Environment::Map(environment.map()), backdrop, ..Self::uniform(Vec3::ZERO) }
+    }
+
     /// A soft neutral studio for scenes without any light, with a neutral grey backdrop.
     pub fn studio() -> Self {
-        BuiltInEnvironment::Studio.world()
+        Self::built_in(BuiltInEnvironment::Studio)
     }
 
     /// The radiance (linear RGB) that arrives from a direction (world, unit).

@@ -137,5 +137,9 @@ fn an_export_takes_the_light_field_that_is_being_made() {
     fine(&mut session);
     assert_eq!(session.export_field_state(&Default::default()), FullSizeFieldState::Ready);
     session.apply(Command::EditCamera(CameraEdit::Size(480, 320))).unwrap();
-    assert_eq!(session.export_field_state(&Default::default()), FullSizeFieldState::Missing, "the live picture is smaller");
+    assert_eq!(
+        session.export_field_state(&Default::default()),
+        FullSizeFieldState::Missing,
+        "the live picture is smaller"
+    );
 }

@@ -50,12 +50,10 @@ pub fn status_line(ui: &mut Ui, session: &Session, notes: StatusNotes<'_>, actio
             ui.label(quality_text(preview, session.exact_picture_progress())).on_hover_text(tip);
             ui.separator();
         }
-        if let Some(document) = session.document() {
-            if document.selection.is_some() {
-                ui.label(format!("painting {}", selection_summary(document)))
-                    .on_hover_text("Only the selection can be painted (Select menu).");
-                ui.separator();
-            }
+        if let Some(document) = session.document().filter(|document| document.selection.is_some()) {
+            ui.label(format!("painting {}", selection_summary(document)))
+                .on_hover_text("Only the selection can be painted (Select menu).");
+            ui.separator();
         }
         if session.sub_aperture_point().is_some() {
             ui.label("through one point of the aperture")

@@ -1,8 +1,8 @@
 //! The environments that come with the program, made by code.
 
+use super::environment_map::EnvironmentMap;
 use super::sky::{evening_radiance, overcast_radiance};
 use super::studio::studio_radiance;
-use super::{Backdrop, Environment, EnvironmentMap, NEUTRAL_GREY, World};
 use glam::{DVec2, DVec3, Vec3};
 use std::sync::{Arc, LazyLock};
 
@@ -47,21 +47,6 @@ impl BuiltInEnvironment {
         });
         MAPS[self as usize].clone()
     }
-
-    /// The built-in environment that `environment` is; `None` if it is another.
-    pub fn of(environment: &Environment) -> Option<Self> {
-        let Environment::Map(map) = environment else { return None };
-        Self::ALL.into_iter().find(|built_in| Arc::ptr_eq(&built_in.map(), map))
-    }
-
-    /// A world with its light; the studio has a neutral grey backdrop, the skies are seen.
-    pub fn world(self) -> World {
-        let backdrop = match self {
-            Self::Studio => Backdrop::Color(Vec3::splat(NEUTRAL_GREY)),
-            Self::Overcast | Self::Evening => Backdrop::Environment,
-        };
-        World { environment: Environment::Map(self.map()), backdrop, ..World::uniform(Vec3::ZERO) }
-    }
 }
 
 /// The map of a function of the (unit) direction.
@@ -79,14 +64,14 @@ mod tests {
 
     /// Irradiance/π of a wall of this normal: the radiance of a white one.
     fn white_wall(environment: BuiltInEnvironment, normal: DVec3) -> Vec3 {
-        let (world, n) = (environment.world(), 300);
+        let (map, n) = (environment.map(), 300);
         let mut sum = Vec3::ZERO;
         for k in 0..n * n {
             let (u, v) = (f64::from(k % n) + 0.5, f64::from(k / n) + 0.5);
             let (z, turn) = (1.0 - 2.0 * v / f64::from(n), std::f64::consts::TAU * u / f64::from(n));
             let flat = (1.0 - z * z).sqrt();
             let direction = DVec3::new(flat * turn.cos(), z, flat * turn.sin());
-            sum += world.radiance(direction) * normal.dot(direction).max(0.0) as f32;
+            sum += map.radiance(direction) * normal.dot(direction).max(0.0) as f32;
         }
         sum * 4.0 / (n * n) as f32
     }
@@ -112,15 +97,13 @@ mod tests {
     }
 
     #[test]
-    fn names_and_maps_are_found_again() {
+    fn names_are_found_again_and_maps_are_finite() {
         for environment in BuiltInEnvironment::ALL {
             assert_eq!(BuiltInEnvironment::from_name(environment.name()), Some(environment));
-            assert_eq!(BuiltInEnvironment::of(&environment.world().environment), Some(environment));
             assert!(
                 environment.map().texels.iter().flatten().all(|value| value.is_finite() && *value >= 0.0)
             );
         }
         assert_eq!(BuiltInEnvironment::from_name("night"), None);
-        assert_eq!(BuiltInEnvironment::of(&Environment::Uniform(Vec3::ONE)), None);
     }
 }

@@ -36,7 +36,7 @@ pub fn world_panel(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) 
                 for built_in in BuiltInEnvironment::ALL {
                     let is_chosen = kind == EnvironmentKind::BuiltIn(built_in);
                     if thumbnail_button(ui, built_in, is_chosen).clicked() && !is_chosen {
-                        actions.push(Command::SetWorld(Some(built_in.world())).into());
+                        actions.push(Command::SetWorld(Some(World::built_in(built_in))).into());
                     }
                 }
             })
@@ -86,9 +86,7 @@ fn environment_kind(scene: &Scene) -> EnvironmentKind {
         None => EnvironmentKind::Own,
         Some(environment) if is_scene_environment(environment, scene) => EnvironmentKind::Own,
         Some(Environment::Uniform(_)) => EnvironmentKind::Color,
-        Some(environment) => {
-            BuiltInEnvironment::of(environment).map_or(EnvironmentKind::File, EnvironmentKind::BuiltIn)
-        }
+        Some(environment) => environment.built_in().map_or(EnvironmentKind::File, EnvironmentKind::BuiltIn),
     }
 }
 
@@ -150,7 +148,7 @@ fn environment_choice(
     match chosen {
         Some(EnvironmentKind::Own) => actions.push(Command::SetWorld(None).into()),
         Some(EnvironmentKind::BuiltIn(built_in)) => {
-            actions.push(Command::SetWorld(Some(built_in.world())).into());
+            actions.push(Command::SetWorld(Some(World::built_in(built_in))).into());
         }
         Some(EnvironmentKind::Color) => {
             let color = match shown.environment {

@@ -2,8 +2,8 @@
 
 use crate::window::widgets::controls::set_accessible_name;
 use egui::{
-    Button, Color32, ColorImage, CornerRadius, CursorIcon, Id, Image, Rect, Response, Sense,
-    TextureHandle, TextureOptions, Ui, Vec2, pos2, vec2,
+    Button, Color32, ColorImage, CornerRadius, CursorIcon, Id, Image, Rect, Response, Sense, TextureHandle,
+    TextureOptions, Ui, Vec2, pos2, vec2,
 };
 use glam::DVec2;
 use scene::{BuiltInEnvironment, EnvironmentMap};
