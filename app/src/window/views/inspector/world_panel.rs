@@ -31,7 +31,7 @@ pub fn world_panel(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) 
         let tip = "The environment that lights the scene. Drop an equirectangular .hdr or .exr on the window \
                    to use it.";
         row(ui, "Environment", tip, |ui| environment_choice(ui, kind, &shown, actions));
-        row(ui, "Comes with", "Environments that come with the program.", |ui| {
+        row(ui, "Built in", "Environments that come with the program.", |ui| {
             ui.horizontal(|ui| {
                 for built_in in BuiltInEnvironment::ALL {
                     let is_chosen = kind == EnvironmentKind::BuiltIn(built_in);

@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// Columns and rows of a picture.
 const PICTURE_SIZE: [usize; 2] = [192, 96];
 /// Size of a thumbnail, and height of the strip, points.
-const THUMBNAIL: Vec2 = vec2(48.0, 24.0);
+const THUMBNAIL: Vec2 = vec2(42.0, 21.0);
 const STRIP_HEIGHT: f32 = 64.0;
 
 /// A button with the picture of an environment that comes with the program.
@@ -28,7 +28,7 @@ pub fn thumbnail_button(ui: &mut Ui, environment: BuiltInEnvironment, is_chosen:
 
 /// The picture of an environment from +Z to −Z and round again, as it is turned; a drag turns it.
 pub fn turning_strip(ui: &mut Ui, map: &Arc<EnvironmentMap>, rotation: &mut f64) -> Response {
-    let size = vec2(ui.available_width().min(2.0 * STRIP_HEIGHT * 1.5), STRIP_HEIGHT);
+    let size = vec2((ui.available_width() - 4.0).min(3.0 * STRIP_HEIGHT), STRIP_HEIGHT);
     let (rect, mut response) = ui.allocate_exact_size(size, Sense::drag());
     set_accessible_name(&response, "Environment");
     let moved = f64::from(response.drag_delta().x / rect.width());
