@@ -13,14 +13,14 @@ const GROUND: Vec3 = Vec3::new(0.2, 0.18, 0.15);
 const SUN_ELEVATION: f64 = 0.12;
 const SUN_RADIUS: f64 = 0.03;
 /// Radiance of the sun's middle.
-const SUN: Vec3 = Vec3::new(480.0, 250.0, 95.0);
+const SUN: Vec3 = Vec3::new(1900.0, 1000.0, 380.0);
 /// Radiance of its glow, and how fast that falls with the angle.
-const GLOW: Vec3 = Vec3::new(3.2, 1.3, 0.4);
+const GLOW: Vec3 = Vec3::new(5.1, 2.1, 0.64);
 const GLOW_FALLOFF: f32 = 5.0;
 /// Radiance of the evening sky at the zenith, above the sun's horizon, and above the horizon opposite.
-const DUSK_ZENITH: Vec3 = Vec3::new(0.1, 0.17, 0.34);
-const SUNSET_HORIZON: Vec3 = Vec3::new(0.95, 0.52, 0.26);
-const DUSK_HORIZON: Vec3 = Vec3::new(0.3, 0.27, 0.38);
+const DUSK_ZENITH: Vec3 = Vec3::new(0.16, 0.27, 0.54);
+const SUNSET_HORIZON: Vec3 = Vec3::new(1.5, 0.83, 0.42);
+const DUSK_HORIZON: Vec3 = Vec3::new(0.48, 0.43, 0.61);
 
 /// The CIE's overcast sky, L = L_z·(1 + 2 sin θ)/3 at the elevation θ (CIE S 011, type 1 in its classical form), with soft clouds.
 pub(super) fn overcast_radiance(direction: DVec3) -> Vec3 {
@@ -45,10 +45,10 @@ pub(super) fn evening_radiance(direction: DVec3) -> Vec3 {
     let glow = GLOW * (-GLOW_FALLOFF * angle as f32).exp();
     // Thin clouds, lit from below, where the sky is not too low.
     let cover = smoothstep(clouds(direction, 0.35), [0.55, 0.85]) * smoothstep(height, [0.02, 0.2]);
-    let lit = Vec3::new(0.62, 0.34, 0.24) * (0.4 + 0.9 * sunward);
+    let lit = Vec3::new(1.0, 0.54, 0.38) * (0.4 + 0.9 * sunward);
     let above = (sky + glow).lerp(lit + glow, 0.55 * cover);
     let disc = SUN * smoothstep(angle, [SUN_RADIUS, 0.4 * SUN_RADIUS]) as f32;
-    let below = GROUND * Vec3::new(0.55, 0.4, 0.36) * (1.0 + 1.2 * sunward * sunward);
+    let below = GROUND * Vec3::new(0.88, 0.64, 0.58) * (1.0 + 1.2 * sunward * sunward);
     over_ground(direction, above + disc, below)
 }
 
