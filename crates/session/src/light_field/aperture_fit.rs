@@ -15,7 +15,7 @@ const SPARE_SCALE: f64 = 1.5;
 const CLOSE: f64 = 0.9;
 
 /// Outside of these shares of the baked radius, another light field is worth waiting for.
-const WORTH_KEEPING: std::ops::RangeInclusive<f64> = 0.6..=1.1;
+const WORTH_KEEPING: std::ops::RangeInclusive<f64> = 0.66..=1.1;
 
 /// The lens's aperture radius as a share of the one that a light field of the same view was baked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
