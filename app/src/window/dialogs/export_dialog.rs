@@ -1,7 +1,7 @@
 //! What is exported of the picture: its size, the kind of file, and its layers.
 
 use crate::window::widgets::controls::{row, rows, set_accessible_name};
-use egui::{Button, Context, DragValue, Id, Key, Ui};
+use egui::{Button, Context, DragValue, Id, Key, Modifiers, Ui};
 use lens::Camera;
 use render::Aov;
 use session::PictureExport;
@@ -81,8 +81,9 @@ impl ExportDialog {
             ui.weak(note(choices.size));
             ui.add_space(8.0);
             ui.horizontal(|ui| {
-                let entered =
-                    ui.input(|input| input.key_pressed(Key::Enter)) && !ui.ctx().text_edit_focused();
+                // Consumed, or the dialog that follows would be accepted, too.
+                let entered = !ui.ctx().text_edit_focused()
+                    && ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Enter));
                 accepted = ui.button("Choose file…").clicked() || entered;
                 cancelled = ui.button("Cancel").clicked();
             });

@@ -163,8 +163,8 @@ impl Artist<'_> {
         // Rarer things at set times, so that each happens in every sitting.
         match action % 48 {
             20 => return self.open_other(),
-            28 => return self.export("ctrl+shift+e", "png"),
-            36 => return self.export("ctrl+e", "exr"),
+            28 => return self.export(&["ctrl+shift+e"], "png"),
+            36 => return self.export(&["ctrl+e", "Return"], "exr"),
             44 => return self.save(),
             12 => return self.window.press("F5"),
             4 => return self.run_command("camera from view"),
@@ -220,7 +220,7 @@ impl Artist<'_> {
     }
 
     /// Writes a picture to a path that is typed; again while the one on the screen is too coarse for that.
-    fn export(&mut self, keys: &str, extension: &str) -> Verdict {
+    fn export(&mut self, keys: &[&str], extension: &str) -> Verdict {
         self.exports += 1;
         let file = self.folder.join(format!("picture-{}.{extension}", self.exports));
         for _ in 0..TRIES {
@@ -233,7 +233,7 @@ impl Artist<'_> {
                 pause(100);
             }
         }
-        Err(format!("no picture is exported by {keys}; the title is {:?}", self.window.title()))
+        Err(format!("no picture is exported by {keys:?}; the title is {:?}", self.window.title()))
     }
 
     /// Saves the project under its name; again if a key was lost to whatever had the keyboard.
@@ -257,15 +257,18 @@ impl Artist<'_> {
         self.save()?;
         self.opened = if self.opened == "lit" { "plain" } else { "lit" };
         let file = self.folder.join(format!("{}.fbrush", self.opened));
-        self.type_path("ctrl+o", &file)?;
+        self.type_path(&["ctrl+o"], &file)?;
         let opened = self.opened;
         self.window.wait_until("the other project is open", |window| window.title().starts_with(opened))
     }
 
-    fn type_path(&mut self, keys: &str, file: &Path) -> Verdict {
+    /// Types a path into the dialog that opens by these keys, one after the other.
+    fn type_path(&mut self, keys: &[&str], file: &Path) -> Verdict {
         self.window.press("Escape")?;
-        self.window.press(keys)?;
-        pause(600);
+        for keys in keys {
+            self.window.press(keys)?;
+            pause(600);
+        }
         self.window.press("ctrl+a")?;
         self.window.types(&file.display().to_string())?;
         pause(300);
