@@ -135,6 +135,22 @@ impl LightField {
     pub fn from_salf(stage: &Stage, salf: Arc<Salf>, tolerance: Tolerance, gpu: Option<Gpu>) -> Self {
         let index = Arc::new(SampleIndex::new(salf.clone(), stage.atlas.clone()));
         let modelled = Modelled::with_texels(&salf, stage.tracer(), Some(&stage.texels.texels));
+        Self::resting(salf, index, modelled, tolerance, gpu)
+    }
+
+    /// The same light field without sum and hierarchy, which are made again when it is summed.
+    pub fn at_rest(self, gpu: Option<Gpu>) -> Self {
+        let (salf, tolerance) = (self.splatter.salf().clone(), self.splatter.tolerance());
+        Self::resting(salf, self.index, self.modelled, tolerance, gpu).refined(self.light_passes)
+    }
+
+    fn resting(
+        salf: Arc<Salf>,
+        index: Arc<SampleIndex>,
+        modelled: Modelled,
+        tolerance: Tolerance,
+        gpu: Option<Gpu>,
+    ) -> Self {
         let mut splatter = Splatter::new(salf);
         splatter.set_tolerance(tolerance);
         // The first dab on it is to cost what any dab does.

@@ -10,16 +10,12 @@ use focus::Focus;
 use jobs::{Urgency, catch_panics, run_in_own_pool};
 use lens::Camera;
 use light::LightQuality;
-use progress::Stage as Share;
 use render::LightFieldStore;
 use salf::Carried;
-use splat::Tolerance;
+use splat::{Gpu, Tolerance};
 use std::sync::Arc;
 use std::thread::JoinHandle;
 use std::time::Instant;
-
-/// The share of the work that the bake is; the rest is the sum.
-const BAKE_SHARE: f32 = 0.9;
 
 /// The spare, at rest or being made.
 #[derive(Default)]
@@ -35,8 +31,6 @@ pub(crate) struct SpareTask {
     pub stage: Arc<Stage>,
     /// What is baked.
     pub baked_camera: Camera,
-    /// The lens of the first sum.
-    pub camera: Camera,
     pub focus: Focus,
     pub tolerance: Tolerance,
     /// Comes back with the light field.
@@ -107,8 +101,9 @@ impl SpareField {
         }
     }
 
-    /// Exchanges the spare with the light field that is worked with, if the spare shows what `camera` sees better. Returns whether it does.
-    pub fn exchange(&mut self, current: &mut Option<LightField>, camera: &Camera) -> bool {
+    /// Exchanges the spare with the light field that is worked with, if the spare shows what `camera` sees better. Returns whether it does. What
+    /// is not worked with keeps its samples alone: hierarchy and sum take several times their memory.
+    pub fn exchange(&mut self, current: &mut Option<LightField>, camera: &Camera, gpu: Option<Gpu>) -> bool {
         let fit = |field: &Option<LightField>| field.as_ref()?.aperture_fit(camera);
         let is_better = match (fit(&self.field), fit(current)) {
             (Some(spare), Some(current)) => spare.is_better_than(current),
@@ -116,14 +111,15 @@ impl SpareField {
         };
         if is_better {
             std::mem::swap(&mut self.field, current);
+            self.field = self.field.take().map(|field| field.at_rest(gpu));
         }
         is_better
     }
 
     /// Keeps a light field that is not worked with any more, if it is a spare for what `camera` sees and there is none.
-    pub fn offer(&mut self, replaced: LightField, camera: &Camera) {
+    pub fn offer(&mut self, replaced: LightField, camera: &Camera, gpu: Option<Gpu>) {
         if replaced.is_spare_for(camera) && !self.is_ready_for(camera) {
-            self.field = Some(replaced);
+            self.field = Some(replaced.at_rest(gpu));
         }
     }
 
@@ -151,9 +147,9 @@ fn make(
     store: Option<&LightFieldStore>,
     shared: &Shared,
 ) -> Result<LightField, SessionError> {
-    let SpareTask { stage, baked_camera, camera, focus, tolerance, .. } = task;
+    let SpareTask { stage, baked_camera, focus, tolerance, .. } = task;
     let stored = store.and_then(|store| store.find(&stage, &baked_camera, 0.0, Carried::for_focus(&focus)));
-    let mut field = match stored {
+    let field = match stored {
         Some((salf, passes)) => {
             LightField::from_salf(&stage, Arc::new(salf), tolerance, shared.gpu()).refined(passes)
         }
@@ -161,8 +157,7 @@ fn make(
             let (gpu, light) = (shared.gpu(), LightQuality::Fine);
             let options = FieldOptions { least_margin_px: 0.0, tolerance, gpu, light };
             let start = Instant::now();
-            let baking = Share::new(&shared.spare, 0.0, BAKE_SHARE);
-            let field = LightField::bake(&stage, &baked_camera, &focus, options, &baking)?;
+            let field = LightField::bake(&stage, &baked_camera, &focus, options, &shared.spare)?;
             shared.count_bake();
             if let Some(store) = store {
                 store.save(&stage, &field.baked().salf, 0, start.elapsed());
@@ -170,8 +165,5 @@ fn make(
             field
         }
     };
-    field.update_sum(&camera, &focus, &Share::new(&shared.spare, BAKE_SHARE, 1.0))?;
-    field.survey(&camera, &focus);
-    field.prepare()(&shared.spare);
     Ok(field)
 }

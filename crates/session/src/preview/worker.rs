@@ -183,7 +183,7 @@ impl Worker {
             }
             if let Some(baked_camera) = self.missing_spare() {
                 let (tolerance, epoch) = (self.tolerance, self.epoch);
-                let task = SpareTask { stage, baked_camera, camera, focus, tolerance, epoch };
+                let task = SpareTask { stage, baked_camera, focus, tolerance, epoch };
                 self.spare.start(&self.shared, self.maker.store(), task);
                 return Ok(());
             }
@@ -225,7 +225,7 @@ impl Worker {
         self.spare.tidy(camera);
         // What is being made may be the light field itself, with another sum.
         if !self.maker.is_at_work()
-            && self.spare.exchange(&mut self.fine, camera)
+            && self.spare.exchange(&mut self.fine, camera, self.shared.gpu())
             && let Some(fine) = &self.fine
         {
             self.shared.publish_field(self.presenter.generation, fine.baked());
@@ -316,7 +316,7 @@ impl Worker {
                 self.presenter.check_glare(&field.baked().salf);
                 self.shared.publish_field(self.presenter.generation, field.baked());
                 if let (Some(replaced), Some(camera)) = (self.fine.replace(field), &self.camera) {
-                    self.spare.offer(replaced, camera);
+                    self.spare.offer(replaced, camera, self.shared.gpu());
                 }
                 self.is_new = true;
                 // One from the store may be of another focus.
