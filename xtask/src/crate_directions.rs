@@ -59,6 +59,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "atlas",
             "scene",
             "lens",
+            "numerics",
             "progress",
         ],
     ),

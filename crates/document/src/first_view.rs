@@ -5,6 +5,7 @@ use crate::focus_hold::HeldCamera;
 use crate::picking::chief_ray;
 use glam::{DMat3, DMat4, DVec2, DVec3};
 use lens::Camera;
+use numerics::quantile;
 use project::FocusHold;
 use trace::{Ray, Tracer};
 
@@ -54,24 +55,23 @@ fn focused(tracer: &Tracer, camera: Camera) -> HeldCamera {
             tracer.first_hit(&ray).map(|hit| (at, ray.origin + ray.direction * hit.t))
         })
         .collect();
-    let depth = |position: &DVec3| camera.camera_from_world(*position).z;
-    let sorted = |mut positions: Vec<DVec3>| {
-        positions.sort_by(|a, b| depth(a).total_cmp(&depth(b)));
-        positions
-    };
-    let is_middle = |at: &DVec2| ((*at - 0.5).abs() / (MIDDLE / 2.0)).max_element() <= 1.0;
-    let all = sorted(seen.iter().map(|(_, position)| *position).collect());
-    let middle = sorted(seen.iter().filter(|(at, _)| is_middle(at)).map(|(_, position)| *position).collect());
-    let Some(subject) = percentile(&middle, OUTLIERS).or(percentile(&all, OUTLIERS)) else {
+    let depth = |position: DVec3| camera.camera_from_world(position).z;
+    let is_middle = |at: DVec2| ((at - 0.5).abs() / (MIDDLE / 2.0)).max_element() <= 1.0;
+    let mut all: Vec<f64> = seen.iter().map(|(_, position)| depth(*position)).collect();
+    let middle = seen.iter().filter(|(at, _)| is_middle(*at));
+    let mut middle: Vec<f64> = middle.map(|(_, position)| depth(*position)).collect();
+    let nearest = quantile(&mut middle, OUTLIERS).or(quantile(&mut all, OUTLIERS));
+    let subject = seen.iter().find(|(_, position)| Some(depth(*position)) == nearest);
+    let (Some(nearest), Some(&(_, subject))) = (nearest, subject) else {
         return HeldCamera::on_axis(camera);
     };
-    let focused = Camera { focus_distance: depth(&subject), ..camera };
+    let focused = Camera { focus_distance: nearest, ..camera };
     let optics = focused.optics();
-    let circle = |position: DVec3| {
-        let kappa = optics.standard_kappa(1.0 / focused.camera_from_world(position).z);
+    let circle = |depth: f64| {
+        let kappa = optics.standard_kappa(1.0 / depth);
         2.0 * optics.splat_radius_px(kappa).abs() / f64::from(focused.height)
     };
-    let ends = [OUTLIERS, 1.0 - OUTLIERS].map(|share| percentile(&all, share).map_or(0.0, circle));
+    let ends = [OUTLIERS, 1.0 - OUTLIERS].map(|share| quantile(&mut all, share).map_or(0.0, circle));
     let widest = WIDEST_RADIUS * focused.focus_distance / focused.aperture_radius;
     // The sensor grows with the aperture, so that the f-number stays that of a lens.
     let scale = (LARGEST_CIRCLE / ends[0].max(ends[1])).min(widest);
@@ -81,12 +81,6 @@ fn focused(tracer: &Tracer, camera: Camera) -> HeldCamera {
         ..focused
     };
     HeldCamera { camera, focus_hold: FocusHold::Point(subject) }
-}
-
-/// The element at this share of a sorted list; `None` of an empty one.
-fn percentile<T: Copy>(sorted: &[T], share: f64) -> Option<T> {
-    let last = sorted.len().checked_sub(1)?;
-    Some(sorted[(share * last as f64).round() as usize])
 }
 
 /// A pose in a room, from one end of its longest line of sight towards the other; `None` if the scene is not one. Up is +y.

@@ -20,6 +20,7 @@ mod activity;
 mod deliveries;
 mod events;
 mod exact_refinement;
+mod helper_thread;
 mod light_field_maker;
 mod light_refinement;
 mod mailbox;

@@ -6,7 +6,7 @@ use crate::window::dialogs::unsaved_changes_dialog::{Answer, PendingAction};
 use crate::window::layout::Pane;
 use crate::window::widgets::controls;
 use crate::window::{Tool, demo};
-use document::{DepthPolarityRequest, is_capture};
+use document::{DepthPolarityRequest, Document, is_capture};
 use egui::{Context, ViewportCommand};
 use project::CaptureChoices;
 use session::{Command, FullSizeFieldState, PictureExport};
@@ -75,13 +75,12 @@ impl Shell {
     /// Opens the file dialog in the document's folder, with a name derived from the document's.
     pub(super) fn open_file_dialog(&mut self, purpose: Purpose, context: &Context) {
         let Some(document) = self.session.document() else { return };
-        let base = document.path.clone().unwrap_or_else(|| document.scene().path.clone());
-        let stem = base.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+        let (base, stem) = (main_file(document), file_stem(document));
         // Files derived from the demo do not belong in the program's folder.
         let base = if self.showing_demo && document.path.is_none() {
             user_folder().join(stem.as_str())
         } else {
-            base
+            base.to_owned()
         };
         let name = match purpose {
             Purpose::SaveAs => format!("{stem}.fbrush"),
@@ -131,9 +130,7 @@ impl Shell {
     /// Opens the dialog for what is exported of the picture.
     pub(super) fn open_export_dialog(&mut self) {
         let Some(document) = self.session.document() else { return };
-        let base = document.path.as_ref().unwrap_or(&document.scene().path);
-        let stem = base.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
-        self.export_dialog.open(&document.camera, stem);
+        self.export_dialog.open(&document.camera, file_stem(document));
     }
 
     /// What has to be computed for an exported picture.
@@ -290,6 +287,16 @@ impl Shell {
             None => {}
         }
     }
+}
+
+/// The project file, or before the first save the scene's.
+fn main_file(document: &Document) -> &Path {
+    document.path.as_ref().unwrap_or(&document.scene().path)
+}
+
+/// The name of that file without its extension.
+fn file_stem(document: &Document) -> String {
+    main_file(document).file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
 /// Whether a file may be an environment map.

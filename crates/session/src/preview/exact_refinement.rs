@@ -7,6 +7,7 @@
 use crate::error::SessionError;
 use crate::light_field::{Changes, LightField};
 use crate::preview::deliveries::{ExactDelivery, ExactPicture};
+use crate::preview::helper_thread;
 use crate::preview::mailbox::Shared;
 use focus::Focus;
 use jobs::{Urgency, catch_panics, run_in_own_pool};
@@ -77,10 +78,9 @@ impl ExactRefinement {
                 Err(error) => ExactDelivery { field: None, outcome: Err(error) },
             });
         };
-        match std::thread::Builder::new().name("exact picture".into()).stack_size(16 << 20).spawn(work) {
+        match helper_thread::spawn("exact picture", work) {
             Ok(thread) => self.thread = Some(thread),
             Err(error) => {
-                let error = SessionError::TryAgain(format!("no thread: {error} (try again)"));
                 shared.deliver_exact(ExactDelivery { field: None, outcome: Err(error) });
             }
         }

@@ -4,6 +4,7 @@ use crate::error::SessionError;
 use crate::light_field::{Changes, FieldOptions, LightField, spare_camera};
 use crate::preview::activity::PreviewActivity;
 use crate::preview::deliveries::{BAKE_SHARE, FieldDelivery, INTERIM_SHARE, InterimField};
+use crate::preview::helper_thread;
 use crate::preview::mailbox::Shared;
 use document::Stage;
 use focus::Focus;
@@ -99,13 +100,11 @@ impl LightFieldMaker {
             thread_shared.field.end();
             thread_shared.deliver(FieldDelivery { result, epoch });
         };
-        let thread = std::thread::Builder::new().name("light field".into()).stack_size(16 << 20).spawn(work);
-        match thread {
+        match helper_thread::spawn("light field", work) {
             Ok(thread) => self.thread = Some(thread),
             Err(error) => {
-                let result = Err(SessionError::TryAgain(format!("no thread: {error} (try again)")));
                 shared.field.end();
-                shared.deliver(FieldDelivery { result, epoch });
+                shared.deliver(FieldDelivery { result: Err(error), epoch });
             }
         }
     }

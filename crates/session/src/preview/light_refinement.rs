@@ -9,6 +9,7 @@ use crate::error::SessionError;
 use crate::light_field::{Changes, FieldOptions, LightField};
 use crate::preview::deliveries::{FinerField, RefinedLightDelivery};
 use crate::preview::exact_refinement::mean_square_difference;
+use crate::preview::helper_thread;
 use crate::preview::mailbox::Shared;
 use document::Stage;
 use focus::Focus;
@@ -93,11 +94,10 @@ impl LightRefinement {
             });
             thread_shared.deliver_refined_light(RefinedLightDelivery { result, epoch });
         };
-        match std::thread::Builder::new().name("refined light".into()).stack_size(16 << 20).spawn(work) {
+        match helper_thread::spawn("refined light", work) {
             Ok(thread) => self.thread = Some(thread),
             Err(error) => {
-                let result = Err(SessionError::TryAgain(format!("no thread: {error} (try again)")));
-                shared.deliver_refined_light(RefinedLightDelivery { result, epoch });
+                shared.deliver_refined_light(RefinedLightDelivery { result: Err(error), epoch });
             }
         }
     }

@@ -4,6 +4,7 @@
 use crate::error::SessionError;
 use crate::light_field::{Changes, FieldOptions, LightField};
 use crate::preview::deliveries::FieldDelivery;
+use crate::preview::helper_thread;
 use crate::preview::mailbox::Shared;
 use document::Stage;
 use focus::Focus;
@@ -74,11 +75,10 @@ impl SpareField {
                 catch_panics("baking a spare light field", || run_in_own_pool(Urgency::Background, make));
             thread_shared.deliver_spare(FieldDelivery { result, epoch });
         };
-        match std::thread::Builder::new().name("spare light field".into()).stack_size(16 << 20).spawn(work) {
+        match helper_thread::spawn("spare light field", work) {
             Ok(thread) => self.thread = Some(thread),
             Err(error) => {
-                let result = Err(SessionError::TryAgain(format!("no thread: {error} (try again)")));
-                shared.deliver_spare(FieldDelivery { result, epoch });
+                shared.deliver_spare(FieldDelivery { result: Err(error), epoch });
             }
         }
     }

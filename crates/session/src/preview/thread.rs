@@ -4,6 +4,7 @@ use crate::error::SessionError;
 use crate::light_field::{ApertureFit, Changes};
 use crate::preview::activity::PreviewActivity;
 use crate::preview::events::PreviewEvents;
+use crate::preview::helper_thread::STACK_BYTES;
 use crate::preview::mailbox::Shared;
 use crate::preview::picture::Preview;
 use crate::preview::request::StopScope;
@@ -40,7 +41,7 @@ impl PreviewThread {
         let (thread_shared, pool) = (shared.clone(), build_thread_pool(Urgency::Interactive)?);
         let thread = std::thread::Builder::new()
             .name("preview".into())
-            .stack_size(16 << 20)
+            .stack_size(STACK_BYTES)
             .spawn(move || {
                 pool.install(|| Worker::new(thread_shared, exact_after, light_passes, store).run())
             })

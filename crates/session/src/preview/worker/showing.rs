@@ -1,0 +1,232 @@
+//! The pictures that the preview's thread shows: without blur, of few pixels, fine, and exact.
+
+use super::Worker;
+use crate::display::PictureSource;
+use crate::error::SessionError;
+use crate::light_field::{FieldOptions, LightField, Plan, SumUpdate, spare_camera};
+use crate::preview::activity::PreviewActivity;
+use crate::preview::deliveries::ExactDelivery;
+use crate::preview::light_field_maker::FieldOrigin;
+use crate::preview::picture::{PreviewKind, Quality};
+use crate::preview::picture_sizes::{coarse_cameras, interim_camera, moving_camera, resting_camera};
+use crate::preview::pinhole::is_same_view;
+use crate::preview::presenter::{NewPicture, Relation};
+use document::Stage;
+use focus::Focus;
+use lens::{Camera, Picture};
+use light::LightQuality;
+use render::Modelled;
+use splat::Tolerance;
+use std::sync::Arc;
+use std::time::Instant;
+
+impl From<&SumUpdate> for PreviewKind {
+    fn from(update: &SumUpdate) -> Self {
+        if matches!(update, SumUpdate::Region(_)) { Self::Update } else { Self::Splat }
+    }
+}
+
+impl Worker {
+    /// Brings the fine picture up to date; then, after an edit, sees whether another light field would serve better.
+    pub(super) fn show_fine(
+        &mut self,
+        plan: Plan,
+        stage: &Arc<Stage>,
+        camera: &Camera,
+        focus: Focus,
+    ) -> Result<(), SessionError> {
+        let Some(fine) = &mut self.fine else { return Ok(()) };
+        self.shared.begin(PreviewActivity::Splatting)?;
+        let start = Instant::now();
+        let update = fine.execute_plan(plan, camera, &focus, &self.shared.quick)?;
+        let light_passes = fine.light_passes();
+        let is_new = std::mem::take(&mut self.is_new);
+        if update != SumUpdate::Unchanged || is_new {
+            let is_exact = self.tolerance == Tolerance::NONE;
+            let costs = &mut self.presenter.costs;
+            costs.light_passes = light_passes;
+            if light_passes == 0 {
+                costs.light_psnr = None;
+            }
+            if update == SumUpdate::Whole || is_new {
+                costs.viewing_psnr = None;
+                let seconds = if is_exact { &mut costs.exact_seconds } else { &mut costs.viewing_seconds };
+                *seconds = Some(fine.whole_seconds());
+            }
+            // The sum of a new one was made elsewhere.
+            let elsewhere = if is_new { fine.whole_seconds() } else { 0.0 };
+            self.presenter.show(NewPicture {
+                picture: fine.source(),
+                camera,
+                enlarged_to: None,
+                sharp_layer: None,
+                kind: PreviewKind::from(&update),
+                quality: if is_exact { Quality::Exact } else { Quality::Viewing },
+                seconds: start.elapsed().as_secs_f64() + elsewhere,
+                modelled: fine.modelled(),
+                relation: match update {
+                    SumUpdate::Region(rectangle) if !is_new => Relation::Changed(rectangle),
+                    _ => Relation::New,
+                },
+            });
+        }
+        if !self.is_edit_done || self.maker.is_at_work() || self.is_paused {
+            return Ok(());
+        }
+        self.is_edit_done = false;
+        if let Some(least_margin_px) = fine.rebake_margin_px(camera, &focus) {
+            self.coarse = None;
+            self.make_field(FieldOrigin::LoadOrBake { least_margin_px }, stage, camera, focus);
+        }
+        Ok(())
+    }
+
+    /// A picture without blur that is there at once, if the view is new. Returns whether the camera rests.
+    pub(super) fn show_pinhole(
+        &mut self,
+        stage: &Stage,
+        camera: &Camera,
+        focus: &Focus,
+    ) -> Result<bool, SessionError> {
+        if self.presenter.shown().is_some_and(|shown| is_same_view(&shown.camera, camera)) {
+            return Ok(true);
+        }
+        let camera = &moving_camera(camera, self.pinhole.pace());
+        self.shared.begin_following();
+        let start = Instant::now();
+        let traced = self.trace_pinhole(stage, camera, focus);
+        let rests = self.shared.end_following();
+        self.presenter.show(NewPicture {
+            picture: PictureSource::InMemory(&traced?),
+            camera,
+            enlarged_to: None,
+            sharp_layer: None,
+            relation: Relation::New,
+            kind: PreviewKind::Pinhole,
+            quality: Quality::Coarse,
+            seconds: start.elapsed().as_secs_f64(),
+            modelled: Modelled::default(),
+        });
+        Ok(rests)
+    }
+
+    pub(super) fn trace_pinhole(
+        &mut self,
+        stage: &Stage,
+        camera: &Camera,
+        focus: &Focus,
+    ) -> Result<Picture, SessionError> {
+        self.shared.begin(PreviewActivity::Tracing)?;
+        let Some(map) = &self.map else { return Err(SessionError::NothingOpen) };
+        self.pinhole.trace(stage, camera, (focus, map), &self.shared.quick)
+    }
+
+    /// Pictures of few pixels, each of more than the one before; begins with the best that need not be baked, and ends there
+    /// while a stroke waits for more.
+    pub(super) fn show_coarse(
+        &mut self,
+        stage: &Stage,
+        camera: &Camera,
+        focus: &Focus,
+    ) -> Result<(), SessionError> {
+        let size = [camera.width, camera.height];
+        let resting = resting_camera(camera, self.pinhole.pace());
+        let has_layer = self.map.as_ref().is_some_and(|map| self.pinhole.shows(&resting, map));
+        if !has_layer && !self.is_painting && !coarse_cameras(camera).is_empty() {
+            // What is laid over them.
+            self.trace_pinhole(stage, &resting, focus)?;
+        }
+        let can_show = |small: &Camera| self.coarse.as_ref().is_some_and(|coarse| coarse.can_show(small));
+        if let Some(interim) = interim_camera(camera).filter(can_show) {
+            return self.show_small(stage, &interim, size, focus);
+        }
+        let sizes = coarse_cameras(camera);
+        let shown = sizes.iter().rposition(can_show);
+        if shown.is_none() && self.fine.is_some() {
+            // The fine one is summed sooner than a coarse one is baked.
+            return Ok(());
+        }
+        let first = shown.unwrap_or(0);
+        let count = if self.is_painting { 1 } else { sizes.len() };
+        sizes[first..].iter().take(count).try_for_each(|small| self.show_small(stage, small, size, focus))
+    }
+
+    /// A picture of few pixels, shown in this size.
+    pub(super) fn show_small(
+        &mut self,
+        stage: &Stage,
+        small: &Camera,
+        size: [u32; 2],
+        focus: &Focus,
+    ) -> Result<(), SessionError> {
+        self.coarse.take_if(|coarse| !coarse.can_show(small));
+        let sharp_layer = self.map.as_ref().and_then(|map| self.pinhole.layer_over(small, size, map));
+        let coarse = match &mut self.coarse {
+            Some(coarse) => coarse,
+            None => {
+                self.shared.begin(PreviewActivity::RoughBaking)?;
+                let (tolerance, gpu) = (self.tolerance, self.shared.gpu());
+                let options =
+                    FieldOptions { least_margin_px: 0.0, tolerance, gpu, light: LightQuality::Rough };
+                // Rough as it is, it serves a lens that is opened, too.
+                let opened = spare_camera(small).unwrap_or_else(|| small.clone());
+                let coarse = LightField::bake(stage, &opened, focus, options, &self.shared.quick)?;
+                self.presenter.check_glare(&coarse.baked().salf);
+                self.coarse.insert(coarse)
+            }
+        };
+        self.shared.begin(PreviewActivity::Splatting)?;
+        let start = Instant::now();
+        let update = coarse.update_sum(small, focus, &self.shared.quick)?;
+        let is_another = self.presenter.shown().is_none_or(|shown| shown.camera != *small);
+        if update != SumUpdate::Unchanged || is_another {
+            self.presenter.show(NewPicture {
+                picture: coarse.source(),
+                camera: small,
+                enlarged_to: Some(size),
+                sharp_layer,
+                kind: PreviewKind::from(&update),
+                quality: Quality::Coarse,
+                seconds: start.elapsed().as_secs_f64(),
+                modelled: coarse.modelled(),
+                relation: match update {
+                    SumUpdate::Region(rectangle) => Relation::Changed(rectangle),
+                    _ => Relation::New,
+                },
+            });
+        }
+        Ok(())
+    }
+
+    /// Shows the exact picture, unless something changed while it was drawn.
+    pub(super) fn show_exact(&mut self, refined: ExactDelivery) -> Result<(), SessionError> {
+        let (exact, field) = match self.refinement.take_up(refined) {
+            Ok(drawn) => drawn,
+            Err(SessionError::Cancelled) => return Ok(()),
+            Err(error) => return Err(error),
+        };
+        let is_of_this_map = exact.map_serial == self.presenter.map_serial;
+        let is_current = is_of_this_map && self.camera.as_ref() == Some(&exact.camera);
+        let viewed = self.fine.as_ref().filter(|_| is_current);
+        let (Some(field), Some(viewed)) = (field, viewed) else { return Ok(()) };
+        if !field.is_twin_of(viewed) || !viewed.is_up_to_date(&exact.camera) {
+            return Ok(());
+        }
+        let costs = &mut self.presenter.costs;
+        costs.viewing_psnr = Some(exact.viewing_psnr);
+        costs.exact_seconds = Some(field.whole_seconds());
+        self.presenter.show(NewPicture {
+            picture: field.source(),
+            camera: &exact.camera,
+            enlarged_to: None,
+            sharp_layer: None,
+            relation: Relation::Overlay,
+            kind: PreviewKind::Splat,
+            quality: Quality::Exact,
+            seconds: exact.seconds,
+            modelled: field.modelled(),
+        });
+        self.refinement.tidy(self.fine.as_ref());
+        Ok(())
+    }
+}
