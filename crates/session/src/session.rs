@@ -3,13 +3,13 @@
 //! [`Session`] holds the state; each submodule implements one kind of work on it, in the background if it takes long.
 
 mod command_dispatch;
+mod export;
 mod files;
 mod history;
 mod job_outcome;
 mod memory;
 mod opening_preview;
 mod painting;
-mod picture_export;
 mod polling;
 mod preview_updates;
 mod queries;
@@ -22,8 +22,7 @@ mod state;
 mod timeline;
 mod verification;
 mod watched_file;
-mod web_page_export;
 
+pub use export::FullSizeFieldState;
 pub use memory::MemoryPart;
-pub use picture_export::FullSizeFieldState;
 pub use state::{Session, SessionOptions};

@@ -111,6 +111,11 @@ impl ExactRefinement {
         });
     }
 
+    /// The memory of the sum between two pictures, bytes; all else is shared with the light field worked with.
+    pub fn bytes(&self) -> usize {
+        self.field.as_ref().map_or(0, LightField::summing_bytes)
+    }
+
     /// Gives up the sum: its light field is gone.
     pub fn forget(&mut self) {
         self.field = None;

@@ -18,18 +18,19 @@ use lens::{Camera, Exposure, Picture};
 use light::{LightErrors, LightQuality};
 use progress::Stage as Share;
 use render::LightFieldStore;
-use splat::Tolerance;
+use splat::{Gpu, Tolerance};
 use std::sync::Arc;
 use std::thread::JoinHandle;
 use std::time::Instant;
 
-/// The share of a pass that the bake is; the rest is the sum.
-const BAKE_SHARE: f32 = 0.9;
+/// The share of a pass that has gone by when the picture of the one before is summed, and when the light field is baked.
+const COMPARED_SHARE: f32 = 0.05;
+const BAKED_SHARE: f32 = 0.95;
 
 /// At rest or at work on one light field.
 #[derive(Default)]
 pub(crate) struct LightRefinement {
-    /// What was made last and is not better yet than what stands.
+    /// What was made last and is not better yet than what stands: its samples alone, to compare the next one with.
     last: Option<LightField>,
     thread: Option<JoinHandle<()>>,
     /// What was made, until there is time to take it up.
@@ -113,7 +114,12 @@ impl LightRefinement {
     ///
     /// # Errors
     /// The error of the thread.
-    pub fn take_up(&mut self, epoch: u64, displayed_passes: u32) -> Result<Option<FinerField>, SessionError> {
+    pub fn take_up(
+        &mut self,
+        epoch: u64,
+        displayed_passes: u32,
+        gpu: Option<Gpu>,
+    ) -> Result<Option<FinerField>, SessionError> {
         let Some(RefinedLightDelivery { result, epoch: of_epoch }) = self.finished.take() else {
             return Ok(None);
         };
@@ -130,13 +136,18 @@ impl LightRefinement {
         if is_improvement || displayed_passes > 0 {
             return Ok(Some(finer));
         }
-        self.last = Some(finer.field);
+        self.last = Some(finer.field.at_rest(gpu));
         Ok(None)
     }
 
     /// Gives up what was made: its scene or camera is gone.
     pub fn forget(&mut self) {
         self.last = None;
+    }
+
+    /// What waits to be compared, between two passes.
+    pub fn field(&self) -> Option<&LightField> {
+        self.last.as_ref()
     }
 
     /// Waits for the thread, which was told to stop or is done.
@@ -150,23 +161,27 @@ impl LightRefinement {
 
 fn make(task: LightTask, last: Option<LightField>, shared: &Shared) -> Result<FinerField, SessionError> {
     let LightTask { stage, camera, focus, tolerance, displayed, exposure, margin_px, passes, .. } = task;
+    // Summed first and given up: while the next one is baked its picture is enough.
+    let mut summed_last = None;
+    if let Some(mut last) = last {
+        last.set_tolerance(tolerance);
+        last.update_sum(&camera, &focus, &Share::new(&shared.light, 0.0, COMPARED_SHARE))?;
+        summed_last = Some(last.fetch_picture()?.clone());
+    }
     let light = LightQuality::Refined { passes };
     let options = FieldOptions { least_margin_px: margin_px, tolerance, gpu: shared.gpu(), light };
     let start = Instant::now();
-    let mut field =
-        LightField::bake(&stage, &camera, &focus, options, &Share::new(&shared.light, 0.0, BAKE_SHARE))?;
+    let baking = Share::new(&shared.light, COMPARED_SHARE, BAKED_SHARE);
+    let mut field = LightField::bake(&stage, &camera, &focus, options, &baking)?;
     let seconds = start.elapsed().as_secs_f64();
-    let summing = Share::new(&shared.light, BAKE_SHARE, 1.0);
+    let summing = Share::new(&shared.light, BAKED_SHARE, 1.0);
     field.update_sum(&camera, &focus, &summing)?;
     field.survey(&camera, &focus);
     let mut errors = None;
-    if let Some(mut last) = last {
-        last.set_tolerance(tolerance);
-        last.update_sum(&camera, &focus, &summing)?;
+    if let Some(last) = summed_last {
         let refined = field.fetch_picture()?;
-        let mean_square_change = mean_square_difference(last.fetch_picture()?, refined, exposure);
         errors = Some(LightErrors::from_mean_squares(
-            mean_square_change,
+            mean_square_difference(&last, refined, exposure),
             mean_square_difference(&displayed, refined, exposure),
         ));
     }

@@ -38,7 +38,7 @@ pub(crate) struct Shared {
     exports: AtomicUsize,
     activity: AtomicU8,
     helper: AtomicU8,
-    /// Memory of the light fields that are worked with, and of their sums, bytes.
+    /// Memory of the light fields worked with and prepared, and of their sums, bytes.
     field_bytes: [AtomicUsize; 2],
     /// The light field that the helper makes.
     pub field: FieldWatch,
@@ -107,12 +107,12 @@ impl Shared {
         (!request.quit).then_some(request)
     }
 
-    /// Notes the memory of the light fields that are worked with, and of their sums, in bytes.
+    /// Notes the memory of the light fields worked with and prepared, and of their sums, in bytes.
     pub fn note_field_bytes(&self, bytes: [usize; 2]) {
         self.field_bytes.iter().zip(bytes).for_each(|(noted, bytes)| noted.store(bytes, Ordering::Relaxed));
     }
 
-    /// The memory of the light fields that are worked with, and of their sums, in bytes.
+    /// The memory of the light fields worked with and prepared, and of their sums, in bytes.
     pub fn field_bytes(&self) -> [usize; 2] {
         self.field_bytes.each_ref().map(|noted| noted.load(Ordering::Relaxed))
     }

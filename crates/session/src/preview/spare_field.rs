@@ -45,7 +45,12 @@ impl SpareField {
     }
 
     /// The spare.
-    pub fn field(&mut self) -> Option<&mut LightField> {
+    pub fn field(&self) -> Option<&LightField> {
+        self.field.as_ref()
+    }
+
+    /// The spare, to work with it.
+    pub fn field_mut(&mut self) -> Option<&mut LightField> {
         self.field.as_mut()
     }
 

@@ -136,9 +136,10 @@ impl Worker {
     }
 
     fn note_memory(&mut self) {
-        let spare = self.spare.field().map(|spare| spare.bytes());
-        let fields = [&self.coarse, &self.fine].into_iter().flatten().map(LightField::bytes).chain(spare);
-        self.shared.note_field_bytes(fields.fold([0, 0], |[a, b], [c, d]| [a + c, b + d]));
+        let fields = [self.coarse.as_ref(), self.fine.as_ref(), self.spare.field(), self.light.field()];
+        let exact = [0, self.refinement.bytes()];
+        let bytes = fields.into_iter().flatten().map(LightField::bytes).chain([exact]);
+        self.shared.note_field_bytes(bytes.fold([0, 0], |[a, b], [c, d]| [a + c, b + d]));
     }
 
     /// Tells the user once that the card was lost.
@@ -235,7 +236,7 @@ impl Worker {
         if let Some(tolerance) = request.tolerance.filter(|tolerance| *tolerance != self.tolerance) {
             self.tolerance = tolerance;
             (self.presenter.costs.viewing_psnr, self.presenter.costs.viewing_seconds) = (None, None);
-            let fields = [self.coarse.as_mut(), self.fine.as_mut(), self.spare.field()];
+            let fields = [self.coarse.as_mut(), self.fine.as_mut(), self.spare.field_mut()];
             fields.into_iter().flatten().for_each(|field| field.set_tolerance(tolerance));
         }
         let is_opened = request.stage.is_some();
@@ -329,7 +330,9 @@ impl Worker {
             return Ok(());
         }
         let displayed_passes = fine.light_passes();
-        let Some(finer) = self.light.take_up(self.epoch, displayed_passes)? else { return Ok(()) };
+        let Some(finer) = self.light.take_up(self.epoch, displayed_passes, self.shared.gpu())? else {
+            return Ok(());
+        };
         let FinerField { mut field, errors, seconds } = finer;
         if !field.can_show(camera) || field.light_passes() <= displayed_passes {
             return Ok(());

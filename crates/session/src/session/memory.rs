@@ -42,8 +42,17 @@ impl Session {
                 document.layers.bytes_with(&document.map),
             ),
             ("Undo", "What the undo steps keep.", undo),
-            ("Light field", "The samples that the picture is summed from, and their index.", fields),
-            ("Sums", "The picture's sums, and the hierarchy of samples.", sums),
+            (
+                "Light field",
+                "The samples that the picture is summed from, with their index; also those prepared for a wider aperture and for \
+                 better light.",
+                fields,
+            ),
+            (
+                "Sums",
+                "The picture's sums while you work, the exact ones, and the hierarchy of samples.",
+                sums,
+            ),
             ("Picture", "The picture shown.", pixels),
         ]
         .map(|(name, description, bytes)| MemoryPart { name, description, bytes })

@@ -31,7 +31,7 @@ pub enum FullSizeFieldState {
 
 /// The light fields that need not be baked.
 #[derive(Clone)]
-pub(super) struct AvailableFields {
+pub(in crate::session) struct AvailableFields {
     stage: Arc<Stage>,
     /// That of the live picture.
     preview_field: Option<Arc<Salf>>,
@@ -52,7 +52,7 @@ impl AvailableFields {
     }
 
     /// Renders a picture, exactly unless `options` say otherwise. What is baked for it is kept.
-    pub(super) fn render(
+    pub(in crate::session) fn render(
         &self,
         camera: &Camera,
         focus: &Focus,
@@ -90,7 +90,7 @@ fn covers_focus(salf: &Salf, camera: &Camera, focus: &Focus) -> bool {
 
 impl Session {
     /// The light fields of the document that need not be baked.
-    pub(super) fn available_fields(&self, stage: Arc<Stage>) -> AvailableFields {
+    pub(in crate::session) fn available_fields(&self, stage: Arc<Stage>) -> AvailableFields {
         let preview_field = self.light_field.as_ref().map(|field| field.salf.clone());
         let (store, preview) = (self.options.light_field_store.clone(), self.preview_thread.shared());
         AvailableFields { stage, preview_field, store, preview }
@@ -131,7 +131,7 @@ impl Session {
         Ok(available_fields.render(&preview.camera, &focus, &options, &progress::Unwatched)?.picture)
     }
 
-    pub(super) fn export_picture(
+    pub(in crate::session) fn export_picture(
         &mut self,
         path: PathBuf,
         export: PictureExport,
@@ -156,7 +156,7 @@ impl Session {
     }
 
     /// Writes the live picture as it is.
-    pub(super) fn export_shown(&mut self, path: PathBuf) -> Result<(), SessionError> {
+    pub(in crate::session) fn export_shown(&mut self, path: PathBuf) -> Result<(), SessionError> {
         let tone = self.tone();
         let preview = self.preview.as_ref().ok_or(SessionError::NothingOpen)?;
         if preview.quality == Quality::Coarse {
@@ -174,7 +174,7 @@ impl Session {
     }
 
     /// How the screen shows the document.
-    pub(super) fn tone(&self) -> Tone {
+    pub(in crate::session) fn tone(&self) -> Tone {
         let exposure = self.document.as_ref().map(|document| document.exposure).unwrap_or_default();
         Tone { exposure, display: self.display }
     }

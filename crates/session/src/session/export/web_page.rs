@@ -19,7 +19,7 @@ impl Session {
         Some(estimate_web_page(&document.stage.lit, &document.camera, &painted_focus(document), &options))
     }
 
-    pub(super) fn export_web_page(&mut self, path: PathBuf) -> Result<(), SessionError> {
+    pub(in crate::session) fn export_web_page(&mut self, path: PathBuf) -> Result<(), SessionError> {
         let tone = self.tone();
         let preview = self.preview_thread.shared();
         let document = self.document_mut()?;

@@ -1,0 +1,6 @@
+//! What goes out: pictures, and web pages.
+
+mod picture;
+mod web_page;
+
+pub use picture::FullSizeFieldState;
