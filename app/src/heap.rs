@@ -18,6 +18,20 @@ pub fn return_freed_blocks() {
     set(Parameter::MappedBytes, MAPPED_BYTES);
 }
 
+/// Returns the pages of all freed blocks to the system. It visits whole heaps: for a thread of its own, after large work.
+#[cfg(all(target_os = "linux", target_env = "gnu"))]
+#[allow(unsafe_code, reason = "the standard library does not reach the heap")]
+pub fn return_unused_pages() {
+    // SAFETY: it takes a number and leaves every allocated block where it is.
+    unsafe {
+        libc::malloc_trim(0);
+    }
+}
+
+/// The same elsewhere.
+#[cfg(not(all(target_os = "linux", target_env = "gnu")))]
+pub fn return_unused_pages() {}
+
 enum Parameter {
     Heaps,
     MappedBytes,

@@ -1,7 +1,7 @@
 //! The window: a thin layer of egui over the `session` crate.
 //!
 //! * [`Shell`] (`shell`): the application; runs one frame from top to bottom and performs the commands.
-//! * `chrome`: menu bar, tool bar, status line, palette, help, toasts, and the headers of the panes; they read
+//! * `chrome`: menu bar, tools, status line, palette, help, toasts, and the headers of the panes; they read
 //!   the document and emit [`Action`]s. Menus, palette, keys and help are views of the one command table in
 //!   `session`.
 //! * `dialogs`: files, unsaved changes, preset names, depth polarity.
@@ -38,7 +38,7 @@ mod widgets;
 
 pub use action::Action;
 pub use chrome::toasts::Severity;
-pub use layout::{Layout, Pane};
+pub use layout::{Arrangement, Layout, Pane};
 pub use options::WindowOptions;
 pub use shell::Shell;
 pub use tools::tool::Tool;

@@ -5,5 +5,6 @@ pub mod menu_bar;
 pub mod palette;
 pub mod status_line;
 pub mod toasts;
-pub mod tool_bar;
+pub mod tool_column;
+pub mod tool_options;
 pub mod view_header;

@@ -1,13 +1,15 @@
 //! The layout of the panels: docked side by side or in tabs, floating over the others, or one enlarged over
-//! all.
+//! all. The paint view lies beside the picture, below it, or small over its corner.
 //!
 //! Docked panels form a tree of tiles. A floating panel keeps its hidden tile, to which it returns when docked.
 //! A closed panel has a hidden tile, too.
 
+mod arrangement;
 mod pane;
 mod panes;
 mod sizes;
 
+pub use arrangement::Arrangement;
 pub use pane::Pane;
 pub use panes::{DockState, PaneContents};
 
@@ -34,11 +36,21 @@ struct Floating {
     place: [f32; 4],
 }
 
+/// The paint view over a corner of the picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Navigator {
+    /// Distance from the left and the lower edge of the picture's panel, width and height, points; `None` until it was
+    /// shown.
+    place: Option<[f32; 4]>,
+}
+
 /// The layout of the panels.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Layout {
     tree: Tree<Pane>,
     floating: Vec<Floating>,
+    #[serde(default)]
+    navigator: Option<Navigator>,
     /// The panel that is enlarged over all others.
     #[serde(skip)]
     enlarged: Option<Pane>,
@@ -63,7 +75,10 @@ impl Default for Layout {
         let root = Linear::new_binary(LinearDir::Horizontal, [left, inspector], 1.0 - inspector_share);
         let root = tiles.insert_container(root);
         let tree = Tree::new(egui::Id::unique("panels"), root, tiles);
-        Self { tree, floating: Vec::new(), enlarged: None, size: NOMINAL_SIZE }
+        let mut layout =
+            Self { tree, floating: Vec::new(), navigator: None, enlarged: None, size: NOMINAL_SIZE };
+        layout.arrange(Arrangement::Navigator);
+        layout
     }
 }
 
@@ -78,7 +93,9 @@ impl Layout {
         });
         let panes: Vec<Pane> = panes.collect();
         let is_whole = panes.len() == Pane::ALL.len() && Pane::ALL.iter().all(|pane| panes.contains(pane));
-        let has_place = layout.floating.iter().flat_map(|floating| floating.place).all(f32::is_finite);
+        let navigator_place = layout.navigator.and_then(|navigator| navigator.place).unwrap_or_default();
+        let places = layout.floating.iter().map(|floating| floating.place).chain([navigator_place]);
+        let has_place = places.flatten().all(f32::is_finite);
         let has_size = layout.size.iter().all(|side| side.is_finite() && *side > 0.0);
         let has_view = [Pane::Paint, Pane::Picture].iter().any(|view| layout.is_open(*view));
         (is_whole && has_place && has_size && has_view).then_some(layout)
@@ -98,7 +115,50 @@ impl Layout {
         let is_visible = |tile: TileId| {
             self.containers_of(tile).into_iter().chain([tile]).all(|tile| self.tree.is_visible(tile))
         };
-        self.is_floating(pane) || self.tile_with(pane).is_some_and(is_visible)
+        self.is_over_others(pane) || self.tile_with(pane).is_some_and(is_visible)
+    }
+
+    /// Whether a panel floats or is the navigator.
+    fn is_over_others(&self, pane: Pane) -> bool {
+        self.is_floating(pane) || (pane == Pane::Paint && self.navigator.is_some())
+    }
+
+    /// How the views lie.
+    pub fn arrangement(&self) -> Arrangement {
+        let direction = || {
+            let views = self.tree.tiles.parent_of(self.tile_with(Pane::Picture)?)?;
+            match self.tree.tiles.get_container(views)? {
+                Container::Linear(linear) => Some(linear.dir),
+                _ => None,
+            }
+        };
+        match (self.navigator, direction()) {
+            (Some(_), _) => Arrangement::Navigator,
+            (None, Some(LinearDir::Vertical)) => Arrangement::Stacked,
+            (None, _) => Arrangement::SideBySide,
+        }
+    }
+
+    /// Lets the views lie otherwise. Views that were moved elsewhere, such as into tabs, stay docked where they are.
+    pub fn arrange(&mut self, arrangement: Arrangement) {
+        self.enlarged = None;
+        self.floating.retain(|floating| floating.pane != Pane::Paint);
+        self.open(Pane::Picture);
+        let Some(paint) = self.tile_with(Pane::Paint) else { return };
+        if arrangement == Arrangement::Navigator {
+            self.tree.set_visible(paint, false);
+            self.navigator.get_or_insert_default();
+            return;
+        }
+        self.navigator = None;
+        self.open(Pane::Paint);
+        let Some(views) = self.tree.tiles.parent_of(paint) else { return };
+        if let Some(Tile::Container(Container::Linear(linear))) = self.tree.tiles.get_mut(views) {
+            linear.dir = match arrangement {
+                Arrangement::Stacked => LinearDir::Vertical,
+                _ => LinearDir::Horizontal,
+            };
+        }
     }
 
     /// Whether a panel is visible.
@@ -114,7 +174,7 @@ impl Layout {
             child = id;
             is_behind
         });
-        self.is_floating(pane) || (self.is_open(pane) && !is_behind)
+        self.is_over_others(pane) || (self.is_open(pane) && !is_behind)
     }
 
     /// Whether a panel floats.
@@ -130,7 +190,7 @@ impl Layout {
     /// Opens a panel, in front of the other tabs.
     pub fn open(&mut self, pane: Pane) {
         self.enlarged = self.enlarged.filter(|enlarged| *enlarged == pane);
-        if self.is_floating(pane) {
+        if self.is_over_others(pane) {
             return;
         }
         let Some(tile) = self.tile_with(pane) else { return };
@@ -182,8 +242,9 @@ impl Layout {
     /// Makes a panel float over its current place, or docks it again.
     pub fn toggle_floating(&mut self, pane: Pane) {
         self.enlarged = None;
-        if self.is_floating(pane) {
+        if self.is_over_others(pane) {
             self.floating.retain(|floating| floating.pane != pane);
+            self.navigator = self.navigator.filter(|_| pane != Pane::Paint);
             self.open(pane);
             return;
         }
@@ -216,7 +277,33 @@ impl Layout {
         sizes::fit_to_size(&mut self.tree, &mut self.size, size.into());
         let tabbed = self.tabbed_panes();
         self.tree.ui(&mut panes::TileBehavior { panes, tabbed }, ui);
+        self.navigator_ui(ui, panes);
         self.floating_ui(ui, panes);
+    }
+
+    fn navigator_ui(&mut self, ui: &Ui, panes: &mut dyn PaneContents) {
+        let room = self.tile_with(Pane::Picture).and_then(|tile| self.tree.tiles.rect(tile));
+        let (Some(navigator), Some(room)) = (&mut self.navigator, room) else { return };
+        let [left, bottom, width, height] =
+            navigator.place.unwrap_or_else(|| arrangement::navigator_place(room.size()));
+        let window = egui::Window::new(Pane::Paint.title())
+            .id(egui::Id::unique("navigator"))
+            .title_bar(false)
+            .frame(egui::Frame::window(ui.style()).inner_margin(0.0).shadow(egui::Shadow::NONE))
+            .constrain_to(room)
+            .default_pos(room.left_bottom() + vec2(left, -bottom - height))
+            .default_size([width, height])
+            .min_size(arrangement::LEAST_NAVIGATOR);
+        let shown = window.show(ui.ctx(), |ui| {
+            panes::set_accessible_name(ui, Pane::Paint);
+            panes.pane_ui(ui, Pane::Paint, DockState::Navigator);
+            ui.min_rect().size()
+        });
+        if let Some(shown) = shown {
+            let from_corner = shown.response.rect.left_bottom() - room.left_bottom();
+            let size = shown.inner.unwrap_or(vec2(width, height));
+            navigator.place = Some([from_corner.x, -from_corner.y, size.x, size.y]);
+        }
     }
 
     fn floating_ui(&mut self, ui: &Ui, panes: &mut dyn PaneContents) {
@@ -257,6 +344,29 @@ mod tests {
 
     fn shown(layout: &Layout) -> Vec<Pane> {
         Pane::ALL.into_iter().filter(|pane| layout.is_shown(*pane)).collect()
+    }
+
+    #[test]
+    fn the_paint_view_lies_over_beside_or_below_the_picture() {
+        let mut layout = Layout::default();
+        assert_eq!(layout.arrangement(), Arrangement::Navigator);
+        let views = [Pane::Paint, Pane::Picture, Pane::Inspector];
+        for arrangement in [Arrangement::Stacked, Arrangement::SideBySide, Arrangement::Navigator] {
+            layout.arrange(arrangement);
+            assert_eq!(layout.arrangement(), arrangement);
+            assert_eq!(shown(&layout), views, "{arrangement:?}");
+            let stored = serde_json::to_string(&layout).unwrap();
+            assert_eq!(Layout::from_stored(&stored).unwrap().arrangement(), arrangement);
+        }
+        layout.toggle_floating(Pane::Paint);
+        assert_eq!(layout.arrangement(), Arrangement::SideBySide, "docked again");
+        layout.toggle_floating(Pane::Paint);
+        layout.arrange(Arrangement::Navigator);
+        assert!(!layout.is_floating(Pane::Paint) && layout.is_shown(Pane::Paint));
+        layout.toggle_enlarged(Pane::Paint);
+        assert_eq!(shown(&layout), [Pane::Paint]);
+        layout.toggle_enlarged(Pane::Paint);
+        assert_eq!(shown(&layout), views);
     }
 
     #[test]

@@ -19,7 +19,8 @@ use super::chrome::menu_bar::{MenuState, is_possible, menu_bar};
 use super::chrome::palette::Palette;
 use super::chrome::status_line::{StatusNotes, status_line};
 use super::chrome::toasts::{Severity, Toasts};
-use super::chrome::tool_bar::tool_bar;
+use super::chrome::tool_column::{self, tool_column};
+use super::chrome::tool_options::tool_options;
 use super::dialogs::depth_polarity_dialog::DepthPolarityDialog;
 use super::dialogs::export_dialog::ExportDialog;
 use super::dialogs::file_dialog::{FileDialog, Purpose};
@@ -96,6 +97,8 @@ pub struct Shell {
     /// Whether the display was darkened automatically because of the scene.
     is_dimmed: bool,
     opening: Option<PathBuf>,
+    /// Whether there were jobs in the last frame.
+    had_jobs: bool,
     /// Start of the current summation, in the window's time.
     drawing_since: Option<f64>,
     player: Option<Player>,
@@ -170,6 +173,7 @@ impl Shell {
             showing_demo: false,
             is_dimmed: false,
             opening: None,
+            had_jobs: false,
             drawing_since: None,
             player: options.replay.map(Player::new),
             trace: options.trace,
@@ -483,9 +487,9 @@ impl eframe::App for Shell {
                 MenuState { document: self.session.document(), settings: &self.settings, has_jobs: working };
             menu_bar(ui, &state, &mut actions);
         });
-        Panel::top("tools")
-            .frame(bar)
-            .show(ui, |ui| tool_bar(ui, self.session.document(), self.tool, &mut actions));
+        Panel::top("tool options").frame(bar).show(ui, |ui| {
+            tool_options(ui, self.session.document(), self.tool, &mut actions);
+        });
         let drawing = self.is_drawing_noticeably(&context);
         Panel::bottom("status").frame(bar).show(ui, |ui| {
             let tip = self
@@ -494,6 +498,13 @@ impl eframe::App for Shell {
                 .map_or("Open a scene with Ctrl+O, or drop one here.", |_| self.tool.tip());
             let notes = StatusNotes { hover: self.hover_numbers(), is_drawing: drawing, tip };
             status_line(ui, &self.session, notes, &mut actions);
+        });
+        let window_width = context.content_rect().width();
+        let column = bar.inner_margin(egui::Margin::symmetric(tool_column::MARGIN, 4));
+        let panel = Panel::left("tools").frame(column).resizable(false);
+        panel.exact_size(tool_column::width(window_width)).show(ui, |ui| {
+            let with_names = tool_column::has_room_for_names(window_width);
+            tool_column(ui, self.session.document(), self.tool, with_names, &mut actions);
         });
         // The panels fill the whole area.
         CentralPanel::default().frame(egui::Frame::NONE).show(ui, |ui| self.panels(ui, &mut actions));
@@ -504,8 +515,12 @@ impl eframe::App for Shell {
         self.show_preset_name_dialog(&context);
         self.toasts.show(&context);
         self.perform_actions(actions, &context);
+        let has_jobs = !self.session.jobs().is_empty();
+        if std::mem::replace(&mut self.had_jobs, has_jobs) && !has_jobs {
+            return_memory();
+        }
         // While jobs run, their progress is updated twice a second.
-        if !self.session.jobs().is_empty() || self.session.exact_picture_progress().is_some() {
+        if has_jobs || self.session.exact_picture_progress().is_some() {
             context.request_repaint_after_secs(0.5);
         }
     }
@@ -531,4 +546,11 @@ impl eframe::App for Shell {
     fn persist_egui_memory(&self) -> bool {
         false
     }
+}
+
+/// Returns memory that finished work has left, in the background.
+fn return_memory() {
+    let thread = std::thread::Builder::new().name("memory".into());
+    // Without a thread it is returned after the next work.
+    let _ = thread.spawn(crate::heap::return_unused_pages);
 }

@@ -5,6 +5,7 @@ use render::{Display, ToneCurve};
 use serde::{Deserialize, Serialize};
 use session::KeyMap;
 use splat::Tolerance;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Number of files in the Open recent menu.
@@ -52,6 +53,8 @@ pub struct ViewSettings {
     pub key_map: KeyMap,
     /// Settings of the tools.
     pub tools: ToolSettings,
+    /// The sections of the inspector that the user opened (true) or closed, by title.
+    pub toggled_sections: BTreeMap<String, bool>,
     /// Recently opened files, the latest first.
     pub recent: Vec<PathBuf>,
     /// Whether the hint at first start was dismissed.
@@ -78,6 +81,7 @@ impl Default for ViewSettings {
             stabiliser: 0.0,
             key_map: KeyMap::default(),
             tools: ToolSettings::default(),
+            toggled_sections: BTreeMap::new(),
             recent: Vec::new(),
             hint_dismissed: false,
         }

@@ -32,13 +32,20 @@ pub struct CanvasTexel {
     pub chart: u32,
 }
 
-/// What is stored of a texel beside its point in the tree.
+/// What is stored of a texel beside its point in the tree. There are millions.
 #[derive(Clone, Copy, Debug)]
 struct StoredTexel {
-    x: u32,
-    y: u32,
-    normal: Vec3,
+    x: u16,
+    y: u16,
     area: f32,
+    /// Index of its face.
+    face: u32,
+}
+
+/// What the texels of a triangle have in common.
+#[derive(Clone, Copy, Debug)]
+struct Face {
+    normal: Vec3,
     part: u32,
     chart: u32,
 }
@@ -55,6 +62,7 @@ pub struct Canvas {
     tree: TexelTree,
     /// In the tree's order.
     texels: Vec<StoredTexel>,
+    faces: Vec<Face>,
     /// Where each texel's gutters start in `gutters`; one entry more than there are texels.
     gutter_starts: Vec<u32>,
     gutters: Vec<[u32; 2]>,
@@ -67,24 +75,21 @@ impl Canvas {
     /// The canvas of an atlas: its covered texels and, for each gutter texel, the covered texel that it copies (both
     /// as [x, y]).
     pub fn new(scene: &Scene, atlas: &Atlas, texels: &[AtlasTexel], gutters: &[[[u32; 2]; 2]]) -> Self {
-        let canvas_texel = |texel: &AtlasTexel| {
-            let triangle = texel.centroid.triangle;
-            CanvasTexel {
-                x: texel.x,
-                y: texel.y,
-                position: texel.centroid.position(scene),
-                normal: scene.area_normal(triangle).normalize_or_zero().as_vec3(),
-                area: texel.area,
-                part: scene.triangles[triangle as usize].part,
-                chart: atlas.chart_of[triangle as usize],
-            }
+        let face = |triangle: usize| Face {
+            normal: scene.area_normal(triangle as u32).normalize_or_zero().as_vec3(),
+            part: scene.triangles[triangle].part,
+            chart: atlas.chart_of[triangle],
         };
-        let part_owners = part_owners(scene);
-        Self::from_texels(
+        let placed_texel = |texel: &AtlasTexel| {
+            let AtlasTexel { x, y, centroid, area } = *texel;
+            (centroid.position(scene), StoredTexel::new([x, y], area, centroid.triangle))
+        };
+        Self::from_faces(
             [atlas.width, atlas.height],
-            texels.iter().map(canvas_texel).collect(),
+            texels.iter().map(placed_texel),
+            (0..scene.triangles.len()).map(face).collect(),
             gutters,
-            part_owners,
+            part_owners(scene),
         )
     }
 
@@ -96,16 +101,36 @@ impl Canvas {
         gutters: &[[[u32; 2]; 2]],
         part_owners: Vec<[u32; 2]>,
     ) -> Self {
-        let bounds = texels.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), texel| {
-            (low.min(texel.position), high.max(texel.position))
-        });
-        let origin = if texels.is_empty() { DVec3::ZERO } else { (bounds.0 + bounds.1) / 2.0 };
-        let points: Vec<Vec3> = texels.iter().map(|texel| (texel.position - origin).as_vec3()).collect();
+        let face = |texel: &CanvasTexel| Face { normal: texel.normal, part: texel.part, chart: texel.chart };
+        let faces = texels.iter().map(face).collect();
+        let placed_texel = |(face, texel): (u32, &CanvasTexel)| {
+            (texel.position, StoredTexel::new([texel.x, texel.y], texel.area, face))
+        };
+        let placed_texels = (0..).zip(&texels).map(placed_texel);
+        Self::from_faces(size, placed_texels, faces, gutters, part_owners)
+    }
+
+    /// A canvas of texels with their positions, and their faces.
+    fn from_faces(
+        size: [u32; 2],
+        placed_texels: impl Iterator<Item = (DVec3, StoredTexel)> + Clone,
+        faces: Vec<Face>,
+        gutters: &[[[u32; 2]; 2]],
+        part_owners: Vec<[u32; 2]>,
+    ) -> Self {
+        let positions = placed_texels.clone().map(|(position, _)| position);
+        let nothing = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        let (low, high) =
+            positions.clone().fold(nothing, |(low, high), position| (low.min(position), high.max(position)));
+        let origin = if low.x <= high.x { (low + high) / 2.0 } else { DVec3::ZERO };
+        let points: Vec<Vec3> = positions.map(|position| (position - origin).as_vec3()).collect();
         let (tree, order) = TexelTree::new(&points);
-        let texels: Vec<StoredTexel> = order.iter().map(|&i| StoredTexel::from(texels[i as usize])).collect();
+        drop(points);
+        let texels: Vec<StoredTexel> = placed_texels.map(|(_, texel)| texel).collect();
+        let texels: Vec<StoredTexel> = order.iter().map(|&i| texels[i as usize]).collect();
         let (gutter_starts, gutters) = gutters_by_texel(size, &texels, gutters);
         let largest_texel = texels.iter().map(|texel| texel.area.sqrt()).fold(0.0, f32::max);
-        Self { size, origin, tree, texels, gutter_starts, gutters, largest_texel, part_owners }
+        Self { size, origin, tree, texels, faces, gutter_starts, gutters, largest_texel, part_owners }
     }
 
     /// The same surface with other materials. `scene` must have the triangles and parts that the canvas was made
@@ -131,9 +156,11 @@ impl Canvas {
 
     /// The texel with this index. Its position is stored in f32, relative to the middle of the surface.
     pub fn texel(&self, index: usize) -> CanvasTexel {
-        let StoredTexel { x, y, normal, area, part, chart } = self.texels[index];
+        let texel = self.texels[index];
+        let [x, y] = texel.place();
+        let Face { normal, part, chart } = self.faces[texel.face as usize];
         let position = self.origin + self.tree.points()[index].as_dvec3();
-        CanvasTexel { x, y, position, normal, area: area.into(), part, chart }
+        CanvasTexel { x, y, position, normal, area: texel.area.into(), part, chart }
     }
 
     /// The index of the scene node that a texel belongs to.
@@ -157,7 +184,8 @@ impl Canvas {
         let mut map = FocusMap::new(width, height, FocusOffset::STANDARD);
         map.background = background;
         for (index, (texel, value)) in self.texels.iter().zip(values).enumerate() {
-            map.set(texel.x, texel.y, *value);
+            let [x, y] = texel.place();
+            map.set(x, y, *value);
             for &[x, y] in self.gutters_of(index) {
                 map.set(x, y, *value);
             }
@@ -212,6 +240,7 @@ impl Canvas {
     pub fn bytes(&self) -> usize {
         self.tree.bytes()
             + size_of_val(&*self.texels)
+            + size_of_val(&*self.faces)
             + size_of_val(&*self.gutter_starts)
             + size_of_val(&*self.gutters)
             + size_of_val(&*self.part_owners)
@@ -224,7 +253,7 @@ impl Canvas {
 
     /// [t, anchor, gloss, mask] of a texel.
     pub(crate) fn value(&self, map: &FocusMap, index: usize) -> [f32; 4] {
-        let StoredTexel { x, y, .. } = self.texels[index];
+        let [x, y] = self.texels[index].place();
         let [t, anchor] = map.texel(x, y);
         [t, anchor, map.gloss_at(x, y), map.mask_at(x, y)]
     }
@@ -238,8 +267,7 @@ impl Canvas {
         [t, anchor, gloss, share]: [f32; 4],
         changed: &mut Vec<[u32; 2]>,
     ) {
-        let texel = &self.texels[index];
-        for &[x, y] in [[texel.x, texel.y]].iter().chain(self.gutters_of(index)) {
+        for &[x, y] in [self.texels[index].place()].iter().chain(self.gutters_of(index)) {
             let mut differs = map.texel(x, y) != [t, anchor];
             if differs {
                 map.set(x, y, [t, anchor]);
@@ -285,10 +313,16 @@ impl Canvas {
     }
 }
 
-impl From<CanvasTexel> for StoredTexel {
-    fn from(texel: CanvasTexel) -> Self {
-        let CanvasTexel { x, y, position: _, normal, area, part, chart } = texel;
-        Self { x, y, normal, area: area as f32, part, chart }
+impl StoredTexel {
+    /// A texel in this column and row, which are below [`atlas::MAX_SIDE`], of a world area.
+    fn new([x, y]: [u32; 2], area: f64, face: u32) -> Self {
+        const { assert!(atlas::MAX_SIDE <= u16::MAX as u32) };
+        Self { x: x as u16, y: y as u16, area: area as f32, face }
+    }
+
+    /// Column and row.
+    fn place(self) -> [u32; 2] {
+        [self.x.into(), self.y.into()]
     }
 }
 
@@ -308,7 +342,7 @@ fn gutters_by_texel(
     let address = |[x, y]: [u32; 2]| y as usize * width as usize + x as usize;
     let mut index_at = vec![NOT_COVERED; width as usize * height as usize];
     for (index, texel) in (0..).zip(texels) {
-        index_at[address([texel.x, texel.y])] = index;
+        index_at[address(texel.place())] = index;
     }
     let covered_gutter = |&[gutter, source]: &[[u32; 2]; 2]| {
         let index = index_at[address(source)];

@@ -58,6 +58,7 @@ fn begins_group(id: CommandId) -> bool {
             | ShowGuides
             | ShowFocus
             | ShowAtlas
+            | PaintAsNavigator
             | EnlargePanel
             | NextToneCurve
             | KeysBlender
@@ -114,10 +115,10 @@ fn with_step_name(name: &str, what: Option<&str>) -> String {
 pub fn is_possible(id: CommandId, state: &MenuState<'_>) -> bool {
     use CommandId::*;
     match id {
-        Open | OpenCapture | OpenDemo | Quit | ResetLayout | EnlargePanel | FloatPanel | FullScreen
-        | ShowInspector | NextToneCurve | LightOrDark | ScaleUp | ScaleDown | ScaleReset | ShowGuides
-        | ShowFocusPlane | KeysBlender | KeysSubstance | KeysKrita | ImportPreset | Palette | Shortcuts
-        | ShowMessages | About => true,
+        Open | OpenCapture | OpenDemo | Quit | ResetLayout | PaintAsNavigator | PaintBeside | PaintAbove
+        | PictureAlone | EnlargePanel | FloatPanel | FullScreen | ShowInspector | NextToneCurve
+        | LightOrDark | ScaleUp | ScaleDown | ScaleReset | ShowGuides | ShowFocusPlane | KeysBlender
+        | KeysSubstance | KeysKrita | ImportPreset | Palette | Shortcuts | ShowMessages | About => true,
         SelectAll | InvertSelection | MaskFromSelection => {
             state.document.is_some_and(|document| document.selection.is_some())
         }

@@ -3,6 +3,7 @@
 use crate::window::action::PanelCommand;
 use crate::window::layout::{DockState, Pane};
 use crate::window::views::picture_view::{DisplayedPicture, PictureView};
+use crate::window::widgets::icon::{Icon, icon_button};
 use crate::window::widgets::{controls, keys};
 use crate::window::{Action, ViewSettings};
 use egui::{Button, Ui};
@@ -14,8 +15,11 @@ const WIDTH_WITH_PERCENT: f32 = 500.0;
 /// Additional width if the header shows the fixated point, points.
 const FIXATED_WIDTH: f32 = 80.0;
 
-/// Width of the panel's menu button, points.
-const MENU_WIDTH: f32 = 32.0;
+/// Width of the panel's buttons, points.
+const MENU_WIDTH: f32 = 60.0;
+
+/// Size of the button that enlarges a panel, points.
+const ENLARGE_BUTTON: egui::Vec2 = egui::vec2(22.0, 22.0);
 
 /// The header of a panel.
 pub struct ViewHeader<'a> {
@@ -41,7 +45,7 @@ impl ViewHeader<'_> {
         }
         let margin = egui::Margin::symmetric(8, 3);
         let frame = match docked {
-            DockState::Floating => egui::Frame::new().fill(ui.visuals().panel_fill),
+            DockState::Floating | DockState::Navigator => egui::Frame::new().fill(ui.visuals().panel_fill),
             _ => egui::Frame::new(),
         };
         let frame = frame.inner_margin(margin);
@@ -59,7 +63,10 @@ impl ViewHeader<'_> {
             let is_dragged = ui.allocate_ui_with_layout(egui::vec2(width, 0.0), layout, wrapped).inner;
             if docked != DockState::Tab {
                 let layout = egui::Layout::right_to_left(egui::Align::Min);
-                ui.with_layout(layout, |ui| panel_menu(ui, pane, docked, actions));
+                ui.with_layout(layout, |ui| {
+                    panel_menu(ui, pane, docked, actions);
+                    enlarge_button(ui, pane, docked, actions);
+                });
             }
             is_dragged
         };
@@ -80,18 +87,29 @@ impl ViewHeader<'_> {
                 let name = ui.add(name).on_hover_text("Drag to move this panel, also into tabs.");
                 name.drag_started()
             }
-            DockState::Enlarged => {
+            DockState::Enlarged | DockState::Navigator => {
                 ui.add(egui::Label::new(title).selectable(false));
                 false
             }
             DockState::Tab | DockState::Floating => false,
         };
         match self.pane {
+            Pane::Paint if self.docked == DockState::Navigator => false_color_slider(ui, self.settings),
             Pane::Paint => paint_header(ui, self.session, self.settings),
             Pane::Picture => picture_header(ui, self.session, self.picture, actions),
             _ => {}
         }
         is_dragged
+    }
+}
+
+/// The button that shows a panel alone, and all again.
+fn enlarge_button(ui: &mut Ui, pane: Pane, docked: DockState, actions: &mut Vec<Action>) {
+    let is_alone = docked == DockState::Enlarged;
+    let name = format!("Enlarge {}", pane.title().to_lowercase());
+    let tip = if is_alone { "Show the other panels again." } else { "Show only this panel." };
+    if icon_button(ui, Icon::Enlarge, &name, is_alone, ENLARGE_BUTTON).on_hover_text(tip).clicked() {
+        actions.push(Action::Place(pane, PanelCommand::Enlarge));
     }
 }
 
@@ -112,6 +130,9 @@ pub fn panel_menu(ui: &mut Ui, pane: Pane, docked: DockState, actions: &mut Vec<
         }
         match docked {
             DockState::Floating => entry(ui, "Dock", PanelCommand::Float, "Dock this panel again."),
+            DockState::Navigator => {
+                entry(ui, "Dock", PanelCommand::Float, "Put the paint view beside the picture.")
+            }
             DockState::Enlarged => {}
             _ => entry(ui, "Float", PanelCommand::Float, "Make this panel float over the others."),
         }
@@ -125,11 +146,7 @@ pub fn panel_menu(ui: &mut Ui, pane: Pane, docked: DockState, actions: &mut Vec<
 
 fn paint_header(ui: &mut Ui, session: &Session, settings: &mut ViewSettings) {
     ui.label("Surface").on_hover_text("The scene's own colours.");
-    let mix = egui::Slider::new(&mut settings.focus_share, 0.0..=1.0).show_value(false);
-    let tip =
-        "From the scene's own colours (V) to the colours of blur (C): near orange, sharp white, far blue.";
-    ui.spacing_mut().slider_width = 70.0;
-    controls::set_accessible_name(&ui.add(mix).on_hover_text(tip), "Share of false colour");
+    false_color_slider(ui, settings);
     ui.label("Blur").on_hover_text("The false colour of blur.");
     ui.checkbox(&mut settings.contours, "Contours")
         .on_hover_text("Lines where the blur is 1, 4 and 16 px wide.");
@@ -150,6 +167,14 @@ fn paint_header(ui: &mut Ui, session: &Session, settings: &mut ViewSettings) {
              yellow. Move the slider to Surface to see only these colours.",
         );
     }
+}
+
+fn false_color_slider(ui: &mut Ui, settings: &mut ViewSettings) {
+    let mix = egui::Slider::new(&mut settings.focus_share, 0.0..=1.0).show_value(false);
+    let tip =
+        "From the scene's own colours (V) to the colours of blur (C): near orange, sharp white, far blue.";
+    ui.spacing_mut().slider_width = 70.0;
+    controls::set_accessible_name(&ui.add(mix).on_hover_text(tip), "Share of false colour");
 }
 
 /// A menu of pictures.

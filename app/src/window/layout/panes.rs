@@ -15,6 +15,8 @@ pub enum DockState {
     Tab,
     /// Floating over the others, in a window with its title.
     Floating,
+    /// Small, over a corner of the picture.
+    Navigator,
     /// Enlarged over all others.
     Enlarged,
 }

@@ -3,7 +3,7 @@
 use super::Shell;
 use crate::window::dialogs::file_dialog::Purpose;
 use crate::window::dialogs::unsaved_changes_dialog::PendingAction;
-use crate::window::layout::{Layout, Pane};
+use crate::window::layout::{Arrangement, Layout, Pane};
 use crate::window::tools::brush_gesture::BrushParameter;
 use crate::window::views::paint_view::PaintView;
 use crate::window::views::picture_view::TRUTH_SAMPLES;
@@ -64,6 +64,10 @@ impl Shell {
             CommandId::ResetLayout => {
                 self.layout = Layout::default();
             }
+            CommandId::PaintAsNavigator => self.layout.arrange(Arrangement::Navigator),
+            CommandId::PaintBeside => self.layout.arrange(Arrangement::SideBySide),
+            CommandId::PaintAbove => self.layout.arrange(Arrangement::Stacked),
+            CommandId::PictureAlone => self.layout.toggle_enlarged(Pane::Picture),
             CommandId::EnlargePanel => self.layout.toggle_enlarged(self.hovered_pane),
             CommandId::FloatPanel => self.layout.toggle_floating(self.hovered_pane),
             CommandId::FullScreen => {

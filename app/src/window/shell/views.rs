@@ -139,10 +139,7 @@ impl Shell {
         if !self.showing_demo || self.settings.hint_dismissed || self.session.document().is_none() {
             return;
         }
-        if !self.layout.is_shown(Pane::Paint) {
-            return;
-        }
-        let rect = self.paint.rect();
+        let rect = if self.layout.is_shown(Pane::Picture) { self.picture.rect() } else { self.paint.rect() };
         // In a small view it would cover what it describes.
         if rect.height() < MIN_HEIGHT_FOR_HINT {
             return;
@@ -150,9 +147,9 @@ impl Shell {
         let area = egui::Window::new("Try this").collapsible(false).resizable(false).title_bar(false);
         area.fixed_pos(rect.left_top() + egui::vec2(12.0, 12.0)).show(context, |ui| {
             ui.set_max_width((rect.width() - 60.0).clamp(160.0, 420.0));
-            ui.label("Drag over the scene here, or over the picture: what you paint becomes sharp.");
+            ui.label("Drag over the picture: what you paint becomes sharp.");
             ui.label("Move the slider above toward near or far to paint blur instead.");
-            ui.label("Middle drag (or Alt+drag) rotates this view; Ctrl+Z undoes anything.");
+            ui.label("Middle drag (or Alt+drag) turns the camera; a right click shows more; Ctrl+Z undoes anything.");
             if ui.button("Got it").clicked() {
                 self.settings.hint_dismissed = true;
             }

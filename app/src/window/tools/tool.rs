@@ -68,9 +68,9 @@ pub enum Tool {
 }
 
 impl Tool {
-    /// The families of tools in the tool bar, left to right; the active tool of a family is shown, otherwise
+    /// The families of tools in the tool column, top to bottom; the active tool of a family is shown, otherwise
     /// its first.
-    pub const BAR: [&[Tool]; 10] = [
+    pub const FAMILIES: [&[Tool]; 10] = [
         &[Tool::Brush, Tool::Curve],
         &[Tool::Smooth, Tool::Sharpen],
         &[Tool::Clone],
@@ -127,10 +127,10 @@ impl Tool {
 
     /// The tool that a command activates, if any.
     pub fn for_command(id: CommandId) -> Option<Self> {
-        Self::BAR.into_iter().flatten().copied().find(|tool| tool.command() == id)
+        Self::FAMILIES.into_iter().flatten().copied().find(|tool| tool.command() == id)
     }
 
-    /// Its label in the tool bar: the name of its command, or a shorter one.
+    /// Its name in the window: the name of its command, or a shorter one.
     pub fn label(self) -> &'static str {
         match self {
             Tool::Reset => "Reset",

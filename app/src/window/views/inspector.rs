@@ -1,5 +1,6 @@
 //! The inspector: the settings of the document, section by section. Panels read the document and emit actions.
 
+mod bokeh_thumbnails;
 mod brush_panel;
 mod cameras_panel;
 mod curve_editor;
@@ -26,12 +27,14 @@ use document::SurfaceHit;
 use egui::{CollapsingHeader, ScrollArea, Ui};
 use project::PresetLibrary;
 use session::Session;
+use std::collections::BTreeMap;
 
 /// State of the inspector between frames.
 #[derive(Default)]
 pub struct Inspector {
     scene: scene_panel::ScenePanel,
     cameras: cameras_panel::CamerasPanel,
+    layers: layers_panel::LayersPanel,
 }
 
 /// Inputs of the inspector.
@@ -58,44 +61,65 @@ impl Inspector {
         let Inspected { session, presets, tool, hover } = inspected;
         // Narrow enough for label, slider and number at the inspector's minimum width.
         ui.spacing_mut().slider_width = 110.0;
+        let mut toggled = std::mem::take(&mut settings.toggled_sections);
         ScrollArea::vertical().auto_shrink([false; 2]).show(ui, |ui| {
             let Some(document) = session.document() else {
                 ui.add_space(8.0);
                 ui.weak("Nothing is open.");
                 return;
             };
+            let toggled = &mut toggled;
             if tool_panel::has_settings(tool) {
-                section(ui, tool.label(), true, |ui| {
+                section(ui, toggled, (tool.label(), true), |ui| {
                     tool_panel::tool_panel(ui, document, tool, &mut settings.tools, actions);
                 });
             }
-            section(ui, "Lens", true, |ui| lens_panel::lens_panel(ui, document, presets, actions));
-            section(ui, "Cameras", false, |ui| self.cameras.ui(ui, document, actions));
-            section(ui, "Focus", true, |ui| focus_panel::focus_panel(ui, document, actions));
-            section(ui, "Layers", true, |ui| layers_panel::layers_panel(ui, document, actions));
-            section(ui, "Brush", true, |ui| {
+            section(ui, toggled, ("Lens", true), |ui| lens_panel::lens_panel(ui, document, presets, actions));
+            section(ui, toggled, ("Cameras", false), |ui| self.cameras.ui(ui, document, actions));
+            section(ui, toggled, ("Focus", true), |ui| focus_panel::focus_panel(ui, document, actions));
+            section(ui, toggled, ("Layers", true), |ui| self.layers.ui(ui, document, actions));
+            section(ui, toggled, ("Brush", true), |ui| {
                 brush_panel::brush_panel(ui, document, settings, presets, hover, actions);
             });
-            section(ui, "Picture", true, |ui| {
+            section(ui, toggled, ("Picture", true), |ui| {
                 lens_panel::picture_panel(ui, session, document, settings, actions);
             });
             if !document.scene().variants.is_empty() {
-                section(ui, "Material variants", true, |ui| {
+                section(ui, toggled, ("Material variants", true), |ui| {
                     variant_panel::variant_panel(ui, document, actions);
                 });
             }
-            section(ui, "World", true, |ui| world_panel::world_panel(ui, document, actions));
-            section(ui, "Scene", false, |ui| self.scene.ui(ui, document, actions));
-            section(ui, "Statistics", false, |ui| modelled_panel::modelled_panel(ui, session, document));
-            section(ui, "Memory", false, |ui| memory_panel::memory_panel(ui, session));
-            section(ui, "History", false, |ui| history_panel::history_panel(ui, document, actions));
+            section(ui, toggled, ("World", true), |ui| world_panel::world_panel(ui, document, actions));
+            section(ui, toggled, ("Scene", false), |ui| self.scene.ui(ui, document, actions));
+            section(ui, toggled, ("Statistics", false), |ui| {
+                modelled_panel::modelled_panel(ui, session, document)
+            });
+            section(ui, toggled, ("Memory", false), |ui| memory_panel::memory_panel(ui, session));
+            section(ui, toggled, ("History", false), |ui| {
+                history_panel::history_panel(ui, document, actions)
+            });
         });
+        settings.toggled_sections = toggled;
     }
 }
 
-fn section(ui: &mut Ui, title: &str, open: bool, add: impl FnOnce(&mut Ui)) {
-    CollapsingHeader::new(egui::RichText::new(title).strong()).default_open(open).show_unindented(ui, |ui| {
+/// Sections that the user opened or closed: their title, and whether it is open.
+type ToggledSections = BTreeMap<String, bool>;
+
+/// A section that is open or closed as the user left it, at first as `open` says.
+fn section(
+    ui: &mut Ui,
+    toggled: &mut ToggledSections,
+    (title, open): (&str, bool),
+    add: impl FnOnce(&mut Ui),
+) {
+    let is_open = toggled.get(title).copied().unwrap_or(open);
+    let header = CollapsingHeader::new(egui::RichText::new(title).strong()).default_open(is_open);
+    let shown = header.show_unindented(ui, |ui| {
         add(ui);
         ui.add_space(6.0);
     });
+    if shown.header_response.clicked() {
+        toggled.insert(title.into(), !is_open);
+    }
 }

@@ -9,6 +9,7 @@ mod wipe;
 
 pub use displayed_picture::DisplayedPicture;
 
+use super::brush_hud::BrushHud;
 use super::paint_view::{OrbitCamera, PIVOT_AT_INFINITY, paint_hint};
 use crate::window::graphics::blit::{Blitter, Filter};
 use crate::window::tools::active_tool::ActiveTool;
@@ -61,6 +62,7 @@ pub struct PictureView {
     pub verify: Verify,
     zoom: Zoom,
     stroke: StrokeInput,
+    hud: BrushHud,
     hover: Option<SurfaceHit>,
     highlight: RegionHighlight,
     /// The shot camera while a drag moves it.
@@ -83,6 +85,7 @@ impl PictureView {
             verify: Verify::default(),
             zoom: Zoom::Fit,
             stroke: StrokeInput::default(),
+            hud: BrushHud::default(),
             hover: None,
             highlight: RegionHighlight::default(),
             orbit: None,
@@ -140,6 +143,11 @@ impl PictureView {
             Zoom::Free { middle, .. } => middle,
         };
         self.zoom = Zoom::Free { scale: 1.0 / pixels_per_point, middle };
+    }
+
+    /// Rectangle of the view on screen.
+    pub fn rect(&self) -> Rect {
+        self.rect
     }
 
     /// Rectangle of the picture on screen.
@@ -220,7 +228,8 @@ impl PictureView {
         let screen = |at: DVec2| image.min + vec2(at.x as f32, at.y as f32) * image.size();
         let view = DragView { frame, position: &position, screen: &screen };
         self.verify.select(ui, &response, image, position, actions);
-        if !(is_wiping || is_selecting) || session.is_painting() {
+        let is_for_tool = !(is_wiping || is_selecting || BrushHud::is_open(&response));
+        if is_for_tool || session.is_painting() {
             actions.extend(self.stroke.update(ui, &response, session, active_tool, &view));
         }
         self.stroke.paint(ui, rect, session, active_tool, &view);
@@ -232,6 +241,7 @@ impl PictureView {
         if let (Some(hit), Some(ring)) = (self.hover, active_tool.ring) {
             brush_ring::paint(&painter, &hit, ring, |point| self.screen_from_world(&document.camera, point));
         }
+        self.hud.show(&response, session, self.hover, actions);
         if response.hovered() && !is_wiping {
             ui.set_cursor_icon(egui::CursorIcon::Crosshair);
         }
@@ -256,7 +266,9 @@ impl PictureView {
         let place = if shown.is_pair() { self.whole_rect() } else { self.image };
         let drawn = self.blitter.as_ref().filter(|_| !is_other).and_then(|blitter| {
             let drawn = self.textures.texture(blitter, session, shown, tone)?;
-            let squares = place.width() > SQUARES_FROM * drawn.size()[0] as f32;
+            // A rough picture is enlarged smoothly; what is looked at from near shows its pixels.
+            let full_width = session.document().map_or(drawn.size()[0], |document| document.camera.width);
+            let squares = self.image.width() > SQUARES_FROM * full_width as f32;
             let filter = if squares { Filter::Nearest } else { Filter::Linear };
             blitter.paint(&painter, drawn, place, filter);
             Some(())
@@ -435,9 +447,10 @@ impl PictureView {
             }
             _ => return,
         };
-        let at = self.rect.left_bottom() + vec2(8.0, -6.0);
+        // The paint view may lie over the left corner.
+        let at = self.rect.right_bottom() + vec2(-8.0, -6.0);
         let font = egui::FontId::proportional(12.0);
-        ui.painter().text(at, egui::Align2::LEFT_BOTTOM, text, font, egui::Color32::from_gray(200));
+        ui.painter().text(at, egui::Align2::RIGHT_BOTTOM, text, font, egui::Color32::from_gray(200));
     }
 }
 

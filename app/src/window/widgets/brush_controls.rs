@@ -1,9 +1,10 @@
-//! What the tool bar and the inspector share of the brush: its blur slider, its limits and its tooltips.
+//! What the row of tool options and the inspector share of the brush: its blur slider, its limits and its tooltips.
 
+use super::controls;
 use super::focus_slider::focus_slider;
 use crate::window::Action;
 use document::Document;
-use egui::Ui;
+use egui::{Slider, Ui};
 use focus::Brush;
 use lens::{FocusOffset, Optics};
 use session::Command;
@@ -29,6 +30,39 @@ pub fn largest_radius(document: &Document) -> f64 {
     let (low, high) = document.stage.bounds;
     let diagonal = (high - low).length();
     if diagonal > 0.0 && diagonal.is_finite() { diagonal / 4.0 } else { 1.0 }
+}
+
+/// A slider for the brush's radius, with its label before it.
+pub fn size_slider(ui: &mut Ui, brush: &mut Brush, largest: f64) {
+    let slider = Slider::new(&mut brush.radius, largest * 1e-3..=largest).logarithmic(true);
+    labelled_slider(ui, "Size", SIZE_TIP, slider, "Brush size");
+}
+
+/// A slider for its strength, with its label before it.
+pub fn strength_slider(ui: &mut Ui, brush: &mut Brush) {
+    labelled_slider(
+        ui,
+        "Strength",
+        STRENGTH_TIP,
+        Slider::new(&mut brush.strength, 0.0..=1.0),
+        "Brush strength",
+    );
+}
+
+/// A slider for its hardness, with its label before it.
+pub fn hardness_slider(ui: &mut Ui, brush: &mut Brush) {
+    labelled_slider(
+        ui,
+        "Hardness",
+        HARDNESS_TIP,
+        Slider::new(&mut brush.hardness, 0.0..=1.0),
+        "Brush hardness",
+    );
+}
+
+fn labelled_slider(ui: &mut Ui, label: &str, tip: &str, slider: Slider<'_>, name: &str) {
+    ui.label(label).on_hover_text(tip);
+    controls::set_accessible_name(&ui.add(slider.show_value(false)).on_hover_text(tip), name);
 }
 
 /// The signed circle of confusion of an offset t, px: in the focus plane, or at any depth with anchor 1.

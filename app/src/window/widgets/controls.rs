@@ -1,10 +1,21 @@
 //! Rows of the inspector (a label, a control, and a tooltip on both), accessible names, and formatted numbers.
 
 use crate::window::Action;
-use egui::{DragValue, Response, Ui, WidgetText};
+use crate::window::widgets::icon::Icon;
+use egui::{Atom, Button, DragValue, Response, Slider, Ui, WidgetText, vec2};
 use session::Command;
 
-/// Adds a row to a two-column grid: a label, then the control, which takes the label as its accessible name.
+/// Width of the labels of rows, points.
+const LABEL_WIDTH: f32 = 92.0;
+
+/// Most that the fields of rows are wide, points.
+const LARGEST_FIELD: f32 = 260.0;
+
+/// Width of the number behind a slider, and of one of several fields in a row, points.
+const SMALL_FIELD: f32 = 52.0;
+
+/// Adds a row to a two-column grid: a label, then the control, which takes the label as its accessible name. A number fills the
+/// column; several controls are put into [`beside`].
 pub fn row(
     ui: &mut Ui,
     label: impl Into<WidgetText>,
@@ -12,14 +23,37 @@ pub fn row(
     control: impl FnOnce(&mut Ui) -> Response,
 ) -> Response {
     let label = ui.label(label).on_hover_text(tooltip);
+    let field = ui.spacing().combo_width;
+    let before = std::mem::replace(&mut ui.spacing_mut().interact_size.x, field);
     let response = control(ui).labelled_by(label.id).on_hover_text(tooltip);
+    ui.spacing_mut().interact_size.x = before;
     ui.end_row();
     response
 }
 
-/// A two-column grid for [`row`]s.
+/// A two-column grid for [`row`]s, whose fields are equally wide.
 pub fn rows(ui: &mut Ui, id: &str, add: impl FnOnce(&mut Ui)) {
-    egui::Grid::new(id).num_columns(2).min_col_width(84.0).spacing([8.0, 5.0]).show(ui, add);
+    let spacing = vec2(8.0, 5.0);
+    let field = (ui.available_width() - LABEL_WIDTH - spacing.x).clamp(SMALL_FIELD, LARGEST_FIELD);
+    egui::Grid::new(id).num_columns(2).min_col_width(LABEL_WIDTH).spacing(spacing).show(ui, |ui| {
+        ui.spacing_mut().combo_width = field;
+        ui.spacing_mut().slider_width = field - SMALL_FIELD - ui.spacing().item_spacing.x;
+        add(ui);
+    });
+}
+
+/// Several controls in one [`row`].
+pub fn beside<R>(ui: &mut Ui, add: impl FnOnce(&mut Ui) -> R) -> egui::InnerResponse<R> {
+    ui.horizontal(|ui| {
+        ui.spacing_mut().interact_size.x = SMALL_FIELD;
+        add(ui)
+    })
+}
+
+/// A slider with its number in a [`row`].
+pub fn slider(ui: &mut Ui, slider: Slider<'_>) -> Response {
+    ui.spacing_mut().interact_size.x = SMALL_FIELD;
+    ui.add(slider)
 }
 
 /// Finishes an edit when its control is released, so that a drag is one undo step.
@@ -43,7 +77,20 @@ pub fn set_accessible_name(response: &Response, name: &str) {
 /// A selectable row of a list, as wide as the list and left-aligned.
 pub fn list_row(ui: &mut Ui, chosen: bool, text: &str) -> Response {
     let layout = egui::Layout::top_down_justified(egui::Align::LEFT);
-    ui.with_layout(layout, |ui| ui.add(egui::Button::selectable(chosen, text))).inner
+    ui.with_layout(layout, |ui| ui.add(Button::selectable(chosen, text))).inner
+}
+
+/// An entry of a menu with an icon before its name and its shortcut behind it.
+pub fn icon_entry(ui: &mut Ui, icon: Icon, name: &str, shortcut: String) -> Response {
+    let side = ui.text_style_height(&egui::TextStyle::Button);
+    let room = egui::IdSalt::new("icon");
+    let button = Button::new((Atom::custom(room, egui::Vec2::splat(side)), name)).shortcut_text(shortcut);
+    let shown = button.atom_ui(ui);
+    if let Some(rect) = shown.rect(room) {
+        let color = ui.style().interact(&shown.response).text_color();
+        icon.paint(ui.painter(), rect, color);
+    }
+    shown.response
 }
 
 /// A length in metres with three significant digits.

@@ -1,4 +1,4 @@
-//! The theme: neutral greys, without colour near the picture that would bias its perception.
+//! The theme: neutral greys and one accent colour, which marks what is chosen and the main action; nothing else near the picture is coloured.
 
 use egui::{Color32, CornerRadius, Stroke, Theme, Visuals};
 
@@ -37,14 +37,15 @@ pub fn apply_theme(context: &egui::Context, light: bool, scale: f32) {
     context.set_zoom_factor(scale.clamp(0.5, 3.0));
 }
 
-/// Grey levels from window to text, and the two message colours.
+/// Grey levels from window to text, the accent, and the two message colours.
 struct GreyLevels {
     panel: u8,
     window: u8,
     inset: u8,
     faint: u8,
     outline: u8,
-    selected: [u8; 2],
+    /// Fill of what is chosen.
+    accent: Color32,
     /// De-emphasised text.
     weak: u8,
     /// Fill and text of widgets: noninteractive, inactive, hovered, active, open.
@@ -60,7 +61,7 @@ fn dark() -> Visuals {
         faint: 43,
         outline: 56,
         weak: 150,
-        selected: [96, 250],
+        accent: Color32::from_rgb(54, 102, 166),
         widgets: [[38, 190], [58, 215], [74, 245], [92, 255], [52, 230]],
         messages: [WARNING, ERROR],
     };
@@ -75,7 +76,7 @@ fn light() -> Visuals {
         faint: 208,
         outline: 176,
         weak: 86,
-        selected: [150, 0],
+        accent: Color32::from_rgb(36, 92, 170),
         widgets: [[214, 50], [196, 25], [182, 0], [164, 0], [204, 15]],
         messages: [Color32::from_rgb(122, 80, 0), Color32::from_rgb(160, 30, 10)],
     };
@@ -91,8 +92,8 @@ fn visuals(mut visuals: Visuals, greys: &GreyLevels) -> Visuals {
     visuals.window_stroke = Stroke::new(1.0, grey(greys.outline));
     visuals.window_corner_radius = CornerRadius::same(4);
     visuals.menu_corner_radius = CornerRadius::same(4);
-    visuals.selection.bg_fill = grey(greys.selected[0]);
-    visuals.selection.stroke = Stroke::new(1.0, grey(greys.selected[1]));
+    visuals.selection.bg_fill = greys.accent;
+    visuals.selection.stroke = Stroke::new(1.0, Color32::WHITE);
     visuals.hyperlink_color = grey(greys.widgets[1][1]);
     [visuals.warn_fg_color, visuals.error_fg_color] = greys.messages;
     visuals.weak_text_color = Some(grey(greys.weak));

@@ -26,7 +26,7 @@ pub fn brush_panel(
         let current = &document.brush;
         preset_row(ui, presets, PresetKind::Brush, |preset| preset.matches_brush(current), actions);
         row(ui, "Size", SIZE_TIP, |ui| {
-            ui.horizontal(|ui| {
+            controls::beside(ui, |ui| {
                 let largest = largest_radius(document);
                 let value = proportional_value(&mut brush.radius, largest * 1e-4..=largest)
                     .custom_formatter(format_number);
@@ -43,14 +43,17 @@ pub fn brush_panel(
             .inner
         });
         row(ui, "Strength", STRENGTH_TIP, |ui| {
-            ui.add(Slider::new(&mut brush.strength, 0.0..=1.0).max_decimals(2))
+            controls::slider(ui, Slider::new(&mut brush.strength, 0.0..=1.0).max_decimals(2))
         });
         let tip =
             "The share of the strength applied by one dab: below 1 a stroke builds up where dabs overlap.";
-        row(ui, "Flow", tip, |ui| ui.add(Slider::new(&mut brush.flow, 0.01..=1.0).max_decimals(2)));
+        row(ui, "Flow", tip, |ui| {
+            controls::slider(ui, Slider::new(&mut brush.flow, 0.01..=1.0).max_decimals(2))
+        });
         row(ui, "Hardness", HARDNESS_TIP, |ui| {
             let drawn = brush.drawn_falloff.is_some();
-            ui.add_enabled(!drawn, Slider::new(&mut brush.hardness, 0.0..=1.0).max_decimals(2))
+            let slider = Slider::new(&mut brush.hardness, 0.0..=1.0).max_decimals(2);
+            ui.add_enabled_ui(!drawn, |ui| controls::slider(ui, slider)).inner
         });
         let tip = "How the strength falls off from the centre to the rim: by hardness, or as drawn.";
         row(ui, "Falloff", tip, |ui| falloff_choice(ui, &mut brush));
@@ -64,7 +67,7 @@ pub fn brush_panel(
             let modes = [(BrushMode::Set, "Set"), (BrushMode::Add, "Add"), (BrushMode::Subtract, "Subtract")];
             let name =
                 modes.iter().find(|(mode, _)| *mode == brush.mode).map_or("by the tool", |(_, name)| name);
-            let combo = ComboBox::from_id_salt("brush mode").selected_text(name).width(110.0);
+            let combo = ComboBox::from_id_salt("brush mode").selected_text(name);
             combo
                 .show_ui(ui, |ui| {
                     for (mode, name) in modes {
@@ -85,7 +88,7 @@ pub fn brush_panel(
             ];
             let name =
                 channels.iter().find(|(channel, _)| *channel == brush.channels).map_or("", |(_, name)| name);
-            let combo = ComboBox::from_id_salt("brush channels").selected_text(name).width(130.0);
+            let combo = ComboBox::from_id_salt("brush channels").selected_text(name);
             combo
                 .show_ui(ui, |ui| {
                     for (channel, name) in channels {
@@ -127,12 +130,12 @@ pub fn brush_panel(
         let tip = "How far light pen pressure reduces the strength: 0 not at all, 1 down to nothing. A mouse \
                    has full pressure.";
         row(ui, "Pen: strength", tip, |ui| {
-            ui.add(Slider::new(&mut brush.pressure_to_strength, 0.0..=1.0).max_decimals(2))
+            controls::slider(ui, Slider::new(&mut brush.pressure_to_strength, 0.0..=1.0).max_decimals(2))
         });
         let tip = "How far light pen pressure reduces the size: 0 not at all, 1 down to nothing. A mouse has \
                    full pressure.";
         row(ui, "Pen: size", tip, |ui| {
-            ui.add(Slider::new(&mut brush.pressure_to_radius, 0.0..=1.0).max_decimals(2))
+            controls::slider(ui, Slider::new(&mut brush.pressure_to_radius, 0.0..=1.0).max_decimals(2))
         });
     });
     push_brush_change(document, brush, actions);
@@ -143,7 +146,7 @@ fn mirror_rows(ui: &mut Ui, document: &Document, brush: &mut Brush) {
     let tip =
         "Also paint the mirror image of every stroke: X left and right, Y up and down, Z front and back.";
     row(ui, "Mirror", tip, |ui| {
-        ui.horizontal(|ui| {
+        controls::beside(ui, |ui| {
             let (low, high) = document.stage.bounds;
             let middle = ((low + high) / 2.0).to_array();
             let was_off = brush.mirror == [false; 3];
@@ -170,7 +173,7 @@ fn mirror_rows(ui: &mut Ui, document: &Document, brush: &mut Brush) {
     };
     let mut pivot = previous_pivot;
     row(ui, "Mirror at", tip, |ui| {
-        let combo = ComboBox::from_id_salt("mirror at").selected_text(pivot.name()).width(150.0);
+        let combo = ComboBox::from_id_salt("mirror at").selected_text(pivot.name());
         let add = |ui: &mut Ui| {
             let choice = combo.show_ui(ui, |ui| {
                 for choice in [MirrorPivot::Scene, MirrorPivot::World, MirrorPivot::Object] {

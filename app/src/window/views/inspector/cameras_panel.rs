@@ -1,17 +1,20 @@
 //! The bookmarked cameras.
 
 use crate::window::Action;
-use crate::window::widgets::controls::set_accessible_name;
-use crate::window::widgets::keys;
+use crate::window::widgets::rename_field::RenameField;
+use crate::window::widgets::{controls, keys};
 use document::{BookmarkEdit, Document};
-use egui::{Button, TextEdit, Ui};
+use egui::Ui;
 use session::{Command, CommandId};
 
-/// State of the list: the name that is being typed.
+/// State of the list.
 #[derive(Default)]
 pub struct CamerasPanel {
-    renaming: Option<(usize, String)>,
+    renaming: RenameField,
 }
+
+/// Width of the field for a new name, points.
+const NAME_WIDTH: f32 = 160.0;
 
 impl CamerasPanel {
     /// Draws the list.
@@ -21,48 +24,35 @@ impl CamerasPanel {
             actions.push(CommandId::BookmarkCamera.into());
         }
         for (number, bookmark) in document.bookmarks().enumerate() {
-            ui.horizontal(|ui| {
-                match &mut self.renaming {
-                    Some((renamed, name)) if *renamed == number => {
-                        let field = ui.add(TextEdit::singleline(name).desired_width(120.0));
-                        set_accessible_name(&field, "Name of the bookmark");
-                        if field.lost_focus() {
-                            actions.push(
-                                Command::EditBookmarks(BookmarkEdit::Rename(number, name.clone())).into(),
-                            );
-                            self.renaming = None;
-                        } else {
-                            field.request_focus();
-                        }
-                    }
-                    _ => {
-                        let is_shown = bookmark.camera == document.camera;
-                        let tip = "Click to go there; double-click to rename it.";
-                        let go = ui.add(Button::selectable(is_shown, &bookmark.name)).on_hover_text(tip);
-                        if go.double_clicked() {
-                            self.renaming = Some((number, bookmark.name.clone()));
-                        } else if go.clicked() && !is_shown {
-                            actions.push(Command::GoToBookmark(number).into());
-                        }
-                    }
+            if self.renaming.is_for(number) {
+                if let Some(name) = self.renaming.show(ui, NAME_WIDTH, "Name of the bookmark") {
+                    actions.push(Command::EditBookmarks(BookmarkEdit::Rename(number, name)).into());
                 }
-                let mut edit_button = |label: &str, tip: &str, edit: BookmarkEdit| {
-                    let button = ui.small_button(label).on_hover_text(tip);
-                    set_accessible_name(&button, &format!("{label} {}", bookmark.name));
-                    if button.clicked() {
+                continue;
+            }
+            let is_shown = bookmark.camera == document.camera;
+            let tip = "Click to go there; double-click to rename it; right-click for more.";
+            let go = controls::list_row(ui, is_shown, &bookmark.name).on_hover_text(tip);
+            if go.double_clicked() {
+                self.renaming.begin(number, &bookmark.name);
+            } else if go.clicked() && !is_shown {
+                actions.push(Command::GoToBookmark(number).into());
+            }
+            go.context_menu(|ui| {
+                if ui.button("Rename").clicked() {
+                    self.renaming.begin(number, &bookmark.name);
+                    ui.close();
+                }
+                let mut entry = |label: &str, tip: &str, edit: BookmarkEdit| {
+                    if ui.button(label).on_hover_text(tip).clicked() {
                         actions.push(Command::EditBookmarks(edit).into());
+                        ui.close();
                     }
                 };
-                edit_button(
-                    "Update",
-                    "Keep the camera as it is now in its place.",
-                    BookmarkEdit::Update(number),
-                );
-                edit_button(
-                    "Remove",
-                    "Forget it; the camera stays where it is.",
-                    BookmarkEdit::Remove(number),
-                );
+                let tip = "Keep the camera as it is now in its place.";
+                entry("Update", tip, BookmarkEdit::Update(number));
+                let tip = "Forget it; the camera stays where it is.";
+                entry("Remove", tip, BookmarkEdit::Remove(number));
             });
         }
     }

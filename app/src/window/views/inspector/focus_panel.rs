@@ -44,7 +44,7 @@ pub fn focus_panel(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) 
         let tip = "What the blur is relative to. Lens: it still varies with depth and focus distance. Point: \
                    this blur, wherever the camera focuses. Key: A.";
         row(ui, "Anchor", tip, |ui| {
-            ui.horizontal(|ui| {
+            controls::beside(ui, |ui| {
                 for (anchor, label) in [(0.0, "Lens"), (1.0, "Point")] {
                     if ui
                         .add(Button::selectable(brush.target.anchor == anchor, label))

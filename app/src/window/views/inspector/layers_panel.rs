@@ -4,48 +4,127 @@ use super::curve_editor::curve_editor;
 use super::plane_editor::plane_editor;
 use crate::window::Action;
 use crate::window::widgets::controls::{self, finish_edit, row, rows};
+use crate::window::widgets::icon::{Icon, icon_button};
 use crate::window::widgets::keys;
+use crate::window::widgets::rename_field::RenameField;
 use document::Document;
-use egui::{Button, ComboBox, Slider, TextEdit, Ui};
+use egui::{Button, ComboBox, Slider, TextEdit, Ui, Vec2, vec2};
 use focus::{Adjustment, BlendMode, FocusLayer, LayerEdit};
 use session::{Command, CommandId};
 
-/// Draws the list of layers and the settings of the active one; adds what the user requests to `actions`.
-pub fn layers_panel(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) {
-    let layers = document.layers.layers();
-    let active = document.layers.active_index();
-    for (index, layer) in layers.iter().enumerate().rev() {
-        ui.horizontal(|ui| {
-            let mut visible = layer.is_visible;
-            let tip = if visible { "Hide this layer." } else { "Show this layer." };
-            let shown = ui.checkbox(&mut visible, "").on_hover_text(tip);
-            controls::set_accessible_name(&shown, &format!("Show {}", layer.name));
-            if shown.changed() {
-                actions.push(Command::EditLayers(LayerEdit::Visible(index, visible)).into());
+/// State of the list.
+#[derive(Default)]
+pub struct LayersPanel {
+    renaming: RenameField,
+}
+
+/// What the menu of a layer offers.
+const MENU: [CommandId; 8] = [
+    CommandId::DuplicateLayer,
+    CommandId::RaiseLayer,
+    CommandId::LowerLayer,
+    CommandId::AddMask,
+    CommandId::RemoveMask,
+    CommandId::MaskFromSelection,
+    CommandId::ResetMap,
+    CommandId::RemoveLayer,
+];
+
+impl LayersPanel {
+    /// Draws the list of layers and the settings of the active one; adds what the user requests to `actions`.
+    pub fn ui(&mut self, ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) {
+        let layers = document.layers.layers();
+        let active = document.layers.active_index();
+        for (index, layer) in layers.iter().enumerate().rev() {
+            ui.horizontal(|ui| {
+                visibility_button(ui, index, layer, actions);
+                self.layer_row(ui, document, index, layer, actions);
+            });
+        }
+        ui.horizontal_wrapped(|ui| {
+            for (id, label) in [
+                (CommandId::AddLayer, "+ Layer"),
+                (CommandId::AddDepthCurve, "+ Depth curve"),
+                (CommandId::AddFocalPlane, "+ Focal plane"),
+            ] {
+                if ui.button(label).on_hover_text(keys::command_tooltip(ui.ctx(), id)).clicked() {
+                    actions.push(id.into());
+                }
             }
-            let chosen = controls::list_row(ui, index == active, &layer_title(layer));
-            if chosen.on_hover_text("Paint on this layer.").clicked() {
-                actions.push(Command::ActivateLayer(index).into());
+            for (id, icon) in [
+                (CommandId::DuplicateLayer, Icon::Duplicate),
+                (CommandId::RaiseLayer, Icon::MoveUp),
+                (CommandId::LowerLayer, Icon::MoveDown),
+                (CommandId::RemoveLayer, Icon::Delete),
+            ] {
+                let is_possible = is_layer_command_possible(id, document);
+                let button = |ui: &mut Ui| icon_button(ui, icon, id.info().name, false, ICON_BUTTON);
+                let response = ui.add_enabled_ui(is_possible, button).inner;
+                let tip = format!("{}: {}", id.info().name, keys::command_tooltip(ui.ctx(), id));
+                if response.on_hover_text(&tip).on_disabled_hover_text(tip).clicked() {
+                    actions.push(id.into());
+                }
+            }
+        });
+        layer_settings(ui, document, active, &layers[active], actions);
+    }
+
+    /// The row of a layer: a click makes it the active one, a double click renames it, a right click shows what can be done.
+    fn layer_row(
+        &mut self,
+        ui: &mut Ui,
+        document: &Document,
+        index: usize,
+        layer: &FocusLayer,
+        actions: &mut Vec<Action>,
+    ) {
+        if self.renaming.is_for(index) {
+            if let Some(name) = self.renaming.show(ui, f32::INFINITY, "New name of the layer") {
+                actions.push(Command::EditLayers(LayerEdit::Rename(index, name)).into());
+                actions.push(Command::FinishEdit.into());
+            }
+            return;
+        }
+        let row = controls::list_row(ui, index == document.layers.active_index(), &layer_title(layer));
+        let row = row.on_hover_text("Paint on this layer. Double-click to rename it; right-click for more.");
+        if row.double_clicked() {
+            self.renaming.begin(index, &layer.name);
+        } else if row.clicked() || row.secondary_clicked() {
+            actions.push(Command::ActivateLayer(index).into());
+        }
+        row.context_menu(|ui| {
+            if ui.button("Rename").on_hover_text("Give this layer another name.").clicked() {
+                self.renaming.begin(index, &layer.name);
+                ui.close();
+            }
+            for id in MENU {
+                let button = Button::new(id.info().name).shortcut_text(keys::shortcut_text(ui.ctx(), id));
+                let has_selection = id != CommandId::MaskFromSelection || document.selection.is_some();
+                let is_possible = has_selection && is_layer_command_possible(id, document);
+                let tip = id.info().tooltip;
+                let entry = ui.add_enabled(is_possible, button).on_hover_text(tip);
+                if entry.on_disabled_hover_text(tip).clicked() {
+                    actions.push(id.into());
+                    ui.close();
+                }
             }
         });
     }
-    ui.horizontal_wrapped(|ui| {
-        let mut button = |id: CommandId, label: &str| {
-            let response = ui.add_enabled(is_layer_command_possible(id, document), Button::new(label));
-            let tip = keys::command_tooltip(ui.ctx(), id);
-            if response.on_hover_text(&tip).on_disabled_hover_text(tip).clicked() {
-                actions.push(id.into());
-            }
-        };
-        button(CommandId::AddLayer, "+ Layer");
-        button(CommandId::AddDepthCurve, "+ Depth curve");
-        button(CommandId::AddFocalPlane, "+ Focal plane");
-        button(CommandId::DuplicateLayer, "Duplicate");
-        button(CommandId::RaiseLayer, "Up");
-        button(CommandId::LowerLayer, "Down");
-        button(CommandId::RemoveLayer, "Remove");
-    });
-    layer_settings(ui, document, active, &layers[active], actions);
+}
+
+/// Size of an icon's button below the list, points.
+const ICON_BUTTON: Vec2 = vec2(24.0, 22.0);
+
+/// The eye before a layer.
+fn visibility_button(ui: &mut Ui, index: usize, layer: &FocusLayer, actions: &mut Vec<Action>) {
+    let (icon, tip) = match layer.is_visible {
+        true => (Icon::Visible, "Hide this layer."),
+        false => (Icon::Hidden, "Show this layer."),
+    };
+    let button = icon_button(ui, icon, &format!("Show {}", layer.name), false, ICON_BUTTON);
+    if button.on_hover_text(tip).clicked() {
+        actions.push(Command::EditLayers(LayerEdit::Visible(index, !layer.is_visible)).into());
+    }
 }
 
 /// Whether a layer command is currently possible.
@@ -84,7 +163,7 @@ fn layer_settings(
     rows(ui, "layer", |ui| {
         let mut name = layer.name.clone();
         let response = row(ui, "Name", "Name of this layer.", |ui| {
-            ui.add(TextEdit::singleline(&mut name).desired_width(150.0))
+            ui.add(TextEdit::singleline(&mut name).desired_width(f32::INFINITY))
         });
         if response.changed() {
             actions.push(edit(LayerEdit::Rename(index, name)));
@@ -93,7 +172,7 @@ fn layer_settings(
 
         let mut opacity = layer.opacity * 100.0;
         let response = row(ui, "Opacity", "Opacity of this layer.", |ui| {
-            ui.add(Slider::new(&mut opacity, 0.0..=100.0).suffix(" %").max_decimals(0))
+            controls::slider(ui, Slider::new(&mut opacity, 0.0..=100.0).suffix(" %").max_decimals(0))
         });
         if response.changed() {
             actions.push(edit(LayerEdit::Opacity(index, opacity / 100.0)));
@@ -104,8 +183,7 @@ fn layer_settings(
                    interpolates the blur at every depth. Add: adds its offset. Multiply: multiplies the blur \
                    below by its t.";
         row(ui, "Blending", tip, |ui| {
-            let combo =
-                ComboBox::from_id_salt("layer blend").selected_text(blend_name(layer.blend)).width(150.0);
+            let combo = ComboBox::from_id_salt("layer blend").selected_text(blend_name(layer.blend));
             combo
                 .show_ui(ui, |ui| {
                     for blend in BlendMode::ALL {
@@ -119,7 +197,7 @@ fn layer_settings(
         let tip = "Where this layer has effect. Painting on a layer with a mask extends the mask; the Reset \
                    brush erases it.";
         row(ui, "Mask", tip, |ui| {
-            ui.horizontal(|ui| {
+            controls::beside(ui, |ui| {
                 let state = if layer.map.has_mask() { "painted" } else { "everywhere" };
                 let label = ui.label(state);
                 let mut button = |id: CommandId, label: &str| {

@@ -1,5 +1,6 @@
 //! Settings of the lens in photographic terms, and of the picture.
 
+use super::bokeh_thumbnails::bokeh_thumbnails;
 use super::preset_row::preset_row;
 use super::shape_panel::shape_panel;
 use crate::window::view_settings::LARGEST_TOLERANCE_PX;
@@ -31,7 +32,7 @@ pub fn lens_panel(ui: &mut Ui, document: &Document, presets: &PresetLibrary, act
         let tip = "The f-number: focal length over the aperture's diameter. Smaller means more blur. Keys: + \
                    and −.";
         let response = row(ui, "f-number", tip, |ui| {
-            ui.horizontal(|ui| {
+            controls::beside(ui, |ui| {
                 let value = proportional_value(&mut number, 0.05..=1e6)
                     .prefix("f/")
                     .custom_formatter(|n, d| if n.is_finite() { format_number(n, d) } else { "∞".into() });
@@ -96,6 +97,7 @@ pub fn lens_panel(ui: &mut Ui, document: &Document, presets: &PresetLibrary, act
         preset_row(ui, presets, PresetKind::Bokeh, |preset| preset.matches_camera(camera), actions);
         shape_panel(ui, camera, actions);
     });
+    bokeh_thumbnails(ui, presets, camera, actions);
 }
 
 fn shift_rows(ui: &mut Ui, camera: &Camera, actions: &mut Vec<Action>) {
@@ -122,7 +124,7 @@ fn focus_distance_row(ui: &mut Ui, document: &Document, actions: &mut Vec<Action
     let mut distance = camera.focus_distance;
     let tip = "Distance to the plane of focus along the axis. Keys: Shift+, and Shift+.";
     let response = row(ui, "Focus distance", tip, |ui| {
-        ui.horizontal(|ui| {
+        controls::beside(ui, |ui| {
             let value = proportional_value(&mut distance, 1e-6..=f64::INFINITY).custom_formatter(|n, d| {
                 if n.is_finite() { format!("{} m", format_number(n, d)) } else { "∞".into() }
             });
@@ -170,7 +172,7 @@ fn focus_hold_row(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) {
         }
     };
     row(ui, "Focus held on", tip, |ui| {
-        let combo = ComboBox::from_id_salt("focus hold").selected_text(shown).width(150.0).truncate();
+        let combo = ComboBox::from_id_salt("focus hold").selected_text(shown).truncate();
         combo
             .show_ui(ui, |ui| {
                 let ahead = camera.world_from_camera(DVec3::Z * camera.focus_distance);
@@ -194,7 +196,7 @@ fn scene_camera_row(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>)
         .find(|(_, camera)| camera.camera_to_world == document.camera.camera_to_world);
     let name = current.map_or("own", |(name, _)| name).to_string();
     row(ui, "Camera", "A camera of the scene or of one of its photographs; the lens is not changed.", |ui| {
-        let combo = ComboBox::from_id_salt("camera").selected_text(&name).width(150.0);
+        let combo = ComboBox::from_id_salt("camera").selected_text(&name);
         combo
             .show_ui(ui, |ui| {
                 for (candidate, camera) in document.scene_cameras() {
@@ -222,7 +224,7 @@ pub fn picture_panel(
         let side = 1..=lens::Camera::LARGEST_SIDE_PX;
         let tip = "Size of the exported picture.";
         let response = row(ui, "Size", tip, |ui| {
-            ui.horizontal(|ui| {
+            controls::beside(ui, |ui| {
                 let first =
                     ui.add(DragValue::new(&mut width).range(side.clone()).update_while_editing(false));
                 controls::set_accessible_name(&first, "Picture width, px");
@@ -242,7 +244,7 @@ pub fn picture_panel(
         let tip = "Normalise keeps a white scene white. Conserve shows the energy of the model, with rims \
                    where the focus changes abruptly. Key: N.";
         row(ui, "Exposure", tip, |ui| {
-            ui.horizontal(|ui| {
+            controls::beside(ui, |ui| {
                 for (exposure, label) in
                     [(Exposure::Normalise, "Normalise"), (Exposure::Conserve, "Conserve")]
                 {
@@ -268,7 +270,6 @@ pub fn picture_panel(
         row(ui, "Tone mapping", tip, |ui| {
             let combo = ComboBox::from_id_salt("tone mapping").selected_text(settings.tone_curve.name());
             combo
-                .width(110.0)
                 .truncate()
                 .show_ui(ui, |ui| {
                     for curve in ToneCurve::ALL {
@@ -288,8 +289,7 @@ pub fn picture_panel(
         let tip = "Longest side of the live picture: smaller is faster. Exports are always full size.";
         row(ui, "Preview", tip, |ui| {
             let text = |size: u32| format!("{size} px");
-            let combo =
-                ComboBox::from_id_salt("preview size").selected_text(text(settings.preview_size)).width(90.0);
+            let combo = ComboBox::from_id_salt("preview size").selected_text(text(settings.preview_size));
             combo
                 .show_ui(ui, |ui| {
                     for size in [320, 640, 960, 1280, 1920] {

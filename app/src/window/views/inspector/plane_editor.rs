@@ -1,7 +1,7 @@
 //! A focal plane in numbers: tilt, swing, distance and curvature.
 
 use crate::window::Action;
-use crate::window::widgets::controls::{finish_edit, format_number, row, rows};
+use crate::window::widgets::controls::{self, finish_edit, format_number, row, rows};
 use crate::window::widgets::keys;
 use document::Document;
 use egui::{DragValue, Slider, SliderClamping, Ui};
@@ -32,7 +32,8 @@ pub fn plane_editor(
             let response = row(ui, name, tip, |ui| {
                 // A slider that rounds would change the plane without being moved.
                 let slider = Slider::new(&mut degrees, -DEGREES..=DEGREES).suffix("°");
-                ui.add(slider.clamping(SliderClamping::Edits).custom_formatter(|n, _| format!("{n:.1}")))
+                let slider = slider.clamping(SliderClamping::Edits);
+                controls::slider(ui, slider.custom_formatter(|n, _| format!("{n:.1}")))
             });
             if response.changed() {
                 let mut target_turn = turn;

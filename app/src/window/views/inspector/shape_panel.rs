@@ -1,7 +1,7 @@
 //! The shape of the aperture: the appearance of out-of-focus lights.
 
 use crate::window::Action;
-use crate::window::widgets::controls::{finish_edit, row};
+use crate::window::widgets::controls::{self, finish_edit, row};
 use document::CameraEdit;
 use egui::{ComboBox, DragValue, Ui};
 use lens::{Aperture, ApertureShape, Camera};
@@ -15,8 +15,7 @@ pub fn shape_panel(ui: &mut Ui, camera: &Camera, actions: &mut Vec<Action>) {
     let mut aperture = camera.aperture.clone();
     let tip = "Shape of strongly out-of-focus lights.";
     row(ui, "Bokeh", tip, |ui| {
-        let combo =
-            ComboBox::from_id_salt("aperture shape").selected_text(shape_name(&aperture.shape)).width(150.0);
+        let combo = ComboBox::from_id_salt("aperture shape").selected_text(shape_name(&aperture.shape));
         combo
             .show_ui(ui, |ui| {
                 let polygon = ApertureShape::Polygon { blades: BLADES, rotation: 0.0, roundness: 0.0 };
@@ -49,7 +48,7 @@ pub fn shape_panel(ui: &mut Ui, camera: &Camera, actions: &mut Vec<Action>) {
             }
             responses.push(response);
             responses.push(row(ui, "Roundness", "0: straight edges; 1: a disc.", |ui| {
-                ui.add(egui::Slider::new(roundness, 0.0..=1.0).max_decimals(2))
+                controls::slider(ui, egui::Slider::new(roundness, 0.0..=1.0).max_decimals(2))
             }));
         }
         ApertureShape::Mask(mask) => {

@@ -76,7 +76,7 @@ fn rack_rows(ui: &mut Ui, settings: &mut ToolSettings) {
     });
     let tip = "Interpolation: linear, eased at both ends, or a jump at the end.";
     row(ui, "Goes", tip, |ui| {
-        let combo = ComboBox::from_id_salt("rack ease").selected_text(ease_name(rack.ease)).width(130.0);
+        let combo = ComboBox::from_id_salt("rack ease").selected_text(ease_name(rack.ease));
         combo
             .show_ui(ui, |ui| {
                 for (_, ease) in Ease::ALL {
@@ -100,7 +100,7 @@ fn gradient_rows(ui: &mut Ui, settings: &mut ToolSettings) {
     let gradient = &mut settings.gradient;
     let tip = "Linear runs along the dragged line, radial around its start.";
     row(ui, "Shape", tip, |ui| {
-        ui.horizontal(|ui| {
+        controls::beside(ui, |ui| {
             let linear = ui.selectable_value(&mut gradient.shape, GradientShape::Linear, "Linear");
             ui.selectable_value(&mut gradient.shape, GradientShape::Radial, "Radial").on_hover_text(tip);
             linear.on_hover_text(tip)
@@ -109,7 +109,7 @@ fn gradient_rows(ui: &mut Ui, settings: &mut ToolSettings) {
     });
     let tip = "Screen: along the line as seen in the view. World: between the two surface points.";
     row(ui, "Space", tip, |ui| {
-        ui.horizontal(|ui| {
+        controls::beside(ui, |ui| {
             let screen = ui.selectable_value(&mut gradient.in_world, false, "Screen");
             ui.selectable_value(&mut gradient.in_world, true, "World").on_hover_text(tip);
             screen.on_hover_text(tip)
@@ -118,7 +118,7 @@ fn gradient_rows(ui: &mut Ui, settings: &mut ToolSettings) {
     });
     let tip = "Focus at the end of the gradient; the chosen focus is at its start.";
     row(ui, "Leads to", tip, |ui| {
-        let combo = ComboBox::from_id_salt("gradient end").selected_text(gradient.end.name()).width(130.0);
+        let combo = ComboBox::from_id_salt("gradient end").selected_text(gradient.end.name());
         combo
             .show_ui(ui, |ui| {
                 for end in GradientEnd::ALL {

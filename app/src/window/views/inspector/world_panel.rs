@@ -3,7 +3,7 @@
 mod environment_picture;
 
 use crate::window::Action;
-use crate::window::widgets::controls::{proportional_value, row, rows};
+use crate::window::widgets::controls::{self, proportional_value, row, rows};
 use document::Document;
 use egui::{Button, ComboBox, DragValue, Ui};
 use environment_picture::{thumbnail_button, turning_strip};
@@ -32,7 +32,7 @@ pub fn world_panel(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) 
                    to use it.";
         row(ui, "Environment", tip, |ui| environment_choice(ui, kind, &shown, actions));
         row(ui, "Built in", "Environments that come with the program.", |ui| {
-            ui.horizontal(|ui| {
+            controls::beside(ui, |ui| {
                 for built_in in BuiltInEnvironment::ALL {
                     let is_chosen = kind == EnvironmentKind::BuiltIn(built_in);
                     if thumbnail_button(ui, built_in, is_chosen).clicked() && !is_chosen {

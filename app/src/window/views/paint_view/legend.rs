@@ -6,7 +6,7 @@ use egui::{Align2, Color32, FontId, Painter, Rect, pos2, vec2};
 
 /// Smallest view with room for the legend, points.
 const MIN_WIDTH: f32 = 120.0;
-const MIN_HEIGHT: f32 = 120.0;
+const MIN_HEIGHT: f32 = 260.0;
 /// Height of a bar with its labels, points.
 const ROW: f32 = 40.0;
 

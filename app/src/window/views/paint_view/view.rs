@@ -14,6 +14,7 @@ use crate::window::tools::navigation;
 use crate::window::tools::region_highlight::RegionHighlight;
 use crate::window::tools::stroke_input::StrokeInput;
 use crate::window::view_settings::SurfaceAppearance;
+use crate::window::views::brush_hud::BrushHud;
 use crate::window::widgets::theme;
 use document::{Document, SurfaceHit};
 use egui::{Color32, Pos2, Rect, Response, Sense, Stroke, Ui, pos2, vec2};
@@ -47,6 +48,7 @@ pub struct PaintView {
     problem: Option<String>,
     camera: OrbitCamera,
     stroke: StrokeInput,
+    hud: BrushHud,
     /// The surface point under the pointer.
     hover: Option<SurfaceHit>,
     highlight: RegionHighlight,
@@ -89,6 +91,7 @@ impl PaintView {
             problem,
             camera: OrbitCamera::default(),
             stroke: StrokeInput::default(),
+            hud: BrushHud::default(),
             hover: None,
             highlight: RegionHighlight::default(),
             rect: Rect::NOTHING,
@@ -313,7 +316,9 @@ impl PaintView {
         let position = |at: Pos2| view_from_screen(rect, at);
         let screen = |at: DVec2| screen_from_position(rect, at);
         let view = DragView { frame, position: &position, screen: &screen };
-        actions.extend(self.stroke.update(ui, &response, session, active_tool, &view));
+        if !BrushHud::is_open(&response) || session.is_painting() {
+            actions.extend(self.stroke.update(ui, &response, session, active_tool, &view));
+        }
         let pointer = response.hover_pos().or_else(|| response.interact_pointer_pos());
         self.hover = pointer.and_then(|at| active_tool.pick(session, &view, at));
         let painter = ui.painter_at(rect);
@@ -325,6 +330,7 @@ impl PaintView {
         if let (Some(hit), Some(ring)) = (self.hover, active_tool.ring) {
             brush_ring::paint(&painter, &hit, ring, |point| self.screen_from_world(point));
         }
+        self.hud.show(&response, session, self.hover, actions);
         if response.hovered() {
             ui.set_cursor_icon(egui::CursorIcon::Crosshair);
         }

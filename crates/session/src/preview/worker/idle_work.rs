@@ -67,6 +67,8 @@ impl Worker {
         let Ok(displayed) = fine.fetch_picture().cloned().map(Arc::new) else { return };
         let task =
             LightTask { stage, camera, focus, tolerance, displayed, exposure, margin_px, passes, epoch };
+        // The exact picture stands; its sum would take memory beside the light field that is made now.
+        self.refinement.forget();
         self.light.start(&self.shared, task);
     }
 
