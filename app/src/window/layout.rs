@@ -283,6 +283,8 @@ impl Layout {
 
     fn navigator_ui(&mut self, ui: &Ui, panes: &mut dyn PaneContents) {
         let room = self.tile_with(Pane::Picture).and_then(|tile| self.tree.tiles.rect(tile));
+        // In a small panel it would cover the picture.
+        let room = room.filter(|room| room.size().min_elem() >= arrangement::LEAST_ROOM);
         let (Some(navigator), Some(room)) = (&mut self.navigator, room) else { return };
         let [left, bottom, width, height] =
             navigator.place.unwrap_or_else(|| arrangement::navigator_place(room.size()));
@@ -293,7 +295,8 @@ impl Layout {
             .constrain_to(room)
             .default_pos(room.left_bottom() + vec2(left, -bottom - height))
             .default_size([width, height])
-            .min_size(arrangement::LEAST_NAVIGATOR);
+            .min_size(arrangement::LEAST_NAVIGATOR)
+            .max_size(room.size() * arrangement::LARGEST_SHARE);
         let shown = window.show(ui.ctx(), |ui| {
             panes::set_accessible_name(ui, Pane::Paint);
             panes.pane_ui(ui, Pane::Paint, DockState::Navigator);

@@ -6,6 +6,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use focus_brush::window::{Severity, Shell, WindowOptions};
 use lens::Picture;
+use session::CommandId;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -66,7 +67,17 @@ impl Person {
     pub fn starts_with(options: WindowOptions) -> Self {
         let builder = Harness::builder().with_size([1280.0, 720.0]).with_max_steps(64).wgpu();
         let window = builder.build_eframe(move |creation| Shell::new(creation, options).unwrap());
-        Self { window }
+        let mut person = Self { window };
+        // Both views are large: most tests act in either.
+        person.does(CommandId::PaintBeside);
+        person
+    }
+
+    /// Runs a command.
+    pub fn does(&mut self, id: CommandId) {
+        let context = self.window.ctx.clone();
+        self.window.state_mut().run(id, &context);
+        self.window.run_steps(3);
     }
 
     pub fn shell(&self) -> &Shell {

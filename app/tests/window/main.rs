@@ -12,6 +12,7 @@ mod comparing;
 mod controls;
 mod documents;
 mod dragging;
+mod fitting;
 mod key_maps;
 mod layers;
 mod light_fields;
@@ -21,6 +22,8 @@ mod panels;
 mod presets;
 mod quality;
 mod small_scene;
+mod snapshots;
+mod surface_menu;
 mod timeline;
 #[allow(dead_code, reason = "shared by several tests")]
 #[path = "../../../crates/session/tests/tiny_glb/mod.rs"]

@@ -166,6 +166,7 @@ fn clicking_tools_fill_focus_and_pick() {
 #[test]
 fn gloss_obeys_the_paint_where_that_is_ticked() {
     let (mut person, _folder) = opened();
+    person.scrolls_to("Gloss");
     person.window.get_by_role_and_label(egui::Role::CheckBox, "Gloss").click();
     person.window.run_ok();
     assert_eq!(person.document().brush.target, FocusOffset::SHARP.with_gloss(1.0));

@@ -19,12 +19,6 @@ impl Person {
         self.window.run_steps(2);
         self.waits();
     }
-
-    fn does(&mut self, id: CommandId) {
-        let context = self.window.ctx.clone();
-        self.window.state_mut().run(id, &context);
-        self.window.run_steps(3);
-    }
 }
 
 #[test]

@@ -50,7 +50,7 @@ fn the_picture_becomes_exact_by_itself_and_the_status_line_says_so() {
 
     // Without tolerance, every picture is exact at once.
     person.scrolls_to("Tolerance");
-    let field = person.window.get_all_by_label("Tolerance").last().unwrap().rect();
+    let field = person.window.get_by_role_and_label(egui::Role::Slider, "Tolerance").rect();
     let left = egui::pos2(field.left() + 2.0, field.center().y);
     person.paints(&[field.center(), left, left - egui::vec2(80.0, 0.0)]);
     assert_eq!(person.shell().settings().tolerance_px, 0.0);

@@ -42,6 +42,10 @@ pub fn tool_column(
 ) {
     let has_depth = document.is_some_and(|document| document.scene().picture.is_some());
     ui.spacing_mut().item_spacing.y = 3.0;
+    ui.ctx().accesskit_node_builder(ui.unique_id(), |node| {
+        node.set_role(egui::accesskit::Role::Toolbar);
+        node.set_label("Tools");
+    });
     ScrollArea::vertical().scroll_bar_visibility(egui::scroll_area::ScrollBarVisibility::AlwaysHidden).show(
         ui,
         |ui| {

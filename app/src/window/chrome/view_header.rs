@@ -15,6 +15,9 @@ const WIDTH_WITH_PERCENT: f32 = 500.0;
 /// Additional width if the header shows the fixated point, points.
 const FIXATED_WIDTH: f32 = 80.0;
 
+/// Least room for a slider in the navigator's header, points.
+const WIDTH_WITH_SLIDER: f32 = 90.0;
+
 /// Width of the panel's buttons, points.
 const MENU_WIDTH: f32 = 60.0;
 
@@ -94,7 +97,11 @@ impl ViewHeader<'_> {
             DockState::Tab | DockState::Floating => false,
         };
         match self.pane {
-            Pane::Paint if self.docked == DockState::Navigator => false_color_slider(ui, self.settings),
+            Pane::Paint if self.docked == DockState::Navigator => {
+                if ui.available_width() >= WIDTH_WITH_SLIDER {
+                    false_color_slider(ui, self.settings);
+                }
+            }
             Pane::Paint => paint_header(ui, self.session, self.settings),
             Pane::Picture => picture_header(ui, self.session, self.picture, actions),
             _ => {}

@@ -20,6 +20,10 @@ const LAYERS: [(Aov, &str, &str); 3] = [
 /// Sizes that are one click away, percent of the camera's.
 const PERCENTAGES: [u32; 4] = [50, 100, 200, 400];
 
+/// Width of the dialog, and of the fields of its sides, points.
+const WIDTH: f32 = 430.0;
+const SIDE_FIELD: f32 = 64.0;
+
 /// The choices that are being made.
 #[derive(Clone, Debug)]
 struct Choices {
@@ -64,7 +68,7 @@ impl ExportDialog {
         let (mut accepted, mut cancelled) = (false, false);
         let frame = egui::Frame::popup(&context.global_style()).inner_margin(14.0);
         let modal = egui::Modal::new(Id::unique("export picture")).frame(frame).show(context, |ui| {
-            ui.set_width(430.0);
+            ui.set_width(WIDTH.min(context.content_rect().width() - 40.0));
             ui.heading("Export the picture");
             ui.add_space(6.0);
             rows(ui, "export", |ui| {
@@ -119,33 +123,39 @@ impl Choices {
 }
 
 fn size_row(ui: &mut Ui, choices: &mut Choices) -> egui::Response {
-    ui.horizontal(|ui| {
-        for (axis, name) in ["Width", "Height"].into_iter().enumerate() {
-            let mut px = choices.size[axis];
-            let field = ui.add(DragValue::new(&mut px).range(1..=Camera::LARGEST_SIDE_PX).suffix(" px"));
-            set_accessible_name(&field, name);
-            if field.changed() {
-                choices.set_side(axis, px);
+    ui.vertical(|ui| {
+        ui.horizontal(|ui| {
+            ui.spacing_mut().interact_size.x = SIDE_FIELD;
+            for (axis, name) in ["Width", "Height"].into_iter().enumerate() {
+                let mut px = choices.size[axis];
+                let field = DragValue::new(&mut px).range(1..=Camera::LARGEST_SIDE_PX).suffix(" px");
+                let field = ui.add(field);
+                set_accessible_name(&field, name);
+                if field.changed() {
+                    choices.set_side(axis, px);
+                }
+                if axis == 0 {
+                    ui.label("×");
+                }
             }
-            if axis == 0 {
-                ui.label("×");
-            }
-        }
-        for percent in PERCENTAGES {
-            let width = choices.camera_size[0] * percent / 100;
-            let is_possible =
-                choices.camera_size.iter().all(|side| side * percent / 100 <= Camera::LARGEST_SIDE_PX);
-            let button = Button::selectable(choices.size[0] == width, format!("{percent} %"));
-            if ui
-                .add_enabled(is_possible && width > 0, button)
-                .on_hover_text("Of the camera's size.")
-                .clicked()
-            {
-                choices.set_side(0, width);
-            }
-        }
+        });
+        ui.horizontal(|ui| percentages(ui, choices));
     })
     .response
+}
+
+/// Buttons for shares of the camera's size.
+fn percentages(ui: &mut Ui, choices: &mut Choices) {
+    for percent in PERCENTAGES {
+        let width = choices.camera_size[0] * percent / 100;
+        let is_possible =
+            choices.camera_size.iter().all(|side| side * percent / 100 <= Camera::LARGEST_SIDE_PX);
+        let button = Button::selectable(choices.size[0] == width, format!("{percent} %"));
+        let button = ui.add_enabled(is_possible && width > 0, button);
+        if button.on_hover_text("Of the camera's size.").clicked() {
+            choices.set_side(0, width);
+        }
+    }
 }
 
 fn format_row(ui: &mut Ui, choices: &mut Choices) -> egui::Response {

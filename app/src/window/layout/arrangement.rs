@@ -15,7 +15,13 @@ pub enum Arrangement {
 }
 
 /// Least size of the navigator, points.
-pub const LEAST_NAVIGATOR: [f32; 2] = [180.0, 120.0];
+pub const LEAST_NAVIGATOR: [f32; 2] = [120.0, 90.0];
+
+/// Panels of the picture whose sides are shorter have no room for the navigator, points.
+pub const LEAST_ROOM: f32 = 180.0;
+
+/// Most of the picture's panel that the navigator covers, in width and height.
+pub const LARGEST_SHARE: f32 = 0.48;
 
 /// Share of the picture's panel that the navigator is wide, and its height by its width.
 const NAVIGATOR_SHARE: f32 = 0.3;

@@ -84,7 +84,10 @@ pub fn list_row(ui: &mut Ui, chosen: bool, text: &str) -> Response {
 pub fn icon_entry(ui: &mut Ui, icon: Icon, name: &str, shortcut: String) -> Response {
     let side = ui.text_style_height(&egui::TextStyle::Button);
     let room = egui::IdSalt::new("icon");
-    let button = Button::new((Atom::custom(room, egui::Vec2::splat(side)), name)).shortcut_text(shortcut);
+    let mut button = Button::new((Atom::custom(room, egui::Vec2::splat(side)), name));
+    if !shortcut.is_empty() {
+        button = button.shortcut_text(shortcut);
+    }
     let shown = button.atom_ui(ui);
     if let Some(rect) = shown.rect(room) {
         let color = ui.style().interact(&shown.response).text_color();

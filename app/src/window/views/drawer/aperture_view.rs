@@ -63,18 +63,19 @@ impl ApertureView {
                     None => paint_open(ui, rect, &document.camera.aperture),
                 });
             aperture_pad(ui, &response, session, actions);
-            match &self.image {
-                Some(image) => point_details(ui, image),
-                None if self.point.is_some() => {
-                    ui.weak("The point is behind the camera: no part of the aperture is visible from it.");
-                }
-                None => {
-                    ui.weak(
-                        "Choose a point of the scene to see which part of the aperture is visible from it.",
-                    );
-                }
+            if let Some(image) = &self.image {
+                point_details(ui, image);
             }
             ui.vertical(|ui| {
+                match (&self.image, self.point) {
+                    (Some(_), _) => {}
+                    (None, Some(_)) => {
+                        note(ui, "The point is behind the camera: no part of the aperture is visible from it.");
+                    }
+                    (None, None) => {
+                        note(ui, "Choose a point of the scene to see which part of the aperture is visible from it.");
+                    }
+                }
                 let choose = if self.point.is_some() { "Another point" } else { "Choose a point" };
                 for (id, label) in [(CommandId::Inspect, choose), (CommandId::OrbitAperture, "Look round")] {
                     if ui.button(label).on_hover_text(keys::command_tooltip(ui.ctx(), id)).clicked() {
@@ -85,6 +86,15 @@ impl ApertureView {
         });
     }
 }
+
+/// A sentence beside the picture, in lines.
+fn note(ui: &mut Ui, sentence: &str) {
+    ui.set_max_width(NOTE_WIDTH.min(ui.available_width()));
+    ui.add(egui::Label::new(egui::RichText::new(sentence).weak()).wrap());
+}
+
+/// Width of a sentence beside the picture, points.
+const NOTE_WIDTH: f32 = 220.0;
 
 /// Details of the chosen point: the image in the picture, the stored visibility, and numbers.
 fn point_details(ui: &mut Ui, image: &ApertureImage) {

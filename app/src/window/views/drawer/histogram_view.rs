@@ -9,6 +9,9 @@ const PROBES: [usize; 2] = [96, 64];
 /// Bars from the nearest blur to the farthest.
 const BARS: usize = 81;
 
+/// Least space between two labels of the axis, points.
+const LABEL_GAP: f32 = 6.0;
+
 /// The histogram's state between frames.
 #[derive(Default)]
 pub struct HistogramView {
@@ -71,6 +74,10 @@ fn paint(ui: &Ui, rect: Rect, histogram: &BlurHistogram) {
         let circle = false_colour::circle_px(2.0 * k as f64 / (BARS - 1) as f64 - 1.0);
         painter.rect_filled(bar, 0.0, false_colour::color(circle));
     }
+    let font = FontId::proportional(10.0);
+    let color: Color32 = ui.visuals().text_color();
+    // Where the labels so far end: in a narrow panel some are left out.
+    let mut labelled_to = rect.left();
     let tick = Stroke::new(1.0, ui.visuals().weak_text_color());
     for circle in [-64.0, -16.0, -4.0, -1.0, 0.0, 1.0, 4.0, 16.0, 64.0f64] {
         let share = (false_colour::position(circle) as f32 + 1.0) / 2.0 * (BARS - 1) as f32 + 0.5;
@@ -81,13 +88,11 @@ fn paint(ui: &Ui, rect: Rect, histogram: &BlurHistogram) {
             c if c < 0.0 => format!("near {}", -c),
             c => format!("far {c} px"),
         };
-        let color: Color32 = ui.visuals().text_color();
-        painter.text(
-            pos2(x, axis.bottom() - 1.0),
-            Align2::CENTER_BOTTOM,
-            text,
-            FontId::proportional(10.0),
-            color,
-        );
+        let label = painter.layout_no_wrap(text, font.clone(), color);
+        let place = Align2::CENTER_BOTTOM.anchor_size(pos2(x, axis.bottom() - 1.0), label.size());
+        if place.left() >= labelled_to && place.right() <= rect.right() {
+            labelled_to = place.right() + LABEL_GAP;
+            painter.galley(place.min, label, color);
+        }
     }
 }

@@ -51,6 +51,8 @@ impl LayersPanel {
                     actions.push(id.into());
                 }
             }
+        });
+        ui.horizontal(|ui| {
             for (id, icon) in [
                 (CommandId::DuplicateLayer, Icon::Duplicate),
                 (CommandId::RaiseLayer, Icon::MoveUp),

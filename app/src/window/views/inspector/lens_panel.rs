@@ -307,7 +307,7 @@ pub fn picture_panel(
                    changes.";
         row(ui, "Tolerance", tip, |ui| {
             let slider = Slider::new(&mut settings.tolerance_px, 0.0..=LARGEST_TOLERANCE_PX);
-            ui.add(slider.max_decimals(1).suffix(" px"))
+            controls::slider(ui, slider.max_decimals(1).suffix(" px"))
         });
     });
     if let Some(summary) = tolerance_summary(session) {
