@@ -14,6 +14,7 @@ mod documents;
 mod dragging;
 mod fitting;
 mod key_maps;
+mod keyboard;
 mod layers;
 mod light_fields;
 mod on_card;

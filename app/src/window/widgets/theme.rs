@@ -123,3 +123,51 @@ fn visuals(mut visuals: Visuals, greys: &GreyLevels) -> Visuals {
     widgets.active.bg_stroke = Stroke::new(1.0, between(0.63));
     visuals
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Relative luminance of a colour (WCAG 2.1).
+    fn luminance(color: Color32) -> f64 {
+        let [r, g, b, _] = color.to_array().map(|value| {
+            let value = f64::from(value) / 255.0;
+            if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
+        });
+        0.2126 * r + 0.7152 * g + 0.0722 * b
+    }
+
+    /// Contrast ratio of two colours (WCAG 2.1), from 1 to 21.
+    fn contrast(one: Color32, other: Color32) -> f64 {
+        let (low, high) = (luminance(one).min(luminance(other)), luminance(one).max(luminance(other)));
+        (high + 0.05) / (low + 0.05)
+    }
+
+    #[test]
+    fn every_text_has_a_contrast_of_at_least_4_5() {
+        assert!((contrast(Color32::BLACK, Color32::WHITE) - 21.0).abs() < 1e-9);
+        assert!(
+            contrast(Color32::from_gray(118), Color32::WHITE) > 4.5
+                && contrast(Color32::from_gray(120), Color32::WHITE) < 4.5
+        );
+        for (theme, visuals) in [("dark", dark()), ("light", light())] {
+            let panels = [visuals.panel_fill, visuals.window_fill];
+            let widgets = &visuals.widgets;
+            let mut pairs = vec![(visuals.selection.stroke.color, visuals.selection.bg_fill, "chosen")];
+            for widget in [&widgets.inactive, &widgets.hovered, &widgets.active, &widgets.open] {
+                pairs.push((widget.fg_stroke.color, widget.weak_bg_fill, "a control"));
+            }
+            for panel in panels {
+                pairs.push((widgets.noninteractive.fg_stroke.color, panel, "text"));
+                pairs.push((visuals.weak_text_color(), panel, "weak text"));
+                pairs.push((visuals.warn_fg_color, panel, "a warning"));
+                pairs.push((visuals.error_fg_color, panel, "an error"));
+            }
+            pairs.push((widgets.inactive.fg_stroke.color, visuals.extreme_bg_color, "typed text"));
+            for (text, fill, what) in pairs {
+                let ratio = contrast(text, fill);
+                assert!(ratio >= 4.5, "{theme}, {what}: {ratio:.2} of {text:?} on {fill:?}");
+            }
+        }
+    }
+}
