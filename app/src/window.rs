@@ -17,11 +17,12 @@
 //! * `graphics`: the wgpu device; `blit` puts pictures on the screen, `soft_painter` draws egui's shapes on a
 //!   software adapter.
 //! * `stroke_player`: plays a recording in the window, timed. `frame_log`: writes how long frames take. `demo`: the
-//!   scene at first start.
+//!   scene at first start. `book`: the pages that *Help* opens.
 //!
 //! A module uses only modules below it in this list.
 
 mod action;
+mod book;
 mod chrome;
 pub(crate) mod demo;
 mod dialogs;

@@ -9,12 +9,14 @@
 //! * `ci` runs all checks: crate directions, module cycles, licences, formatting, lints, docs, tests.
 //! * `package` builds packages for users without a compiler, and a source archive that builds without a
 //!   network.
+//! * `book [FOLDER]` writes the book as HTML pages.
 //! * `demo` regenerates the demo scene in `assets/demo`.
 //! * `figures` writes the tables and plots of the performance pages from `docs/figures`.
 //!
 //! Pure Rust without build scripts of its own, so that it needs nothing but Rust and a C linker.
 
 mod architecture_paths;
+mod book;
 mod chore;
 mod ci;
 mod crate_directions;
@@ -40,6 +42,7 @@ usage: cargo xtask CHORE
   package [deb|tarball|source…]
                 packages to install, a folder that runs from anywhere, a source archive that
                 builds without a network; in target/package
+  book [FOLDER] write the book as HTML pages; into target/book
   demo          regenerate the demo scene in assets/demo
   figures [--check]
                 write the tables and plots of the performance pages from docs/figures
@@ -71,6 +74,7 @@ fn main() -> std::process::ExitCode {
         "lint" => ci::lint(),
         "ci" => ci::ci(),
         "endure" => endure::endure(&rest),
+        "book" => book::write(&rest.first().map_or_else(book::default_folder, Into::into)),
         "demo" => demo::demo(sky_rays(&rest)),
         "figures" => figures::figures(&rest),
         "" | "help" | "-h" | "--help" => {

@@ -1,5 +1,6 @@
 //! `run` opens the program on the demo or on files; `test` runs all tests; `window` drives the real window.
 
+use crate::book;
 use crate::chore::{Failure, cargo, execute, repository};
 use crate::packages::{TO_ACT, TO_BUILD, TO_ENDURE, TO_RUN, install_missing};
 use std::ffi::OsString;
@@ -14,6 +15,9 @@ use std::process::Command;
 pub fn run(arguments: &[OsString]) -> Result<(), Failure> {
     install_missing(&[TO_BUILD, TO_RUN])?;
     let is_file = |argument: &OsString| Path::new(argument).exists();
+    if has_display() {
+        book::write(&book::default_folder())?;
+    }
     if has_display() || !arguments.iter().all(is_file) {
         return focus_brush(arguments);
     }

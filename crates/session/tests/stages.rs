@@ -4,7 +4,8 @@
 mod at_work;
 
 use document::CameraEdit;
-use glam::{DMat4, DVec3};
+use glam::{DMat4, DVec3, Vec3};
+use scene::{Backdrop, World};
 use session::{Command, PreviewKind, Quality, Session, SessionOptions};
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -80,22 +81,30 @@ fn psnr(stage: &Stage, last: &Stage) -> f64 {
     -10.0 * (sum / (f64::from(width * height) * 3.0 * 255.0 * 255.0)).log10()
 }
 
-/// Moves the camera, takes that back, and opens the aperture by a stop.
+/// Moves the camera, takes that back, changes the backdrop, and opens the aperture by a stop.
 fn check(scene: &Path, preview_size: u32) {
     let mut session = Session::new(SessionOptions { preview_size, ..SessionOptions::default() }).unwrap();
     session.apply(Command::Open(scene.into())).unwrap();
     at_work::settle(&mut session);
-    let camera = session.document().unwrap().camera.clone();
+    let document = session.document().unwrap();
+    let camera = document.camera.clone();
     let aside = DVec3::new(0.06, 0.02, 0.0) * camera.focus_distance.min(10.0);
     let moved = camera.camera_to_world * DMat4::from_translation(aside);
+    let background = camera.background.map(|color| DVec3::from_array(color).as_vec3());
+    let world = World::from_scene(document.scene(), background);
+    let backdrop = World { backdrop: Backdrop::Color(Vec3::new(0.2, 0.3, 0.5)), ..world };
     let changes = [
         ("a move", Command::EditCamera(CameraEdit::Pose(moved))),
         ("its undo", Command::Undo),
+        ("another backdrop", Command::SetWorld(Some(backdrop))),
         ("a wider aperture", Command::EditCamera(CameraEdit::ApertureRadius(camera.aperture_radius * 1.42))),
     ];
     for (change, command) in changes {
         let stages = stages_after(&mut session, command);
-        let (last, before) = stages.split_last().unwrap();
+        let Some((last, before)) = stages.split_last() else {
+            println!("{}: {change}: nothing to draw", scene.display());
+            continue;
+        };
         let mut least = 0.0;
         for stage in before {
             let db = psnr(stage, last);
@@ -114,4 +123,17 @@ fn the_demo_only_gets_better() {
         std::fs::copy(demo.join(name), folder.path().join(name)).unwrap();
     }
     check(&folder.path().join("demo.fbrush"), 480);
+}
+
+#[test]
+fn scenes_of_others_only_get_better() {
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/gltf");
+    for scene in ["Fox.glb", "FlightHelmet/FlightHelmet.gltf", "vr-gallery.glb", "portal.glb"] {
+        let file = data.join(scene);
+        if !file.is_file() {
+            eprintln!("SKIPPED: {} is not there", file.display());
+            continue;
+        }
+        check(&file, 240);
+    }
 }

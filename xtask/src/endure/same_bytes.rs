@@ -61,7 +61,7 @@ fn split(case: usize, place: &Workplace, context: &Context) -> Verdict {
             })
         }
         1 => {
-            let grid = *random.one_of(&["2x2", "3x1", "1x2", "5x3"]);
+            let grid = *random.one_of(&["2x2", "3x1", "1x2", "3x2"]);
             let count = 1 + random.below(3);
             for shard in turned((1..=count).collect(), &mut random) {
                 run(

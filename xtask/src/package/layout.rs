@@ -14,6 +14,9 @@ const fn installed(from: &'static str, to: &'static str) -> Installed {
 /// Destination of the program, from which it locates everything else.
 pub const PROGRAM: &str = "bin/focus-brush";
 
+/// Where the pages of the book are made for the package, beside their text and pictures.
+pub const BOOK: &str = "share/doc/focus-brush/docs";
+
 /// Files needed by the program, and its integration into the desktop.
 pub const SHARED: &[Installed] = &[
     installed("assets/demo", "share/focus-brush/demo"),

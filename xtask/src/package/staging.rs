@@ -1,6 +1,6 @@
 //! The file tree of a package, laid out on disk before it is packed.
 
-use super::layout::{Installed, PROGRAM, SHARED};
+use super::layout::{BOOK, Installed, PROGRAM, SHARED};
 use super::release::Release;
 use crate::chore::{Failure, execute, repository};
 use std::path::{Path, PathBuf};
@@ -30,6 +30,7 @@ pub fn lay_out(root: &Path, program: &Path) -> Result<(), Failure> {
     for Installed { from, to } in SHARED {
         copy(&repository().join(from), &root.join(to))?;
     }
+    crate::book::write(&root.join(BOOK))?;
     Ok(())
 }
 

@@ -1,6 +1,7 @@
 //! Executes the commands of the command table.
 
 use super::Shell;
+use crate::window::book::book_url;
 use crate::window::dialogs::file_dialog::Purpose;
 use crate::window::dialogs::unsaved_changes_dialog::PendingAction;
 use crate::window::layout::{Arrangement, Layout, Pane};
@@ -10,7 +11,7 @@ use crate::window::views::picture_view::TRUTH_SAMPLES;
 use crate::window::widgets::brush_controls::{largest_radius, signed_circle_px};
 use crate::window::{Tool, ViewSettings};
 use document::{BookmarkEdit, CameraEdit, FillRegion};
-use egui::{Context, ViewportCommand};
+use egui::{Context, OpenUrl, ViewportCommand};
 use focus::{Brush, BrushMode, CombineMode, LayerEdit};
 use lens::{Exposure, FocusOffset};
 use project::{PresetKind, SelectionShape};
@@ -239,6 +240,7 @@ impl Shell {
             CommandId::Palette => self.palette.toggle(),
             CommandId::Shortcuts => self.help.shortcuts = !self.help.shortcuts,
             CommandId::ShowMessages => self.toasts.is_list_open = !self.toasts.is_list_open,
+            CommandId::Book => self.open_book(context),
             CommandId::About => self.help.about = !self.help.about,
         }
     }
@@ -246,6 +248,16 @@ impl Shell {
     fn with_paint_view(&mut self, act: impl FnOnce(&mut PaintView, &document::Document)) {
         if let Some(document) = self.session.document() {
             act(&mut self.paint, document);
+        }
+    }
+
+    /// Opens the book in the browser.
+    fn open_book(&mut self, context: &Context) {
+        match book_url() {
+            Some(url) => context.open_url(OpenUrl::new_tab(url)),
+            None => self
+                .toasts
+                .error("The book's pages are not there (\"cargo xtask book\" writes them in a source tree)."),
         }
     }
 

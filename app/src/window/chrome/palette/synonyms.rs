@@ -33,6 +33,7 @@ pub fn synonyms(id: CommandId) -> &'static str {
         PaintBeside => "split side by side two views layout",
         PaintAbove => "stacked split views layout",
         PictureAlone => "maximize canvas only hide panels",
+        Book => "manual documentation help tutorial",
         EnlargePanel => "maximize maximise area",
         NextToneCurve => "filmic view transform color management agx",
         LightOrDark => "theme",
