@@ -5,7 +5,7 @@ use crate::small_scene::opened;
 use egui::Rect;
 use egui::accesskit::Role;
 use egui_kittest::kittest::{NodeT, Queryable};
-use session::CommandId;
+use session::{CommandId, Menu};
 
 /// A text or control on screen.
 struct Shown {
@@ -120,6 +120,13 @@ fn nothing_is_cut_and_nothing_overlaps() {
         person.window.run_steps(8);
         let scale = person.window.ctx.zoom_factor();
         assert_eq!(misplaced(&person), [""; 0], "{arrangement:?} at {scale}");
+        for menu in Menu::ALL {
+            person.window.get_all_by_label(menu.title()).next().expect("a menu").click();
+            person.window.run_steps(4);
+            assert_eq!(misplaced(&person), [""; 0], "the menu {} at {scale}", menu.title());
+            person.presses(egui::Modifiers::NONE, egui::Key::Escape);
+            person.window.run_steps(3);
+        }
         for opener in OPENERS {
             person.does(opener);
             person.window.run_steps(6);

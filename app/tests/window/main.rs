@@ -13,6 +13,7 @@ mod controls;
 mod documents;
 mod dragging;
 mod fitting;
+mod glyphs;
 mod key_maps;
 mod keyboard;
 mod layers;

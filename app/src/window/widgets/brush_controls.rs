@@ -79,7 +79,7 @@ pub fn target_slider(ui: &mut Ui, optics: &Optics, target: FocusOffset, width: f
     let changed = response.changed();
     response
         .on_hover_text(
-            "What the brush paints: near blur ← sharp → far blur. Keys: , and . to move, X for sharp.",
+            "What the brush paints: from near blur over sharp to far blur. Keys: , and . to move, X for sharp.",
         )
         .on_disabled_hover_text("A pinhole blurs nothing: open the aperture first.");
     let kappa = optics.kappa_for_circle_px(circle_px).filter(|_| changed)?;
