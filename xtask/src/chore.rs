@@ -76,3 +76,27 @@ pub fn shown(command: &Command) -> String {
     let words = std::iter::once(program).chain(command.get_args());
     words.map(|word| word.to_string_lossy().into_owned()).collect::<Vec<_>>().join(" ")
 }
+
+/// Copies a file, or a folder with its contents.
+///
+/// # Errors
+/// A file cannot be read or written.
+pub fn copy(from: &Path, to: &Path) -> Result<(), Failure> {
+    if from.is_dir() {
+        let entries = std::fs::read_dir(from).map_err(|error| file_failure(from, &error))?;
+        for entry in entries {
+            let entry = entry.map_err(|error| file_failure(from, &error))?;
+            copy(&entry.path(), &to.join(entry.file_name()))?;
+        }
+        return Ok(());
+    }
+    let folder = to.parent().unwrap_or(to);
+    std::fs::create_dir_all(folder).map_err(|error| file_failure(folder, &error))?;
+    std::fs::copy(from, to).map_err(|error| file_failure(from, &error))?;
+    Ok(())
+}
+
+/// What went wrong with a file.
+pub fn file_failure(file: &Path, error: &std::io::Error) -> Failure {
+    Failure::new(format!("{}: {error}", file.display()))
+}

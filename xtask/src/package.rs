@@ -16,8 +16,6 @@ mod source;
 mod staging;
 mod tarball;
 
-pub use staging::copy;
-
 use crate::chore::{Failure, cargo, execute};
 use crate::packages::{TO_BUILD, TO_PACKAGE, install_missing};
 use release::{Release, target};

@@ -38,6 +38,12 @@ impl Aperture {
         ApertureShape::Mask(Arc::new(ApertureMask { width: SIDE, height: SIDE, transmission, file })).into()
     }
 
+    /// Whether it is one of [`Self::sub_aperture`]: a mask of their size that comes from no file.
+    pub fn is_sub_aperture(&self) -> bool {
+        let is_made = |mask: &ApertureMask| mask.file.is_empty() && [mask.width, mask.height] == [SIDE; 2];
+        matches!(&self.shape, ApertureShape::Mask(mask) if is_made(mask))
+    }
+
     /// The centre of the outermost sub-aperture that lies in the opening at `angle` (rad, counter-clockwise from +u
     /// as seen from behind the camera); the aperture's centre if nothing is open there.
     pub fn rim(&self, angle: f64) -> DVec2 {
@@ -58,6 +64,7 @@ mod tests {
     fn a_sub_aperture_is_a_small_disc_in_its_place() {
         for center in [DVec2::ZERO, DVec2::new(0.4, -0.3), DVec2::new(-0.613, 0.713)] {
             let aperture = Aperture::sub_aperture(center);
+            assert!(aperture.is_sub_aperture() && !Aperture::default().is_sub_aperture());
             assert!(aperture.validate().is_ok());
             let ApertureShape::Mask(mask) = &aperture.shape else { panic!("it is a mask") };
             let (mut light, mut moment) = (0.0, DVec2::ZERO);

@@ -3,6 +3,7 @@
 mod antialiasing;
 mod enlarging;
 mod glare;
+mod hole_filling;
 mod live_picture;
 mod picture_ring;
 mod screen;
@@ -17,6 +18,7 @@ pub use thumbnails::{Thumbnail, ThumbnailResult, Thumbnails};
 pub(crate) use antialiasing::antialiased;
 pub(crate) use enlarging::{enlarged_part, enlarged_rectangle};
 pub(crate) use glare::darkening_stops;
+pub(crate) use hole_filling::filled;
 pub(crate) use live_picture::PictureSource;
 pub(crate) use picture_ring::{PictureRing, Rectangle, whole};
 pub(crate) use screen::{Content, Patch};

@@ -2,8 +2,8 @@
 
 use super::layout::PROGRAM;
 use super::release::Release;
-use super::staging::{copy, empty_folder, lay_out, set_rights, write};
-use crate::chore::{Failure, execute, output_of, repository};
+use super::staging::{empty_folder, lay_out, set_rights, write};
+use crate::chore::{Failure, copy, execute, output_of, repository};
 use crate::packages::{TO_RUN, names};
 use std::path::{Path, PathBuf};
 use std::process::Command;

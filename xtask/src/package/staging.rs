@@ -2,7 +2,7 @@
 
 use super::layout::{BOOK, Installed, PROGRAM, SHARED};
 use super::release::Release;
-use crate::chore::{Failure, execute, repository};
+use crate::chore::{Failure, copy, execute, file_failure, repository};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -13,9 +13,9 @@ use std::process::Command;
 pub fn empty_folder(release: &Release, name: &str) -> Result<PathBuf, Failure> {
     let folder = release.output.join("staging").join(name);
     if folder.exists() {
-        std::fs::remove_dir_all(&folder).map_err(|error| failed(&folder, &error))?;
+        std::fs::remove_dir_all(&folder).map_err(|error| file_failure(&folder, &error))?;
     }
-    std::fs::create_dir_all(&folder).map_err(|error| failed(&folder, &error))?;
+    std::fs::create_dir_all(&folder).map_err(|error| file_failure(&folder, &error))?;
     Ok(folder)
 }
 
@@ -34,33 +34,14 @@ pub fn lay_out(root: &Path, program: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Copies a file, or a folder with its contents.
-///
-/// # Errors
-/// A file cannot be read or written.
-pub fn copy(from: &Path, to: &Path) -> Result<(), Failure> {
-    if from.is_dir() {
-        let entries = std::fs::read_dir(from).map_err(|error| failed(from, &error))?;
-        for entry in entries {
-            let entry = entry.map_err(|error| failed(from, &error))?;
-            copy(&entry.path(), &to.join(entry.file_name()))?;
-        }
-        return Ok(());
-    }
-    let folder = to.parent().unwrap_or(to);
-    std::fs::create_dir_all(folder).map_err(|error| failed(folder, &error))?;
-    std::fs::copy(from, to).map_err(|error| failed(from, &error))?;
-    Ok(())
-}
-
 /// Writes a file.
 ///
 /// # Errors
 /// The file cannot be written.
 pub fn write(file: &Path, text: &str) -> Result<(), Failure> {
     let folder = file.parent().unwrap_or(file);
-    std::fs::create_dir_all(folder).map_err(|error| failed(folder, &error))?;
-    std::fs::write(file, text).map_err(|error| failed(file, &error))
+    std::fs::create_dir_all(folder).map_err(|error| file_failure(folder, &error))?;
+    std::fs::write(file, text).map_err(|error| file_failure(file, &error))
 }
 
 /// Sets the permissions that files and folders have in packages, independently of the local ones.
@@ -90,9 +71,4 @@ pub fn pack(release: &Release, folder: &Path, archive: &Path) -> Result<(), Fail
     tar.arg(format!("--mtime=@{}", release.time)).arg("--file").arg(archive).arg("-C").arg(above).arg(name);
     // For many small files, levels above the default do not improve compression.
     execute(tar.env("XZ_OPT", "-6"))
-}
-
-/// The failure of an operation on `file`.
-pub fn failed(file: &Path, error: &std::io::Error) -> Failure {
-    Failure::new(format!("{}: {error}", file.display()))
 }

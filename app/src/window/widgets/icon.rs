@@ -171,7 +171,7 @@ mod tests {
 
     #[test]
     fn no_two_icons_look_the_same() {
-        let drawn = |icon| icon.marks().iter().flat_map(outline).collect::<Vec<_>>();
+        let drawn = |icon: Icon| icon.marks().iter().flat_map(outline).collect::<Vec<_>>();
         for (at, icon) in ALL.into_iter().enumerate() {
             for other in ALL.into_iter().skip(at + 1) {
                 assert_ne!(drawn(icon), drawn(other), "{icon:?} and {other:?}");

@@ -2,7 +2,7 @@
 
 use crate::display::{
     Content, LivePicture, Patch, PictureRing, PictureSource, Rectangle, SharpLayer, darkening_stops,
-    enlarged_part, enlarged_rectangle, whole,
+    enlarged_part, enlarged_rectangle, filled, whole,
 };
 use crate::preview::mailbox::Shared;
 use crate::preview::picture::{DrawingCosts, PictureTimes, Preview, PreviewKind, Quality};
@@ -201,9 +201,19 @@ impl Presenter {
         (LivePicture::OnCard(shown), Some(changed))
     }
 
-    /// A rectangle of a picture, as the screen shows it.
+    /// A rectangle of a picture, as the screen shows it; all of one that is seen through a point of the aperture, since what fills its
+    /// holes comes from far.
     fn patch(&self, preview: &Preview, rectangle: Rectangle) -> Patch {
-        let picture = &preview.picture;
+        let is_holed = preview.camera.aperture.is_sub_aperture();
+        if is_holed && let Some(picture) = preview.picture.fetch() {
+            let whole_rectangle = preview.picture.size().map(|side| 0..side);
+            let filled = LivePicture::InMemory(Arc::new(filled(&picture)));
+            return self.patch_of(preview, &filled, whole_rectangle);
+        }
+        self.patch_of(preview, &preview.picture, rectangle)
+    }
+
+    fn patch_of(&self, preview: &Preview, picture: &LivePicture, rectangle: Rectangle) -> Patch {
         if let (Some(size), LivePicture::InMemory(picture)) = (preview.enlarged_to, picture) {
             let rectangle = enlarged_rectangle(picture, size, &rectangle);
             let mut part = enlarged_part(picture, size, rectangle.clone());
