@@ -69,11 +69,12 @@ fn copyright(root: &Path) -> Result<(), Failure> {
     // The same texts in other places.
     for twice in ["LICENSE-MIT", "LICENSE-APACHE"] {
         let file = folder.join(twice);
-        std::fs::remove_file(&file).map_err(|error| super::staging::failed(&file, &error))?;
+        std::fs::remove_file(&file).map_err(|error| crate::chore::file_failure(&file, &error))?;
     }
     let changes = folder.join("changelog");
     copy(&repository().join("CHANGELOG.md"), &changes)?;
-    std::fs::remove_file(folder.join("CHANGELOG.md")).map_err(|e| super::staging::failed(&changes, &e))?;
+    std::fs::remove_file(folder.join("CHANGELOG.md"))
+        .map_err(|e| crate::chore::file_failure(&changes, &e))?;
     execute(Command::new("gzip").args(["--best", "--no-name", "--force"]).arg(&changes))
 }
 
