@@ -12,6 +12,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("progress", &[]),
     ("numerics", &[]),
     ("atomic-file", &[]),
+    ("spread", &["numerics", "progress"]),
     ("web-page", &["numerics"]),
     ("disparity", &["numerics", "progress"]),
     ("scene", &["lens", "numerics", "progress"]),
@@ -21,7 +22,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("trace", &["scene", "lens", "numerics", "progress"]),
     ("slf", &["material", "trace", "scene", "atlas", "numerics", "progress"]),
     ("salf", &["slf", "trace", "scene", "lens", "progress"]),
-    ("focus", &["atlas", "scene", "lens", "numerics"]),
+    ("focus", &["spread", "atlas", "scene", "lens", "numerics", "progress"]),
     ("splat", &["salf", "focus", "scene", "lens", "progress"]),
     ("test-scenes", &["scene"]),
     (
