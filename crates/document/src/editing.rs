@@ -12,6 +12,7 @@ mod paintable;
 mod painter;
 mod recorded_steps;
 mod selection_shapes;
+mod spreading;
 mod stroke_point;
 
 pub use active_edit::ActiveEdit;

@@ -54,5 +54,5 @@ pub use painting::{
 };
 pub use recipe::{FocusRecipe, RecipeEntry};
 pub use source::{Focus, FocusSource};
-pub use spreading::{Spread, SpreadField, SpreadLabels, SpreadSettings, SurfaceGraph};
+pub use spreading::{Likeness, Spread, SpreadField, SpreadLabels, SpreadSettings, SurfaceGraph};
 pub use view_frame::ViewFrame;

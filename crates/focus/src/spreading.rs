@@ -7,6 +7,7 @@
 //! ```
 
 mod nearest_islands;
+mod refined_selection;
 mod spread_field;
 mod spread_labels;
 mod spread_settings;
@@ -16,4 +17,4 @@ mod surface_links;
 pub use spread_field::SpreadField;
 pub use spread_labels::SpreadLabels;
 pub use spread_settings::{Spread, SpreadSettings};
-pub use surface_graph::SurfaceGraph;
+pub use surface_graph::{Likeness, SurfaceGraph};

@@ -119,7 +119,7 @@ impl Document {
             return Err(DocumentError::BadInput("selection: the shape is invalid (choose another)".into()));
         }
         let before = self.selection.as_ref();
-        let matches = select_texels(&self.stage, &shape, before);
+        let matches = select_texels(&self.stage, &shape, before)?;
         let after = match matches.combine_with(before, combine, self.stage.canvas.texels().len()) {
             SelectionResult::Nothing => {
                 let message = "selection: nothing would be selected (choose another shape)";

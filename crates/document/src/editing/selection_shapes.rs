@@ -1,19 +1,25 @@
 //! The texels that a selection's shape covers.
 
+use crate::error::DocumentError;
 use crate::stage::Stage;
 use focus::{Selection, SelectionResult, ViewFrame};
 use glam::DVec2;
+use progress::Unwatched;
 use project::SelectionShape;
 use rayon::prelude::*;
 
-/// The texels of a shape; `before` is the current selection.
+/// The texels of a shape; `before` is the current selection. Shapes that follow the surface take a while when the first is
+/// selected.
+///
+/// # Errors
+/// Photographs that show where edges are cannot be used.
 pub(crate) fn select_texels(
     stage: &Stage,
     shape: &SelectionShape,
     before: Option<&Selection>,
-) -> SelectionResult {
+) -> Result<SelectionResult, DocumentError> {
     let canvas = &*stage.canvas;
-    match shape {
+    Ok(match shape {
         SelectionShape::Everything => SelectionResult::Everything,
         SelectionShape::Inverse => before.map_or(SelectionResult::Nothing, Selection::inverted),
         SelectionShape::Targets(targets) => Selection::from_predicate(canvas, |texel| {
@@ -28,6 +34,18 @@ pub(crate) fn select_texels(
             let min_cosine = degrees.to_radians().cos();
             Selection::from_predicate(canvas, |texel| normal.dot(texel.normal.as_dvec3()) >= min_cosine)
         }
+        SelectionShape::Similar { position, likeness, tolerance } => {
+            let Some(start) = canvas.nearest(*position, |_| true) else {
+                return Ok(SelectionResult::Nothing);
+            };
+            let tolerances = stage.surface_graph(&Unwatched)?.tolerances(canvas, start, *likeness);
+            let is_alike = |index: usize| f64::from(tolerances[index]) <= *tolerance;
+            Selection::from_indices(canvas, is_alike)
+        }
+        SelectionShape::Refined { width } => match before {
+            Some(before) => before.refined(&*stage.surface_graph(&Unwatched)?, canvas, *width)?,
+            None => SelectionResult::Everything,
+        },
         SelectionShape::Outline { view, points, through } => {
             let width = stage.atlas.width as usize;
             let mut is_texel_inside = vec![false; width * stage.atlas.height as usize];
@@ -44,7 +62,7 @@ pub(crate) fn select_texels(
                 is_texel_inside[texel.y as usize * width + texel.x as usize]
             })
         }
-    }
+    })
 }
 
 /// The outline of the rectangle with two opposite corners in a view. `through` also selects hidden surfaces.

@@ -48,3 +48,10 @@ pub struct Spread {
     /// How they are spread.
     pub settings: SpreadSettings,
 }
+
+impl Spread {
+    /// Whether strokes and settings are usable for a layer of this size.
+    pub fn is_valid_for(&self, size: [u32; 2]) -> bool {
+        self.strokes.size() == size && self.strokes.is_valid() && self.settings.is_valid()
+    }
+}

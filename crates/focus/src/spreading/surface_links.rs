@@ -22,6 +22,8 @@ pub(crate) struct SurfaceLink {
 #[derive(Clone, Debug)]
 pub(crate) struct SurfaceLinks {
     pub links: Vec<SurfaceLink>,
+    /// How many of them, the first ones, join texels that touch.
+    pub touching: usize,
 }
 
 /// Conductance between parts that touch: objects that stand on each other are seldom meant together.
@@ -62,9 +64,10 @@ impl SurfaceLinks {
         links.extend(seams(canvas, &spacings));
         progress.check()?;
         progress.report(0.6);
+        let touching = links.len();
         join_islands(canvas, &spacings, &mut links, progress)?;
         progress.report(1.0);
-        Ok(Self { links })
+        Ok(Self { links, touching })
     }
 }
 
@@ -142,8 +145,7 @@ fn seams(canvas: &Canvas, spacings: &[f64]) -> Vec<SurfaceLink> {
         nearest.truncate(MAX_SEAM_LINKS);
         nearest.into_iter().map(move |(_, other)| [other.min(index as u32), other.max(index as u32)])
     };
-    let mut pairs: Vec<[u32; 2]> =
-        (0..spacings.len()).into_par_iter().flat_map_iter(of_texel).collect();
+    let mut pairs: Vec<[u32; 2]> = (0..spacings.len()).into_par_iter().flat_map_iter(of_texel).collect();
     pairs.par_sort_unstable();
     pairs.dedup();
     let link = |texels: [u32; 2]| {
