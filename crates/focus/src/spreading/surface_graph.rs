@@ -56,7 +56,7 @@ impl SurfaceGraph {
         let weighted = self.links.links.par_iter().map(|link| {
             let [a, b] = link.texels;
             let [from, to] = link.texels.map(|texel| &self.appearances[texel as usize]);
-            (a, b, (link.conductance * affinity.between(from, to)).max(spread::LEAST_AFFINITY))
+            (a, b, link.conductance * affinity.between(from, to))
         });
         Graph::new(self.texels(), &weighted.collect::<Vec<_>>())
     }

@@ -124,7 +124,7 @@ fn without_jump(canvas: &Canvas, spacings: &[f64], texels: [u32; 2]) -> f32 {
     // a.max(b) / across, compared without a quotient: `across` may be 0.
     let expected = EXPECTED_SPREAD * a.max(b).max(across * across);
     let excess = distance * across;
-    if excess <= expected { 1.0 } else { ((expected / excess).powi(2) as f32).max(spread::LEAST_AFFINITY) }
+    if excess <= expected { 1.0 } else { ((expected / excess).powi(3) as f32).max(spread::LEAST_AFFINITY) }
 }
 
 /// Links across seams and contacts, sorted by their texels.
