@@ -73,8 +73,8 @@ pub use bookmarks::BookmarkEdit;
 pub use camera_edit::CameraEdit;
 pub use camera_path::camera_between;
 pub use editing::{
-    ActiveEdit, ActiveGradient, FillRegion, Painter, StrokePoint, StrokeTarget, apply_recorded_step,
-    rectangle_outline, replay,
+    ActiveEdit, ActiveGradient, FillRegion, Painter, SelectionMatches, SelectionTask, StrokePoint,
+    StrokeTarget, apply_recorded_step, rectangle_outline, replay,
 };
 pub use error::{DocumentError, IoFault, file_name};
 pub use focus_hold::HeldCamera;

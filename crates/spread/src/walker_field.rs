@@ -4,6 +4,7 @@ use crate::multigrid::{Hierarchy, Screened};
 use crate::{Graph, SpreadError};
 use progress::{Progress, Stage};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// The most labels that are spread at once.
 pub const MAX_LABELS: usize = 16;
@@ -29,7 +30,8 @@ const GREATEST_LOGIT: f64 = 12.0;
 #[derive(Clone, Debug, PartialEq)]
 pub struct WalkerField {
     labels: usize,
-    /// By rung, label and node.
+    nodes: usize,
+    /// By rung, label and node; empty for a rung that is not solved.
     logits: Vec<Vec<Vec<i16>>>,
 }
 
@@ -54,6 +56,31 @@ impl WalkerField {
         labels: usize,
         progress: &dyn Progress,
     ) -> Result<Self, SpreadError> {
+        Self::solve_rungs(graph, (seeds, labels), 0..RUNGS, progress)
+    }
+
+    /// The same for one reach only, with the same bits: a quarter of the work.
+    ///
+    /// # Errors
+    /// As [`Self::solve`].
+    pub fn solve_at_reach(
+        graph: &Graph,
+        seeds: &[(u32, u8)],
+        labels: usize,
+        reach: f64,
+        progress: &dyn Progress,
+    ) -> Result<Self, SpreadError> {
+        let (rung, _) = rung_below(reach);
+        Self::solve_rungs(graph, (seeds, labels), rung..rung + 2, progress)
+    }
+
+    /// Solves for some of the reaches; each on its own, so that its bits do not depend on the others.
+    fn solve_rungs(
+        graph: &Graph,
+        (seeds, labels): (&[(u32, u8)], usize),
+        rungs: Range<usize>,
+        progress: &dyn Progress,
+    ) -> Result<Self, SpreadError> {
         if labels > MAX_LABELS {
             return Err(SpreadError::TooManyLabels { count: labels });
         }
@@ -71,19 +98,21 @@ impl WalkerField {
         let rights: Vec<Vec<f64>> =
             (0..labels).map(|label| system.right_side(graph, &label_of, label)).collect();
         let hierarchy = Hierarchy::new(system.graph, system.sinks, progress)?;
-        let mut solutions = vec![vec![0.0; hierarchy.nodes()]; labels];
-        let mut logits = Vec::with_capacity(RUNGS);
-        for rung in 0..RUNGS {
-            let stage = Stage::new(progress, rung as f32 / RUNGS as f32, (rung + 1) as f32 / RUNGS as f32);
+        let mut logits = vec![Vec::new(); RUNGS];
+        for (step, rung) in rungs.clone().enumerate() {
+            let [from, to] = [step, step + 1].map(|step| step as f32 / rungs.len() as f32);
+            let stage = Stage::new(progress, from, to);
             let reach = LEAST_REACH * RUNG_FACTOR.powi(rung as i32);
             let screened = Screened::new(&hierarchy, 1.0 / (reach * reach));
-            let solve = |(right, x): (&Vec<f64>, &mut Vec<f64>)| screened.solve(right, x, &stage);
-            rights.par_iter().zip(&mut solutions).try_for_each(solve)?;
-            let of_label = |(label, x): (usize, &Vec<f64>)| logits_of(&label_of, label, x);
-            logits.push(solutions.par_iter().enumerate().map(of_label).collect());
+            let solve = |(label, right): (usize, &Vec<f64>)| {
+                let mut x = vec![0.0; hierarchy.nodes()];
+                screened.solve(right, &mut x, &stage)?;
+                Ok(logits_of(&label_of, label, &x))
+            };
+            logits[rung] = rights.par_iter().enumerate().map(solve).collect::<Result<_, SpreadError>>()?;
             stage.report(1.0);
         }
-        Ok(Self { labels, logits })
+        Ok(Self { labels, nodes, logits })
     }
 
     /// The number of labels.
@@ -93,16 +122,24 @@ impl WalkerField {
 
     /// The number of nodes.
     pub fn nodes(&self) -> usize {
-        self.logits[0].first().map_or(0, Vec::len)
+        self.nodes
+    }
+
+    /// Whether the outcomes at a reach are solved for.
+    pub fn is_solved_at(&self, reach: f64) -> bool {
+        let (rung, _) = rung_below(reach);
+        self.logits[rung..rung + 2].iter().all(|logits| logits.len() == self.labels)
     }
 
     /// The outcomes at a reach, in links, which is clamped to [[`LEAST_REACH`], [`GREATEST_REACH`]]; NaN counts as the
     /// least. Takes no time.
+    ///
+    /// # Panics
+    /// The reach is not solved for ([`Self::is_solved_at`]).
     pub fn at_reach(&self, reach: f64) -> Outcomes<'_> {
-        let reach = if reach > LEAST_REACH { reach.min(GREATEST_REACH) } else { LEAST_REACH };
-        let position = (reach / LEAST_REACH).ln() / RUNG_FACTOR.ln();
-        let rung = (position as usize).min(RUNGS - 2);
-        Outcomes { field: self, rung, share: (position - rung as f64).clamp(0.0, 1.0) as f32 }
+        assert!(self.is_solved_at(reach), "only a reach that is solved for has outcomes");
+        let (rung, share) = rung_below(reach);
+        Outcomes { field: self, rung, share }
     }
 
     /// The memory that it takes, in bytes.
@@ -164,6 +201,14 @@ impl Outcomes<'_> {
         weights.iter_mut().for_each(|weight| *weight = sharpen(*weight) / sum);
         sharpen(none) / sum
     }
+}
+
+/// The rung at or below a reach, not the last, and how far the reach is from there to the next, in [0, 1].
+fn rung_below(reach: f64) -> (usize, f32) {
+    let reach = if reach > LEAST_REACH { reach.min(GREATEST_REACH) } else { LEAST_REACH };
+    let position = (reach / LEAST_REACH).ln() / RUNG_FACTOR.ln();
+    let rung = (position as usize).min(RUNGS - 2);
+    (rung, (position - rung as f64).clamp(0.0, 1.0) as f32)
 }
 
 /// The label of a node that has none.

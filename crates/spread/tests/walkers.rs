@@ -167,6 +167,23 @@ fn bits_do_not_depend_on_the_number_of_threads() {
 }
 
 #[test]
+fn one_reach_alone_has_the_same_bits() {
+    let graph = grid(40, 30);
+    let seeds = [(3, 0), (1100, 1)];
+    let all = WalkerField::solve(&graph, &seeds, 2, &Unwatched).unwrap();
+    for reach in [LEAST_REACH, 700.0, GREATEST_REACH] {
+        let alone = WalkerField::solve_at_reach(&graph, &seeds, 2, reach, &Unwatched).unwrap();
+        assert!(alone.is_solved_at(reach) && all.is_solved_at(reach));
+        assert!(!alone.is_solved_at(if reach > 1000.0 { 2.0 } else { 30000.0 }));
+        let bits = |field: &WalkerField| {
+            let outcomes = field.at_reach(reach);
+            (0..graph.nodes()).map(|node| outcomes.probability(node, 0).to_bits()).collect::<Vec<_>>()
+        };
+        assert_eq!(bits(&alone), bits(&all));
+    }
+}
+
+#[test]
 fn a_solve_can_be_cancelled() {
     struct Stopped;
     impl Progress for Stopped {

@@ -14,6 +14,7 @@ mod plane_editor;
 mod preset_row;
 mod scene_panel;
 mod shape_panel;
+mod spread_rows;
 mod tool_panel;
 mod variant_panel;
 mod world_panel;
@@ -72,7 +73,9 @@ impl Inspector {
             section(ui, "Lens", true, |ui| lens_panel::lens_panel(ui, document, presets, actions));
             section(ui, "Cameras", false, |ui| self.cameras.ui(ui, document, actions));
             section(ui, "Focus", true, |ui| focus_panel::focus_panel(ui, document, actions));
-            section(ui, "Layers", true, |ui| layers_panel::layers_panel(ui, document, actions));
+            section(ui, "Layers", true, |ui| {
+                layers_panel::layers_panel(ui, document, &mut settings.tools.spread, actions);
+            });
             section(ui, "Brush", true, |ui| {
                 brush_panel::brush_panel(ui, document, settings, presets, hover, actions);
             });

@@ -4,19 +4,43 @@ use crate::error::DocumentError;
 use crate::stage::Stage;
 use focus::{Selection, SelectionResult, ViewFrame};
 use glam::DVec2;
-use progress::Unwatched;
+use progress::Progress;
 use project::SelectionShape;
 use rayon::prelude::*;
+use std::sync::Arc;
 
-/// The texels of a shape; `before` is the current selection. Shapes that follow the surface take a while when the first is
-/// selected.
-///
-/// # Errors
-/// Photographs that show where edges are cannot be used.
-pub(crate) fn select_texels(
+/// A shape whose texels are to be selected. Those that follow the surface take a while when the first is selected; it
+/// needs no document and can run in the background.
+pub struct SelectionTask {
+    pub(crate) stage: Arc<Stage>,
+    pub(crate) shape: SelectionShape,
+    /// The selection.
+    pub(crate) before: Option<Selection>,
+}
+
+/// The texels of a shape.
+pub struct SelectionMatches {
+    pub(crate) task: SelectionTask,
+    pub(crate) matches: SelectionResult,
+}
+
+impl SelectionTask {
+    /// Finds the texels.
+    ///
+    /// # Errors
+    /// Photographs that show where edges are cannot be used, or `progress` was cancelled.
+    pub fn solve(self, progress: &dyn Progress) -> Result<SelectionMatches, DocumentError> {
+        let matches = select_texels(&self.stage, &self.shape, self.before.as_ref(), progress)?;
+        Ok(SelectionMatches { task: self, matches })
+    }
+}
+
+/// The texels of a shape; `before` is the current selection.
+fn select_texels(
     stage: &Stage,
     shape: &SelectionShape,
     before: Option<&Selection>,
+    progress: &dyn Progress,
 ) -> Result<SelectionResult, DocumentError> {
     let canvas = &*stage.canvas;
     Ok(match shape {
@@ -38,12 +62,12 @@ pub(crate) fn select_texels(
             let Some(start) = canvas.nearest(*position, |_| true) else {
                 return Ok(SelectionResult::Nothing);
             };
-            let tolerances = stage.surface_graph(&Unwatched)?.tolerances(canvas, start, *likeness);
+            let tolerances = stage.surface_graph(progress)?.tolerances(canvas, start, *likeness);
             let is_alike = |index: usize| f64::from(tolerances[index]) <= *tolerance;
             Selection::from_indices(canvas, is_alike)
         }
         SelectionShape::Refined { width } => match before {
-            Some(before) => before.refined(&*stage.surface_graph(&Unwatched)?, canvas, *width)?,
+            Some(before) => before.refined(&*stage.surface_graph(progress)?, canvas, *width)?,
             None => SelectionResult::Everything,
         },
         SelectionShape::Outline { view, points, through } => {

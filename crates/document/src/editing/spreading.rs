@@ -27,19 +27,20 @@ impl Document {
             let message = "its values follow from a rule and cannot be spread (choose a painted layer)";
             return Err(DocumentError::BadInput(format!("{}: {message}", layer.name)));
         }
-        Ok(SpreadTask {
-            stage: self.stage.clone(),
-            strokes: strokes_of(layer).clone(),
-            contrast: settings.contrast,
-        })
+        Ok(SpreadTask { stage: self.stage.clone(), strokes: strokes_of(layer).clone(), settings: *settings })
     }
 
     /// Whether a layer can be spread at once, because its strokes are solved for.
     pub fn is_spread_solved(&self, task: &SpreadTask) -> bool {
+        self.solved_spread.as_ref().is_some_and(|solved| solved.solves(task))
+    }
+
+    /// Whether some reach of the same strokes is solved for.
+    pub fn has_solved_strokes(&self, task: &SpreadTask) -> bool {
         self.solved_spread.as_ref().is_some_and(|solved| solved.task.is_same(task))
     }
 
-    /// Keeps what was solved, in place of what was kept before.
+    /// Keeps what was solved for, to be spread at once, in place of what was kept before.
     pub fn keep_solved_spread(&mut self, solved: SolvedSpread) {
         self.solved_spread = Some(solved);
     }
@@ -56,7 +57,7 @@ impl Document {
     ) -> Result<Option<ChangedTexels>, DocumentError> {
         let task = self.spread_task(layer, &settings)?;
         if !self.is_spread_solved(&task) {
-            self.solved_spread = Some(task.solve(&Unwatched)?);
+            self.solved_spread = Some(task.solve_at_reach(&Unwatched)?);
         }
         let Some(field) = self.solved_spread.as_ref().map(|solved| solved.field.clone()) else {
             return Ok(None);

@@ -1,17 +1,14 @@
 //! Strokes that are spread, against masks that were written down before there was a solver.
 
+mod layers;
 mod pictures;
 mod scene;
 
-use atlas::UnwrapOptions;
-use document::Document;
 use focus::SpreadSettings;
-use light::Resources;
-use progress::Unwatched;
+use lens::FocusOffset;
 use scene::{TestScene, json, label_values, names, owner_names, truth};
 use serde_json::Value;
 use std::collections::BTreeMap;
-use std::path::Path;
 
 fn masks() -> Value {
     json(include_str!("masks.json"))
@@ -30,19 +27,20 @@ fn intersection_over_union(number: usize) -> Option<f64> {
     scene.paint(strokes, &[inside, outside]);
     let truth = truth(&scene, mask);
     let hits = scene.hits();
-    pictures::write(&scene, strokes, &truth, &hits, None, number);
+    pictures::write_colors(&scene, &format!("{number}-color"), &hits);
+    pictures::write_layer(&scene, &format!("{number}-strokes"), &hits);
+    let truth_grey = truth.iter().map(|is_meant| u8::from(is_meant.unwrap_or(false)) * 255);
+    pictures::write_grey(&scene, &format!("{number}-truth"), truth_grey);
     let layer = scene.document.layers.active_index();
     scene.document.spread(layer, SpreadSettings::default()).unwrap();
     let (mut both, mut either) = (0u32, 0u32);
-    let mut spread = Vec::new();
     for (hit, is_meant) in hits.iter().zip(&truth) {
-        let is_spread = hit.as_ref().is_some_and(|hit| scene.layer_at(hit)[1] >= 0.5);
+        let is_spread = hit.as_ref().is_some_and(|hit| scene.layer_at(hit)[2] >= 0.5);
         let is_meant = is_meant.unwrap_or(false);
         both += u32::from(is_spread && is_meant);
         either += u32::from(is_spread || is_meant);
-        spread.push(is_spread);
     }
-    pictures::write(&scene, strokes, &truth, &hits, Some(&spread), number);
+    pictures::write_layer(&scene, &format!("{number}-spread"), &hits);
     let share = f64::from(both) / f64::from(either.max(1));
     eprintln!("{}: {share:.4}", mask["name"]);
     Some(share)
@@ -73,20 +71,11 @@ fn a_fox_in_a_picture_with_depth_is_separated_from_the_floor() {
     assert!(intersection_over_union(4).is_none_or(|share| share >= 0.9));
 }
 
-/// The demo with three strokes on it, by label.
-fn painted_demo() -> TestScene {
-    let demo = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/demo/demo.fbrush");
-    let unwrap = UnwrapOptions::default();
-    let document = Document::open_saved(&demo, &unwrap, &Resources::default(), &Unwatched).unwrap();
-    let strokes = &strokes()["demo"];
-    let mut scene = TestScene::of_document(document, strokes);
-    scene.paint(strokes, &[label_values()[0], label_values()[1], lens::FocusOffset::new(2.0, 0.0)]);
-    scene
-}
-
 #[test]
 fn three_strokes_separate_fox_fence_and_ground() {
-    let mut scene = painted_demo();
+    let (strokes, [fox, fence, _]) = (&strokes()["demo"], label_values());
+    let mut scene = TestScene::demo(1024, strokes);
+    scene.paint(strokes, &[fox, fence, FocusOffset::new(2.0, 0.0)]);
     let classes: Vec<Vec<String>> =
         masks()["demo"]["classes"].as_array().unwrap().iter().map(names).collect();
     let values = [1.0, 0.5, 2.0];
@@ -102,7 +91,7 @@ fn three_strokes_separate_fox_fence_and_ground() {
     let layer = scene.document.layers.active_index();
     let wrong_share = |scene: &TestScene| {
         let is_wrong = |(class, pixel): &(usize, usize)| {
-            let [t, mask] = scene.layer_at(hits[*pixel].as_ref().unwrap());
+            let [t, _, mask] = scene.layer_at(hits[*pixel].as_ref().unwrap());
             mask < 0.5 || (t - values[*class]).abs() > 0.01
         };
         for class in 0..3 {
@@ -114,6 +103,9 @@ fn three_strokes_separate_fox_fence_and_ground() {
     };
     // A control: the strokes alone cover little.
     assert!(wrong_share(&scene) > 0.9);
+    pictures::write_colors(&scene, "demo-color", &hits);
+    pictures::write_layer(&scene, "demo-strokes", &hits);
     scene.document.spread(layer, SpreadSettings::default()).unwrap();
+    pictures::write_layer(&scene, "demo-spread", &hits);
     assert!(wrong_share(&scene) <= 0.02, "{}", wrong_share(&scene));
 }

@@ -1,6 +1,6 @@
 //! A scene with strokes and a mask: what a user paints, and what should come of it.
 
-use atlas::UnwrapOptions;
+use atlas::{Density, UnwrapOptions};
 use document::{
     CameraChoice, Document, Input, NewDocumentOptions, Painter, StrokePoint, StrokeTarget, SurfaceHit, pick,
     view_ray,
@@ -28,6 +28,11 @@ pub fn shared(folder: &str) -> Option<PathBuf> {
 /// The values of the labels in the strokes; the last keeps out.
 pub fn label_values() -> [FocusOffset; 3] {
     [FocusOffset::SHARP, FocusOffset::new(0.5, 0.0), FocusOffset::STANDARD]
+}
+
+/// Unwraps to an atlas of this side, small enough for a test.
+pub fn unwrap_to(side: u32) -> UnwrapOptions {
+    UnwrapOptions { density: Density::Side(side), ..UnwrapOptions::default() }
 }
 
 /// An open document, seen from a view of `size` pixels.
@@ -70,7 +75,7 @@ impl TestScene {
         };
         let photograph = mask["photograph"].as_str().map(|name| CameraChoice::Named(format!("photo:{name}")));
         let options = NewDocumentOptions { camera: photograph.as_ref(), ..NewDocumentOptions::default() };
-        let unwrap = UnwrapOptions::default();
+        let unwrap = unwrap_to(1024);
         let document = Document::create_from_input(input, &options, &unwrap, &Unwatched).unwrap();
         Some(Self::of_document(document, strokes))
     }
@@ -89,13 +94,27 @@ impl TestScene {
         Self { document, view: ViewFrame::from_camera(&camera), size: [width, height] }
     }
 
+    /// The surface at a position in the view.
+    pub fn hit_at(&self, position: DVec2) -> Option<SurfaceHit> {
+        pick(self.document.stage.tracer(), &view_ray(&self.view, position))
+    }
+
     /// The surface under every pixel, row by row.
     pub fn hits(&self) -> Vec<Option<SurfaceHit>> {
         hits(self.document.stage.tracer(), &self.view, self.size)
     }
 
-    /// Paints the strokes on a new layer, `values` by label; returns how much of each stroke's path is where `is_right`
-    /// says that it should be.
+    /// The demo, seen by its camera, in an atlas of this side.
+    pub fn demo(side: u32, strokes: &Value) -> Self {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/demo");
+        let camera = CameraChoice::File(folder.join("demo.camera.json"));
+        let options = NewDocumentOptions { camera: Some(&camera), ..NewDocumentOptions::default() };
+        let (file, resources) = (folder.join("demo.glb"), Resources::default());
+        let document = Document::create(&file, &options, &unwrap_to(side), &resources, &Unwatched).unwrap();
+        Self::of_document(document, strokes)
+    }
+
+    /// Paints the strokes on a new layer, `values` by label.
     pub fn paint(&mut self, strokes: &Value, values: &[FocusOffset]) {
         self.document.edit_layers(LayerEdit::AddPaint).unwrap();
         for stroke in strokes["strokes"].as_array().unwrap() {
@@ -133,14 +152,15 @@ impl TestScene {
         }
     }
 
-    /// [t, mask] of the active layer at a hit.
-    pub fn layer_at(&self, hit: &SurfaceHit) -> [f64; 2] {
+    /// [t, anchor, mask] of the active layer at a hit.
+    pub fn layer_at(&self, hit: &SurfaceHit) -> [f64; 3] {
         let map = &self.document.layers.active().map;
         let [x, y] =
             self.document.stage.atlas.position_of(hit.point).floor().to_array().map(|x| x.max(0.0) as u32);
         let [width, height] = map.size();
         let (x, y) = (x.min(width - 1), y.min(height - 1));
-        [f64::from(map.texel(x, y)[0]), f64::from(map.mask_at(x, y))]
+        let [t, anchor] = map.texel(x, y);
+        [t, anchor, map.mask_at(x, y)].map(f64::from)
     }
 }
 

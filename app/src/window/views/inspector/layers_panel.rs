@@ -2,16 +2,22 @@
 
 use super::curve_editor::curve_editor;
 use super::plane_editor::plane_editor;
+use super::spread_rows::spread_rows;
 use crate::window::Action;
 use crate::window::widgets::controls::{self, finish_edit, row, rows};
 use crate::window::widgets::keys;
 use document::Document;
 use egui::{Button, ComboBox, Slider, TextEdit, Ui};
-use focus::{Adjustment, BlendMode, FocusLayer, LayerEdit};
+use focus::{Adjustment, BlendMode, FocusLayer, LayerEdit, SpreadSettings};
 use session::{Command, CommandId};
 
 /// Draws the list of layers and the settings of the active one; adds what the user requests to `actions`.
-pub fn layers_panel(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) {
+pub fn layers_panel(
+    ui: &mut Ui,
+    document: &Document,
+    spread: &mut SpreadSettings,
+    actions: &mut Vec<Action>,
+) {
     let layers = document.layers.layers();
     let active = document.layers.active_index();
     for (index, layer) in layers.iter().enumerate().rev() {
@@ -46,6 +52,9 @@ pub fn layers_panel(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>)
         button(CommandId::RemoveLayer, "Remove");
     });
     layer_settings(ui, document, active, &layers[active], actions);
+    if layers[active].adjustment.is_none() {
+        spread_rows(ui, &layers[active], spread, actions);
+    }
 }
 
 /// Whether a layer command is currently possible.
@@ -57,6 +66,8 @@ pub fn is_layer_command_possible(id: CommandId, document: &Document) -> bool {
         CommandId::LowerLayer | CommandId::LayerBelow => active > 0,
         CommandId::RemoveMask => document.layers.active().map.has_mask(),
         CommandId::AddMask => !document.layers.active().map.has_mask(),
+        CommandId::SpreadStrokes => document.layers.active().adjustment.is_none(),
+        CommandId::ShowStrokes => document.layers.active().spread.is_some(),
         _ => true,
     }
 }
