@@ -12,11 +12,12 @@ mod paintable;
 mod painter;
 mod recorded_steps;
 mod selection_shapes;
+mod spreading;
 mod stroke_point;
 
 pub use active_edit::ActiveEdit;
 pub use active_gradient::ActiveGradient;
 pub use painter::Painter;
 pub use recorded_steps::{apply_recorded_step, replay};
-pub use selection_shapes::rectangle_outline;
+pub use selection_shapes::{SelectionMatches, SelectionTask, rectangle_outline};
 pub use stroke_point::{FillRegion, StrokePoint, StrokeTarget};

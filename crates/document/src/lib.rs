@@ -9,7 +9,8 @@
 //! | module | content |
 //! | --- | --- |
 //! | `input`, `scene_file` | scenes, projects, light fields and captures, as read from files |
-//! | `stage` | a scene that can be painted on |
+//! | `stage`, `surface_colors` | a scene that can be painted on |
+//! | `spread_task` | strokes to be solved for before they can be spread |
 //! | `open_document`, `undo` | the document and its undo history |
 //! | `editing` | edits of paint, as undo steps that can be recorded and replayed |
 //! | `scene_reload`, `paint_transfer` | paint on a scene whose file has changed |
@@ -62,7 +63,9 @@ mod picking;
 mod scene_camera;
 mod scene_file;
 mod scene_reload;
+mod spread_task;
 mod stage;
+mod surface_colors;
 mod undo;
 
 pub use adjustment_view::AdjustmentView;
@@ -70,8 +73,8 @@ pub use bookmarks::BookmarkEdit;
 pub use camera_edit::CameraEdit;
 pub use camera_path::camera_between;
 pub use editing::{
-    ActiveEdit, ActiveGradient, FillRegion, Painter, StrokePoint, StrokeTarget, apply_recorded_step,
-    rectangle_outline, replay,
+    ActiveEdit, ActiveGradient, FillRegion, Painter, SelectionMatches, SelectionTask, StrokePoint,
+    StrokeTarget, apply_recorded_step, rectangle_outline, replay,
 };
 pub use error::{DocumentError, IoFault, file_name};
 pub use focus_hold::HeldCamera;
@@ -85,5 +88,6 @@ pub use picking::{SurfaceHit, chief_ray, depth_in_direction, pick, view_ray};
 pub use relief::{DepthRepair, DepthStroke};
 pub use scene_camera::shot_camera_from;
 pub use scene_file::{atlas_error, load_scene};
+pub use spread_task::{SolvedSpread, SpreadTask};
 pub use stage::{Stage, build_canvas};
 pub use undo::{HistoryStep, KeyedLens, StepEffect, UndoHistory, UndoState};

@@ -8,6 +8,7 @@ use crate::input::{CameraChoice, Input, InputKind, VariantChoice, camera_from_ph
 use crate::paint_transfer::TransferredPaint;
 use crate::picking::SurfaceHit;
 use crate::scene_camera::shot_camera_from;
+use crate::spread_task::SolvedSpread;
 use crate::stage::Stage;
 use crate::undo::{HistoryStep, UndoHistory};
 use atlas::UnwrapOptions;
@@ -70,6 +71,8 @@ pub struct Document {
     /// How the paint was transferred to this surface, if it was painted on another. The step can be undone; the project that it comes from is
     /// not changed.
     pub paint_transfer: Option<TransferredPaint>,
+    /// The strokes that were solved for last, to be spread at once. Neither saved nor undone.
+    pub(crate) solved_spread: Option<SolvedSpread>,
     /// The view that the adjustment layers were evaluated for.
     pub adjustment_view: AdjustmentView,
     /// Everything saved besides the fields above.
@@ -316,6 +319,7 @@ impl Document {
             thumbnail_base: map.clone(),
             map,
             adjustment_view: AdjustmentView::from_camera(&input.camera),
+            solved_spread: None,
             focus_hold: stored_hold.unwrap_or_else(|| HeldCamera::on_axis(input.camera.clone()).focus_hold),
             camera: input.camera.clone(),
             lens_motion: template.lens_motion.clone(),
@@ -377,6 +381,9 @@ impl Document {
         for index in 0..self.layers.layers().len() {
             if let Some(layer) = self.layers.layer_mut(index) {
                 after.canvas.dilate(&mut layer.map);
+                if let Some(spread) = &mut layer.spread {
+                    after.canvas.dilate(&mut spread.strokes);
+                }
             }
         }
         self.evaluate_adjustments();

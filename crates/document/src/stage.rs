@@ -4,8 +4,9 @@ use crate::error::DocumentError;
 use crate::input::{Input, load_capture, picture_atlas};
 use crate::picking::SurfaceHit;
 use crate::scene_file::load_variant;
+use crate::surface_colors::surface_colors;
 use atlas::{Atlas, TexelMap, UnwrapOptions};
-use focus::{Canvas, FocusMap};
+use focus::{Canvas, FocusMap, SurfaceGraph};
 use glam::{DVec2, DVec3};
 use lens::FocusOffset;
 use light::{LitScene, Steps, light_hash};
@@ -37,6 +38,7 @@ pub struct Stage {
     pub depth_strokes: Arc<Vec<DepthStroke>>,
     light_hash: OnceLock<[u8; 32]>,
     surface_bytes: OnceLock<Vec<u8>>,
+    surface_graph: OnceLock<Arc<SurfaceGraph>>,
 }
 
 /// Whether paint on one scene fits the other: the same triangles in the same order, of the same nodes.
@@ -69,6 +71,22 @@ impl Stage {
     /// A checksum of everything in the scene that emits, blocks or reflects light. The first call takes a while.
     pub fn light_hash(&self) -> &[u8; 32] {
         self.light_hash.get_or_init(|| light_hash(&self.scene, self.lit.options()))
+    }
+
+    /// The surface as a graph, along which strokes spread. The first call takes a while: where photographs light the scene,
+    /// it waits for their light, since the graph must not depend on when it is made.
+    ///
+    /// # Errors
+    /// Photographs cannot be used, or `progress` was cancelled.
+    pub fn surface_graph(&self, progress: &dyn Progress) -> Result<Arc<SurfaceGraph>, DocumentError> {
+        if let Some(graph) = self.surface_graph.get() {
+            return Ok(graph.clone());
+        }
+        let light = self.lit.photograph_light(&progress::Stage::named(progress, "photographs", 0.0, 0.4))?;
+        let colors = surface_colors(&self.scene, &self.texels, &self.canvas, light.as_deref());
+        let linking = progress::Stage::named(progress, "neighbours", 0.4, 1.0);
+        let graph = SurfaceGraph::new(&self.canvas, &colors, &linking)?;
+        Ok(self.surface_graph.get_or_init(|| Arc::new(graph)).clone())
     }
 
     /// The surface as stored in a project.
@@ -166,9 +184,20 @@ impl Stage {
         let (atlas, texels, canvas) = (self.atlas.clone(), self.texels.clone(), self.canvas.clone());
         lit.set_atlas(&atlas);
         let (bounds, depth_strokes) = (self.bounds, self.depth_strokes.clone());
-        let light_hash = OnceLock::new();
+        let (light_hash, surface_graph) = (OnceLock::new(), OnceLock::new());
         let surface_bytes = self.surface_bytes.clone();
-        Ok(Self { scene, bounds, atlas, lit, texels, canvas, depth_strokes, light_hash, surface_bytes })
+        Ok(Self {
+            scene,
+            bounds,
+            atlas,
+            lit,
+            texels,
+            canvas,
+            depth_strokes,
+            light_hash,
+            surface_bytes,
+            surface_graph,
+        })
     }
 
     /// Prepares a scene with its atlas, without depth strokes.
@@ -189,8 +218,19 @@ impl Stage {
         let canvas = Arc::new(build_canvas(&scene, &atlas, &texels));
         progress.report(1.0);
         let (bounds, depth_strokes, light_hash) = (scene.bounds(), Arc::default(), OnceLock::new());
-        let surface_bytes = OnceLock::new();
-        Ok(Self { bounds, scene, atlas, lit, texels, canvas, depth_strokes, light_hash, surface_bytes })
+        let (surface_bytes, surface_graph) = (OnceLock::new(), OnceLock::new());
+        Ok(Self {
+            bounds,
+            scene,
+            atlas,
+            lit,
+            texels,
+            canvas,
+            depth_strokes,
+            light_hash,
+            surface_bytes,
+            surface_graph,
+        })
     }
 
     /// The stage of an input, and its focus map. A large scene is announced to `steps` before it can be painted on.

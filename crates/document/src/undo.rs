@@ -3,7 +3,7 @@
 use crate::focus_hold::HeldCamera;
 use focus::{Edit, EditThumbnail, LayerStack, LensMotion, Selection};
 use lens::Camera;
-use project::{FocusHold, RecordedStep};
+use project::{FocusHold, RecordedSpread, RecordedStep};
 use relief::DepthStroke;
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -258,7 +258,12 @@ impl UndoHistory {
         record: Option<RecordedStep>,
     ) {
         let drag_target = |record: Option<&RecordedStep>| match record {
-            Some(RecordedStep::Layers(edit)) => edit.drag_target(),
+            Some(RecordedStep::Layers(edit)) => {
+                edit.drag_target().map(|(name, layer)| (name, layer.to_string()))
+            }
+            Some(RecordedStep::Spread(RecordedSpread { layer, settings: Some(_) })) => {
+                Some(("Spread", layer.clone()))
+            }
             _ => None,
         };
         let dragged = drag_target(record.as_ref());

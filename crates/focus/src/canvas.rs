@@ -236,6 +236,13 @@ impl Canvas {
         best.map(|(_, index)| index)
     }
 
+    /// The longest side of the box that holds all texels' centroids; 0 for fewer than two.
+    pub(crate) fn extent(&self) -> f64 {
+        let start = (glam::Vec3::INFINITY, glam::Vec3::NEG_INFINITY);
+        let (low, high) = self.tree.points().iter().fold(start, |(l, h), p| (l.min(*p), h.max(*p)));
+        f64::from((high - low).max_element().max(0.0))
+    }
+
     /// The memory that it takes, in bytes.
     pub fn bytes(&self) -> usize {
         self.tree.bytes()

@@ -11,6 +11,7 @@
 //! * [`LayerEdit`]: a change of the layers, as data.
 //! * [`fill`]: one value over a node, part, material or chart. [`Gradient`]: a value that changes along a line.
 //! * [`Selection`]: which texels may be painted. [`Symmetry`]: where else everything is painted.
+//! * [`Spread`]: strokes of a layer, spread to all that hangs together with them ([`SurfaceGraph`], [`SpreadField`]).
 //! * [`Edit`]: an undoable change. [`EditThumbnail`]: a small picture of a change. ⏎
 //!
 //! # Example
@@ -36,6 +37,7 @@ mod motion;
 mod painting;
 mod recipe;
 mod source;
+mod spreading;
 mod view_frame;
 
 pub use canvas::{Canvas, CanvasTexel, CombineMode, Selection, SelectionResult};
@@ -52,4 +54,5 @@ pub use painting::{
 };
 pub use recipe::{FocusRecipe, RecipeEntry};
 pub use source::{Focus, FocusSource};
+pub use spreading::{Likeness, Spread, SpreadField, SpreadLabels, SpreadSettings, SurfaceGraph};
 pub use view_frame::ViewFrame;

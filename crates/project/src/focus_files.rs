@@ -9,6 +9,6 @@ pub use focus_map_file::{FocusMapFile, write_focus_map};
 pub use keys_file::{read_keys, write_keys};
 pub use recipe::{FocusFile, read_focus, read_recipe};
 pub use strokes_file::{
-    RecordedFill, RecordedGradient, RecordedSelection, RecordedStep, RecordedStroke, SelectionShape,
-    StrokeView, read_strokes, write_strokes,
+    RecordedFill, RecordedGradient, RecordedSelection, RecordedSpread, RecordedStep, RecordedStroke,
+    SelectionShape, StrokeView, read_strokes, write_strokes,
 };

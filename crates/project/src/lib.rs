@@ -47,9 +47,9 @@ pub use camera::{camera_from_json, camera_to_json, read_aperture_mask, read_came
 pub use color_space::ColorSpace;
 pub use error::ProjectError;
 pub use focus_files::{
-    FocusFile, FocusMapFile, RecordedFill, RecordedGradient, RecordedSelection, RecordedStep, RecordedStroke,
-    SelectionShape, StrokeView, read_focus, read_keys, read_recipe, read_strokes, write_focus_map,
-    write_keys, write_strokes,
+    FocusFile, FocusMapFile, RecordedFill, RecordedGradient, RecordedSelection, RecordedSpread, RecordedStep,
+    RecordedStroke, SelectionShape, StrokeView, read_focus, read_keys, read_recipe, read_strokes,
+    write_focus_map, write_keys, write_strokes,
 };
 pub use focus_hold::FocusHold;
 pub use openexr::Compression;

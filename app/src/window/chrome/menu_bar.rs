@@ -68,6 +68,7 @@ fn begins_group(id: CommandId) -> bool {
             | RaiseLayer
             | LayerAbove
             | AddMask
+            | SpreadStrokes
             | FocusHere
             | ResetMap
             | BrushSize
@@ -119,13 +120,14 @@ pub fn is_possible(id: CommandId, state: &MenuState<'_>) -> bool {
         | PictureAlone | EnlargePanel | FloatPanel | FullScreen | ShowInspector | NextToneCurve
         | LightOrDark | ScaleUp | ScaleDown | ScaleReset | ShowGuides | ShowFocusPlane | KeysBlender
         | KeysSubstance | KeysKrita | ImportPreset | Palette | Book | Shortcuts | ShowMessages | About => true,
-        SelectAll | InvertSelection | MaskFromSelection => {
+        SelectAll | InvertSelection | RefineSelection | MaskFromSelection => {
             state.document.is_some_and(|document| document.selection.is_some())
         }
         Undo => state.document.is_some_and(|document| document.undo_name().is_some()),
         Redo => state.document.is_some_and(|document| document.redo_name().is_some()),
         Stop => state.has_jobs,
-        RemoveLayer | RaiseLayer | LowerLayer | LayerAbove | LayerBelow | AddMask | RemoveMask => {
+        RemoveLayer | RaiseLayer | LowerLayer | LayerAbove | LayerBelow | AddMask | RemoveMask
+        | SpreadStrokes | ShowStrokes => {
             state.document.is_some_and(|document| is_layer_command_possible(id, document))
         }
         RemoveKeys => state

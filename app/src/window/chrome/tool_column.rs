@@ -130,6 +130,7 @@ fn icon(tool: Tool) -> Icon {
         Tool::SelectChart => Icon::SelectChart,
         Tool::SelectFacing => Icon::SelectFacing,
         Tool::SelectDepth => Icon::SelectDepth,
+        Tool::SelectSimilar => Icon::SelectSimilar,
         Tool::FocusHere => Icon::FocusHere,
         Tool::RackFocus => Icon::RackFocus,
         Tool::FixateHere => Icon::Fixate,

@@ -125,6 +125,7 @@ impl Shell {
             | CommandId::SelectChart
             | CommandId::SelectFacing
             | CommandId::SelectDepth
+            | CommandId::SelectSimilar
             | CommandId::FocusHere
             | CommandId::FixateHere
             | CommandId::RackFocus
@@ -136,6 +137,12 @@ impl Shell {
             CommandId::InvertSelection => {
                 self.apply(Command::Select(SelectionShape::Inverse, CombineMode::Replace));
             }
+            CommandId::RefineSelection => {
+                let width = self.settings.tools.refine_texels;
+                self.apply(Command::Select(SelectionShape::Refined { width }, CombineMode::Replace));
+            }
+            CommandId::SpreadStrokes => self.apply(Command::Spread(self.settings.tools.spread)),
+            CommandId::ShowStrokes => self.apply(Command::ShowStrokes),
             CommandId::MaskFromSelection => self.apply(Command::MaskFromSelection),
             CommandId::FillAll => {
                 if let Some(target) = self.session.document().map(|document| document.brush.target) {

@@ -87,7 +87,7 @@ pub fn click_action(
     tool: Tool,
     hit: SurfaceHit,
     target: FocusOffset,
-    facing: SelectionShape,
+    [facing, similar]: [SelectionShape; 2],
     combine: CombineMode,
 ) -> Option<Action> {
     let command = match tool {
@@ -103,6 +103,7 @@ pub fn click_action(
             Command::SelectRegion(fill_region(tool)?(hit), combine)
         }
         Tool::SelectFacing => Command::Select(facing, combine),
+        Tool::SelectSimilar => Command::Select(similar, combine),
         Tool::FocusHere => Command::FocusHere(hit),
         Tool::FixateHere => Command::Fixate(Some(hit)),
         Tool::Pick => Command::Pick(hit),

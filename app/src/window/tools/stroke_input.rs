@@ -189,7 +189,8 @@ impl StrokeInput {
             let front = document.scene().area_normal(hit.point.triangle).normalize_or_zero();
             let facing =
                 SelectionShape::Normal { normal: front, degrees: active_tool.settings.facing_degrees };
-            actions.extend(click_action(tool, hit, target, facing, combine(modifiers)));
+            let similar = active_tool.settings.similar.shape_at(hit.position, &view.frame);
+            actions.extend(click_action(tool, hit, target, [facing, similar], combine(modifiers)));
         }
     }
 

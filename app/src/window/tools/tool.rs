@@ -55,6 +55,8 @@ pub enum Tool {
     SelectFacing,
     /// A drag selects a depth range.
     SelectDepth,
+    /// A click selects what touches it and is alike.
+    SelectSimilar,
     /// A click focuses the lens on a point.
     FocusHere,
     /// A click sets the point that both eyes fixate.
@@ -86,6 +88,7 @@ impl Tool {
             Tool::SelectChart,
             Tool::SelectFacing,
             Tool::SelectDepth,
+            Tool::SelectSimilar,
         ],
         &[Tool::FocusHere, Tool::RackFocus, Tool::FixateHere],
         &[Tool::Pick, Tool::Inspect],
@@ -117,6 +120,7 @@ impl Tool {
             Tool::SelectChart => CommandId::SelectChart,
             Tool::SelectFacing => CommandId::SelectFacing,
             Tool::SelectDepth => CommandId::SelectDepth,
+            Tool::SelectSimilar => CommandId::SelectSimilar,
             Tool::FocusHere => CommandId::FocusHere,
             Tool::FixateHere => CommandId::FixateHere,
             Tool::RackFocus => CommandId::RackFocus,
@@ -145,6 +149,7 @@ impl Tool {
             Tool::SelectChart => "Select chart",
             Tool::SelectFacing => "Select facing",
             Tool::SelectDepth => "Select depth",
+            Tool::SelectSimilar => "Select similar",
             _ => self.command().info().name,
         }
     }
@@ -183,6 +188,7 @@ impl Tool {
                 | SelectChart
                 | SelectFacing
                 | SelectDepth
+                | SelectSimilar
         )
     }
 

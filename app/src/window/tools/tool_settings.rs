@@ -1,7 +1,9 @@
 //! Settings of the tools. Saved between runs, not part of any document.
 
-use focus::{Ease, GradientShape};
+use focus::{Ease, GradientShape, Likeness, SpreadSettings, ViewFrame};
+use glam::DVec3;
 use lens::FocusOffset;
+use project::SelectionShape;
 use serde::{Deserialize, Serialize};
 
 /// Settings of gradients, selections and rack focus.
@@ -14,8 +16,43 @@ pub struct ToolSettings {
     pub select_through: bool,
     /// Largest angle between normals considered similar, degrees.
     pub facing_degrees: f64,
+    /// Settings of selecting what is alike.
+    pub similar: SimilarSettings,
+    /// How far a selection's outline moves when it is refined, texels.
+    pub refine_texels: u32,
+    /// How strokes are spread.
+    pub spread: SpreadSettings,
     /// Settings of rack focus.
     pub rack: RackSettings,
+}
+
+/// Settings of selecting what touches a clicked point and is like it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct SimilarSettings {
+    /// What makes it alike. The axis of a depth is that of the view.
+    pub likeness: Likeness,
+    /// How unlike it may be, in [0, 1].
+    pub tolerance: f64,
+}
+
+impl SimilarSettings {
+    /// What a click on a point, world space, selects in a view.
+    pub fn shape_at(&self, position: DVec3, view: &ViewFrame) -> SelectionShape {
+        let likeness = match self.likeness {
+            Likeness::Depth(_) => {
+                Likeness::Depth(-view.camera_to_world.z_axis.truncate().normalize_or_zero())
+            }
+            likeness => likeness,
+        };
+        SelectionShape::Similar { position, likeness, tolerance: self.tolerance }
+    }
+}
+
+impl Default for SimilarSettings {
+    fn default() -> Self {
+        Self { likeness: Likeness::Color, tolerance: 0.1 }
+    }
 }
 
 /// Settings of rack focus.
@@ -40,6 +77,9 @@ impl Default for ToolSettings {
             gradient: GradientSettings::default(),
             select_through: false,
             facing_degrees: 30.0,
+            similar: SimilarSettings::default(),
+            refine_texels: 8,
+            spread: SpreadSettings::default(),
             rack: RackSettings::default(),
         }
     }

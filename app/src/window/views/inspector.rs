@@ -15,6 +15,7 @@ mod plane_editor;
 mod preset_row;
 mod scene_panel;
 mod shape_panel;
+mod spread_rows;
 mod tool_panel;
 mod variant_panel;
 mod world_panel;
@@ -77,7 +78,9 @@ impl Inspector {
             section(ui, toggled, ("Lens", true), |ui| lens_panel::lens_panel(ui, document, presets, actions));
             section(ui, toggled, ("Cameras", false), |ui| self.cameras.ui(ui, document, actions));
             section(ui, toggled, ("Focus", true), |ui| focus_panel::focus_panel(ui, document, actions));
-            section(ui, toggled, ("Layers", true), |ui| self.layers.ui(ui, document, actions));
+            section(ui, toggled, ("Layers", true), |ui| {
+                self.layers.ui(ui, document, &mut settings.tools.spread, actions);
+            });
             section(ui, toggled, ("Brush", true), |ui| {
                 brush_panel::brush_panel(ui, document, settings, presets, hover, actions);
             });

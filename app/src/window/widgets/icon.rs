@@ -103,7 +103,7 @@ fn icon_in(painter: &Painter, icon: Icon, rect: Rect, side: f32, color: Color32)
 mod tests {
     use super::*;
 
-    const ALL: [Icon; 35] = {
+    const ALL: [Icon; 36] = {
         use Icon::*;
         [
             Brush,
@@ -129,6 +129,7 @@ mod tests {
             SelectChart,
             SelectFacing,
             SelectDepth,
+            SelectSimilar,
             FocusHere,
             RackFocus,
             Fixate,

@@ -3,7 +3,7 @@
 
 use crate::adjustment_view::AdjustmentView;
 use crate::editing::paintable::paintable_channels;
-use crate::editing::selection_shapes::select_texels;
+use crate::editing::selection_shapes::{SelectionMatches, SelectionTask};
 use crate::editing::stroke_point::FillRegion;
 use crate::error::DocumentError;
 use crate::open_document::Document;
@@ -12,7 +12,9 @@ use focus::{
     LayerStack, SelectionResult, draw_gradient, fill_selected,
 };
 use lens::FocusOffset;
+use progress::Unwatched;
 use project::{RecordedFill, RecordedGradient, RecordedSelection, RecordedStep, SelectionShape};
+use std::sync::Arc;
 
 impl From<FocusError> for DocumentError {
     fn from(error: FocusError) -> Self {
@@ -115,11 +117,35 @@ impl Document {
     /// # Errors
     /// The shape is invalid, or nothing would be selected.
     pub fn select(&mut self, shape: SelectionShape, combine: CombineMode) -> Result<bool, DocumentError> {
+        let matches = self.selection_task(shape)?.solve(&Unwatched)?;
+        self.select_matches(matches, combine)
+    }
+
+    /// What a shape covers, to be solved for in the background.
+    ///
+    /// # Errors
+    /// The shape is invalid.
+    pub fn selection_task(&self, shape: SelectionShape) -> Result<SelectionTask, DocumentError> {
         if !shape.is_valid() {
             return Err(DocumentError::BadInput("selection: the shape is invalid (choose another)".into()));
         }
-        let before = self.selection.as_ref();
-        let matches = select_texels(&self.stage, &shape, before);
+        Ok(SelectionTask { stage: self.stage.clone(), shape, before: self.selection.clone() })
+    }
+
+    /// Combines what a shape covers, on this document's surface, with the selection. Returns whether that changed.
+    ///
+    /// # Errors
+    /// Nothing would be selected, or the surface has changed since.
+    pub fn select_matches(
+        &mut self,
+        SelectionMatches { task, matches }: SelectionMatches,
+        combine: CombineMode,
+    ) -> Result<bool, DocumentError> {
+        if !Arc::ptr_eq(&task.stage.canvas, &self.stage.canvas) {
+            let message = "selection: the surface has changed meanwhile (select once more)";
+            return Err(DocumentError::BadInput(message.into()));
+        }
+        let (before, shape) = (self.selection.as_ref(), task.shape);
         let after = match matches.combine_with(before, combine, self.stage.canvas.texels().len()) {
             SelectionResult::Nothing => {
                 let message = "selection: nothing would be selected (choose another shape)";

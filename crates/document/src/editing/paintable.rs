@@ -10,6 +10,9 @@ pub(crate) fn paintable_channels(layer: &FocusLayer, channels: Channels) -> Resu
     if !layer.is_visible {
         return bad_layer(format!("{name}: the layer is hidden (show it, or choose another layer)"));
     }
+    if layer.spread.is_some() {
+        return bad_layer(format!("{name}: the layer is spread from strokes (show its strokes to paint on)"));
+    }
     let channels = if layer.adjustment.is_some() { Channels::Mask } else { channels };
     if channels == Channels::Mask && !layer.map.has_mask() {
         return bad_layer(format!("{name}: the layer has no mask to paint (add one in the Layers panel)"));

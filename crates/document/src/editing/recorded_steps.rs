@@ -49,6 +49,18 @@ pub fn apply_recorded_step(document: &mut Document, step: &RecordedStep) -> Resu
         RecordedStep::Layers(edit) => {
             document.edit_layers(edit.clone())?;
         }
+        RecordedStep::Spread(spread) => {
+            activate_layer(document, &spread.layer)?;
+            let layer = document.layers.active_index();
+            match spread.settings {
+                Some(settings) => {
+                    document.spread(layer, settings)?;
+                }
+                None => {
+                    document.show_strokes(layer)?;
+                }
+            }
+        }
         RecordedStep::Mask => {
             document.mask_selected()?;
         }

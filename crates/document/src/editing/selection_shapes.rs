@@ -1,19 +1,49 @@
 //! The texels that a selection's shape covers.
 
+use crate::error::DocumentError;
 use crate::stage::Stage;
 use focus::{Selection, SelectionResult, ViewFrame};
 use glam::DVec2;
+use progress::Progress;
 use project::SelectionShape;
 use rayon::prelude::*;
+use std::sync::Arc;
+
+/// A shape whose texels are to be selected. Those that follow the surface take a while when the first is selected; it
+/// needs no document and can run in the background.
+pub struct SelectionTask {
+    pub(crate) stage: Arc<Stage>,
+    pub(crate) shape: SelectionShape,
+    /// The selection.
+    pub(crate) before: Option<Selection>,
+}
+
+/// The texels of a shape.
+pub struct SelectionMatches {
+    pub(crate) task: SelectionTask,
+    pub(crate) matches: SelectionResult,
+}
+
+impl SelectionTask {
+    /// Finds the texels.
+    ///
+    /// # Errors
+    /// Photographs that show where edges are cannot be used, or `progress` was cancelled.
+    pub fn solve(self, progress: &dyn Progress) -> Result<SelectionMatches, DocumentError> {
+        let matches = select_texels(&self.stage, &self.shape, self.before.as_ref(), progress)?;
+        Ok(SelectionMatches { task: self, matches })
+    }
+}
 
 /// The texels of a shape; `before` is the current selection.
-pub(crate) fn select_texels(
+fn select_texels(
     stage: &Stage,
     shape: &SelectionShape,
     before: Option<&Selection>,
-) -> SelectionResult {
+    progress: &dyn Progress,
+) -> Result<SelectionResult, DocumentError> {
     let canvas = &*stage.canvas;
-    match shape {
+    Ok(match shape {
         SelectionShape::Everything => SelectionResult::Everything,
         SelectionShape::Inverse => before.map_or(SelectionResult::Nothing, Selection::inverted),
         SelectionShape::Targets(targets) => Selection::from_predicate(canvas, |texel| {
@@ -28,6 +58,18 @@ pub(crate) fn select_texels(
             let min_cosine = degrees.to_radians().cos();
             Selection::from_predicate(canvas, |texel| normal.dot(texel.normal.as_dvec3()) >= min_cosine)
         }
+        SelectionShape::Similar { position, likeness, tolerance } => {
+            let Some(start) = canvas.nearest(*position, |_| true) else {
+                return Ok(SelectionResult::Nothing);
+            };
+            let tolerances = stage.surface_graph(progress)?.tolerances(canvas, start, *likeness);
+            let is_alike = |index: usize| f64::from(tolerances[index]) <= *tolerance;
+            Selection::from_indices(canvas, is_alike)
+        }
+        SelectionShape::Refined { width } => match before {
+            Some(before) => before.refined(&*stage.surface_graph(progress)?, canvas, *width)?,
+            None => SelectionResult::Everything,
+        },
         SelectionShape::Outline { view, points, through } => {
             let width = stage.atlas.width as usize;
             let mut is_texel_inside = vec![false; width * stage.atlas.height as usize];
@@ -44,7 +86,7 @@ pub(crate) fn select_texels(
                 is_texel_inside[texel.y as usize * width + texel.x as usize]
             })
         }
-    }
+    })
 }
 
 /// The outline of the rectangle with two opposite corners in a view. `through` also selects hidden surfaces.

@@ -3,7 +3,7 @@
 use crate::error::DocumentError;
 use crate::paint_transfer::correspondences::find_correspondences;
 use atlas::{Atlas, TexelMap};
-use focus::{FocusLayer, FocusMap, LayerStack};
+use focus::{FocusLayer, FocusMap, LayerStack, Spread};
 use glam::DVec2;
 use lens::FocusOffset;
 use project::{ProjectFile, TexelSet, surface_to_bytes};
@@ -68,10 +68,15 @@ pub(crate) fn transfer_paint(
 
     let focus_map = project.focus_map.as_ref().map(|map| transfer.transfer_map(map));
     let layers = project.layers.as_ref().and_then(|layers| {
-        let transferred = layers
-            .layers()
-            .iter()
-            .map(|layer| FocusLayer { map: transfer.transfer_map(&layer.map), ..layer.clone() });
+        let spread_of = |layer: &FocusLayer| {
+            let spread = layer.spread.as_ref()?;
+            Some(Spread { strokes: transfer.transfer_map(&spread.strokes), settings: spread.settings })
+        };
+        let transferred = layers.layers().iter().map(|layer| FocusLayer {
+            map: transfer.transfer_map(&layer.map),
+            spread: spread_of(layer),
+            ..layer.clone()
+        });
         LayerStack::new(transferred.collect(), layers.active_index())
     });
     let project = ProjectFile {

@@ -40,6 +40,11 @@ impl Selection {
         Self::from_bits(canvas.texels().map(|texel| is_selected(&texel)))
     }
 
+    /// Selects the texels of a canvas for whose index `is_selected` is true.
+    pub fn from_indices(canvas: &Canvas, is_selected: impl Fn(usize) -> bool) -> SelectionResult {
+        Self::from_bits((0..canvas.texels().len()).map(is_selected))
+    }
+
     fn from_bits(bits: impl ExactSizeIterator<Item = bool>) -> SelectionResult {
         let texel_count = bits.len();
         let mut words = vec![0u64; texel_count.div_ceil(64)];

@@ -1,6 +1,6 @@
 //! One layer of focus.
 
-use crate::{Adjustment, BlendMode, Canvas, FocusMap, LayerMotion};
+use crate::{Adjustment, BlendMode, Canvas, FocusMap, LayerMotion, Spread};
 use lens::Camera;
 
 /// A layer: its values, their weights, and how they blend with the layers below.
@@ -19,6 +19,8 @@ pub struct FocusLayer {
     pub map: FocusMap,
     /// The rule of an adjustment layer.
     pub adjustment: Option<Adjustment>,
+    /// What its values and mask were spread from; `None` for a layer that is as it was painted.
+    pub spread: Option<Spread>,
     /// Its weight over time.
     pub motion: LayerMotion,
 }
@@ -27,8 +29,8 @@ impl FocusLayer {
     /// A visible, opaque painted layer with the values of `map`, and without keys.
     pub fn from_map(name: impl Into<String>, map: FocusMap) -> Self {
         let (is_visible, opacity, blend) = (true, 1.0, BlendMode::Set);
-        let (adjustment, motion) = (None, LayerMotion::default());
-        Self { name: name.into(), is_visible, opacity, blend, map, adjustment, motion }
+        let (adjustment, spread, motion) = (None, None, LayerMotion::default());
+        Self { name: name.into(), is_visible, opacity, blend, map, adjustment, spread, motion }
     }
 
     /// An adjustment layer whose values follow from `adjustment` for a shot camera.
@@ -82,6 +84,12 @@ impl FocusLayer {
         (0.0..=1.0).contains(&self.opacity)
             && self.map.is_valid()
             && self.adjustment.as_ref().is_none_or(Adjustment::is_valid)
+            && self.spread.as_ref().is_none_or(|spread| spread.is_valid_for(self.map.size()))
             && self.motion.is_valid()
+    }
+
+    /// Its map, and the strokes that it was spread from.
+    pub(crate) fn maps(&self) -> impl Iterator<Item = &FocusMap> {
+        [&self.map].into_iter().chain(self.spread.as_ref().map(|spread| &spread.strokes))
     }
 }

@@ -188,6 +188,11 @@ impl LayerEdit {
                 *own = plane;
                 layer.evaluate(canvas, camera);
             }
+            Self::AddMask(_) | Self::InvertMask(_) | Self::RemoveMask(_) if layer.spread.is_some() => {
+                return bad(
+                    "its mask was spread from strokes (go back to the strokes, or change how they spread)",
+                );
+            }
             Self::AddMask(_) => layer.map.add_mask(),
             Self::InvertMask(_) => layer.map.invert_mask(),
             Self::RemoveMask(_) => layer.map.remove_mask(),

@@ -76,7 +76,11 @@ impl LayerStack {
     /// Whether there is only one plain painted layer, as in a document that never had another.
     pub fn is_single_painted_layer(&self) -> bool {
         let only = &self.layers[0];
-        self.layers.len() == 1 && only.is_plain() && only.adjustment.is_none() && only.motion.is_empty()
+        self.layers.len() == 1
+            && only.is_plain()
+            && only.adjustment.is_none()
+            && only.spread.is_none()
+            && only.motion.is_empty()
     }
 
     /// Inserts a layer above the active one and makes it active. False if the stack is full.
@@ -252,10 +256,11 @@ impl LayerStack {
 
     /// The memory, in bytes, of the tiles that are not shared with `other`, a newer state.
     pub fn unshared_bytes(&self, other: &Self) -> usize {
-        let mut shared: TileSet = other.layers.iter().flat_map(|layer| layer.map.tile_sizes()).collect();
+        let mut shared: TileSet =
+            other.layers.iter().flat_map(FocusLayer::maps).flat_map(FocusMap::tile_sizes).collect();
         shared.insert(blank_tile());
         let own = self.layers.iter().map(|layer| {
-            let tiles: TileSet = layer.map.tile_sizes().collect();
+            let tiles: TileSet = layer.maps().flat_map(FocusMap::tile_sizes).collect();
             let unshared: usize = tiles.difference(&shared).map(|(_, bytes)| bytes).sum();
             unshared + size_of::<FocusLayer>() + 2 * layer.map.texels.tiles().len() * size_of::<usize>()
         });
@@ -264,7 +269,7 @@ impl LayerStack {
 
     /// The memory, in bytes, of the tiles of all layers and of `map`, their composite: shared ones once.
     pub fn bytes_with(&self, map: &FocusMap) -> usize {
-        let maps = self.layers.iter().map(|layer| &layer.map).chain([map]);
+        let maps = self.layers.iter().flat_map(FocusLayer::maps).chain([map]);
         let tiles: TileSet = maps.flat_map(FocusMap::tile_sizes).collect();
         tiles.iter().map(|(_, bytes)| bytes).sum()
     }

@@ -8,17 +8,22 @@
 //!   {"fill": {"layer": "Paint", "targets": [{"node": 3}], "focus": {"t": 1.0, "anchor": 1.0}}},
 //!   {"gradient": {"layer": "Paint", "gradient": {…}}},
 //!   {"select": {"shape": {"depth": {…}}, "combine": "add"}},
+//!   {"spread": {"layer": "Paint", "settings": {"reach": 4096, "softness": 0, "contrast": 0.06}}},
 //!   {"layers": {"opacity": [1, 0.5]}}, "reset"]}
 //! ```
 //!
 //! A point is the pen's position in the view it painted in ((0, 0) the upper left corner, (1, 1) the lower right) and
 //! its pressure, in [0, 1]. Times are not recorded: dabs follow the path, not the clock. A stroke in the flat atlas
 //! has the atlas's hash for a view, `{"atlas": "…"}`. Version 1 held only `"strokes": [{"layer": …}, …]`, version 2
-//! no strokes in the atlas, version 3 no symmetry along other than world axes, version 4 no gloss; all are read.
+//! no strokes in the atlas, version 3 no symmetry along other than world axes, version 4 no gloss, version 5 nothing that
+//! spreads; all are read.
 
 use crate::ProjectError;
 use crate::disk::{read_bytes, write_verified};
-use focus::{Brush, CombineMode, FillTarget, FocusOffsetFields, Gradient, LayerEdit, ViewFrame};
+use focus::{
+    Brush, CombineMode, FillTarget, FocusOffsetFields, Gradient, LayerEdit, Likeness, SpreadSettings,
+    ViewFrame,
+};
 use glam::{DVec2, DVec3};
 use lens::FocusOffset;
 use serde::{Deserialize, Serialize};
@@ -28,7 +33,10 @@ use std::path::Path;
 const FORMAT: &str = "focus-brush strokes";
 
 /// The newest version.
-const VERSION: u64 = 5;
+const VERSION: u64 = 6;
+
+/// The version that is written if nothing spreads or is selected along the surface.
+const WITHOUT_SPREAD: u64 = 5;
 
 /// The version that is written if gloss keeps the lens's focus.
 const WITHOUT_GLOSS: u64 = 4;
@@ -52,6 +60,8 @@ pub enum RecordedStep {
     Layers(LayerEdit),
     /// The active layer was masked to the selection.
     Mask,
+    /// The strokes of a layer were spread, or are shown again as they were painted.
+    Spread(RecordedSpread),
     /// All paint was removed.
     Reset,
 }
@@ -63,6 +73,7 @@ impl RecordedStep {
             Self::Stroke(stroke) => size_of_val(&*stroke.points) + stroke.layer.len(),
             Self::Fill(fill) => size_of_val(&*fill.targets) + fill.layer.len(),
             Self::Gradient(gradient) => gradient.layer.len(),
+            Self::Spread(spread) => spread.layer.len(),
             Self::Select(RecordedSelection { shape: SelectionShape::Outline { points, .. }, .. }) => {
                 size_of_val(&**points)
             }
@@ -90,6 +101,17 @@ impl RecordedStep {
         }
     }
 
+    /// Whether it needs the surface as a graph: strokes that spread, or a contiguous selection.
+    fn follows_surface(&self) -> bool {
+        match self {
+            Self::Spread(_) => true,
+            Self::Select(selection) => {
+                matches!(selection.shape, SelectionShape::Similar { .. } | SelectionShape::Refined { .. })
+            }
+            _ => false,
+        }
+    }
+
     /// What is invalid about it, if anything.
     fn problem(&self) -> Option<String> {
         let bad = |what: &str| Some(what.to_string());
@@ -106,6 +128,9 @@ impl RecordedStep {
             },
             Self::Fill(fill) if !fill.focus.is_valid() => bad("its focus cannot be used"),
             Self::Gradient(drawn) if !drawn.gradient.is_valid() => bad("its gradient cannot be drawn"),
+            Self::Spread(spread) if !spread.settings.is_none_or(|settings| settings.is_valid()) => {
+                bad("its reach, softness or contrast is out of range")
+            }
             Self::Select(selection) if !selection.shape.is_valid() => bad("its shape cannot be used"),
             _ => None,
         }
@@ -165,6 +190,15 @@ pub struct RecordedGradient {
     pub gradient: Gradient,
 }
 
+/// A recorded spreading of a layer's strokes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RecordedSpread {
+    /// The name of the layer.
+    pub layer: String,
+    /// How they are spread; `None` shows the strokes again as they were painted.
+    pub settings: Option<SpreadSettings>,
+}
+
 /// A recorded change of the selection.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RecordedSelection {
@@ -209,6 +243,20 @@ pub enum SelectionShape {
         /// Whether hidden surfaces behind are included.
         through: bool,
     },
+    /// Texels that touch and are like a clicked one.
+    Similar {
+        /// The clicked point, world.
+        position: DVec3,
+        /// What makes them alike.
+        likeness: Likeness,
+        /// How unlike the clicked one they may be, in [0, 1].
+        tolerance: f64,
+    },
+    /// The texels that were selected, with their outline moved to the nearest edges of the surface.
+    Refined {
+        /// How far the outline may move, in texels, in [1, 256].
+        width: u32,
+    },
 }
 
 impl SelectionShape {
@@ -219,6 +267,11 @@ impl SelectionShape {
             Self::Depth { origin, axis, range: [near, far] } => {
                 origin.is_finite() && axis.is_finite() && near <= far
             }
+            Self::Similar { position, likeness, tolerance } => {
+                let is_axis_valid = !matches!(likeness, Likeness::Depth(axis) if !axis.is_finite());
+                position.is_finite() && is_axis_valid && (0.0..=1.0).contains(tolerance)
+            }
+            Self::Refined { width } => (1..=256).contains(width),
             Self::Normal { normal, degrees } => normal.is_finite() && (0.0..=180.0).contains(degrees),
             Self::Outline { view, points, .. } => {
                 view.is_valid() && points.len() >= 3 && points.iter().all(|point| point.is_finite())
@@ -246,7 +299,8 @@ struct StrokesFile {
 pub fn write_strokes(file: &Path, steps: &[RecordedStep]) -> Result<(), ProjectError> {
     let any = |of: fn(&RecordedStep) -> bool| steps.iter().any(of);
     let version = match () {
-        _ if any(RecordedStep::paints_gloss) => VERSION,
+        _ if any(RecordedStep::follows_surface) => VERSION,
+        _ if any(RecordedStep::paints_gloss) => WITHOUT_SPREAD,
         _ if any(RecordedStep::has_custom_axes) => WITHOUT_GLOSS,
         _ => ALONG_WORLD_AXES,
     };

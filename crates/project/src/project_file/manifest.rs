@@ -20,6 +20,9 @@ pub(crate) const MANIFEST: &str = "manifest.json";
 const WITHOUT_DEPTH: u64 = 6;
 const WITHOUT_CHOSEN_LAYER: u64 = 7;
 
+/// The version of a project without layers that were spread: older programs would lose the strokes.
+const WITHOUT_SPREAD: u64 = 8;
+
 /// The version of a project in which gloss keeps the lens's focus everywhere: older programs assume that.
 const WITHOUT_GLOSS: u64 = 5;
 
@@ -122,7 +125,7 @@ impl Manifest {
     pub const FORMAT: &str = "focus-brush project";
 
     /// The newest version. It is increased whenever an older program would misread the file.
-    pub const VERSION: u64 = 8;
+    pub const VERSION: u64 = 9;
 
     /// The same in the oldest version that can express it.
     pub fn with_oldest_version(self) -> Self {
@@ -134,7 +137,8 @@ impl Manifest {
             || any_row(LayerEntry::has_gloss);
         let capture_has = |of: fn(&CaptureEntry) -> bool| self.capture.as_ref().is_some_and(of);
         let version = match () {
-            _ if capture_has(CaptureEntry::has_layer) => Self::VERSION,
+            _ if any_row(|row| row.spread.is_some()) => Self::VERSION,
+            _ if capture_has(CaptureEntry::has_layer) => WITHOUT_SPREAD,
             _ if capture_has(CaptureEntry::has_depth_strokes) => WITHOUT_CHOSEN_LAYER,
             _ if has_gloss => WITHOUT_DEPTH,
             _ if self.variant.is_some() => WITHOUT_GLOSS,

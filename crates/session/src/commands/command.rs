@@ -3,7 +3,7 @@
 use crate::exported_picture::PictureExport;
 use crate::reference::ReferenceKind;
 use document::{BookmarkEdit, CameraEdit, FillRegion, StrokePoint, SurfaceHit};
-use focus::{Brush, CombineMode, Ease, Gradient, LayerEdit, LensMotion};
+use focus::{Brush, CombineMode, Ease, Gradient, LayerEdit, LensMotion, SpreadSettings};
 use glam::DVec2;
 use jobs::JobId;
 use lens::{Exposure, FocusOffset};
@@ -116,6 +116,11 @@ pub enum Command {
     Select(SelectionShape, CombineMode),
     /// Selects a whole region.
     SelectRegion(FillRegion, CombineMode),
+    /// Spreads the strokes of the active layer, in the background if they are to be solved for first; a layer that is
+    /// spread follows the settings.
+    Spread(SpreadSettings),
+    /// Shows the strokes of the active layer again as they were painted.
+    ShowStrokes,
     /// Masks the active layer by the selection.
     MaskFromSelection,
     /// Fills a whole region, and its images under the brush's symmetry, with a focus.

@@ -89,6 +89,8 @@ impl Session {
             Command::RepairDepth(stroke) => self.repair_depth(stroke),
             Command::DragGradient(gradient) => self.drag_gradient(gradient),
             Command::Select(shape, combine) => self.select(shape, combine),
+            Command::Spread(settings) => self.spread(settings),
+            Command::ShowStrokes => self.show_strokes(),
             Command::MaskFromSelection => self.mask_selected(),
             Command::SelectRegion(region, combine) => self.select_region(region, combine),
             Command::FocusHere(hit) => {

@@ -2,7 +2,8 @@
 
 use crate::reference::Reference;
 use crate::session::stage_change::RebuiltStage;
-use document::{DepthPolarityRequest, Document, SavedState};
+use document::{DepthPolarityRequest, Document, SavedState, SelectionMatches, SolvedSpread};
+use focus::CombineMode;
 use lens::Picture;
 use std::path::PathBuf;
 use trace::truth::Estimate;
@@ -32,6 +33,17 @@ pub(super) enum JobOutcome {
     RecoverySaved {
         path: PathBuf,
         revision: u64,
+    },
+    /// The strokes of a layer of the document of this generation, solved for.
+    SpreadSolved {
+        solved: Box<SolvedSpread>,
+        generation: u64,
+    },
+    /// The texels of a shape, in the document of this generation.
+    SelectionFound {
+        matches: Box<SelectionMatches>,
+        combine: CombineMode,
+        generation: u64,
     },
     FileWritten(PathBuf, Vec<String>),
     Reference(Box<Reference>),

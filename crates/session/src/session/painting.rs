@@ -2,11 +2,20 @@
 
 use crate::commands::Event;
 use crate::error::SessionError;
+use crate::session::job_outcome::JobOutcome;
 use crate::session::state::Session;
-use document::{ActiveEdit, ActiveGradient, FillRegion, Painter, StrokePoint, apply_recorded_step};
-use focus::{CombineMode, FillTarget, FocusMap, Gradient, LayerEdit};
+use document::{
+    ActiveEdit, ActiveGradient, FillRegion, Painter, SelectionMatches, SolvedSpread, StrokePoint,
+    apply_recorded_step,
+};
+use focus::{CombineMode, FillTarget, FocusMap, Gradient, LayerEdit, SpreadSettings};
 use lens::FocusOffset;
+use progress::{Stage, Unwatched};
 use project::{RecordedStep, SelectionShape};
+
+/// Labels of background work.
+const SPREADING: &str = "spreading";
+const SELECTING: &str = "selecting";
 
 impl Session {
     pub(super) fn begin_stroke(&mut self, point: StrokePoint) -> Result<(), SessionError> {
@@ -113,12 +122,103 @@ impl Session {
         self.select(SelectionShape::Targets(targets), combine)
     }
 
+    /// Selects a shape; one that follows the surface in the background, in place of the one before.
     pub(super) fn select(&mut self, shape: SelectionShape, combine: CombineMode) -> Result<(), SessionError> {
         self.commit_stroke()?;
-        if self.document_mut()?.select(shape, combine)? {
+        let follows_surface =
+            matches!(shape, SelectionShape::Similar { .. } | SelectionShape::Refined { .. });
+        let task = self.document_mut()?.selection_task(shape)?;
+        let generation = self.generation;
+        if !follows_surface {
+            return self.select_matches(task.solve(&Unwatched)?, combine, generation);
+        }
+        self.cancel_jobs(SELECTING);
+        self.start_job(SELECTING.into(), move |progress| {
+            let matches = Box::new(task.solve(progress)?);
+            Ok(JobOutcome::SelectionFound { matches, combine, generation })
+        })?;
+        Ok(())
+    }
+
+    pub(super) fn select_matches(
+        &mut self,
+        matches: SelectionMatches,
+        combine: CombineMode,
+        generation: u64,
+    ) -> Result<(), SessionError> {
+        if generation == self.generation && self.document_mut()?.select_matches(matches, combine)? {
             self.events.push(Event::SelectionChanged);
         }
         Ok(())
+    }
+
+    /// Spreads the strokes of the active layer: at once if they are solved for, else in the background. A slider that
+    /// moves meanwhile does not begin anew.
+    pub(super) fn spread(&mut self, settings: SpreadSettings) -> Result<(), SessionError> {
+        self.commit_stroke()?;
+        let document = self.document_mut()?;
+        let layer = document.layers.active_index();
+        let task = document.spread_task(layer, &settings)?;
+        if document.is_spread_solved(&task) {
+            return self.show_spread(layer, settings);
+        }
+        let is_begun = document.has_solved_strokes(&task);
+        let before = self.requested_spread.replace((layer, settings));
+        let is_same =
+            before.is_some_and(|(index, before)| index == layer && before.contrast == settings.contrast);
+        if (is_same || is_begun) && self.jobs.iter().any(|job| job.label == SPREADING) {
+            return Ok(());
+        }
+        self.cancel_jobs(SPREADING);
+        let generation = self.generation;
+        let (sender, waker) = (self.outcome_sender.clone(), self.options.waker.clone());
+        self.start_job(SPREADING.into(), move |progress| {
+            let solved = Box::new(task.clone().solve_at_reach(&Stage::new(progress, 0.0, 0.3))?);
+            // The session may have been dropped.
+            let _ = sender.send((None, Ok(JobOutcome::SpreadSolved { solved, generation })));
+            waker();
+            let solved = Box::new(task.solve(&Stage::new(progress, 0.3, 1.0))?);
+            Ok(JobOutcome::SpreadSolved { solved, generation })
+        })?;
+        Ok(())
+    }
+
+    /// Takes up strokes that were solved for, and spreads them as was requested last.
+    pub(super) fn show_solved_spread(
+        &mut self,
+        solved: SolvedSpread,
+        generation: u64,
+    ) -> Result<(), SessionError> {
+        if generation != self.generation {
+            return Ok(());
+        }
+        self.document_mut()?.keep_solved_spread(solved);
+        let Some((layer, settings)) = self.requested_spread.take() else { return Ok(()) };
+        let document = self.document_mut()?;
+        let task = document.spread_task(layer, &settings)?;
+        // Otherwise strokes were painted meanwhile, or the layer is another one.
+        if document.is_spread_solved(&task) { self.show_spread(layer, settings) } else { Ok(()) }
+    }
+
+    fn show_spread(&mut self, layer: usize, settings: SpreadSettings) -> Result<(), SessionError> {
+        self.commit_stroke()?;
+        if let Some(changed) = self.document_mut()?.spread(layer, settings)? {
+            self.events.push(Event::LayersChanged);
+            self.show_layers(Some(changed))?;
+            self.document_mut()?.add_step_thumbnail();
+        }
+        Ok(())
+    }
+
+    pub(super) fn show_strokes(&mut self) -> Result<(), SessionError> {
+        self.commit_stroke()?;
+        let document = self.document_mut()?;
+        let changed = document.show_strokes(document.layers.active_index())?;
+        self.show_changed_layers(changed)
+    }
+
+    fn cancel_jobs(&self, label: &str) {
+        self.jobs.iter().filter(|job| job.label == label).for_each(|job| job.progress.cancel());
     }
 
     pub(super) fn mask_selected(&mut self) -> Result<(), SessionError> {

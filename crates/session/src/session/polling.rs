@@ -17,7 +17,11 @@ impl Session {
             self.reference_jobs.retain(|(job, _)| Some(*job) != id);
             match outcome {
                 // It was done before it could be stopped; a newer one has its place.
-                Ok(JobOutcome::StageRebuilt(_)) if is_cancelled => {}
+                Ok(
+                    JobOutcome::StageRebuilt(_)
+                    | JobOutcome::SpreadSolved { .. }
+                    | JobOutcome::SelectionFound { .. },
+                ) if is_cancelled => {}
                 Ok(outcome) => self.take_outcome(outcome),
                 Err(error) => {
                     if self.document.is_none() {
@@ -70,6 +74,7 @@ impl Session {
         self.remove_recovery_file();
         self.generation += 1;
         (self.active_edit, self.preview, self.light_field) = (None, None, None);
+        self.requested_spread = None;
         self.references.clear();
         self.map_changes.clear();
         self.end_verification();
@@ -127,6 +132,14 @@ impl Session {
             JobOutcome::RecoverySaved { path, revision } => {
                 self.recovery.file = Some(path);
                 self.recovery.saved_revision = revision;
+            }
+            JobOutcome::SpreadSolved { solved, generation } => {
+                let shown = self.show_solved_spread(*solved, generation);
+                self.events.extend(shown.err().map(|error| Event::Failed(error.to_string())));
+            }
+            JobOutcome::SelectionFound { matches, combine, generation } => {
+                let selected = self.select_matches(*matches, combine, generation);
+                self.events.extend(selected.err().map(|error| Event::Failed(error.to_string())));
             }
             JobOutcome::FileWritten(path, notices) => {
                 self.events.extend(notices.into_iter().map(Event::Notice));

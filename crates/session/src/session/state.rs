@@ -12,6 +12,7 @@ use crate::session::watched_file::WatchedFile;
 use crate::verification::Verification;
 use atlas::UnwrapOptions;
 use document::{ActiveEdit, Document};
+use focus::SpreadSettings;
 use glam::{DVec2, DVec3};
 use jobs::{Job, JobId, JobProgress, JobStatus, Waker};
 use lens::Camera;
@@ -80,6 +81,8 @@ pub struct Session {
     /// Counts opened documents.
     pub(super) generation: u64,
     pub(super) active_edit: Option<ActiveEdit>,
+    /// The layer that is to be spread once its strokes are solved for, by index, and how.
+    pub(super) requested_spread: Option<(usize, SpreadSettings)>,
     pub(super) preview_thread: PreviewThread,
     pub(super) preview: Option<Preview>,
     /// The preview as it is shown.
@@ -143,6 +146,7 @@ impl Session {
             document: None,
             generation: 0,
             active_edit: None,
+            requested_spread: None,
             preview: None,
             screen: Screen::default(),
             display: Display::default(),

@@ -2,6 +2,7 @@
 
 use super::curve_editor::curve_editor;
 use super::plane_editor::plane_editor;
+use super::spread_rows::spread_rows;
 use crate::window::Action;
 use crate::window::widgets::controls::{self, finish_edit, row, rows};
 use crate::window::widgets::icon::{Icon, icon_button};
@@ -9,7 +10,7 @@ use crate::window::widgets::keys;
 use crate::window::widgets::rename_field::RenameField;
 use document::Document;
 use egui::{Button, ComboBox, Slider, TextEdit, Ui, Vec2, vec2};
-use focus::{Adjustment, BlendMode, FocusLayer, LayerEdit};
+use focus::{Adjustment, BlendMode, FocusLayer, LayerEdit, SpreadSettings};
 use session::{Command, CommandId};
 
 /// State of the list.
@@ -32,7 +33,13 @@ const MENU: [CommandId; 8] = [
 
 impl LayersPanel {
     /// Draws the list of layers and the settings of the active one; adds what the user requests to `actions`.
-    pub fn ui(&mut self, ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) {
+    pub fn ui(
+        &mut self,
+        ui: &mut Ui,
+        document: &Document,
+        spread: &mut SpreadSettings,
+        actions: &mut Vec<Action>,
+    ) {
         let layers = document.layers.layers();
         let active = document.layers.active_index();
         for (index, layer) in layers.iter().enumerate().rev() {
@@ -69,6 +76,9 @@ impl LayersPanel {
             }
         });
         layer_settings(ui, document, active, &layers[active], actions);
+        if layers[active].adjustment.is_none() {
+            spread_rows(ui, &layers[active], spread, actions);
+        }
     }
 
     /// The row of a layer: a click makes it the active one, a double click renames it, a right click shows what can be done.
@@ -138,6 +148,8 @@ pub fn is_layer_command_possible(id: CommandId, document: &Document) -> bool {
         CommandId::LowerLayer | CommandId::LayerBelow => active > 0,
         CommandId::RemoveMask => document.layers.active().map.has_mask(),
         CommandId::AddMask => !document.layers.active().map.has_mask(),
+        CommandId::SpreadStrokes => document.layers.active().adjustment.is_none(),
+        CommandId::ShowStrokes => document.layers.active().spread.is_some(),
         _ => true,
     }
 }

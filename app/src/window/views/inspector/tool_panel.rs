@@ -5,8 +5,9 @@ use crate::window::widgets::controls::{self, row, rows};
 use crate::window::widgets::keys;
 use crate::window::{Action, Tool};
 use document::Document;
-use egui::{Button, ComboBox, DragValue, Ui};
-use focus::{Ease, GradientShape};
+use egui::{Button, ComboBox, DragValue, Slider, Ui};
+use focus::{Ease, GradientShape, Likeness};
+use glam::DVec3;
 use session::CommandId;
 
 /// Whether the tool has settings in this panel.
@@ -38,12 +39,18 @@ pub fn tool_panel(
             let value = DragValue::new(&mut settings.facing_degrees);
             ui.add(value.range(0.0..=180.0).speed(0.5).suffix("°").max_decimals(0))
         });
+        similar_rows(ui, settings);
         let tip = "The share of the surface that can be painted; the rest is frozen.";
         row(ui, "Selected", tip, |ui| ui.label(selection_summary(document)));
     });
     ui.horizontal_wrapped(|ui| {
-        let commands = [CommandId::SelectAll, CommandId::InvertSelection, CommandId::MaskFromSelection];
-        for (id, label) in commands.into_iter().zip(["Everything", "Invert", "Make a mask of it"]) {
+        let commands = [
+            (CommandId::SelectAll, "Everything"),
+            (CommandId::InvertSelection, "Invert"),
+            (CommandId::RefineSelection, "Refine edges"),
+            (CommandId::MaskFromSelection, "Make a mask of it"),
+        ];
+        for (id, label) in commands {
             let possible = document.selection.is_some();
             let response = ui.add_enabled(possible, Button::new(label));
             let tip = keys::command_tooltip(ui.ctx(), id);
@@ -63,6 +70,46 @@ pub fn selection_summary(document: &Document) -> String {
             let share = selection.count() as f64 / all.max(1) as f64 * 100.0;
             format!("{} % of all texels", controls::significant_digits(share))
         }
+    }
+}
+
+fn similar_rows(ui: &mut Ui, settings: &mut ToolSettings) {
+    let similar = &mut settings.similar;
+    let tip = "What Select similar compares with the clicked point.";
+    row(ui, "Alike in", tip, |ui| {
+        let combo =
+            ComboBox::from_id_salt("likeness").selected_text(likeness_name(similar.likeness)).width(130.0);
+        combo
+            .show_ui(ui, |ui| {
+                let depth = Likeness::Depth(DVec3::NEG_Z);
+                for likeness in [Likeness::Color, Likeness::Normal, depth, Likeness::Part] {
+                    ui.selectable_value(&mut similar.likeness, likeness, likeness_name(likeness));
+                }
+            })
+            .response
+    });
+    let tip = "How unlike the clicked point the selected ones may be: a share of the range of colours, of 180°, or of \
+               the scene's size.";
+    row(ui, "Tolerance", tip, |ui| {
+        let mut percent = similar.tolerance * 100.0;
+        let response =
+            ui.add(Slider::new(&mut percent, 0.0..=100.0).logarithmic(true).suffix(" %").max_decimals(1));
+        similar.tolerance = percent / 100.0;
+        response
+    });
+    let tip = "How far Refine edges may move the outline, in texels.";
+    row(ui, "Refine within", tip, |ui| {
+        ui.add(DragValue::new(&mut settings.refine_texels).range(1..=256).speed(0.2).suffix(" texels"))
+    });
+}
+
+/// Display name of a likeness.
+fn likeness_name(likeness: Likeness) -> &'static str {
+    match likeness {
+        Likeness::Color => "colour",
+        Likeness::Normal => "direction",
+        Likeness::Depth(_) => "depth",
+        Likeness::Part => "part",
     }
 }
 

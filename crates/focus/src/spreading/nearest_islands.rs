@@ -1,0 +1,104 @@
+//! Islands of texels, joined across the gaps between them.
+
+use crate::Canvas;
+use crate::spreading::surface_links::SurfaceLink;
+use progress::{Cancelled, Progress};
+use rayon::prelude::*;
+
+/// A gap is at most this many texels wide.
+const MAX_GAP_TEXELS: f64 = 48.0;
+
+/// The conductance across a gap one texel wide; it falls with the square of the width.
+const GAP_CONDUCTANCE: f64 = 0.02;
+
+/// An island searches from this many of its texels, evenly chosen: a small one from all.
+const MAX_STARTS: usize = 256;
+
+/// A texel of another part counts as this many times farther away: the pickets of a fence hang together with each other
+/// rather than with the ground.
+const OTHER_PART_FACTOR: f64 = 4.0;
+
+/// Rounds in which every island joins its nearest neighbour: each at least halves their number.
+const MAX_ROUNDS: usize = 8;
+
+/// The nearest texel of another island.
+#[derive(Clone, Copy)]
+struct Nearest {
+    /// The distance, longer to other parts.
+    reach: f64,
+    distance: f64,
+    texels: [u32; 2],
+}
+
+/// Joins each island to its nearest neighbour, and the resulting islands again (Borůvka's algorithm, within
+/// [`MAX_GAP_TEXELS`]). The largest does not search: the others find it.
+pub(crate) fn join_islands(
+    canvas: &Canvas,
+    spacings: &[f64],
+    links: &mut Vec<SurfaceLink>,
+    progress: &dyn Progress,
+) -> Result<(), Cancelled> {
+    for _ in 0..MAX_ROUNDS {
+        progress.check()?;
+        let pairs: Vec<_> = links.iter().map(|link| (link.texels[0], link.texels[1], 1.0)).collect();
+        let (island_of, count) = spread::Graph::new(spacings.len(), &pairs).components();
+        let mut islands = vec![Vec::new(); count];
+        for (texel, island) in island_of.iter().enumerate() {
+            islands[*island as usize].push(texel as u32);
+        }
+        let Some(largest) = (0..count).max_by_key(|island| (islands[*island].len(), count - island)) else {
+            return Ok(());
+        };
+        let joined: Vec<SurfaceLink> = islands
+            .par_iter()
+            .enumerate()
+            .filter(|(island, _)| *island != largest)
+            .filter_map(|(_, texels)| nearest_to(canvas, spacings, texels, &island_of))
+            .map(|nearest| gap_link(spacings, nearest))
+            .collect();
+        if joined.is_empty() {
+            return Ok(());
+        }
+        links.extend(joined);
+    }
+    Ok(())
+}
+
+/// The nearest texel of another island, seen from some texels of one.
+fn nearest_to(canvas: &Canvas, spacings: &[f64], texels: &[u32], island_of: &[u32]) -> Option<Nearest> {
+    let mut best: Option<Nearest> = None;
+    for &start in texels.iter().step_by(texels.len().div_ceil(MAX_STARTS)) {
+        let from = canvas.texel(start as usize);
+        let farthest = MAX_GAP_TEXELS * spacings[start as usize];
+        let mut radius = 2.0 * spacings[start as usize];
+        loop {
+            radius = radius.min(farthest).min(best.map_or(f64::INFINITY, |best| best.reach));
+            let mut is_found = false;
+            canvas.visit_within(from.position, radius, |other, distance| {
+                if island_of[other] == island_of[start as usize] {
+                    return;
+                }
+                is_found = true;
+                let is_same_part = canvas.texel(other).part == from.part;
+                let distance = f64::from(distance);
+                let reach = distance * if is_same_part { 1.0 } else { OTHER_PART_FACTOR };
+                if best.is_none_or(|best| reach < best.reach) {
+                    best = Some(Nearest { reach, distance, texels: [start, other as u32] });
+                }
+            });
+            if radius >= farthest || best.is_some_and(|best| radius >= best.reach) || radius <= 0.0 {
+                break;
+            }
+            // Something nearby may still be of another part, which a farther one of the same part precedes.
+            radius *= if is_found { OTHER_PART_FACTOR } else { 2.0 };
+        }
+    }
+    best
+}
+
+fn gap_link(spacings: &[f64], Nearest { distance, texels, .. }: Nearest) -> SurfaceLink {
+    let spacing = texels.map(|texel| spacings[texel as usize]).into_iter().fold(0.0, f64::max);
+    let closeness = if distance > spacing { spacing / distance } else { 1.0 };
+    let conductance = (GAP_CONDUCTANCE * closeness * closeness) as f32;
+    SurfaceLink { texels, conductance: conductance.max(spread::LEAST_AFFINITY) }
+}
