@@ -57,6 +57,7 @@ fn the_fabric_of_a_chair_is_separated_from_its_wood() {
 }
 
 #[test]
+#[ignore = "solves for the light of 66 photographs first, which takes minutes"]
 fn the_palate_of_a_photographed_skull_is_separated_from_the_rest() {
     assert!(intersection_over_union(2).is_none_or(|share| share >= 0.9));
 }
