@@ -85,6 +85,6 @@ mod tests {
         }
         let normal = [f32::NAN; 3];
         let unknown = affinity.between(&FLAT, &NodeAppearance { normal, ..FLAT });
-        assert!(unknown >= LEAST_AFFINITY && unknown <= 1.0);
+        assert!((LEAST_AFFINITY..=1.0).contains(&unknown));
     }
 }
