@@ -14,13 +14,13 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("atomic-file", &[]),
     ("web-page", &["numerics"]),
     ("disparity", &["numerics", "progress"]),
-    ("scene", &["lens", "numerics", "progress"]),
+    ("scene", &["gaussians", "lens", "numerics", "progress"]),
     ("capture", &["scene", "lens", "progress"]),
     ("relief", &["numerics", "progress"]),
     ("atlas", &["atomic-file", "scene", "progress"]),
-    ("trace", &["scene", "lens", "numerics", "progress"]),
+    ("trace", &["scene", "gaussians", "lens", "numerics", "progress"]),
     ("slf", &["material", "trace", "scene", "atlas", "numerics", "progress"]),
-    ("salf", &["slf", "trace", "scene", "lens", "progress"]),
+    ("salf", &["slf", "trace", "scene", "gaussians", "lens", "numerics", "progress"]),
     ("focus", &["atlas", "scene", "lens", "numerics"]),
     ("splat", &["salf", "focus", "scene", "lens", "progress"]),
     ("test-scenes", &["scene"]),
@@ -47,6 +47,8 @@ const ALLOWED: &[(&str, &[&str])] = &[
     (
         "document",
         &[
+            "gaussians",
+            "atomic-file",
             "light",
             "jobs",
             "project",
@@ -66,6 +68,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     (
         "render",
         &[
+            "gaussians",
             "document",
             "atomic-file",
             "web-page",

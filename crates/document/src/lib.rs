@@ -9,6 +9,7 @@
 //! | module | content |
 //! | --- | --- |
 //! | `input`, `scene_file` | scenes, projects, light fields and captures, as read from files |
+//! | `splat_focus` | focus maps of Gaussian splats as tables |
 //! | `stage` | a scene that can be painted on |
 //! | `open_document`, `undo` | the document and its undo history |
 //! | `editing` | edits of paint, as undo steps that can be recorded and replayed |
@@ -62,6 +63,7 @@ mod picking;
 mod scene_camera;
 mod scene_file;
 mod scene_reload;
+mod splat_focus;
 mod stage;
 mod undo;
 
@@ -85,5 +87,6 @@ pub use picking::{SurfaceHit, chief_ray, depth_in_direction, pick, view_ray};
 pub use relief::{DepthRepair, DepthStroke};
 pub use scene_camera::shot_camera_from;
 pub use scene_file::{atlas_error, load_scene};
+pub use splat_focus::{is_focus_table, write_splat_focus};
 pub use stage::{Stage, build_canvas};
 pub use undo::{HistoryStep, KeyedLens, StepEffect, UndoHistory, UndoState};
