@@ -309,9 +309,9 @@ pub struct ShotArguments {
     /// An aperture shape, overriding the camera's: the name of a preset or its file
     #[arg(long, value_name = "NAME|FILE.json")]
     pub bokeh: Option<OsString>,
-    /// The focus: a recipe (.json) or a focus map (.exr, .png) (default: as the project is painted, or the
-    /// ordinary lens)
-    #[arg(long, value_name = "RECIPE.json|MAP.exr|png")]
+    /// The focus: a recipe (.json) or a focus map (.exr, .png; .ply for Gaussian splats) (default: as the
+    /// project is painted, or the ordinary lens)
+    #[arg(long, value_name = "RECIPE.json|MAP.exr|png|ply")]
     pub focus: Option<PathBuf>,
     /// Picture size in pixels, overriding the camera's
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
@@ -510,8 +510,8 @@ pub struct ReportArguments {
 pub struct ExportArguments {
     /// The project (.fbrush)
     pub project: PathBuf,
-    /// Write the focus map: EXR, or 16-bit PNG with a .json beside it
-    #[arg(long, value_name = "MAP.exr|png", required_unless_present_any = ["glb", "layers", "photo", "web"])]
+    /// Write the focus map: EXR, or 16-bit PNG with a .json beside it; of Gaussian splats also a PLY table
+    #[arg(long, value_name = "MAP.exr|png|ply", required_unless_present_any = ["glb", "layers", "photo", "web"])]
     pub focus_map: Option<PathBuf>,
     /// Write the scene with the atlas as its second UV set
     #[arg(long, value_name = "OUT.glb")]

@@ -39,7 +39,30 @@ pub struct ApertureImages {
     light: Vec<(Vec3, f32)>,
 }
 
+/// Values that vary no more than from this part of the largest to it are taken for one.
+const EVEN: f32 = 0.9;
+
 impl ApertureImages {
+    /// Whether the values of a cluster or point differ among some cells.
+    fn varies(&self, cells: &[usize], index: usize) -> bool {
+        let values = cells.iter().map(|cell| self.cells[*cell][index].to_f32());
+        let (least, largest) =
+            values.fold((f32::INFINITY, 0.0), |(a, b): (f32, f32), v| (a.min(v), b.max(v)));
+        least < EVEN * largest
+    }
+
+    /// Gives what was not wanted of `others` the mean of the `first` cells.
+    fn fill(&mut self, first: &[usize], others: &[usize], is_wanted: &[bool]) {
+        if others.is_empty() {
+            return;
+        }
+        for index in (0..is_wanted.len()).filter(|index| !is_wanted[*index]) {
+            let sum: f32 = first.iter().map(|cell| self.cells[*cell][index].to_f32()).sum();
+            let mean = f16::from_f32(sum / first.len() as f32);
+            others.iter().for_each(|cell| self.cells[*cell][index] = mean);
+        }
+    }
+
     /// For each cell, the share of a ray from it through the cluster that its members send, times the area that a pixel of the cluster's tilted surface
     /// takes from there, px².
     pub fn shares(&self, cluster: usize) -> impl Iterator<Item = f32> {
@@ -78,6 +101,8 @@ struct Target {
 ///
 /// The second factor is exact for a plane: how its pixels grow as the eye moves to U.
 ///
+/// Two cells of each row and of each column come first. What they see alike, or not at all, is taken for so in the others, too: most clusters and points.
+///
 /// # Errors
 /// `progress` cancels.
 ///
@@ -92,12 +117,21 @@ pub fn aperture_images(
     let (clusters, count) = (scene.clusters.list.len(), (cells * cells) as usize);
     let mut images = ApertureImages { cells: Vec::new(), light: vec![(Vec3::ZERO, 0.0); clusters] };
     let grid = grid_of_all(scene);
-    for cell in 0..count {
-        progress.report(cell as f32 / count as f32);
+    let targets = clusters + scene.points.len();
+    images.cells = vec![Vec::new(); count];
+    let (first, others): (Vec<usize>, Vec<usize>) =
+        (0..count).partition(|cell| is_first(*cell, cells as usize));
+    let mut is_wanted = vec![true; targets];
+    for (done, &cell) in first.iter().chain(&others).enumerate() {
+        if done == first.len() {
+            is_wanted = (0..targets).into_par_iter().map(|index| images.varies(&first, index)).collect();
+        }
+        progress.report(done as f32 / count as f32);
         let middle = |index: usize| (2.0 * index as f64 + 1.0) / f64::from(cells) - 1.0;
         let u = DVec2::new(middle(cell % cells as usize), middle(cell / cells as usize));
-        let bake = CellBake::new(scene, &grid, u * scene.view.optics().aperture_radius);
-        let mut values = vec![f16::ZERO; clusters + scene.points.len()];
+        let u = u * scene.view.optics().aperture_radius;
+        let bake = CellBake::new(scene, &grid, u, &is_wanted);
+        let mut values = vec![f16::ZERO; targets];
         for (index, share, light) in bake.run(progress)? {
             values[index] = f16::from_f32(share);
             if let Some((sum, shares)) = images.light.get_mut(index) {
@@ -105,9 +139,15 @@ pub fn aperture_images(
                 *shares += share;
             }
         }
-        images.cells.push(values);
+        images.cells[cell] = values;
     }
+    images.fill(&first, &others, &is_wanted);
     Ok(images)
+}
+
+/// Whether a cell is among those that are looked through first: of 8 × 8 a quarter, two of each row and of each column.
+fn is_first(cell: usize, side: usize) -> bool {
+    side < 8 || (cell % side + 3 * (cell / side)).is_multiple_of(4)
 }
 
 /// A grid that holds the places of clusters from all of the aperture: what is so near that it lies beyond is seen at its edge.
@@ -133,7 +173,7 @@ struct CellBake<'v> {
 }
 
 impl<'v> CellBake<'v> {
-    fn new(scene: &'v ApertureScene<'v>, grid: &'v RayGrid, u: DVec2) -> Self {
+    fn new(scene: &'v ApertureScene<'v>, grid: &'v RayGrid, u: DVec2, is_wanted: &[bool]) -> Self {
         let optics = scene.view.optics();
         let target = |index: usize| {
             let PicturePoint { pixel, inverse_depth } = point_of(scene, index);
@@ -142,8 +182,8 @@ impl<'v> CellBake<'v> {
             let [tile_column, tile_row] = grid.tile_at(pixel + DVec2::new(shift.x, -shift.y));
             Target { tile_row, tile_column, index }
         };
-        let count = scene.clusters.list.len() + scene.points.len();
-        let mut targets: Vec<Target> = (0..count).into_par_iter().map(target).collect();
+        let wanted = (0..is_wanted.len()).into_par_iter().filter(|index| is_wanted[*index]);
+        let mut targets: Vec<Target> = wanted.map(target).collect();
         targets.par_sort_unstable_by_key(|target| (target.tile_row, target.tile_column, target.index));
         Self { raster: EyeRaster::new(scene.view, u, grid), scene, targets }
     }

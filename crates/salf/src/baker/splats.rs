@@ -24,7 +24,7 @@ use share_bits::{CELLS, share_bits};
 use std::collections::HashMap;
 
 /// Pixels of a band.
-const BAND_PX: i64 = 1 << 18;
+const BAND_PX: i64 = 1 << 19;
 
 /// The samples of a block, and the corner of the block.
 pub type BlockSamples = (IVec2, Vec<BakedSample>);

@@ -1,10 +1,11 @@
 //! Gaussian splats as a part of a scene.
 //!
-//! To all that knows surfaces a splat is a triangle: one standard deviation wide, in the plane of its two longest axes, about its mean. So each has an
-//! address, a place in the atlas and paint. Rays do not hit these triangles; what they meet of the cloud itself, the crates that trace decide.
+//! To all that knows surfaces a splat is a triangle: one standard deviation wide, in the plane of its two longest axes, about its mean, in its mean colour. So
+//! each has an address, a place in the atlas and paint, and can be shown by what draws triangles. Rays do not hit these triangles; what they meet of the cloud itself, the crates that trace decide.
 
 use crate::{Material, Node, Part, Scene, SurfacePoint, Triangle};
-use gaussians::{GaussianCloud, Placement};
+use gaussians::cloud::{harmonics, srgb_to_linear};
+use gaussians::{ColorSpace, GaussianCloud, Placement};
 use glam::{DMat4, DQuat, DVec2, DVec3, Vec2, Vec3, Vec4};
 use numerics::quantile;
 use rayon::prelude::*;
@@ -78,10 +79,12 @@ impl Scene {
         let [first_triangle, first_vertex] =
             [self.triangles.len(), self.positions.len()].map(|n| u32::try_from(n).expect("32 bits"));
         assert!(first_vertex.checked_add(count.saturating_mul(3)).is_some() && count <= u32::MAX / 3);
+        self.colors.resize(self.positions.len(), Vec4::ONE);
+        let color = |splat: u32| [mean_color(&cloud, splat); 3];
+        self.colors.par_extend((0..count).into_par_iter().flat_map_iter(color));
         let corners = |splat: u32| splat_triangle(&cloud, &placement, splat);
         self.positions.par_extend((0..count).into_par_iter().flat_map_iter(corners));
         fill(&mut self.normals, self.positions.len(), Vec3::ZERO);
-        fill(&mut self.colors, self.positions.len(), Vec4::ONE);
         let further = self.further_uv.iter_mut();
         self.uv.iter_mut().chain(further).for_each(|uv| fill(uv, self.positions.len(), Vec2::ZERO));
         let part = self.parts.len() as u32;
@@ -140,6 +143,16 @@ fn fill<T: Clone>(attribute: &mut Vec<T>, length: usize, value: T) {
     if !attribute.is_empty() {
         attribute.resize(length, value);
     }
+}
+
+/// The linear colour of a splat, the mean over all directions.
+fn mean_color(cloud: &GaussianCloud, splat: u32) -> Vec4 {
+    let color = (0.5 + harmonics::BASE * cloud.splat(splat as usize).base_color).max(Vec3::ZERO);
+    let linear = match cloud.traits().color_space {
+        ColorSpace::Srgb => color.map(srgb_to_linear),
+        ColorSpace::Linear => color,
+    };
+    linear.extend(1.0)
 }
 
 /// The corners of the triangle of a splat, its centroid at the mean.
