@@ -53,9 +53,11 @@ pub fn share_bits(
     }
     let [chance, start, error] = jitter(seed[0], seed[1], seed[2]);
     let largest = list.iter().copied().fold(0.0, f32::max);
+    if largest <= 0.0 {
+        return None;
+    }
     let scale = if largest < LEAST { LEAST / largest } else { 1.0 };
-    // Also if nothing is visible: 0 · ∞ is not less.
-    if !(chance < f64::from(1.0 / scale)) || largest <= 0.0 {
+    if chance >= f64::from(1.0 / scale) {
         return None;
     }
     if list.iter().all(|share| *share >= EVEN * largest) {
