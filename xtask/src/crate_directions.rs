@@ -15,13 +15,13 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("spread", &["numerics", "progress"]),
     ("web-page", &["numerics"]),
     ("disparity", &["numerics", "progress"]),
-    ("scene", &["lens", "numerics", "progress"]),
+    ("scene", &["gaussians", "lens", "numerics", "progress"]),
     ("capture", &["scene", "lens", "progress"]),
     ("relief", &["numerics", "progress"]),
     ("atlas", &["atomic-file", "scene", "progress"]),
-    ("trace", &["scene", "lens", "numerics", "progress"]),
+    ("trace", &["scene", "gaussians", "lens", "numerics", "progress"]),
     ("slf", &["material", "trace", "scene", "atlas", "numerics", "progress"]),
-    ("salf", &["slf", "trace", "scene", "lens", "progress"]),
+    ("salf", &["slf", "trace", "scene", "gaussians", "lens", "numerics", "progress"]),
     ("focus", &["spread", "atlas", "scene", "lens", "numerics", "progress"]),
     ("splat", &["salf", "focus", "scene", "lens", "progress"]),
     ("test-scenes", &["scene"]),
@@ -48,6 +48,8 @@ const ALLOWED: &[(&str, &[&str])] = &[
     (
         "document",
         &[
+            "gaussians",
+            "atomic-file",
             "light",
             "jobs",
             "project",
@@ -69,6 +71,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     (
         "render",
         &[
+            "gaussians",
             "document",
             "atomic-file",
             "web-page",

@@ -157,7 +157,8 @@ impl AppearanceArguments {
 /// `info`.
 #[derive(Debug, Args)]
 pub struct InfoArguments {
-    /// A scene (.glb, .gltf), a project (.fbrush), a light field (.salf) or the folder of a capture
+    /// A scene (.glb, .gltf), a project (.fbrush), a light field (.salf), Gaussian splats (.ply, .spz, .sog,
+    /// .splat, .ksplat) or the folder of a capture
     pub file: PathBuf,
     /// For a picture with depth: the layer of an EXR with several, by name (default: the first one with depth)
     #[arg(long, value_name = "NAME")]
@@ -183,8 +184,9 @@ pub struct NewArguments {
     /// A camera file, or the name of a camera in the scene (default: the scene's first)
     #[arg(long, value_name = "CAM.json|NAME", value_parser = camera_parser())]
     pub camera: Option<CameraChoice>,
-    /// The initial focus: a recipe (.json) or a focus map (.exr, .png) (default: the ordinary lens)
-    #[arg(long, value_name = "RECIPE.json|MAP.exr|png")]
+    /// The initial focus: a recipe (.json) or a focus map (.exr, .png; .ply for Gaussian splats) (default: the
+    /// ordinary lens)
+    #[arg(long, value_name = "RECIPE.json|MAP.exr|png|ply")]
     pub focus: Option<PathBuf>,
     /// A project whose paint is transferred to this scene: each point takes the paint of the nearest point of
     /// the node of the same name that faces the same way. The old project is not changed; points without a
@@ -200,7 +202,7 @@ pub struct NewArguments {
 pub struct ImportArguments {
     /// The folder of the capture (cameras from COLMAP, nerfstudio, Bundler, VisualSFM or Metashape with
     /// pictures and a mesh; or the views of a light field), or a picture with embedded depth or a depth map
-    /// beside it
+    /// beside it; or a file of Gaussian splats (.ply, .spz, .sog, .splat, .ksplat)
     pub capture: PathBuf,
     /// Where to write the project
     #[arg(short, long, value_name = "PROJECT.fbrush")]
@@ -307,9 +309,9 @@ pub struct ShotArguments {
     /// An aperture shape, overriding the camera's: the name of a preset or its file
     #[arg(long, value_name = "NAME|FILE.json")]
     pub bokeh: Option<OsString>,
-    /// The focus: a recipe (.json) or a focus map (.exr, .png) (default: as the project is painted, or the
-    /// ordinary lens)
-    #[arg(long, value_name = "RECIPE.json|MAP.exr|png")]
+    /// The focus: a recipe (.json) or a focus map (.exr, .png; .ply for Gaussian splats) (default: as the
+    /// project is painted, or the ordinary lens)
+    #[arg(long, value_name = "RECIPE.json|MAP.exr|png|ply")]
     pub focus: Option<PathBuf>,
     /// Picture size in pixels, overriding the camera's
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
@@ -508,8 +510,8 @@ pub struct ReportArguments {
 pub struct ExportArguments {
     /// The project (.fbrush)
     pub project: PathBuf,
-    /// Write the focus map: EXR, or 16-bit PNG with a .json beside it
-    #[arg(long, value_name = "MAP.exr|png", required_unless_present_any = ["glb", "layers", "photo", "web"])]
+    /// Write the focus map: EXR, or 16-bit PNG with a .json beside it; of Gaussian splats also a PLY table
+    #[arg(long, value_name = "MAP.exr|png|ply", required_unless_present_any = ["glb", "layers", "photo", "web"])]
     pub focus_map: Option<PathBuf>,
     /// Write the scene with the atlas as its second UV set
     #[arg(long, value_name = "OUT.glb")]

@@ -9,6 +9,8 @@
 //!          unpacked charts, each flat and free of overlap ─▶ packing ─▶ Atlas
 //! ```
 //!
+//! Gaussian splats need no unwrapping: each has a texel (`splat_places`).
+//!
 //! From there, both ways: [`Atlas::position_of`] (surface → texel) and [`TexelMap`] (texel → surface, with exact
 //! covered areas and the gutter's sources). [`child::run_if_child`] must be the first line of every program
 //! that passes its own path as [`UnwrapOptions::child`].
@@ -34,6 +36,7 @@ mod error;
 mod glb;
 mod options;
 mod packing;
+mod splat_places;
 mod texels;
 mod unwrap;
 

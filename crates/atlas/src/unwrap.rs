@@ -26,7 +26,7 @@ use std::collections::{BTreeMap, HashMap};
 use surface_patch::{FlattenedPatch, SurfacePatch, UNPLACED};
 
 impl Atlas {
-    /// Gives every triangle of the scene a place of its own.
+    /// Gives every triangle of the scene a place of its own, and every Gaussian splat a texel.
     ///
     /// Every scene with a triangle gets an atlas: what the engines fail on is projected, and triangles without area
     /// get places without area. Deviations from the options are listed in [`Atlas::notes`].
@@ -41,6 +41,12 @@ impl Atlas {
     ) -> Result<Self, AtlasError> {
         if scene.triangles.is_empty() {
             return Err(AtlasError::NoTriangles);
+        }
+        if let Some(splats) = &scene.splats {
+            return match scene.without_splats() {
+                Some(surfaces) => Self::unwrap(&surfaces, options, progress)?.with_splats(scene, splats),
+                None => Self::of_splats(scene, splats),
+            };
         }
         let parts: Vec<PreparedPart> = (0..scene.parts.len() as u32)
             .into_par_iter()

@@ -71,7 +71,7 @@ impl FirstHits {
             for x in 0..row_length {
                 let pixel = corner + DVec2::new(x as f64, y as f64) + 0.5;
                 let ray = Ray::pinhole(camera, DVec2::ZERO, pixel);
-                let (rgb, depth, offset) = match tracer.first_hit(&ray) {
+                let (rgb, depth, offset) = match tracer.visible_surface(&ray) {
                     Some(hit) => (radiance.total_outgoing(hit.point, ray.origin), hit.t, focus.at(hit.point)),
                     None => (radiance.environment(ray.direction), f64::INFINITY, focus.at_infinity()),
                 };

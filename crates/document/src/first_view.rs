@@ -52,7 +52,7 @@ fn focused(tracer: &Tracer, camera: Camera) -> HeldCamera {
     let seen: Vec<(DVec2, DVec3)> = positions
         .filter_map(|at| {
             let ray = chief_ray(&camera, at);
-            tracer.first_hit(&ray).map(|hit| (at, ray.origin + ray.direction * hit.t))
+            tracer.visible_surface(&ray).map(|hit| (at, ray.origin + ray.direction * hit.t))
         })
         .collect();
     let depth = |position: DVec3| camera.camera_from_world(position).z;
@@ -88,7 +88,7 @@ fn room_pose(tracer: &Tracer, framing: &Camera) -> Option<DMat4> {
     let is_upright = framing.camera_to_world.x_axis.y.abs() < 1e-6 && framing.camera_to_world.y_axis.y > 0.0;
     let (low, high) = tracer.scene().bounds();
     let size = high - low;
-    if !is_upright || !size.cmpge(SMALLEST_ROOM).all() {
+    if tracer.has_splats() || !is_upright || !size.cmpge(SMALLEST_ROOM).all() {
         return None;
     }
     let height = low.y + EYE_HEIGHT.min(size.y / 2.0);

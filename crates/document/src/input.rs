@@ -26,6 +26,7 @@ use crate::input::capture_scene::{
 use crate::paint_transfer::TransferredPaint;
 use crate::scene_camera::{shot_camera_from, shot_camera_in_any_unit};
 use crate::scene_file::{atlas_error, load_variant};
+use crate::splat_focus::{is_focus_table, read_splat_focus};
 use atlas::{Atlas, AtlasError, UnwrapOptions};
 use focus::{Focus, FocusMap, FocusRecipe, RecipeEntry};
 use lens::{Camera, Exposure, FocusOffset};
@@ -104,6 +105,8 @@ pub enum InputKind {
     LightField,
     /// The folder of a capture, or a picture file that is one.
     Capture,
+    /// Gaussian splats: `.ply`, `.spz`, `.sog` or its folder, `.splat`, `.ksplat`.
+    Splats,
 }
 
 impl InputKind {
@@ -113,6 +116,9 @@ impl InputKind {
     /// There is no such file, or it is of none of these kinds.
     pub fn from_path(path: &Path) -> Result<Self, DocumentError> {
         let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+        if gaussians::may_be_splats(path) && path.exists() {
+            return Ok(Self::Splats);
+        }
         if path.is_dir() {
             return Ok(Self::Capture);
         }
@@ -126,7 +132,9 @@ impl InputKind {
                 let extensions = format!(".glb, .gltf, .{} or .salf", ProjectFile::EXTENSION);
                 Err(DocumentError::bad_file(
                     path,
-                    format!("is not a scene, project or light field (choose a {extensions} file)"),
+                    format!(
+                        "is not a scene, project, light field or file of splats (choose a {extensions} file, or .ply, .spz, .sog, .splat or .ksplat)"
+                    ),
                 ))
             }
         }
@@ -153,7 +161,7 @@ impl Input {
         steps: &dyn Steps,
     ) -> Result<Self, DocumentError> {
         match InputKind::from_path(path)? {
-            InputKind::Scene => Self::open_scene(path, variant, resources, steps),
+            InputKind::Scene | InputKind::Splats => Self::open_scene(path, variant, resources, steps),
             InputKind::Project => {
                 Self::open_project(path, ProjectFile::load(path)?, variant, resources, steps)
             }
@@ -225,7 +233,11 @@ impl Input {
         steps: &dyn Steps,
     ) -> Result<Self, DocumentError> {
         let scene = load_variant(path, variant.name(None), &*steps.begin("reading"))?;
-        let camera = shot_camera_from(&scene.cameras[0], &Camera::default());
+        let camera = match scene.splats {
+            // The unit of a scan is unknown.
+            Some(_) => shot_camera_in_any_unit(&scene.cameras[0]),
+            None => shot_camera_from(&scene.cameras[0], &Camera::default()),
+        };
         let warnings = prefix_with_path(path, &scene.warnings);
         Ok(Self::new(path, scene, camera, warnings, resources))
     }
@@ -389,7 +401,7 @@ impl Input {
         self.project.as_ref().map_or(Exposure::Normalise, |project| project.exposure)
     }
 
-    /// The focus in `file` (a recipe or a focus map); without a file, the focus of the project, or the ordinary lens for a scene. The scene is
+    /// The focus in `file` (a recipe, a focus map or a table of splats); without a file, the focus of the project, or the ordinary lens for a scene. The scene is
     /// unwrapped only for a map that needs its atlas.
     ///
     /// # Errors
@@ -405,6 +417,11 @@ impl Input {
         };
         match file {
             None => self.project_focus(unwrap, steps),
+            Some(file) if is_focus_table(file) => {
+                let atlas = self.atlas(unwrap, steps)?;
+                let map = read_splat_focus(file, &self.scene, &atlas, &*steps.begin("reading"))?;
+                Ok(Focus::from_atlas_map(self.scene.clone(), atlas, Arc::new(map)))
+            }
             Some(file) => match read_focus(file)? {
                 FocusFile::Recipe(recipe) => evaluated(recipe, file),
                 FocusFile::Map(map) if map.atlas_hash.is_none() => {

@@ -9,6 +9,7 @@ use crate::paint_transfer::TransferredPaint;
 use crate::picking::SurfaceHit;
 use crate::scene_camera::shot_camera_from;
 use crate::spread_task::SolvedSpread;
+use crate::splat_focus::{is_focus_table, read_splat_focus};
 use crate::stage::Stage;
 use crate::undo::{HistoryStep, UndoHistory};
 use atlas::UnwrapOptions;
@@ -18,6 +19,7 @@ use focus::{
 };
 use lens::{Camera, Exposure, FocusOffset};
 use light::{Resources, Steps};
+use progress::Unwatched;
 use project::{CaptureChoices, FocusFile, FocusHold, NamedCamera, ProjectFile, TexelSet, WorldFile};
 use relief::DepthStroke;
 use scene::{Scene, View};
@@ -201,8 +203,9 @@ impl Document {
         resources: &Resources,
         steps: &dyn Steps,
     ) -> Result<Self, DocumentError> {
-        if InputKind::from_path(scene)? != InputKind::Scene {
-            return Err(DocumentError::bad_file(scene, "is not a scene (choose a .glb or .gltf file)"));
+        if !matches!(InputKind::from_path(scene)?, InputKind::Scene | InputKind::Splats) {
+            let what = "is not a scene (choose a .glb or .gltf file, or one of Gaussian splats)";
+            return Err(DocumentError::bad_file(scene, what));
         }
         let mut input = Input::open_variant(scene, &options.variant, resources, steps)?;
         if let Some(project) = options.paint_from {
@@ -237,6 +240,9 @@ impl Document {
     /// The file cannot be read, or does not fit the scene or its atlas.
     pub fn load_focus_file(&self, path: &Path) -> Result<FocusMap, DocumentError> {
         let stage = &self.stage;
+        if is_focus_table(path) {
+            return read_splat_focus(path, &stage.scene, &stage.atlas, &Unwatched);
+        }
         let recipe = match project::read_focus(path)? {
             FocusFile::Map(map) if map.atlas_hash.is_some() => {
                 return Ok(map.into_atlas_map(path, &stage.atlas)?);

@@ -21,12 +21,16 @@ pub struct SurfaceHit {
 
 /// The first surface that `ray` hits; `None` if there is none.
 pub fn pick(tracer: &Tracer, ray: &Ray) -> Option<SurfaceHit> {
-    let hit = tracer.first_hit(ray)?;
+    let hit = tracer.visible_surface(ray)?;
     let scene: &Scene = tracer.scene();
     let normal = scene.area_normal(hit.point.triangle).normalize_or_zero();
     Some(SurfaceHit {
         point: hit.point,
-        position: hit.point.position(scene),
+        // A splat is met away from its mean.
+        position: match scene.is_splat(hit.point.triangle) {
+            true => ray.origin + ray.direction * hit.t,
+            false => hit.point.position(scene),
+        },
         normal: if normal.dot(ray.direction) > 0.0 { -normal } else { normal },
         distance: hit.t * ray.direction.length(),
     })
@@ -39,8 +43,8 @@ pub fn depth_in_direction(tracer: &Tracer, camera: &Camera, position: DVec3) -> 
         return None;
     }
     let pixel = camera.pixel_from_q(camera.optics().chief(camera_space));
-    let hit = tracer.first_hit(&Ray::pinhole(camera, DVec2::ZERO, pixel))?;
-    Some(camera.camera_from_world(hit.point.position(tracer.scene())).z)
+    // The depth of the ray's direction is 1.
+    tracer.visible_surface(&Ray::pinhole(camera, DVec2::ZERO, pixel)).map(|hit| hit.t)
 }
 
 /// The chief ray of a picture position: (0, 0) is the upper left corner, (1, 1) the lower right, at any resolution. The depth of its

@@ -34,12 +34,15 @@ pub fn load_scene(path: &Path, progress: &dyn Progress) -> Result<Arc<Scene>, Do
     Ok(load_variant(path, None, progress)?)
 }
 
-/// Reads a scene file within the default limits, in one of its variants; `None`: with its own materials.
+/// Reads a scene file, of meshes or splats, within the default limits, in one of its variants; `None`: with its own materials.
 pub(crate) fn load_variant(
     path: &Path,
     variant: Option<&str>,
     progress: &dyn Progress,
 ) -> Result<Arc<Scene>, SceneError> {
+    if gaussians::may_be_splats(path) {
+        return Ok(Arc::new(scene::load_splats(path, variant, progress)?));
+    }
     let options = LoadOptions { variant: variant.map(String::from), ..LoadOptions::default() };
     Ok(Arc::new(scene::load(path, &options, progress)?))
 }

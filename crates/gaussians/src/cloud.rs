@@ -5,6 +5,7 @@ mod builder;
 mod gaussian_cloud;
 pub mod harmonics;
 mod left_out;
+mod morton_order;
 mod splat;
 mod srgb;
 

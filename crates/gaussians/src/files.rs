@@ -32,6 +32,16 @@ use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 
+/// Whether a path is that of splats, by its extension; or a folder of SOG, or the list of one.
+pub fn may_be_splats(path: &Path) -> bool {
+    const EXTENSIONS: [&str; 5] = ["ply", "spz", "sog", "splat", "ksplat"];
+    if path.is_dir() {
+        return sog::is_list(&path.join("meta.json"));
+    }
+    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+    EXTENSIONS.contains(&extension.as_str()) || sog::is_list(path)
+}
+
 /// Reads a file of splats, or a folder (or its `meta.json`) of SOG. The format follows from the content.
 ///
 /// # Errors

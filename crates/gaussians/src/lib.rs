@@ -10,6 +10,7 @@
 //! * [`GaussianCloud`], [`CloudBuilder`]: splats in memory; what cannot be drawn is left out and counted.
 //! * [`CameraList`]: the views of `cameras.json`. [`Placement`]: where a cloud stands in the world.
 //! * [`GaussianView`], [`Eye`], [`Hit`], [`RayLight`]: which splats a ray meets, and what it brings.
+//! * [`CloudRay`]: where a ray of the world meets the surface of a cloud.
 //! * [`render_truth`], [`render_pinhole`]: the ground truth, unpainted or with a focus for each splat.
 //! * [`cluster_picture`], [`aperture_images`]: the splats of chief rays as samples of a light field.
 //! * [`write_ply`], [`write_focus_table`], [`read_focus_table`]: scenes and focus out, focus in.
@@ -50,10 +51,16 @@ mod view;
 pub use cloud::{Axes, CloudBuilder, CloudTraits, ColorSpace, GaussianCloud, LeftOut, Reason, Splat, Toward};
 pub use error::GaussianError;
 pub use files::{
-    CameraList, CapturedView, GltfAttributes, ReadOptions, SplatFile, SplatFormat, open, read,
+    CameraList, CapturedView, GltfAttributes, ReadOptions, SplatFile, SplatFormat, may_be_splats, open, read,
     read_focus_table, read_gltf_attributes, write_focus_table, write_ply,
 };
 pub use placement::Placement;
-pub use render::{GaussianPicture, TruthOptions, render_pinhole, render_truth};
-pub use samples::{ApertureImage, Cluster, ClusterOptions, Clusters, aperture_images, cluster_picture};
-pub use view::{Eye, GaussianView, Hit, LOW_PASS_PX2, RayLight, median_depth};
+pub use render::{
+    Backdrop, EndLight, GaussianPicture, RayEnd, TruthOptions, render_pinhole, render_truth,
+    render_truth_before,
+};
+pub use samples::{
+    ApertureImages, ApertureScene, Cluster, ClusterOptions, Clusters, PicturePoint, aperture_images,
+    cluster_picture,
+};
+pub use view::{CloudRay, Eye, GaussianView, Hit, LOW_PASS_PX2, RayLight, median_depth};

@@ -7,5 +7,5 @@
 mod aperture_images;
 mod clusters;
 
-pub use aperture_images::{ApertureImage, aperture_images};
+pub use aperture_images::{ApertureImages, ApertureScene, PicturePoint, aperture_images};
 pub use clusters::{Cluster, ClusterOptions, Clusters, cluster_picture};

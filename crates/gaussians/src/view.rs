@@ -12,9 +12,12 @@ mod ray_light;
 mod shape;
 mod tile_tracer;
 mod tiles;
+mod world_ray;
 
+use eye::MAX_ALPHA;
 pub use eye::{Eye, Hit};
 pub(crate) use eye_raster::EyeRaster;
+pub(crate) use ray_light::end_at;
 pub use ray_light::{RayLight, median_depth};
 pub(crate) use tile_tracer::{Follow, LANES, LaneHits};
 pub(crate) use tiles::{RayGrid, TileRow};
@@ -26,6 +29,7 @@ use lens::{Camera, Optics};
 use rayon::prelude::*;
 use shape::CameraShape;
 pub use shape::LOW_PASS_PX2;
+pub use world_ray::CloudRay;
 
 /// A splat whose mean is nearer than this many aperture radii is left out: it would cover the aperture.
 const NEAREST_RADII: f64 = 0.6;
@@ -53,11 +57,21 @@ pub(crate) struct ViewSplat {
 impl<'a> GaussianView<'a> {
     /// The splats of `cloud`, placed in the world by `placement`, before `camera`; both must be valid.
     pub fn new(cloud: &'a GaussianCloud, placement: &Placement, camera: &'a Camera) -> Self {
+        Self::with_pixel(cloud, placement, camera, 1.0)
+    }
+
+    /// The same for a camera that is finer than the picture: the low-pass is that of pixels as wide as `pixel_px` pixels of `camera`.
+    pub fn with_pixel(
+        cloud: &'a GaussianCloud,
+        placement: &Placement,
+        camera: &'a Camera,
+        pixel_px: f64,
+    ) -> Self {
         let optics = camera.optics();
         let axes = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| camera.camera_direction(axis));
         let camera_from_world = DMat3::from_cols(axes[0], axes[1], axes[2]);
         let camera_from_file = camera_from_world * placement.linear();
-        let focal_px = optics.half_height_px / optics.tan_half_yfov;
+        let focal_px = optics.half_height_px / optics.tan_half_yfov / pixel_px;
         let nearest = NEAREST_RADII * optics.aperture_radius;
         let is_antialiased = cloud.traits().is_antialiased;
         let in_camera = |index: usize| {

@@ -126,6 +126,10 @@ impl LengthPrefixedHash {
             hash.add(bytemuck::cast_slice(&gloss.polynomial_of_block));
             hash.add(bytemuck::cast_slice(gloss.polynomials.as_flattened()));
         }
+        if let Some(splats) = &scene.splats {
+            hash.add(format!("{:?}", splats.placement).as_bytes());
+            splats.cloud.each_byte_string(|bytes| hash.add(bytes));
+        }
         hash.add(format!("{:?}", options.photo_lookup).as_bytes());
         // Debug formatting writes numbers exactly.
         let is_single = options.scattering == Scattering::Single;

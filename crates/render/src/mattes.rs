@@ -11,7 +11,9 @@ mod tally;
 mod things;
 
 pub(crate) use packing::{Footprints, Packing};
-pub(crate) use source::{BlackBackground, LightFieldMattes, MatteSource, SampleParts, TruthMattes};
+pub(crate) use source::{
+    BlackBackground, LightFieldMattes, MatteLight, MatteSource, SampleParts, SetsOfPart, TruthMattes,
+};
 pub(crate) use tally::{Entry, Ranking, Tally, left_out_warning, ranks_of};
 pub(crate) use things::Things;
 

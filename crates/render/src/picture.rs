@@ -8,6 +8,7 @@ mod ocio_views;
 mod photograph_picture;
 mod render;
 mod renderer;
+mod splat_truth;
 mod stereo;
 mod thumbnail;
 mod tone;

@@ -7,6 +7,8 @@
 //! 4. For surfaces that may be partly occluded, and only for those, the visibility of the aperture is computed
 //!    ([`crate::baker::shadow_rays`]).
 //!
+//! 5. Gaussian splats are added, and what they hide of all else is taken away ([`crate::baker::splats`]).
+//!
 //! The samples of each block are packed as soon as they are complete ([`crate::samples`]). Until then the surveys of step 1 are
 //! retained or, for large pictures, made again. [`crate::baker::parts`] bakes parts of a picture.
 
@@ -19,15 +21,17 @@ pub mod parts;
 pub mod placement;
 pub mod reach;
 pub mod shadow_rays;
+pub mod splats;
 pub mod surface_patches;
 
 use crate::baker::block_baker::{BlockBaker, CellSurvey};
 use crate::baker::occluders::Occluders;
 use crate::baker::outliers::Outliers;
+use crate::baker::splats::{BlockSamples, add_splats};
 use crate::options::BakeOptions;
 use crate::salf::Salf;
 use crate::sample::Sample;
-use crate::samples::{Samples, block_corner};
+use crate::samples::{BakedSample, Samples, block_corner};
 use glam::IVec2;
 use lens::Camera;
 use progress::{Cancelled, Progress, Stage};
@@ -102,21 +106,55 @@ fn bake_retaining(
     let mut patches_of_block = patches(&baker, &|_| true, &Stage::new(progress, 0.4, 0.45))?;
     let blocks: Vec<IVec2> = rows.iter().flat_map(|&y| (0..columns).map(move |x| IVec2::new(x, y))).collect();
     let numbered: Vec<_> = blocks.iter().copied().enumerate().collect();
-    let parts = map_rows(&numbered, &Stage::new(progress, 0.45, 1.0), |&(number, block)| {
-        let patches = patches_of_block.get(&domain.corner_of_block(block)).map_or(&[][..], Vec::as_slice);
-        match retained.get(number) {
-            Some(surveys) => baker.bake_block(&occluders, surveys, patches),
-            None => baker.bake_block(&occluders, &baker.survey_cells(&domain.cells_of_block(block)), patches),
-        }
-    })?;
-    let outliers = parts.iter().fold(Outliers::default(), |all, (_, outliers)| all.merged(*outliers));
+    let (parts, outliers) =
+        pack_blocks(&baker, &numbered, &Stage::new(progress, 0.45, 1.0), |number, block| {
+            let patches = patches_of_block.get(&domain.corner_of_block(block)).map_or(&[][..], Vec::as_slice);
+            match retained.get(number) {
+                Some(surveys) => baker.bake_block(&occluders, surveys, patches),
+                None => {
+                    baker.bake_block(&occluders, &baker.survey_cells(&domain.cells_of_block(block)), patches)
+                }
+            }
+        })?;
     blocks.iter().for_each(|&block| drop(patches_of_block.remove(&domain.corner_of_block(block))));
     let outside = outside_domain(patches_of_block);
-    let samples = Samples::join(parts.into_iter().map(|(samples, _)| samples).chain(outside));
+    let samples = Samples::join(parts.into_iter().chain(outside));
     Ok((
         Salf { camera: camera.clone(), margin_px: domain.margin as u32, carried: options.carried, samples },
         outliers,
     ))
+}
+
+/// Bakes numbered blocks, in rows, and packs their samples, with those of splats.
+///
+/// # Errors
+/// [`Cancelled`] if `progress` is cancelled.
+pub fn pack_blocks(
+    baker: &BlockBaker,
+    blocks: &[(usize, IVec2)],
+    progress: &dyn Progress,
+    bake: impl Fn(usize, IVec2) -> (Vec<BakedSample>, Outliers) + Sync,
+) -> Result<(Vec<Samples>, Outliers), Cancelled> {
+    let merge = |all: Outliers, outliers: &Outliers| all.merged(*outliers);
+    let Some(splats) = &baker.tracer.scene().splats else {
+        let (samples, outliers): (Vec<_>, Vec<_>) = map_rows(blocks, progress, |&(number, block)| {
+            let (baked, outliers) = bake(number, block);
+            (baker.pack(baker.domain.corner_of_block(block), baked), outliers)
+        })?
+        .into_iter()
+        .unzip();
+        return Ok((samples, outliers.iter().fold(Outliers::default(), merge)));
+    };
+    let (mut baked, outliers): (Vec<BlockSamples>, Vec<_>) =
+        map_rows(blocks, &Stage::new(progress, 0.0, 0.1), |&(number, block)| {
+            let (baked, outliers) = bake(number, block);
+            ((baker.domain.corner_of_block(block), baked), outliers)
+        })?
+        .into_iter()
+        .unzip();
+    add_splats(baker, splats, &mut baked, &Stage::new(progress, 0.1, 1.0))?;
+    let packed = baked.into_par_iter().map(|(corner, baked)| baker.pack(corner, baked));
+    Ok((packed.collect(), outliers.iter().fold(Outliers::default(), merge)))
 }
 
 /// The samples that are placed on surfaces, of selected blocks, by the corners of their blocks.

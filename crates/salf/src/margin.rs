@@ -3,8 +3,9 @@
 use crate::view::View;
 use glam::{DVec2, DVec3};
 use lens::FocusOffset;
+use numerics::quantile;
 use rayon::prelude::*;
-use scene::{Scene, SurfaceField};
+use scene::{Scene, SurfaceField, SurfacePoint};
 use trace::Tracer;
 
 /// Beyond this many picture heights outside the frame nothing is sampled.
@@ -18,7 +19,8 @@ pub const LARGEST_MARGIN_HEIGHTS: f64 = 1.5;
 /// focus plane the circle grows to that of infinity.
 pub fn standard_margin_px(scene: &Scene, view: &View) -> f64 {
     let inverse_s = view.optics.inverse_focus_distance;
-    let nearest = (0..scene.triangles.len() as u32)
+    let nearest = scene
+        .surface_triangles()
         .filter_map(|triangle| {
             let corners = scene.corners(triangle).map(|p| view.camera.camera_from_world(p));
             nearest_depth_in_frustum(corners, view)
@@ -26,15 +28,40 @@ pub fn standard_margin_px(scene: &Scene, view: &View) -> f64 {
         .fold(f64::INFINITY, f64::min);
     let near = view.optics.splat_radius_px(1.0 / nearest - inverse_s);
     let far = view.optics.splat_radius_px(inverse_s);
-    near.max(far).clamp(0.0, largest_margin_px(view))
+    let splats = splat_margin_px(scene, view, |_| FocusOffset::STANDARD);
+    near.max(far).max(splats).clamp(0.0, largest_margin_px(view))
+}
+
+/// The largest splat radius of Gaussian splats, px, whose light reaches the frame; their focus is that of their addresses. A few that float before the
+/// lens do not count: their light is nowhere.
+fn splat_margin_px(scene: &Scene, view: &View, focus: impl Fn(SurfacePoint) -> FocusOffset + Sync) -> f64 {
+    /// The share of splats that do not count.
+    const FLOATING: f64 = 1e-3;
+    let Some(splats) = &scene.splats else { return 0.0 };
+    let frame = DVec2::new(view.camera.width as f64, view.camera.height as f64);
+    let radius = |splat: u32| {
+        let mean = splats.placement.point(splats.cloud.means()[splat as usize].as_dvec3());
+        let point = view.camera.camera_from_world(mean);
+        if point.z <= view.optics.aperture_radius {
+            return None;
+        }
+        let pixel = view.camera.pixel_from_q(view.optics.chief(point));
+        let outside = (-pixel).max(pixel - frame).max_element();
+        let kappa = view.optics.kappa(1.0 / point.z, focus(splats.address(splat)));
+        let radius = view.optics.splat_radius_px(kappa).abs();
+        (radius >= outside).then_some(radius)
+    };
+    let mut radii: Vec<f64> = (0..splats.cloud.len() as u32).into_par_iter().filter_map(radius).collect();
+    quantile(&mut radii, 1.0 - FLOATING).unwrap_or(0.0)
 }
 
 /// The margin of a painted picture, px, measured on a grid of chief rays (like the guard band of the ground
 /// truth): the largest splat radius of a surface that is no further outside the frame than that.
 pub fn painted_margin_px(tracer: &Tracer, view: &View, focus: &dyn SurfaceField<FocusOffset>) -> f64 {
     const SPACING_PX: f64 = 6.0;
+    let splats = splat_margin_px(tracer.scene(), view, |point| focus.at(point));
     let frame = DVec2::new(view.camera.width as f64, view.camera.height as f64);
-    let mut margin: f64 = 0.0;
+    let mut margin = splats.min(largest_margin_px(view));
     loop {
         let extent = frame + 2.0 * margin;
         let steps = (extent / SPACING_PX).ceil();

@@ -19,13 +19,21 @@ pub struct BakeOptions {
     pub tolerance_px: f64,
     /// How finely carried light is sampled over the aperture.
     pub carried: Carried,
+    /// Side of a pixel of the picture, px of the baked camera, which may be finer: splats are as blurred as the picture's pixels make them.
+    pub pixel_px: f64,
     /// Whether samples are packed ([`crate::Samples`]): always, except to measure the loss.
     pub packs: bool,
 }
 
 impl Default for BakeOptions {
     fn default() -> Self {
-        Self { margin_px: 0.0, tolerance_px: Self::TOLERANCE_PX, carried: Carried::Standard, packs: true }
+        Self {
+            margin_px: 0.0,
+            tolerance_px: Self::TOLERANCE_PX,
+            carried: Carried::Standard,
+            pixel_px: 1.0,
+            packs: true,
+        }
     }
 }
 

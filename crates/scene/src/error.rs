@@ -1,5 +1,6 @@
 //! Errors of reading a scene file.
 
+use gaussians::GaussianError;
 use progress::Cancelled;
 use std::path::PathBuf;
 
@@ -22,9 +23,21 @@ pub enum SceneError {
         /// What is wrong with it, where, and what to do.
         fault: Fault,
     },
+    /// A file of Gaussian splats did not open.
+    #[error(transparent)]
+    Splats(GaussianError),
     /// Loading was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+}
+
+impl From<GaussianError> for SceneError {
+    fn from(error: GaussianError) -> Self {
+        match error {
+            GaussianError::Cancelled(cancelled) => Self::Cancelled(cancelled),
+            other => Self::Splats(other),
+        }
+    }
 }
 
 /// A fault inside a scene file.

@@ -2,8 +2,10 @@
 //!
 //! * [`load`] reads a file; [`inspect`] summarises one, even without triangles;
 //!   [`with_source`] gives access to the file as it is, to write it again.
+//! * [`load_splats`] reads a file of Gaussian splats.
 //! * [`AnimatedScene`]: the scene of a file with animations, at any [`AnimationTime`].
 //! * [`Scene`]: what everything else works on; [`Scene::from_mesh`] makes one of a [`SurfaceMesh`] from elsewhere.
+//! * [`PlacedCloud`]: the Gaussian splats of a scene, each with a triangle of its own.
 //! * [`SurfacePoint`]: an address on the surface: triangle and barycentrics. The surface's appearance there:
 //!   [`Scene::base_color`], [`Scene::emitted_radiance`], [`Scene::opacity`], [`Scene::shading_normal`], [`Scene::bumped_normal`].
 //! * [`Material`]: the material of a surface. [`World`]: environment and backdrop.
@@ -45,6 +47,7 @@ mod model;
 mod photographs;
 mod picture_decoder;
 mod queries;
+mod splat_file;
 mod surface_mesh;
 mod texture;
 mod world;
@@ -57,11 +60,12 @@ pub use error::{Fault, SceneError};
 pub use load_options::LoadOptions;
 pub use model::{
     AlphaMode, Anisotropy, BackFaces, CameraLens, Clearcoat, DiffuseTransmission, Iridescence, Light,
-    LightKind, Material, MeshHealth, Node, NormalMap, Part, Scalar, Scene, SceneCamera, Sheen, SurfaceField,
-    SurfacePoint, Tint, Triangle, Volume, Workflow,
+    LightKind, Material, MeshHealth, Node, NormalMap, Part, PlacedCloud, Scalar, Scene, SceneCamera, Sheen,
+    SurfaceField, SurfacePoint, Tint, Triangle, Volume, Workflow,
 };
 pub use photographs::{Mask, Photograph, PictureError, PictureGloss, PictureTexture, View};
 pub use picture_decoder::{MAX_PNG_EXTRAS_BYTES, open_picture};
+pub use splat_file::load_splats;
 pub use surface_mesh::SurfaceMesh;
 pub use texture::{Image, ImageLevel, TextureRef, Wrap, linear_from_srgb, srgb_from_linear};
 pub use world::{Backdrop, BuiltInEnvironment, Environment, EnvironmentMap, World};

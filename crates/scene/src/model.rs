@@ -5,6 +5,7 @@ mod camera_lens;
 mod inverted_faces;
 mod material;
 mod mesh_health;
+mod placed_cloud;
 mod surface_point;
 
 pub use back_faces::BackFaces;
@@ -14,12 +15,14 @@ pub use material::{
     Tint, Volume, Workflow,
 };
 pub use mesh_health::MeshHealth;
+pub use placed_cloud::PlacedCloud;
 pub use surface_point::{SurfaceField, SurfacePoint};
 
 use crate::{Image, PictureTexture, View, World};
 use glam::{DMat4, DVec3, Vec2, Vec3, Vec4};
 use std::ops::Range;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// A scene: triangles in world space with their materials, lights and cameras.
 ///
@@ -41,7 +44,7 @@ pub struct Scene {
     pub further_uv: Vec<Vec<Vec2>>,
     /// Linear vertex colours, multiplied into the base colour; 1 if the file has none.
     pub colors: Vec<Vec4>,
-    /// Counter-clockwise seen from the front; negative scales are already undone.
+    /// Counter-clockwise seen from the front; negative scales are already undone. Those of [`Self::splats`] are last.
     pub triangles: Vec<Triangle>,
     /// For each triangle's corners the unit direction in which u of the material's normal map (or of its anisotropy)
     /// increases, and the sign of the bitangent, sign · normal × tangent; zero if a part needs none. Empty if no part
@@ -71,6 +74,8 @@ pub struct Scene {
     pub embedded_world: Option<World>,
     /// The chosen world; if `None`, [`World::from_scene`] derives one.
     pub world: Option<World>,
+    /// Gaussian splats.
+    pub splats: Option<Arc<PlacedCloud>>,
     /// The photographs that light it.
     pub views: Vec<View>,
     /// Photographs that are viewed and compared with but do not light it: excluded ones, and the views of a light
@@ -214,9 +219,8 @@ impl Scene {
         (b - a).cross(c - a)
     }
 
-    /// The lower and upper corner of the bounding box of all triangles.
+    /// The lower and upper corner of the bounding box of all triangles, and of most splats.
     pub fn bounds(&self) -> (DVec3, DVec3) {
-        let corners = self.triangles.iter().flat_map(|t| t.vertices).map(|v| self.positions[v as usize]);
-        corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)))
+        self.extent().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)))
     }
 }

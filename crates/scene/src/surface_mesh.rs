@@ -3,7 +3,7 @@
 use crate::gltf::geometry::assembly::MAX_COORDINATE;
 use crate::gltf::geometry::primitive::compact_indices;
 use crate::gltf::scene_cameras;
-use crate::{LoadOptions, Material, Node, Part, Scene, SceneError, Triangle};
+use crate::{LoadOptions, Material, Node, Part, Scene, SceneCamera, SceneError, Triangle};
 use glam::{DMat4, DQuat, DVec3, Vec3, Vec4};
 use std::path::PathBuf;
 
@@ -103,6 +103,16 @@ impl Scene {
             self.cameras = vec![scene_cameras::framing_camera(self, upright)];
             scene_cameras::focus_cameras(self);
         }
+    }
+
+    /// Replaces the cameras, and focuses each on the first surface ahead.
+    ///
+    /// # Panics
+    /// There are none.
+    pub fn set_cameras(&mut self, cameras: Vec<SceneCamera>) {
+        assert!(!cameras.is_empty());
+        (self.cameras, self.has_default_camera) = (cameras, false);
+        scene_cameras::focus_cameras(self);
     }
 }
 

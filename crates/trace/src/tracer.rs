@@ -1,6 +1,7 @@
 //! The scene's triangles in a bounding volume hierarchy.
 
 mod beams;
+mod splat_surface;
 mod square_visibility;
 
 use crate::hierarchy::Hierarchy;
@@ -11,7 +12,8 @@ use crate::watertight::{Crossing, ShearedRay, has_area, in_plane};
 use crate::{Hit, Ray};
 use glam::DVec3;
 use scene::{AlphaMode, Scene, SurfacePoint};
-use std::sync::Arc;
+use splat_surface::SplatTree;
+use std::sync::{Arc, OnceLock};
 
 /// Finds what a ray hits.
 ///
@@ -23,6 +25,7 @@ use std::sync::Arc;
 /// * The eye's rays pass through the backs of faces that are not double sided ([`scene::Scene::culls_back_face`]); both sides of
 ///   every face stop light. [`Self::first_hit`], [`Self::any_hit`], [`Self::is_hidden_from`] and
 ///   [`Self::square_visibility`] follow the eye, [`Self::is_occluded`] follows light.
+/// * Gaussian splats are not hit, except by [`Self::visible_surface`]: they stop no light and cast no shadow.
 /// * Transparent points are not hit (see [`scene::AlphaMode`]): under a mask a point exists where the opacity reaches the
 ///   cutoff; under blending it is hit *by a given ray* with the probability of its opacity, decided by a hash of the ray
 ///   and the triangle, so that sums over many rays have the right transmittance and each ray gives the same result every
@@ -37,6 +40,8 @@ pub struct Tracer {
     /// Of the same.
     outlines: Vec<Outline>,
     has_transparency: bool,
+    /// Made when it is first needed.
+    splat_tree: OnceLock<SplatTree>,
 }
 
 /// A triangle prepared for the inner loop.
@@ -59,7 +64,7 @@ impl Tracer {
     /// Builds the bounding volume hierarchy of the scene's triangles; those without area are never hit.
     pub fn new(scene: Arc<Scene>) -> Self {
         let with_area: Vec<u32> =
-            (0..scene.triangles.len() as u32).filter(|&index| has_area(&scene.corners(index))).collect();
+            scene.surface_triangles().filter(|&index| has_area(&scene.corners(index))).collect();
         let corners = with_area.iter().flat_map(|&index| scene.corners(index));
         let (low, high) =
             corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), p| (l.min(p), h.max(p)));
@@ -81,7 +86,8 @@ impl Tracer {
             .collect();
         let outlines = triangles.iter().map(|triangle| Outline::new(&triangle.corners, &space)).collect();
         let has_transparency = scene.materials.iter().any(|material| material.alpha == AlphaMode::Blend);
-        Self { scene, space, hierarchy, triangles, outlines, has_transparency }
+        let splat_tree = OnceLock::new();
+        Self { scene, space, hierarchy, triangles, outlines, has_transparency, splat_tree }
     }
 
     /// The scene in which rays are traced.

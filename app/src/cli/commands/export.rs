@@ -6,7 +6,7 @@ use crate::cli::console::{Console, path_texts, print_json};
 use crate::cli::failure::Failure;
 use crate::cli::input::{check_folder, unwrap_options};
 use crate::cli::termination;
-use document::{Input, InputKind};
+use document::{Input, InputKind, is_focus_table, write_splat_focus};
 use focus::FocusMap;
 use lens::{Camera, FocusOffset, Picture};
 use project::{FocusMapFile, Layer, PictureOptions, write_focus_map, write_picture};
@@ -90,6 +90,9 @@ fn export_focus_map(input: &Input, path: &Path, console: &Console) -> Result<(),
         map
     };
     let map = project.and_then(|project| project.focus_map.clone()).unwrap_or_else(blank);
+    if is_focus_table(path) {
+        return Ok(write_splat_focus(path, &input.scene, &atlas, &map)?);
+    }
     let lost = write_focus_map(path, &FocusMapFile::from_atlas_map(&map, &atlas))?;
     console.warn(&lost.iter().map(|what| format!("{}: {what}", path.display())).collect::<Vec<_>>());
     Ok(())

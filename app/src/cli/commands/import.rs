@@ -8,7 +8,7 @@ use crate::cli::input::{check_folder, unwrap_options};
 use document::{Document, Input, InputKind, NewDocumentOptions};
 use project::CaptureChoices;
 
-/// Makes a project from a capture. Missing parts are reported and the rest is imported; the command then ends
+/// Makes a project from a capture or from Gaussian splats. Missing parts are reported and the rest is imported; the command then ends
 /// as partly done.
 ///
 /// # Errors
@@ -17,7 +17,17 @@ pub fn run(arguments: &ImportArguments, console: &Console) -> Result<(), Failure
     let ImportArguments { capture, output, mesh, leave_out, kind, disparity, depth, layer, near } = arguments;
     check_project_name(output)?;
     check_folder(output)?;
-    if InputKind::from_path(capture)? != InputKind::Capture {
+    let new = NewDocumentOptions::default();
+    let kind_of_input = InputKind::from_path(capture)?;
+    if kind_of_input == InputKind::Splats {
+        let resources = console.resources();
+        let document = Document::create(capture, &new, &unwrap_options(None), resources, console)?;
+        console.warn(&document.warnings);
+        document.to_project().save(output)?;
+        console.note(&format!("wrote {}", output.display()));
+        return Ok(());
+    }
+    if kind_of_input != InputKind::Capture {
         let what = "not a capture (give the folder of one; `focus-brush new` makes projects from scenes)";
         return Err(Failure::bad_input(format!("{}: {what}", capture.display())));
     }
@@ -33,8 +43,7 @@ pub fn run(arguments: &ImportArguments, console: &Console) -> Result<(), Failure
     };
     let input = Input::open_capture(capture, choices, console.resources(), console)?;
     let is_incomplete = input.is_incomplete;
-    let document =
-        Document::create_from_input(input, &NewDocumentOptions::default(), &unwrap_options(None), console)?;
+    let document = Document::create_from_input(input, &new, &unwrap_options(None), console)?;
     console.warn(&document.warnings);
     document.to_project().save(output)?;
     console.note(&format!("wrote {}", output.display()));

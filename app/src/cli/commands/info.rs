@@ -47,6 +47,7 @@ pub fn run(arguments: &InfoArguments, console: &Console) -> Result<(), Failure> 
                 InputKind::Project => "project",
                 InputKind::LightField => "light field",
                 InputKind::Capture => "capture",
+                InputKind::Splats => "splats",
             },
             "contents": inspection,
             "scene": scene_json(&input.scene),
@@ -185,13 +186,16 @@ fn project_json(project: &ProjectFile) -> Value {
 
 fn print_scene(scene: &Scene, health: &MeshHealth) {
     let invented_note = |is_invented: bool| if is_invented { " (made up: the file has none)" } else { "" };
-    print_line(format!(
-        "  scene        {} triangles in {} parts of {} objects, area {:.4}",
-        health.triangles,
-        scene.parts.len(),
-        scene.nodes.len(),
-        health.area
-    ));
+    if health.triangles > 0 {
+        print_line(format!(
+            "  scene        {} triangles in {} parts of {} objects, area {:.4}",
+            health.triangles,
+            scene.parts.len(),
+            scene.nodes.len(),
+            health.area
+        ));
+    }
+    print_splats(scene);
     if let Some(picture) = &scene.picture {
         print_line(format!("  picture      {}", picture.origin));
     }
@@ -211,7 +215,35 @@ fn print_scene(scene: &Scene, health: &MeshHealth) {
             chosen.map_or_else(|| "none: the scene's own materials".into(), |name| format!("{name:?}"));
         print_line(format!("  variants     {} (chosen: {chosen})", names.join(", ")));
     }
-    print_line(format!("  mesh         {}", mesh_sentence(health)));
+    if health.triangles > 0 {
+        print_line(format!("  mesh         {}", mesh_sentence(health)));
+    }
+}
+
+fn print_splats(scene: &Scene) {
+    let Some(splats) = &scene.splats else { return };
+    let cloud = &splats.cloud;
+    print_line(format!(
+        "  splats       {} of {}, colours of degree {}, {:.1} MiB",
+        cloud.len(),
+        splats.format,
+        cloud.degree(),
+        cloud.bytes() as f64 / f64::from(1 << 20)
+    ));
+    print_line(
+        "               they send their own light: no lamp or world lights them, and mirrors do not show them",
+    );
+}
+
+fn splats_json(scene: &Scene) -> Option<Value> {
+    let splats = scene.splats.as_ref()?;
+    Some(json!({
+        "count": splats.cloud.len(),
+        "format": splats.format,
+        "degree": splats.cloud.degree(),
+        "left_out": splats.cloud.left_out().rows().len(),
+        "bytes": splats.cloud.bytes(),
+    }))
 }
 
 /// The name of the environment that the scene itself provides, if any.
@@ -309,6 +341,7 @@ fn scene_json(scene: &Scene) -> Value {
         "variants": scene.variants,
         "variant": scene.variant,
         "lights": scene.lights.len(),
+        "splats": splats_json(scene),
         "picture": scene.picture.as_ref().map(|picture| &picture.origin),
     })
 }

@@ -68,11 +68,15 @@ impl Purpose {
 
     fn extensions(self) -> &'static [&'static str] {
         match self {
-            Self::Open => &["glb", "gltf", "fbrush", "jpg", "jpeg", "png", "webp", "exr"],
+            Self::Open => &[
+                "glb", "gltf", "fbrush", "ply", "spz", "sog", "splat", "ksplat", "jpg", "jpeg", "png",
+                "webp", "exr",
+            ],
             Self::OpenCapture => &[],
             Self::SaveAs => &["fbrush"],
-            Self::ExportPicture | Self::ExportShown | Self::ExportFocusMap => &["exr", "png"],
-            Self::ImportFocusMap => &["exr", "png", "json"],
+            Self::ExportPicture | Self::ExportShown => &["exr", "png"],
+            Self::ExportFocusMap => &["exr", "png", "ply"],
+            Self::ImportFocusMap => &["exr", "png", "json", "ply"],
             Self::ExportWebPage => &["html"],
             Self::ExportScene => &["glb"],
             Self::ExportStrokes | Self::ImportPreset | Self::ExportPreset => &["json"],
@@ -91,6 +95,7 @@ impl Purpose {
             Self::ExportFocusMap => &[
                 ("exr", "OpenEXR", "Exact values, as floats."),
                 ("png", "PNG, 16 bits", "For programs that read pictures only."),
+                ("ply", "PLY table", "A row for each Gaussian splat, in the order of its file."),
             ],
             _ => &[],
         }

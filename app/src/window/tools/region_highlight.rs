@@ -113,7 +113,7 @@ impl HitGrid {
             let at = view.cell_rect(columns, index).center();
             let share = (at - view.image.min) / view.image.size();
             let ray = view_ray(&view.frame, DVec2::new(share.x.into(), share.y.into()));
-            tracer.first_hit(&ray).map(|hit| hit.point.triangle)
+            tracer.visible_surface(&ray).map(|hit| hit.point.triangle)
         };
         Self { view, columns, triangles: (0..columns * rows).into_par_iter().map(triangle).collect() }
     }

@@ -131,6 +131,20 @@ impl GaussianCloud {
         color.max(Vec3::ZERO)
     }
 
+    /// Passes all numbers that decide how the cloud looks to `add`, as bytes: for checksums.
+    pub fn each_byte_string(&self, mut add: impl FnMut(&[u8])) {
+        add(format!("{:?} {}", self.traits, self.degree).as_bytes());
+        add(bytemuck::cast_slice(&self.means));
+        add(bytemuck::cast_slice(&self.rotations));
+        add(bytemuck::cast_slice(&self.log_scales));
+        add(bytemuck::cast_slice(&self.opacities));
+        add(bytemuck::cast_slice(&self.base_colors));
+        self.coefficients.chunks(1 << 16).for_each(|part| {
+            let bits: Vec<u16> = part.iter().map(|x| x.to_bits()).collect();
+            add(bytemuck::cast_slice(&bits));
+        });
+    }
+
     /// The bytes that the cloud takes in memory.
     pub fn bytes(&self) -> u64 {
         Self::bytes_of(self.degree, self.len() as u64)

@@ -18,6 +18,12 @@ pub struct Splat {
 }
 
 impl Splat {
+    /// How far from the mean its response may be 1/255 or more, in the units of the file.
+    pub fn reach(&self) -> f64 {
+        let deviations = (2.0 * (f64::from(self.opacity) * 255.0).max(1.0).ln()).sqrt();
+        f64::from(self.log_scale.max_element()).exp() * deviations
+    }
+
     /// The opacity that a file stores as a logit: 1 / (1 + e^−x).
     pub fn opacity_of_logit(logit: f64) -> f32 {
         (1.0 / (1.0 + (-logit).exp())) as f32

@@ -20,8 +20,19 @@ use container::Container;
 use glam::{Quat, Vec3};
 use meta::{Levels, Meta, Opacity};
 use palette::Palette;
+use std::fs::File;
+use std::io::Read;
 use std::path::Path;
 use texture::Texture;
+
+/// Whether a file is the list of a SOG scene: by its name and what it begins with.
+pub(super) fn is_list(path: &Path) -> bool {
+    const BEGINNING: u64 = 1 << 16;
+    let mut text = Vec::new();
+    path.file_name().is_some_and(|name| name == "meta.json")
+        && File::open(path).is_ok_and(|file| file.take(BEGINNING).read_to_end(&mut text).is_ok())
+        && ["\"means\"", "\"quats\""].iter().all(|key| text.windows(key.len()).any(|w| w == key.as_bytes()))
+}
 
 /// Reads a scene in a folder.
 ///

@@ -10,8 +10,9 @@
 //! additive and conserves the light.
 
 use super::aperture_points::aperture_points;
+use super::backdrop::{Backdrop, EndLight, PlainBackdrop};
 use super::pixel_box::cover_pixels;
-use crate::view::{EyeRaster, Follow, GaussianView, Hit, LaneHits, RayGrid, TileRow};
+use crate::view::{EyeRaster, Follow, GaussianView, Hit, LaneHits, RayGrid, TileRow, end_at};
 use glam::{DVec2, DVec3, Vec3};
 use lens::{FocusOffset, Picture};
 use progress::{Cancelled, Progress};
@@ -19,7 +20,7 @@ use rayon::prelude::*;
 use std::collections::BTreeMap;
 
 /// How many rays are traced.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct TruthOptions {
     /// Aperture points, at least 1.
     pub aperture_points: u32,
@@ -27,12 +28,14 @@ pub struct TruthOptions {
     pub rays_per_px: u32,
     /// Maximum pixels beyond the picture that are traced for what paint moves into it.
     pub max_margin_px: u32,
+    /// Linear RGB radiance that all splats send in place of their own.
+    pub uniform_radiance: Option<Vec3>,
 }
 
 impl Default for TruthOptions {
     /// 64 aperture points, 2 × 2 rays a pixel, up to 256 px of margin.
     fn default() -> Self {
-        Self { aperture_points: 64, rays_per_px: 2, max_margin_px: 256 }
+        Self { aperture_points: 64, rays_per_px: 2, max_margin_px: 256, uniform_radiance: None }
     }
 }
 
@@ -58,6 +61,23 @@ pub fn render_truth(
     options: &TruthOptions,
     progress: &dyn Progress,
 ) -> Result<GaussianPicture, Cancelled> {
+    render_truth_before(view, focus, &PlainBackdrop::of(view.camera()), options, progress)
+}
+
+/// The same before a backdrop: surfaces that end rays, and what shines through.
+///
+/// # Errors
+/// `progress` cancels.
+///
+/// # Panics
+/// `focus` is not as long as the cloud.
+pub fn render_truth_before(
+    view: &GaussianView<'_>,
+    focus: Option<&[FocusOffset]>,
+    backdrop: &dyn Backdrop,
+    options: &TruthOptions,
+    progress: &dyn Progress,
+) -> Result<GaussianPicture, Cancelled> {
     assert!(focus.is_none_or(|focus| focus.len() == view.cloud().len()));
     let radius = view.optics().aperture_radius;
     let points = match radius > 0.0 {
@@ -67,7 +87,7 @@ pub fn render_truth(
     let focus =
         focus.map(|focus| (0..view.len() as u32).map(|splat| focus[view.cloud_index(splat)]).collect());
     let points: Vec<DVec2> = points.into_iter().map(|u| u * radius).collect();
-    Truth::new(view, focus, options).render(&points, progress)
+    Truth::new(view, focus, backdrop, options).render(&points, progress)
 }
 
 /// Renders a view through its aperture's centre, with `rays_per_px` × `rays_per_px` rays a pixel.
@@ -80,7 +100,8 @@ pub fn render_pinhole(
     progress: &dyn Progress,
 ) -> Result<GaussianPicture, Cancelled> {
     let options = TruthOptions { rays_per_px, ..TruthOptions::default() };
-    Truth::new(view, None, &options).render(&[DVec2::ZERO], progress)
+    let backdrop = PlainBackdrop::of(view.camera());
+    Truth::new(view, None, &backdrop, &options).render(&[DVec2::ZERO], progress)
 }
 
 /// Rows of tiles that are traced at once, whatever the number of threads: sums are added in their order.
@@ -101,6 +122,11 @@ impl Sum {
         Self { radiance: radiance.as_dvec3(), coverage: weight, alpha: weight }
     }
 
+    fn scaled(self, share: f64) -> Self {
+        let Self { radiance, coverage, alpha } = self;
+        Self { radiance: radiance * share, coverage: coverage * share, alpha: alpha * share }
+    }
+
     #[inline]
     fn add(&mut self, other: Self) {
         self.radiance += other.radiance;
@@ -117,18 +143,25 @@ struct Truth<'v> {
     /// The focus of each splat of the view, where any is painted.
     focus: Option<Vec<FocusOffset>>,
     grid: RayGrid,
-    background: DVec3,
+    backdrop: &'v dyn Backdrop,
+    uniform_radiance: Option<Vec3>,
     size: [u32; 2],
 }
 
 impl<'v> Truth<'v> {
-    fn new(view: &'v GaussianView<'v>, focus: Option<Vec<FocusOffset>>, options: &TruthOptions) -> Self {
+    fn new(
+        view: &'v GaussianView<'v>,
+        focus: Option<Vec<FocusOffset>>,
+        backdrop: &'v dyn Backdrop,
+        options: &TruthOptions,
+    ) -> Self {
         let camera = view.camera();
         let focus = focus.filter(|focus| focus.iter().any(|offset| !offset.is_standard()));
-        let margin = focus.as_ref().map_or(0, |focus| margin_px(view, focus, options.max_margin_px));
+        let reach = focus.as_ref().map_or(0.0, |focus| painted_reach_px(view, focus));
+        let margin = (reach.max(backdrop.painted_reach_px()).ceil() as u32).min(options.max_margin_px);
         let grid = RayGrid::new(camera.width, camera.height, margin, options.rays_per_px.max(1));
-        let background = camera.background.unwrap_or_default().into();
-        Self { view, focus, grid, background, size: [camera.width, camera.height] }
+        let uniform_radiance = options.uniform_radiance;
+        Self { view, focus, grid, backdrop, uniform_radiance, size: [camera.width, camera.height] }
     }
 
     fn render(&self, points: &[DVec2], progress: &dyn Progress) -> Result<GaussianPicture, Cancelled> {
@@ -170,7 +203,7 @@ impl<'v> Truth<'v> {
                 directions.clear();
                 directions.extend(pixels.iter().map(|pixel| self.view.direction(raster.eye.point(), *pixel)));
                 tracer.trace(&directions, Follow::Visible, &mut lanes);
-                for (pixel, (hits, rest)) in pixels.iter().zip(lanes.hits.iter().zip(lanes.rest)) {
+                for (pixel, (hits, rest)) in pixels.iter().zip(lanes.hits.iter_mut().zip(lanes.rest)) {
                     self.add_ray(raster, *pixel, hits, rest, &mut sums);
                 }
             }
@@ -179,25 +212,43 @@ impl<'v> Truth<'v> {
     }
 
     /// Adds the light of a ray, of which `rest` passes all splats.
-    fn add_ray(&self, raster: &EyeRaster<'_>, pixel: DVec2, hits: &[Hit], rest: f64, sums: &mut RowSums) {
-        let light = raster.light(hits);
+    fn add_ray(
+        &self,
+        raster: &EyeRaster<'_>,
+        pixel: DVec2,
+        hits: &mut Vec<Hit>,
+        mut rest: f64,
+        sums: &mut RowSums,
+    ) {
         let u = raster.eye.point();
         let direction = self.view.direction(u, pixel);
-        // What no paint moves stays in the ray's own pixel: with the background, and with the splats' alpha.
-        let mut own = Sum { radiance: self.background * rest, coverage: rest, alpha: 0.0 };
-        for hit in hits {
-            let radiance = hit.weight as f32 * raster.radiance(hit.splat) * light.gain;
-            match &self.focus {
-                Some(focus) if !focus[hit.splat as usize].is_standard() => {
-                    let optics = self.view.optics();
-                    let point = u.extend(0.0) + direction * hit.depth;
-                    let kappa = optics.kappa(1.0 / hit.depth, focus[hit.splat as usize]);
-                    let landing = optics.landing(point, u, kappa);
-                    let center = self.view.camera().pixel_from_q(landing);
-                    self.add_box(center, radiance, hit.weight, sums);
-                }
-                _ => own.add(Sum::of_splat(radiance, hit.weight)),
+        let end = self.backdrop.end(u, direction, pixel);
+        if end.depth < f64::INFINITY {
+            rest = end_at(hits, end.depth);
+        }
+        let light = raster.light(hits);
+        // What no paint moves stays in the ray's own pixel.
+        let mut own = Sum::default();
+        let mut send = |sum: Sum, depth: f64, focus: FocusOffset| {
+            if focus.is_standard() {
+                return own.add(sum);
             }
+            // q tanθ = q₀ tanθ + (κ − κ_standard) U: exact at infinity, too.
+            let optics = self.view.optics();
+            let moved = optics.kappa(1.0 / depth, focus) - optics.standard_kappa(1.0 / depth);
+            let q = self.view.camera().q_from_pixel(pixel) + moved * u / optics.tan_half_yfov;
+            self.add_box(self.view.camera().pixel_from_q(q), sum, sums);
+        };
+        for hit in &*hits {
+            let sent = self.uniform_radiance.unwrap_or_else(|| raster.radiance(hit.splat) * light.gain);
+            let radiance = hit.weight as f32 * sent;
+            let focus = self.focus.as_ref().map_or(FocusOffset::STANDARD, |focus| focus[hit.splat as usize]);
+            send(Sum::of_splat(radiance, hit.weight), hit.depth, focus);
+        }
+        for EndLight { radiance, share, focus } in end.light {
+            let coverage = rest * share;
+            let alpha = if end.depth < f64::INFINITY { coverage } else { 0.0 };
+            send(Sum { radiance: radiance.as_dvec3() * rest, coverage, alpha }, end.depth, focus);
         }
         let [width, height] = self.size.map(f64::from);
         if pixel.x >= 0.0 && pixel.y >= 0.0 && pixel.x < width && pixel.y < height {
@@ -207,12 +258,12 @@ impl<'v> Truth<'v> {
     }
 
     /// Adds light that lands about `center` (px): a ray is as wide as the grid is fine.
-    fn add_box(&self, center: DVec2, radiance: Vec3, weight: f64, sums: &mut RowSums) {
+    fn add_box(&self, center: DVec2, sum: Sum, sums: &mut RowSums) {
         let [width, height] = self.size.map(i64::from);
         let side = 1.0 / f64::from(self.grid.rays_per_px);
         cover_pixels(center, side, 0..width, 0..height, |column, row, share| {
             let sums = sums.entry(row).or_insert_with(|| self.empty_row());
-            sums[column as usize].add(Sum::of_splat(radiance * share as f32, weight * share));
+            sums[column as usize].add(sum.scaled(share));
         });
     }
 
@@ -222,7 +273,7 @@ impl<'v> Truth<'v> {
 }
 
 /// How far paint moves light, px: max |κ − κ_standard| R / tanθ over the splats, taken at their means.
-fn margin_px(view: &GaussianView<'_>, focus: &[FocusOffset], most: u32) -> u32 {
+fn painted_reach_px(view: &GaussianView<'_>, focus: &[FocusOffset]) -> f64 {
     let optics = view.optics();
     let reach = |splat: usize| {
         let inverse_depth = 1.0 / view.mean_depth(splat as u32);
@@ -231,6 +282,5 @@ fn margin_px(view: &GaussianView<'_>, focus: &[FocusOffset], most: u32) -> u32 {
     };
     let painted = (0..focus.len()).filter(|splat| !focus[*splat].is_standard());
     // A ray's width, and what a splat's own depth adds.
-    let reach = painted.map(reach).fold(0.0, f64::max) + 2.0;
-    (reach.ceil() as u32).min(most)
+    painted.map(reach).fold(0.0, f64::max) + 2.0
 }

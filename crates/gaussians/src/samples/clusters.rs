@@ -1,6 +1,6 @@
 //! Parting the splats of chief rays.
 
-use crate::view::{Eye, EyeRaster, Follow, GaussianView, Hit, LaneHits, RayGrid};
+use crate::view::{Eye, EyeRaster, Follow, GaussianView, Hit, LANES, LaneHits, RayGrid};
 use glam::{DVec2, DVec3};
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;
@@ -15,12 +15,14 @@ pub struct ClusterOptions {
     pub gap_px: f64,
     /// Pixels about the picture that have clusters, too.
     pub margin_px: u32,
+    /// The rows of pixels that have clusters, 0 at the top of the margin, multiples of 8; `None` for all.
+    pub rows: Option<[u32; 2]>,
 }
 
 impl Default for ClusterOptions {
-    /// Extents of 2 px, gaps of 1 px, no margin.
+    /// Extents of 2 px, gaps of 1 px, no margin, all rows.
     fn default() -> Self {
-        Self { extent_px: 2.0, gap_px: 1.0, margin_px: 0 }
+        Self { extent_px: 2.0, gap_px: 1.0, margin_px: 0, rows: None }
     }
 }
 
@@ -122,7 +124,11 @@ pub fn cluster_picture(
     let camera = view.camera();
     let grid = RayGrid::new(camera.width, camera.height, options.margin_px, 1);
     let raster = EyeRaster::new(view, DVec2::ZERO, &grid);
-    let rows: Vec<Clusters> = (0..grid.tile_rows())
+    let tile_rows = options.rows.map_or(0..grid.tile_rows(), |rows| {
+        let [first, end] = rows.map(|row| row.div_ceil(LANES as u32).min(grid.tile_rows()));
+        first..end
+    });
+    let rows: Vec<Clusters> = tile_rows
         .into_par_iter()
         .map(|index| {
             progress.check()?;

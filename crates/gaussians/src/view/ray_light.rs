@@ -58,6 +58,21 @@ pub fn median_depth(hits: &mut [Hit]) -> Option<f64> {
     hits.iter_mut().find(is_median).map(|hit| hit.depth)
 }
 
+/// Leaves the hits before `depth`, with what those behind it no longer take from them; returns the share of the ray that passes all. `hits` are in
+/// order of the depth of their means.
+pub(crate) fn end_at(hits: &mut Vec<Hit>, depth: f64) -> f64 {
+    let mut rest = 1.0;
+    hits.retain_mut(|hit| {
+        let is_before = hit.depth < depth;
+        if is_before {
+            hit.weight = hit.alpha * rest;
+            rest *= 1.0 - hit.alpha;
+        }
+        is_before
+    });
+    rest
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

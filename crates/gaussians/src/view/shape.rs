@@ -16,7 +16,7 @@ use glam::{DMat3, DQuat, DVec3};
 pub const LOW_PASS_PX2: f64 = 0.3;
 
 /// The thinnest axis of a splat, as a share of its longest: thinner ones look the same.
-const MIN_AXIS: f64 = 1e-4;
+pub(super) const MIN_AXIS: f64 = 1e-4;
 
 /// Responses below it do not count, as in training.
 pub(crate) const MIN_ALPHA: f64 = 1.0 / 255.0;

@@ -1,8 +1,8 @@
 //! The picture that samples of splats make: for tests and figures, point by point of the aperture.
 
 use gaussians::{
-    CloudBuilder, ClusterOptions, Clusters, GaussianCloud, GaussianPicture, GaussianView, Splat,
-    aperture_images, cluster_picture,
+    ApertureScene, CloudBuilder, ClusterOptions, Clusters, GaussianCloud, GaussianPicture, GaussianView,
+    Splat, aperture_images, cluster_picture,
 };
 use glam::{DVec2, Vec3};
 use lens::{FocusOffset, Picture};
@@ -15,17 +15,25 @@ pub fn splat_samples(
     cells: u32,
     points: u32,
 ) -> GaussianPicture {
-    let images = aperture_images(view, clusters, cells, &Unwatched).expect("not cancelled");
+    let scene = ApertureScene {
+        view,
+        clusters,
+        points: &[],
+        ray_end: &|_, _| f64::INFINITY,
+        margin_px: margin_px(view),
+    };
+    let images = aperture_images(&scene, cells, &Unwatched).expect("not cancelled");
     let (camera, optics) = (view.camera(), view.optics());
     let mut picture = Picture::black(camera.width, camera.height);
-    for (cluster, image) in clusters.list.iter().zip(&images) {
+    for (number, cluster) in clusters.list.iter().enumerate() {
+        let (shares, radiance) = (images.shares(number).collect::<Vec<_>>(), images.radiance(number));
         let kappa = optics.kappa(cluster.inverse_depth, FocusOffset::STANDARD);
         for index in 0..points {
             let at = f64::from(index) + 0.5;
             let u = DVec2::from_angle(at * 2.399_963_229_728_653) * (at / f64::from(points)).sqrt();
             let cell =
                 ((u + 1.0) / 2.0 * f64::from(cells)).min(DVec2::splat(f64::from(cells) - 1.0)).as_uvec2();
-            let share = image.shares[(cell.y * cells + cell.x) as usize] / points as f32;
+            let share = shares[(cell.y * cells + cell.x) as usize] / points as f32;
             let shift = kappa * optics.aperture_radius * u / optics.tan_half_yfov * optics.half_height_px;
             let corner = cluster.pixel + DVec2::new(shift.x, -shift.y) - 0.5;
             let (base, fraction) = (corner.floor(), corner - corner.floor());
@@ -37,7 +45,7 @@ pub fn splat_samples(
                 let part = |at: f64, fraction: f64| if at == 0.0 { 1.0 - fraction } else { fraction };
                 let weight = share * (part(dx, fraction.x) * part(dy, fraction.y)) as f32;
                 let pixel = y as usize * camera.width as usize + x as usize;
-                (0..3).for_each(|c| picture.radiance[pixel][c] += weight * image.radiance[c]);
+                (0..3).for_each(|c| picture.radiance[pixel][c] += weight * radiance[c]);
                 picture.coverage[pixel] += weight;
             }
         }

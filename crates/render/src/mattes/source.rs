@@ -123,14 +123,15 @@ impl MatteSource for TruthMattes<'_> {
 }
 
 /// Light for mattes: parts in a set emit 1 in that set's channel, split into own and carried light as in the scene.
-struct MatteLight<'a> {
-    scene: &'a Scene,
-    radiance: &'a dyn Radiance,
-    sets: &'a SetsOfPart<'a>,
+pub(crate) struct MatteLight<'a> {
+    pub scene: &'a Scene,
+    pub radiance: &'a dyn Radiance,
+    pub sets: &'a SetsOfPart<'a>,
 }
 
 impl MatteLight<'_> {
-    fn color_of_part(&self, part: Option<u32>) -> Vec3 {
+    /// The light of a part, or of the background.
+    pub fn color_of_part(&self, part: Option<u32>) -> Vec3 {
         let Sets(sets) = (self.sets)(part);
         Vec3::from_array(sets.map(|is_in| if is_in { 1.0 } else { 0.0 }))
     }

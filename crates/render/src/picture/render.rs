@@ -6,6 +6,7 @@ use crate::mattes::{BlackBackground, LightFieldMattes, MatteRequest, Mattes, Sam
 use crate::picture::aov::{Aov, LayerInputs};
 use crate::picture::coc_convention::CocConvention;
 use crate::picture::renderer::Renderer;
+use crate::picture::splat_truth::SplatTruth;
 use baselines::{BaselineError, FirstHits, LayeredOptions, ScatterOptions, ViewsOptions};
 use document::Input;
 use focus::Focus;
@@ -162,7 +163,8 @@ impl RenderOptions {
         steps: &dyn Steps,
     ) -> Result<Salf, RenderError> {
         let tolerance_px = self.tolerance_px * f64::from(self.cells_a_side);
-        bake_with(lit, &self.finer(camera)?, &BakeOptions { tolerance_px, ..needed }, self.light, steps)
+        let bake = BakeOptions { tolerance_px, pixel_px: f64::from(self.cells_a_side), ..needed };
+        bake_with(lit, &self.finer(camera)?, &bake, self.light, steps)
     }
 
     /// The camera of the light field that is baked for `camera`.
@@ -257,6 +259,23 @@ pub fn render(
             let light = lit.ground_truth(camera, &*steps.begin("light"))?;
             let premultiplied = BlackBackground(&*light);
             let radiance: &dyn Radiance = if options.has_aov(Aov::Alpha) { &premultiplied } else { &*light };
+            if let Some(splats) = &lit.scene().splats {
+                let truth = SplatTruth {
+                    tracer: lit.tracer(),
+                    splats,
+                    radiance,
+                    focus,
+                    camera,
+                    samples_per_pixel: options.truth.samples_per_pixel,
+                };
+                let picture = truth.render(&*steps.begin("tracing"))?.picture;
+                if let Some(request) = options.matte_request() {
+                    mattes = Some(Mattes::render(lit.scene(), truth, request, steps)?);
+                }
+                cost.picture_seconds = start.elapsed().as_secs_f64();
+                let shot = Shot { lit, camera, focus };
+                return finish(shot, options, Drawn { picture, estimate, mattes, cost }, steps);
+            }
             let progress = steps.begin("tracing");
             let traced =
                 trace::truth::render(lit.tracer(), radiance, focus, camera, &options.truth, &*progress)?;
@@ -275,6 +294,10 @@ pub fn render(
         Renderer::Layers => {
             let hits = first_hits(lit, camera, focus, options.light, steps)?;
             baselines::layered_blur(&hits, camera, &options.layered, &*steps.begin("blurring"))?
+        }
+        Renderer::Views if lit.tracer().has_splats() => {
+            let what = "the views renderer does not draw Gaussian splats (use splat, truth, blur or layers)";
+            return Err(RenderError::BadInput(what.into()));
         }
         Renderer::Views => {
             let radiance = lit.solve(camera, options.light, &*steps.begin("light"))?;
@@ -585,5 +608,18 @@ fn first_hits(
     steps: &dyn Steps,
 ) -> Result<FirstHits, RenderError> {
     let light = lit.solve(camera, quality, &*steps.begin("light"))?;
-    Ok(FirstHits::trace(lit.tracer(), &*light, focus, camera, &*steps.begin("first hits"))?)
+    let mut hits = FirstHits::trace(lit.tracer(), &*light, focus, camera, &*steps.begin("first hits"))?;
+    if let Some(splats) = &lit.scene().splats {
+        // What a ray through splats brings is no light of one surface.
+        let truth = SplatTruth {
+            tracer: lit.tracer(),
+            splats,
+            radiance: &*light,
+            focus,
+            camera: &Camera { aperture_radius: 0.0, ..camera.clone() },
+            samples_per_pixel: 1,
+        };
+        hits.radiance = truth.render(&*steps.begin("pinhole"))?.picture.radiance;
+    }
+    Ok(hits)
 }

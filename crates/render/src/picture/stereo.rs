@@ -125,7 +125,7 @@ fn fixation_distance(
     }
     let number = place.y as u32 * camera.width + place.x as u32;
     let ray = pixel_ray(camera, number);
-    let hit = tracer.first_hit(&ray);
+    let hit = tracer.visible_surface(&ray);
     let depth = hit.map(|hit| camera.camera_from_world(hit.point.position(&input.scene)).z);
     Ok(depth.unwrap_or(f64::INFINITY))
 }

@@ -36,7 +36,7 @@ pub fn read_thumbnail(path: &Path, progress: &dyn Progress) -> Result<Thumbnail,
             let tone = Tone { exposure: Exposure::Normalise, ..Tone::default() };
             Ok(Thumbnail::from_linear(picture.width, picture.height, tone.displayed(picture)))
         }
-        InputKind::Scene | InputKind::Capture => {
+        InputKind::Scene | InputKind::Capture | InputKind::Splats => {
             none("contains no thumbnail (give a project or a light field)")
         }
     }

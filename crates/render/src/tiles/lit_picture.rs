@@ -37,6 +37,7 @@ impl LitPicture {
         let finer = options.finer(camera)?;
         let bake = BakeOptions {
             tolerance_px: options.tolerance_px * f64::from(options.cells_a_side),
+            pixel_px: f64::from(options.cells_a_side),
             ..BakeOptions::for_focus(lit.tracer(), &finer, &focus)
         };
         let light = lit.solve(&finer, options.light, &*steps.begin("light"))?;

@@ -78,6 +78,10 @@ pub fn render_tiles(
     steps: &dyn Steps,
 ) -> Result<TilesReport, RenderError> {
     let lit = lit_scene_of(input, camera)?;
+    if lit.tracer().has_splats() {
+        let what = "pictures of Gaussian splats are rendered whole (leave out --tiles)";
+        return Err(RenderError::bad_file(&input.path, what));
+    }
     let shot = Shot { lit: &lit, camera, focus, options: &options.render };
     let size = [camera.width, camera.height];
     let tiles = options.grid.tiles(size).map_err(|what| RenderError::bad_file(&options.output, what))?;

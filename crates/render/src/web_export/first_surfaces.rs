@@ -39,7 +39,7 @@ impl FirstSurfaces {
         let size = [camera.width, camera.height].map(|side| side.div_ceil(pixels_a_side));
         let surface = |[x, y]: [u32; 2]| {
             let pixel = DVec2::new(x.into(), y.into()) + 0.5;
-            match tracer.first_hit(&Ray::pinhole(camera, DVec2::ZERO, pixel)) {
+            match tracer.visible_surface(&Ray::pinhole(camera, DVec2::ZERO, pixel)) {
                 Some(hit) => (1.0 / hit.t, focus.at(hit.point).or_standard()),
                 None => (0.0, focus.at_infinity().or_standard()),
             }

@@ -10,7 +10,7 @@ use crate::domain::{Cell, Density, Domain};
 use crate::margin::standard_margin_px;
 use crate::options::BakeOptions;
 use crate::sample::{Sample, Visibility};
-use crate::samples::{BakedSample, Packer, Samples, block_corner};
+use crate::samples::{BakedSample, Packer, Samples};
 use crate::view::View;
 use glam::{DVec2, IVec2, Vec3};
 use lens::Camera;
@@ -46,16 +46,6 @@ pub struct CellSurvey {
     surfaces: Vec<(Candidate, Vec<BakedSample>)>,
 }
 
-/// The samples of one block.
-fn pack_samples(corner: IVec2, baked: Vec<BakedSample>, packs: bool) -> Samples {
-    if !packs {
-        return Samples::from(baked.into_iter().map(|baked| baked.sample).collect::<Vec<_>>());
-    }
-    let mut packer = Packer::new(corner);
-    baked.into_iter().for_each(|baked| packer.push(baked));
-    packer.finish()
-}
-
 /// What every cell is sampled with.
 pub struct BlockBaker<'a> {
     /// Traces the rays.
@@ -70,6 +60,8 @@ pub struct BlockBaker<'a> {
     pub patterns: Patterns,
     /// Where the pinhole picture is sampled.
     pub domain: Domain,
+    /// See [`BakeOptions::pixel_px`].
+    pub pixel_px: f64,
     packs: bool,
 }
 
@@ -85,8 +77,18 @@ impl<'a> BlockBaker<'a> {
         let margin = standard_margin_px(tracer.scene(), &view).max(options.margin_px);
         let domain = Domain::new(camera.width, camera.height, margin);
         let placement = Placement::new(tracer.scene(), &view);
-        let packs = options.packs;
-        Self { tracer, radiance, view, placement, patterns: Patterns::new(), domain, packs }
+        let BakeOptions { packs, pixel_px, .. } = *options;
+        Self { tracer, radiance, view, placement, patterns: Patterns::new(), domain, pixel_px, packs }
+    }
+
+    /// Packs the samples of the block whose upper left corner is at `corner`, px.
+    pub fn pack(&self, corner: IVec2, baked: Vec<BakedSample>) -> Samples {
+        if !self.packs {
+            return Samples::from(baked.into_iter().map(|baked| baked.sample).collect::<Vec<_>>());
+        }
+        let mut packer = Packer::new(corner);
+        baked.into_iter().for_each(|baked| packer.push(baked));
+        packer.finish()
     }
 
     /// The samples of a block from the surveys of its cells, and of the surface patches in it.
@@ -95,8 +97,10 @@ impl<'a> BlockBaker<'a> {
         occluders: &Occluders,
         surveys: &[CellSurvey],
         patches: &[Sample],
-    ) -> (Samples, Outliers) {
-        let Some(first) = surveys.first() else { return Default::default() };
+    ) -> (Vec<BakedSample>, Outliers) {
+        if surveys.is_empty() {
+            return Default::default();
+        }
         let mut baked: Vec<_> = surveys
             .chunks(self.batch_cells())
             .flat_map(|surveys| self.sample_visible(occluders, surveys))
@@ -105,7 +109,7 @@ impl<'a> BlockBaker<'a> {
             |patch: &Sample| BakedSample { sample: patch.clone(), part_of: None, noisy: Vec3::ZERO };
         baked.extend(patches.iter().map(unplaced));
         let outliers = outliers::spread_outliers(&mut baked, self.tracer.scene());
-        (pack_samples(block_corner(first.cell.corner), baked, self.packs), outliers)
+        (baked, outliers)
     }
 
     /// The number of cells of a block that are traced together.

@@ -9,7 +9,7 @@ use crate::baker::block_baker::BlockBaker;
 use crate::baker::occluders::Occluders;
 use crate::baker::outliers::Outliers;
 use crate::baker::reach::{Bound, Reach, SQUARE_PX};
-use crate::baker::{map_rows, outside_domain, patches};
+use crate::baker::{map_rows, outside_domain, pack_blocks, patches};
 use crate::domain::Domain;
 use crate::options::BakeOptions;
 use crate::salf::Salf;
@@ -157,12 +157,12 @@ impl<'a> PartsBaker<'a> {
         let domain = &self.baker.domain;
         let mut blocks: Vec<IVec2> = squares.iter().flat_map(|square| self.blocks_of(*square)).collect();
         blocks.sort_by_key(|block| (block.y, block.x));
-        let parts = map_rows(&blocks, progress, |&block| {
+        let numbered: Vec<_> = blocks.into_iter().enumerate().collect();
+        let (parts, outliers) = pack_blocks(&self.baker, &numbered, progress, |_, block| {
             let patches = around.patches.get(&domain.corner_of_block(block)).map_or(&[][..], Vec::as_slice);
             let looks = self.baker.survey_cells(&domain.cells_of_block(block));
             self.baker.bake_block(&around.occluders, &looks, patches)
         })?;
-        let outliers = parts.iter().fold(Outliers::default(), |all, (_, outliers)| all.merged(*outliers));
         let here: HashSet<IVec2> = squares.iter().copied().collect();
         let is_beside = |corner: &IVec2| {
             let nearest = domain.nearest_block(*corner);
@@ -170,8 +170,7 @@ impl<'a> PartsBaker<'a> {
         };
         let apart = around.patches.iter().filter(|(corner, _)| is_beside(corner));
         let apart: HashMap<_, _> = apart.map(|(corner, patches)| (*corner, patches.clone())).collect();
-        let samples =
-            Samples::join(parts.into_iter().map(|(samples, _)| samples).chain(outside_domain(apart)));
+        let samples = Samples::join(parts.into_iter().chain(outside_domain(apart)));
         let (camera, margin_px) = (self.camera.clone(), domain.margin as u32);
         Ok((Salf { camera, margin_px, carried: self.options.carried, samples }, outliers))
     }

@@ -27,8 +27,9 @@ impl Placement {
     /// bright ones.
     pub fn new(scene: &Scene, view: &View) -> Self {
         let on_surface = |triangle: u32| {
-            !view.faces_aperture(scene, triangle)
-                || is_bright(scene, triangle) && is_small(scene, view, triangle)
+            !scene.is_splat(triangle)
+                && (!view.faces_aperture(scene, triangle)
+                    || is_bright(scene, triangle) && is_small(scene, view, triangle))
         };
         Self { on_surface: (0..scene.triangles.len() as u32).map(on_surface).collect() }
     }

@@ -4,6 +4,7 @@ use crate::error::Fault;
 use crate::gltf::document::{Document, nonempty_name};
 use crate::gltf::focus_brush_extras;
 use crate::{CameraLens, Scene, SceneCamera};
+use gaussians::CloudRay;
 use glam::{DMat3, DMat4, DQuat, DVec3};
 use gltf::camera::Projection;
 use gltf::json::camera::Type;
@@ -79,9 +80,7 @@ pub(crate) fn framing_camera(scene: &Scene, upright: DQuat) -> SceneCamera {
     let slope = (0.5 * YFOV).tan() / MARGIN;
     // From (p, d) along an axis across and along `back` a point (x, z) is in view if |x − p| ≤ slope·(d − z): so p +
     // slope·d is at least every x + slope·z, and p − slope·d at most every x − slope·z.
-    let used = scene.triangles.iter().flat_map(|triangle| triangle.vertices);
-    let ends = used.fold([[f64::INFINITY, f64::NEG_INFINITY]; 2], |ends, vertex| {
-        let position = scene.positions[vertex as usize];
+    let ends = scene.extent().fold([[f64::INFINITY, f64::NEG_INFINITY]; 2], |ends, position| {
         let z = slope * position.dot(back);
         [(ends[0], right), (ends[1], up)].map(|([low, high], axis)| {
             let x = position.dot(axis);
@@ -110,8 +109,7 @@ pub(crate) fn framing_camera(scene: &Scene, upright: DQuat) -> SceneCamera {
 
 /// The maximum extent of the scene in a direction.
 fn front_extent(scene: &Scene, direction: DVec3) -> f64 {
-    let used = scene.triangles.iter().flat_map(|triangle| triangle.vertices);
-    used.map(|vertex| scene.positions[vertex as usize].dot(direction)).fold(f64::NEG_INFINITY, f64::max)
+    scene.extent().map(|position| position.dot(direction)).fold(f64::NEG_INFINITY, f64::max)
 }
 
 /// Sets the focus distances: to the first surface on the axis, else to the middle of the scene.
@@ -138,7 +136,7 @@ pub(crate) fn focus_cameras(scene: &mut Scene) {
     }
 }
 
-/// The distance to the nearest triangle along a ray (Möller and Trumbore 1997).
+/// The distance to the nearest triangle along a ray (Möller and Trumbore 1997), or to the surface of splats.
 fn first_hit_distance(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<f64> {
     let hit = |triangle: u32| {
         let [a, b, c] = scene.corners(triangle);
@@ -151,7 +149,11 @@ fn first_hit_distance(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<
         // A ray in the triangle's plane gives NaN or infinity, which fails.
         (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > 0.0 && t.is_finite()).then_some(t)
     };
-    (0..scene.triangles.len() as u32).filter_map(hit).min_by(f64::total_cmp)
+    let splats = scene.splats.iter().filter_map(|splats| {
+        let ray = CloudRay::new(&splats.placement, origin, direction);
+        ray.surface_of_all(&splats.cloud).map(|hit| hit.depth)
+    });
+    scene.surface_triangles().filter_map(hit).chain(splats).min_by(f64::total_cmp)
 }
 
 #[cfg(test)]

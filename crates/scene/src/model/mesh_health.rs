@@ -5,7 +5,7 @@ use crate::model::inverted_faces::count_inverted_faces;
 use glam::DVec3;
 use serde::Serialize;
 
-/// Counts over all triangles of a scene. Corners at the same position count as one.
+/// Counts over all triangles of a scene but those of splats. Corners at the same position count as one.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct MeshHealth {
     /// All triangles.
@@ -39,12 +39,13 @@ impl MeshHealth {
         let mut corners = Vec::with_capacity(scene.triangles.len());
         let (low, high) = scene.bounds();
         let mut health = Self {
-            triangles: scene.triangles.len(),
+            triangles: scene.surface_triangles().len(),
             low: low.to_array(),
             high: high.to_array(),
             ..Self::default()
         };
-        for (index, triangle) in scene.triangles.iter().enumerate() {
+        let surface = &scene.triangles[..scene.surface_triangles().end as usize];
+        for (index, triangle) in surface.iter().enumerate() {
             let area = 0.5 * scene.area_normal(index as u32).length();
             health.area += area;
             health.degenerate += usize::from(area == 0.0);

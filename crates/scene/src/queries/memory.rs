@@ -16,6 +16,7 @@ impl Scene {
             + size_of_val(&*self.tangents)
             + self.images.iter().map(Image::bytes).sum::<usize>()
             + [&self.embedded_world, &self.world].into_iter().flatten().map(World::bytes).sum::<usize>()
+            + self.splats.as_ref().map_or(0, |splats| splats.cloud.bytes() as usize)
             + self.picture.as_ref().map_or(0, PictureTexture::bytes)
     }
 }

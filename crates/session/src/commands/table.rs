@@ -272,7 +272,7 @@ const fn command_info(
 /// The table, in menu order.
 #[rustfmt::skip]
 pub const COMMANDS: &[CommandInfo] = &[
-    command_info(CommandId::Open, Menu::File, Shortcut::command("O"), "Open…", "Open a glTF scene (.glb, .gltf) or a project."),
+    command_info(CommandId::Open, Menu::File, Shortcut::command("O"), "Open…", "Open a glTF scene (.glb, .gltf), Gaussian splats (.ply, .spz, .sog, .splat, .ksplat) or a project."),
     command_info(CommandId::OpenCapture, Menu::File, Shortcut::command_shift("O"), "Open a capture…", "Open the folder of a photographed place: pictures, their cameras and a mesh."),
     command_info(CommandId::OpenDemo, Menu::File, None, "Open the demo", "Open the scene that comes with Focus Brush."),
     command_info(CommandId::Save, Menu::File, Shortcut::command("S"), "Save", "Save the project."),

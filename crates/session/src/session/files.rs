@@ -9,6 +9,7 @@ use crate::session::state::Session;
 use atlas::UnwrapOptions;
 use document::{
     DepthPolarityRequest, Document, DocumentError, Input, InputKind, NewDocumentOptions, file_name,
+    is_focus_table, write_splat_focus,
 };
 use lens::Picture;
 use light::Resources;
@@ -154,7 +155,12 @@ impl Session {
     pub(super) fn export_focus_map(&mut self, path: PathBuf) -> Result<(), SessionError> {
         let document = self.document_mut()?;
         let (map, atlas) = (document.map.clone(), document.stage.atlas.clone());
+        let scene = document.stage.scene.clone();
         self.start_job(format!("writing {}", file_name(&path)), move |_| {
+            if is_focus_table(&path) {
+                write_splat_focus(&path, &scene, &atlas, &map)?;
+                return Ok(JobOutcome::FileWritten(path, Vec::new()));
+            }
             let losses = write_focus_map(&path, &FocusMapFile::from_atlas_map(&map, &atlas))?;
             let warnings = losses.iter().map(|what| format!("{}: {what}", path.display())).collect();
             Ok(JobOutcome::FileWritten(path, warnings))

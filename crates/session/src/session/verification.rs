@@ -45,6 +45,10 @@ impl Session {
         if region.pixels() == 0 {
             return Ok(());
         }
+        if stage.scene.splats.is_some() {
+            let what = "Gaussian splats cannot be verified ray by ray here (use `focus-brush render --renderer truth`)";
+            return Err(SessionError::bad_file(&stage.scene.path, what));
+        }
         self.verifications += 1;
         let verification_number = self.verifications;
         let target_samples = SAMPLES_PER_PIXEL;
