@@ -1,6 +1,6 @@
 //! The camera as it is saved, and its validation.
 
-use crate::{Aperture, CameraError, Character, CharacterOptics, Falloff, Optics};
+use crate::{Aperture, CameraError, Character, CharacterOptics, Falloff, Optics, Vignetting};
 use glam::{DMat3, DMat4, DVec2, DVec3};
 
 /// A wide-aperture camera. Lengths in scene units, angles in radians.
@@ -109,6 +109,11 @@ impl Camera {
             sensor_height: factor * self.sensor_height,
             // In heights of the larger picture.
             shift: self.shift / factor,
+            // By the square of the larger picture's half-heights.
+            character: Character {
+                field_curvature: self.character.field_curvature * factor * factor,
+                ..self.character
+            },
             ..self.clone()
         }
     }
@@ -135,6 +140,11 @@ impl Camera {
     pub fn falloff(&self) -> Option<Falloff> {
         let optics = self.character_optics();
         optics.has_rims().then(|| Falloff::new(&optics, &self.aperture, self.frame_q()))
+    }
+
+    /// How its picture darkens toward the corners by the lens's character; `None` if it does not.
+    pub fn vignetting(&self) -> Option<Vignetting> {
+        Vignetting::new(self.character_optics(), self.falloff())
     }
 
     /// The aperture's centre in the world, scene units.

@@ -3,7 +3,7 @@
 //! * [`Character`]: the numbers of a lens, as they are saved.
 //! * [`Rim`]: an opening before or behind the aperture that cuts it for points beside the axis: *cat's eye*.
 //! * [`CharacterOptics`]: the same, reduced to what is asked of a ray: whether it passes, its weight, its colours' places.
-//! * [`Falloff`]: how much less light arrives beside the axis.
+//! * [`Falloff`], [`Vignetting`]: how much less light arrives beside the axis.
 //!
 //! q₀ is a point's chief place from the optical axis, in half picture heights; R₀ the lens's widest radius, which stays when it is
 //! stopped down.
@@ -13,9 +13,11 @@ mod edges;
 mod falloff;
 mod parameters;
 mod rims;
+mod vignetting;
 
 pub use character_optics::{CHANNELS, CharacterOptics, GREEN};
-pub use edges::Edges;
+pub use edges::{Edges, FULL_EDGE};
 pub use falloff::Falloff;
 pub use parameters::Character;
 pub use rims::{Rim, RimLimit};
+pub use vignetting::{Vignette, Vignetting};

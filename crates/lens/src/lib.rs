@@ -39,7 +39,10 @@ mod sub_aperture;
 pub use aperture::{Aperture, ApertureMask, ApertureRow, ApertureRows, ApertureSampler, ApertureShape, Run};
 pub use calibrated_lens::{CalibratedLens, Distortion, Intrinsics, Projection};
 pub use camera::Camera;
-pub use character::{CHANNELS, Character, CharacterOptics, Edges, Falloff, GREEN, Rim, RimLimit};
+pub use character::{
+    CHANNELS, Character, CharacterOptics, Edges, FULL_EDGE, Falloff, GREEN, Rim, RimLimit, Vignette,
+    Vignetting,
+};
 pub use error::CameraError;
 pub use focus_offset::FocusOffset;
 pub use optics::Optics;

@@ -26,7 +26,7 @@ pub fn standard_margin_px(scene: &Scene, view: &View) -> f64 {
         .fold(f64::INFINITY, f64::min);
     let near = view.optics.splat_radius_px(1.0 / nearest - inverse_s);
     let far = view.optics.splat_radius_px(inverse_s);
-    near.max(far).clamp(0.0, largest_margin_px(view))
+    (near.max(far) + character_margin_px(view)).clamp(0.0, largest_margin_px(view))
 }
 
 /// The margin of a painted picture, px, measured on a grid of chief rays (like the guard band of the ground
@@ -34,6 +34,7 @@ pub fn standard_margin_px(scene: &Scene, view: &View) -> f64 {
 pub fn painted_margin_px(tracer: &Tracer, view: &View, focus: &dyn SurfaceField<FocusOffset>) -> f64 {
     const SPACING_PX: f64 = 6.0;
     let frame = DVec2::new(view.camera.width as f64, view.camera.height as f64);
+    let character = character_margin_px(view);
     let mut margin: f64 = 0.0;
     loop {
         let extent = frame + 2.0 * margin;
@@ -50,7 +51,8 @@ pub fn painted_margin_px(tracer: &Tracer, view: &View, focus: &dyn SurfaceField<
                 // What is carried may be spread wider than what is own; where no paint moves it, it is known to have room.
                 let carried = (offset.gloss > 0.0).then(|| offset.of_carried());
                 for offset in [offset].into_iter().chain(carried) {
-                    let radius = view.optics.splat_radius_px(view.optics.kappa(inverse_depth, offset)).abs();
+                    let radius = view.optics.splat_radius_px(view.optics.kappa(inverse_depth, offset)).abs()
+                        + character;
                     if radius >= outside {
                         reach = reach.max(radius * 1.05);
                     }
@@ -65,6 +67,17 @@ pub fn painted_margin_px(tracer: &Tracer, view: &View, focus: &dyn SurfaceField<
         }
         margin = reach;
     }
+}
+
+/// What a lens's character adds to a margin, px: the curved field's and the colours' defocus in the farthest corner, and how far colours
+/// are shifted there.
+fn character_margin_px(view: &View) -> f64 {
+    let character = view.camera.character_optics();
+    let [middle, half] = view.camera.frame_q();
+    let corner = (middle.abs() + half).length();
+    let kappa = character.largest_curvature(corner) + character.largest_colour_defocus();
+    let lateral = character.largest_lateral();
+    view.optics.splat_radius_px(kappa) + lateral / (1.0 - lateral) * corner * view.optics.half_height_px
 }
 
 fn largest_margin_px(view: &View) -> f64 {

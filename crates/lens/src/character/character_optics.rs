@@ -4,7 +4,7 @@ use super::edges::Edges;
 use super::parameters::Character;
 use super::rims::{Rim, RimLimit};
 use crate::{Aperture, FocusOffset, Optics};
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 
 /// Red, green and blue.
 pub const CHANNELS: usize = 3;
@@ -71,6 +71,11 @@ impl CharacterOptics {
         self.rims.iter().any(Option::is_some)
     }
 
+    /// The largest |ℓ| of a rim, scene units; 0 without rims.
+    pub fn farthest_rim(&self) -> f64 {
+        self.rims.iter().flatten().fold(0.0, |most: f64, rim| most.max(rim.distance.abs()))
+    }
+
     /// C, 1/length.
     pub fn field_curvature(&self) -> f64 {
         self.field_curvature
@@ -111,11 +116,28 @@ impl CharacterOptics {
         self.colour_defocus.map(|defocus| kappa + defocus)
     }
 
-    /// Whether the ray from `point` (camera space, z > 0) through the aperture point `u` passes all rims.
+    /// Whether the ray from a point at `chief` (half-heights from the axis) of depth 1/`inverse_depth` through the aperture point `u`
+    /// passes all rims.
     #[inline]
-    pub fn passes(&self, point: DVec3, u: DVec2) -> bool {
-        let inverse_depth = 1.0 / point.z;
-        self.limits(point.truncate() * inverse_depth, inverse_depth).all(|limit| limit.passes(u))
+    pub fn passes(&self, chief: DVec2, inverse_depth: f64, u: DVec2) -> bool {
+        self.limits(chief * self.optics.tan_half_yfov, inverse_depth).all(|limit| limit.passes(u))
+    }
+
+    /// Where light of a point at `chief` lands that goes through the aperture point `u` with the defocus κ_c = `kappa` in this channel,
+    /// half-heights from the axis.
+    #[inline]
+    pub fn landing(&self, chief: DVec2, u: DVec2, kappa: f64, channel: usize) -> DVec2 {
+        self.magnification[channel] * (chief + kappa * u / self.optics.tan_half_yfov)
+    }
+
+    /// The largest |δ|, 1/length.
+    pub fn largest_colour_defocus(&self) -> f64 {
+        largest(self.colour_defocus)
+    }
+
+    /// The largest |m|.
+    pub fn largest_lateral(&self) -> f64 {
+        largest(self.magnification.map(|size| size - 1.0))
     }
 
     /// What the rims let through for a point at `slope` (x, y)/z and 1/z = `inverse_depth`.
@@ -148,9 +170,11 @@ impl CharacterOptics {
     /// How far apart at most the colours of light at `reach` half-heights from the axis land, half-heights: the largest |m|·`reach`
     /// and |δ|·R/tanθ together.
     pub fn largest_fringe(&self, reach: f64) -> f64 {
-        let largest =
-            |values: [f64; CHANNELS]| values.into_iter().fold(0.0, |most: f64, x| most.max(x.abs()));
         let radius = self.optics.aperture_radius / self.optics.tan_half_yfov;
-        largest(self.magnification.map(|size| size - 1.0)) * reach + largest(self.colour_defocus) * radius
+        self.largest_lateral() * reach + self.largest_colour_defocus() * radius
     }
+}
+
+fn largest(values: [f64; CHANNELS]) -> f64 {
+    values.into_iter().fold(0.0, |most: f64, x| most.max(x.abs()))
 }
