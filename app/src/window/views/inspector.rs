@@ -2,6 +2,7 @@
 
 mod brush_panel;
 mod cameras_panel;
+mod character_panel;
 mod curve_editor;
 mod falloff_editor;
 mod focus_panel;
