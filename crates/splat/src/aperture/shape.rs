@@ -78,14 +78,6 @@ impl Shape {
         Self { rows, moments_below, runs, firsts, is_picture, open_area, mean, variance }
     }
 
-    /// Calls `visit` with the v of the middle of each row, the row's height and its runs.
-    pub fn visit_rows(&self, mut visit: impl FnMut(f64, f64, &[Run])) {
-        let height = 2.0 / self.rows.len() as f64;
-        for (row, v) in self.rows.iter().zip(cell_centers(self.rows.len())) {
-            visit(v, height, row);
-        }
-    }
-
     /// Its parts in a grid of `side` × `side` cells of [−1, 1]², those without light left out.
     pub fn parts(&self, side: usize) -> Vec<Part> {
         let mut parts = vec![Part::default(); side * side];

@@ -3,9 +3,8 @@
 //! What rims leave of the aperture changes slowly over the picture and with depth, so that it is tabled for places and depths, and
 //! interpolated between them. Boxes (small images) are made from it; larger images are cut row by row.
 
-use crate::aperture::shape::Shape;
 use glam::DVec2;
-use lens::CharacterOptics;
+use lens::{Aperture, ApertureRows, CharacterOptics};
 use rayon::prelude::*;
 
 /// Moments of the light over the aperture, u in units of the lens's radius: 1, u, v, u² and v².
@@ -34,7 +33,10 @@ impl EdgeMoments {
 }
 
 /// Places in a half-height.
-const PLACES: f64 = 16.0;
+const PLACES: f64 = 8.0;
+
+/// Rows that the aperture is cut into.
+const ROWS: usize = 64;
 
 /// Depths, evenly spread in 1/z.
 const DEPTHS: usize = 9;
@@ -56,7 +58,7 @@ impl MomentTable {
     /// 1/`largest_inverse_depth`, or for one place and depth if nothing is cut.
     pub fn new(
         optics: &CharacterOptics,
-        shape: &Shape,
+        aperture: &Aperture,
         [middle, half]: [DVec2; 2],
         largest_inverse_depth: f64,
     ) -> Self {
@@ -66,12 +68,12 @@ impl MomentTable {
         let size = if optics.has_rims() { (2.0 * half * PLACES).ceil() + 2.0 } else { DVec2::ONE };
         let [columns, rows] = [size.x as usize, size.y as usize];
         let depths = if optics.has_rims() { DEPTHS } else { 1 };
-        let first = middle - half;
+        let (first, cut) = (middle - half, aperture.rows(ROWS));
         let step = largest / (DEPTHS - 1) as f64;
         let entry = |k: usize| {
             let (place, depth) = (k % (columns * rows), k / (columns * rows));
             let q = first + DVec2::new((place % columns) as f64, (place / columns) as f64) / PLACES;
-            cut_moments(optics, shape, q, depth as f64 * step)
+            cut_moments(optics, &cut, q, depth as f64 * step)
         };
         Self {
             first: first.as_vec2().to_array(),
@@ -108,18 +110,20 @@ fn step_of(at: f32, count: usize) -> (usize, f32) {
 }
 
 /// The moments of what rims leave for a point at `q` of depth 1/`inverse_depth`.
-fn cut_moments(optics: &CharacterOptics, shape: &Shape, q: DVec2, inverse_depth: f64) -> EdgeMoments {
+fn cut_moments(optics: &CharacterOptics, cut: &ApertureRows, q: DVec2, inverse_depth: f64) -> EdgeMoments {
     let radius = optics.optics.aperture_radius;
     let edges = &optics.edges;
     let square = radius * radius * edges.per_square;
     let limits = optics.limits(q * optics.optics.tan_half_yfov, inverse_depth);
     let mut sums = [[0.0; 5]; 2];
-    shape.visit_rows(|v, height, runs| {
+    let (height, open_area) = (2.0 / cut.rows.len() as f64, cut.open_area());
+    for (row, runs) in cut.rows.iter().enumerate() {
+        let v = -1.0 + (row as f64 + 0.5) * height;
         let chord = limits.clone().try_fold([f64::NEG_INFINITY, f64::INFINITY], |[from, to], limit| {
             limit.chord(v * radius).map(|chord| [from.max(chord[0]), to.min(chord[1])])
         });
-        let Some([from, to]) = chord else { return };
-        for run in runs {
+        let Some([from, to]) = chord else { continue };
+        for run in &runs.runs {
             let (low, high) = if radius > 0.0 {
                 (run.start.max(from / radius), run.end.min(to / radius))
             } else {
@@ -128,7 +132,7 @@ fn cut_moments(optics: &CharacterOptics, shape: &Shape, q: DVec2, inverse_depth:
             if high <= low {
                 continue;
             }
-            let light = height * run.transmission / shape.open_area;
+            let light = height * run.transmission / open_area;
             // ∫uᵏ du.
             let power = |k: i32| (high.powi(k + 1) - low.powi(k + 1)) / f64::from(k + 1) * light;
             let [m0, m1, m2, m3, m4] = [0, 1, 2, 3, 4].map(power);
@@ -141,7 +145,7 @@ fn cut_moments(optics: &CharacterOptics, shape: &Shape, q: DVec2, inverse_depth:
                 sums[1][k] += 2.0 * (of_square - edges.mean * own[k]) / edges.extent;
             }
         }
-    });
+    }
     let [plain, weighed] = sums.map(|sums| sums.map(|sum| sum as f32));
     EdgeMoments { plain, weighed }
 }
@@ -158,8 +162,7 @@ mod tests {
     #[test]
     fn an_uncut_disc_keeps_its_light_and_spreads_by_its_edges() {
         let camera = camera(Character { edges: 1.0, ..Character::default() });
-        let shape = Shape::new(&camera.aperture);
-        let table = MomentTable::new(&camera.character_optics(), &shape, camera.frame_q(), 1.0);
+        let table = MomentTable::new(&camera.character_optics(), &camera.aperture, camera.frame_q(), 1.0);
         let found = table.at([0.3, 0.7], 0.2);
         for (steepness, variance) in [(0.0, 0.25), (1.0, 1.0 / 3.0), (-1.0, 1.0 / 6.0)] {
             let [light, u, v, uu, vv] = found.at(steepness);
@@ -172,13 +175,13 @@ mod tests {
     fn the_table_is_what_it_tables() {
         let rim = Rim { radius: 0.016, distance: 0.03 };
         let camera = camera(Character { edges: 0.5, rims: [Some(rim), None], ..Character::default() });
-        let (optics, shape) = (camera.character_optics(), Shape::new(&camera.aperture));
-        let table = MomentTable::new(&optics, &shape, camera.frame_q(), 2.0);
+        let (optics, cut) = (camera.character_optics(), camera.aperture.rows(512));
+        let table = MomentTable::new(&optics, &camera.aperture, camera.frame_q(), 2.0);
         let mut darkest = 1.0f32;
         for (x, y, inverse_depth) in
             [(0.0, 0.0, 0.4), (0.71, -0.33, 0.1), (-1.6, 0.9, 1.3), (1.77, 0.99, 0.0)]
         {
-            let exact = cut_moments(&optics, &shape, DVec2::new(x, y), inverse_depth);
+            let exact = cut_moments(&optics, &cut, DVec2::new(x, y), inverse_depth);
             let found = table.at([x as f32, y as f32], inverse_depth as f32);
             for k in 0..5 {
                 assert!((found.plain[k] - exact.plain[k]).abs() < 2e-3, "{x} {y} {k}: {found:?} {exact:?}");

@@ -86,8 +86,7 @@ impl NodeShape {
         (chord[0] < chord[1]).then_some(chord)
     }
 
-    /// The weight of a stretch of the aperture: the mean over u with mean square `u_square`, at v with mean square `v_square`, both in
-    /// units of the lens's radius.
+    /// The weight of a part of the aperture whose mean square is `square`, in units of the lens's radius.
     #[inline(always)]
     pub fn weight(&self, square: f32) -> f32 {
         self.edges.map_or(1.0, |edges| edges.weight(square))

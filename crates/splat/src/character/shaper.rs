@@ -79,7 +79,7 @@ impl Shaper {
             tan_half_yfov: plain.tan_half_yfov as f32,
             per_radius: if plain.aperture_radius > 0.0 { (1.0 / plain.aperture_radius) as f32 } else { 0.0 },
             reach: if is_round { 1.0 } else { std::f32::consts::SQRT_2 },
-            table: MomentTable::new(&optics, shape, frame(camera), largest_inverse_depth.into()),
+            table: MomentTable::new(&optics, &camera.aperture, frame(camera), largest_inverse_depth.into()),
             cells: CellLight {
                 cells: cells.collect(),
                 half: (1.0 / (16.0 * stop)) as f32,
