@@ -61,7 +61,8 @@ fn a_white_room_is_as_dark_as_the_falloff() {
             let at = vignetting.at(camera.q_from_pixel(pixel));
             let expected = at.rims * at.angle;
             darkest = darkest.min(expected);
-            assert!((rgb[0] - expected).abs() < 5e-3, "{exposure:?} {pixel}: {rgb:?}, {expected}");
+            // 256 rays, of which a share passes.
+            assert!((rgb[0] - expected).abs() < 0.03, "{exposure:?} {pixel}: {rgb:?}, {expected}");
         }
     }
     assert!(darkest < 0.6, "the corner is darker: {darkest}");
@@ -135,10 +136,13 @@ fn a_curved_field_blurs_the_corner_and_not_what_is_anchored() {
     for x in [0.0, 40.0] {
         for (focus, is_curved) in [(FocusOffset::STANDARD, true), (FocusOffset::SHARP, false)] {
             let (_, mean, radius) = moments(&picture(spot(x), &camera, focus, 256));
-            let kappa = if is_curved { curvature * (x / 64.0).powi(2) } else { 0.0 };
-            let disc = optics.splat_radius_px(kappa).powi(2);
-            let expected = (disc + (SIDE.powi(2) + 1.0) / 3.0).sqrt();
+            // A flat lens that is focused where the curved one is at that place.
+            let more = if is_curved { curvature * (x / 64.0).powi(2) } else { 0.0 };
+            let character = Character::default();
+            let flat = Camera { focus_distance: 1.0 / (1.0 / 3.0 + more), character, ..camera.clone() };
+            let (_, _, expected) = moments(&picture(spot(x), &flat, focus, 256));
             assert!((radius - expected).abs() < 0.1, "{x} {focus:?}: {radius} px, expected {expected}");
+            assert!(more == 0.0 || expected > 1.3, "the control: it is blurred there: {expected}");
             assert!((mean - DVec2::X * x).length() < 0.3, "{x} {focus:?}: {mean}");
         }
     }
