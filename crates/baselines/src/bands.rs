@@ -88,6 +88,7 @@ impl PictureSum {
             height: (self.pixels.len() / self.width) as u32,
             radiance: self.pixels.iter().map(|&[r, g, b, _]| [r as f32, g as f32, b as f32]).collect(),
             coverage: self.pixels.iter().map(|pixel| pixel[3] as f32).collect(),
+            colour_coverage: None,
         }
     }
 }

@@ -103,7 +103,13 @@ impl FirstHits {
     /// The picture of a pinhole: everything sharp.
     pub fn picture(&self) -> Picture {
         let coverage = vec![1.0; self.radiance.len()];
-        Picture { width: self.width, height: self.height, radiance: self.radiance.clone(), coverage }
+        Picture {
+            width: self.width,
+            height: self.height,
+            radiance: self.radiance.clone(),
+            coverage,
+            colour_coverage: None,
+        }
     }
 
     /// Signed diameter of the circle of confusion, px: negative in near defocus.

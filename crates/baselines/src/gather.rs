@@ -62,6 +62,7 @@ pub fn gather_blur(
         height: camera.height,
         radiance: rows?.concat(),
         coverage: vec![1.0; width * height],
+        colour_coverage: None,
     })
 }
 

@@ -82,6 +82,7 @@ pub fn layered_blur(
         height: camera.height,
         radiance: picture.iter().map(|&[r, g, b, _]| [r, g, b]).collect(),
         coverage: picture.iter().map(|pixel| pixel[3]).collect(),
+        colour_coverage: None,
     })
 }
 

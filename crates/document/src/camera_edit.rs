@@ -2,7 +2,7 @@
 
 use crate::focus_hold::{HeldCamera, hold_on_axis};
 use glam::{DMat4, DVec2};
-use lens::{Aperture, Camera};
+use lens::{Aperture, Camera, Character};
 use project::FocusHold;
 use scene::Scene;
 
@@ -19,6 +19,8 @@ pub enum CameraEdit {
     FNumber(f64),
     /// Shape and aspect ratio.
     Aperture(Aperture),
+    /// What the lens does beside focusing.
+    Character(Character),
     /// Full vertical angle of view, rad.
     YFov(f64),
     /// Height of the sensor.
@@ -52,6 +54,10 @@ impl CameraEdit {
             Self::FNumber(number) => {
                 camera.aperture_radius = camera.optics().focal_length() / (2.0 * number);
                 "f-number"
+            }
+            Self::Character(character) => {
+                camera.character = character;
+                "Lens character"
             }
             Self::Aperture(aperture) => {
                 camera.aperture = aperture;

@@ -11,6 +11,7 @@
 //! | `optics/offsets` | invalid focus offsets |
 //! | `optics/aperture_plane` | surfaces on, behind and across the aperture plane, and up to the horizon |
 //! | `optics/scaling` | the same scene in other units |
+//! | `optics/character` | a lens's character, the splat against rays |
 //! | `optics/sampling` | aperture points are distributed with the transmission as density |
 //! | `optics/masks` | aperture masks that are black, of one texel, of very many texels |
 //! | `geometry/rays` | closed meshes and nearly coincident shells |
@@ -46,7 +47,7 @@ pub use case::{Case, Effort, Outcome};
 
 use geometry::{rays, texels, triangles};
 use light::{chance, energy, furnace, glass, lobes, mirrors, panes, ranges, rooms, white};
-use optics::{aperture_plane, defocus, masks, offsets, sampling, scaling};
+use optics::{aperture_plane, character, defocus, masks, offsets, sampling, scaling};
 use progress::{Cancelled, Progress};
 
 /// All cases, in the order of the table.
@@ -56,6 +57,7 @@ pub fn suite() -> Vec<Case> {
         offsets::CASES,
         aperture_plane::CASES,
         scaling::CASES,
+        character::CASES,
         rays::CASES,
         triangles::CASES,
         texels::CASES,

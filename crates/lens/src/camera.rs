@@ -1,6 +1,6 @@
 //! The camera as it is saved, and its validation.
 
-use crate::{Aperture, CameraError, Optics};
+use crate::{Aperture, CameraError, Character, CharacterOptics, Falloff, Optics, Vignetting};
 use glam::{DMat3, DMat4, DVec2, DVec3};
 
 /// A wide-aperture camera. Lengths in scene units, angles in radians.
@@ -27,6 +27,8 @@ pub struct Camera {
     pub background: Option<[f64; 3]>,
     /// The aperture's shape.
     pub aperture: Aperture,
+    /// What the lens does beside focusing.
+    pub character: Character,
 }
 
 impl Default for Camera {
@@ -43,6 +45,7 @@ impl Default for Camera {
             camera_to_world: DMat4::IDENTITY,
             background: None,
             aperture: Aperture::default(),
+            character: Character::default(),
         }
     }
 }
@@ -84,7 +87,8 @@ impl Camera {
         let deviation = rotation.transpose() * rotation - DMat3::IDENTITY;
         let rigid = deviation.to_cols_array().iter().all(|e| e.abs() < 1e-3) && rotation.determinant() > 0.0;
         require(rigid, "camera_to_world", "a rigid motion (orthonormal axes, no mirroring)")?;
-        self.aperture.validate()
+        self.aperture.validate()?;
+        self.character.validate(self.optics().image_distance)
     }
 
     /// The same camera with `side` × `side` pixels in place of each: see [`Picture::averaged`](crate::Picture::averaged).
@@ -105,6 +109,11 @@ impl Camera {
             sensor_height: factor * self.sensor_height,
             // In heights of the larger picture.
             shift: self.shift / factor,
+            // By the square of the larger picture's half-heights.
+            character: Character {
+                field_curvature: self.character.field_curvature * factor * factor,
+                ..self.character
+            },
             ..self.clone()
         }
     }
@@ -120,6 +129,22 @@ impl Camera {
             tan_half_yfov,
             half_height_px: self.height as f64 / 2.0,
         }
+    }
+
+    /// The numbers of the lens's character, computed once.
+    pub fn character_optics(&self) -> CharacterOptics {
+        CharacterOptics::new(self.optics(), &self.aperture, &self.character)
+    }
+
+    /// How much less light arrives beside the axis than on it; `None` if the lens has no rims.
+    pub fn falloff(&self) -> Option<Falloff> {
+        let optics = self.character_optics();
+        optics.has_rims().then(|| Falloff::new(&optics, &self.aperture, self.frame_q()))
+    }
+
+    /// How its picture darkens toward the corners by the lens's character; `None` if it does not.
+    pub fn vignetting(&self) -> Option<Vignetting> {
+        Vignetting::new(self.character_optics(), self.falloff())
     }
 
     /// The aperture's centre in the world, scene units.

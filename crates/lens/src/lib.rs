@@ -7,6 +7,7 @@
 //! * [`Optics`]: the same, reduced to the numbers of the formula, for inner loops.
 //! * [`FocusOffset`]: what is painted: t, its anchor a, and how far gloss obeys them.
 //! * [`Aperture`]: its shape, how to sample it and how to cut it into rows.
+//! * [`Character`]: what a lens does beside focusing: cat's eye, edges, colour fringes, field curvature.
 //! * [`CalibratedLens`]: what of a real camera calibration found: direction ↔ pixel of its photographs, distortion included.
 //! * [`Picture`]: what comes out: radiance and coverage a pixel, and the two exposures.
 //!
@@ -27,6 +28,7 @@
 mod aperture;
 mod calibrated_lens;
 mod camera;
+mod character;
 mod coarse_mask;
 mod error;
 mod focus_offset;
@@ -37,6 +39,10 @@ mod sub_aperture;
 pub use aperture::{Aperture, ApertureMask, ApertureRow, ApertureRows, ApertureSampler, ApertureShape, Run};
 pub use calibrated_lens::{CalibratedLens, Distortion, Intrinsics, Projection};
 pub use camera::Camera;
+pub use character::{
+    CHANNELS, Character, CharacterOptics, Edges, FULL_EDGE, Falloff, GREEN, Rim, RimLimit, Vignette,
+    Vignetting,
+};
 pub use error::CameraError;
 pub use focus_offset::FocusOffset;
 pub use optics::Optics;

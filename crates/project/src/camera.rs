@@ -4,22 +4,24 @@
 //! {"width": 960, "height": 540, "yfov": 0.7, "focus_distance": 3.0 | "inf", "aperture_radius": 0.0125,
 //!  "sensor_height": 0.024, "shift": [x, y], "camera_to_world": 4×4 rows, "background": [r, g, b],
 //!  "aperture": {"shape": "disc" | "polygon" | "square" | "mask", "blades": 6, "rotation": rad,
-//!               "roundness": 0..1, "ratio": 1.0, "mask": FILE | {"name": …, "rows": […]}}}
+//!               "roundness": 0..1, "ratio": 1.0, "mask": FILE | {"name": …, "rows": […]}},
+//!  "character": {"edges": -1..1, "rims": [{"radius": ρ, "distance": ℓ}], …}}
 //! ```
 //!
 //! yfov is the full angle in rad, lengths are scene units, focus_distance is axial, to the focus plane;
 //! shift moves the sensor right and up, in picture heights (none: [0, 0]); camera_to_world has glTF axes (looks down −Z, +Y up). Any field may be missing.
 
 mod aperture_mask_file;
+pub(crate) mod character;
 pub(crate) mod mask_rows;
 
 pub use aperture_mask_file::read_aperture_mask;
 
 use crate::ProjectError;
-
 use crate::disk::write_bytes;
 use crate::json::{Field, Fields, Json};
 use crate::named_file::named_file;
+use character::{character_from_json, character_to_json};
 use glam::{DMat4, DVec2, DVec4};
 use lens::{Aperture, ApertureMask, ApertureShape, Camera};
 use mask_rows::mask_from_json;
@@ -27,7 +29,7 @@ use serde_json::{Value, json};
 use std::path::Path;
 use std::sync::Arc;
 
-const FIELDS: [&str; 10] = [
+const FIELDS: [&str; 11] = [
     "width",
     "height",
     "yfov",
@@ -38,6 +40,7 @@ const FIELDS: [&str; 10] = [
     "camera_to_world",
     "background",
     "aperture",
+    "character",
 ];
 const APERTURE_FIELDS: [&str; 6] = ["shape", "blades", "rotation", "roundness", "ratio", "mask"];
 
@@ -112,10 +115,18 @@ fn camera_from_fields(
             Some(field) => aperture_from_json(&field.object()?, mask)?,
             None => defaults.aperture.clone(),
         },
+        character: defaults.character,
+    };
+    let camera = match fields.get("character") {
+        Some(field) => {
+            let character = character_from_json(&field.object()?, camera.aperture_radius)?;
+            Camera { character, ..camera }
+        }
+        None => camera,
     };
     camera.validate().map_err(|error| ProjectError::Field {
         file: file.to_owned(),
-        field: error.field.replace("aperture ", "aperture."),
+        field: error.field.replace("aperture ", "aperture.").replace("character ", "character."),
         problem: "cannot be used".to_string(),
         cure: format!("it must be {}", error.must),
     })?;
@@ -188,6 +199,9 @@ pub fn camera_to_json(camera: &Camera) -> Value {
     }
     if let Some(background) = camera.background {
         json["background"] = json!(background);
+    }
+    if !camera.character.is_neutral() {
+        json["character"] = character_to_json(&camera.character);
     }
     json
 }

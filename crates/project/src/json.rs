@@ -179,6 +179,26 @@ impl<'a> Field<'a> {
         }
     }
 
+    /// The value as true or false.
+    ///
+    /// # Errors
+    /// It is something else.
+    pub fn boolean(&self) -> Result<bool, ProjectError> {
+        match self.value {
+            Json::Bool(value) => Ok(*value),
+            _ => Err(self.type_error("true or false")),
+        }
+    }
+
+    /// The values of a list, of any number.
+    ///
+    /// # Errors
+    /// It is something else.
+    pub fn list(&self) -> Result<Vec<Field<'a>>, ProjectError> {
+        let Json::List(list) = self.value else { return Err(self.type_error("a list")) };
+        Ok(list.iter().map(|value| Field { value, ..*self }).collect())
+    }
+
     /// The value as text.
     ///
     /// # Errors

@@ -6,7 +6,7 @@ mod shared_data;
 use damage::{damage, is_one_line};
 use focus::RecipeEntry;
 use glam::{DMat4, DQuat, DVec2, DVec3};
-use lens::{Aperture, ApertureMask, ApertureShape, Camera, FocusOffset};
+use lens::{Aperture, ApertureMask, ApertureShape, Camera, Character, FocusOffset, Rim};
 use project::{FocusFile, read_camera, read_focus, read_recipe, write_camera, write_rgb};
 use shared_data::shared;
 use std::path::{Path, PathBuf};
@@ -35,6 +35,15 @@ fn unusual_camera() -> Camera {
             shape: ApertureShape::Polygon { blades: 5, rotation: 0.3, roundness: 0.6 },
             ratio: 1.33,
         },
+        character: Character {
+            widest_radius: Some(0.2),
+            field_curvature: 1.0 / 3.0,
+            longitudinal_colour: [1e-4, -3e-4],
+            lateral_colour: [1e-3, 2e-3],
+            edges: -0.7,
+            rims: [Some(Rim { radius: 0.1, distance: 0.3 }), Some(Rim { radius: 0.2, distance: -0.1 })],
+            has_cos4_falloff: true,
+        },
     }
 }
 
@@ -60,6 +69,16 @@ fn missing_fields_keep_the_defaults() {
     let file = write(&folder, "camera.json", r#"{"aperture": {"shape": "polygon"}}"#);
     let shape = ApertureShape::Polygon { blades: 6, rotation: 0.0, roundness: 0.0 };
     assert_eq!(read_camera(&file, &unusual_camera()).unwrap().aperture, Aperture::from(shape));
+}
+
+#[test]
+fn a_character_replaces_that_of_before_and_knows_its_widest_radius() {
+    let folder = TempDir::new().unwrap();
+    let file = write(&folder, "camera.json", r#"{"aperture_radius": 0.03, "character": {"edges": 0.5}}"#);
+    let character = Character { widest_radius: Some(0.03), edges: 0.5, ..Character::default() };
+    assert_eq!(read_camera(&file, &unusual_camera()).unwrap().character, character);
+    let file = write(&folder, "camera.json", r#"{"character": {}}"#);
+    assert!(read_camera(&file, &unusual_camera()).unwrap().character.is_neutral());
 }
 
 #[test]
@@ -108,6 +127,16 @@ fn bad_cameras_are_reported_with_file_and_field() {
         (r#"{"aperture": {"shape": "mask"}}"#, "no mask is given"),
         (r#"{"aperture": {"blads": 2}}"#, "aperture.blads"),
         (r#"{"aperture": 6}"#, "aperture: is a number"),
+        (r#"{"character": 6}"#, "character: is a number"),
+        (r#"{"character": {"edge": 1}}"#, "character.edge: is not a valid field"),
+        (r#"{"character": {"edges": 1.5}}"#, "character.edges: cannot be used"),
+        (r#"{"character": {"edges": NaN}}"#, "in \"edges\""),
+        (r#"{"character": {"lateral_colour": [1]}}"#, "character.lateral_colour: has 1 numbers"),
+        (r#"{"character": {"longitudinal_colour": [0, 9]}}"#, "character.longitudinal_colour"),
+        (r#"{"character": {"rims": [{"radius": 0.1}]}}"#, "has no \"distance\""),
+        (r#"{"character": {"rims": [{"radius": 0, "distance": 1}]}}"#, "character.rims.radius"),
+        (r#"{"character": {"rims": [{}, {}, {}]}}"#, "character.rims: has 3 rims"),
+        (r#"{"character": {"cos4": 1}}"#, "character.cos4: is a number"),
         (r#"[1, 2]"#, "the whole file: is a list"),
         ("{\"width\": 100,\n \"height\" 100}", "line 2"),
     ];

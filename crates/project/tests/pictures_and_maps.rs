@@ -30,7 +30,7 @@ fn picture() -> Picture {
     let values = noise(width * height * 4, 1);
     let radiance = values.chunks_exact(4).map(|v| [v[0] * 3.0, v[1] * 1e4, v[2] - 0.1]).collect();
     let coverage = values.chunks_exact(4).map(|v| v[3] + 0.5).collect();
-    Picture { width: width as u32, height: height as u32, radiance, coverage }
+    Picture { width: width as u32, height: height as u32, radiance, coverage, colour_coverage: None }
 }
 
 #[test]

@@ -29,7 +29,7 @@ pub fn standard_margin_px(scene: &Scene, view: &View) -> f64 {
     let near = view.optics.splat_radius_px(1.0 / nearest - inverse_s);
     let far = view.optics.splat_radius_px(inverse_s);
     let splats = splat_margin_px(scene, view, |_| FocusOffset::STANDARD);
-    near.max(far).max(splats).clamp(0.0, largest_margin_px(view))
+    (near.max(far).max(splats) + character_margin_px(view)).clamp(0.0, largest_margin_px(view))
 }
 
 /// The largest splat radius of Gaussian splats, px, whose light reaches the frame; their focus is that of their addresses. A few that float before the
@@ -61,7 +61,8 @@ pub fn painted_margin_px(tracer: &Tracer, view: &View, focus: &dyn SurfaceField<
     const SPACING_PX: f64 = 6.0;
     let splats = splat_margin_px(tracer.scene(), view, |point| focus.at(point));
     let frame = DVec2::new(view.camera.width as f64, view.camera.height as f64);
-    let mut margin = splats.min(largest_margin_px(view));
+    let character = character_margin_px(view);
+    let mut margin = (splats + character).min(largest_margin_px(view));
     loop {
         let extent = frame + 2.0 * margin;
         let steps = (extent / SPACING_PX).ceil();
@@ -77,7 +78,8 @@ pub fn painted_margin_px(tracer: &Tracer, view: &View, focus: &dyn SurfaceField<
                 // What is carried may be spread wider than what is own; where no paint moves it, it is known to have room.
                 let carried = (offset.gloss > 0.0).then(|| offset.of_carried());
                 for offset in [offset].into_iter().chain(carried) {
-                    let radius = view.optics.splat_radius_px(view.optics.kappa(inverse_depth, offset)).abs();
+                    let radius = view.optics.splat_radius_px(view.optics.kappa(inverse_depth, offset)).abs()
+                        + character;
                     if radius >= outside {
                         reach = reach.max(radius * 1.05);
                     }
@@ -92,6 +94,17 @@ pub fn painted_margin_px(tracer: &Tracer, view: &View, focus: &dyn SurfaceField<
         }
         margin = reach;
     }
+}
+
+/// What a lens's character adds to a margin, px: the curved field's and the colours' defocus in the farthest corner, and how far colours
+/// are shifted there.
+fn character_margin_px(view: &View) -> f64 {
+    let character = view.camera.character_optics();
+    let [middle, half] = view.camera.frame_q();
+    let corner = (middle.abs() + half).length();
+    let kappa = character.largest_curvature(corner) + character.largest_colour_defocus();
+    let lateral = character.largest_lateral();
+    view.optics.splat_radius_px(kappa) + lateral / (1.0 - lateral) * corner * view.optics.half_height_px
 }
 
 fn largest_margin_px(view: &View) -> f64 {

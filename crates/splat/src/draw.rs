@@ -7,9 +7,11 @@
 
 pub mod boxes;
 pub mod image;
+mod image_frame;
 mod large;
 mod paper;
 mod pen;
+mod shaped;
 pub mod sized_box;
 mod small;
 pub mod stencilled;
@@ -68,6 +70,12 @@ impl Pen<'_> {
         paper: &mut Paper<W>,
         sign: i32,
     ) {
+        if let Some(shaper) = self.shaper {
+            let shape = shaper.node_shape(node, placed.radius);
+            if !shape.is_plain() {
+                return self.draw_shaped((shaper, &shape), node, light, placed, paper, sign);
+            }
+        }
         let image = self.image(node, light, placed);
         self.forms(
             node,
@@ -86,7 +94,7 @@ impl Pen<'_> {
                     }
                     Form::Parts(share) => {
                         image.share = share;
-                        self.draw_parts(&image, placed.depth_share, paper, sign);
+                        self.draw_parts(&image, placed.depth_share, None, paper, sign);
                     }
                     Form::Image(share) => {
                         image.share = share;

@@ -45,6 +45,14 @@ impl Scene<'_> {
             for index in span {
                 let node = &nodes[index as usize];
                 prefetch(nodes.get(index as usize + AHEAD));
+                let moved;
+                let node = match &self.lens.magnification {
+                    None => node,
+                    Some(magnification) => {
+                        moved = magnification.moved(node);
+                        &moved
+                    }
+                };
                 let focus = paint.map_or(NodeFocus::STANDARD, |paint| paint[(index - first) as usize]);
                 let placed = self.lens.place(node, &focus);
                 if node.is_leaf() || self.lens.may_merge(node, &focus, placed) {
@@ -191,9 +199,9 @@ impl Changes {
     }
 
     /// The rows, and the columns of a picture `width` px wide, that they change.
-    pub fn window(&self, nodes: &Nodes, width: u32) -> [Range<u32>; 2] {
+    pub fn window(&self, pen: &Pen, width: u32) -> [Range<u32>; 2] {
         let all = || self.0.iter().flat_map(|block| block.removed.iter().chain(&block.added));
-        let columns = |drawn: &DrawnNode| drawn.placed.reach(&nodes.nodes[drawn.index as usize], 0, width);
+        let columns = |drawn: &DrawnNode| drawn.placed.reach(&pen.node(drawn.index), 0, width);
         [self.rows(), hull(all().map(columns).filter(|columns| !columns.is_empty()))]
     }
 

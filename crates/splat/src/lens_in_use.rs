@@ -2,9 +2,10 @@
 
 use crate::aperture::shape::Shape;
 use crate::canvas::POSITION_BITS;
+use crate::character::magnification::Magnification;
 use crate::fixed::ONE;
 use crate::nodes::{CONTRASTS, SplatNode, wider_by_contrast};
-use lens::{FocusOffset, Optics};
+use lens::{Camera, FocusOffset, Optics};
 use salf::tree::LEVELS;
 use std::ops::Range;
 
@@ -157,12 +158,42 @@ pub struct LensInUse {
     pub radius_per_kappa: f32,
     /// … and for κ = 1/d, which t = 2 brings at the focus distance.
     pub radius_per_offset: f32,
+    /// What the colour that is drawn adds, whatever is painted.
+    pub colour_radius: f32,
+    /// How the field curves, if it does.
+    pub field: Option<FieldCurvature>,
+    /// How much larger the picture of the colour that is drawn is, where it is.
+    pub magnification: Option<Magnification>,
     /// How exactly what is drawn is drawn.
     pub detail: Detail,
     /// From which |radius| on, 1/4096 px, nodes may be drawn on each level: by [`Fineness`].
     pub smallest_radius: [[u32; LEVELS]; FINENESSES],
     /// From which on a node may replace those below it: by its contrast.
     pub smallest_joint_radius: [[[u32; LEVELS]; FINENESSES]; CONTRASTS],
+}
+
+/// How the field of a lens curves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FieldCurvature {
+    /// What a node's image gains for each squared half-height that it lies from the axis, 1/4096 px.
+    pub radius_per_square: f32,
+    /// Where the axis is, 1/4096 px.
+    pub axis: [f32; 2],
+    /// Half-heights for each 1/4096 px.
+    pub per_position: f32,
+}
+
+/// Beyond this squared distance from the axis, half-heights, no field curves any more (see [`lens::CharacterOptics::curvature_at`]).
+const LARGEST_FIELD: f32 = 64.0;
+
+impl FieldCurvature {
+    /// |q₀|² of a node.
+    #[inline(always)]
+    fn square(&self, node: &SplatNode) -> f32 {
+        let x = (node.center[0] as f32 - self.axis[0]) * self.per_position;
+        let y = (node.center[1] as f32 - self.axis[1]) * self.per_position;
+        (x * x + y * y).min(LARGEST_FIELD)
+    }
 }
 
 /// How exactly nodes are drawn: as coarse as the nodes are.
@@ -243,11 +274,42 @@ impl LensInUse {
             radius_at_infinity: rate(optics.standard_kappa(0.0)),
             radius_per_kappa: rate(1.0),
             radius_per_offset: rate(1.0 / optics.image_distance),
+            colour_radius: 0.0,
+            field: None,
+            magnification: None,
             detail: Detail::for_tolerance(tolerance),
             smallest_radius: Fineness::FINER.map(|finer| smallest(finer, 1.0)),
             smallest_joint_radius: std::array::from_fn(|contrast| {
                 Fineness::FINER.map(|finer| smallest(finer, wider_by_contrast(contrast as u8)))
             }),
+        }
+    }
+
+    /// The same for a colour channel of a camera's lens with its character.
+    pub fn with_character(self, camera: &Camera, channel: usize) -> Self {
+        let character = camera.character_optics();
+        let optics = &character.optics;
+        let size = character.magnification()[channel];
+        let rate = |kappa: f64| {
+            let radius = optics.splat_radius_px(kappa) * size * (1 << POSITION_BITS) as f64;
+            radius.clamp(-LARGEST_RATE, LARGEST_RATE) as f32
+        };
+        let axis = camera.principal_point_px() * (1 << POSITION_BITS) as f64;
+        let half_height = optics.half_height_px * size * (1 << POSITION_BITS) as f64;
+        let field = FieldCurvature {
+            radius_per_square: rate(character.field_curvature()),
+            axis: axis.as_vec2().to_array(),
+            per_position: (1.0 / half_height) as f32,
+        };
+        Self {
+            radius_at_infinity: rate(optics.standard_kappa(0.0)),
+            radius_per_kappa: rate(1.0),
+            radius_per_offset: rate(1.0 / optics.image_distance),
+            colour_radius: rate(character.colour_defocus()[channel]),
+            field: (character.field_curvature() != 0.0).then_some(field),
+            magnification: (size != 1.0)
+                .then(|| Magnification { lateral: size - 1.0, axis: axis.to_array() }),
+            ..self
         }
     }
 
@@ -259,7 +321,11 @@ impl LensInUse {
     /// The radius of an unpainted node's image.
     #[inline(always)]
     fn standard_radius(&self, node: &SplatNode) -> f32 {
-        self.radius_at_infinity - self.radius_per_kappa * node.inverse_depth
+        let flat = self.radius_at_infinity - self.radius_per_kappa * node.inverse_depth;
+        match &self.field {
+            None => flat,
+            Some(field) => flat + field.radius_per_square * field.square(node),
+        }
     }
 
     /// Where `focus` sends a node: κ = (t − 1)/d + t·(1 − a)·(1/s − 1/z), as the radius of its image.
@@ -268,6 +334,7 @@ impl LensInUse {
         let is_standard = (focus.t, focus.anchor) == (1.0, 0.0);
         let of_depth = focus.t * (1.0 - focus.anchor);
         let radius = self.radius_per_offset * (focus.t - 1.0) + of_depth * self.standard_radius(node);
+        let radius = radius + self.colour_radius;
         let radius = radius.clamp(-LARGEST_RADIUS, LARGEST_RADIUS).round_ties_even() as i32;
         let depth_share = of_depth * ONE as f32;
         let mut level = 0;
@@ -312,6 +379,10 @@ impl LensInUse {
             apart += by_t * focus.t_apart + by_anchor * focus.anchor_apart;
         }
         let side = (1 << node.level << POSITION_BITS) as f32;
+        if let Some(field) = &self.field {
+            let slope = 2.0 * field.radius_per_square * field.square(node).sqrt() * field.per_position;
+            apart += (of_depth * slope).abs() * side;
+        }
         apart <= if is_sharp { SHARP as f32 } else { (FLAT * side).max(ALIKE * size as f32) }
     }
 }

@@ -56,6 +56,7 @@
 mod aperture;
 mod bands;
 mod canvas;
+mod character;
 mod crop;
 mod draw;
 mod draw_list;

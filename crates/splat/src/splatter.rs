@@ -2,6 +2,8 @@
 
 mod aperture_in_use;
 mod card;
+mod character_in_use;
+mod colours;
 mod error;
 mod mattes;
 mod on_card;
@@ -12,6 +14,7 @@ pub use error::SplatError;
 pub use mattes::{Mattes, SETS};
 
 use crate::bands::Pace;
+use crate::draw::Pen;
 use crate::draw_list::{BlockList, Changes};
 use crate::lens_in_use::{LensInUse, Tolerance};
 use crate::nodes::{Nodes, Scale};
@@ -19,7 +22,8 @@ use crate::paint::Paint;
 use crate::sums::Sums;
 pub(crate) use aperture_in_use::ApertureInUse;
 use card::Card;
-use lens::{Camera, FocusOffset, Picture};
+use character_in_use::CharacterInUse;
+use lens::{Camera, FocusOffset, GREEN, Picture};
 use progress::{Progress, Stage};
 use rayon::prelude::*;
 use resolve_steps::{Finish, ResolveOutput, SummedPaint};
@@ -49,6 +53,12 @@ pub struct Splatter {
     changes: Changes,
     /// What makes the picture of the sums.
     resolver: Resolver,
+    /// What of the lens's character it is drawn with.
+    character: CharacterInUse,
+    /// The colour channel whose focus it has.
+    channel: usize,
+    /// The pictures of red and blue, where the lens focuses them unlike green.
+    colours: Option<Box<[Splatter; 2]>>,
     /// The lens of whose standard picture the shares are, and whether they include the gains for evening.
     shares_of: Option<(LensInUse, bool)>,
     card: Card,
@@ -90,6 +100,9 @@ impl Splatter {
             pace: Pace::default(),
             changes: Changes::default(),
             shares_of: None,
+            character: CharacterInUse::default(),
+            channel: GREEN,
+            colours: None,
             card: Card::default(),
             nodes,
             salf,
@@ -147,14 +160,16 @@ impl Splatter {
     pub fn bytes(&self) -> [usize; 2] {
         let [nodes, sums] = self.card.bytes();
         let lists: usize = self.lists.iter().map(BlockList::bytes).sum();
+        let colours: usize =
+            self.colours.iter().flat_map(|colours| &**colours).map(|colour| colour.bytes()[1]).sum();
         [
             nodes + self.nodes.as_ref().map_or(0, |nodes| nodes.bytes()),
-            sums + self.sums.bytes() + self.resolver.bytes() + lists + self.changes.bytes(),
+            colours + sums + self.sums.bytes() + self.resolver.bytes() + lists + self.changes.bytes(),
         ]
     }
 
-    /// Sums the whole picture for a lens (`camera` may differ from the baked one in focus distance, aperture shape and a
-    /// smaller aperture radius, nothing else) and a focus.
+    /// Sums the whole picture for a lens (`camera` may differ from the baked one in focus distance, aperture shape, character and a
+    /// smaller aperture radius, nothing else) and a focus. A lens with a character is summed on the processor.
     ///
     /// After an error the picture is unchanged, but the sums are not: render again before updating.
     ///
@@ -170,7 +185,13 @@ impl Splatter {
         let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
         self.paint = Paint::sample(nodes, &self.salf.samples, focus);
         self.card.invalidate_paint();
-        self.sum(progress)
+        self.sum(&self.green_stage(progress))?;
+        let render = |colour: &mut Self, progress: &dyn Progress| {
+            colour.render(camera, focus, progress)?;
+            Ok(colour.frame())
+        };
+        self.draw_colours(self.frame(), progress, render)?;
+        Ok(())
     }
 
     /// Sums the whole picture for the lens of `camera`, with the paint of before.
@@ -185,7 +206,14 @@ impl Splatter {
         self.set_lens(camera);
         let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
         assert_eq!(self.paint.blocks.len(), nodes.blocks.len(), "refocus follows a render");
-        self.sum(progress)
+        self.sum(&self.green_stage(progress))?;
+        let refocus = |colour: &mut Self, progress: &dyn Progress| {
+            colour.set_lens(camera);
+            colour.sum(progress)?;
+            Ok(colour.frame())
+        };
+        self.draw_colours(self.frame(), progress, refocus)?;
+        Ok(())
     }
 
     /// Puts on a lens.
@@ -197,7 +225,15 @@ impl Splatter {
             self.shares_of = None;
             self.card.invalidate_aperture();
         }
-        self.lens = LensInUse::new(optics, &self.aperture.stencils.shape, self.tolerance);
+        let plain = LensInUse::new(optics, &self.aperture.stencils.shape, self.tolerance);
+        let has_character = !camera.character.is_neutral();
+        self.lens = if has_character { plain.with_character(camera, self.channel) } else { plain };
+        // A card draws the discs of plain lenses.
+        if self.card.bypass(has_character) {
+            self.shares_of = None;
+        }
+        self.character.set(camera, &self.aperture, &self.lens, self.nodes.as_deref());
+        self.set_colours(camera);
     }
 
     /// Sums all and resolves the picture; on the processor once the card is lost.
@@ -215,24 +251,28 @@ impl Splatter {
     }
 
     fn sum_all(&mut self, progress: &dyn Progress) -> Result<(), SplatError> {
+        // Shares and gains are those of a lens whose aperture is neither cut nor weighed.
+        let is_shaped = self.character.shaper().is_some();
         let is_painted = !self.paint.is_standard();
+        let is_summed_again = is_painted || is_shaped;
         let has_shares = self.has_shares();
-        let standard = Stage::new(progress, 0.0, if is_painted { 0.5 } else { 1.0 });
+        let standard = Stage::new(progress, 0.0, if is_summed_again { 0.5 } else { 1.0 });
         let painted = Stage::new(progress, if has_shares { 0.0 } else { 0.5 }, 1.0);
         if !has_shares {
             self.shares_of = None;
-            let output = if is_painted { ResolveOutput::Shares } else { ResolveOutput::SharesAndPicture };
+            let output =
+                if is_summed_again { ResolveOutput::Shares } else { ResolveOutput::SharesAndPicture };
             // Where most is painted, summing all of it again is less work than painting over, and so it is on a card.
             let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
             let is_painted_over =
-                is_painted && !self.card.has_sums() && self.paint.is_of_less_than_half(nodes);
+                is_painted && !is_shaped && !self.card.has_sums() && self.paint.is_of_less_than_half(nodes);
             let summed = if is_painted_over { SummedPaint::ToPaintOver } else { SummedPaint::Standard };
             self.in_finest_integers(|splatter| {
                 splatter.sum_nodes(summed, &standard)?;
                 splatter.resolve(splatter.frame(), output)
             })?;
             self.shares_of = Some((self.lens.clone(), self.finish() == Finish::Evened));
-            if !is_painted || is_painted_over && self.paint_over()? {
+            if !is_summed_again || is_painted_over && self.paint_over()? {
                 return Ok(());
             }
         }
@@ -271,7 +311,10 @@ impl Splatter {
     fn sum_nodes(&mut self, summed: SummedPaint, progress: &dyn Progress) -> Result<(), SplatError> {
         let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
         let paint = summed.paint(&self.paint);
-        let scene = self.aperture.scene(nodes, &self.lens, paint, &self.salf.camera);
+        let mut scene = self.aperture.scene(nodes, &self.lens, paint, &self.salf.camera);
+        if summed == SummedPaint::Painted {
+            scene.pen.shaper = self.character.shaper();
+        }
         if let Some(summed) = self.card.sum(&scene, progress) {
             return summed;
         }
@@ -292,6 +335,16 @@ impl Splatter {
         focus: &dyn SurfaceField<FocusOffset>,
         samples: &[u32],
     ) -> Result<[Range<u32>; 2], SplatError> {
+        let window = self.update_channel(focus, samples)?;
+        self.draw_colours(window, &progress::Unwatched, |colour, _| colour.update_channel(focus, samples))
+    }
+
+    /// The same of the one channel that it shows.
+    fn update_channel(
+        &mut self,
+        focus: &dyn SurfaceField<FocusOffset>,
+        samples: &[u32],
+    ) -> Result<[Range<u32>; 2], SplatError> {
         let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
         assert_eq!(self.paint.blocks.len(), nodes.blocks.len(), "update follows a render");
         let mut leaves: Vec<u32> =
@@ -303,7 +356,7 @@ impl Splatter {
         let scene = self.aperture.scene(nodes, &self.lens, &self.paint, &self.salf.camera);
         let before = before.iter().map(|(block, paint)| (*block, paint.as_deref()));
         self.changes.update(&scene, &before.collect::<Vec<_>>());
-        let mut window = self.changes.window(nodes, self.salf.camera.width);
+        let mut window = self.changes.window(&scene.pen, self.salf.camera.width);
         // Once nothing is painted any more, the picture is evened.
         if nodes.scale != Scale::FINEST || !self.has_shares() {
             return self.sum_again();
@@ -322,7 +375,7 @@ impl Splatter {
     /// Applies the listed changes to the sums, and resolves some rows and columns of the picture.
     fn change(&mut self, window: [Range<u32>; 2]) -> Result<(), SplatError> {
         let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
-        let pen = self.aperture.pen(nodes, &self.lens);
+        let pen = Pen { shaper: self.character.shaper(), ..self.aperture.pen(nodes, &self.lens) };
         match self.card.change(&pen, &self.changes) {
             Some(changed) => changed?,
             None => self.sums.change(&pen, &self.changes, &self.pace),
@@ -357,7 +410,12 @@ impl Splatter {
         }
         let finish = self.finish();
         let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
-        Ok(self.resolver.resolve(nodes, &self.sums, [rows, columns], output, finish)?)
+        let window = [rows, columns];
+        self.resolver.resolve(nodes, &self.sums, window.clone(), output, finish)?;
+        if output.has_picture() {
+            self.character.darken(&mut self.resolver.picture, window);
+        }
+        Ok(())
     }
 
     /// The same on the card.

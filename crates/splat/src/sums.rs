@@ -387,6 +387,14 @@ impl Band<'_> {
                 continue;
             }
             let node = &pen.nodes.nodes[drawn.index as usize];
+            let moved;
+            let node = match &pen.magnification {
+                None => node,
+                Some(magnification) => {
+                    moved = magnification.moved(node);
+                    &moved
+                }
+            };
             let is_sharing = is_sharing(node, drawn.placed);
             let canvas = if is_sharing { &mut self.sharing } else { &mut self.free };
             canvas.draw(pen, node, drawn.placed, sign);

@@ -38,7 +38,8 @@ use crate::{Radiance, Tracer};
 use estimate::Statistics;
 use from_sensor::FromSensor;
 use from_surfaces::FromSurfaces;
-use lens::{Camera, FocusOffset};
+use glam::DVec2;
+use lens::{Camera, FocusOffset, Vignetting};
 use progress::{Cancelled, Progress, Stage};
 use scene::SurfaceField;
 use sensor::Sensor;
@@ -51,6 +52,7 @@ pub struct Truth<'a> {
     options: TruthOptions,
     region: Region,
     sensor: Sensor,
+    vignetting: Option<Vignetting>,
     statistics: Statistics,
     /// Made by the first pass.
     rays: Option<Rays>,
@@ -97,13 +99,15 @@ impl<'a> Truth<'a> {
         options: &TruthOptions,
     ) -> Self {
         let region = options.region.unwrap_or_else(|| Region::frame(camera)).within(camera);
-        let view = View { tracer, focus, ray_focus: None, camera, optics: camera.optics() };
+        let view = View::new(tracer, focus, camera);
+        let has_fringe = camera.character.has_fringe();
         Self {
             view,
+            vignetting: camera.vignetting(),
             radiance,
             options: *options,
             region,
-            sensor: Sensor::new(region, options.filter, options.samples_of_pass()),
+            sensor: Sensor::new(region, options.filter, options.samples_of_pass(), has_fringe),
             statistics: Statistics::new(region.width, region.height),
             rays: None,
         }
@@ -167,12 +171,21 @@ impl<'a> Truth<'a> {
         self.rays = Some(rays);
         exposed?;
         self.statistics.add(samples, self.sensor.means(samples));
+        if let Some(coverage) = self.sensor.colour_means(samples) {
+            self.statistics.add_colours(samples, self.sensor.means(samples), coverage);
+        }
         Ok(())
     }
 
     /// The picture so far, with its standard error.
     pub fn estimate(&self) -> Estimate {
-        self.statistics.estimate()
+        let (estimate, region, camera) = (self.statistics.estimate(), self.region, self.view.camera);
+        let Some(vignetting) = &self.vignetting else { return estimate };
+        estimate.darkened(|pixel| {
+            let (x, y) = (pixel % region.width as usize, pixel / region.width as usize);
+            let corner = DVec2::new(f64::from(region.x), f64::from(region.y));
+            vignetting.at(camera.q_from_pixel(corner + DVec2::new(x as f64, y as f64) + 0.5))
+        })
     }
 }
 

@@ -3,6 +3,7 @@
 mod bokeh_thumbnails;
 mod brush_panel;
 mod cameras_panel;
+mod character_panel;
 mod curve_editor;
 mod falloff_editor;
 mod focus_panel;

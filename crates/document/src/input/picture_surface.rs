@@ -30,7 +30,7 @@ pub(crate) fn show_early_picture(picture: &Photograph, steps: &dyn Steps) {
     let longer = picture.width.max(picture.height);
     let Photograph { width, height, pixels } = picture.downsampled(longer.div_ceil(MAX_EARLY_PICTURE_PX));
     let coverage = vec![1.0; pixels.len()];
-    steps.picture_ready(&Picture { width, height, radiance: pixels, coverage });
+    steps.picture_ready(&Picture { width, height, radiance: pixels, coverage, colour_coverage: None });
 }
 
 /// Checks that a picture still has the size that its file had when it was opened.

@@ -35,6 +35,14 @@ pub fn rms_difference(a: &Picture, b: &Picture) -> f64 {
     (squares / (3.0 * a.radiance.len() as f64)).sqrt()
 }
 
+/// The agreement of two pictures whose values are shown up to 1, dB: the peak against the root mean square difference.
+pub fn psnr(a: &[[f32; 3]], b: &[[f32; 3]]) -> f64 {
+    let shown = |value: f32| f64::from(value).clamp(0.0, 1.0);
+    let pairs = a.as_flattened().iter().zip(b.as_flattened());
+    let squares: f64 = pairs.map(|(&a, &b)| (shown(a) - shown(b)).powi(2)).sum();
+    -10.0 * (squares / (3 * a.len()) as f64).log10()
+}
+
 /// Sum of the green channel over all pixels.
 pub fn energy(picture: &Picture) -> f64 {
     energies(picture)[1]

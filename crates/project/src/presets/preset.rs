@@ -140,6 +140,7 @@ impl Preset {
                 near(current.focal_length, lens.focal_length)
                     && near(current.f_number, lens.f_number)
                     && near(current.sensor_height, lens.sensor_height)
+                    && current.character == lens.character
             }
         }
     }

@@ -2,13 +2,14 @@
 
 use lens::Camera;
 
-/// Whether a light field that was baked for the camera `baked` can show the picture of `camera`: they may differ in focus distance and
-/// aperture shape, and the aperture of `camera` may be smaller.
+/// Whether a light field that was baked for the camera `baked` can show the picture of `camera`: they may differ in focus distance,
+/// aperture shape and character, and the aperture of `camera` may be smaller.
 pub fn is_compatible(baked: &Camera, camera: &Camera) -> bool {
     let like = Camera {
         focus_distance: baked.focus_distance,
         aperture: baked.aperture.clone(),
         aperture_radius: baked.aperture_radius,
+        character: baked.character,
         ..camera.clone()
     };
     like == *baked && camera.aperture_radius <= baked.aperture_radius

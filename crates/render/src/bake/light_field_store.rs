@@ -6,7 +6,7 @@
 
 use crate::bake::salf_file::write_salf;
 use document::Stage;
-use lens::{Aperture, Camera};
+use lens::{Aperture, Camera, Character};
 use light::{build_id, evict_oldest};
 use salf::{Carried, Salf, SalfFile};
 use sha2::{Digest, Sha256};
@@ -117,5 +117,10 @@ impl LightFieldStore {
 
 /// What all cameras that a light field is compatible with have in common, apart from smaller apertures.
 fn compatibility_key(camera: &Camera) -> Camera {
-    Camera { focus_distance: f64::INFINITY, aperture: Aperture::default(), ..camera.clone() }
+    Camera {
+        focus_distance: f64::INFINITY,
+        aperture: Aperture::default(),
+        character: Character::default(),
+        ..camera.clone()
+    }
 }

@@ -3,6 +3,7 @@
 use crate::mattes::Mattes;
 use crate::picture::coc_convention::CocConvention;
 use baselines::FirstHits;
+use glam::DVec2;
 use lens::{Camera, Exposure, FocusOffset, Picture};
 use project::{Cryptomatte, Layer};
 use trace::truth::Estimate;
@@ -91,7 +92,18 @@ impl Aov {
     pub(crate) fn layers(self, inputs: &LayerInputs) -> Vec<Layer> {
         let layer = |name: &str, values| Layer { name: name.into(), values };
         match (self, inputs.hits, inputs.estimate) {
-            (Self::Coverage, ..) => vec![Layer::coverage(inputs.picture)],
+            (Self::Coverage, ..) => {
+                let mut coverage = Layer::coverage(inputs.picture);
+                if let Some(falloff) = inputs.camera.falloff() {
+                    // A picture's coverage is over the falloff.
+                    let width = inputs.camera.width as usize;
+                    for (k, value) in coverage.values.iter_mut().enumerate() {
+                        let pixel = DVec2::new((k % width) as f64, (k / width) as f64) + 0.5;
+                        *value *= falloff.at(inputs.camera.q_from_pixel(pixel));
+                    }
+                }
+                vec![coverage]
+            }
             (Self::CircleOfConfusion, Some(hits), _) => {
                 let frame_height = inputs.camera.height.saturating_sub(2 * inputs.overscan);
                 let diameters = hits.circle_of_confusion_px(inputs.camera).into_iter();

@@ -71,6 +71,7 @@ pub fn photograph_picture(
         height: camera.height,
         radiance: pixels.iter().map(radiance).collect(),
         coverage: vec![1.0; pixels.len()],
+        colour_coverage: None,
     };
     Ok((picture, vec![layer]))
 }

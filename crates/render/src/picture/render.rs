@@ -11,7 +11,7 @@ use baselines::{BaselineError, FirstHits, LayeredOptions, ScatterOptions, ViewsO
 use document::Input;
 use focus::Focus;
 use glam::DVec2;
-use lens::{Camera, FocusOffset, Picture};
+use lens::{Camera, Character, FocusOffset, Picture};
 use light::{LightQuality, LitScene, Steps};
 use project::{Cryptomatte, Layer};
 use rayon::prelude::*;
@@ -510,7 +510,25 @@ fn finish(
     }
     let mut warnings = mattes.map_or_else(Vec::new, |mattes| mattes.warnings);
     warnings.extend(cut_off_warning(lit));
+    warnings.extend(character_warning(camera, options));
     Ok(Rendered { picture, layers, attributes, cost, warnings })
+}
+
+/// A warning if the renderer draws the plain lens in place of one with a character, or the processor in place of the card.
+fn character_warning(camera: &Camera, options: &RenderOptions) -> Option<String> {
+    if camera.character.is_neutral() {
+        return None;
+    }
+    match options.renderer {
+        Renderer::Splat => options.gpu.is_some().then(|| {
+            "pictures of a lens with a character are summed on the processor, not on the GPU".to_string()
+        }),
+        Renderer::Truth => None,
+        Renderer::Blur | Renderer::Layers | Renderer::Views | Renderer::Scatter => Some(
+            "this renderer draws the plain lens, without its character (use the renderers splat or truth)"
+                .to_string(),
+        ),
+    }
 }
 
 /// A warning if light was cut off before it had died away.
@@ -529,7 +547,7 @@ fn render_pinhole(
     options: &RenderOptions,
     steps: &dyn Steps,
 ) -> Result<(Picture, Option<Layer>), RenderError> {
-    let camera = Camera { aperture_radius: 0.0, ..camera.clone() };
+    let camera = Camera { aperture_radius: 0.0, character: Character::default(), ..camera.clone() };
     let unpainted = Focus::constant(lit.scene().clone(), FocusOffset::STANDARD);
     let aovs = options.aovs.iter().copied().filter(|aov| *aov == Aov::Alpha).collect();
     let options = RenderOptions { aovs, ..options.clone() };

@@ -143,15 +143,20 @@ fn combine(left: &Picture, right: &Picture, stereo: &Stereo) -> Picture {
                     picture.coverage[to].copy_from_slice(&from.coverage[of]);
                 }
             }
+            picture.colour_coverage =
+                left.colour_coverage.as_ref().zip(right.colour_coverage.as_ref()).map(|eyes| {
+                    let rows = eyes.0.chunks(width).zip(eyes.1.chunks(width));
+                    rows.flat_map(|(left, right)| [left, right]).flatten().copied().collect()
+                });
             picture
         }
         StereoForm::Anaglyph => {
             let shown = |picture: &Picture, pixel: usize, channel: usize| match stereo.exposure {
                 Exposure::Conserve => picture.radiance[pixel][channel],
-                Exposure::Normalise if picture.coverage[pixel] > 0.0 => {
-                    picture.radiance[pixel][channel] / picture.coverage[pixel]
-                }
-                Exposure::Normalise => 0.0,
+                Exposure::Normalise => match picture.coverage_of_colours(pixel)[channel] {
+                    covered if covered > 0.0 => picture.radiance[pixel][channel] / covered,
+                    _ => 0.0,
+                },
             };
             let pixels = 0..width * height;
             let radiance =
@@ -161,6 +166,7 @@ fn combine(left: &Picture, right: &Picture, stereo: &Stereo) -> Picture {
                 height: left.height,
                 radiance: radiance.collect(),
                 coverage: vec![1.0; width * height],
+                colour_coverage: None,
             }
         }
     }

@@ -145,7 +145,8 @@ impl<'a> JoinedPicture<'a> {
             radiance.append(&mut row.radiance);
             coverage.append(&mut row.coverage);
         }
-        let picture = Picture { width: self.size[0], height: fine.len() as u32, radiance, coverage };
+        let (width, height) = (self.size[0], fine.len() as u32);
+        let picture = Picture { width, height, radiance, coverage, colour_coverage: None };
         Ok(picture.averaged(self.cells))
     }
 }

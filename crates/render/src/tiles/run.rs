@@ -77,6 +77,10 @@ pub fn render_tiles(
     options: &TileOptions<'_>,
     steps: &dyn Steps,
 ) -> Result<TilesReport, RenderError> {
+    if !camera.character.is_neutral() {
+        let what = "a picture of a lens with a character cannot be drawn in tiles (render it whole, or take the character out of the camera)";
+        return Err(RenderError::bad_file(&options.output, what));
+    }
     let lit = lit_scene_of(input, camera)?;
     if lit.tracer().has_splats() {
         let what = "pictures of Gaussian splats are rendered whole (leave out --tiles)";

@@ -5,7 +5,7 @@ use super::little_endian::{
     FIRST_CAPACITY, bytes, read_f32s, read_f64s, read_text, write_f32s, write_f64s, write_text,
 };
 use glam::{DMat4, DVec2};
-use lens::{Aperture, ApertureMask, ApertureShape, Camera};
+use lens::{Aperture, ApertureMask, ApertureShape, Camera, Character};
 use std::io::{self, Read, Write};
 use std::sync::Arc;
 
@@ -77,6 +77,8 @@ pub fn read_camera(from: &mut impl Read) -> Result<Camera, SalfFileError> {
         camera_to_world,
         background: (!background.iter().all(|channel| channel.is_nan())).then_some(background),
         aperture: Aperture { shape, ratio },
+        // What a lens does beside focusing changes the picture alone.
+        character: Character::default(),
     })
 }
 

@@ -110,7 +110,13 @@ fn load_thumbnail(view: &View) -> Result<Thumbnail, SessionError> {
     let factor = photograph.width.max(photograph.height).div_ceil(SIDE_PX);
     let small = photograph.downsampled(factor);
     let coverage = vec![1.0; small.pixels.len()];
-    let picture = Picture { width: small.width, height: small.height, radiance: small.pixels, coverage };
+    let picture = Picture {
+        width: small.width,
+        height: small.height,
+        radiance: small.pixels,
+        coverage,
+        colour_coverage: None,
+    };
     let pixels = to_screen(&picture, Tone { exposure: Exposure::Conserve, ..Tone::default() });
     Ok(Thumbnail { size: [small.width as usize, small.height as usize], pixels })
 }

@@ -55,9 +55,9 @@ impl BakedVisibility {
 pub struct ApertureCell {
     /// Transmission of the aperture's shape, in [0, 1].
     pub transmission: f32,
-    /// Whether its centre is visible from the point.
+    /// Whether its centre is visible from the point, past the lens's rims.
     pub is_visible: bool,
-    /// Linear RGB radiance from the point to its centre; black if not visible.
+    /// Linear RGB radiance from the point to its centre, as the lens's edges weigh it; black if not visible.
     pub radiance: [f32; 3],
 }
 
@@ -87,27 +87,36 @@ impl ApertureImage {
         hit: &SurfaceHit,
     ) -> Option<Self> {
         let (camera, tracer) = (&document.camera, document.stage.tracer());
-        let (radius, depth) = (camera.aperture_radius, camera.camera_from_world(hit.position).z);
+        let position = camera.camera_from_world(hit.position);
+        let (radius, depth) = (camera.aperture_radius, position.z);
         if radius <= 0.0 || depth <= 0.0 {
             return None;
         }
         let light = document.stage.lit.available(camera);
+        let focus = document.focus_at(hit);
+        let character = camera.character_optics();
+        let optics = &character.optics;
+        let chief = optics.chief(position);
+        let kappa = character.at(chief).kappa(1.0 / depth, focus);
         let side = ApertureImage::SIDE;
         let cell = |index: usize| {
             let [row, column] = [index / side, index % side].map(|k| (k as f64 + 0.5) / side as f64);
             let u = DVec2::new(2.0 * column - 1.0, 1.0 - 2.0 * row);
             let eye = camera.world_from_camera((u * radius).extend(0.0));
-            let is_visible = !tracer.is_hidden_from(hit.point, eye);
+            let passes = character.passes(chief, 1.0 / depth, u * radius);
+            let is_visible = passes && !tracer.is_hidden_from(hit.point, eye);
+            let weight = character.edges.weight(u * radius, kappa) as f32;
             ApertureCell {
                 transmission: camera.aperture.transmission(u) as f32,
                 is_visible,
-                radiance: if is_visible { light.total_outgoing(hit.point, eye).to_array() } else { [0.0; 3] },
+                radiance: if is_visible {
+                    (light.total_outgoing(hit.point, eye) * weight).to_array()
+                } else {
+                    [0.0; 3]
+                },
             }
         };
         let cells = (0..side * side).into_par_iter().map(cell).collect();
-        let focus = document.focus_at(hit);
-        let optics = camera.optics();
-        let kappa = optics.kappa(1.0 / depth, focus);
         let circle_px = 2.0 * optics.splat_radius_px(kappa);
         let baked = field.and_then(|field| BakedVisibility::nearest_to(document, field, hit));
         Some(Self { position: hit.position, side, cells, depth, focus, kappa, circle_px, baked })

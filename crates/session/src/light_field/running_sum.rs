@@ -73,6 +73,8 @@ pub(crate) struct LightField {
     has_moved_carried: bool,
     /// The lens of the sum; none while there is no valid sum.
     summed_camera: Option<Camera>,
+    /// The picture of a lens that focuses colours unlike, with green's coverage for all: what the window shows normalised.
+    one_coverage: Option<Picture>,
     /// Changes that the sum does not include yet.
     pending_changes: Changes,
     /// Which samples reach further than the margin; `None` until requested, and after a whole sum.
@@ -168,6 +170,7 @@ impl LightField {
             modelled,
             has_moved_carried: false,
             summed_camera: None,
+            one_coverage: None,
             pending_changes: Changes::default(),
             reach: None,
             whole_seconds: f64::INFINITY,
@@ -325,13 +328,17 @@ impl LightField {
         self.pending_changes = Changes::default();
         self.has_moved_carried |= focus.affects_carried_light();
         self.summed_camera = Some(camera.clone());
+        let picture = self.splatter.picture();
+        let has_fringe = picture.colour_coverage.is_some();
+        self.one_coverage = has_fringe.then(|| picture.clone().with_common_coverage());
         Ok(update)
     }
 
     /// The picture of the sum, where it was made.
     pub fn source(&self) -> PictureSource<'_> {
         let on_card = self.splatter.picture_on_card().map(PictureSource::OnCard);
-        on_card.unwrap_or_else(|| PictureSource::InMemory(self.splatter.picture()))
+        let in_memory = || self.one_coverage.as_ref().unwrap_or(self.splatter.picture());
+        on_card.unwrap_or_else(|| PictureSource::InMemory(in_memory()))
     }
 
     /// The picture of the sum, brought back if it is on a card.
@@ -340,7 +347,7 @@ impl LightField {
     /// The card is lost.
     pub fn fetch_picture(&mut self) -> Result<&Picture, SplatError> {
         self.splatter.fetch_picture()?;
-        Ok(self.splatter.picture())
+        Ok(self.one_coverage.as_ref().unwrap_or(self.splatter.picture()))
     }
 
     /// The light field itself, and where its samples are.

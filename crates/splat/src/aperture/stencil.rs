@@ -112,6 +112,12 @@ pub const RADIUS_BITS: u32 = 6;
 pub const MANTISSA_BITS: u32 = 7;
 
 impl StencilSize {
+    /// The signed radius of the aperture on a stencil of this size, 1/4096 px.
+    pub fn radius(self) -> i32 {
+        let size = (f64::from(self.square).sqrt() * f64::from(1 << (POSITION_BITS - RADIUS_BITS))) as i32;
+        if self.is_turned { -size } else { size }
+    }
+
     /// Of a radius squared, (1/4096 px)²; less than 0 counts as 0. `None` if it is too large for a stencil.
     #[inline(always)]
     pub fn from_radius_square(square: i64, is_turned: bool) -> Option<Self> {

@@ -164,7 +164,7 @@ fn joined(
         (0..SIZE[1]).for_each(|y| joining.add_shared(y, &mut read(y)));
         joining.find_rest();
     }
-    let mut picture = Picture { radiance: Vec::new(), coverage: Vec::new(), ..matte };
+    let mut picture = Picture { radiance: Vec::new(), coverage: Vec::new(), ..matte.clone() };
     for y in 0..SIZE[1] {
         let mut row = read(y);
         joining.join(y, made[0].1.form, &mut row);

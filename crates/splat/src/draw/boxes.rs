@@ -2,6 +2,7 @@
 
 use crate::aperture::stencil::HEIGHT_BITS;
 use crate::canvas::{PIXEL, POSITION_BITS, Word};
+use crate::character::node_shape::NodeShape;
 use crate::draw::image::Image;
 use crate::draw::paper::Paper;
 use crate::draw::pen::Pen;
@@ -18,9 +19,17 @@ impl Pen<'_> {
     /// The boxes of the aperture's parts, each with the node's weight toward it.
     ///
     /// Across a slanted surface the radius r changes, and neighbours move apart or together by 1 + u·∂r/∂x; the footprint
-    /// is stretched as much, so that they still meet. For an unpainted surface ∂r/∂x is its weight's relative tilt.
+    /// is stretched as much, so that they still meet. For an unpainted surface ∂r/∂x is its weight's relative tilt. What rims and edges leave of a part is
+    /// `shape`'s.
     #[inline(always)]
-    pub fn draw_parts<W: Word>(&self, image: &Image, depth_share: i32, paper: &mut Paper<W>, sign: i32) {
+    pub fn draw_parts<W: Word>(
+        &self,
+        image: &Image,
+        depth_share: i32,
+        shape: Option<&NodeShape>,
+        paper: &mut Paper<W>,
+        sign: i32,
+    ) {
         let node = image.node;
         let tilt = [0, 1].map(|k| (node.tilt[k] as i32 * self.stop) >> 14);
         for (index, part_of) in self.parts.iter().enumerate() {
@@ -32,6 +41,7 @@ impl Pen<'_> {
                 continue;
             }
             let share = mul_shift(mul_shift(image.share, part_of.share, 24), exact as u32, 24);
+            let share = shape.map_or(share, |shape| shape.part_share(share, part_of));
             let mut part = Image { share, dither: image.dither.wrapping_add(index as u32), ..*image };
             // Within the part the light leans toward where the weight is, and stays within it however little there is.
             let lean = |k: usize| {

@@ -2,7 +2,9 @@
 
 use crate::aperture::stencil::HEIGHT_BITS;
 use crate::canvas::{PIXEL, POSITION_BITS, Rows, Word};
+use crate::character::node_shape::NodeShape;
 use crate::draw::image::Image;
+use crate::draw::image_frame::ImageFrame;
 use crate::draw::pen::Pen;
 use crate::draw::visible_runs::{Row, VisibleRuns};
 use crate::fixed::{Divisor, ONE, mul_shift, signed_mul_shift};
@@ -92,12 +94,13 @@ impl Pen<'_> {
         Large { height: ((1u64 << height_bits) as f64 / area).round() as u32, height_bits, share }
     }
 
-    /// An image too large for a stencil: each pixel row is looked up in the shape.
+    /// An image too large for a stencil: each pixel row is looked up in the aperture's shape, and cut and weighed by `shape`.
     #[cold]
     pub fn draw_large<W: Word>(
         &self,
         image: &mut Image,
         cells: Option<(&Cells, u32)>,
+        shape: Option<&NodeShape>,
         rows: &mut Rows<W>,
         sign: i32,
     ) {
@@ -105,14 +108,24 @@ impl Pen<'_> {
         image.share = large.share;
         let shift = image.light.shift(large.height_bits);
         let (lines, visible) = (LargeRows::new(image), VisibleRuns::new(self, image));
+        let frame = ImageFrame::new(image, lines.radius);
         for row in lines.first.max(rows.first)..=lines.last.min(rows.end - 1) {
             let v = lines.v(row);
             for run in self.stencils.shape.runs_at(v) {
                 let height = mul_shift(large.height, run.transmission, 16);
                 let span = lines.span(run.start, run.end);
                 let mut add = |start: i32, end: i32, weight: i32| {
-                    let value = image.value(mul_shift(height, weight as u32, 14), shift, row);
-                    rows.add_run(row, rows.clamped(start), rows.clamped(end), value, sign);
+                    let height = mul_shift(height, weight as u32, 14);
+                    let mut add = |start: i32, end: i32, height: u32| {
+                        let value = image.value(height, shift, row);
+                        rows.add_run(row, rows.clamped(start), rows.clamped(end), value, sign);
+                    };
+                    match shape {
+                        None => add(start, end, height),
+                        Some(shape) => shape.visit_row(frame.row(row, Some(v), [start, end]), |part| {
+                            add(part.start, part.end, mul_shift(height, part.weight, 14));
+                        }),
+                    }
                 };
                 match cells {
                     None => add(span[0], span[1], ONE),

@@ -3,6 +3,8 @@
 use crate::aperture::moments::ApertureMoments;
 use crate::aperture::stencil::Stencils;
 use crate::canvas::{PIXEL, POSITION_BITS};
+use crate::character::magnification::Magnification;
+use crate::character::shaper::Shaper;
 use crate::draw::image::{Image, Light, seed};
 use crate::fixed::{ONE, WHOLE, mul_shift};
 use crate::lens_in_use::{Detail, Placed};
@@ -24,6 +26,10 @@ fn halved(x: i32, times: u8) -> i32 {
 pub struct Pen<'a> {
     /// The nodes to draw.
     pub nodes: &'a Nodes,
+    /// What cuts and weighs the aperture, if anything does.
+    pub shaper: Option<&'a Shaper>,
+    /// How much larger the picture of a colour is, where it is.
+    pub magnification: Option<Magnification>,
     /// The images of the aperture, by size.
     pub stencils: &'a Stencils,
     /// The aperture moments of partly occluded nodes.
@@ -148,6 +154,8 @@ impl<'a> Pen<'a> {
         };
         Self {
             nodes,
+            shaper: None,
+            magnification: None,
             stencils,
             moments,
             stop,
@@ -167,6 +175,13 @@ impl<'a> Pen<'a> {
             even_tilt,
             even_partial_tilt,
         }
+    }
+
+    /// The node with this index, where the colour that is drawn shows it.
+    #[inline(always)]
+    pub fn node(&self, index: u32) -> SplatNode {
+        let node = &self.nodes.nodes[index as usize];
+        self.magnification.map_or(*node, |magnification| magnification.moved(node))
     }
 
     /// The image of a node that was placed, with this light.

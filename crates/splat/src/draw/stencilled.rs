@@ -24,7 +24,7 @@ impl Pen<'_> {
         sign: i32,
     ) {
         let Some(size) = self.stencil_size_of(image) else {
-            return self.draw_large(image, cells, &mut paper.rows, sign);
+            return self.draw_large(image, cells, None, &mut paper.rows, sign);
         };
         let mut rows = paper.rows.borrowed();
         // Most images that miss these rows are rejected before their stencil is fetched.
@@ -72,7 +72,7 @@ impl Pen<'_> {
     /// it is `share` (times 2²⁴) of the light: rows of pixels and rows of cells meet only roughly. `None` where a partly occluded
     /// node's few cells are missed.
     #[inline(always)]
-    fn visible_runs<'r, const TAKES_ALL: bool>(
+    pub(super) fn visible_runs<'r, const TAKES_ALL: bool>(
         &self,
         image: &Image,
         cells: &Cells,

@@ -41,7 +41,8 @@ impl ApertureInUse {
 
     /// The pen that draws `nodes` through this aperture.
     pub fn pen<'a>(&'a self, nodes: &'a Nodes, lens: &LensInUse) -> Pen<'a> {
-        Pen::new(nodes, &self.stencils, &self.moments, self.stop, lens.detail)
+        let pen = Pen::new(nodes, &self.stencils, &self.moments, self.stop, lens.detail);
+        Pen { magnification: lens.magnification, ..pen }
     }
 
     /// What is to be summed for `camera`'s picture.

@@ -15,6 +15,8 @@ use std::ops::Range;
 #[derive(Default)]
 pub struct Card {
     gpu: Option<Gpu>,
+    /// The card that would be used, while the processor is.
+    bypassed: Option<Gpu>,
     /// Its sums, from the first render on.
     sums: Option<GpuSums>,
     is_lost: bool,
@@ -28,6 +30,20 @@ impl Card {
     /// Uses another card, or the processor if `None`; sums must be made anew.
     pub fn replace(&mut self, gpu: Option<Gpu>) {
         *self = Self { gpu, keeps_picture: self.keeps_picture, ..Self::default() };
+    }
+
+    /// Uses the processor in place of the card, or the card again. Returns whether that is a change.
+    pub fn bypass(&mut self, bypasses: bool) -> bool {
+        let keeps_picture = self.keeps_picture;
+        match (bypasses, self.gpu.take(), self.bypassed.take()) {
+            (true, Some(gpu), _) => *self = Self { bypassed: Some(gpu), keeps_picture, ..Self::default() },
+            (false, None, Some(gpu)) => *self = Self { gpu: Some(gpu), keeps_picture, ..Self::default() },
+            (_, gpu, bypassed) => {
+                (self.gpu, self.bypassed) = (gpu, bypassed);
+                return false;
+            }
+        }
+        true
     }
 
     /// The same card with other sums of the same nodes, which are uploaded already.

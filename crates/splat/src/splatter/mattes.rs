@@ -32,6 +32,8 @@ impl Splatter {
             self.shares_of = None;
         }
         self.use_gpu(None);
+        // Mattes are green's.
+        self.colours = None;
         self.set_live(true);
         Mattes(self)
     }

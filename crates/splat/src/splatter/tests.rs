@@ -1,5 +1,6 @@
 //! The promises of the sums: order, threads and paint leave no trace.
 
+mod character;
 mod mattes;
 
 use super::*;

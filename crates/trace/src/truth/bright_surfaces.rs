@@ -19,10 +19,10 @@ use super::options::{Sampler, TruthOptions};
 use super::reach::Reach;
 use super::samples;
 use super::sensor::Sensor;
-use super::view::{Blurs, View};
+use super::view::{Arrival, Blurs, RayPlace, View};
 use crate::Radiance;
 use crate::random::{hash, unit};
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use lens::ApertureSampler;
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;
@@ -125,10 +125,15 @@ impl BrightSurfaces {
         let (camera, optics, scene) = (view.camera, &view.optics, view.tracer.scene());
         let position = camera.camera_from_world(point.position(scene));
         let inverse_depth = 1.0 / position.z;
-        let Blurs { own, carried } = view.blurs(Some(point), inverse_depth, u);
+        let place = RayPlace { chief: optics.chief(position), inverse_depth, u };
+        let Blurs { own, carried } = view.blurs(Some(point), place);
         let [to, of_carried] = [own, carried].map(|blur| view.landing_px(position, u, blur.kappa));
         let from = view.landing_px(position, u, optics.standard_kappa(inverse_depth));
-        if !sensor.covers(to) && !sensor.covers(of_carried) {
+        let is_seen = match &view.character {
+            None => sensor.covers(to) || sensor.covers(of_carried),
+            Some(character) => character.passes(place.chief, inverse_depth, u),
+        };
+        if !is_seen {
             return;
         }
         let eye = camera.world_from_camera(u.extend(0.0));
@@ -140,9 +145,17 @@ impl BrightSurfaces {
         let sent = self.rates[point.triangle as usize] / (normal.length() / 2.0);
         let weight = w / if self.reach.contains(from) { w + sent } else { sent };
         let light = radiance.outgoing(point, eye);
-        sensor.expose(to, light.own, weight, 0.0);
+        if let Some(character) = &view.character {
+            for (blur, light) in [(own, light.own), (carried, light.carried)] {
+                for Arrival { at, colours } in view.arrivals(character, place, blur) {
+                    sensor.expose(at, light * colours.as_vec3(), weight, DVec3::ZERO);
+                }
+            }
+            return;
+        }
+        sensor.expose(to, light.own, weight, DVec3::ZERO);
         if light.carried != glam::Vec3::ZERO {
-            sensor.expose(of_carried, light.carried, weight, 0.0);
+            sensor.expose(of_carried, light.carried, weight, DVec3::ZERO);
         }
     }
 }
@@ -171,11 +184,13 @@ fn target_rate(view: &View, radiance: &dyn Radiance, reach: Reach, window: [DVec
     let middle = SurfacePoint { triangle, barycentric: DVec2::splat(1.0 / 3.0) };
     let position = (corners[0] + corners[1] + corners[2]) / 3.0;
     let inverse_depth = 1.0 / position.z;
-    let radius = view.radius_px(view.blurs(Some(middle), inverse_depth, DVec2::ZERO).own.kappa);
+    let place = RayPlace { chief: view.optics.chief(position), inverse_depth, u: DVec2::ZERO };
+    let radius = view.radius_px(view.blurs(Some(middle), place).own.kappa);
     let circle = PI * radius.powi(2) + 1.0;
     // Out of view if the whole triangle, with its widest blur, lies beyond one side of the window.
     let band = (window[0] - reach.low).max(reach.high - window[1]).max_element();
-    let blur = radius.max(view.radius_px(view.optics.standard_kappa(inverse_depth))) + band;
+    let fringe = view.radius_px(view.largest_character_kappa(0.0, 0.0)) + view.lateral_px(window);
+    let blur = radius.max(view.radius_px(view.optics.standard_kappa(inverse_depth))) + band + fringe;
     let pixels = corners.map(|corner| view.camera.pixel_from_q(view.optics.chief(corner)));
     let (low, high) = pixels.iter().fold((pixels[0], pixels[0]), |(l, h), p| (l.min(*p), h.max(*p)));
     if (low - blur).cmpgt(window[1]).any() || (high + blur).cmplt(window[0]).any() {

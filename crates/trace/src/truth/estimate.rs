@@ -1,6 +1,6 @@
 //! The current state of a render: the picture and its standard error.
 
-use lens::{Exposure, Picture};
+use lens::{Exposure, Picture, Vignette};
 use numerics::luminance;
 use rayon::prelude::*;
 
@@ -39,6 +39,24 @@ impl Estimate {
             Exposure::Conserve => &self.standard_error.radiance,
             Exposure::Normalise => &self.normalised_error,
         }
+    }
+
+    /// The estimate as a lens darkens it: `vignette` gives the factors of each pixel, by its index.
+    pub(super) fn darkened(mut self, vignette: impl Fn(usize) -> Vignette) -> Self {
+        for k in 0..self.luminance_error.len() {
+            let at = vignette(k);
+            for picture in [&mut self.picture, &mut self.standard_error] {
+                picture.radiance[k] = picture.radiance[k].map(|light| light * at.angle);
+                picture.coverage[k] = at.coverage(picture.coverage[k]);
+                if let Some(colours) = &mut picture.colour_coverage {
+                    colours[k] = colours[k].map(|covered| at.coverage(covered));
+                }
+            }
+            self.luminance_error[k] *= at.angle;
+            self.normalised_error[k] = self.normalised_error[k].map(|error| error * at.angle * at.rims);
+            self.normalised_luminance_error[k] *= at.angle * at.rims;
+        }
+        self
     }
 
     /// The root of the mean squared standard error over all pixels and channels: the RMSE to expect of
@@ -98,6 +116,8 @@ pub(super) struct Statistics {
     width: u32,
     height: u32,
     pixels: Vec<Moments>,
+    /// Those of red and of blue over their own coverage, where it is not green's.
+    colours: Option<[Vec<Moments>; 2]>,
     pub samples: u32,
     pub passes: u32,
 }
@@ -106,7 +126,7 @@ impl Statistics {
     /// Statistics of a picture of `width` × `height` px, without a sample.
     pub fn new(width: u32, height: u32) -> Self {
         let pixels = vec![Moments::default(); width as usize * height as usize];
-        Self { width, height, pixels, samples: 0, passes: 0 }
+        Self { width, height, pixels, colours: None, samples: 0, passes: 0 }
     }
 
     /// Adds a pass of `samples` samples a pixel; `means` holds the pass's mean of red, green, blue and coverage for
@@ -117,6 +137,24 @@ impl Statistics {
         let weight = f64::from(samples);
         let share = weight / f64::from(self.samples);
         self.pixels.par_iter_mut().zip(means).for_each(|(moments, x)| moments.add(x, weight, share));
+    }
+
+    /// Adds the coverage of red and blue of the pass that was [added](Self::add) last, whose radiance `means` holds, too.
+    pub fn add_colours(
+        &mut self,
+        samples: u32,
+        means: impl IndexedParallelIterator<Item = [f64; 4]>,
+        coverage: impl IndexedParallelIterator<Item = [f64; 2]>,
+    ) {
+        let (weight, count) = (f64::from(samples), self.pixels.len());
+        let share = weight / f64::from(self.samples);
+        let empty = || [(); 2].map(|()| vec![Moments::default(); count]);
+        let [red, blue] = self.colours.get_or_insert_with(empty);
+        let pixels = red.par_iter_mut().zip(blue).zip(means.zip(coverage));
+        pixels.for_each(|((red, blue), ([r, _, b, _], [red_coverage, blue_coverage]))| {
+            red.add([r, r, r, red_coverage], weight, share);
+            blue.add([b, b, b, blue_coverage], weight, share);
+        });
     }
 
     /// The weighted mean of the passes and its standard error, which is infinite before the second pass.
@@ -139,6 +177,21 @@ impl Statistics {
             if has_error {
                 let [r, g, b, luminance] = moments.ratio_variances(1.0 / freedom).map(error);
                 (normalised_error[k], normalised_luminance_error[k]) = ([r, g, b], luminance);
+            }
+        }
+        if let Some(colours) = &self.colours {
+            let pixels = 0..self.pixels.len();
+            let of_pixel = |k: usize| colours.each_ref().map(|moments| moments[k].mean[4] as f32);
+            picture.colour_coverage = Some(pixels.clone().map(of_pixel).collect());
+            let of_pixel =
+                |k: usize| colours.each_ref().map(|moments| error(moments[k].squares[4] / freedom));
+            standard_error.colour_coverage = Some(pixels.clone().map(of_pixel).collect());
+            for k in pixels.filter(|_| has_error) {
+                for (c, moments) in [(0, &colours[0]), (2, &colours[1])] {
+                    normalised_error[k][c] = error(moments[k].ratio_variances(1.0 / freedom)[0]);
+                }
+                // As if colours erred together: more than they do.
+                normalised_luminance_error[k] = luminance(normalised_error[k].map(f64::from)) as f32;
             }
         }
         Estimate {

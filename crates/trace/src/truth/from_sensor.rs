@@ -22,11 +22,11 @@ use super::samples::{self, PixelSample};
 use super::sensor::{self, Sensor};
 use super::sheared::{Sheared, Spread};
 use super::survey::{self, Survey, SurveyHit};
-use super::view::{Blurs, View};
+use super::view::{Arrival, Blurs, RayPlace, View};
 use crate::random::hash;
 use crate::{OutgoingRadiance, Radiance, Ray};
 use glam::{DVec2, DVec3, Vec3};
-use lens::ApertureSampler;
+use lens::{ApertureSampler, CharacterOptics};
 use progress::{Cancelled, Progress, Stage};
 use rayon::prelude::*;
 use scene::SurfacePoint;
@@ -59,8 +59,8 @@ struct TracedRay {
     eye: DVec3,
     /// The direction from there, in the world.
     direction: DVec3,
-    /// 1/depth, camera space; 0 for the background.
-    inverse_depth: f64,
+    /// Where it comes from and where it crosses the aperture.
+    place: RayPlace,
     /// How its light is focused.
     blurs: Blurs,
     /// Where what is its own lands, less where it left: px.
@@ -172,7 +172,7 @@ impl Exposure<'_> {
         let own = self.sensor.pixel(corner).filter(|_| self.sensor.is_own_pixel());
         // What stays in this pixel is summed here first.
         let mut stays = sensor::Sum::default();
-        let mut land = |at: DVec2, light: Vec3, coverage: f64| {
+        let mut land = |at: DVec2, light: Vec3, coverage: DVec3| {
             if own.is_some() && self.sensor.pixel(at) == own {
                 stays.add(self.sensor.quantise(light, 1.0, coverage));
             } else {
@@ -182,6 +182,12 @@ impl Exposure<'_> {
         let mut expose = |sample: &PixelSample| {
             let from = corner + sample.within_px;
             let traced = self.trace(from, sample.u);
+            if let Some(character) = &self.view.character {
+                if character.passes(traced.place.chief, traced.place.inverse_depth, sample.u) {
+                    self.land_by_colour(&traced, character, &mut land);
+                }
+                return;
+            }
             let to = from + traced.displacement_px;
             let of_carried = from + traced.carried_displacement_px;
             if !self.sensor.covers(to) && !self.sensor.covers(of_carried) {
@@ -189,13 +195,13 @@ impl Exposure<'_> {
             }
             let light = self.light(&traced, sample.u);
             if to == of_carried {
-                land(to, light.total(), 1.0);
+                land(to, light.total(), DVec3::ONE);
                 return;
             }
             let carried = f64::from(light.carried_share);
-            land(to, light.own, 1.0 - carried);
+            land(to, light.own, DVec3::splat(1.0 - carried));
             if carried > 0.0 || light.carried != Vec3::ZERO {
-                land(of_carried, light.carried, carried);
+                land(of_carried, light.carried, DVec3::splat(carried));
             }
         };
         if self.estimator.options.sampler == Sampler::Independent {
@@ -212,6 +218,31 @@ impl Exposure<'_> {
         }
     }
 
+    /// Calls `land` with where the light of a ray that the lens lets through lands, colour by colour, and how much it covers there.
+    fn land_by_colour(
+        &self,
+        traced: &TracedRay,
+        character: &CharacterOptics,
+        land: &mut impl FnMut(DVec2, Vec3, DVec3),
+    ) {
+        let view = self.view;
+        let arrivals = |blur| view.arrivals(character, traced.place, blur);
+        let Blurs { own, carried } = traced.blurs;
+        if !arrivals(own).chain(arrivals(carried)).any(|arrival| self.sensor.covers(arrival.at)) {
+            return;
+        }
+        let light = self.light(traced, traced.place.u);
+        let share = f64::from(light.carried_share);
+        for Arrival { at, colours } in arrivals(own) {
+            land(at, light.own * colours.as_vec3(), colours * (1.0 - share));
+        }
+        if share > 0.0 || light.carried != Vec3::ZERO {
+            for Arrival { at, colours } in arrivals(carried) {
+                land(at, light.carried * colours.as_vec3(), colours * share);
+            }
+        }
+    }
+
     /// Chooses the samples of all pixels of the region.
     fn survey(&self, progress: &dyn Progress) -> Result<Survey, Cancelled> {
         let (view, estimator, region) = (self.view, self.estimator, self.sensor.region());
@@ -219,10 +250,11 @@ impl Exposure<'_> {
         let rays = estimator.pixel_samples(view, hash([estimator.seed, SURVEY]), &(0..count));
         let probe = |corner: DVec2, ray: &PixelSample| {
             let traced = self.trace(corner + ray.within_px, ray.u);
-            let standard = view.optics.standard_kappa(traced.inverse_depth);
+            let standard = view.optics.standard_kappa(traced.place.inverse_depth);
             let [radius_px, moved_px] =
                 [standard, traced.blurs.own.kappa - standard].map(|kappa| view.optics.splat_radius_px(kappa));
-            let moved_px = if traced.blurs.own.is_standard { 0.0 } else { moved_px };
+            let stays = traced.blurs.own.is_standard && view.character.is_none();
+            let moved_px = if stays { 0.0 } else { moved_px };
             SurveyHit { radius_px, moved_px, light: self.light(&traced, ray.u).total() }
         };
         Survey::run(region, &rays, view.camera.aperture_radius, probe, progress)
@@ -240,10 +272,12 @@ impl Exposure<'_> {
         let hit = view.tracer.first_hit(&ray);
         let point = hit.as_ref().map(|hit| hit.point);
         let inverse_depth = hit.map_or(0.0, |hit| 1.0 / hit.t);
-        let blurs = view.blurs(point, inverse_depth, u);
+        let chief = p - optics.standard_kappa(inverse_depth) * u / optics.tan_half_yfov;
+        let place = RayPlace { chief, inverse_depth, u };
+        let blurs = view.blurs(point, place);
         let [displacement_px, carried_displacement_px] =
             [blurs.own, blurs.carried].map(|blur| view.displacement_px(blur, inverse_depth, u));
-        TracedRay { point, eye, direction, inverse_depth, blurs, displacement_px, carried_displacement_px }
+        TracedRay { point, eye, direction, place, blurs, displacement_px, carried_displacement_px }
     }
 
     /// The radiance that a sample through the aperture point `u` carries.

@@ -19,7 +19,7 @@ use super::options::{Sampler, TruthOptions};
 use super::patches::{Patch, visit_patches};
 use super::samples;
 use super::sensor::Sensor;
-use super::view::{Blurs, View};
+use super::view::{Arrival, Blurs, RayPlace, View};
 use crate::random::{hash, unit};
 use crate::{Radiance, Ray};
 use glam::{DVec2, DVec3};
@@ -64,7 +64,9 @@ pub(super) struct FromSurfaces {
 impl FromSurfaces {
     /// Cuts the surfaces that can reach the sensor into pieces that send rays.
     pub fn new(view: &View, radiance: &dyn Radiance, sensor: &Sensor, options: &TruthOptions) -> Self {
-        let window = sensor.window();
+        let [low, high] = sensor.window();
+        let lateral = view.lateral_px([low, high]);
+        let window = [low - lateral, high + lateral];
         let triangles = 0..view.tracer.scene().triangles.len() as u32;
         let pieces = triangles.into_par_iter().flat_map_iter(|triangle| {
             let mut sources = Vec::new();
@@ -120,7 +122,7 @@ const GOLDEN_RATIO: f64 = 0.618_033_988_749_894_8;
 
 /// The tiles of infinity that light may come from.
 fn infinity(view: &View, window: [DVec2; 2]) -> impl Iterator<Item = Source> {
-    let radius = view.radius_px(FocusBox::of_background(view).largest_kappa(view, [0.0; 2]));
+    let radius = FocusBox::of_background(view).background_radius_px(view, window);
     let (low, high) = (window[0] - radius, window[1] + radius);
     let size = high - low;
     let usable = size.is_finite() && size.cmpgt(DVec2::ZERO).all();
@@ -161,7 +163,8 @@ impl Source {
         let w = rims.map(|u| view.optics.pixels_by_area(normal, at, u * view.optics.aperture_radius));
         let pixels = w.into_iter().fold(0.0, f64::max) * patch.area();
         let inverse_depths = [1.0 / farthest, 1.0 / nearest.max(farthest / 3.0)];
-        let radius = view.radius_px(patch.focus.largest_kappa(view, inverse_depths));
+        let radius =
+            view.radius_px(patch.focus.largest_kappa(view, inverse_depths, patch.farthest_chief(view)));
         let [low, high] = match patch.inverse_depths() {
             Some(_) => patch.sharp_image(view),
             None => [view.camera.pixel_from_q(view.optics.chief(at)); 2],
@@ -188,9 +191,14 @@ impl Source {
                 if position.z <= 0.0 {
                     return;
                 }
-                let Blurs { own, carried } = view.blurs(Some(point), 1.0 / position.z, u);
+                let place =
+                    RayPlace { chief: view.optics.chief(position), inverse_depth: 1.0 / position.z, u };
+                let Blurs { own, carried } = view.blurs(Some(point), place);
                 let [to, of_carried] = [own, carried].map(|blur| view.landing_px(position, u, blur.kappa));
-                let is_visible = sensor.covers(to) || sensor.covers(of_carried);
+                let is_visible = match &view.character {
+                    None => sensor.covers(to) || sensor.covers(of_carried),
+                    Some(character) => character.passes(place.chief, place.inverse_depth, u),
+                };
                 if !is_visible || !is_met_first(view, *triangle, eye, world - eye) {
                     return;
                 }
@@ -198,24 +206,46 @@ impl Source {
                 let w = view.optics.pixels_by_area(normal.normalize_or_zero(), position, u);
                 let weight = w * area / self.rate;
                 let light = radiance.outgoing(point, eye);
-                let carried = f64::from(light.carried_share);
-                sensor.expose(to, light.own, weight, 1.0 - carried);
-                if carried > 0.0 || light.carried != glam::Vec3::ZERO {
-                    sensor.expose(of_carried, light.carried, weight, carried);
+                let share = f64::from(light.carried_share);
+                if let Some(character) = &view.character {
+                    let parts = [(own, light.own, 1.0 - share), (carried, light.carried, share)];
+                    for (blur, light, coverage) in parts {
+                        for Arrival { at, colours } in view.arrivals(character, place, blur) {
+                            sensor.expose(at, light * colours.as_vec3(), weight, coverage * colours);
+                        }
+                    }
+                    return;
+                }
+                sensor.expose(to, light.own, weight, DVec3::splat(1.0 - share));
+                if share > 0.0 || light.carried != glam::Vec3::ZERO {
+                    sensor.expose(of_carried, light.carried, weight, DVec3::splat(share));
                 }
             }
             Extent::Infinity { corner, size } => {
                 let sharp = camera.q_from_pixel(*corner + *size * v);
                 let slope = sharp * view.optics.tan_half_yfov;
-                let kappa = view.blurs(None, 0.0, u).own.kappa;
-                let to = view.landing_px(slope.extend(1.0), u, kappa);
+                let place = RayPlace { chief: sharp, inverse_depth: 0.0, u };
+                let own = view.blurs(None, place).own;
+                let to = view.landing_px(slope.extend(1.0), u, own.kappa);
                 let direction = camera.world_direction(slope.extend(1.0));
                 let ray = Ray { origin: eye, direction, t_min: 0.0, t_max: f64::INFINITY, skip: None };
-                if !sensor.covers(to) || view.tracer.any_hit(&ray) {
+                let is_visible = match &view.character {
+                    None => sensor.covers(to),
+                    Some(character) => character.passes(sharp, 0.0, u),
+                };
+                if !is_visible || view.tracer.any_hit(&ray) {
                     return;
                 }
                 let weight = size.element_product() / self.rate;
-                sensor.expose(to, radiance.environment(direction), weight, 1.0);
+                let light = radiance.environment(direction);
+                match &view.character {
+                    None => sensor.expose(to, light, weight, DVec3::ONE),
+                    Some(character) => {
+                        for Arrival { at, colours } in view.arrivals(character, place, own) {
+                            sensor.expose(at, light * colours.as_vec3(), weight, colours);
+                        }
+                    }
+                }
             }
         }
     }

@@ -63,30 +63,66 @@ impl FocusBox {
         }
     }
 
-    /// The largest defocus |κ|, 1/length, at depths whose reciprocals lie between both `inverse_depths`.
-    pub fn largest_kappa(&self, view: &View, inverse_depths: [f64; 2]) -> f64 {
-        largest(inverse_depths.into_iter().flat_map(|inverse_depth| self.corners(view, inverse_depth)))
+    /// The largest |t·(1 − a)|, by which the field's curvature counts.
+    fn curving(&self) -> f64 {
+        match self {
+            Self::Painted(bounds) => {
+                let t = bounds.iter().fold(0.0, |most: f64, focus| most.max(focus.t.abs()));
+                let anchor = bounds.iter().fold(1.0, |least: f64, focus| least.min(focus.anchor));
+                t * (1.0 - anchor)
+            }
+            Self::ByRay(_) => 0.0,
+        }
     }
 
-    /// The largest |κ − κ_standard| for such depths; exactly 0 if nothing is painted.
-    pub fn largest_displacement(&self, view: &View, inverse_depths: [f64; 2]) -> f64 {
+    /// What a lens's character adds to |κ| at most, 1/length, for points up to `chief` half-heights from the axis.
+    fn character_kappa(&self, view: &View, chief: f64) -> f64 {
+        view.largest_character_kappa(chief, self.curving())
+    }
+
+    /// The largest defocus |κ|, 1/length, at depths whose reciprocals lie between both `inverse_depths`, up to `chief` half-heights from
+    /// the axis.
+    pub fn largest_kappa(&self, view: &View, inverse_depths: [f64; 2], chief: f64) -> f64 {
+        let plain =
+            largest(inverse_depths.into_iter().flat_map(|inverse_depth| self.corners(view, inverse_depth)));
+        plain + self.character_kappa(view, chief)
+    }
+
+    /// The largest radius of the background's aperture images that may reach `window`, px.
+    pub fn background_radius_px(&self, view: &View, window: [DVec2; 2]) -> f64 {
+        let plain = view.radius_px(self.largest_kappa(view, [0.0; 2], 0.0));
+        let chief = view.farthest_background(window, plain, self.curving());
+        view.radius_px(self.largest_kappa(view, [0.0; 2], chief))
+    }
+
+    /// How far the background's light that may reach `window` is displaced at most, px.
+    pub fn background_displacement_px(&self, view: &View, window: [DVec2; 2]) -> f64 {
+        let chief = view.farthest_background(window, self.background_radius_px(view, window), self.curving());
+        view.radius_px(self.largest_displacement(view, [0.0; 2], chief))
+    }
+
+    /// The largest |κ − κ_standard| for such points, κ_standard that of a lens without character; exactly 0 if nothing is painted and the
+    /// lens has none.
+    pub fn largest_displacement(&self, view: &View, inverse_depths: [f64; 2], chief: f64) -> f64 {
+        let character = self.character_kappa(view, chief);
         if let Self::Painted(bounds) = self
             && bounds.iter().all(|focus| focus.is_standard())
         {
-            return 0.0;
+            return character;
         }
-        largest(inverse_depths.into_iter().flat_map(|inverse_depth| {
-            let standard = view.optics.standard_kappa(inverse_depth);
-            self.corners(view, inverse_depth).map(|kappa| kappa - standard)
-        }))
+        character
+            + largest(inverse_depths.into_iter().flat_map(|inverse_depth| {
+                let standard = view.optics.standard_kappa(inverse_depth);
+                self.corners(view, inverse_depth).map(|kappa| kappa - standard)
+            }))
     }
 
     /// The largest |κ·z|, without unit, for depths in (0, `depth`]: finite although κ is not.
-    pub fn largest_kappa_times_depth(&self, view: &View, depth: f64) -> f64 {
+    pub fn largest_kappa_times_depth(&self, view: &View, depth: f64, chief: f64) -> f64 {
         let [at_depth, at_half] = [depth, depth / 2.0].map(|z| self.corners(view, 1.0 / z).map(|k| k * z));
         // A straight line in z, whose value at 0 follows from two others.
         let at_zero = (0..4).map(|k| 2.0 * at_half[k] - at_depth[k]);
-        largest(at_depth.into_iter().chain(at_zero))
+        largest(at_depth.into_iter().chain(at_zero)) + depth * self.character_kappa(view, chief)
     }
 }
 

@@ -81,6 +81,13 @@ impl Patch {
         [a.min(b).min(c), a.max(b).max(c)]
     }
 
+    /// How far its farthest point's chief place is from the axis, half-heights; infinite if it touches the aperture plane.
+    pub fn farthest_chief(&self, view: &View) -> f64 {
+        let chief =
+            |corner: DVec3| if corner.z > 0.0 { view.optics.chief(corner).length() } else { f64::INFINITY };
+        self.corners.map(chief).into_iter().fold(0.0, f64::max)
+    }
+
     /// The patch's area, square units of length.
     pub fn area(&self) -> f64 {
         let [a, b, c] = self.corners;
@@ -94,7 +101,8 @@ impl Patch {
             return false;
         }
         let optics = &view.optics;
-        let spread = optics.aperture_radius * self.focus.largest_kappa_times_depth(view, farthest);
+        let spread = optics.aperture_radius
+            * self.focus.largest_kappa_times_depth(view, farthest, self.farthest_chief(view));
         let [low, high] = window.map(|px| view.camera.q_from_pixel(px) * optics.tan_half_yfov);
         // Of the window in half-heights y points up: its lower rim has the larger pixel row.
         let least =
@@ -119,7 +127,8 @@ impl Patch {
             return false;
         }
         let [low, high] = self.sharp_image(view);
-        let radius = view.radius_px(self.focus.largest_kappa(view, inverse_depths));
+        let radius =
+            view.radius_px(self.focus.largest_kappa(view, inverse_depths, self.farthest_chief(view)));
         let is_inside = (low - radius).cmpge(window[0]).all() && (high + radius).cmple(window[1]).all();
         is_inside || (high - low).max_element() <= small.max(radius)
     }

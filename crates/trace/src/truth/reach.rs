@@ -26,15 +26,16 @@ impl Reach {
     /// The positions of the pinhole picture from which light can be displaced into `window` (least and greatest
     /// corner, px).
     pub fn new(view: &View, window: [DVec2; 2]) -> Self {
-        let window = Self { low: window[0], high: window[1] };
+        let window = Self { low: window[0], high: window[1] }.widened(view.lateral_px(window));
         let widest = window.widened(WIDEST * view.optics.half_height_px);
-        let background = FocusBox::of_background(view).largest_displacement(view, [0.0; 2]);
+        let background =
+            FocusBox::of_background(view).background_displacement_px(view, [window.low, window.high]);
         let triangles = 0..view.tracer.scene().triangles.len() as u32;
         let reach = triangles
             .into_par_iter()
             .map(|triangle| Self::of_triangle(view, window, triangle))
             .reduce(|| window, Self::union)
-            .union(window.widened(view.radius_px(background)));
+            .union(window.widened(background));
         Self { low: reach.low.max(widest.low).floor(), high: reach.high.min(widest.high).ceil() }
     }
 
@@ -45,7 +46,8 @@ impl Reach {
                 reach = Self { low: DVec2::NEG_INFINITY, high: DVec2::INFINITY };
                 return;
             };
-            let displacement = patch.focus.largest_displacement(view, inverse_depths);
+            let chief = patch.farthest_chief(view);
+            let displacement = patch.focus.largest_displacement(view, inverse_depths, chief);
             if displacement > 0.0 {
                 let standard =
                     inverse_depths.map(|inverse| view.radius_px(view.optics.standard_kappa(inverse)));

@@ -2,7 +2,7 @@
 
 use super::filter::ReconstructionFilter;
 use super::options::Region;
-use glam::{DVec2, Vec3};
+use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicI64, Ordering};
 
@@ -39,14 +39,14 @@ impl Quantiser {
     }
 }
 
-/// A sum of quantised samples: red, green, blue, coverage.
+/// A sum of quantised samples: red, green, blue, the coverage of green, that of red and of blue.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Sum([i64; 4]);
+pub(super) struct Sum([i64; 6]);
 
 impl Sum {
     /// Adds another sum. Saturates, which [`Sensor::add`] then sees as overflow.
     pub fn add(&mut self, other: Sum) {
-        (0..4).for_each(|c| self.0[c] = self.0[c].saturating_add(other.0[c]));
+        (0..6).for_each(|c| self.0[c] = self.0[c].saturating_add(other.0[c]));
     }
 }
 
@@ -57,16 +57,20 @@ pub(super) struct Sensor {
     quantiser: Quantiser,
     /// Red, green, blue and coverage a pixel.
     pixels: Vec<[AtomicI64; 4]>,
+    /// The coverage of red and blue a pixel, where it is not that of green.
+    colours: Option<Vec<[AtomicI64; 2]>>,
     overflowed: AtomicBool,
 }
 
 impl Sensor {
     /// A black sensor for `region`, for at most `samples` samples a pixel in each pass.
-    pub fn new(region: Region, filter: ReconstructionFilter, samples: u32) -> Self {
+    /// `has_fringe`: colours land apart, each with a coverage of its own.
+    pub fn new(region: Region, filter: ReconstructionFilter, samples: u32, has_fringe: bool) -> Self {
         let mut pixels = Vec::new();
         pixels.resize_with(region.pixels(), Default::default);
+        let colours = has_fringe.then(|| (0..region.pixels()).map(|_| Default::default()).collect());
         let quantiser = Quantiser::for_samples(samples);
-        Self { region, filter, quantiser, pixels, overflowed: AtomicBool::new(false) }
+        Self { region, filter, quantiser, pixels, colours, overflowed: AtomicBool::new(false) }
     }
 
     /// The rectangle of the picture, px, whose pixels it has.
@@ -107,18 +111,19 @@ impl Sensor {
     }
 
     /// The integers of a sample. Negative or undefined channels of `radiance` are 0, infinite ones the largest
-    /// f32; `weight` ≥ 0 is what it weighs, in samples, and `coverage` the share of it that covers, in [0, 1].
-    pub fn quantise(&self, radiance: Vec3, weight: f64, coverage: f64) -> Sum {
+    /// f32; `weight` ≥ 0 is what it weighs, in samples, and `coverage` how much of it covers in each colour.
+    pub fn quantise(&self, radiance: Vec3, weight: f64, coverage: DVec3) -> Sum {
         let light = weight * f64::from(self.quantiser.light).exp2();
         let [r, g, b] =
             radiance.to_array().map(|c| (f64::from(c.clamp(0.0, f32::MAX)) * light).round() as i64);
-        let coverage = coverage * weight * f64::from(self.quantiser.coverage).exp2();
-        Sum([r, g, b, coverage.round() as i64])
+        let scale = f64::from(self.quantiser.coverage).exp2();
+        let [red, green, blue] = coverage.to_array().map(|share| (share * weight * scale).round() as i64);
+        Sum([r, g, b, green, red, blue])
     }
 
     /// Adds a sample that lands at `position`, px, through the filter: linear RGB radiance times `weight`, and
     /// coverage.
-    pub fn expose(&self, position: DVec2, radiance: Vec3, weight: f64, coverage: f64) {
+    pub fn expose(&self, position: DVec2, radiance: Vec3, weight: f64, coverage: DVec3) {
         if self.is_own_pixel() {
             if let Some(pixel) = self.pixel(position) {
                 self.add(pixel, self.quantise(radiance, weight, coverage));
@@ -135,7 +140,8 @@ impl Sensor {
     /// Adds a sum to a pixel. All terms are 0 or more, so whether the total overflows does not depend on
     /// their order.
     pub fn add(&self, pixel: usize, sum: Sum) {
-        for (total, term) in self.pixels[pixel].iter().zip(sum.0) {
+        let colours = self.colours.iter().flat_map(|colours| &colours[pixel]);
+        for (total, term) in self.pixels[pixel].iter().chain(colours).zip(sum.0) {
             let before = total.fetch_add(term, Ordering::Relaxed);
             if before.checked_add(term).is_none_or(|after| after == i64::MAX) {
                 self.overflowed.store(true, Ordering::Relaxed);
@@ -146,6 +152,7 @@ impl Sensor {
     /// Makes the sensor black again.
     pub fn clear(&mut self) {
         self.pixels.par_iter_mut().for_each(|sums| *sums = Default::default());
+        self.colours.iter_mut().flatten().for_each(|sums| *sums = Default::default());
         self.overflowed = AtomicBool::new(false);
     }
 
@@ -166,5 +173,13 @@ impl Sensor {
             let [r, g, b, covered] = sums.each_ref().map(|sum| sum.load(Ordering::Relaxed) as f64);
             [r * light, g * light, b * light, covered * coverage]
         })
+    }
+
+    /// The mean coverage of red and blue in every pixel; `None` where it is that of green.
+    pub fn colour_means(&self, samples: u32) -> Option<impl IndexedParallelIterator<Item = [f64; 2]> + '_> {
+        let step = f64::from(-self.quantiser.coverage).exp2() / f64::from(samples);
+        let mean = move |sum: &AtomicI64| sum.load(Ordering::Relaxed) as f64 * step;
+        let colours = self.colours.as_ref()?;
+        Some(colours.par_iter().map(move |sums| sums.each_ref().map(mean)))
     }
 }

@@ -8,6 +8,7 @@ use std::sync::Arc;
 use test_scenes::{Mesh, scene_of, white};
 
 mod agreement;
+mod character;
 mod convergence;
 
 /// Every surface sends its material's base colour; the background is black.

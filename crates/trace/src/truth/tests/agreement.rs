@@ -54,7 +54,7 @@ fn colored(color: Vec4) -> Material {
 
 /// A floor from behind the camera to far away, a wall with a hole in front of a sky, a ball, a fence near the lens
 /// with see-through bars, a card edge-on to the lens and a bright lamp outside the frame.
-fn stage() -> Arc<scene::Scene> {
+pub(super) fn stage() -> Arc<scene::Scene> {
     let floor = Mesh::rectangle(DVec3::new(-20.0, -0.8, 5.0), DVec3::X * 40.0, DVec3::new(0.0, 0.0, -60.0));
     let wall = Mesh::rectangle(DVec3::new(-2.0, -0.8, -6.0), DVec3::X * 2.5, DVec3::Y * 2.0);
     let glass = Material { alpha: AlphaMode::Blend, ..colored(vec4(0.3, 0.9, 0.4, 0.6)) };
@@ -75,7 +75,7 @@ fn stage() -> Arc<scene::Scene> {
 }
 
 /// Floor (and sky), wall, ball, see-through bar, bar, card, lamp.
-fn focuses() -> [(&'static str, [FocusOffset; 7]); 4] {
+pub(super) fn focuses() -> [(&'static str, [FocusOffset; 7]); 4] {
     let all = |t, anchor| [FocusOffset::new(t, anchor); 7];
     let mixed = [(1.0, 0.0), (1.04, 0.3), (0.94, 1.0), (1.0, 1.0), (0.97, 0.0), (1.05, 0.7), (1.08, 1.0)];
     [
@@ -99,7 +99,7 @@ fn apertures() -> Vec<lens::Aperture> {
 }
 
 /// The share of numbers (radiances and coverages) that lie at most three standard errors apart.
-fn share_in_agreement(a: &Estimate, b: &Estimate) -> f64 {
+pub(super) fn share_in_agreement(a: &Estimate, b: &Estimate) -> f64 {
     let numbers = |picture: &Picture| -> Vec<f64> {
         picture.radiance.iter().flatten().chain(&picture.coverage).map(|&x| f64::from(x)).collect()
     };
@@ -114,7 +114,7 @@ fn share_in_agreement(a: &Estimate, b: &Estimate) -> f64 {
 const SHARE: f64 = 0.9975;
 /// The same for few samples that are spread out no better than independent ones: then even exact errors are more
 /// than three of their estimates apart in 0.3 to 0.5 % of the numbers (Student's t, 31 to 62 degrees of freedom).
-const SHARE_OF_FEW: f64 = 0.994;
+pub(super) const SHARE_OF_FEW: f64 = 0.994;
 
 fn estimate(
     scene: &Arc<scene::Scene>,
@@ -127,7 +127,7 @@ fn estimate(
     render(&tracer, &Shaded(scene.clone()), &focus, camera, &options, &Unwatched).unwrap()
 }
 
-fn both(
+pub(super) fn both(
     scene: &Arc<scene::Scene>,
     focus: &[FocusOffset],
     camera: &Camera,
@@ -138,7 +138,7 @@ fn both(
     })
 }
 
-fn small(samples_per_pixel: u32) -> (Camera, TruthOptions) {
+pub(super) fn small(samples_per_pixel: u32) -> (Camera, TruthOptions) {
     let camera = Camera { width: 48, height: 32, aperture_radius: 0.1, sensor_height: 0.06, ..camera() };
     (camera, TruthOptions { samples_per_pixel, ..TruthOptions::default() })
 }
