@@ -483,7 +483,9 @@ fn edit_camera(session: &mut Session, random: &mut Random, hit: Option<SurfaceHi
         )),
         _ => match hit {
             Some(hit) => return apply(session, Command::FocusHere(hit)),
-            None => CameraEdit::Whole(lens::Camera { focus_distance: 1.0 + random.unit(), ..camera }),
+            None => {
+                CameraEdit::Whole(Box::new(lens::Camera { focus_distance: 1.0 + random.unit(), ..camera }))
+            }
         },
     };
     // A slider that is dragged makes one step of many edits.

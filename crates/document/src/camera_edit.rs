@@ -34,7 +34,7 @@ pub enum CameraEdit {
     /// Pose, with glTF's axes.
     Pose(DMat4),
     /// All properties at once: a camera of the scene, a preset.
-    Whole(Camera),
+    Whole(Box<Camera>),
     /// All properties, and what the focus is held on: a bookmark.
     Held(Box<HeldCamera>),
 }
@@ -88,7 +88,7 @@ impl CameraEdit {
                 "Camera pose"
             }
             Self::Whole(whole) => {
-                *camera = whole;
+                *camera = *whole;
                 "Camera"
             }
             // What they do besides is done by `HeldCamera::edited`.

@@ -10,7 +10,7 @@
 //! | --- | --- |
 //! | `input`, `scene_file` | scenes, projects, light fields and captures, as read from files |
 //! | `splat_focus` | focus maps of Gaussian splats as tables |
-//! | `stage`, `surface_colors` | a scene that can be painted on |
+//! | `stage` | a scene that can be painted on |
 //! | `spread_task` | strokes to be solved for before they can be spread |
 //! | `open_document`, `undo` | the document and its undo history |
 //! | `editing` | edits of paint, as undo steps that can be recorded and replayed |
@@ -64,10 +64,9 @@ mod picking;
 mod scene_camera;
 mod scene_file;
 mod scene_reload;
-mod spread_task;
 mod splat_focus;
+mod spread_task;
 mod stage;
-mod surface_colors;
 mod undo;
 
 pub use adjustment_view::AdjustmentView;
@@ -90,7 +89,7 @@ pub use picking::{SurfaceHit, chief_ray, depth_in_direction, pick, view_ray};
 pub use relief::{DepthRepair, DepthStroke};
 pub use scene_camera::shot_camera_from;
 pub use scene_file::{atlas_error, load_scene};
-pub use spread_task::{SolvedSpread, SpreadTask};
 pub use splat_focus::{is_focus_table, write_splat_focus};
+pub use spread_task::{SolvedSpread, SpreadTask};
 pub use stage::{Stage, build_canvas};
 pub use undo::{HistoryStep, KeyedLens, StepEffect, UndoHistory, UndoState};

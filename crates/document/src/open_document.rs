@@ -8,8 +8,8 @@ use crate::input::{CameraChoice, Input, InputKind, VariantChoice, camera_from_ph
 use crate::paint_transfer::TransferredPaint;
 use crate::picking::SurfaceHit;
 use crate::scene_camera::shot_camera_from;
-use crate::spread_task::SolvedSpread;
 use crate::splat_focus::{is_focus_table, read_splat_focus};
+use crate::spread_task::SolvedSpread;
 use crate::stage::Stage;
 use crate::undo::{HistoryStep, UndoHistory};
 use atlas::UnwrapOptions;

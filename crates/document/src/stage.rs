@@ -1,10 +1,11 @@
 //! The stage: a scene with its atlas, ready for rays and dabs.
 
+mod surface_colors;
+
 use crate::error::DocumentError;
 use crate::input::{Input, load_capture, picture_atlas};
 use crate::picking::SurfaceHit;
 use crate::scene_file::load_variant;
-use crate::surface_colors::surface_colors;
 use atlas::{Atlas, TexelMap, UnwrapOptions};
 use focus::{Canvas, FocusMap, SurfaceGraph};
 use glam::{DVec2, DVec3};
@@ -15,6 +16,7 @@ use project::{CaptureChoices, surface_to_bytes};
 use relief::DepthStroke;
 use scene::{BackFaces, Scene, World};
 use std::sync::{Arc, OnceLock};
+use surface_colors::surface_colors;
 use trace::Tracer;
 
 /// Scenes of at least this many triangles take a second or more to unwrap, and are announced before they can be painted on.

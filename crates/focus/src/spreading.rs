@@ -12,6 +12,7 @@ mod spread_field;
 mod spread_labels;
 mod spread_settings;
 mod surface_graph;
+mod surface_link;
 mod surface_links;
 
 pub use spread_field::SpreadField;

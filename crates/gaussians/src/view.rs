@@ -14,7 +14,6 @@ mod tile_tracer;
 mod tiles;
 mod world_ray;
 
-use eye::MAX_ALPHA;
 pub use eye::{Eye, Hit};
 pub(crate) use eye_raster::EyeRaster;
 pub(crate) use ray_light::end_at;
@@ -28,6 +27,9 @@ use glam::{DMat3, DVec2, DVec3};
 use lens::{Camera, Optics};
 use rayon::prelude::*;
 use shape::CameraShape;
+
+/// The most that a splat stops, as in training.
+const MAX_ALPHA: f64 = 0.99;
 pub use shape::LOW_PASS_PX2;
 pub use world_ray::CloudRay;
 

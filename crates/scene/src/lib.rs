@@ -48,6 +48,7 @@ mod photographs;
 mod picture_decoder;
 mod queries;
 mod splat_file;
+mod splats_in_scene;
 mod surface_mesh;
 mod texture;
 mod world;

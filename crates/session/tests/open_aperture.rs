@@ -77,10 +77,10 @@ fn a_stop_up_and_a_rack_need_no_bake() {
     };
     let wide = Camera { aperture_radius: start.aperture_radius * 1.41, ..start.clone() };
     let edits = [
-        ("a rack", CameraEdit::Whole(rack(&start, 0.8))),
-        ("back", CameraEdit::Whole(start.clone())),
-        ("a stop up", CameraEdit::Whole(wide.clone())),
-        ("that one racked", CameraEdit::Whole(rack(&wide, 1.2))),
+        ("a rack", CameraEdit::Whole(Box::new(rack(&start, 0.8)))),
+        ("back", CameraEdit::Whole(Box::new(start.clone()))),
+        ("a stop up", CameraEdit::Whole(Box::new(wide.clone()))),
+        ("that one racked", CameraEdit::Whole(Box::new(rack(&wide, 1.2)))),
     ];
     let shown: Vec<_> = edits
         .into_iter()
@@ -101,7 +101,7 @@ fn a_stop_up_and_a_rack_need_no_bake() {
     let beyond =
         [("two stops up", twice.clone(), picture, 12.0), ("two stops up, baked", twice, (*own).clone(), 0.1)];
     for (what, camera, picture, loss_db) in shown.into_iter().chain(beyond) {
-        reference.apply(Command::EditCamera(CameraEdit::Whole(camera))).unwrap();
+        reference.apply(Command::EditCamera(CameraEdit::Whole(Box::new(camera)))).unwrap();
         at_work::settle(&mut reference);
         let exact = reference.exact_picture().unwrap();
         let own = psnr(&reference.preview().unwrap().picture.fetch().unwrap(), &exact);

@@ -1,6 +1,7 @@
 //! Errors of this crate.
 
-use crate::MAX_LABELS;
+/// The most labels that are spread at once.
+pub const MAX_LABELS: usize = 16;
 
 /// Why labels cannot be spread.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

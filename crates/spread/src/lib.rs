@@ -33,7 +33,7 @@ mod similarity;
 mod walker_field;
 
 pub use affinity::{Affinity, LEAST_AFFINITY, NodeAppearance};
-pub use error::SpreadError;
+pub use error::{MAX_LABELS, SpreadError};
 pub use graph::Graph;
 pub use similarity::{Dissimilarity, tolerances_from};
-pub use walker_field::{GREATEST_REACH, LEAST_REACH, MAX_LABELS, Outcomes, WalkerField};
+pub use walker_field::{GREATEST_REACH, LEAST_REACH, Outcomes, WalkerField};

@@ -1,13 +1,11 @@
 //! The outcomes of screened random walks, at a ladder of reaches and anywhere between.
 
+use crate::error::MAX_LABELS;
 use crate::multigrid::{Hierarchy, Screened};
 use crate::{Graph, SpreadError};
 use progress::{Progress, Stage};
 use rayon::prelude::*;
 use std::ops::Range;
-
-/// The most labels that are spread at once.
-pub const MAX_LABELS: usize = 16;
 
 /// The least and the greatest mean free path of a walker, in links.
 pub const LEAST_REACH: f64 = 2.0;

@@ -2,6 +2,7 @@
 
 mod beams;
 mod splat_surface;
+mod splat_tree;
 mod square_visibility;
 
 use crate::hierarchy::Hierarchy;
@@ -12,7 +13,7 @@ use crate::watertight::{Crossing, ShearedRay, has_area, in_plane};
 use crate::{Hit, Ray};
 use glam::DVec3;
 use scene::{AlphaMode, Scene, SurfacePoint};
-use splat_surface::SplatTree;
+use splat_tree::SplatTree;
 use std::sync::{Arc, OnceLock};
 
 /// Finds what a ray hits.

@@ -119,7 +119,9 @@ pub fn is_possible(id: CommandId, state: &MenuState<'_>) -> bool {
         Open | OpenCapture | OpenDemo | Quit | ResetLayout | PaintAsNavigator | PaintBeside | PaintAbove
         | PictureAlone | EnlargePanel | FloatPanel | FullScreen | ShowInspector | NextToneCurve
         | LightOrDark | ScaleUp | ScaleDown | ScaleReset | ShowGuides | ShowFocusPlane | KeysBlender
-        | KeysSubstance | KeysKrita | ImportPreset | Palette | Book | Shortcuts | ShowMessages | About => true,
+        | KeysSubstance | KeysKrita | ImportPreset | Palette | Book | Shortcuts | ShowMessages | About => {
+            true
+        }
         SelectAll | InvertSelection | RefineSelection | MaskFromSelection => {
             state.document.is_some_and(|document| document.selection.is_some())
         }

@@ -42,12 +42,15 @@ const SLIDER_WIDTH: f32 = 182.0;
 
 /// Sliders for size, strength and hardness, as many as fit; the inspector has all of them.
 fn brush_sliders(ui: &mut Ui, brush: &mut Brush, largest: f64) {
-    let sliders: [&dyn Fn(&mut Ui, &mut Brush); 3] =
-        [&|ui, brush| size_slider(ui, brush, largest), &strength_slider, &hardness_slider];
-    for slider in sliders {
-        if ui.available_width() > FOCUS_WIDTH + CIRCLE_WIDTH + SLIDER_WIDTH {
-            slider(ui, brush);
-        }
+    let has_room = |ui: &Ui| ui.available_width() > FOCUS_WIDTH + CIRCLE_WIDTH + SLIDER_WIDTH;
+    if has_room(ui) {
+        size_slider(ui, brush, largest);
+    }
+    if has_room(ui) {
+        strength_slider(ui, brush);
+    }
+    if has_room(ui) {
+        hardness_slider(ui, brush);
     }
     ui.separator();
 }

@@ -97,11 +97,7 @@ impl ViewHeader<'_> {
             DockState::Tab | DockState::Floating => false,
         };
         match self.pane {
-            Pane::Paint if self.docked == DockState::Navigator => {
-                if ui.available_width() >= WIDTH_WITH_SLIDER {
-                    false_color_slider(ui, self.settings);
-                }
-            }
+            Pane::Paint if self.docked == DockState::Navigator => navigator_header(ui, self.settings),
             Pane::Paint => paint_header(ui, self.session, self.settings),
             Pane::Picture => picture_header(ui, self.session, self.picture, actions),
             _ => {}
@@ -173,6 +169,13 @@ fn paint_header(ui: &mut Ui, session: &Session, settings: &mut ViewSettings) {
             "Number of photographs that show the surface: none magenta (its light is filled in from its surroundings), one dark blue, ten green, 32 and more \
              yellow. Move the slider to Surface to see only these colours.",
         );
+    }
+}
+
+/// What the navigator has room for.
+fn navigator_header(ui: &mut Ui, settings: &mut ViewSettings) {
+    if ui.available_width() >= WIDTH_WITH_SLIDER {
+        false_color_slider(ui, settings);
     }
 }
 

@@ -43,7 +43,7 @@ impl Shell {
                 let kind = preset.kind();
                 self.apply(Command::EditCamera(match kind {
                     PresetKind::Bokeh => CameraEdit::Aperture(camera.aperture),
-                    _ => CameraEdit::Whole(camera),
+                    _ => CameraEdit::Whole(Box::new(camera)),
                 }));
                 self.apply(Command::FinishEdit);
             }

@@ -1,7 +1,7 @@
 //! Islands of texels, joined across the gaps between them.
 
 use crate::Canvas;
-use crate::spreading::surface_links::SurfaceLink;
+use crate::spreading::surface_link::SurfaceLink;
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;
 

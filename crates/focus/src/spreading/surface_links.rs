@@ -2,16 +2,9 @@
 
 use crate::Canvas;
 use crate::spreading::nearest_islands::join_islands;
+use crate::spreading::surface_link::SurfaceLink;
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;
-
-/// Two neighbouring texels, by their indices in the canvas.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct SurfaceLink {
-    pub texels: [u32; 2],
-    /// Conductance of the link apart from what the texels look like, in (0, 1].
-    pub conductance: f32,
-}
 
 /// All pairs of neighbouring texels of a canvas.
 ///

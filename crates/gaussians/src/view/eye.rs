@@ -17,14 +17,11 @@
 //!
 //! d² is that of mᵀPm − (DᵀPm)²/DᵀPD without its cancellation. In order of the means' depth, w = α Π (1 − α) over those before.
 
-use super::GaussianView;
 use super::shape::MIN_ALPHA;
+use super::{GaussianView, MAX_ALPHA};
 use crate::cloud::{ColorSpace, srgb_to_linear};
 use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
-
-/// The most that a splat stops, as in training.
-pub(super) const MAX_ALPHA: f64 = 0.99;
 
 /// A ray of which so little is left that what follows does not count.
 pub(super) const MIN_TRANSMITTANCE: f64 = 1e-4;

@@ -9,7 +9,8 @@
 //! with w₁ and w₂ the first columns of W. The constants are computed once for a tile and a splat, in 64 bits and in units of |W D₀|, so that all are of moderate size:
 //! p × W D₀ is then the distance of the middle ray in standard deviations. What is left for a ray are 32-bit products, of eight rays beside each other.
 
-use super::eye::{Eye, Hit, MAX_ALPHA, MIN_TRANSMITTANCE};
+use super::MAX_ALPHA;
+use super::eye::{Eye, Hit, MIN_TRANSMITTANCE};
 use super::shape::MIN_ALPHA;
 use glam::DVec3;
 

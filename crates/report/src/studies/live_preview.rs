@@ -75,13 +75,13 @@ pub fn watch_preview(
 
     // Starts from another view, so that nothing is cached for the measured one.
     let turned = |by: f64| camera.camera_to_world * DMat4::from_rotation_y(by);
-    session.apply(Command::EditCamera(CameraEdit::Whole(Camera {
+    session.apply(Command::EditCamera(CameraEdit::Whole(Box::new(Camera {
         camera_to_world: turned(-TURN_RADIANS),
         ..camera.clone()
-    })))?;
+    }))))?;
     poll_until(&mut session, progress, is_exact)?;
     let changes = [
-        ("camera moved", CameraEdit::Whole(camera.clone())),
+        ("camera moved", CameraEdit::Whole(Box::new(camera.clone()))),
         ("camera moved again", CameraEdit::Pose(turned(TURN_RADIANS))),
         ("lens turned", CameraEdit::FocusDistance(camera.focus_distance * REFOCUS_FACTOR)),
     ];

@@ -230,12 +230,15 @@ mod tests {
             let edges = NodeEdges { steepness, stop_square: 1.0, mean: 0.5, per_extent: 2.0 };
             let shape = NodeShape { discs: [None; 2], edges: Some(edges) };
             for v in [0, 3000, -12000] {
-                let (mut light, mut width) = (0.0, 0.0);
+                let (mut light, mut filled) = (0.0, 0.0);
                 shape.visit_row(row(v), |run| {
                     light += f64::from(run.end - run.start) * f64::from(run.weight) / 16384.0;
-                    width += f64::from(run.end - run.start);
+                    filled += f64::from(run.end - run.start);
                 });
-                assert_eq!(width, 60.0 * 4096.0);
+                let width = 60.0 * 4096.0;
+                // A part of weight 0, in the middle or at the rim, is left out.
+                let may_vanish = steepness.abs() == 1.0;
+                assert!(filled == width || (may_vanish && filled > 0.9 * width), "{steepness} {v}: {filled}");
                 let square = 1.0 / 3.0 + (f64::from(v).powi(2) + 300f64.powi(2)) / 16384f64.powi(2);
                 let expected = 1.0 + f64::from(steepness) * 2.0 * (square - 0.5);
                 assert!(

@@ -1,7 +1,7 @@
 //! Joins the nodes of a level to those of a coarser one: each with its strongest neighbour, and the pairs once more.
 
 use crate::Graph;
-use crate::multigrid::Level;
+use crate::multigrid::level::Level;
 
 /// The aggregate of a node without links: it is solved on its own level.
 pub(crate) const NO_AGGREGATE: u32 = u32::MAX;

@@ -82,7 +82,7 @@ pub fn all_entries(
         PaletteEntry::new("Bookmark", &bookmark.name, "Go to this camera.", action)
     }));
     entries.extend(document.scene_cameras().map(|(name, camera)| {
-        let action = Command::EditCamera(CameraEdit::Whole(camera)).into();
+        let action = Command::EditCamera(CameraEdit::Whole(Box::new(camera))).into();
         PaletteEntry::new("Camera", name, "Look through this camera of the scene.", action)
     }));
     entries

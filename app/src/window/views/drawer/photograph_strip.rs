@@ -192,7 +192,7 @@ impl PhotographStrip {
                     (photograph_camera(document, path.from), photograph_camera(document, path.to))
             {
                 let camera = camera_between(&from, &to, path.share);
-                actions.push(Command::EditCamera(CameraEdit::Whole(camera)).into());
+                actions.push(Command::EditCamera(CameraEdit::Whole(Box::new(camera))).into());
             }
             controls::finish_edit(&response, actions);
             is_over = ui
@@ -212,7 +212,7 @@ fn photograph_camera(document: &Document, number: usize) -> Option<lens::Camera>
 
 fn use_photograph_camera(document: &Document, number: usize, actions: &mut Vec<Action>) {
     if let Some(camera) = photograph_camera(document, number) {
-        actions.push(Command::EditCamera(CameraEdit::Whole(camera)).into());
+        actions.push(Command::EditCamera(CameraEdit::Whole(Box::new(camera))).into());
         actions.push(Command::FinishEdit.into());
     }
 }

@@ -203,7 +203,7 @@ fn scene_camera_row(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>)
             .show_ui(ui, |ui| {
                 for (candidate, camera) in document.scene_cameras() {
                     if ui.selectable_label(candidate == name, candidate).clicked() {
-                        actions.push(Command::EditCamera(CameraEdit::Whole(camera)).into());
+                        actions.push(Command::EditCamera(CameraEdit::Whole(Box::new(camera))).into());
                         actions.push(Command::FinishEdit.into());
                     }
                 }
