@@ -45,14 +45,17 @@ expect_same() {
     echo "ok: $4"
 }
 
-# The middles of the two views: what the layout makes of the room beside the inspector.
-room=$((width - 300))
+# The middles of the two views, side by side: what the layout makes of the room between tools and inspector.
+tools=44
+room=$((width - 300 - tools))
 middle=$((height / 2 + 10))
-paint_x=$((room * 23 / 100))
-picture_x=$((room * 73 / 100))
+paint_x=$((tools + room * 23 / 100))
+picture_x=$((tools + room * 73 / 100))
 
 start_app "$scene"
 settle "opening"
+xdotool key ctrl+alt+2
+settle "the views side by side"
 shot 1-opened
 echo "ok: opened $(basename "$scene")"
 

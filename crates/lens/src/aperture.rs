@@ -5,6 +5,7 @@
 use crate::CameraError;
 use glam::DVec2;
 use std::f64::consts::{PI, TAU};
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 /// The aperture: a shape in [−R, R]², possibly squeezed.
@@ -63,14 +64,17 @@ impl From<ApertureShape> for Aperture {
 }
 
 impl Aperture {
+    /// The anamorphic ratios that an aperture may have: beyond them its images are lines.
+    pub const RATIOS: RangeInclusive<f64> = 1e-3..=1e3;
+
     /// Checks that all fields are within their ranges.
     ///
     /// # Errors
     /// The first field that makes the aperture invalid.
     pub fn validate(&self) -> Result<(), CameraError> {
         let error = |field, must| Err(CameraError { field, must });
-        if !(self.ratio > 0.0 && self.ratio.is_finite()) {
-            return error("aperture ratio", "above 0 and finite");
+        if !Self::RATIOS.contains(&self.ratio) {
+            return error("aperture ratio", "from 0.001 to 1000");
         }
         match &self.shape {
             ApertureShape::Polygon { blades, rotation, roundness } => {
@@ -394,6 +398,17 @@ fn disc(a: f64, b: f64) -> DVec2 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn ratios_that_leave_no_area_are_refused() {
+        for ratio in [0.0, 1e-320, 1e-4, 1e4, f64::INFINITY, f64::NAN, -1.0] {
+            let aperture = Aperture { ratio, ..Aperture::default() };
+            assert_eq!(aperture.validate().unwrap_err().field, "aperture ratio", "{ratio}");
+        }
+        for ratio in [1e-3, 1.0, 1e3] {
+            assert_eq!(Aperture { ratio, ..Aperture::default() }.validate(), Ok(()));
+        }
+    }
 
     fn letter() -> ApertureShape {
         #[rustfmt::skip]

@@ -77,6 +77,9 @@ impl Inspector {
                 });
             }
             section(ui, toggled, ("Lens", true), |ui| lens_panel::lens_panel(ui, document, presets, actions));
+            section(ui, toggled, ("Lens character", false), |ui| {
+                character_panel::character_panel(ui, &document.camera, actions);
+            });
             section(ui, toggled, ("Cameras", false), |ui| self.cameras.ui(ui, document, actions));
             section(ui, toggled, ("Focus", true), |ui| focus_panel::focus_panel(ui, document, actions));
             section(ui, toggled, ("Layers", true), |ui| {

@@ -33,9 +33,9 @@ const ACTION: Duration = Duration::from_millis(1250);
 /// A machine on which actions take longer than they should is given this much more time.
 const LATEST: u32 = 2;
 const SIZE: [u32; 2] = [1200, 760];
-/// The middles of the paint view and the picture on the screen.
-const PAINT_VIEW: [f64; 2] = [0.17, 0.51];
-const PICTURE: [f64; 2] = [0.547, 0.51];
+/// The middles of the paint view and the picture on the screen, side by side.
+const PAINT_VIEW: [f64; 2] = [0.2, 0.51];
+const PICTURE: [f64; 2] = [0.557, 0.51];
 /// How often, and how long each time, a file is waited for.
 const TRIES: usize = 12;
 const WAIT: Duration = Duration::from_secs(10);
@@ -81,6 +81,8 @@ fn work(case: usize, place: &Workplace, context: &Context) -> Verdict {
         opened: "lit",
     };
     artist.window.wait_until("a project is open", |window| window.title().starts_with("lit"))?;
+    // Both views are large enough to be worked in.
+    artist.window.press("ctrl+alt+2")?;
     let opened_at = artist.window.frames().last().map_or(0.0, |second| second.at);
     let start = Instant::now();
     let actions = (sitting.as_millis() / ACTION.as_millis()) as u32;

@@ -1,7 +1,7 @@
 //! What the lens does beside focusing.
 
 use crate::window::Action;
-use crate::window::widgets::controls::{finish_edit, format_number, proportional_value, row};
+use crate::window::widgets::controls::{self, finish_edit, format_number, proportional_value, row, rows};
 use document::CameraEdit;
 use egui::{DragValue, Response, Slider, Ui};
 use lens::{Camera, Character, Rim};
@@ -12,11 +12,15 @@ const RIMS: [(&str, f64); 2] = [("Front rim", 1.0), ("Rear rim", -1.0)];
 
 /// Edges, cat's eye, colours, field curvature and falloff of the lens.
 pub fn character_panel(ui: &mut Ui, camera: &Camera, actions: &mut Vec<Action>) {
+    rows(ui, "character", |ui| character_rows(ui, camera, actions));
+}
+
+fn character_rows(ui: &mut Ui, camera: &Camera, actions: &mut Vec<Action>) {
     let mut character = camera.character;
     let mut responses = Vec::new();
     let tip = "Bright rims of discs far behind the focus, and soft ones of near discs, or the other way round. 0 is an even disc.";
     responses.push(row(ui, "Disc edges", tip, |ui| {
-        ui.add(Slider::new(&mut character.edges, -1.0..=1.0).max_decimals(2))
+        controls::slider(ui, Slider::new(&mut character.edges, -1.0..=1.0).max_decimals(2))
     }));
     for (rim, (label, side)) in character.rims.iter_mut().zip(RIMS) {
         responses.push(rim_row(ui, label, side, rim, camera.aperture_radius));
@@ -26,7 +30,7 @@ pub fn character_panel(ui: &mut Ui, camera: &Camera, actions: &mut Vec<Action>) 
     let colours = &mut character.longitudinal_colour;
     responses.push(colour_row(
         ui,
-        "Colour in depth",
+        "Depth fringe",
         tip,
         colours,
         1e3,
@@ -39,7 +43,7 @@ pub fn character_panel(ui: &mut Ui, camera: &Camera, actions: &mut Vec<Action>) 
     let colours = &mut character.lateral_colour;
     responses.push(colour_row(
         ui,
-        "Colour at the sides",
+        "Side fringe",
         tip,
         colours,
         half_height_px,
@@ -71,7 +75,7 @@ fn rim_row(ui: &mut Ui, label: &str, side: f64, rim: &mut Option<Rim>, aperture_
         if side > 0.0 { "in front of" } else { "behind" }
     );
     row(ui, label, &tip, |ui| {
-        ui.horizontal(|ui| {
+        controls::beside(ui, |ui| {
             let mut is_there = rim.is_some();
             let mut response = ui.checkbox(&mut is_there, "");
             if is_there != rim.is_some() {
@@ -107,7 +111,7 @@ fn colour_row(
     largest: f64,
 ) -> Response {
     row(ui, label, tip, |ui| {
-        ui.horizontal(|ui| {
+        controls::beside(ui, |ui| {
             let mut add = |colour: &mut f64, prefix: &str| {
                 let mut shown = *colour * unit;
                 let range = -largest * unit..=largest * unit;

@@ -1,7 +1,6 @@
 //! Settings of the lens in photographic terms, and of the picture.
 
 use super::bokeh_thumbnails::bokeh_thumbnails;
-use super::character_panel::character_panel;
 use super::preset_row::preset_row;
 use super::shape_panel::shape_panel;
 use crate::window::view_settings::LARGEST_TOLERANCE_PX;
@@ -97,7 +96,6 @@ pub fn lens_panel(ui: &mut Ui, document: &Document, presets: &PresetLibrary, act
         shift_rows(ui, camera, actions);
         preset_row(ui, presets, PresetKind::Bokeh, |preset| preset.matches_camera(camera), actions);
         shape_panel(ui, camera, actions);
-        character_panel(ui, camera, actions);
     });
     bokeh_thumbnails(ui, presets, camera, actions);
 }

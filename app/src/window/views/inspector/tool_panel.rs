@@ -92,8 +92,10 @@ fn similar_rows(ui: &mut Ui, settings: &mut ToolSettings) {
                the scene's size.";
     row(ui, "Tolerance", tip, |ui| {
         let mut percent = similar.tolerance * 100.0;
-        let response =
-            ui.add(Slider::new(&mut percent, 0.0..=100.0).logarithmic(true).suffix(" %").max_decimals(1));
+        let response = controls::slider(
+            ui,
+            Slider::new(&mut percent, 0.0..=100.0).logarithmic(true).suffix(" %").max_decimals(1),
+        );
         similar.tolerance = percent / 100.0;
         response
     });
