@@ -18,6 +18,7 @@
 //!   software adapter.
 //! * `stroke_player`: plays a recording in the window, timed. `frame_log`: writes how long frames take. `demo`: the
 //!   scene at first start. `book`: the pages that *Help* opens.
+//! * `installed`: locates what comes with the program.
 //!
 //! A module uses only modules below it in this list.
 
@@ -28,6 +29,7 @@ pub(crate) mod demo;
 mod dialogs;
 mod frame_log;
 mod graphics;
+mod installed;
 mod layout;
 mod options;
 mod shell;

@@ -1,20 +1,11 @@
-//! Locates the demo: beside the program, in its share folder, or in the source tree it was built from.
+//! The demo, shown at first start.
 
-use std::path::{Path, PathBuf};
+use crate::window::installed;
+use std::path::PathBuf;
 
 /// The project file of the demo; `None` if it is not installed.
 pub fn demo_project() -> Option<PathBuf> {
-    let program = std::env::current_exe().ok();
-    let beside = program.as_deref().and_then(Path::parent);
-    let folders = [
-        beside.map(|folder| folder.join("assets/demo")),
-        beside.map(|folder| folder.join("../share/focus-brush/demo")),
-        Some(Path::new(env!("CARGO_MANIFEST_DIR")).join("../assets/demo")),
-        Some(PathBuf::from("assets/demo")),
-    ];
-    let files = folders.into_iter().flatten().map(|folder| folder.join("demo.fbrush"));
-    let file = files.into_iter().find(|file| file.is_file())?;
-    Some(file.canonicalize().unwrap_or(file))
+    installed::find("share/focus-brush/demo", "assets/demo", "demo.fbrush")
 }
 
 #[cfg(test)]

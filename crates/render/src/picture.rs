@@ -6,6 +6,8 @@ mod coc_convention;
 mod cross_validation;
 mod ocio_views;
 mod photograph_picture;
+mod photographed;
+mod pixel_ray;
 mod render;
 mod renderer;
 mod splat_truth;
@@ -20,12 +22,10 @@ pub use coc_convention::CocConvention;
 pub use cross_validation::{LeftOut, LeftOutPicture, LeftOutPrediction, leave_photographs_out};
 pub use ocio_views::OcioViews;
 pub use photograph_picture::{photograph_picture, render_photograph};
-pub use render::{
-    MAX_CELLS_A_SIDE, RenderCost, RenderOptions, Rendered, light_of_photographs, render, render_input,
-};
-pub(crate) use render::{
-    cut_off_warning, lit_scene_of, new_splatter, photographed_shares_of_pixels, sum_baked,
-};
+pub use photographed::light_of_photographs;
+pub(crate) use photographed::photographed_shares_of_pixels;
+pub use render::{MAX_CELLS_A_SIDE, RenderCost, RenderOptions, Rendered, render, render_input};
+pub(crate) use render::{cut_off_warning, lit_scene_of, new_splatter, sum_baked};
 pub use renderer::Renderer;
 pub use stereo::{Stereo, StereoForm, render_stereo};
 pub use thumbnail::read_thumbnail;

@@ -3,7 +3,7 @@
 use super::edges::Edges;
 use super::parameters::Character;
 use super::rims::{Rim, RimLimit};
-use crate::{Aperture, FocusOffset, Optics};
+use crate::{Aperture, Optics};
 use glam::DVec2;
 
 /// Red, green and blue.
@@ -109,13 +109,6 @@ impl CharacterOptics {
         self.field_curvature.abs() * (chief * chief).min(LARGEST_FIELD)
     }
 
-    /// κ of each channel of a point at `chief` of depth 1/`inverse_depth`, painted `focus`.
-    #[inline]
-    pub fn kappas(&self, chief: DVec2, inverse_depth: f64, focus: FocusOffset) -> [f64; CHANNELS] {
-        let kappa = self.at(chief).kappa(inverse_depth, focus);
-        self.colour_defocus.map(|defocus| kappa + defocus)
-    }
-
     /// Whether the ray from a point at `chief` (half-heights from the axis) of depth 1/`inverse_depth` through the aperture point `u`
     /// passes all rims.
     #[inline]
@@ -165,13 +158,6 @@ impl CharacterOptics {
     /// Whether [`Self::angle_falloff`] is not 1 everywhere.
     pub fn has_angle_falloff(&self) -> bool {
         self.has_cos4_falloff
-    }
-
-    /// How far apart at most the colours of light at `reach` half-heights from the axis land, half-heights: the largest |m|·`reach`
-    /// and |δ|·R/tanθ together.
-    pub fn largest_fringe(&self, reach: f64) -> f64 {
-        let radius = self.optics.aperture_radius / self.optics.tan_half_yfov;
-        self.largest_lateral() * reach + self.largest_colour_defocus() * radius
     }
 }
 

@@ -3,7 +3,7 @@
 
 use crate::error::RenderError;
 use crate::picture::photograph_picture::{MIN_PHOTOGRAPHED_SHARE, photograph_picture};
-use crate::picture::render::pixel_ray;
+use crate::picture::pixel_ray::pixel_ray;
 use atlas::UnwrapOptions;
 use document::{Input, camera_from_photograph};
 use glam::Vec3;

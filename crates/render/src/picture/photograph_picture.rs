@@ -1,7 +1,8 @@
 //! Photographs for comparison with pictures: undistorted, linear, with the exposure fitted to all photographs.
 
 use crate::error::RenderError;
-use crate::picture::render::{light_of_photographs, photographed_shares, pixel_ray};
+use crate::picture::photographed::{light_of_photographs, photographed_shares};
+use crate::picture::pixel_ray::pixel_ray;
 use document::{Input, camera_from_photograph, find_photograph};
 use glam::{DVec2, DVec3, Vec3};
 use lens::{Camera, Picture};
