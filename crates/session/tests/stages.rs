@@ -5,6 +5,7 @@ mod at_work;
 
 use document::CameraEdit;
 use glam::{DMat4, DVec3, Vec3};
+use nv_flip::{FlipImageRgb8, FlipPool};
 use scene::{Backdrop, World};
 use session::{Command, PreviewKind, Quality, Session, SessionOptions};
 use std::path::Path;
@@ -14,6 +15,9 @@ const PATIENCE: Duration = Duration::from_secs(300);
 
 /// How much farther from the exact picture the next stage may be, dB.
 const TOLERANCE_DB: f64 = 0.3;
+
+/// The same in FLIP.
+const TOLERANCE_FLIP: f32 = 0.005;
 
 /// What was on the screen.
 struct Stage {
@@ -50,35 +54,39 @@ fn stages_after(session: &mut Session, command: Command) -> Vec<Stage> {
     }
 }
 
-/// A stage's value, enlarged bilinearly as the window does.
-fn value(stage: &Stage, [x, y]: [u32; 2], size: [u32; 2], channel: usize) -> f64 {
+/// What the screen showed in so many columns and rows, RGB by pixel: enlarged bilinearly, as the window does.
+fn enlarged(stage: &Stage, [width, height]: [u32; 2]) -> Vec<u8> {
     let place = |at: u32, own: u32, size: u32| {
         ((f64::from(at) + 0.5) * f64::from(own) / f64::from(size) - 0.5).clamp(0.0, f64::from(own - 1))
     };
-    let (u, v) = (place(x, stage.size[0], size[0]), place(y, stage.size[1], size[1]));
-    let at = |column: f64, row: f64| {
-        let column = (column as u32).min(stage.size[0] - 1);
-        let row = (row as u32).min(stage.size[1] - 1);
-        f64::from(stage.pixels[(row * stage.size[0] + column) as usize][channel])
-    };
-    let lerp = |a: f64, b: f64, share: f64| a + (b - a) * share;
-    let along = |row: f64| lerp(at(u.floor(), row), at(u.floor() + 1.0, row), u.fract());
-    lerp(along(v.floor()), along(v.floor() + 1.0), v.fract())
-}
-
-/// PSNR of what the screen showed, dB.
-fn psnr(stage: &Stage, last: &Stage) -> f64 {
-    let [width, height] = last.size;
-    let mut sum = 0.0;
+    let mut bytes = Vec::new();
     for y in 0..height {
         for x in 0..width {
+            let (u, v) = (place(x, stage.size[0], width), place(y, stage.size[1], height));
             for channel in 0..3 {
-                let exact = f64::from(last.pixels[(y * width + x) as usize][channel]);
-                sum += (value(stage, [x, y], last.size, channel) - exact).powi(2);
+                let at = |column: f64, row: f64| {
+                    let column = (column as u32).min(stage.size[0] - 1);
+                    let row = (row as u32).min(stage.size[1] - 1);
+                    f64::from(stage.pixels[(row * stage.size[0] + column) as usize][channel])
+                };
+                let lerp = |a: f64, b: f64, share: f64| a + (b - a) * share;
+                let along = |row: f64| lerp(at(u.floor(), row), at(u.floor() + 1.0, row), u.fract());
+                bytes.push(lerp(along(v.floor()), along(v.floor() + 1.0), v.fract()).round() as u8);
             }
         }
     }
-    -10.0 * (sum / (f64::from(width * height) * 3.0 * 255.0 * 255.0)).log10()
+    bytes
+}
+
+/// How far what the screen showed was from the last picture: PSNR in dB, and FLIP.
+fn distance(stage: &Stage, last: &Stage) -> (f64, f32) {
+    let [width, height] = last.size;
+    let [shown, exact] = [stage, last].map(|stage| enlarged(stage, last.size));
+    let square = |(a, b): (&u8, &u8)| (f64::from(*a) - f64::from(*b)).powi(2);
+    let mean = shown.iter().zip(&exact).map(square).sum::<f64>() / (shown.len() as f64 * 255.0 * 255.0);
+    let [shown, exact] = [shown, exact].map(|bytes| FlipImageRgb8::with_data(width, height, &bytes));
+    let map = nv_flip::flip(exact, shown, nv_flip::DEFAULT_PIXELS_PER_DEGREE);
+    (-10.0 * mean.log10(), FlipPool::from_image(&map).mean())
 }
 
 /// Moves the camera, takes that back, changes the backdrop, and opens the aperture by a stop.
@@ -105,12 +113,20 @@ fn check(scene: &Path, preview_size: u32) {
             println!("{}: {change}: nothing to draw", scene.display());
             continue;
         };
-        let mut least = 0.0;
+        let (mut best_psnr, mut best_flip) = (0.0, 1.0f32);
         for stage in before {
-            let db = psnr(stage, last);
-            println!("{}: {change}: {}: {db:.1} dB", scene.display(), stage.name);
-            assert!(db > least - TOLERANCE_DB, "{change}: {} has {db:.2} dB after {least:.2}", stage.name);
-            least = f64::max(least, db);
+            let (psnr, flip) = distance(stage, last);
+            println!("{}: {change}: {}: {psnr:.1} dB, FLIP {flip:.4}", scene.display(), stage.name);
+            let name = &stage.name;
+            assert!(
+                psnr > best_psnr - TOLERANCE_DB,
+                "{change}: {name} has {psnr:.2} dB after {best_psnr:.2}"
+            );
+            assert!(
+                flip < best_flip + TOLERANCE_FLIP,
+                "{change}: {name} has FLIP {flip:.4} after {best_flip:.4}"
+            );
+            (best_psnr, best_flip) = (f64::max(best_psnr, psnr), best_flip.min(flip));
         }
     }
 }

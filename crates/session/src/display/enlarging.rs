@@ -19,6 +19,20 @@ pub fn enlarged(picture: &Picture, size: [u32; 2]) -> Picture {
     enlarged_part(picture, size, size.map(|side| 0..side))
 }
 
+/// The picture of `size` of which every pixel is the mean of those whose middles lie in it; at most the picture's own size.
+pub(crate) fn reduced(picture: &Picture, size: [u32; 2]) -> Picture {
+    let own = [picture.width, picture.height];
+    debug_assert!(size[0] <= own[0] && size[1] <= own[1]);
+    let grid = PixelGrid::from_picture(picture, own.map(|side| 0..side));
+    let mut reduced = PixelGrid {
+        corner: [0, 0],
+        width: size[0] as usize,
+        values: vec![Vec4::ZERO; size[0] as usize * size[1] as usize],
+    };
+    reduced.update_each(|x, y, _| grid.mean_within(x, y, own, size));
+    reduced.into_picture()
+}
+
 /// Where an enlarged picture differs if the picture does in a rectangle.
 pub(crate) fn enlarged_rectangle(picture: &Picture, size: [u32; 2], rectangle: &Rectangle) -> Rectangle {
     let own = [picture.width, picture.height];
@@ -34,9 +48,8 @@ pub(crate) fn enlarged_part(picture: &Picture, size: [u32; 2], rectangle: Rectan
     let own = [picture.width, picture.height];
     debug_assert!(size[0] >= own[0] && size[1] >= own[1]);
     let [width, height] = rectangle.each_ref().map(|range| range.len() as u32);
-    let mut part = Picture::black(width, height);
     if width == 0 || height == 0 {
-        return part;
+        return Picture::black(width, height);
     }
     // The pixels that the rectangle is interpolated of, what lies in them, and what that is interpolated of.
     let taps = |rectangle: &Rectangle| -> [Vec<Taps>; 2] {
@@ -50,13 +63,7 @@ pub(crate) fn enlarged_part(picture: &Picture, size: [u32; 2], rectangle: Rectan
 
     let cubic = PixelGrid::interpolated(&small, &taps_within, [within[0].start, within[1].start]);
     let mut residual = small.part(near);
-    residual.update_each(|x, y, value| {
-        let [columns, rows] = [pixels_in(x..x + 1, size[0], own[0]), pixels_in(y..y + 1, size[1], own[1])];
-        let count = (columns.len() * rows.len()) as f32;
-        let pixels = rows.flat_map(|row| columns.clone().map(move |column| (column, row)));
-        let sum: Vec4 = pixels.map(|(column, row)| cubic.at(column, row)).sum();
-        value - sum / count
-    });
+    residual.update_each(|x, y, value| value - cubic.mean_within(x, y, size, own));
     let corner = [rectangle[0].start, rectangle[1].start];
     let mut shown = PixelGrid::interpolated(&residual, &output_taps, corner);
     shown.update_each(|x, y, added| {
@@ -72,11 +79,7 @@ pub(crate) fn enlarged_part(picture: &Picture, size: [u32; 2], rectangle: Rectan
         // No clamp: it would not let through what is no number.
         (cubic.at(x, y) + added).max(low).min(high)
     });
-    for ((radiance, coverage), value) in part.radiance.iter_mut().zip(&mut part.coverage).zip(shown.values) {
-        let [r, g, b, covered] = value.to_array();
-        (*radiance, *coverage) = ([r, g, b], covered);
-    }
-    part
+    shown.into_picture()
 }
 
 /// The large pixels whose centres lie in small ones, along an axis of `size` large and `own` small ones.
@@ -163,6 +166,26 @@ impl PixelGrid {
         Self { corner, width, values: rows.flat_map(row).collect() }
     }
 
+    /// The mean of the large pixels, of `size`, whose middles lie in a pixel of a picture of `own` columns and rows.
+    fn mean_within(&self, x: u32, y: u32, size: [u32; 2], own: [u32; 2]) -> Vec4 {
+        let [columns, rows] = [pixels_in(x..x + 1, size[0], own[0]), pixels_in(y..y + 1, size[1], own[1])];
+        let count = (columns.len() * rows.len()) as f32;
+        let pixels = rows.flat_map(|row| columns.clone().map(move |column| (column, row)));
+        pixels.map(|(column, row)| self.at(column, row)).sum::<Vec4>() / count
+    }
+
+    fn into_picture(self) -> Picture {
+        let (width, height) = (self.width as u32, (self.values.len() / self.width) as u32);
+        let mut picture = Picture::black(width, height);
+        for ((radiance, coverage), value) in
+            picture.radiance.iter_mut().zip(&mut picture.coverage).zip(self.values)
+        {
+            let [r, g, b, covered] = value.to_array();
+            (*radiance, *coverage) = ([r, g, b], covered);
+        }
+        picture
+    }
+
     #[inline]
     fn at(&self, column: u32, row: u32) -> Vec4 {
         let [x, y] = [column - self.corner[0], row - self.corner[1]].map(|at| at as usize);
@@ -227,6 +250,7 @@ mod tests {
         let nearest = picture([96, 72], |x, y| {
             waves(((x * 32.0).floor() + 0.5) / 32.0, ((y * 24.0).floor() + 0.5) / 24.0)
         });
+        assert!(rms(&reduced(&back, [32, 24]), &large.averaged(3)) < 0.01);
         assert!(rms(&back, &large) < 0.2 * rms(&nearest, &large), "{}", rms(&back, &large));
         assert!(back.coverage.iter().all(|&covered| (covered - 1.0).abs() < 1e-5));
     }

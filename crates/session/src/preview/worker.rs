@@ -236,8 +236,10 @@ impl Worker {
         if let Some(tolerance) = request.tolerance.filter(|tolerance| *tolerance != self.tolerance) {
             self.tolerance = tolerance;
             (self.presenter.costs.viewing_psnr, self.presenter.costs.viewing_seconds) = (None, None);
-            let fields = [self.coarse.as_mut(), self.fine.as_mut(), self.spare.field_mut()];
-            fields.into_iter().flatten().for_each(|field| field.set_tolerance(tolerance));
+            [self.fine.as_mut(), self.spare.field_mut()]
+                .into_iter()
+                .flatten()
+                .for_each(|field| field.set_tolerance(tolerance));
         }
         let is_opened = request.stage.is_some();
         if let Some((stage, generation)) = request.stage {

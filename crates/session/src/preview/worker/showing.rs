@@ -165,7 +165,8 @@ impl Worker {
             Some(coarse) => coarse,
             None => {
                 self.shared.begin(PreviewActivity::RoughBaking)?;
-                let (tolerance, gpu) = (self.tolerance, self.shared.gpu());
+                // Circles of a few pixels show how nodes are spaced, and few samples are soon summed.
+                let (tolerance, gpu) = (Tolerance::NONE, self.shared.gpu());
                 let options =
                     FieldOptions { least_margin_px: 0.0, tolerance, gpu, light: LightQuality::Rough };
                 // Rough as it is, it serves a lens that is opened, too.
