@@ -1,13 +1,14 @@
 //! Irradiance of a scene, cached by world: no camera traces its bounces again.
 //!
-//! It is solved in the background, which continues when a caller stops waiting: first roughly, for immediate pictures, then finely.
+//! It is solved in the background, which continues when a caller stops waiting: roughly for immediate pictures, and finely as soon as somebody
+//! asks for that.
 
 use crate::disk_cache::DiskCache;
 use crate::irradiance_file;
 use crate::options::{LightOptions, LightQuality};
 use crate::resources::Resources;
 use jobs::{CancelToken, SharedTask};
-use progress::{Cancelled, Progress, Stage};
+use progress::{Cancelled, Progress};
 use scene::World;
 use slf::{Irradiance, IrradianceOptions, Transport, TransportOptions};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
@@ -17,7 +18,7 @@ use trace::Tracer;
 const MAX_WORLDS: usize = 3;
 
 /// Few patches and rays: solved in a fraction of a second.
-const ROUGH_OPTIONS: IrradianceOptions = IrradianceOptions { patches: 6_000, rays: 32 };
+const ROUGH_OPTIONS: IrradianceOptions = IrradianceOptions { patches: 3_000, rays: 24 };
 
 /// The irradiance of one scene, by world, the most recently used last.
 #[derive(Default)]
@@ -30,10 +31,30 @@ struct WorldIrradiance {
     world: World,
     rough: OnceLock<Arc<Irradiance>>,
     fine: OnceLock<Arc<Irradiance>>,
-    task: Arc<SharedTask>,
+    rough_task: OnceLock<Arc<SharedTask>>,
+    fine_task: OnceLock<Arc<SharedTask>>,
 }
 
 impl WorldIrradiance {
+    /// The task that solves for it, which is started if it was not before.
+    fn start(self: &Arc<Self>, quality: LightQuality, inputs: &IrradianceInputs) -> &SharedTask {
+        let task = if quality == LightQuality::Rough { &self.rough_task } else { &self.fine_task };
+        let mut is_new = false;
+        let task = task.get_or_init(|| {
+            is_new = true;
+            Arc::new(SharedTask::new(inputs.cancel.clone()))
+        });
+        if is_new {
+            let (entry, tracer, options) = (self.clone(), inputs.tracer.clone(), inputs.options);
+            let cache = inputs.resources.cache.clone();
+            task.start(inputs.resources.background, "light", move |progress| {
+                // Cancelled: the task ends without a result, which callers notice.
+                let _ = solve_world(&entry, quality, &tracer, options, &cache, progress);
+            });
+        }
+        task
+    }
+
     fn available(&self, quality: LightQuality) -> Option<&Arc<Irradiance>> {
         let rough = || self.rough.get().filter(|_| quality == LightQuality::Rough);
         self.fine.get().or_else(rough)
@@ -68,6 +89,11 @@ impl IrradianceCache {
         self.lock().iter().map(solutions).sum()
     }
 
+    /// Starts solving for the rough irradiance in `world` in the background, if nobody has.
+    pub fn start_rough(&self, world: &World, inputs: &IrradianceInputs) {
+        self.entry(world).start(LightQuality::Rough, inputs);
+    }
+
     /// Waits for the irradiance in `world`, of at least `quality`, and starts solving it if nobody has.
     ///
     /// # Errors
@@ -79,8 +105,12 @@ impl IrradianceCache {
         inputs: &IrradianceInputs,
         progress: &dyn Progress,
     ) -> Result<Arc<Irradiance>, Cancelled> {
-        let entry = self.get_or_start(world, inputs);
-        match entry.task.wait(progress, || entry.available(quality).cloned())? {
+        let entry = self.entry(world);
+        if let Some(irradiance) = entry.available(quality) {
+            return Ok(irradiance.clone());
+        }
+        let task = entry.start(quality, inputs);
+        match task.wait(progress, || entry.available(quality).cloned())? {
             Some(irradiance) => Ok(irradiance),
             // Its thread failed: it is solved here instead.
             None => {
@@ -92,8 +122,8 @@ impl IrradianceCache {
         }
     }
 
-    /// The irradiance in `world`; the solution is started if it was not before.
-    fn get_or_start(&self, world: &World, inputs: &IrradianceInputs) -> Arc<WorldIrradiance> {
+    /// The entry of a world, from now on the most recently used.
+    fn entry(&self, world: &World) -> Arc<WorldIrradiance> {
         let mut worlds = self.lock();
         if let Some(index) = worlds.iter().position(|entry| entry.world == *world) {
             let entry = worlds.remove(index);
@@ -104,22 +134,13 @@ impl IrradianceCache {
             world: world.clone(),
             rough: OnceLock::new(),
             fine: OnceLock::new(),
-            task: Arc::new(SharedTask::new(inputs.cancel.clone())),
+            rough_task: OnceLock::new(),
+            fine_task: OnceLock::new(),
         });
         if worlds.len() >= MAX_WORLDS {
             worlds.remove(0);
         }
         worlds.push(entry.clone());
-        drop(worlds);
-        let work = {
-            let (entry, tracer, options) = (entry.clone(), inputs.tracer.clone(), inputs.options);
-            let cache = inputs.resources.cache.clone();
-            move |progress: &dyn Progress| {
-                // Cancelled: the task ends without a result, which callers notice.
-                let _ = solve_world(&entry, &tracer, options, &cache, progress);
-            }
-        };
-        entry.task.start(inputs.resources.background, "light", work);
         entry
     }
 
@@ -131,6 +152,7 @@ impl IrradianceCache {
 
 fn solve_world(
     entry: &WorldIrradiance,
+    quality: LightQuality,
     tracer: &Arc<Tracer>,
     light: LightOptions,
     cache: &DiskCache,
@@ -148,11 +170,8 @@ fn solve_world(
         return Ok(());
     }
     let transport = transport_without_cache(tracer, entry.world.clone(), light, 1, 1);
-    // The rough light is quick to solve and comes first.
-    let rough = Irradiance::solve(&transport, ROUGH_OPTIONS, &Stage::new(progress, 0.0, 0.0))?;
-    let _ = entry.rough.set(Arc::new(rough));
-    if !scene.views.is_empty() {
-        // Light from photographs replaces it as soon as it is solved: the bare surface is not shown for long.
+    if quality == LightQuality::Rough {
+        let _ = entry.rough.set(Arc::new(Irradiance::solve(&transport, ROUGH_OPTIONS, progress)?));
         return Ok(());
     }
     let fine = Irradiance::solve(&transport, options, progress)?;

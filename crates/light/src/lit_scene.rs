@@ -106,12 +106,7 @@ impl LitScene {
         if !self.has_lit_surfaces() {
             return Ok(Arc::new(transport));
         }
-        let inputs = IrradianceInputs {
-            tracer: &self.tracer,
-            options: self.options,
-            resources: &self.resources,
-            cancel: &self.cancel,
-        };
+        let inputs = self.irradiance_inputs();
         let irradiance = self.irradiance.wait(&self.world(camera), quality, &inputs, progress)?;
         if irradiance.solution().is_cut_off {
             self.bounce_limit.reach();
@@ -120,6 +115,13 @@ impl LitScene {
             LightQuality::Refined { .. } => transport.with_control_variate(irradiance),
             LightQuality::Rough | LightQuality::Fine => transport.with_irradiance(irradiance),
         }))
+    }
+
+    /// Begins to solve for the rough light of a camera's world in the background, so that it is soon there.
+    pub fn start_rough(&self, camera: &Camera) {
+        if self.photographs.is_none() && self.has_lit_surfaces() {
+            self.irradiance.start_rough(&self.world(camera), &self.irradiance_inputs());
+        }
     }
 
     /// The light that is available now. Where irradiance is not solved yet, it is unbiased and noisy.
@@ -202,6 +204,15 @@ impl LitScene {
     fn has_lit_surfaces(&self) -> bool {
         let scene = self.scene();
         scene.parts.iter().any(|part| !scene.materials[part.material as usize].unlit)
+    }
+
+    fn irradiance_inputs(&self) -> IrradianceInputs<'_> {
+        IrradianceInputs {
+            tracer: &self.tracer,
+            options: self.options,
+            resources: &self.resources,
+            cancel: &self.cancel,
+        }
     }
 
     fn world(&self, camera: &Camera) -> World {

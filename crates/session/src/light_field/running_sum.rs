@@ -208,6 +208,12 @@ impl LightField {
         }
     }
 
+    /// The size of its picture: columns and rows.
+    pub fn size(&self) -> [u32; 2] {
+        let camera = &self.splatter.salf().camera;
+        [camera.width, camera.height]
+    }
+
     /// Whether the light field holds all that `camera` sees.
     pub fn can_show(&self, camera: &Camera) -> bool {
         is_compatible(&self.splatter.salf().camera, camera)

@@ -2,11 +2,18 @@
 
 use lens::Camera;
 
-/// Sides of the coarse picture are this share of the preview's: a twenty-fifth of the work.
+/// Sides of the coarse picture are at most this share of the preview's: a twenty-fifth of the work.
 const COARSE_SCALE: f64 = 1.0 / 5.0;
 
-/// Where the coarse picture has more than twice as many pixels, one of so many comes before it: about a second's work.
-const ROUGH_PIXELS: f64 = 20_000.0;
+/// The coarse picture takes at most about so long, s.
+const COARSE_SECONDS: f64 = 3.0;
+
+/// One that takes so long, s, needs none before it.
+const QUICK_COARSE_SECONDS: f64 = 0.7;
+
+/// The first blurred picture has so many pixels: less than a second's work even where each takes half a millisecond, as with glossy
+/// surfaces under a sky.
+const GLANCE_PIXELS: f64 = 1500.0;
 
 /// Sides of the picture between the coarse one and the fine one, as a share of the preview's: a ninth of the work.
 const INTERIM_SCALE: f64 = 1.0 / 3.0;
@@ -26,16 +33,31 @@ const MIN_MOVING_SCALE: f64 = 1.0 / 12.0;
 /// Below this longest side, px, a picture is quick enough to need no coarse one.
 const MIN_COARSE_SIDE_PX: u32 = 48;
 
-/// The cameras of coarse pictures, the roughest first; none where the picture is small anyway.
-pub(super) fn coarse_cameras(camera: &Camera) -> Vec<Camera> {
+/// Whether pictures of few pixels come before the fine one; not where it is small anyway.
+pub(super) fn has_coarse_pictures(camera: &Camera) -> bool {
     let coarse = scaled(camera, COARSE_SCALE);
-    if coarse.width.max(coarse.height) < MIN_COARSE_SIDE_PX {
-        return Vec::new();
+    coarse.width.max(coarse.height) >= MIN_COARSE_SIDE_PX
+}
+
+/// The camera of the next picture of few pixels, after one of `shown_pixels` (0: after none), if a pixel takes `pace` seconds to bake (none: not
+/// known yet); none after the last.
+pub(super) fn next_coarse_camera(camera: &Camera, shown_pixels: f64, pace: Option<f64>) -> Option<Camera> {
+    if !has_coarse_pictures(camera) {
+        return None;
     }
-    let pixels = pixel_count(&coarse);
-    let rough =
-        (pixels > 2.0 * ROUGH_PIXELS).then(|| scaled(camera, COARSE_SCALE * (ROUGH_PIXELS / pixels).sqrt()));
-    rough.into_iter().chain([coarse]).collect()
+    let of_pixels = |pixels: f64| scaled(camera, (pixels / pixel_count(camera)).sqrt().min(COARSE_SCALE));
+    let coarse = pace.map(|pace| of_pixels(COARSE_SECONDS / pace));
+    if shown_pixels > 0.0 {
+        return coarse.filter(|coarse| pixel_count(coarse) >= 2.0 * shown_pixels);
+    }
+    let is_quick =
+        |coarse: &Camera| pace.is_some_and(|pace| pixel_count(coarse) * pace < QUICK_COARSE_SECONDS);
+    Some(coarse.filter(is_quick).unwrap_or_else(|| of_pixels(GLANCE_PIXELS)))
+}
+
+/// The camera with a picture of this size.
+pub(super) fn resized(camera: &Camera, [width, height]: [u32; 2]) -> Camera {
+    Camera { width, height, ..camera.clone() }
 }
 
 /// The camera of the picture without blur while the camera moves, if a pixel takes `pace` seconds.
@@ -64,9 +86,10 @@ pub(super) fn interim_camera(camera: &Camera) -> Option<Camera> {
 }
 
 fn scaled(camera: &Camera, share: f64) -> Camera {
-    let [width, height] =
-        [camera.width, camera.height].map(|side| ((f64::from(side) * share).round() as u32).max(1));
-    Camera { width, height, ..camera.clone() }
+    resized(
+        camera,
+        [camera.width, camera.height].map(|side| ((f64::from(side) * share).round() as u32).max(1)),
+    )
 }
 
 /// Pixels of a camera's picture.
@@ -80,16 +103,25 @@ mod tests {
 
     #[test]
     fn coarse_pictures_are_few_and_grow() {
-        let sizes = |width, height| {
+        let sizes = |width, height, pace: f64| {
             let camera = Camera { width, height, ..Camera::default() };
-            let sizes: Vec<_> =
-                coarse_cameras(&camera).iter().map(|small| [small.width, small.height]).collect();
+            let (mut sizes, mut known_pace) = (Vec::new(), None);
+            let mut shown = 0.0;
+            while let Some(small) = next_coarse_camera(&camera, shown, known_pace) {
+                sizes.push([small.width, small.height]);
+                (shown, known_pace) = (pixel_count(&small), Some(pace));
+            }
             sizes
         };
-        assert!(sizes(120, 90).is_empty());
-        assert_eq!(sizes(640, 360), [[128, 72]]);
-        assert_eq!(sizes(1920, 1080), [[189, 106], [384, 216]]);
-        assert_eq!(sizes(16384, 1), [[3277, 1]]);
+        assert!(sizes(120, 90, 1e-5).is_empty());
+        assert_eq!(sizes(240, 135, 1e-5), [[48, 27]]);
+        assert_eq!(sizes(960, 540, 1e-5), [[52, 29], [192, 108]]);
+        assert_eq!(sizes(960, 540, 5e-4), [[52, 29], [103, 58]]);
+        assert_eq!(sizes(960, 540, 1.0), [[52, 29]]);
+        assert_eq!(sizes(16384, 1, 0.0), [[3277, 1]]);
+        let camera = Camera { width: 960, height: 540, ..Camera::default() };
+        let first = |pace| next_coarse_camera(&camera, 0.0, Some(pace)).unwrap().width;
+        assert_eq!([first(1e-5), first(5e-4)], [192, 52], "what is quick needs nothing before it");
         let interim = |width, height| {
             interim_camera(&Camera { width, height, ..Camera::default() })
                 .map(|camera| [camera.width, camera.height])

@@ -34,6 +34,8 @@ pub(crate) struct Worker {
     camera: Option<Camera>,
     map: Option<Arc<FocusMap>>,
     coarse: Option<LightField>,
+    /// Seconds that a pixel of it took to bake; `None` before the scene's first.
+    coarse_pace: Option<f64>,
     fine: Option<LightField>,
     /// Whether the fine light field's picture has not been shown yet.
     is_new: bool,
@@ -88,6 +90,7 @@ impl Worker {
             camera: None,
             map: None,
             coarse: None,
+            coarse_pace: None,
             fine: None,
             is_new: false,
             maker: LightFieldMaker::new(store),
@@ -245,6 +248,7 @@ impl Worker {
         if let Some((stage, generation)) = request.stage {
             self.stage = Some(stage);
             self.pinhole.forget();
+            self.coarse_pace = None;
             self.presenter.open(generation);
         }
         if is_opened || request.bake {

@@ -51,6 +51,8 @@ impl Steps for OpeningSteps<'_> {
         if let Ok(hits) = FirstHits::trace(lit.tracer(), &*light, &focus, &camera, &*progress) {
             self.picture_ready(&hits.picture());
         }
+        // The scene is unwrapped meanwhile.
+        lit.start_rough(&camera);
     }
 
     fn picture_ready(&self, picture: &Picture) {

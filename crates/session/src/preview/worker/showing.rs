@@ -8,7 +8,9 @@ use crate::preview::activity::PreviewActivity;
 use crate::preview::deliveries::ExactDelivery;
 use crate::preview::light_field_maker::FieldOrigin;
 use crate::preview::picture::{PreviewKind, Quality};
-use crate::preview::picture_sizes::{coarse_cameras, interim_camera, moving_camera, resting_camera};
+use crate::preview::picture_sizes::{
+    has_coarse_pictures, moving_camera, next_coarse_camera, pixel_count, resized, resting_camera,
+};
 use crate::preview::pinhole::is_same_view;
 use crate::preview::presenter::{NewPicture, Relation};
 use document::Stage;
@@ -132,23 +134,26 @@ impl Worker {
         let size = [camera.width, camera.height];
         let resting = resting_camera(camera, self.pinhole.pace());
         let has_layer = self.map.as_ref().is_some_and(|map| self.pinhole.shows(&resting, map));
-        if !has_layer && !self.is_painting && !coarse_cameras(camera).is_empty() {
+        if !has_layer && !self.is_painting && has_coarse_pictures(camera) {
             // What is laid over them.
             self.trace_pinhole(stage, &resting, focus)?;
         }
-        let can_show = |small: &Camera| self.coarse.as_ref().is_some_and(|coarse| coarse.can_show(small));
-        if let Some(interim) = interim_camera(camera).filter(can_show) {
-            return self.show_small(stage, &interim, size, focus);
-        }
-        let sizes = coarse_cameras(camera);
-        let shown = sizes.iter().rposition(can_show);
-        if shown.is_none() && self.fine.is_some() {
+        let mut shown_pixels = 0.0;
+        let standing = self.coarse.as_ref().map(|coarse| (coarse, resized(camera, coarse.size())));
+        if let Some((_, small)) = standing.filter(|(coarse, small)| coarse.can_show(small)) {
+            shown_pixels = pixel_count(&small);
+            self.show_small(stage, &small, size, focus)?;
+        } else if self.fine.is_some() {
             // The fine one is summed sooner than a coarse one is baked.
             return Ok(());
         }
-        let first = shown.unwrap_or(0);
-        let count = if self.is_painting { 1 } else { sizes.len() };
-        sizes[first..].iter().take(count).try_for_each(|small| self.show_small(stage, small, size, focus))
+        while (shown_pixels == 0.0 || !self.is_painting)
+            && let Some(small) = next_coarse_camera(camera, shown_pixels, self.coarse_pace)
+        {
+            shown_pixels = pixel_count(&small);
+            self.show_small(stage, &small, size, focus)?;
+        }
+        Ok(())
     }
 
     /// A picture of few pixels, shown in this size.
@@ -171,7 +176,9 @@ impl Worker {
                     FieldOptions { least_margin_px: 0.0, tolerance, gpu, light: LightQuality::Rough };
                 // Rough as it is, it serves a lens that is opened, too.
                 let opened = spare_camera(small).unwrap_or_else(|| small.clone());
+                let start = Instant::now();
                 let coarse = LightField::bake(stage, &opened, focus, options, &self.shared.quick)?;
+                self.coarse_pace = Some(start.elapsed().as_secs_f64() / pixel_count(small));
                 self.presenter.check_glare(&coarse.baked().salf);
                 self.coarse.insert(coarse)
             }
