@@ -41,7 +41,13 @@ pub struct Stage {
     light_hash: OnceLock<[u8; 32]>,
     surface_bytes: OnceLock<Vec<u8>>,
     surface_graph: OnceLock<Arc<SurfaceGraph>>,
+    /// Shared by stages that differ in their world alone.
+    surface: Arc<SurfaceIdentity>,
 }
+
+/// Stands for all of a stage but its world.
+#[derive(Default)]
+struct SurfaceIdentity;
 
 /// Whether paint on one scene fits the other: the same triangles in the same order, of the same nodes.
 fn is_same_surface(a: &Scene, b: &Scene) -> bool {
@@ -113,7 +119,13 @@ impl Stage {
     /// # Errors
     /// `progress` was cancelled.
     pub fn with_world(&self, world: Option<World>, progress: &dyn Progress) -> Result<Self, DocumentError> {
-        self.with_scene(Scene { world, ..(*self.scene).clone() }, progress)
+        let surface = self.surface.clone();
+        Ok(Self { surface, ..self.with_lit_scene(self.lit.in_world(world), progress)? })
+    }
+
+    /// Whether `other` is the same scene, in another world at most.
+    pub fn differs_in_world_alone(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.surface, &other.surface)
     }
 
     /// The stage in another variant of its file, which is read again; `None` for its own materials. Atlas and paint still fit.
@@ -180,9 +192,12 @@ impl Stage {
     /// The same surface with another appearance or light.
     fn with_scene(&self, scene: Scene, progress: &dyn Progress) -> Result<Self, DocumentError> {
         progress.check()?;
-        let scene = Arc::new(scene);
-        let lit = self.relit(scene.clone());
+        self.with_lit_scene(self.relit(Arc::new(scene)), progress)
+    }
+
+    fn with_lit_scene(&self, lit: Arc<LitScene>, progress: &dyn Progress) -> Result<Self, DocumentError> {
         progress.check()?;
+        let scene = lit.scene().clone();
         let (atlas, texels, canvas) = (self.atlas.clone(), self.texels.clone(), self.canvas.clone());
         lit.set_atlas(&atlas);
         let (bounds, depth_strokes) = (self.bounds, self.depth_strokes.clone());
@@ -199,6 +214,7 @@ impl Stage {
             light_hash,
             surface_bytes,
             surface_graph,
+            surface: Arc::default(),
         })
     }
 
@@ -232,6 +248,7 @@ impl Stage {
             light_hash,
             surface_bytes,
             surface_graph,
+            surface: Arc::default(),
         })
     }
 

@@ -20,7 +20,7 @@ const MAX_WORLDS: usize = 3;
 /// Few patches and rays: solved in a fraction of a second.
 const ROUGH_OPTIONS: IrradianceOptions = IrradianceOptions { patches: 3_000, rays: 24 };
 
-/// The irradiance of one scene, by world, the most recently used last.
+/// The irradiance of one scene, by world, whatever its backdrop; the most recently used last.
 #[derive(Default)]
 pub(crate) struct IrradianceCache {
     worlds: Mutex<Vec<Arc<WorldIrradiance>>>,
@@ -28,6 +28,7 @@ pub(crate) struct IrradianceCache {
 
 /// The irradiance of a scene in a world.
 struct WorldIrradiance {
+    /// Its [lighting](World::lighting).
     world: World,
     rough: OnceLock<Arc<Irradiance>>,
     fine: OnceLock<Arc<Irradiance>>,
@@ -73,8 +74,23 @@ pub(crate) struct IrradianceInputs<'a> {
 impl IrradianceCache {
     /// The irradiance in `world`, of any quality, if it is solved; nothing is started.
     pub fn available(&self, world: &World) -> Option<Arc<Irradiance>> {
-        let worlds = self.lock();
-        worlds.iter().find(|entry| entry.world == *world)?.available(LightQuality::Rough).cloned()
+        let (worlds, world) = (self.lock(), world.lighting());
+        worlds.iter().find(|entry| entry.world == world)?.available(LightQuality::Rough).cloned()
+    }
+
+    /// What is solved, for the same scene elsewhere.
+    pub fn solved(&self) -> Self {
+        let solved = |entry: &Arc<WorldIrradiance>| {
+            Arc::new(WorldIrradiance {
+                world: entry.world.clone(),
+                rough: entry.rough.clone(),
+                fine: entry.fine.clone(),
+                rough_task: OnceLock::new(),
+                fine_task: OnceLock::new(),
+            })
+        };
+        let worlds = self.lock().iter().map(solved).collect();
+        Self { worlds: Mutex::new(worlds) }
     }
 
     /// The memory of all solutions, in bytes.
@@ -124,14 +140,14 @@ impl IrradianceCache {
 
     /// The entry of a world, from now on the most recently used.
     fn entry(&self, world: &World) -> Arc<WorldIrradiance> {
-        let mut worlds = self.lock();
-        if let Some(index) = worlds.iter().position(|entry| entry.world == *world) {
+        let (mut worlds, world) = (self.lock(), world.lighting());
+        if let Some(index) = worlds.iter().position(|entry| entry.world == world) {
             let entry = worlds.remove(index);
             worlds.push(entry.clone());
             return entry;
         }
         let entry = Arc::new(WorldIrradiance {
-            world: world.clone(),
+            world,
             rough: OnceLock::new(),
             fine: OnceLock::new(),
             rough_task: OnceLock::new(),

@@ -57,6 +57,16 @@ impl LitScene {
         Arc::new(Self { tracer, options, resources, irradiance, photographs, bounce_limit, cancel })
     }
 
+    /// The scene in another world (none: its own): what is solved for worlds of the same lighting still holds.
+    pub fn in_world(&self, world: Option<World>) -> Arc<Self> {
+        let scene = Arc::new(Scene { world, ..(**self.scene()).clone() });
+        let mut lit = Self::new(Arc::new(Tracer::new(scene)), self.options, &self.resources);
+        if let Some(lit) = Arc::get_mut(&mut lit) {
+            lit.irradiance = self.irradiance.solved();
+        }
+        lit
+    }
+
     /// The tracer, by which rays are traced in the scene.
     pub fn tracer(&self) -> &Arc<Tracer> {
         &self.tracer

@@ -2,6 +2,7 @@
 
 use crate::carried::Carried;
 use crate::samples::Samples;
+use glam::Vec3;
 use lens::Camera;
 use serde::{Deserialize, Serialize};
 
@@ -40,6 +41,12 @@ pub struct SalfStatistics {
 }
 
 impl Salf {
+    /// The same light field before a backdrop of one radiance (linear RGB, ≥ 0) wherever no surface is; `None` if that is too large to be
+    /// stored.
+    pub fn with_backdrop(&self, radiance: Vec3) -> Option<Self> {
+        Some(Self { camera: self.camera.clone(), samples: self.samples.with_backdrop(radiance)?, ..*self })
+    }
+
     /// Counts the light field's samples by kind.
     pub fn statistics(&self) -> SalfStatistics {
         let [open, partial, background, carried] = self.samples.counts();

@@ -84,6 +84,11 @@ impl World {
         Self::built_in(BuiltInEnvironment::Studio)
     }
 
+    /// The world as light alone: worlds that differ in their backdrop have the same.
+    pub fn lighting(&self) -> Self {
+        Self { backdrop: Backdrop::Environment, ..self.clone() }
+    }
+
     /// The radiance (linear RGB) that arrives from a direction (world, unit).
     pub fn radiance(&self, direction: DVec3) -> Vec3 {
         let radiance = match &self.environment {

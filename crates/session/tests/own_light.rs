@@ -6,7 +6,8 @@ mod at_work;
 mod tiny_glb;
 
 use at_work::{opened, picture, settle};
-use scene::{Environment, World};
+use glam::Vec3;
+use scene::{Backdrop, Environment, World};
 use session::{Command, Session};
 
 /// The radiance of the picture's upper left corner, where no quad is.
@@ -48,4 +49,42 @@ fn it_is_seen_scaled_and_kept_as_the_scene_s_own() {
     let warnings = &without.document().unwrap().warnings;
     assert!(warnings.iter().any(|warning| warning.contains("EXT_lights_image_based")), "{warnings:?}");
     assert!(corner(&without) != [0.0, 0.0, 1.0]);
+}
+
+#[test]
+fn another_backdrop_needs_no_bake() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("quads.glb");
+    std::fs::write(&file, tiny_glb::metal(&tiny_glb::QUADS[1..])).unwrap();
+    let mut session = opened(&file);
+    let bakes = session.baked_light_fields();
+    let studio = World::studio();
+    for color in [Vec3::new(0.1, 0.5, 2.0), Vec3::new(0.9, 0.0, 0.3)] {
+        let world = World { backdrop: Backdrop::Color(color), ..studio.clone() };
+        session.apply(Command::SetWorld(Some(world.clone()))).unwrap();
+        settle(&mut session);
+        assert_eq!(session.baked_light_fields(), bakes);
+        let kept = picture(&session);
+        assert!((Vec3::from(kept.radiance[0]) - color).abs().max_element() < 2e-3 * color.max_element());
+        if color.x < 0.5 {
+            continue;
+        }
+        let mut fresh = opened(&file);
+        fresh.apply(Command::SetWorld(Some(world))).unwrap();
+        settle(&mut fresh);
+        fresh.apply(Command::Bake).unwrap();
+        settle(&mut fresh);
+        assert!(fresh.baked_light_fields() > 1, "it is baked");
+        let pairs = kept.radiance.as_flattened().iter().zip(picture(&fresh).radiance.into_flattened());
+        let largest = pairs.map(|(kept, fresh)| (kept - fresh).abs()).fold(0.0, f32::max);
+        assert!(largest < 4e-3, "{largest}");
+    }
+    // A sky is not the same everywhere, and other light is not either.
+    let sky = World { backdrop: Backdrop::Environment, ..studio.clone() };
+    session.apply(Command::SetWorld(Some(sky))).unwrap();
+    settle(&mut session);
+    assert_eq!(session.baked_light_fields(), bakes + 1);
+    session.apply(Command::SetWorld(Some(World { strength: 2.0, ..studio }))).unwrap();
+    settle(&mut session);
+    assert_eq!(session.baked_light_fields(), bakes + 2);
 }

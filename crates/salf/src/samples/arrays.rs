@@ -1,9 +1,11 @@
 //! The arrays that samples lie in.
 
+use crate::jitter::jitter;
 use crate::sample::{Sample, Visibility};
+use crate::samples::numbers::Rgb40;
 use crate::samples::plane::Plane;
 use crate::samples::record::{Patch, Record};
-use glam::IVec2;
+use glam::{IVec2, Vec3};
 use scene::SurfacePoint;
 
 /// The samples of a light field, numbered from 0.
@@ -86,6 +88,23 @@ impl Samples {
         let carried = self.records.iter().filter(|record| record.is_carried()).count()
             + self.loose.iter().filter(|sample| sample.is_carried).count();
         [self.len() - partial, partial, background, carried]
+    }
+
+    /// The same samples, with this radiance of those of the background; `None` if it is too large to be stored.
+    pub(crate) fn with_backdrop(&self, radiance: Vec3) -> Option<Self> {
+        let mut samples = self.clone();
+        for chunk in 0..self.chunks.len() {
+            let [start, end] = [chunk, chunk + 1].map(|chunk| self.starts(chunk).records as usize);
+            for (index, record) in (start..end).zip(&mut samples.records[start..end]) {
+                if self.surface_of(chunk, record).is_none() {
+                    record.radiance = Rgb40::new(radiance, jitter(chunk as u32, index as u32, 0))?;
+                }
+            }
+        }
+        for sample in samples.loose.iter_mut().filter(|sample| sample.surface.is_none()) {
+            sample.radiance = radiance;
+        }
+        Some(samples)
     }
 
     /// Parts, one after the other; what is not packed comes last.

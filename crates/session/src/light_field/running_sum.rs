@@ -8,6 +8,7 @@ use crate::light_field::margin_reach::MarginReach;
 use crate::light_field::sample_index::SampleIndex;
 use document::Stage;
 use focus::Focus;
+use glam::Vec3;
 use lens::{Camera, Picture};
 use light::LightQuality;
 use progress::{Progress, Stage as Share};
@@ -144,6 +145,14 @@ impl LightField {
     pub fn at_rest(self, gpu: Option<Gpu>) -> Self {
         let (salf, tolerance) = (self.splatter.salf().clone(), self.splatter.tolerance());
         Self::resting(salf, self.index, self.modelled, tolerance, gpu).refined(self.light_passes)
+    }
+
+    /// The same light field for a `stage` that differs in its backdrop alone, which has this radiance (linear RGB) everywhere; `None` if that is
+    /// too large to be stored.
+    pub fn with_backdrop(&self, stage: &Stage, radiance: Vec3, gpu: Option<Gpu>) -> Option<Self> {
+        let salf = self.splatter.salf().with_backdrop(radiance)?;
+        let field = Self::from_salf(stage, Arc::new(salf), self.splatter.tolerance(), gpu);
+        Some(field.refined(self.light_passes))
     }
 
     fn resting(

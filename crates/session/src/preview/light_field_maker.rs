@@ -8,6 +8,7 @@ use crate::preview::helper_thread;
 use crate::preview::mailbox::Shared;
 use document::Stage;
 use focus::Focus;
+use glam::Vec3;
 use jobs::{Urgency, catch_panics, run_in_own_pool};
 use lens::Camera;
 use light::LightQuality;
@@ -23,6 +24,8 @@ use std::time::{Duration, Instant};
 pub(crate) enum FieldOrigin {
     /// A light field that is there.
     Resum(Box<LightField>),
+    /// One that is there, before another backdrop, which has this radiance everywhere.
+    OtherBackdrop(Box<LightField>, Vec3),
     /// None: it is taken from the store or baked, with a margin of at least this many pixels.
     LoadOrBake { least_margin_px: f64 },
     /// None: it is baked, whatever is in the store.
@@ -178,6 +181,18 @@ fn make(
     let mut field = match origin {
         FieldOrigin::Resum(field) => *field,
         FieldOrigin::Bake => bake(0.0)?,
+        FieldOrigin::OtherBackdrop(field, radiance) => {
+            let start = Instant::now();
+            match field.with_backdrop(&stage, radiance, shared.gpu()) {
+                Some(field) => {
+                    if let Some(store) = store {
+                        store.save(&stage, &field.baked().salf, field.light_passes(), start.elapsed());
+                    }
+                    field
+                }
+                None => bake(0.0)?,
+            }
+        }
         FieldOrigin::LoadOrBake { least_margin_px } => {
             let carried = Carried::for_focus(&focus);
             let stored = store.and_then(|store| store.find(&stage, &camera, least_margin_px, carried));
