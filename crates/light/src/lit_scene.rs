@@ -11,8 +11,8 @@ use jobs::CancelToken;
 use lens::Camera;
 use progress::Progress;
 use scene::{Scene, World};
-use slf::{BounceLimit, PhotographLight, Transport};
-use std::sync::Arc;
+use slf::{BounceLimit, Irradiance, PhotographLight, Transport};
+use std::sync::{Arc, Mutex, PoisonError};
 use trace::{Radiance, Tracer};
 
 /// The radiance that leaves a scene.
@@ -33,10 +33,30 @@ pub struct LitScene {
     options: LightOptions,
     resources: Resources,
     irradiance: IrradianceCache,
+    /// The last one, for the next picture in the same world.
+    rough_light: Mutex<Option<RoughLight>>,
     /// `Some` if photographs light the scene.
     photographs: Option<PhotographLightCache>,
     bounce_limit: BounceLimit,
     cancel: CancelToken,
+}
+
+/// Rough light of a world.
+struct RoughLight {
+    world: World,
+    /// What it was made from; none where nothing scatters light.
+    irradiance: Option<Arc<Irradiance>>,
+    light: SceneLight,
+}
+
+impl RoughLight {
+    fn is_of(&self, world: &World, irradiance: Option<&Arc<Irradiance>>) -> bool {
+        let is_same = match (&self.irradiance, irradiance) {
+            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+            (a, b) => a.is_none() && b.is_none(),
+        };
+        is_same && self.world == *world
+    }
 }
 
 impl Drop for LitScene {
@@ -53,8 +73,17 @@ impl LitScene {
         let photographs =
             photographs.then(|| PhotographLightCache::new(&tracer, options, resources, &cancel));
         let (irradiance, resources) = (IrradianceCache::default(), resources.clone());
-        let bounce_limit = BounceLimit::default();
-        Arc::new(Self { tracer, options, resources, irradiance, photographs, bounce_limit, cancel })
+        let (rough_light, bounce_limit) = (Mutex::default(), BounceLimit::default());
+        Arc::new(Self {
+            tracer,
+            options,
+            resources,
+            irradiance,
+            rough_light,
+            photographs,
+            bounce_limit,
+            cancel,
+        })
     }
 
     /// The scene in another world (none: its own): what is solved for worlds of the same lighting still holds.
@@ -110,21 +139,38 @@ impl LitScene {
                 (None, _) => return photographs.wait_for_lookup(progress),
             }
         }
-        let light_samples = if quality == LightQuality::Rough { ROUGH_LIGHT_SAMPLES } else { LIGHT_SAMPLES };
-        let paths = if let LightQuality::Refined { passes } = quality { passes } else { PATHS };
-        let transport = self.transport(camera, paths, light_samples);
-        if !self.has_lit_surfaces() {
-            return Ok(Arc::new(transport));
-        }
-        let inputs = self.irradiance_inputs();
-        let irradiance = self.irradiance.wait(&self.world(camera), quality, &inputs, progress)?;
-        if irradiance.solution().is_cut_off {
+        let world = self.world(camera);
+        let irradiance = if self.has_lit_surfaces() {
+            Some(self.irradiance.wait(&world, quality, &self.irradiance_inputs(), progress)?)
+        } else {
+            None
+        };
+        if irradiance.as_ref().is_some_and(|irradiance| irradiance.solution().is_cut_off) {
             self.bounce_limit.reach();
         }
-        Ok(Arc::new(match quality {
-            LightQuality::Refined { .. } => transport.with_control_variate(irradiance),
-            LightQuality::Rough | LightQuality::Fine => transport.with_irradiance(irradiance),
-        }))
+        Ok(match quality {
+            LightQuality::Rough => self.rough_light(world, irradiance),
+            LightQuality::Fine => with_irradiance(self.transport(world, PATHS, LIGHT_SAMPLES), irradiance),
+            LightQuality::Refined { passes } => {
+                let transport = self.transport(world, passes, LIGHT_SAMPLES);
+                Arc::new(match irradiance {
+                    Some(irradiance) => transport.with_control_variate(irradiance),
+                    None => transport,
+                })
+            }
+        })
+    }
+
+    /// Rough light, as long as it was made from the same. Each of the pictures that follow a camera asks for it.
+    fn rough_light(&self, world: World, irradiance: Option<Arc<Irradiance>>) -> SceneLight {
+        let mut last = self.rough_light.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(last) = last.as_ref().filter(|last| last.is_of(&world, irradiance.as_ref())) {
+            return last.light.clone();
+        }
+        let transport = self.transport(world.clone(), PATHS, ROUGH_LIGHT_SAMPLES);
+        let light = with_irradiance(transport, irradiance.clone());
+        *last = Some(RoughLight { world, irradiance, light: light.clone() });
+        light
     }
 
     /// Begins to solve for the rough light of a camera's world in the background, so that it is soon there.
@@ -140,11 +186,9 @@ impl LitScene {
         if let Some(light) = photographs.and_then(PhotographLightCache::available_lookup) {
             return light;
         }
-        let transport = self.transport(camera, PATHS, LIGHT_SAMPLES);
-        Arc::new(match self.irradiance.available(&self.world(camera)) {
-            Some(irradiance) => transport.with_irradiance(irradiance),
-            None => transport,
-        })
+        let world = self.world(camera);
+        let irradiance = self.irradiance.available(&world);
+        with_irradiance(self.transport(world, PATHS, LIGHT_SAMPLES), irradiance)
     }
 
     /// Light for a first picture: from photographs, if that is cached on disk; otherwise the unbiased, noisy light of the bare surface, for
@@ -155,7 +199,7 @@ impl LitScene {
         {
             return light;
         }
-        Arc::new(self.transport(camera, 4 * PATHS, ROUGH_LIGHT_SAMPLES))
+        Arc::new(self.transport(self.world(camera), 4 * PATHS, ROUGH_LIGHT_SAMPLES))
     }
 
     /// Light for the ground truth: complete paths without cached irradiance, or light from photographs. The ground truth shades many points
@@ -166,7 +210,7 @@ impl LitScene {
     pub fn ground_truth(&self, camera: &Camera, progress: &dyn Progress) -> Result<SceneLight, LightError> {
         match &self.photographs {
             Some(photographs) => photographs.wait_for_lookup(progress),
-            None => Ok(Arc::new(self.transport(camera, 1, LIGHT_SAMPLES))),
+            None => Ok(Arc::new(self.transport(self.world(camera), 1, LIGHT_SAMPLES))),
         }
     }
 
@@ -230,10 +274,17 @@ impl LitScene {
         World::from_scene(self.scene(), background)
     }
 
-    fn transport(&self, camera: &Camera, paths: u32, light_samples: u32) -> Transport {
-        transport_without_cache(&self.tracer, self.world(camera), self.options, paths, light_samples)
+    fn transport(&self, world: World, paths: u32, light_samples: u32) -> Transport {
+        transport_without_cache(&self.tracer, world, self.options, paths, light_samples)
             .with_bounce_limit(self.bounce_limit.clone())
     }
+}
+
+fn with_irradiance(transport: Transport, irradiance: Option<Arc<Irradiance>>) -> SceneLight {
+    Arc::new(match irradiance {
+        Some(irradiance) => transport.with_irradiance(irradiance),
+        None => transport,
+    })
 }
 
 #[cfg(test)]

@@ -167,11 +167,12 @@ impl Shared {
         self.is_following.store(true, Ordering::Relaxed);
     }
 
-    /// Notes that such a picture is finished; false if there is a new request.
-    pub fn end_following(&self) -> bool {
+    /// Notes that such a picture is finished, and waits for `pause`; false as soon as there is a new request.
+    pub fn end_following(&self, pause: Duration) -> bool {
         let request = lock(&self.request);
         self.is_following.store(false, Ordering::Relaxed);
-        !request.is_posted
+        let waited = self.wake.wait_timeout_while(request, pause, |request| !request.is_posted);
+        !waited.unwrap_or_else(PoisonError::into_inner).0.is_posted
     }
 
     /// Notes that the helper begins; false if its work is already useless.

@@ -20,7 +20,10 @@ use light::LightQuality;
 use render::Modelled;
 use splat::Tolerance;
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
+
+/// A camera that has not moved for so long rests; until then, the window has the processor.
+const HAND_REST: Duration = Duration::from_millis(80);
 
 impl From<&SumUpdate> for PreviewKind {
     fn from(update: &SumUpdate) -> Self {
@@ -96,10 +99,11 @@ impl Worker {
         let camera = &moving_camera(camera, self.pinhole.pace());
         self.shared.begin_following();
         let start = Instant::now();
-        let traced = self.trace_pinhole(stage, camera, focus);
-        let rests = self.shared.end_following();
+        let traced = self.trace_pinhole(stage, camera, focus).inspect_err(|_| {
+            self.shared.end_following(Duration::ZERO);
+        })?;
         self.presenter.show(NewPicture {
-            picture: PictureSource::InMemory(&traced?),
+            picture: PictureSource::InMemory(&traced),
             camera,
             enlarged_to: None,
             sharp_layer: None,
@@ -109,7 +113,7 @@ impl Worker {
             seconds: start.elapsed().as_secs_f64(),
             modelled: Modelled::default(),
         });
-        Ok(rests)
+        Ok(self.shared.end_following(HAND_REST))
     }
 
     pub(super) fn trace_pinhole(
