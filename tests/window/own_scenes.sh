@@ -1,0 +1,85 @@
+#!/bin/bash
+# What an artist does first with a file of their own, in the real window under Xvfb, by mouse and keys: opens it, keeps three cameras
+# while orbiting in the picture, paints in it, and exports it. One picture shows every scene as it opens, as it is painted, and as it is exported.
+#
+#   tests/window/own_scenes.sh FOLDER SCENE…
+#
+# FOLDER   where the screenshots and all.jpg go
+# SCENE    glTF scenes; folders with other files of a scene are used where they are
+# Needs a built focus-brush (FOCUS_BRUSH=… if it is not in target/debug), xvfb, xdotool and imagemagick.
+set -u
+root=$(cd "$(dirname "$0")/../.." && pwd)
+out=$1
+shift
+size=1280x720
+. "$root/tests/window/display.sh"
+
+# The middle of the picture, which fills what tools and inspector leave.
+x=$(((width - 300 + 44) / 2))
+y=$((height / 2))
+
+# A drag with a button, by so many pixels.
+drag() {
+    xdotool mousemove "$2" "$3" sleep 0.2 mousedown "$1" sleep 0.1
+    for _ in $(seq 15); do xdotool mousemove_relative -- "$4" "$5" sleep 0.04; done
+    xdotool mouseup "$1" sleep 0.3
+}
+
+# A camera is kept after every turn.
+bookmark() {
+    away
+    xdotool key ctrl+alt+b
+    sleep 0.5
+}
+
+# Waits until the picture is there: what is begun shows no bar for some seconds.
+picture() {
+    sleep 15
+    settle "$1"
+}
+
+rows=()
+for scene in "$@"; do
+    name=$(basename "${scene%.*}")
+    start_app "$scene"
+    picture "$name opens"
+    shot "$name-1-opened"
+    bookmark
+    drag 2 "$x" "$y" 4 1
+    bookmark
+    drag 2 "$x" "$y" -8 -1
+    bookmark
+    picture "$name is turned"
+    shot "$name-2-turned"
+    # Sharp, with a brush of its own size, over what is out of focus below the middle.
+    drag 1 $((x - 60)) $((y + 90)) 8 1
+    picture "$name is painted"
+    shot "$name-3-painted"
+    if [ "$(compare -metric AE "$out/$name-2-turned.png" "$out/$name-3-painted.png" null: 2>&1 | cut -d' ' -f1)" -lt 100 ]; then
+        fail "$name: a stroke in the picture changes nothing"
+    fi
+    rm -f "$work/export.png"
+    xdotool key ctrl+e
+    sleep 1
+    import -window root "$out/$name-export-dialog.png"
+    xdotool key Return
+    sleep 1
+    xdotool key ctrl+a
+    xdotool type "$work/export.png"
+    xdotool key Return
+    sleep 1
+    settle "$name is exported"
+    [ -s "$work/export.png" ] || fail "$name: no picture was exported"
+    cp "$work/export.png" "$out/$name-4-exported.png"
+    kill "$app"
+    wait "$app" 2>/dev/null
+    app=
+    for step in 1-opened 3-painted 4-exported; do
+        convert "$out/$name-$step.png" -resize 640x360 -background '#303030' -gravity center -extent 640x360 "$work/$step.png"
+    done
+    convert "$work/1-opened.png" "$work/3-painted.png" "$work/4-exported.png" +append "$out/$name-row.png"
+    rows+=("$out/$name-row.png")
+    echo "ok: $name"
+done
+convert "${rows[@]}" -append -quality 85 "$out/all.jpg"
+echo "all is well; screenshots in $out"
