@@ -7,7 +7,7 @@ width=${size%x*}
 height=${size#*x}
 scale=${SCALE:-1}
 patience=${PATIENCE:-300}
-# A progress bar has more pixels of its colour than text has by chance.
+# A progress bar has more pixels of the colour behind it than text has by chance.
 bar_pixels=250
 work=$(mktemp -d)
 mkdir -p "$out"
@@ -78,7 +78,7 @@ settle() {
         kill -0 "$app" 2>/dev/null || fail "$1: the program ended"
         import -window root "$work/new.png"
         bar=$(convert "$work/new.png" -crop "x$((24 * scale))+0+$((height - 24 * scale))" +repage -format %c histogram:info: |
-            awk '/#606060/ { n += $1 } END { print n + 0 }')
+            awk '/#181818/ { n += $1 } END { print n + 0 }')
         if [ "$bar" -lt "$bar_pixels" ] && [ -f "$work/old.png" ] && [ "$(compare -metric AE "$work/old.png" "$work/new.png" null: 2>&1 | cut -d' ' -f1)" = 0 ]; then
             still=$((still + 1))
         else

@@ -60,14 +60,15 @@ for scene in "$@"; do
     fi
     rm -f "$work/export.png"
     xdotool key ctrl+e
-    sleep 1
+    sleep 3
     import -window root "$out/$name-export-dialog.png"
     xdotool key Return
-    sleep 1
+    sleep 3
     xdotool key ctrl+a
     xdotool type "$work/export.png"
-    xdotool key Return
     sleep 1
+    xdotool key Return
+    sleep 3
     settle "$name is exported"
     [ -s "$work/export.png" ] || fail "$name: no picture was exported"
     cp "$work/export.png" "$out/$name-4-exported.png"

@@ -276,7 +276,15 @@ impl PictureView {
         match drawn {
             Some(()) => {}
             None => {
-                painter.rect_filled(place, 0.0, egui::Color32::from_gray(28));
+                // Until it is there, a picture of the same view is shown.
+                match shown.reference_kind() {
+                    Some(ReferenceKind::Standard | ReferenceKind::Pinhole | ReferenceKind::Truth) => {
+                        self.paint_picture(ui, session, tone, DisplayedPicture::Painted, part);
+                    }
+                    _ => {
+                        painter.rect_filled(place, 0.0, egui::Color32::from_gray(28));
+                    }
+                }
                 let text = match shown {
                     DisplayedPicture::Painted => "Drawing the first picture…",
                     DisplayedPicture::Standard => "Drawing the ordinary lens…",
