@@ -193,6 +193,11 @@ impl LightField {
         twin.refined(self.light_passes)
     }
 
+    /// See [`Splatter::release_room`].
+    pub fn release_room(&mut self) {
+        self.splatter.release_room();
+    }
+
     /// See [`Splatter::prepare`].
     pub fn prepare(&self) -> impl FnOnce(&dyn Progress) + Send + use<> {
         self.splatter.prepare()

@@ -135,6 +135,7 @@ fn draw(field: &mut LightField, task: ExactTask, shared: &Shared) -> Result<Exac
     field.prepare()(&shared.refining);
     let start = Instant::now();
     field.update_sum(&camera, &focus, &Share::new(&shared.refining, 0.0, 1.0))?;
+    field.release_room();
     let seconds = start.elapsed().as_secs_f64();
     let viewing_psnr = psnr_between(&viewing, field.fetch_picture()?, exposure);
     Ok(ExactPicture { map_serial, camera, seconds, viewing_psnr })

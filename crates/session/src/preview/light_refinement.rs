@@ -176,6 +176,7 @@ fn make(task: LightTask, last: Option<LightField>, shared: &Shared) -> Result<Fi
     let seconds = start.elapsed().as_secs_f64();
     let summing = Share::new(&shared.light, BAKED_SHARE, 1.0);
     field.update_sum(&camera, &focus, &summing)?;
+    field.release_room();
     field.survey(&camera, &focus);
     let mut errors = None;
     if let Some(last) = summed_last {

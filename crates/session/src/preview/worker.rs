@@ -173,6 +173,9 @@ impl Worker {
         if self.is_paused && self.fine.is_none() && self.coarse.is_none() {
             return Ok(());
         }
+        if is_idle && let Some(fine) = &mut self.fine {
+            fine.release_room();
+        }
         if is_idle && self.may_refine() {
             self.refine(camera, focus);
             return Ok(());
