@@ -6,5 +6,6 @@ pub mod false_colour;
 pub mod focus_slider;
 pub mod icon;
 pub mod keys;
+pub mod ray_diagram;
 pub mod rename_field;
 pub mod theme;

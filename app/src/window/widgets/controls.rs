@@ -22,10 +22,24 @@ pub fn row(
     tooltip: &str,
     control: impl FnOnce(&mut Ui) -> Response,
 ) -> Response {
-    let label = ui.label(label).on_hover_text(tooltip);
+    let tooltip = |ui: &mut Ui| {
+        ui.set_max_width(ui.spacing().tooltip_width);
+        ui.label(tooltip);
+    };
+    explained_row(ui, label, tooltip, control)
+}
+
+/// The same, with a tooltip that holds more than words.
+pub fn explained_row(
+    ui: &mut Ui,
+    label: impl Into<WidgetText>,
+    tooltip: impl Fn(&mut Ui),
+    control: impl FnOnce(&mut Ui) -> Response,
+) -> Response {
+    let label = ui.label(label).on_hover_ui(&tooltip);
     let field = ui.spacing().combo_width;
     let before = std::mem::replace(&mut ui.spacing_mut().interact_size.x, field);
-    let response = control(ui).labelled_by(label.id).on_hover_text(tooltip);
+    let response = control(ui).labelled_by(label.id).on_hover_ui(&tooltip);
     ui.spacing_mut().interact_size.x = before;
     ui.end_row();
     response

@@ -2,7 +2,8 @@
 
 use crate::window::Action;
 use crate::window::widgets::brush_controls::{push_brush_change, signed_circle_px, target_slider};
-use crate::window::widgets::controls::{self, format_number, proportional_value, row, rows};
+use crate::window::widgets::controls::{self, explained_row, format_number, proportional_value, row, rows};
+use crate::window::widgets::ray_diagram::{ANCHORS, OFFSETS, explanation};
 use document::Document;
 use egui::{Button, Checkbox, DragValue, RichText, Ui};
 use lens::FocusOffset;
@@ -40,15 +41,19 @@ pub fn focus_panel(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) 
         }
         let tip = "The raw focus offset: the distance that rays travel behind the lens, relative to the \
                    anchor's. 1 is no offset.";
-        row(ui, "t", tip, |ui| ui.add(DragValue::new(&mut brush.target.t).speed(0.0005).fixed_decimals(4)));
+        let explain = |ui: &mut Ui| explanation(ui, tip, &OFFSETS);
+        explained_row(ui, "t", explain, |ui| {
+            ui.add(DragValue::new(&mut brush.target.t).speed(0.0005).fixed_decimals(4))
+        });
         let tip = "What the blur is relative to. Lens: it still varies with depth and focus distance. Point: \
                    this blur, wherever the camera focuses. Key: A.";
-        row(ui, "Anchor", tip, |ui| {
+        let explain = |ui: &mut Ui| explanation(ui, tip, &ANCHORS);
+        explained_row(ui, "Anchor", explain, |ui| {
             controls::beside(ui, |ui| {
                 for (anchor, label) in [(0.0, "Lens"), (1.0, "Point")] {
                     if ui
                         .add(Button::selectable(brush.target.anchor == anchor, label))
-                        .on_hover_text(tip)
+                        .on_hover_ui(explain)
                         .clicked()
                     {
                         brush.target.anchor = anchor;
