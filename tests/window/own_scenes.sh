@@ -48,8 +48,8 @@ for scene in "$@"; do
     bookmark
     sleep "$rest"
     shot "$name-2-turned"
-    # Sharp, with a brush of its own size, over what is out of focus below the middle.
-    drag 1 $((x - 60)) $((y + 90)) 8 1
+    # Sharp, across the middle.
+    drag 1 $((x - 60)) $((y + 15)) 8 1
     sleep "$rest"
     shot "$name-3-painted"
     # The paint view, over the lower left corner, stands still but for paint.

@@ -13,7 +13,7 @@ pub fn settle(session: &mut Session) -> Vec<Event> {
     let mut events = session.poll();
     while !session.is_settled() {
         assert!(
-            start.elapsed() < Duration::from_secs(120),
+            start.elapsed() < Duration::from_secs(300),
             "the session never settles: {:?}",
             session.jobs()
         );
