@@ -7,9 +7,11 @@ renders the result as a physically formed picture. Pictures are linear RGB, floa
 >>> scene = fb.open("demo.glb")
 >>> camera = scene.camera.replace(size=(96, 54))
 >>> field = scene.bake(camera)
->>> near = field.render(camera=camera.replace(focus_distance=1.5))
+>>> near, far = (field.render(camera=camera.replace(focus_distance=distance)) for distance in (1.5, 6.0))
 >>> near.exposed().shape
 (54, 96, 3)
+>>> fb.compare(near, far)["psnr"] < 60
+True
 """
 
 import os as _os
@@ -28,6 +30,7 @@ from ._native import (  # noqa: E402
     __version__,
     compare,
     open,
+    read_picture,
     set_threads,
 )
 
@@ -42,5 +45,6 @@ __all__ = [
     "__version__",
     "compare",
     "open",
+    "read_picture",
     "set_threads",
 ]

@@ -5,6 +5,21 @@ from typing import Any, Literal, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+__all__ = [
+    "Camera",
+    "Cancelled",
+    "Field",
+    "Focus",
+    "GpuAbsent",
+    "Picture",
+    "Scene",
+    "__version__",
+    "compare",
+    "open",
+    "read_picture",
+    "set_threads",
+]
+
 __version__: str
 _UNWRAP_CHILD: str
 
@@ -91,6 +106,7 @@ class Focus:
     @property
     def over(self) -> Literal["atlas", "part"]: ...
     def sharpen(self) -> None: ...
+    def select(self, mask: NDArray[np.bool_], camera: Camera | None = None) -> NDArray[np.bool_]: ...
 
 @final
 class Picture:
@@ -197,4 +213,5 @@ def compare(
     *,
     exposure: _Exposure | None = None,
 ) -> dict[str, float]: ...
+def read_picture(file: _Path) -> _Floats: ...
 def set_threads(threads: int) -> None: ...

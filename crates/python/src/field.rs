@@ -2,9 +2,10 @@
 
 use crate::camera::Camera;
 use crate::errors::exception;
+use crate::lit_input::LitInput;
 use crate::picture::Picture;
 use crate::render_options::render_options;
-use crate::scene::LitInput;
+use crate::rendering::picture;
 use numpy::{IntoPyArray, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -47,7 +48,7 @@ impl Field {
         options: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Picture> {
         let options = render_options(options, &self.0.input)?;
-        self.0.render(py, camera, focus, &options, progress)
+        picture(py, &self.0, camera, focus, &options, progress)
     }
 
     /// Writes it as .salf, which the program and open() read; it names the scene's file.
@@ -59,7 +60,7 @@ impl Field {
     }
 
     /// Its samples, as arrays by name: center and half_size (px, n × 2), inverse_depth, weight (px²), radiance (linear
-    /// RGB, n × 3), triangle (−1 for the background), is_carried, is_open (the whole aperture sees it).
+    /// RGB, n × 3), triangle and part (−1 for the background), is_carried, is_open (the whole aperture sees it).
     fn samples<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let samples = &self.salf()?.samples;
         let samples: Vec<Sample> = py.detach(|| samples.to_vec());
@@ -79,6 +80,12 @@ impl Field {
         arrays.set_item("weight", numbers(|sample| sample.weight).into_pyarray(py))?;
         arrays.set_item("radiance", radiance.into_pyarray(py).reshape([count, 3])?)?;
         arrays.set_item("triangle", triangles.into_pyarray(py))?;
+        let triangles = &self.0.input.scene.triangles;
+        let part = |sample: &Sample| {
+            sample.surface.map_or(-1, |point| i64::from(triangles[point.triangle as usize].part))
+        };
+        let parts: Vec<i64> = samples.iter().map(part).collect();
+        arrays.set_item("part", parts.into_pyarray(py))?;
         arrays.set_item("is_carried", flags(|sample| sample.is_carried).into_pyarray(py))?;
         let is_open = flags(|sample| sample.visibility == Visibility::Open).into_pyarray(py);
         arrays.set_item("is_open", is_open)?;

@@ -1,11 +1,14 @@
 //! `Focus`: t, anchor and gloss as arrays that scripts write, and what they mean to a picture.
 
+use crate::camera::Camera;
+use crate::lit_input::LitInput;
+use crate::work;
 use atlas::{Atlas, TexelMap, UnwrapOptions};
-use document::Input;
+use document::{Input, texels_in_mask};
 use focus::{FocusError, FocusMap, FocusSource};
 use lens::FocusOffset;
 use light::Steps;
-use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods};
+use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArray2};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use render::RenderError;
@@ -40,7 +43,7 @@ impl Over {
 /// Pictures read the arrays when they are rendered; what is written later does not change them.
 #[pyclass(frozen, module = "focus_brush")]
 pub struct Focus {
-    scene: Arc<Scene>,
+    scene: LitInput,
     over: Over,
     t: Py<PyArrayDyn<f32>>,
     anchor: Py<PyArrayDyn<f32>>,
@@ -113,8 +116,10 @@ impl FocusValues {
 }
 
 impl Focus {
-    pub fn new(py: Python<'_>, values: FocusValues) -> PyResult<Self> {
-        let FocusValues { scene, over, shape, t, anchor, gloss, background } = values;
+    /// Arrays of these values, of this scene.
+    pub fn new(py: Python<'_>, scene: &LitInput, values: FocusValues) -> PyResult<Self> {
+        let scene = scene.clone();
+        let FocusValues { scene: _, over, shape, t, anchor, gloss, background } = values;
         let array =
             |values: Vec<f32>| Ok::<_, PyErr>(values.into_pyarray(py).reshape(shape.clone())?.unbind());
         let [t, anchor, gloss] = [array(t)?, array(anchor)?, array(gloss)?];
@@ -128,7 +133,7 @@ impl Focus {
     fn values(&self, py: Python<'_>) -> PyResult<FocusValues> {
         let shape = match &self.over {
             Over::Atlas(atlas, _) => vec![atlas.height as usize, atlas.width as usize],
-            Over::Part => vec![self.scene.parts.len()],
+            Over::Part => vec![self.scene.input.scene.parts.len()],
         };
         let read = |name: &str, array: &Py<PyArrayDyn<f32>>| {
             let array = array.bind(py).try_readonly()?;
@@ -142,7 +147,8 @@ impl Focus {
         };
         let [t, anchor, gloss] =
             [read("t", &self.t)?, read("anchor", &self.anchor)?, read("gloss", &self.gloss)?];
-        let (scene, over, background) = (self.scene.clone(), self.over.clone(), self.background());
+        let (scene, over, background) =
+            (self.scene.input.scene.clone(), self.over.clone(), self.background());
         Ok(FocusValues { scene, over, shape, t, anchor, gloss, background })
     }
 
@@ -221,8 +227,47 @@ impl Focus {
         Ok(())
     }
 
+    /// Which elements a camera sees where `mask` is true, as an array of bool over the atlas. `mask` has the rows and
+    /// columns of the camera's picture; `camera` is by default the scene's.
+    ///
+    /// Raises ValueError for a mask of another size, or a focus over parts; TypeError for one that is not of bool.
+    ///
+    /// >>> import numpy as np, focus_brush as fb
+    /// >>> scene = fb.open("demo.glb")
+    /// >>> focus, mask = scene.focus(), np.zeros((scene.camera.height, scene.camera.width), bool)
+    /// >>> mask[:, :480] = True
+    /// >>> focus.t[focus.select(mask)] = 1.02
+    #[pyo3(signature = (mask, camera = None))]
+    fn select<'py>(
+        &self,
+        py: Python<'py>,
+        mask: PyReadonlyArray2<'py, bool>,
+        camera: Option<&Camera>,
+    ) -> PyResult<Bound<'py, PyArrayDyn<bool>>> {
+        let Over::Atlas(_, texels) = &self.over else {
+            return Err(PyValueError::new_err(
+                "select: the focus is over parts (use scene.focus(over=\"atlas\"))",
+            ));
+        };
+        let camera = camera.map_or_else(|| self.scene.input.camera.clone(), |camera| camera.0.clone());
+        let size = [camera.height as usize, camera.width as usize];
+        let view = mask.as_array();
+        if view.shape() != size {
+            let what = format!(
+                "mask: an array of the shape {:?} (it must be {size:?}, as the picture)",
+                view.shape()
+            );
+            return Err(PyValueError::new_err(what));
+        }
+        let mask: Vec<bool> = view.iter().copied().collect();
+        let selected = work::run(py, "selecting", None, |_| {
+            Ok(texels_in_mask(self.scene.lit()?.tracer(), texels, &camera, &mask))
+        })?;
+        selected.into_pyarray(py).reshape(vec![texels.height as usize, texels.width as usize])
+    }
+
     fn __repr__(&self) -> String {
-        format!("Focus(over={:?}, {} parts)", self.over.name(), self.scene.parts.len())
+        format!("Focus(over={:?}, {} parts)", self.over.name(), self.scene.input.scene.parts.len())
     }
 }
 

@@ -17,8 +17,10 @@ mod errors;
 mod field;
 mod focus;
 mod json;
+mod lit_input;
 mod picture;
 mod render_options;
+mod rendering;
 mod scene;
 mod threads;
 mod work;
@@ -38,6 +40,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<picture::Picture>()?;
     module.add_function(wrap_pyfunction!(scene::open, module)?)?;
     module.add_function(wrap_pyfunction!(comparison::compare, module)?)?;
+    module.add_function(wrap_pyfunction!(picture::read_picture_file, module)?)?;
     module.add_function(wrap_pyfunction!(threads::set_threads, module)?)?;
     module.add_function(wrap_pyfunction!(threads::run_unwrap_child, module)?)
 }

@@ -1,10 +1,10 @@
 //! `Picture`: a rendered picture, whose arrays NumPy reads where they are.
 
-use crate::errors::exception;
+use crate::errors::{exception, reading_exception};
 use lens::Exposure;
 use numpy::ndarray::{ArrayView2, ArrayView3};
 use numpy::{IntoPyArray, PyArray2, PyArray3, PyArrayMethods};
-use project::{LinearPicture, PictureOptions, write_picture};
+use project::{LinearPicture, PictureOptions, read_picture, write_picture};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -76,6 +76,23 @@ fn size_fault(error: numpy::ndarray::ShapeError) -> PyErr {
     exception(render::RenderError::Internal(format!(
         "a picture of another size: {error} (please report this)"
     )))
+}
+
+/// The linear RGB of a picture file, float32 of height × width × 3: .exr, .hdr, .png, .jpg or .webp.
+///
+/// Raises FileNotFoundError, or ValueError for a file that cannot be used.
+///
+/// >>> import focus_brush as fb
+/// >>> picture = fb.open("demo.glb").truth(fb.Camera(width=32, height=18), spp=1)
+/// >>> picture.write("picture.exr")
+/// >>> bool((fb.read_picture("picture.exr") == picture.exposed()).all())
+/// True
+#[pyfunction]
+#[pyo3(name = "read_picture")]
+pub fn read_picture_file(py: Python<'_>, file: PathBuf) -> PyResult<Bound<'_, PyArray3<f32>>> {
+    let picture = py.detach(|| read_picture(&file)).map_err(|error| reading_exception(&file, error))?;
+    let [height, width] = [picture.height as usize, picture.width as usize];
+    picture.rgb.into_flattened().into_pyarray(py).reshape([height, width, 3])
 }
 
 #[pymethods]

@@ -4,59 +4,21 @@ use crate::camera::Camera;
 use crate::errors::{reading_exception, warn};
 use crate::field::Field;
 use crate::focus::{Focus, FocusArgument, FocusValues, Over};
+use crate::lit_input::LitInput;
 use crate::picture::Picture;
 use crate::render_options::{light_quality, render_options};
+use crate::rendering::picture;
 use crate::work;
 use atlas::UnwrapOptions;
 use document::{CameraChoice, Input};
-use light::{DiskCache, LitScene, Resources};
+use light::{DiskCache, Resources};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use render::{RenderError, RenderOptions, Renderer, render_lit_input};
+use render::{RenderError, RenderOptions, Renderer};
 use std::ffi::OsString;
 use std::path::PathBuf;
-use std::sync::{Arc, OnceLock};
-
-/// Rays per pixel of `truth` unless others are requested.
-const TRUTH_RAYS: u32 = 256;
-
-/// An input with its light, computed once, and how it is unwrapped.
-#[derive(Clone)]
-pub struct LitInput {
-    pub input: Arc<Input>,
-    unwrap: UnwrapOptions,
-    lit: OnceLock<Arc<LitScene>>,
-}
-
-impl LitInput {
-    fn lit(&self) -> Result<Arc<LitScene>, RenderError> {
-        if let Some(lit) = self.lit.get() {
-            return Ok(lit.clone());
-        }
-        let lit = self.input.lit_scene()?;
-        Ok(self.lit.get_or_init(|| lit).clone())
-    }
-
-    /// Renders a picture, for a method of Python with these arguments.
-    pub fn render(
-        &self,
-        py: Python<'_>,
-        camera: Option<&Camera>,
-        focus: Option<&Bound<'_, PyAny>>,
-        options: &RenderOptions,
-        progress: Option<&Bound<'_, PyAny>>,
-    ) -> PyResult<Picture> {
-        let focus = FocusArgument::from_python(focus)?;
-        let camera = camera.map_or_else(|| self.input.camera.clone(), |camera| camera.0.clone());
-        let rendered = work::run(py, "rendering", progress, |steps| {
-            let focus = focus.evaluate(&self.input, &self.unwrap, steps)?;
-            render_lit_input(&self.input, &self.lit()?, &camera, &focus, options, steps)
-        })?;
-        warn(py, &rendered.warnings)?;
-        Ok(Picture::new(rendered, self.input.exposure()))
-    }
-}
+use std::sync::Arc;
 
 /// Opens what the program opens: a glTF file, a project, a capture (a folder, or a picture with its depth), Gaussian
 /// splats or a baked light field. `variant` names a variant of its materials ("" for its own). `cache` is a folder
@@ -71,7 +33,7 @@ impl LitInput {
 /// >>> scene = fb.open("demo.glb")
 /// >>> fb.open("nowhere.glb")
 /// Traceback (most recent call last):
-/// FileNotFoundError: nowhere.glb: no such file or directory (check the path)
+/// FileNotFoundError: nowhere.glb: cannot be read: No such file or directory (os error 2) (check the path and its permissions)
 #[pyfunction]
 #[pyo3(signature = (path, *, variant = None, cache = None, progress = None))]
 pub fn open(
@@ -95,7 +57,7 @@ pub fn open(
     })?;
     let input = opened.map_err(|error| reading_exception(&path, error))?;
     warn(py, &input.warnings)?;
-    Ok(Scene(LitInput { input: Arc::new(input), unwrap, lit: OnceLock::new() }))
+    Ok(Scene(LitInput::new(input, unwrap)))
 }
 
 /// The options for unwrapping: its engines run in children of this Python.
@@ -191,15 +153,14 @@ impl Scene {
             let available = Over::NAMES.join(" or ");
             return Err(PyValueError::new_err(format!("over: there is no {over:?} (choose {available})")));
         }
-        let LitInput { input, unwrap, .. } = &self.0;
         let values = work::run(py, "reading the focus", progress, |steps| {
-            Ok(FocusValues::read(input, file.as_deref(), over, unwrap, steps))
+            Ok(FocusValues::read(&self.0.input, file.as_deref(), over, &self.0.unwrap, steps))
         })?;
         let values = values.map_err(|error| match &file {
             Some(file) => reading_exception(file, error),
             None => crate::errors::exception(error),
         })?;
-        Focus::new(py, values)
+        Focus::new(py, &self.0, values)
     }
 
     /// Bakes the light field for a camera: from it, pictures of any focus distance, any smaller aperture and any
@@ -220,14 +181,13 @@ impl Scene {
         let LitInput { input, unwrap, .. } = &self.0;
         let camera = camera.map_or_else(|| input.camera.clone(), |camera| camera.0.clone());
         let options = RenderOptions { light: light_quality(light_passes), ..RenderOptions::default() };
-        let (salf, lit) = work::run(py, "baking", progress, |steps| {
+        let salf = work::run(py, "baking", progress, |steps| {
             camera.validate().map_err(|error| RenderError::bad_file(&input.path, error))?;
             let focus = focus.evaluate(input, unwrap, steps)?;
-            let lit = self.0.lit()?;
-            Ok((options.bake(&lit, &camera, &focus, steps)?, lit))
+            options.bake(&self.0.lit()?, &camera, &focus, steps)
         })?;
         let baked = Input { salf: Some(Arc::new(salf)), camera, ..Input::clone(input) };
-        Ok(Field(LitInput { input: Arc::new(baked), unwrap: unwrap.clone(), lit: lit.into() }))
+        Ok(Field(self.0.with_input(baked)))
     }
 
     /// Renders a picture, as `focus-brush render` does. `focus` is a Focus, a file, or None for the project's own;
@@ -246,13 +206,13 @@ impl Scene {
         options: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Picture> {
         let options = render_options(options, &self.0.input)?;
-        self.0.render(py, camera, focus, &options, progress)
+        picture(py, &self.0, camera, focus, &options, progress)
     }
 
     /// The ground truth by ray tracing, with `spp` rays per pixel.
     ///
     /// Raises ValueError for what cannot be used.
-    #[pyo3(signature = (camera = None, focus = None, *, spp = TRUTH_RAYS, seed = 0, progress = None))]
+    #[pyo3(signature = (camera = None, focus = None, *, spp = 256, seed = 0, progress = None))]
     fn truth(
         &self,
         py: Python<'_>,
