@@ -159,6 +159,13 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "progress",
         ],
     ),
+    (
+        "python",
+        &[
+            "render", "document", "light", "jobs", "project", "splat", "focus", "salf", "atlas", "scene",
+            "lens", "progress",
+        ],
+    ),
     ("xtask", &[]),
 ];
 
@@ -172,6 +179,8 @@ const RESERVED: &[(&str, &[&str])] = &[
     ("clap", &["focus-brush"]),
     ("xatlas", &["atlas"]),
     ("webp", &["web-page"]),
+    ("pyo3", &["python"]),
+    ("numpy", &["python"]),
 ];
 
 /// Checks the workspace.

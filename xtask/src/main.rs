@@ -9,6 +9,7 @@
 //! * `ci` runs all checks: crate directions, module cycles, licences, formatting, lints, docs, tests.
 //! * `package` builds packages for users without a compiler, and a source archive that builds without a
 //!   network.
+//! * `wheel` builds the Python package.
 //! * `book [FOLDER]` writes the book as HTML pages.
 //! * `demo` regenerates the demo scene in `assets/demo`.
 //! * `figures` writes the tables and plots of the performance pages from `docs/figures`.
@@ -30,6 +31,7 @@ mod packages;
 mod run;
 mod shared_build;
 mod spelling;
+mod wheel;
 
 use chore::Failure;
 
@@ -42,6 +44,8 @@ usage: cargo xtask CHORE
   package [deb|tarball|source…]
                 packages to install, a folder that runs from anywhere, a source archive that
                 builds without a network; in target/package
+  wheel [--dev] the Python package, for CPython 3.10 and newer; in target/package
+                (--dev: from the quick build of the tests)
   book [FOLDER] write the book as HTML pages; into target/book
   demo          regenerate the demo scene in assets/demo
   figures [--check]
@@ -71,6 +75,7 @@ fn main() -> std::process::ExitCode {
         "window" => run::window(&rest),
         "circles" => module_circles::circles(&rest),
         "package" => package::package(&rest),
+        "wheel" => wheel::wheel(&rest),
         "lint" => ci::lint(),
         "ci" => ci::ci(),
         "endure" => endure::endure(&rest),

@@ -18,7 +18,8 @@ mod tarball;
 
 use crate::chore::{Failure, cargo, execute};
 use crate::packages::{TO_BUILD, TO_PACKAGE, install_missing};
-use release::{Release, target};
+use release::Release;
+pub use release::target;
 use std::ffi::OsString;
 use std::path::PathBuf;
 

@@ -146,11 +146,7 @@ impl AppearanceArguments {
 
     /// The requested variant.
     pub fn variant(&self) -> VariantChoice {
-        match self.variant.as_deref() {
-            None => VariantChoice::AsSaved,
-            Some("") => VariantChoice::Own,
-            Some(name) => VariantChoice::Named(name.into()),
-        }
+        VariantChoice::from_argument(self.variant.as_deref())
     }
 }
 

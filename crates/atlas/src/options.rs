@@ -1,5 +1,6 @@
 //! Options of unwrapping.
 
+use std::ffi::OsString;
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -46,6 +47,9 @@ pub struct UnwrapOptions {
     /// (usually the running program itself). Without one the pure-Rust engine runs in this process, and the deadline
     /// does not apply.
     pub child: Option<PathBuf>,
+    /// What `child` is started with before the words for the engines: nothing where it is a program of ours; where it is an
+    /// interpreter, the script that calls [`crate::child::run`].
+    pub child_arguments: Vec<OsString>,
     /// Time limit for a child's batch of patches. After that the child is killed and the next engine tries.
     pub deadline: Duration,
 }
@@ -57,6 +61,7 @@ impl Default for UnwrapOptions {
             gutter: 4,
             uv: UvPolicy::Auto,
             child: None,
+            child_arguments: Vec::new(),
             deadline: Duration::from_secs(30),
         }
     }

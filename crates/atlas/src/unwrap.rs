@@ -13,7 +13,7 @@ use crate::packing::overlap::has_overlaps;
 use crate::packing::unpacked_chart::{UnpackedChart, signed_area};
 use crate::packing::{PackedCharts, pack};
 use crate::{Atlas, AtlasError, UnwrapOptions, UvPolicy};
-use child::ChildError;
+use child::{ChildError, ChildProgram};
 use engine::{Engine, flatten_with_uvunwrap};
 use glam::{DVec2, DVec3, Vec2};
 use part_mesh::{CheckedPart, PartMesh};
@@ -176,21 +176,15 @@ fn run_engines(
     let open = |flattened: &[Option<FlattenedPatch>]| -> Vec<usize> {
         (0..patches.len()).filter(|&i| flattened[i].is_none()).collect()
     };
-    if let Some(program) = &options.child {
+    if let Some(path) = &options.child {
+        let program = ChildProgram { path, arguments: &options.child_arguments, deadline: options.deadline };
         for engine in [Engine::Xatlas, Engine::Uvunwrap] {
             let waiting = open(&flattened);
             if waiting.is_empty() {
                 return Ok(flattened);
             }
             let requests: Vec<&SurfacePatch> = waiting.iter().map(|&i| &patches[i]).collect();
-            match child::flatten_in_children(
-                program,
-                engine,
-                &requests,
-                batch_size(&requests),
-                options.deadline,
-                progress,
-            ) {
+            match child::flatten_in_children(&program, engine, &requests, batch_size(&requests), progress) {
                 Ok(answers) => {
                     if answers.lost > 0 {
                         notes.push(format!(

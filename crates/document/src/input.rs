@@ -35,6 +35,7 @@ use progress::Progress;
 use project::{CaptureChoices, FocusFile, ProjectError, ProjectFile, SceneState, read_camera, read_focus};
 use salf::{Salf, SalfFile};
 use scene::{BackFaces, Fault, Scene, SceneError, World};
+use std::ffi::OsStr;
 use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
@@ -58,6 +59,7 @@ impl From<ProjectError> for DocumentError {
 }
 
 /// An opened file.
+#[derive(Clone)]
 pub struct Input {
     /// The file.
     pub path: PathBuf,
@@ -92,6 +94,15 @@ pub enum CameraChoice {
     File(PathBuf),
     /// The camera of this name in the scene or project.
     Named(String),
+}
+
+impl CameraChoice {
+    /// The choice that a text stands for on the command line and in scripts: a file if it ends in `.json`, else a name. A path may hold any
+    /// bytes; names are UTF-8: invalid bytes give one that matches nothing.
+    pub fn from_argument(text: &OsStr) -> Self {
+        let is_file = text.as_encoded_bytes().to_ascii_lowercase().ends_with(b".json");
+        if is_file { Self::File(text.into()) } else { Self::Named(text.to_string_lossy().into()) }
+    }
 }
 
 /// The kind of a file, by its extension.

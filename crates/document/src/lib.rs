@@ -85,7 +85,7 @@ pub use input::{
 };
 pub use open_document::{Document, NewDocumentOptions, SavedState};
 pub use paint_transfer::{TransferredPaint, UnmatchedNode};
-pub use picking::{SurfaceHit, chief_ray, depth_in_direction, pick, view_ray};
+pub use picking::{SurfaceHit, chief_ray, depth_in_direction, pick, texels_in_mask, view_ray};
 pub use relief::{DepthRepair, DepthStroke};
 pub use scene_camera::shot_camera_from;
 pub use scene_file::{atlas_error, load_scene};

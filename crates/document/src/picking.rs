@@ -1,8 +1,10 @@
 //! Picking: rays through a pointer's position, and the surfaces that they hit.
 
+use atlas::TexelMap;
 use focus::ViewFrame;
 use glam::{DVec2, DVec3};
 use lens::Camera;
+use rayon::prelude::*;
 use scene::{Scene, SurfacePoint};
 use trace::{Ray, Tracer};
 
@@ -52,6 +54,33 @@ pub fn depth_in_direction(tracer: &Tracer, camera: &Camera, position: DVec3) -> 
 pub fn chief_ray(camera: &Camera, position: DVec2) -> Ray {
     let size = DVec2::new(camera.width as f64, camera.height as f64);
     Ray::pinhole(camera, DVec2::ZERO, position * size)
+}
+
+/// Which texels of the atlas a camera sees in the pixels of `mask`, width × height of its picture, row 0 on top: for each texel, row by row,
+/// whether the middle of what it covers is seen, in a pixel of the mask. A mask of another length covers no more than it has.
+pub fn texels_in_mask(tracer: &Tracer, texels: &TexelMap, camera: &Camera, mask: &[bool]) -> Vec<bool> {
+    let (optics, eye, scene) = (camera.optics(), camera.position(), tracer.scene());
+    let size = DVec2::new(camera.width.into(), camera.height.into());
+    let is_masked = |position: DVec3| {
+        let camera_space = camera.camera_from_world(position);
+        if camera_space.z <= 0.0 {
+            return false;
+        }
+        let pixel = camera.pixel_from_q(optics.chief(camera_space));
+        let is_inside = pixel.cmpge(DVec2::ZERO).all() && pixel.cmplt(size).all();
+        is_inside
+            && mask
+                .get(pixel.y as usize * camera.width as usize + pixel.x as usize)
+                .is_some_and(|is_set| *is_set)
+    };
+    let seen = texels.texels.par_iter().filter(|texel| {
+        is_masked(texel.centroid.position(scene)) && !tracer.is_hidden_from(texel.centroid, eye)
+    });
+    let mut selected = vec![false; texels.width as usize * texels.height as usize];
+    for texel in seen.collect::<Vec<_>>() {
+        selected[texel.y as usize * texels.width as usize + texel.x as usize] = true;
+    }
+    selected
 }
 
 /// The ray of a position in a view: (0, 0) is the upper left corner, (1, 1) the lower right. The depth of its direction is 1.

@@ -20,11 +20,26 @@ impl Focus {
             map.set(texel.x, texel.y, to_texel(value));
             map.set_gloss(texel.x, texel.y, value.gloss as f32);
         }
-        for gutter in &texels.dilations {
-            let [from, to] = [gutter.source, gutter.texel].map(|index| [index % width, index / width]);
-            map.set(to[0], to[1], map.texel(from[0], from[1]));
-            map.set_gloss(to[0], to[1], map.gloss_at(from[0], from[1]));
-        }
+        map.fill_gutters(texels);
         map
+    }
+}
+
+impl FocusMap {
+    /// Gives the texels in the gutters of charts the values of the covered texels beside them, as interpolation needs. `texels` must be
+    /// those of an atlas of this size.
+    pub fn fill_gutters(&mut self, texels: &TexelMap) {
+        for gutter in &texels.dilations {
+            let [from, to] =
+                [gutter.source, gutter.texel].map(|index| [index % texels.width, index / texels.width]);
+            let (value, gloss) = (self.texel(from[0], from[1]), self.gloss_at(from[0], from[1]));
+            // Tiles stay shared where nothing changes.
+            if self.texel(to[0], to[1]) != value {
+                self.set(to[0], to[1], value);
+            }
+            if self.gloss_at(to[0], to[1]) != gloss {
+                self.set_gloss(to[0], to[1], gloss);
+            }
+        }
     }
 }

@@ -24,7 +24,7 @@ pub fn load_or_unwrap_atlas(
     progress: &dyn Progress,
 ) -> Result<Atlas, AtlasError> {
     let entry = cache.entry(SECTION, |hash| {
-        let UnwrapOptions { density, gutter, uv, child, deadline: _ } = options;
+        let UnwrapOptions { density, gutter, uv, child, child_arguments: _, deadline: _ } = options;
         hash.update(surface_hash(scene));
         hash.update(format!("{density:?} {gutter} {uv:?} {}", child.is_some()));
     });

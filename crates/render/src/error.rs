@@ -1,6 +1,7 @@
 //! Errors of baking and rendering, grouped by what the user can do about them.
 
 use document::{DocumentError, IoFault};
+use jobs::JobError;
 use light::LightError;
 use progress::Cancelled;
 use project::ProjectError;
@@ -41,6 +42,15 @@ impl From<DocumentError> for RenderError {
             DocumentError::TryAgain(text) => Self::TryAgain(text),
             DocumentError::Cancelled => Self::Cancelled,
             DocumentError::Internal(text) => Self::Internal(text),
+        }
+    }
+}
+
+impl From<JobError> for RenderError {
+    fn from(error: JobError) -> Self {
+        match error {
+            JobError::NoThread { .. } => Self::TryAgain(error.to_string()),
+            JobError::Panicked { .. } => Self::Internal(error.to_string()),
         }
     }
 }

@@ -24,7 +24,9 @@ pub use ocio_views::OcioViews;
 pub use photograph_picture::{photograph_picture, render_photograph};
 pub use photographed::light_of_photographs;
 pub(crate) use photographed::photographed_shares_of_pixels;
-pub use render::{MAX_CELLS_A_SIDE, RenderCost, RenderOptions, Rendered, render, render_input};
+pub use render::{
+    MAX_CELLS_A_SIDE, RenderCost, RenderOptions, Rendered, render, render_input, render_lit_input,
+};
 pub(crate) use render::{cut_off_warning, lit_scene_of, new_splatter, sum_baked};
 pub use renderer::Renderer;
 pub use stereo::{Stereo, StereoForm, render_stereo};

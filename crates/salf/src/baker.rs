@@ -88,7 +88,9 @@ fn bake_retaining(
 
     let rows: Vec<i32> = (0..rows).collect();
     let surveyed = map_rows(&rows, &Stage::new(progress, 0.0, 0.4), |&row| {
-        let blocks = (0..columns).map(|column| domain.cells_of_block(IVec2::new(column, row)));
+        // A row of a large picture takes long: what a cancelled one leaves out is never used.
+        let columns = (0..columns).take_while(|_| !progress.cancelled());
+        let blocks = columns.map(|column| domain.cells_of_block(IVec2::new(column, row)));
         if retains_surveys {
             let surveys: Vec<_> = blocks.map(|cells| baker.survey_cells(&cells)).collect();
             let depths =
@@ -197,6 +199,7 @@ pub fn map_rows<T: Sync, R: Send>(
         .map(|row| {
             progress.check()?;
             let result = work(row);
+            progress.check()?;
             progress.report((done.fetch_add(1, Ordering::Relaxed) + 1) as f32 / rows.len() as f32);
             Ok(result)
         })

@@ -4,7 +4,6 @@ use clap::builder::{OsStringValueParser, PossibleValuesParser, TypedValueParser}
 use document::CameraChoice;
 use render::Aov;
 use splat::Integers;
-use std::ffi::OsStr;
 use std::path::PathBuf;
 
 /// A name inside a file. Names in files are UTF-8: invalid bytes give a name that matches nothing.
@@ -42,13 +41,7 @@ pub fn parse_position(text: &str) -> Result<glam::DVec2, String> {
 
 /// A camera file, or a camera's name.
 pub fn camera_parser() -> impl TypedValueParser<Value = CameraChoice> {
-    OsStringValueParser::new().map(|text| parse_camera(&text))
-}
-
-/// A path may hold any bytes, so it is not converted to text.
-fn parse_camera(text: &OsStr) -> CameraChoice {
-    let is_file = text.as_encoded_bytes().to_ascii_lowercase().ends_with(b".json");
-    if is_file { CameraChoice::File(text.into()) } else { CameraChoice::Named(text.to_string_lossy().into()) }
+    OsStringValueParser::new().map(|text| CameraChoice::from_argument(&text))
 }
 
 /// Parses `NAME=OUT.exr`. The name of a photograph may itself contain `=`.
@@ -127,8 +120,8 @@ mod tests {
     fn values_are_checked() {
         assert_eq!(parse_size("960x540"), Ok([960, 540]));
         assert!(parse_size("960").is_err() && parse_size("0x5").is_err() && parse_size("99999x1").is_err());
-        assert_eq!(parse_camera("a.JSON".as_ref()), CameraChoice::File("a.JSON".into()));
-        assert_eq!(parse_camera("front".as_ref()), CameraChoice::Named("front".into()));
+        assert_eq!(CameraChoice::from_argument("a.JSON".as_ref()), CameraChoice::File("a.JSON".into()));
+        assert_eq!(CameraChoice::from_argument("front".as_ref()), CameraChoice::Named("front".into()));
         assert!(parse_aov("depth").is_ok() && parse_aov("z").is_err());
         assert!(
             parse_positive("0").is_err() && parse_positive("nan").is_err() && parse_non_negative("0").is_ok()

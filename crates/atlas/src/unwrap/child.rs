@@ -1,6 +1,7 @@
 //! Unwrapping engines in child processes: a child that crashes or hangs is killed, and the program goes on.
 //!
-//! The child is the running program itself, started with a hidden first argument. Its standard input and output are
+//! The child is the running program itself, started with a hidden first argument, or a script that calls [`run`]. Its
+//! standard input and output are
 //! unnamed temporary files: no pipe can fill up and block either side, and whatever a child finished before it died
 //! can still be read.
 //!
@@ -37,14 +38,22 @@ const MAX_PATCH_TRIANGLES: u32 = 1 << 26;
 
 /// Call this first in `main`: in a child process it does the work and exits; otherwise it returns at once.
 pub fn run_if_child() {
-    let arguments: Vec<OsString> = std::env::args_os().collect();
-    if arguments.get(1).is_none_or(|word| word != CHILD_ARGUMENT) {
-        return;
+    let arguments: Vec<OsString> = std::env::args_os().skip(1).collect();
+    if arguments.first().is_some_and(|word| word == CHILD_ARGUMENT) {
+        run(&arguments);
     }
+}
+
+/// Does the work of a child process with the arguments it was started with, without the program and
+/// [`UnwrapOptions::child_arguments`](crate::UnwrapOptions::child_arguments), and ends the process: with code 2 if they are not those of
+/// a child.
+pub fn run(arguments: &[OsString]) -> ! {
     let word = |n: usize| arguments.get(n).and_then(|a| a.to_str());
-    let engine = word(2).and_then(Engine::from_name);
-    let deadline = word(3).and_then(|ms| ms.parse().ok()).map(Duration::from_millis);
-    let (Some(engine), Some(deadline)) = (engine, deadline) else { std::process::exit(2) };
+    let engine = word(1).and_then(Engine::from_name);
+    let deadline = word(2).and_then(|ms| ms.parse().ok()).map(Duration::from_millis);
+    let (Some(CHILD_ARGUMENT), Some(engine), Some(deadline)) = (word(0), engine, deadline) else {
+        std::process::exit(2)
+    };
     // If the parent dies, nobody else kills a child that hangs.
     std::thread::spawn(move || {
         std::thread::sleep(deadline.saturating_add(ORPHAN_GRACE));
@@ -68,6 +77,16 @@ fn serve(engine: Engine, input: &mut impl Read, output: &mut impl Write) -> io::
         output.flush()?;
     }
     Ok(())
+}
+
+/// How children are started.
+pub(crate) struct ChildProgram<'a> {
+    /// The program.
+    pub path: &'a Path,
+    /// What it is started with before the hidden argument.
+    pub arguments: &'a [OsString],
+    /// Time limit for the work of one of them.
+    pub deadline: Duration,
 }
 
 /// The results of a batch of patches.
@@ -108,11 +127,10 @@ impl Drop for RunningChild {
 
 /// Flattens patches with several children in parallel, each working on at most about `batch` triangles.
 pub(crate) fn flatten_in_children(
-    program: &Path,
+    program: &ChildProgram,
     engine: Engine,
     patches: &[&SurfacePatch],
     batch: usize,
-    deadline: Duration,
     progress: &dyn Progress,
 ) -> Result<ChildResults, ChildError> {
     let slots = std::thread::available_parallelism().map_or(1, usize::from);
@@ -124,7 +142,7 @@ pub(crate) fn flatten_in_children(
         while running.len() < slots
             && let Some((first, count)) = waiting.next()
         {
-            running.push(start(program, engine, patches, first, count, deadline).map_err(unusable(program))?);
+            running.push(start(program, engine, patches, first, count).map_err(unusable(program))?);
         }
         if running.is_empty() {
             return Ok(answers);
@@ -134,7 +152,7 @@ pub(crate) fn flatten_in_children(
         let mut still = Vec::new();
         for mut child in running {
             let ended = child.process.try_wait().map_err(unusable(program))?;
-            if ended.is_none() && child.started.elapsed() < deadline {
+            if ended.is_none() && child.started.elapsed() < program.deadline {
                 still.push(child);
                 continue;
             }
@@ -151,11 +169,11 @@ pub(crate) fn flatten_in_children(
     }
 }
 
-fn unusable(program: &Path) -> impl Fn(io::Error) -> ChildError + use<'_> {
+fn unusable<'a>(program: &'a ChildProgram<'a>) -> impl Fn(io::Error) -> ChildError + use<'a> {
     move |error| match error.kind() {
         // The last is what the system says if it has no memory for another process.
         io::ErrorKind::OutOfMemory | io::ErrorKind::WouldBlock => ChildError::OutOfMemory,
-        _ => ChildError::Unusable(format!("{}: {error}", program.display())),
+        _ => ChildError::Unusable(format!("{}: {error}", program.path.display())),
     }
 }
 
@@ -183,12 +201,11 @@ fn split_batches(patches: &[&SurfacePatch], triangles: usize) -> Vec<(usize, usi
 }
 
 fn start(
-    program: &Path,
+    program: &ChildProgram,
     engine: Engine,
     patches: &[&SurfacePatch],
     first: usize,
     count: usize,
-    deadline: Duration,
 ) -> io::Result<RunningChild> {
     let mut input = BufWriter::new(tempfile::tempfile()?);
     input.write_all(&(count as u32).to_le_bytes())?;
@@ -196,8 +213,9 @@ fn start(
     let mut input = input.into_inner()?;
     input.rewind()?;
     let output = tempfile::tempfile()?;
-    let process = Command::new(program)
-        .args([CHILD_ARGUMENT, engine.name(), &deadline.as_millis().to_string()])
+    let process = Command::new(program.path)
+        .args(program.arguments)
+        .args([CHILD_ARGUMENT, engine.name(), &program.deadline.as_millis().to_string()])
         .stdin(Stdio::from(input))
         .stdout(Stdio::from(output.try_clone()?))
         .stderr(Stdio::null())
