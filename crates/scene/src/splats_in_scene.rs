@@ -108,6 +108,14 @@ impl Scene {
         (count > 0).then_some(scene)
     }
 
+    /// Whether this scene, which has no splats, has the triangles and parts of another that are not splats.
+    pub fn is_surface_of(&self, other: &Self) -> bool {
+        let end = other.surface_triangles().end as usize;
+        other.triangles[..end] == self.triangles
+            && other.positions.starts_with(&self.positions)
+            && other.parts.len() - usize::from(other.splats.is_some()) == self.parts.len()
+    }
+
     /// The triangles that rays can hit: all but those of splats.
     pub fn surface_triangles(&self) -> Range<u32> {
         0..self.splats.as_ref().map_or(self.triangles.len() as u32, |splats| splats.first_triangle)

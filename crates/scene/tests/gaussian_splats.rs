@@ -2,11 +2,13 @@
 
 mod data;
 mod handmade;
+mod mutation;
 
 use glam::{DMat3, DVec3};
 use handmade::Glb;
+use mutation::{Random, damage};
 use progress::Unwatched;
-use scene::{AnimatedScene, AnimationTime, LoadOptions, load};
+use scene::{AnimatedScene, AnimationTime, Fault, LoadOptions, SceneError, load};
 use serde_json::json;
 use std::sync::Arc;
 
@@ -168,4 +170,29 @@ fn points_without_the_extension_are_no_splats() {
     let mut glb = Glb::with_splats();
     glb.primitive().as_object_mut().unwrap().remove("extensions");
     assert!(glb.load().unwrap().splats.is_none());
+}
+
+#[test]
+fn damaged_files_are_read_or_refused_with_a_sentence() {
+    const MUTATIONS: u64 = 2000;
+    let original = Glb::with_splats().bytes();
+    let options = LoadOptions { max_memory: 16 << 20, ..LoadOptions::default() };
+    let mut read = 0;
+    for seed in 0..MUTATIONS {
+        let mut bytes = original.clone();
+        damage(&mut bytes, &mut Random(seed));
+        match handmade::load_bytes(&bytes, &options) {
+            Ok(scene) => {
+                read += 1;
+                let (low, high) = scene.bounds();
+                assert!(low.is_finite() && high.is_finite(), "{seed}");
+            }
+            Err(SceneError::Bad { fault: Fault::Panicked(panic), .. }) => panic!("{seed}: {panic}"),
+            Err(error) => {
+                let error = error.to_string();
+                assert!(error.ends_with(')') && !error.contains('\n'), "{seed}: {error}");
+            }
+        }
+    }
+    assert!((MUTATIONS / 20..MUTATIONS).contains(&read), "{read} of {MUTATIONS} were read all the same");
 }

@@ -115,7 +115,7 @@ impl AnimatedScene {
             let variants = Variants::read(&document, options.variant.as_deref())?;
             let mut sources = Some(Vec::new());
             let (scene, _, used) = read_geometry(&path, &document, &variants, &mut sources, progress)?;
-            if !has_surface_of(&scene, &rest) {
+            if !scene.is_surface_of(&rest) {
                 return Err(file_changed().into());
             }
             let parts = RestParts::new(&scene, &sources.unwrap_or_default());
@@ -194,12 +194,6 @@ impl AnimatedScene {
             }
         }
     }
-}
-
-/// Whether a scene has the triangles of another that are not splats.
-fn has_surface_of(scene: &Scene, other: &Scene) -> bool {
-    let end = other.surface_triangles().end as usize;
-    other.triangles[..end] == scene.triangles && other.positions.starts_with(&scene.positions)
 }
 
 fn file_changed() -> Fault {
