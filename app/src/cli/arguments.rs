@@ -344,7 +344,8 @@ pub struct RenderArguments {
     pub light: LightArguments,
     /// The renderer: the splatted light field (splat) or the ray-traced ground truth (truth); for comparison: a
     /// depth-dependent blur of the pinhole picture (blur), the same in layers (layers), shifted pinhole views
-    /// (views), or the light field scattered ray by ray (scatter)
+    /// (views), Gaussian splats made larger, as other programs blur them (dilation), or the light field scattered
+    /// ray by ray (scatter)
     #[arg(long, value_name = "NAME", default_value = "splat", value_parser = choice_parser(Renderer::ALL))]
     pub renderer: Renderer,
     /// Device that runs the splat; the picture is the same. auto: a graphics card if there is one, otherwise
