@@ -107,6 +107,10 @@ pub struct AppearanceArguments {
     /// variant it was baked with)
     #[arg(long, value_name = "NAME", value_parser = name_parser())]
     pub variant: Option<String>,
+    /// Gaussian splats beside the scene's meshes, or how the splats of the scene are shown: a file of splats, or one that says where it
+    /// stands and which of its splats are hidden (default: those of the scene or the project)
+    #[arg(long, value_name = "SPLATS.json|SCAN.ply|spz|…")]
+    pub splats: Option<PathBuf>,
     /// Leave out light scattered by microfacets more than once, to compare with renderers that do so
     #[arg(long)]
     pub single_scattering: bool,
@@ -203,6 +207,9 @@ pub struct ImportArguments {
     /// Where to write the project
     #[arg(short, long, value_name = "PROJECT.fbrush")]
     pub output: PathBuf,
+    /// For Gaussian splats: a file that says where they stand and which of them are hidden
+    #[arg(long, value_name = "SPLATS.json")]
+    pub splats: Option<PathBuf>,
     /// The mesh (.ply, .obj, .glb) (default: the one in the folder)
     #[arg(long, value_name = "FILE")]
     pub mesh: Option<PathBuf>,
@@ -333,7 +340,8 @@ pub struct RenderArguments {
     pub light: LightArguments,
     /// The renderer: the splatted light field (splat) or the ray-traced ground truth (truth); for comparison: a
     /// depth-dependent blur of the pinhole picture (blur), the same in layers (layers), shifted pinhole views
-    /// (views), or the light field scattered ray by ray (scatter)
+    /// (views), Gaussian splats made larger, as other programs blur them (dilation), or the light field scattered
+    /// ray by ray (scatter)
     #[arg(long, value_name = "NAME", default_value = "splat", value_parser = choice_parser(Renderer::ALL))]
     pub renderer: Renderer,
     /// Device that runs the splat; the picture is the same. auto: a graphics card if there is one, otherwise

@@ -9,7 +9,7 @@ use document::{Input, InputKind};
 use focus::Focus;
 use lens::Camera;
 use light::{Resources, Steps};
-use project::{CaptureChoices, EnvironmentChoice, WorldFile};
+use project::{CaptureChoices, EnvironmentChoice, SplatsFile, WorldFile};
 use scene::BuiltInEnvironment;
 use std::path::Path;
 
@@ -52,6 +52,9 @@ pub fn open_input(
             Input::open_capture(file, choices, resources, steps)?
         }
     };
+    if let Some(splats) = read_splats(appearance.splats.as_deref())? {
+        input.set_splats(&splats, steps)?;
+    }
     input.transfer_paint_if_changed(&unwrap_options(None), steps)?;
     if let Some(back_faces) = appearance.back_faces {
         input.set_back_faces(back_faces);
@@ -80,6 +83,39 @@ pub fn read_world(appearance: &AppearanceArguments) -> Result<Option<WorldFile>,
         ["hdr", "exr"].iter().any(|picture_extension| e.eq_ignore_ascii_case(picture_extension))
     });
     Ok(Some(if is_picture { WorldFile::from_environment_file(file) } else { WorldFile::read(file)? }))
+}
+
+/// The requested splats, by a file of splats or one that describes them; their own file is not read yet.
+///
+/// # Errors
+/// The file is of neither type, or what it says cannot be used.
+pub fn read_splats(file: Option<&Path>) -> Result<Option<SplatsFile>, Failure> {
+    let Some(file) = file else { return Ok(None) };
+    let is_json = file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"));
+    if is_json && InputKind::from_path(file).ok() != Some(InputKind::Splats) {
+        return Ok(Some(SplatsFile::read(file)?));
+    }
+    match InputKind::from_path(file)? {
+        InputKind::Splats => Ok(Some(SplatsFile { file: Some(file.into()), ..SplatsFile::default() })),
+        _ => {
+            let what = "is no file of Gaussian splats (give a .ply, .spz, .sog, .splat or .ksplat, or a .json about one)";
+            Err(Failure::bad_input(format!("{}: {what}", file.display())))
+        }
+    }
+}
+
+/// Refuses splats that only one run would know of, where a project has to say what is shown.
+///
+/// # Errors
+/// Splats are requested.
+pub fn refuse_splats(appearance: &AppearanceArguments) -> Result<(), Failure> {
+    match &appearance.splats {
+        None => Ok(()),
+        Some(file) => Err(Failure::wrong_usage(format!(
+            "{}: splats must be in a project here (make one: `focus-brush new SCENE --splats … -o PROJECT.fbrush`)",
+            file.display()
+        ))),
+    }
 }
 
 /// The requested camera and focus.

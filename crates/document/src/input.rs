@@ -25,14 +25,16 @@ use crate::input::capture_scene::{
 };
 use crate::paint_transfer::TransferredPaint;
 use crate::scene_camera::{shot_camera_from, shot_camera_in_any_unit};
-use crate::scene_file::{atlas_error, load_variant};
+use crate::scene_file::{atlas_error, load_variant, show_splats};
 use crate::splat_focus::{is_focus_table, read_splat_focus};
 use atlas::{Atlas, AtlasError, UnwrapOptions};
 use focus::{Focus, FocusMap, FocusRecipe, RecipeEntry};
 use lens::{Camera, Exposure, FocusOffset};
 use light::{LightOptions, LitScene, Resources, Steps, load_or_unwrap_atlas};
 use progress::Progress;
-use project::{CaptureChoices, FocusFile, ProjectError, ProjectFile, SceneState, read_camera, read_focus};
+use project::{
+    CaptureChoices, FocusFile, ProjectError, ProjectFile, SceneState, SplatsFile, read_camera, read_focus,
+};
 use salf::{Salf, SalfFile};
 use scene::{BackFaces, Fault, Scene, SceneError, World};
 use std::ffi::OsStr;
@@ -243,11 +245,11 @@ impl Input {
         resources: &Resources,
         steps: &dyn Steps,
     ) -> Result<Self, DocumentError> {
-        let scene = load_variant(path, variant.name(None), &*steps.begin("reading"))?;
+        let scene = load_variant(path, variant.name(None), None, &*steps.begin("reading"))?;
         let camera = match scene.splats {
             // The unit of a scan is unknown.
-            Some(_) => shot_camera_in_any_unit(&scene.cameras[0]),
-            None => shot_camera_from(&scene.cameras[0], &Camera::default()),
+            Some(_) if scene.surface_triangles().is_empty() => shot_camera_in_any_unit(&scene.cameras[0]),
+            _ => shot_camera_from(&scene.cameras[0], &Camera::default()),
         };
         let warnings = prefix_with_path(path, &scene.warnings);
         Ok(Self::new(path, scene, camera, warnings, resources))
@@ -284,7 +286,15 @@ impl Input {
                 ..Self::from_project(path, project, loaded.scene, warnings, resources)
             });
         }
-        let load_scene_variant = |variant| load_variant(&project.scene, variant, &*steps.begin("reading"));
+        if let Some(file) = project.splats.as_ref().and_then(|splats| splats.file.as_ref())
+            && !file.exists()
+        {
+            let message = format!("its splats {} are missing (restore that file)", file.display());
+            return Err(DocumentError::bad_file(path, message));
+        }
+        let splats = project.splats.as_ref();
+        let load_scene_variant =
+            |variant| load_variant(&project.scene, variant, splats, &*steps.begin("reading"));
         let scene = match load_scene_variant(variant.name(project.variant.as_deref())) {
             Err(SceneError::Bad { file, fault: fault @ Fault::NoVariant { .. } })
                 if *variant == VariantChoice::AsSaved =>
@@ -332,6 +342,31 @@ impl Input {
         if back_faces != self.scene.back_faces {
             Arc::make_mut(&mut self.scene).back_faces = back_faces;
         }
+    }
+
+    /// Adds Gaussian splats to the scene, or shows those that it has otherwise, overriding the project.
+    ///
+    /// # Errors
+    /// Their file cannot be used, the scene has other splats, or none to be shown; the input is a capture or a light field; or the work was cancelled.
+    pub fn set_splats(&mut self, splats: &SplatsFile, steps: &dyn Steps) -> Result<(), DocumentError> {
+        let error = |what: &str| Err(DocumentError::bad_file(&self.path, what));
+        if self.salf.is_some() || self.capture.is_some() {
+            return error("splats cannot be added here (add them to a scene of meshes, and bake that)");
+        }
+        let has_splats = self.scene.splats.is_some();
+        if splats.file.is_none() && !has_splats {
+            return error("has no Gaussian splats to show (name their file)");
+        }
+        if splats.file.is_some() && !has_splats && self.project.is_some() {
+            return error("its paint has no room for splats (make a project of scene and splats)");
+        }
+        let warnings = self.scene.warnings.len();
+        show_splats(Arc::make_mut(&mut self.scene), splats, &*steps.begin("reading splats"))?;
+        self.warnings.extend_from_slice(&self.scene.warnings[warnings..]);
+        if self.project.is_none() && self.scene.surface_triangles().is_empty() {
+            self.camera = shot_camera_in_any_unit(&self.scene.cameras[0]);
+        }
+        Ok(())
     }
 
     /// Sets the scene's world, overriding the project; `None` for the scene's own.

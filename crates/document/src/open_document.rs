@@ -14,15 +14,17 @@ use crate::stage::Stage;
 use crate::undo::{HistoryStep, UndoHistory};
 use atlas::UnwrapOptions;
 use focus::{
-    Brush, ChangedTexels, EditThumbnail, FocusMap, FocusRecipe, LayerStack, LensMotion, RecipeEntry,
-    Selection, SelectionResult,
+    Brush, CanvasTexel, ChangedTexels, EditThumbnail, FocusMap, FocusRecipe, LayerStack, LensMotion,
+    RecipeEntry, Selection, SelectionResult,
 };
 use lens::{Camera, Exposure, FocusOffset};
 use light::{Resources, Steps};
 use progress::Unwatched;
-use project::{CaptureChoices, FocusFile, FocusHold, NamedCamera, ProjectFile, TexelSet, WorldFile};
+use project::{
+    CaptureChoices, FocusFile, FocusHold, NamedCamera, ProjectFile, SplatsFile, TexelSet, WorldFile,
+};
 use relief::DepthStroke;
-use scene::{Scene, View};
+use scene::{Scene, SplatEdit, View};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -37,6 +39,8 @@ pub struct NewDocumentOptions<'a> {
     pub paint_from: Option<&'a Path>,
     /// The variant of the scene's materials.
     pub variant: VariantChoice,
+    /// Gaussian splats that are added to the scene, or how those that it has are shown.
+    pub splats: Option<&'a SplatsFile>,
 }
 
 /// An open document. Focus map, camera and the scene's variant are saved, and their changes can be undone. The selection is saved and can be
@@ -208,6 +212,9 @@ impl Document {
             return Err(DocumentError::bad_file(scene, what));
         }
         let mut input = Input::open_variant(scene, &options.variant, resources, steps)?;
+        if let Some(splats) = options.splats {
+            input.set_splats(splats, steps)?;
+        }
         if let Some(project) = options.paint_from {
             input.import_paint_from(project, unwrap, steps)?;
         }
@@ -355,6 +362,7 @@ impl Document {
         project.exposure = self.exposure;
         project.back_faces = scene.back_faces;
         project.variant = scene.variant.clone();
+        project.splats = scene.splats.as_ref().and_then(|splats| SplatsFile::of_scene(splats));
         project.world = scene.world.as_ref().map(|world| WorldFile::from_world(world, scene));
         project.brush = self.brush.clone();
         project.view = self.view.clone();
@@ -368,6 +376,27 @@ impl Document {
             self.selection.as_ref().map(|selection| selection_to_texels(&self.stage, selection));
         project.layers = (!self.layers.is_single_painted_layer()).then(|| self.layers.clone());
         project
+    }
+
+    /// How splats are shown with those of the selection hidden, too; `None`: none of them is selected.
+    pub fn splat_edit_hiding_selection(&self) -> Option<SplatEdit> {
+        let (stage, selection) = (&self.stage, self.selection.as_ref()?);
+        let splats = stage.scene.splats.as_ref()?;
+        let selected = stage.canvas.texels().enumerate().filter(|(index, _)| selection.contains(*index));
+        let splat = |texel: CanvasTexel| {
+            let texel = stage.texels.texel_at(texel.x, texel.y)?;
+            splats.splat_of(texel.centroid.triangle)
+        };
+        let mut numbers = selected.filter_map(|(_, texel)| splat(texel)).peekable();
+        numbers.peek()?;
+        Some(splats.edit.hiding(numbers))
+    }
+
+    /// How splats are shown with none hidden; `None`: all are shown already.
+    pub fn splat_edit_showing_all(&self) -> Option<SplatEdit> {
+        let edit = &self.stage.scene.splats.as_ref()?.edit;
+        let shown = SplatEdit { transform: edit.transform, ..SplatEdit::default() };
+        (shown != *edit).then_some(shown)
     }
 
     /// If the document is of a capture, the choices it was opened with, and its depth strokes.

@@ -3,6 +3,7 @@
 use crate::error::DocumentError;
 use atlas::AtlasError;
 use progress::Progress;
+use project::SplatsFile;
 use scene::{LoadOptions, Scene, SceneError};
 use std::path::Path;
 use std::sync::Arc;
@@ -31,18 +32,41 @@ pub fn atlas_error(path: &Path, error: AtlasError) -> DocumentError {
 /// # Errors
 /// The file cannot be read or used, or `progress` cancels.
 pub fn load_scene(path: &Path, progress: &dyn Progress) -> Result<Arc<Scene>, DocumentError> {
-    Ok(load_variant(path, None, progress)?)
+    Ok(load_variant(path, None, None, progress)?)
 }
 
-/// Reads a scene file, of meshes or splats, within the default limits, in one of its variants; `None`: with its own materials.
+/// Reads a scene file, of meshes or splats, within the default limits, in one of its variants; `None`: with its own materials. Splats are added or
+/// shown as `splats` says.
 pub(crate) fn load_variant(
     path: &Path,
     variant: Option<&str>,
+    splats: Option<&SplatsFile>,
     progress: &dyn Progress,
 ) -> Result<Arc<Scene>, SceneError> {
-    if gaussians::may_be_splats(path) {
-        return Ok(Arc::new(scene::load_splats(path, variant, progress)?));
-    }
     let options = LoadOptions { variant: variant.map(String::from), ..LoadOptions::default() };
-    Ok(Arc::new(scene::load(path, &options, progress)?))
+    let mut scene = match gaussians::may_be_splats(path) {
+        true => scene::load_splats(path, variant, progress)?,
+        false => scene::load(path, &options, progress)?,
+    };
+    if let Some(splats) = splats {
+        show_splats(&mut scene, splats, progress)?;
+    }
+    Ok(Arc::new(scene))
+}
+
+/// Adds splats to a scene that was read, if they are of another file; and shows them as `splats` says.
+///
+/// # Errors
+/// Their file cannot be used, or the scene has splats of another; or `progress` cancels.
+pub(crate) fn show_splats(
+    scene: &mut Scene,
+    splats: &SplatsFile,
+    progress: &dyn Progress,
+) -> Result<(), SceneError> {
+    let shown = scene.splats.as_ref().and_then(|shown| shown.file.as_ref());
+    if let Some(file) = splats.file.as_deref().filter(|file| shown.is_none_or(|shown| shown != file)) {
+        scene::add_splat_file(scene, file, progress)?;
+    }
+    scene.edit_splats(splats.edit.clone());
+    Ok(())
 }

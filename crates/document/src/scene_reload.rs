@@ -54,7 +54,12 @@ impl Input {
         let old = match project.surface.as_deref().map(surface_from_bytes) {
             Some(Some(surface)) => surface,
             None if project.capture.is_none() && project.scene_state() == SceneState::Same => {
-                Arc::unwrap_or_clone(load_variant(&project.scene, None, &*steps.begin("reading"))?)
+                Arc::unwrap_or_clone(load_variant(
+                    &project.scene,
+                    None,
+                    project.splats.as_ref(),
+                    &*steps.begin("reading"),
+                )?)
             }
             _ => {
                 let message =

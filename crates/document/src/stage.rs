@@ -12,9 +12,9 @@ use glam::{DVec2, DVec3};
 use lens::FocusOffset;
 use light::{LitScene, Steps, light_hash};
 use progress::Progress;
-use project::{CaptureChoices, surface_to_bytes};
+use project::{CaptureChoices, SplatsFile, surface_to_bytes};
 use relief::DepthStroke;
-use scene::{BackFaces, Scene, World};
+use scene::{BackFaces, Scene, SplatEdit, World};
 use std::sync::{Arc, OnceLock};
 use surface_colors::surface_colors;
 use trace::Tracer;
@@ -138,7 +138,8 @@ impl Stage {
         progress: &dyn Progress,
     ) -> Result<Self, DocumentError> {
         let before = &self.scene;
-        let reloaded = load_variant(&before.path, variant, progress)?;
+        let splats = before.splats.as_ref().and_then(|splats| SplatsFile::of_scene(splats));
+        let reloaded = load_variant(&before.path, variant, splats.as_ref(), progress)?;
         if !is_same_surface(before, &reloaded) {
             return Err(DocumentError::bad_file(
                 &before.path,
@@ -153,6 +154,22 @@ impl Stage {
         };
         let canvas = Arc::new(self.canvas.with_part_owners(&scene));
         Ok(Self { canvas, ..self.with_scene(scene, progress)? })
+    }
+
+    /// The stage with its Gaussian splats moved or hidden. Atlas and paint still fit.
+    ///
+    /// # Errors
+    /// The edit is not valid, or `progress` was cancelled.
+    pub fn with_splat_edit(&self, edit: &SplatEdit, progress: &dyn Progress) -> Result<Self, DocumentError> {
+        if !edit.is_valid() {
+            let what = "splats cannot be placed so (give finite numbers, and sizes and distances above 0)";
+            return Err(DocumentError::bad_file(&self.scene.path, what));
+        }
+        let mut scene = (*self.scene).clone();
+        scene.edit_splats(edit.clone());
+        progress.check()?;
+        let depth_strokes = self.depth_strokes.clone();
+        Ok(Self { depth_strokes, ..Self::new(self.relit(Arc::new(scene)), self.atlas.clone(), progress)? })
     }
 
     /// The stage with its surface made anew from the picture and its depth, which are read again, with the depth strokes of `choices`. Paint

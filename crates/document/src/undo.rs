@@ -1,10 +1,11 @@
-//! Undo and redo of paint, selection, lens, depth repair and the scene's variant, in chronological order.
+//! Undo and redo of paint, selection, lens, depth repair, splats and the scene's variant, in chronological order.
 
 use crate::focus_hold::HeldCamera;
 use focus::{Edit, EditThumbnail, LayerStack, LensMotion, Selection};
 use lens::Camera;
 use project::{FocusHold, RecordedSpread, RecordedStep};
 use relief::DepthStroke;
+use scene::SplatEdit;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
@@ -23,6 +24,8 @@ enum Change {
     Selection { before: Option<Selection>, after: Option<Selection> },
     /// The scene's variant, by name. Undoing it requires the caller to read the scene again.
     Variant { before: Option<String>, after: Option<String> },
+    /// How splats are placed, and which are hidden. Undoing it requires the caller to show them so.
+    Splats { before: Box<SplatEdit>, after: Box<SplatEdit> },
     /// The strokes that repair depth. Undoing it requires the caller to make the surface anew.
     Depth { before: Arc<Vec<DepthStroke>>, after: Arc<Vec<DepthStroke>> },
 }
@@ -40,6 +43,10 @@ impl Change {
             Self::Selection { before, after } => selection_bytes(before) + selection_bytes(after),
             // Each list has one stroke more than the previous, so that only `after` is counted.
             Self::Depth { after, .. } => after.iter().map(depth_stroke_bytes).sum(),
+            Self::Splats { before, after } => [before, after]
+                .into_iter()
+                .map(|edit| size_of::<SplatEdit>() + size_of_val(&edit.hidden[..]))
+                .sum(),
             Self::Variant { before, after } => [before, after].into_iter().flatten().map(String::len).sum(),
         }
     }
@@ -100,6 +107,8 @@ pub enum StepEffect {
     Selection,
     /// The variant that the scene must have now, by name.
     Variant(Option<String>),
+    /// How the splats must be shown now.
+    Splats(Box<SplatEdit>),
     /// The strokes that repair depth.
     Depth,
 }
@@ -224,6 +233,13 @@ impl UndoHistory {
     /// Adds a change of the scene's variant.
     pub fn push_variant(&mut self, before: Option<String>, after: Option<String>) {
         self.push(Step::new("Variant".into(), Change::Variant { before, after }, None));
+        self.is_run_open = false;
+    }
+
+    /// Adds a change of how splats are shown, as a step of this name.
+    pub fn push_splats(&mut self, name: &str, before: SplatEdit, after: SplatEdit) {
+        let change = Change::Splats { before: before.into(), after: after.into() };
+        self.push(Step::new(name.into(), change, None));
         self.is_run_open = false;
     }
 
@@ -364,6 +380,7 @@ impl UndoHistory {
                 StepEffect::Selection
             }
             Change::Variant { before, .. } => StepEffect::Variant(before.clone()),
+            Change::Splats { before, .. } => StepEffect::Splats(before.clone()),
             Change::Depth { before, .. } => {
                 *state.depth_strokes = before.clone();
                 StepEffect::Depth
@@ -400,6 +417,7 @@ impl UndoHistory {
                 StepEffect::Selection
             }
             Change::Variant { after, .. } => StepEffect::Variant(after.clone()),
+            Change::Splats { after, .. } => StepEffect::Splats(after.clone()),
             Change::Depth { after, .. } => {
                 *state.depth_strokes = after.clone();
                 StepEffect::Depth

@@ -8,6 +8,8 @@
 //!
 //! * [`open`], [`read`], [`read_gltf_attributes`]: PLY, compressed PLY, SPZ, SOG, splat, ksplat, glTF.
 //! * [`GaussianCloud`], [`CloudBuilder`]: splats in memory; what cannot be drawn is left out and counted.
+//! * [`merge_clouds`]: several clouds as one.
+//! * [`have_neighbors`]: which points are not alone.
 //! * [`CameraList`]: the views of `cameras.json`. [`Placement`]: where a cloud stands in the world.
 //! * [`GaussianView`], [`Eye`], [`Hit`], [`RayLight`]: which splats a ray meets, and what it brings.
 //! * [`CloudRay`]: where a ray of the world meets the surface of a cloud.
@@ -43,17 +45,22 @@
 pub mod cloud;
 mod error;
 mod files;
+mod merged_cloud;
 mod placement;
 mod render;
 mod samples;
 mod view;
 
-pub use cloud::{Axes, CloudBuilder, CloudTraits, ColorSpace, GaussianCloud, LeftOut, Reason, Splat, Toward};
+pub use cloud::{
+    Axes, CloudBuilder, CloudTraits, ColorSpace, GaussianCloud, LeftOut, Reason, Splat, Toward,
+    have_neighbors,
+};
 pub use error::GaussianError;
 pub use files::{
     CameraList, CapturedView, GltfAttributes, ReadOptions, SplatFile, SplatFormat, may_be_splats, open, read,
     read_focus_table, read_gltf_attributes, write_focus_table, write_ply,
 };
+pub use merged_cloud::merge_clouds;
 pub use placement::Placement;
 pub use render::{
     Backdrop, EndLight, GaussianPicture, RayEnd, TruthOptions, render_pinhole, render_truth,

@@ -37,6 +37,13 @@ impl Placement {
             && self.translation.is_finite()
     }
 
+    /// Whether it turns and scales as a whole: valid, not mirrored, the scales equal to 1e-4 of them.
+    pub fn is_similarity(&self) -> bool {
+        let x = self.scale.x;
+        let is_alike = (self.scale - DVec3::splat(x)).abs().max_element() <= 1e-4 * x;
+        self.is_valid() && is_alike && self.rotation.determinant() > 0.0
+    }
+
     /// The linear part, from vectors of the file to vectors of the world.
     pub fn linear(&self) -> DMat3 {
         self.rotation * DMat3::from_diagonal(self.scale)

@@ -26,7 +26,7 @@ use crate::placement::Placement;
 use glam::{DMat3, DVec2, DVec3};
 use lens::{Camera, Optics};
 use rayon::prelude::*;
-use shape::CameraShape;
+use shape::{CameraShape, Growth};
 
 /// The most that a splat stops, as in training.
 const MAX_ALPHA: f64 = 0.99;
@@ -69,6 +69,27 @@ impl<'a> GaussianView<'a> {
         camera: &'a Camera,
         pixel_px: f64,
     ) -> Self {
+        Self::grown(cloud, placement, camera, pixel_px, |_, _| 0.0)
+    }
+
+    /// The view of other programs' depth of field: each splat, by its index and the depth of its mean, is dilated across its chief ray by a
+    /// variance, px², and fades as it grows (Spark's `splatVertex.glsl`). It leaks and is no picture of a lens: to compare with.
+    pub fn dilated(
+        cloud: &'a GaussianCloud,
+        placement: &Placement,
+        camera: &'a Camera,
+        variance_px2: impl Fn(u32, f64) -> f64 + Sync,
+    ) -> Self {
+        Self::grown(cloud, placement, camera, 1.0, variance_px2)
+    }
+
+    fn grown(
+        cloud: &'a GaussianCloud,
+        placement: &Placement,
+        camera: &'a Camera,
+        pixel_px: f64,
+        variance_px2: impl Fn(u32, f64) -> f64 + Sync,
+    ) -> Self {
         let optics = camera.optics();
         let axes = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| camera.camera_direction(axis));
         let camera_from_world = DMat3::from_cols(axes[0], axes[1], axes[2]);
@@ -82,7 +103,9 @@ impl<'a> GaussianView<'a> {
             if mean.z <= nearest {
                 return None;
             }
-            let shape = CameraShape::new(&splat, mean, &camera_from_file, focal_px, is_antialiased)?;
+            let dilation_px2 = variance_px2(index as u32, mean.z);
+            let growth = Growth { focal_px, is_antialiased, dilation_px2 };
+            let shape = CameraShape::new(&splat, mean, &camera_from_file, growth)?;
             Some(ViewSplat { shape, index: index as u32 })
         };
         let mut splats: Vec<ViewSplat> = (0..cloud.len()).into_par_iter().filter_map(in_camera).collect();

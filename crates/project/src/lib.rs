@@ -41,6 +41,7 @@ mod pictures;
 mod presets;
 mod project_file;
 mod scene_path;
+mod splats_file;
 mod world_file;
 
 pub use camera::{camera_from_json, camera_to_json, read_aperture_mask, read_camera, write_camera};
@@ -64,4 +65,5 @@ pub use project_file::{
     CaptureChoices, NamedCamera, ProjectFile, SceneState, TexelSet, Thumbnail, find_recovery,
     recovery_path_for, remove_recovery, surface_from_bytes, surface_to_bytes, unsaved_recovery_path,
 };
+pub use splats_file::SplatsFile;
 pub use world_file::{EnvironmentChoice, WorldFile};

@@ -45,7 +45,7 @@ use manifest::{CameraEntry, MANIFEST, Manifest, MapEntry, SceneReference, sha256
 use scene_checksum::scene_checksum;
 use texel_bytes::{bytes_from_floats, floats_from_bytes, pairs_from_bytes};
 
-use crate::{FocusHold, ProjectError, WorldFile};
+use crate::{FocusHold, ProjectError, SplatsFile, WorldFile};
 use focus::{Brush, FocusLayer, FocusMap, LayerStack, LensMotion};
 use lens::{ApertureMask, ApertureShape, Camera, Exposure, FocusOffset};
 use scene::BackFaces;
@@ -100,6 +100,8 @@ pub struct ProjectFile {
     pub capture: Option<CaptureChoices>,
     /// The chosen world; `None`: the scene's own.
     pub world: Option<WorldFile>,
+    /// Gaussian splats that were added to the scene, moved or hidden; `None`: as in the scene's file.
+    pub splats: Option<SplatsFile>,
     /// The brush.
     pub brush: Brush,
     /// Layout and viewpoint of the window; any JSON.
@@ -154,6 +156,7 @@ impl ProjectFile {
             variant: None,
             capture: None,
             world: None,
+            splats: None,
             brush: Brush::default(),
             view: Value::Null,
             atlas: None,
@@ -308,6 +311,7 @@ impl ProjectFile {
             variant: self.variant.clone(),
             capture: self.capture.as_ref().map(|choices| CaptureEntry::new(choices, file)),
             world: self.world.as_ref().map(|world| world.to_json(file)),
+            splats: self.splats.as_ref().map(|splats| splats.to_json(file)),
             background_focus: [background.t, background.anchor],
             background_gloss: background.gloss,
             brush: self.brush.clone(),
@@ -361,6 +365,8 @@ impl ProjectFile {
                 .ok_or_else(|| error(format!("\"{name}\" is not a setting of back faces")))?,
         };
         let world = manifest.world.as_ref().map(|world| WorldFile::from_value(file, world)).transpose()?;
+        let splats =
+            manifest.splats.as_ref().map(|splats| SplatsFile::from_value(file, splats)).transpose()?;
         if let Some(problem) = manifest.brush.problem() {
             return Err(error(format!("brush: {problem}")));
         }
@@ -416,6 +422,7 @@ impl ProjectFile {
             variant: manifest.variant,
             capture,
             world,
+            splats,
             brush: manifest.brush,
             view: manifest.view,
             atlas,

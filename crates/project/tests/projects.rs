@@ -303,6 +303,21 @@ fn repaired_depth_is_saved_and_raises_the_version() {
 }
 
 #[test]
+fn edited_splats_are_saved_and_raise_the_version() {
+    let folder = TempDir::new().unwrap();
+    let file = folder.path().join("scan.fbrush");
+    let edit = scene::SplatEdit::default().hiding([3, 4, 9]);
+    let splats = SplatsFile { file: Some(folder.path().join("scan.ply")), edit };
+    let project = ProjectFile { splats: Some(splats), ..document(folder.path()) };
+    project.save(&file).unwrap();
+    assert_eq!(ProjectFile::load(&file).unwrap(), project);
+    assert_eq!(
+        (&manifest(&file)["version"], &manifest(&file)["splats"]["file"]),
+        (&10.into(), &"scan.ply".into())
+    );
+}
+
+#[test]
 fn a_chosen_layer_is_saved_and_raises_the_version() {
     let folder = TempDir::new().unwrap();
     let file = folder.path().join("work.fbrush");
@@ -334,7 +349,7 @@ fn wrong_content_is_reported_with_its_entry() {
     };
     assert!(load(&|_, bytes| bytes).is_ok());
     let cases: [(Change<'_>, &str); 8] = [
-        (&in_manifest("\"version\": 1", "\"version\": 10"), "update the program"),
+        (&in_manifest("\"version\": 1", "\"version\": 11"), "update the program"),
         (&in_manifest("focus-brush project", "shopping list"), "shopping list"),
         (&in_manifest("\"active_camera\": 1", "\"active_camera\": 2"), "camera 2 of 2"),
         (&in_manifest("\"width\": 130", "\"width\": 131"), "focus.f32"),

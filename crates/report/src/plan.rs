@@ -36,6 +36,9 @@ const COST_SPP: u32 = 64;
 /// Views per side of the aperture in cost series.
 const COST_VIEWS_A_SIDE: u32 = 5;
 
+/// How far splats are dilated in cost series, in radii of the circle of confusion.
+const COST_SIGMA_RADII: f64 = 1.0;
+
 /// Index of the standard focus.
 const STANDARD_FOCUS: usize = 0;
 
@@ -51,6 +54,7 @@ pub fn cost_note() -> String {
 
 /// All settings of a subject.
 pub fn plan_settings(subject: &Subject, options: &ReportOptions) -> Vec<Setting> {
+    let has_splats = subject.scene.splats.is_some();
     let base = |series, focus, camera| Setting {
         series,
         focus,
@@ -61,7 +65,7 @@ pub fn plan_settings(subject: &Subject, options: &ReportOptions) -> Vec<Setting>
     };
     let mut settings: Vec<Setting> = (0..subject.focuses.len())
         .map(|focus| Setting {
-            contenders: knob_sweep(options.is_quick),
+            contenders: knob_sweep(options.is_quick, has_splats),
             ..base(Series::Knob, focus, subject.camera.clone())
         })
         .collect();
@@ -72,7 +76,10 @@ pub fn plan_settings(subject: &Subject, options: &ReportOptions) -> Vec<Setting>
             Contender::default_splat(),
             Contender::Truth { samples_per_pixel: COST_SPP },
             Contender::Blur,
-            Contender::Views { views_a_side: COST_VIEWS_A_SIDE },
+            match has_splats {
+                true => Contender::Dilation { sigma_radii: COST_SIGMA_RADII },
+                false => Contender::Views { views_a_side: COST_VIEWS_A_SIDE },
+            },
         ],
         ..base(series, STANDARD_FOCUS, camera)
     };
@@ -88,7 +95,12 @@ pub fn plan_settings(subject: &Subject, options: &ReportOptions) -> Vec<Setting>
         let (width, height) = (scaled(subject.camera.width), scaled(subject.camera.height));
         cost(Series::PictureSize, Camera { width, height, ..subject.camera.clone() })
     }));
-    let max_cuts = if options.is_quick { 1 } else { 2 };
+    let max_cuts = match options.is_quick {
+        // Splats cannot be cut.
+        _ if has_splats => 0,
+        true => 1,
+        false => 2,
+    };
     let fits = |cuts: &u32| subject.scene.triangles.len() << (2 * cuts) <= MAX_TRIANGLES;
     settings.extend(
         (0..=max_cuts)
@@ -98,8 +110,8 @@ pub fn plan_settings(subject: &Subject, options: &ReportOptions) -> Vec<Setting>
     settings
 }
 
-/// Every contender with several values of its knob.
-fn knob_sweep(is_quick: bool) -> Vec<Contender> {
+/// Every contender with several values of its knob: of scenes with splats those that draw them, of others those that do not need them.
+fn knob_sweep(is_quick: bool, has_splats: bool) -> Vec<Contender> {
     let tolerances: &[f64] = if is_quick { &[2.0, 0.0] } else { &[8.0, 4.0, 2.0, 1.0, 0.5, 0.0] };
     let spps: &[u32] = if is_quick { &[4, 16, 64] } else { &[4, 8, 16, 32, 64, 128, 256] };
     let splats = tolerances.iter().map(|&tolerance_px| Contender::Splat { tolerance_px });
@@ -108,7 +120,17 @@ fn knob_sweep(is_quick: bool) -> Vec<Contender> {
     let views: &[u32] = if is_quick { &[5] } else { &[3, 5, 9] };
     let rays: &[u32] = if is_quick { &[16] } else { &[16, 64, 256] };
     let layers = layers.iter().map(|&layers| Contender::Layers { layers });
-    let views = views.iter().map(|&views_a_side| Contender::Views { views_a_side });
+    let views = views.iter().filter(|_| !has_splats).map(|&views_a_side| Contender::Views { views_a_side });
+    // As wide as a disc, as Spark, and as splat-transform draws it.
+    let sigmas: &[f64] = if has_splats { &[0.5, 1.0, 2.0] } else { &[] };
+    let dilations = sigmas.iter().map(|&sigma_radii| Contender::Dilation { sigma_radii });
     let scatters = rays.iter().map(|&rays_a_sample| Contender::Scatter { rays_a_sample });
-    splats.chain(truths).chain([Contender::Blur]).chain(layers).chain(views).chain(scatters).collect()
+    splats
+        .chain(truths)
+        .chain([Contender::Blur])
+        .chain(layers)
+        .chain(views)
+        .chain(dilations)
+        .chain(scatters)
+        .collect()
 }

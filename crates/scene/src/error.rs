@@ -81,6 +81,12 @@ pub enum Fault {
         /// What to do.
         cure: String,
     },
+    /// Splats were to be added to a scene that has some.
+    #[error("has Gaussian splats already, so that those of {} cannot be added (use a scene of meshes alone)", added.display())]
+    SplatsTwice {
+        /// The file that was to be added.
+        added: PathBuf,
+    },
     /// The requested variant does not exist.
     #[error("no variant is called {name:?} ({available})")]
     NoVariant {

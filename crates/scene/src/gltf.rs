@@ -19,6 +19,7 @@ pub(crate) mod resource;
 pub(crate) mod scene_cameras;
 pub(crate) mod schema;
 pub(crate) mod source;
+pub(crate) mod splats;
 
 pub use animation::pose::{PosedScene, RestTriangle};
 pub use animation::{Animation, AnimationTime};

@@ -47,6 +47,7 @@ mod model;
 mod photographs;
 mod picture_decoder;
 mod queries;
+mod splat_editing;
 mod splat_file;
 mod splats_in_scene;
 mod surface_mesh;
@@ -62,11 +63,11 @@ pub use load_options::LoadOptions;
 pub use model::{
     AlphaMode, Anisotropy, BackFaces, CameraLens, Clearcoat, DiffuseTransmission, Iridescence, Light,
     LightKind, Material, MeshHealth, Node, NormalMap, Part, PlacedCloud, Scalar, Scene, SceneCamera, Sheen,
-    SurfaceField, SurfacePoint, Tint, Triangle, Volume, Workflow,
+    SplatCleanup, SplatEdit, SplatTransform, SurfaceField, SurfacePoint, Tint, Triangle, Volume, Workflow,
 };
 pub use photographs::{Mask, Photograph, PictureError, PictureGloss, PictureTexture, View};
 pub use picture_decoder::{MAX_PNG_EXTRAS_BYTES, open_picture};
-pub use splat_file::load_splats;
+pub use splat_file::{add_splat_file, load_splats};
 pub use surface_mesh::SurfaceMesh;
 pub use texture::{Image, ImageLevel, TextureRef, Wrap, linear_from_srgb, srgb_from_linear};
 pub use world::{Backdrop, BuiltInEnvironment, Environment, EnvironmentMap, World};

@@ -6,6 +6,7 @@ mod inverted_faces;
 mod material;
 mod mesh_health;
 mod placed_cloud;
+mod splat_edit;
 mod surface_point;
 
 pub use back_faces::BackFaces;
@@ -16,6 +17,7 @@ pub use material::{
 };
 pub use mesh_health::MeshHealth;
 pub use placed_cloud::PlacedCloud;
+pub use splat_edit::{SplatCleanup, SplatEdit, SplatTransform};
 pub use surface_point::{SurfaceField, SurfacePoint};
 
 use crate::{Image, PictureTexture, View, World};

@@ -44,6 +44,26 @@ pub fn load_splats(path: &Path, variant: Option<&str>, progress: &dyn Progress) 
     Ok(scene)
 }
 
+/// Adds the splats of a file to a scene of meshes, upright and about the scene's origin.
+///
+/// # Errors
+/// The scene has splats already, the file cannot be read or has no splats; or `progress` cancels.
+pub fn add_splat_file(scene: &mut Scene, path: &Path, progress: &dyn Progress) -> Result<(), SceneError> {
+    if scene.splats.is_some() {
+        let fault = Fault::SplatsTwice { added: path.into() };
+        return Err(SceneError::Bad { file: scene.path.clone(), fault });
+    }
+    let SplatFile { cloud, format, warnings } = gaussians::open(path, &ReadOptions::default(), progress)?;
+    let placement = Placement::upright(cloud.traits().axes);
+    scene.add_splats(name_of(path), Arc::new(cloud), placement, format.name());
+    if let Some(splats) = scene.splats.as_mut().map(Arc::make_mut) {
+        splats.file = Some(path.into());
+    }
+    scene.warnings.extend(warnings);
+    scene.set_upright(DQuat::IDENTITY);
+    Ok(())
+}
+
 /// The name of a scene: that of its file, or of its folder.
 fn name_of(path: &Path) -> String {
     let is_list = path.file_name().is_some_and(|name| name == "meta.json");

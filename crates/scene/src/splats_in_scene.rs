@@ -3,7 +3,7 @@
 //! To all that knows surfaces a splat is a triangle: one standard deviation wide, in the plane of its two longest axes, about its mean, in its mean colour. So
 //! each has an address, a place in the atlas and paint, and can be shown by what draws triangles. Rays do not hit these triangles; what they meet of the cloud itself, the crates that trace decide.
 
-use crate::{Material, Node, Part, PlacedCloud, Scene, SurfacePoint, Triangle};
+use crate::{Material, Node, Part, PlacedCloud, RestTriangle, Scene, SplatEdit, SurfacePoint, Triangle};
 use gaussians::cloud::{harmonics, srgb_to_linear};
 use gaussians::{ColorSpace, GaussianCloud, Placement};
 use glam::{DMat4, DQuat, DVec2, DVec3, Vec2, Vec3, Vec4};
@@ -54,7 +54,7 @@ impl Scene {
         self.colors.resize(self.positions.len(), Vec4::ONE);
         let color = |splat: u32| [mean_color(&cloud, splat); 3];
         self.colors.par_extend((0..count).into_par_iter().flat_map_iter(color));
-        let corners = |splat: u32| splat_triangle(&cloud, &placement, splat);
+        let corners = |splat: u32| splat_corners(&cloud, &placement, splat);
         self.positions.par_extend((0..count).into_par_iter().flat_map_iter(corners));
         fill(&mut self.normals, self.positions.len(), Vec3::ZERO);
         let further = self.further_uv.iter_mut();
@@ -69,7 +69,31 @@ impl Scene {
         self.nodes.push(Node { name: name.clone(), index: node, world: DMat4::IDENTITY });
         self.materials.push(Material { name, ..Material::unlit_white() });
         let bounds = bounds(&cloud, &placement);
-        self.splats = Some(Arc::new(PlacedCloud { cloud, placement, format, first_triangle, bounds }));
+        self.splats = Some(Arc::new(PlacedCloud {
+            cloud,
+            placement,
+            original_placement: placement,
+            edit: SplatEdit::default(),
+            file: None,
+            format,
+            first_triangle,
+            bounds,
+        }));
+    }
+
+    /// Adds the splats of the scene at rest to the scene at a time of an animation: splats do not move. Returns the triangles at rest.
+    pub(crate) fn add_splats_of(
+        &mut self,
+        rest: &Self,
+    ) -> impl Iterator<Item = Option<RestTriangle>> + use<> {
+        let triangles = rest.splats.as_ref().map_or(0..0, |splats| splats.triangles());
+        if let Some(splats) = &rest.splats {
+            let name = rest.nodes[rest.part_of(triangles.start).node as usize].name.clone();
+            self.add_splats(name, splats.cloud.clone(), splats.placement, splats.format);
+            let first_triangle = self.surface_triangles().end;
+            self.splats = Some(Arc::new(PlacedCloud { first_triangle, ..(**splats).clone() }));
+        }
+        triangles.map(|triangle| Some(RestTriangle { triangle, is_flipped: false }))
     }
 
     /// The scene without its splats; `None` if there is nothing else.
@@ -82,6 +106,14 @@ impl Scene {
             scene.splats = None;
         }
         (count > 0).then_some(scene)
+    }
+
+    /// Whether this scene, which has no splats, has the triangles and parts of another that are not splats.
+    pub fn is_surface_of(&self, other: &Self) -> bool {
+        let end = other.surface_triangles().end as usize;
+        other.triangles[..end] == self.triangles
+            && other.positions.starts_with(&self.positions)
+            && other.parts.len() - usize::from(other.splats.is_some()) == self.parts.len()
     }
 
     /// The triangles that rays can hit: all but those of splats.
@@ -127,31 +159,37 @@ fn mean_color(cloud: &GaussianCloud, splat: u32) -> Vec4 {
     linear.extend(1.0)
 }
 
-/// The corners of the triangle of a splat, its centroid at the mean.
-fn splat_triangle(cloud: &GaussianCloud, placement: &Placement, index: u32) -> [DVec3; 3] {
+/// The corners of the triangle of a splat, its centroid at the mean. That of a hidden splat is too small to be noticed, but has a place.
+pub(crate) fn splat_corners(cloud: &GaussianCloud, placement: &Placement, index: u32) -> [DVec3; 3] {
     /// The shorter axis is at least this share of the longer: needles have an area, too.
     const THINNEST: f64 = 1e-3;
+    /// The size of a hidden splat.
+    const HIDDEN: f64 = 1e-4;
     let splat = cloud.splat(index as usize);
     let (mean, rotation) = (placement.point(splat.mean.as_dvec3()), splat.rotation.as_dquat());
     let mut axes = [DVec3::X, DVec3::Y, DVec3::Z]
         .map(|axis| (axis.dot(splat.log_scale.as_dvec3().exp()), placement.linear() * (rotation * axis)));
     axes.sort_by(|a, b| b.0.total_cmp(&a.0));
     let [(longest, a), (second, b), _] = axes;
-    let (a, b) = (a * longest, b * second.max(THINNEST * longest));
+    let shown = if cloud.is_hidden(index as usize) { HIDDEN } else { 1.0 };
+    let (a, b) = (a * (shown * longest), b * (shown * second.max(THINNEST * longest)));
     let half = 0.75f64.sqrt() * b;
     [mean + a, mean - 0.5 * a + half, mean - 0.5 * a - half]
 }
 
 /// The box in which most means lie, with what is as far beyond them as a few hundredths of its size.
-fn bounds(cloud: &GaussianCloud, placement: &Placement) -> (DVec3, DVec3) {
+pub(crate) fn bounds(cloud: &GaussianCloud, placement: &Placement) -> (DVec3, DVec3) {
     /// The share of means beyond each side of the box.
     const OUTLIERS: f64 = 0.02;
     const ROOM: f64 = 0.05;
     /// As many means as decide: more change nothing.
     const MOST: usize = 200_000;
-    let step = cloud.len().div_ceil(MOST).max(1);
-    let means: Vec<DVec3> =
-        cloud.means().iter().step_by(step).map(|mean| placement.point(mean.as_dvec3())).collect();
+    let is_all_hidden = cloud.hidden_count() == cloud.len();
+    let is_counted = |index: &usize| is_all_hidden || !cloud.is_hidden(*index);
+    let counted = if is_all_hidden { cloud.len() } else { cloud.len() - cloud.hidden_count() };
+    let step = counted.div_ceil(MOST).max(1);
+    let place = |index: usize| placement.point(cloud.means()[index].as_dvec3());
+    let means: Vec<DVec3> = (0..cloud.len()).filter(is_counted).step_by(step).map(place).collect();
     let side = |share: f64| {
         DVec3::from_array([0, 1, 2].map(|axis| {
             let mut places: Vec<f64> = means.iter().map(|mean| mean[axis]).collect();

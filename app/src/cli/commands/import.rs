@@ -4,7 +4,7 @@ use super::new::check_project_name;
 use crate::cli::arguments::ImportArguments;
 use crate::cli::console::Console;
 use crate::cli::failure::Failure;
-use crate::cli::input::{check_folder, unwrap_options};
+use crate::cli::input::{check_folder, read_splats, unwrap_options};
 use document::{Document, Input, InputKind, NewDocumentOptions};
 use project::CaptureChoices;
 
@@ -14,10 +14,12 @@ use project::CaptureChoices;
 /// # Errors
 /// The capture cannot be read or its type not detected, the project cannot be written, or parts are missing (partly done).
 pub fn run(arguments: &ImportArguments, console: &Console) -> Result<(), Failure> {
-    let ImportArguments { capture, output, mesh, leave_out, kind, disparity, depth, layer, near } = arguments;
+    let ImportArguments { capture, output, splats, mesh, leave_out, kind, disparity, depth, layer, near } =
+        arguments;
     check_project_name(output)?;
     check_folder(output)?;
-    let new = NewDocumentOptions::default();
+    let splats = read_splats(splats.as_deref())?;
+    let new = NewDocumentOptions { splats: splats.as_ref(), ..NewDocumentOptions::default() };
     let kind_of_input = InputKind::from_path(capture)?;
     if kind_of_input == InputKind::Splats {
         let resources = console.resources();
@@ -30,6 +32,10 @@ pub fn run(arguments: &ImportArguments, console: &Console) -> Result<(), Failure
     if kind_of_input != InputKind::Capture {
         let what = "not a capture (give the folder of one; `focus-brush new` makes projects from scenes)";
         return Err(Failure::bad_input(format!("{}: {what}", capture.display())));
+    }
+    if splats.is_some() {
+        let what = "splats cannot be added to a capture (add them to a scene of meshes: `focus-brush new`)";
+        return Err(Failure::wrong_usage(format!("{}: {what}", capture.display())));
     }
     let choices = CaptureChoices {
         depth_strokes: Vec::new(),

@@ -30,7 +30,9 @@ pub fn run(arguments: &InfoArguments, console: &Console) -> Result<(), Failure> 
         }
         _ => None,
     };
-    if let Some(inspection) = inspection.as_ref().filter(|inspection| inspection.triangles == 0) {
+    if let Some(inspection) =
+        inspection.as_ref().filter(|inspection| inspection.triangles + inspection.splats == 0)
+    {
         let note = format!("{}: no triangle, so there is nothing to render", file.display());
         return report_empty_scene(arguments, inspection, &note, console);
     }
@@ -230,6 +232,12 @@ fn print_splats(scene: &Scene) {
         cloud.degree(),
         cloud.bytes() as f64 / f64::from(1 << 20)
     ));
+    if cloud.hidden_count() > 0 {
+        print_line(format!("               {} of them are hidden", cloud.hidden_count()));
+    }
+    if let Some(file) = &splats.file {
+        print_line(format!("               from {}", path_text(file)));
+    }
     print_line(
         "               they send their own light: no lamp or world lights them, and mirrors do not show them",
     );
@@ -242,6 +250,8 @@ fn splats_json(scene: &Scene) -> Option<Value> {
         "format": splats.format,
         "degree": splats.cloud.degree(),
         "left_out": splats.cloud.left_out().rows().len(),
+        "hidden": splats.cloud.hidden_count(),
+        "file": splats.file.as_deref().map(path_text),
         "bytes": splats.cloud.bytes(),
     }))
 }

@@ -3,7 +3,7 @@
 use crate::cli::arguments::NewArguments;
 use crate::cli::console::Console;
 use crate::cli::failure::Failure;
-use crate::cli::input::{check_folder, read_world, unwrap_options};
+use crate::cli::input::{check_folder, read_splats, read_world, unwrap_options};
 use document::{Document, NewDocumentOptions};
 use project::ProjectFile;
 use std::path::Path;
@@ -16,7 +16,9 @@ pub fn run(arguments: &NewArguments, console: &Console) -> Result<(), Failure> {
     let output = &arguments.output;
     check_project_name(output)?;
     check_folder(output)?;
+    let splats = read_splats(arguments.appearance.splats.as_deref())?;
     let beginning = NewDocumentOptions {
+        splats: splats.as_ref(),
         camera: arguments.camera.as_ref(),
         focus: arguments.focus.as_deref(),
         paint_from: arguments.paint_from.as_deref(),

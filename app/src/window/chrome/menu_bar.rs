@@ -125,6 +125,10 @@ pub fn is_possible(id: CommandId, state: &MenuState<'_>) -> bool {
         SelectAll | InvertSelection | RefineSelection | MaskFromSelection => {
             state.document.is_some_and(|document| document.selection.is_some())
         }
+        HideSelectedSplats => state
+            .document
+            .is_some_and(|document| document.selection.is_some() && document.scene().splats.is_some()),
+        ShowAllSplats => state.document.is_some_and(|document| document.splat_edit_showing_all().is_some()),
         Undo => state.document.is_some_and(|document| document.undo_name().is_some()),
         Redo => state.document.is_some_and(|document| document.redo_name().is_some()),
         Stop => state.has_jobs,

@@ -144,6 +144,13 @@ impl Shell {
             CommandId::SpreadStrokes => self.apply(Command::Spread(self.settings.tools.spread)),
             CommandId::ShowStrokes => self.apply(Command::ShowStrokes),
             CommandId::MaskFromSelection => self.apply(Command::MaskFromSelection),
+            CommandId::HideSelectedSplats => self.apply(Command::HideSelectedSplats),
+            CommandId::ShowAllSplats => {
+                let edit = self.session.document().and_then(|document| document.splat_edit_showing_all());
+                if let Some(edit) = edit {
+                    self.apply(Command::EditSplats("Show splats", edit.into()));
+                }
+            }
             CommandId::FillAll => {
                 if let Some(target) = self.session.document().map(|document| document.brush.target) {
                     self.apply(Command::Fill(FillRegion::All, target));

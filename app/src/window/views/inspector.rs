@@ -35,6 +35,7 @@ use std::collections::BTreeMap;
 #[derive(Default)]
 pub struct Inspector {
     scene: scene_panel::ScenePanel,
+    splats: scene_panel::SplatsRows,
     cameras: cameras_panel::CamerasPanel,
     layers: layers_panel::LayersPanel,
 }
@@ -95,6 +96,9 @@ impl Inspector {
                 section(ui, toggled, ("Material variants", true), |ui| {
                     variant_panel::variant_panel(ui, document, actions);
                 });
+            }
+            if document.scene().splats.is_some() {
+                section(ui, toggled, ("Splats", true), |ui| self.splats.ui(ui, document, actions));
             }
             section(ui, toggled, ("World", true), |ui| world_panel::world_panel(ui, document, actions));
             section(ui, toggled, ("Scene", false), |ui| self.scene.ui(ui, document, actions));

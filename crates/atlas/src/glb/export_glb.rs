@@ -89,8 +89,5 @@ fn amended_glb_bytes(
 
 /// Whether the file still contains the scene.
 fn matches_source(scene: &Scene, source: &GltfSource<'_>) -> bool {
-    let file = &source.scene;
-    scene.triangles == file.triangles
-        && scene.positions == file.positions
-        && source.parts.len() == scene.parts.len()
+    source.scene.is_surface_of(scene) && source.parts.len() == source.scene.parts.len()
 }

@@ -6,6 +6,7 @@ use super::left_out::{LeftOut, Reason};
 use super::splat::Splat;
 use glam::{Quat, Vec3};
 use half::f16;
+use std::sync::Arc;
 
 /// Opacities that no ray notices: training and viewers drop responses below it.
 pub(crate) const OPACITY_THRESHOLD: f32 = 1.0 / 255.0;
@@ -16,6 +17,7 @@ const MAX_LOG_SCALE: f32 = 80.0;
 /// Fills a [`GaussianCloud`]; splats that cannot be drawn are left out and counted.
 pub struct CloudBuilder {
     cloud: GaussianCloud,
+    coefficients: Vec<f16>,
     rows: u32,
 }
 
@@ -35,9 +37,11 @@ impl CloudBuilder {
                 log_scales: Vec::with_capacity(count),
                 opacities: Vec::with_capacity(count),
                 base_colors: Vec::with_capacity(count),
-                coefficients: Vec::with_capacity(3 * harmonics::coefficient_count(degree) * count),
+                coefficients: Arc::default(),
                 left_out: LeftOut::default(),
+                hidden: Vec::new(),
             },
+            coefficients: Vec::with_capacity(3 * harmonics::coefficient_count(degree) * count),
             rows: 0,
         }
     }
@@ -64,7 +68,7 @@ impl CloudBuilder {
                 cloud.log_scales.push(splat.log_scale);
                 cloud.opacities.push(splat.opacity);
                 cloud.base_colors.push(splat.base_color);
-                cloud.coefficients.extend(coefficients.iter().map(|&x| f16::from_f32(x)));
+                self.coefficients.extend(coefficients.iter().map(|&x| f16::from_f32(x)));
             }
             Err(reason) => cloud.left_out.push(row, reason),
         }
@@ -72,7 +76,7 @@ impl CloudBuilder {
 
     /// The cloud.
     pub fn finish(self, traits: CloudTraits) -> GaussianCloud {
-        GaussianCloud { traits, ..self.cloud }
+        GaussianCloud { traits, coefficients: Arc::new(self.coefficients), ..self.cloud }
     }
 }
 
@@ -140,6 +144,25 @@ mod tests {
         assert_eq!(cloud.splat(0), Splat { rotation: Quat::IDENTITY, ..GOOD });
         assert!(cloud.coefficients(0).iter().all(|x| x.to_f32() == 0.25));
         assert_eq!(cloud.traits().color_space, ColorSpace::Srgb);
+    }
+
+    #[test]
+    fn hidden_splats_keep_their_number_and_stop_nothing() {
+        let mut builder = CloudBuilder::new(0, 3);
+        (0..3).for_each(|_| builder.push(GOOD, &[]));
+        let shown = builder.finish(CloudTraits::default());
+        let mut cloud = shown.clone();
+        cloud.hide(vec![false, true, false]);
+        assert_eq!((cloud.len(), cloud.hidden_count(), cloud.is_hidden(1)), (3, 1, true));
+        assert_eq!([0, 1, 2].map(|index| cloud.splat(index).opacity), [0.5, 0.0, 0.5]);
+        let bytes = |cloud: &crate::GaussianCloud| {
+            let mut all = Vec::new();
+            cloud.each_byte_string(|part| all.extend_from_slice(part));
+            all
+        };
+        assert_ne!(bytes(&cloud), bytes(&shown));
+        cloud.hide(vec![false; 3]);
+        assert_eq!(cloud, shown);
     }
 
     #[test]

@@ -6,6 +6,7 @@ use super::left_out::LeftOut;
 use super::splat::Splat;
 use glam::{Quat, Vec3};
 use half::f16;
+use std::sync::Arc;
 
 /// What the colours of a cloud mean.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -38,7 +39,7 @@ impl Default for CloudTraits {
 /// 3D Gaussian splats in the axes and units of their file. Made by [`CloudBuilder`](super::CloudBuilder).
 ///
 /// All numbers are finite (but for the scale of a flat axis, see [`Splat::log_scale`]). A splat of degree 3 takes 146 bytes: colour
-/// coefficients beyond degree 0 are 16-bit floats.
+/// coefficients beyond degree 0 are 16-bit floats, which clones share.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GaussianCloud {
     pub(super) traits: CloudTraits,
@@ -49,8 +50,10 @@ pub struct GaussianCloud {
     pub(super) opacities: Vec<f32>,
     pub(super) base_colors: Vec<Vec3>,
     /// For each splat, coefficient by coefficient, red, green and blue of each beside each other.
-    pub(super) coefficients: Vec<f16>,
+    pub(super) coefficients: Arc<Vec<f16>>,
     pub(super) left_out: LeftOut,
+    /// Whether each splat is hidden; empty: none is.
+    pub(super) hidden: Vec<bool>,
 }
 
 impl GaussianCloud {
@@ -94,7 +97,26 @@ impl GaussianCloud {
         &self.means
     }
 
-    /// A splat without its coefficients.
+    /// Hides splats, and shows all others: what is hidden keeps its number and its place, but no ray meets it. An empty list shows all.
+    ///
+    /// # Panics
+    /// The list is neither empty nor as long as the cloud.
+    pub fn hide(&mut self, hidden: Vec<bool>) {
+        assert!(hidden.is_empty() || hidden.len() == self.len());
+        self.hidden = if hidden.contains(&true) { hidden } else { Vec::new() };
+    }
+
+    /// Whether a splat is hidden.
+    pub fn is_hidden(&self, index: usize) -> bool {
+        self.hidden.get(index).copied().unwrap_or(false)
+    }
+
+    /// The number of splats that are hidden.
+    pub fn hidden_count(&self) -> usize {
+        self.hidden.iter().filter(|is_hidden| **is_hidden).count()
+    }
+
+    /// A splat without its coefficients. The opacity of one that is hidden is 0.
     ///
     /// # Panics
     /// There is no splat `index`.
@@ -103,7 +125,7 @@ impl GaussianCloud {
             mean: self.means[index],
             rotation: self.rotations[index],
             log_scale: self.log_scales[index],
-            opacity: self.opacities[index],
+            opacity: if self.is_hidden(index) { 0.0 } else { self.opacities[index] },
             base_color: self.base_colors[index],
         }
     }
@@ -139,6 +161,9 @@ impl GaussianCloud {
         add(bytemuck::cast_slice(&self.log_scales));
         add(bytemuck::cast_slice(&self.opacities));
         add(bytemuck::cast_slice(&self.base_colors));
+        if !self.hidden.is_empty() {
+            add(&self.hidden.iter().map(|is_hidden| u8::from(*is_hidden)).collect::<Vec<_>>());
+        }
         self.coefficients.chunks(1 << 16).for_each(|part| {
             let bits: Vec<u16> = part.iter().map(|x| x.to_bits()).collect();
             add(bytemuck::cast_slice(&bits));

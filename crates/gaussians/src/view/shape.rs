@@ -21,6 +21,17 @@ pub(super) const MIN_AXIS: f64 = 1e-4;
 /// Responses below it do not count, as in training.
 pub(crate) const MIN_ALPHA: f64 = 1.0 / 255.0;
 
+/// How far splats grow across their chief rays, and what of their opacity is left.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Growth {
+    /// The focal length of the picture, px.
+    pub focal_px: f64,
+    /// Whether the cloud was trained with its low-pass compensated in opacity.
+    pub is_antialiased: bool,
+    /// A further variance, px², compensated in opacity: other programs' blur. 0: none.
+    pub dilation_px2: f64,
+}
+
 /// A splat before a camera.
 pub(crate) struct CameraShape {
     /// Camera space.
@@ -37,15 +48,11 @@ impl CameraShape {
     /// The shape of `splat`, whose mean is at `mean` in camera space; `None` if its response is nowhere great enough, or the aperture's centre
     /// is inside it.
     ///
-    /// `camera_from_file` is the linear map of vectors, `focal_px` the focal length in pixels.
-    pub fn new(
-        splat: &Splat,
-        mean: DVec3,
-        camera_from_file: &DMat3,
-        focal_px: f64,
-        is_antialiased: bool,
-    ) -> Option<Self> {
-        let low_pass = LOW_PASS_PX2 * (mean.z / focal_px).powi(2);
+    /// `camera_from_file` is the linear map of vectors.
+    pub fn new(splat: &Splat, mean: DVec3, camera_from_file: &DMat3, growth: Growth) -> Option<Self> {
+        let Growth { focal_px, is_antialiased, dilation_px2 } = growth;
+        let px2 = (mean.z / focal_px).powi(2);
+        let (trained, low_pass) = (LOW_PASS_PX2 * px2, (LOW_PASS_PX2 + dilation_px2) * px2);
         let scale = splat.log_scale.as_dvec3().exp();
         let scale = scale.max(DVec3::splat(MIN_AXIS * scale.max_element().max(low_pass.sqrt())));
         let rotation =
@@ -58,12 +65,13 @@ impl CameraShape {
             [row.x, row.y, row.z, spread1[k], spread2[k]]
         });
         let mut opacity = f64::from(splat.opacity);
-        if is_antialiased {
-            // The areas of the projected ellipse before and after: |a × b|, with a and b the extents along e₁ and e₂.
+        if is_antialiased || dilation_px2 > 0.0 {
+            // The squared area of the projected ellipse as it grows: |a × b|², with a and b the extents along e₁ and e₂.
             let (a, b) = (m.transpose() * e1, m.transpose() * e2);
             let area = a.cross(b).length_squared();
-            let grown = area + low_pass * (a.length_squared() + b.length_squared()) + low_pass * low_pass;
-            opacity *= (area / grown).sqrt();
+            let grown = |by: f64| area + by * (a.length_squared() + b.length_squared()) + by * by;
+            let before = if is_antialiased { area } else { grown(trained) };
+            opacity *= (before / grown(low_pass)).sqrt();
         }
         let cutoff = 2.0 * (opacity / MIN_ALPHA).ln();
         let shape = Self { mean, whitening: inverse_triangle(rows), opacity, cutoff };
@@ -121,6 +129,10 @@ mod tests {
     use super::*;
     use glam::{Quat, Vec3};
 
+    fn growth(focal_px: f64) -> Growth {
+        Growth { focal_px, is_antialiased: false, dilation_px2: 0.0 }
+    }
+
     fn splat(log_scale: Vec3) -> Splat {
         let rotation = Quat::from_xyzw(0.3, -0.2, 0.7, 0.5).normalize();
         Splat { mean: Vec3::ZERO, rotation, log_scale, opacity: 0.8, base_color: Vec3::ZERO }
@@ -133,7 +145,7 @@ mod tests {
         for ratio in [1.0, 1e-2, 1e-4] {
             let s = splat(Vec3::new(0.05, 0.02, 0.05 * ratio as f32).map(f32::ln));
             // So fine a picture that the low-pass vanishes against the thinnest axis.
-            let shape = CameraShape::new(&s, mean, &DMat3::IDENTITY, 1e9, false).unwrap();
+            let shape = CameraShape::new(&s, mean, &DMat3::IDENTITY, growth(1e9)).unwrap();
             let rotation = DMat3::from_quat(s.rotation.as_dquat().normalize());
             let scale = s.log_scale.as_dvec3().exp();
             for axis in 0..3 {
@@ -149,7 +161,7 @@ mod tests {
     fn the_low_pass_grows_across_the_chief_ray_alone() {
         let (mean, focal_px) = (DVec3::new(0.4, -0.3, 2.0), 100.0);
         let s = splat(Vec3::new(0.05, 0.02, 0.01).map(f32::ln));
-        let shape = CameraShape::new(&s, mean, &DMat3::IDENTITY, focal_px, false).unwrap();
+        let shape = CameraShape::new(&s, mean, &DMat3::IDENTITY, growth(focal_px)).unwrap();
         let rotation = DMat3::from_quat(s.rotation.as_dquat().normalize());
         let scale = DMat3::from_diagonal(s.log_scale.as_dvec3().exp());
         let before = (rotation * scale) * (rotation * scale).transpose();
@@ -170,18 +182,32 @@ mod tests {
     fn compensated_clouds_fade_where_they_are_smaller_than_a_pixel() {
         let (mean, focal_px) = (DVec3::new(0.0, 0.0, 2.0), 100.0);
         let small = splat(Vec3::splat((0.01f32).ln()));
-        let plain = CameraShape::new(&small, mean, &DMat3::IDENTITY, focal_px, false).unwrap();
-        let faded = CameraShape::new(&small, mean, &DMat3::IDENTITY, focal_px, true).unwrap();
+        let plain = CameraShape::new(&small, mean, &DMat3::IDENTITY, growth(focal_px)).unwrap();
+        let compensated = Growth { is_antialiased: true, ..growth(focal_px) };
+        let faded = CameraShape::new(&small, mean, &DMat3::IDENTITY, compensated).unwrap();
         assert!((plain.opacity - 0.8).abs() < 1e-7);
         // A sphere of ½ px: its area is that of ¼ px², that after the low-pass of 0.55 px².
         assert!((faded.opacity / plain.opacity - 0.25 / 0.55).abs() < 1e-6, "{}", faded.opacity);
     }
 
     #[test]
+    fn what_is_dilated_keeps_its_light() {
+        let (mean, focal_px) = (DVec3::new(0.0, 0.0, 2.0), 100.0);
+        let small = splat(Vec3::splat((0.01f32).ln()));
+        let dilated = Growth { dilation_px2: 4.0, ..growth(focal_px) };
+        let plain = CameraShape::new(&small, mean, &DMat3::IDENTITY, growth(focal_px)).unwrap();
+        let wide = CameraShape::new(&small, mean, &DMat3::IDENTITY, dilated).unwrap();
+        // A sphere of ½ px: 0.55 px² after the low-pass, 4.55 px² after the dilation; so is the area of its outline.
+        assert!((wide.opacity / plain.opacity - 0.55 / 4.55).abs() < 1e-6, "{}", wide.opacity);
+        let grown = wide.covariance()[0] - plain.covariance()[0];
+        assert!((grown - 4.0 * (2.0 / focal_px) * (2.0 / focal_px)).abs() < 1e-9, "{grown}");
+    }
+
+    #[test]
     fn what_surrounds_the_aperture_is_left_out() {
         let mean = DVec3::new(0.0, 0.0, 2.0);
         let shape = |size: f32| {
-            CameraShape::new(&splat(Vec3::splat(size.ln())), mean, &DMat3::IDENTITY, 100.0, false).is_some()
+            CameraShape::new(&splat(Vec3::splat(size.ln())), mean, &DMat3::IDENTITY, growth(100.0)).is_some()
         };
         assert!(shape(0.5) && !shape(2.0));
     }

@@ -20,6 +20,9 @@ pub(crate) const MANIFEST: &str = "manifest.json";
 const WITHOUT_DEPTH: u64 = 6;
 const WITHOUT_CHOSEN_LAYER: u64 = 7;
 
+/// The version of a project whose splats are those of its scene's file, unedited: older programs would show no others.
+const WITHOUT_SPLATS: u64 = 9;
+
 /// The version of a project without layers that were spread: older programs would lose the strokes.
 const WITHOUT_SPREAD: u64 = 8;
 
@@ -68,6 +71,9 @@ pub(crate) struct Manifest {
     /// The world, if one was chosen; as in a world file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub world: Option<Value>,
+    /// Gaussian splats that were added, moved or hidden; as in a file of their own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub splats: Option<Value>,
     pub background_focus: [f64; 2],
     /// The background's gloss, if not 0.
     #[serde(default, skip_serializing_if = "is_zero")]
@@ -125,7 +131,7 @@ impl Manifest {
     pub const FORMAT: &str = "focus-brush project";
 
     /// The newest version. It is increased whenever an older program would misread the file.
-    pub const VERSION: u64 = 9;
+    pub const VERSION: u64 = 10;
 
     /// The same in the oldest version that can express it.
     pub fn with_oldest_version(self) -> Self {
@@ -137,7 +143,8 @@ impl Manifest {
             || any_row(LayerEntry::has_gloss);
         let capture_has = |of: fn(&CaptureEntry) -> bool| self.capture.as_ref().is_some_and(of);
         let version = match () {
-            _ if any_row(|row| row.spread.is_some()) => Self::VERSION,
+            _ if self.splats.is_some() => Self::VERSION,
+            _ if any_row(|row| row.spread.is_some()) => WITHOUT_SPLATS,
             _ if capture_has(CaptureEntry::has_layer) => WITHOUT_SPREAD,
             _ if capture_has(CaptureEntry::has_depth_strokes) => WITHOUT_CHOSEN_LAYER,
             _ if has_gloss => WITHOUT_DEPTH,

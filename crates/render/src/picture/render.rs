@@ -7,7 +7,7 @@ use crate::picture::aov::{Aov, LayerInputs};
 use crate::picture::coc_convention::CocConvention;
 use crate::picture::photographed::{light_of_photographs, photographed_shares};
 use crate::picture::renderer::Renderer;
-use crate::picture::splat_truth::SplatTruth;
+use crate::picture::splat_truth::{Dilation, SplatTruth};
 use baselines::{BaselineError, FirstHits, LayeredOptions, ScatterOptions, ViewsOptions};
 use document::Input;
 use focus::Focus;
@@ -60,6 +60,9 @@ pub struct RenderOptions {
     pub layered: LayeredOptions,
     /// Options of [`Renderer::Views`].
     pub views: ViewsOptions,
+    /// How far [`Renderer::Dilation`] makes splats grow: the standard deviation, in radii of the circle of confusion, > 0. A disc has ½,
+    /// Spark takes 1, splat-transform 2.
+    pub dilation_sigma_radii: f64,
     /// Options of [`Renderer::Scatter`].
     pub scatter: ScatterOptions,
     /// The AOVs to render.
@@ -83,6 +86,7 @@ impl Default for RenderOptions {
             gpu: None,
             layered: LayeredOptions::default(),
             views: ViewsOptions::default(),
+            dilation_sigma_radii: 1.0,
             scatter: ScatterOptions::default(),
             aovs: Vec::new(),
             coc: CocConvention::default(),
@@ -265,6 +269,7 @@ pub fn render(
                     focus,
                     camera,
                     samples_per_pixel: options.truth.samples_per_pixel,
+                    dilation: None,
                 };
                 let picture = truth.render(&*steps.begin("tracing"))?.picture;
                 if let Some(request) = options.matte_request() {
@@ -292,6 +297,23 @@ pub fn render(
         Renderer::Layers => {
             let hits = first_hits(lit, camera, focus, options.light, steps)?;
             baselines::layered_blur(&hits, camera, &options.layered, &*steps.begin("blurring"))?
+        }
+        Renderer::Dilation => {
+            let Some(splats) = &lit.scene().splats else {
+                let what = "the dilation renderer draws Gaussian splats, but the scene has none (use splat or truth)";
+                return Err(RenderError::BadInput(what.into()));
+            };
+            let light = lit.solve(camera, options.light, &*steps.begin("light"))?;
+            let dilated = SplatTruth {
+                tracer: lit.tracer(),
+                splats,
+                radiance: &*light,
+                focus,
+                camera: &Camera { aperture_radius: 0.0, ..camera.clone() },
+                samples_per_pixel: 1,
+                dilation: Some(Dilation { lens: camera, sigma_radii: options.dilation_sigma_radii }),
+            };
+            dilated.render(&*steps.begin("dilating"))?.picture
         }
         Renderer::Views if lit.tracer().has_splats() => {
             let what = "the views renderer does not draw Gaussian splats (use splat, truth, blur or layers)";
@@ -540,7 +562,7 @@ fn character_warning(camera: &Camera, options: &RenderOptions) -> Option<String>
             "pictures of a lens with a character are summed on the processor, not on the GPU".to_string()
         }),
         Renderer::Truth => None,
-        Renderer::Blur | Renderer::Layers | Renderer::Views | Renderer::Scatter => Some(
+        Renderer::Blur | Renderer::Layers | Renderer::Views | Renderer::Dilation | Renderer::Scatter => Some(
             "this renderer draws the plain lens, without its character (use the renderers splat or truth)"
                 .to_string(),
         ),
@@ -589,6 +611,7 @@ fn first_hits(
             focus,
             camera: &Camera { aperture_radius: 0.0, ..camera.clone() },
             samples_per_pixel: 1,
+            dilation: None,
         };
         hits.radiance = truth.render(&*steps.begin("pinhole"))?.picture.radiance;
     }

@@ -14,18 +14,21 @@ pub enum Renderer {
     Layers,
     /// A baseline: pinhole views over the aperture, shifted and added.
     Views,
+    /// A baseline for Gaussian splats: each made larger by its circle of confusion, as other programs blur them.
+    Dilation,
     /// A baseline: every ray of the light field scattered to one pixel.
     Scatter,
 }
 
 impl Renderer {
     /// All renderers with their names on the command line.
-    pub const ALL: [(&'static str, Renderer); 6] = [
+    pub const ALL: [(&'static str, Renderer); 7] = [
         ("splat", Renderer::Splat),
         ("truth", Renderer::Truth),
         ("blur", Renderer::Blur),
         ("layers", Renderer::Layers),
         ("views", Renderer::Views),
+        ("dilation", Renderer::Dilation),
         ("scatter", Renderer::Scatter),
     ];
 

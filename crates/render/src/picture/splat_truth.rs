@@ -22,6 +22,16 @@ pub(crate) struct SplatTruth<'a> {
     pub camera: &'a Camera,
     /// Rays of a pixel.
     pub samples_per_pixel: u32,
+    /// Splats are dilated instead of sending rays through the lens.
+    pub dilation: Option<Dilation<'a>>,
+}
+
+/// The depth of field of other programs, to compare with.
+pub(crate) struct Dilation<'a> {
+    /// The camera with its lens.
+    pub lens: &'a Camera,
+    /// The standard deviation by which a splat grows, in radii of its circle of confusion.
+    pub sigma_radii: f64,
 }
 
 impl SplatTruth<'_> {
@@ -48,7 +58,18 @@ impl SplatTruth<'_> {
             max_margin_px: (LARGEST_MARGIN_HEIGHTS * f64::from(self.camera.height)) as u32,
             uniform_radiance,
         };
-        let view = GaussianView::new(&self.splats.cloud, &self.splats.placement, self.camera);
+        let PlacedCloud { cloud, placement, .. } = self.splats;
+        let view = match &self.dilation {
+            None => GaussianView::new(cloud, placement, self.camera),
+            Some(Dilation { lens, sigma_radii }) => {
+                let optics = lens.optics();
+                let variance = |splat: u32, depth: f64| {
+                    let focus = self.focus.at(self.splats.address(splat)).or_standard();
+                    (sigma_radii * optics.splat_radius_px(optics.kappa(1.0 / depth, focus))).powi(2)
+                };
+                GaussianView::dilated(cloud, placement, self.camera, variance)
+            }
+        };
         let count = self.splats.cloud.len() as u32;
         let focus: Vec<FocusOffset> =
             (0..count).map(|splat| self.focus.at(self.splats.address(splat)).or_standard()).collect();

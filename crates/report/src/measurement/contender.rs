@@ -38,6 +38,11 @@ pub enum Contender {
         /// Views per side of the aperture's square.
         views_a_side: u32,
     },
+    /// Gaussian splats, each made larger.
+    Dilation {
+        /// The standard deviation by which a splat grows, in radii of its circle of confusion.
+        sigma_radii: f64,
+    },
     /// The light field, baked and scattered ray by ray.
     Scatter {
         /// Rays per sample.
@@ -88,6 +93,7 @@ impl Contender {
             Self::Blur => Renderer::Blur,
             Self::Layers { .. } => Renderer::Layers,
             Self::Views { .. } => Renderer::Views,
+            Self::Dilation { .. } => Renderer::Dilation,
             Self::Scatter { .. } => Renderer::Scatter,
         }
     }
@@ -105,6 +111,7 @@ impl Contender {
             Some(Renderer::Blur) => "pinhole picture, blurred by depth",
             Some(Renderer::Layers) => "pinhole picture in layers",
             Some(Renderer::Views) => "pinhole views, shifted and added",
+            Some(Renderer::Dilation) => "splats made larger, as other programs do",
             Some(Renderer::Scatter) => "the light field, ray by ray",
             None => "",
         }
@@ -118,6 +125,7 @@ impl Contender {
             Self::Blur => "",
             Self::Layers { .. } => "layers",
             Self::Views { .. } => "views_a_side",
+            Self::Dilation { .. } => "sigma_radii",
             Self::Scatter { .. } => "rays_a_sample",
         }
     }
@@ -126,6 +134,7 @@ impl Contender {
     pub fn knob_value(&self) -> f64 {
         match *self {
             Self::Splat { tolerance_px } => tolerance_px,
+            Self::Dilation { sigma_radii } => sigma_radii,
             Self::Truth { samples_per_pixel: count }
             | Self::Layers { layers: count }
             | Self::Views { views_a_side: count }
@@ -148,6 +157,7 @@ impl Contender {
             Self::Blur => {}
             Self::Layers { layers } => options.layered.layers = layers,
             Self::Views { views_a_side } => options.views.views_a_side = views_a_side,
+            Self::Dilation { sigma_radii } => options.dilation_sigma_radii = sigma_radii,
             Self::Scatter { rays_a_sample } => options.scatter.rays_a_sample = rays_a_sample,
         }
         options
@@ -177,6 +187,7 @@ impl Contender {
             Self::Blur | Self::Layers { .. } => {
                 draw_from_scratch(shot, &options, pixels * (colour + size_of::<f64>()), steps)
             }
+            Self::Dilation { .. } => draw_from_scratch(shot, &options, pixels * colour, steps),
             // A colour and a depth per pixel of each view.
             Self::Views { views_a_side } => {
                 let views = (views_a_side as usize).pow(2);

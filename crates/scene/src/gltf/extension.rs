@@ -4,12 +4,13 @@ use crate::error::Fault;
 use crate::gltf::document::Document;
 
 /// Supported.
-pub(crate) const SUPPORTED: [&str; 25] = [
+pub(crate) const SUPPORTED: [&str; 26] = [
     "EXT_lights_image_based",
     "EXT_mesh_gpu_instancing",
     "EXT_meshopt_compression",
     "EXT_texture_webp",
     "KHR_draco_mesh_compression",
+    "KHR_gaussian_splatting",
     "KHR_lights_punctual",
     "KHR_materials_anisotropy",
     "KHR_materials_clearcoat",

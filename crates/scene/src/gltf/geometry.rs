@@ -6,5 +6,6 @@ pub(crate) mod hierarchy;
 pub(crate) mod instancing;
 pub(crate) mod primitive;
 pub(crate) mod skin;
+pub(crate) mod splat_primitive;
 pub(crate) mod tangents;
 pub(crate) mod triangulation;

@@ -34,6 +34,8 @@ pub struct Inspection {
     pub animation_list: Vec<Animation>,
     /// Triangles that the scene shows, counting each instance.
     pub triangles: usize,
+    /// Gaussian splats that are shown (KHR_gaussian_splatting).
+    pub splats: usize,
     /// Extensions that the file uses.
     pub extensions_used: Vec<String>,
     /// Extensions that the file requires.

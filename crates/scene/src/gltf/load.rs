@@ -19,6 +19,7 @@ use crate::gltf::materials::variants::Variants;
 use crate::gltf::punctual_light;
 use crate::gltf::scene_cameras;
 use crate::gltf::source::{GltfSource, PartSource};
+use crate::gltf::splats;
 use crate::{Inspection, LoadOptions, Material, Node, Scene, SceneError};
 use glam::{DMat4, DQuat, Vec3};
 use progress::{Progress, Unwatched};
@@ -114,7 +115,7 @@ impl AnimatedScene {
             let variants = Variants::read(&document, options.variant.as_deref())?;
             let mut sources = Some(Vec::new());
             let (scene, _, used) = read_geometry(&path, &document, &variants, &mut sources, progress)?;
-            if scene.positions != rest.positions || scene.triangles != rest.triangles {
+            if !scene.is_surface_of(&rest) {
                 return Err(file_changed().into());
             }
             let parts = RestParts::new(&scene, &sources.unwrap_or_default());
@@ -162,8 +163,9 @@ impl AnimatedScene {
             }
             scene.normals.iter_mut().for_each(|normal| *normal = normal.normalize_or_zero());
             self.copy_static_state(&mut scene);
-            let rest_triangles =
+            let mut rest_triangles =
                 self.parts.rest_triangles(&scene, &sources.unwrap_or_default()).ok_or_else(file_changed)?;
+            rest_triangles.extend(scene.add_splats_of(rest));
             let mut warnings = document.warnings();
             warnings.retain(|warning| !rest.warnings.contains(warning));
             scene.warnings = warnings;
@@ -173,7 +175,7 @@ impl AnimatedScene {
 
     /// Whether the scene at rest uses glTF's default material.
     fn has_default(&self, document: &Document<'_>) -> bool {
-        self.rest.materials.len() > document.len("materials")
+        self.rest.materials.len() - usize::from(self.rest.splats.is_some()) > document.len("materials")
     }
 
     /// Copies what is not animated from the scene at rest.
@@ -243,6 +245,7 @@ fn read_scene(
     scene.images = materials.into_images();
     scene.embedded_world = image_based_light::read_embedded_world(&document)?;
     scene.normals.iter_mut().for_each(|normal| *normal = normal.normalize_or_zero());
+    splats::add_splats(&mut scene, &document, &hierarchy, progress)?;
     add_missing_camera(&document, &mut scene);
     lint::lint(&document);
     let animations = animation::list_animations(&document);
@@ -497,7 +500,8 @@ fn count_contents(
         skins: document.len("skins"),
         animations: document.len("animations"),
         animation_list,
-        triangles: scene.triangles.len(),
+        triangles: scene.surface_triangles().len(),
+        splats: scene.splats.as_ref().map_or(0, |splats| splats.cloud.len()),
         extensions_used: extension::used(document).map(String::from).collect(),
         extensions_required: extension::required(document).map(String::from).collect(),
         warnings: scene.warnings.clone(),

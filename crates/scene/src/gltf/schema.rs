@@ -395,7 +395,11 @@ static PRIMITIVE: Spec = Spec {
         ("mode", Code(&[0, 1, 2, 3, 4, 5, 6])),
         ("targets", Targets),
     ],
-    extensions: &[("KHR_draco_mesh_compression", &NONE), ("KHR_materials_variants", &MAPPINGS)],
+    extensions: &[
+        ("KHR_draco_mesh_compression", &NONE),
+        ("KHR_gaussian_splatting", &NONE),
+        ("KHR_materials_variants", &MAPPINGS),
+    ],
     ..NONE
 };
 

@@ -1,8 +1,10 @@
 //! Gaussian splats as a part of a scene: the cloud, where it stands, and which triangles stand for its splats.
 
+use super::splat_edit::SplatEdit;
 use gaussians::{GaussianCloud, Placement};
 use glam::DVec3;
 use std::ops::Range;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// A cloud of splats, and where it stands.
@@ -12,6 +14,12 @@ pub struct PlacedCloud {
     pub cloud: Arc<GaussianCloud>,
     /// From the axes of their file to the world.
     pub placement: Placement,
+    /// The same when their file was opened: what an edit moves.
+    pub original_placement: Placement,
+    /// How they were moved, and which of them are hidden.
+    pub edit: SplatEdit,
+    /// The file that was added to the scene; `None`: they are in the scene's own file.
+    pub file: Option<PathBuf>,
     /// The format of their file, for messages.
     pub format: &'static str,
     pub(crate) first_triangle: u32,

@@ -10,7 +10,7 @@ use lens::{Exposure, FocusOffset};
 use project::{CaptureChoices, RecordedStep, SelectionShape};
 use relief::DepthStroke;
 use render::Display;
-use scene::{BackFaces, World};
+use scene::{BackFaces, SplatEdit, World};
 use splat::Tolerance;
 use std::path::PathBuf;
 
@@ -84,6 +84,10 @@ pub enum Command {
     LoadEnvironment(PathBuf),
     /// Sets the scene's material variant by name; `None`: its default materials. The scene is read again in the background. An undo step.
     SetVariant(Option<String>),
+    /// Moves Gaussian splats or hides some, as an undo step of this name. The scene is prepared again in the background.
+    EditSplats(&'static str, Box<SplatEdit>),
+    /// Hides the Gaussian splats that are selected. An undo step.
+    HideSelectedSplats,
     /// Sets the display settings. Not part of the document.
     SetDisplay(Display),
     /// Shows the live picture through one aperture point, in [−1, 1]² (see [`lens::Aperture::sub_aperture`]), or through the whole

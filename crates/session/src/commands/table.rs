@@ -35,6 +35,8 @@ pub enum CommandId {
     InvertSelection,
     RefineSelection,
     MaskFromSelection,
+    HideSelectedSplats,
+    ShowAllSplats,
     FrameAll,
     FrameCursor,
     ViewFromCamera,
@@ -300,6 +302,8 @@ pub const COMMANDS: &[CommandInfo] = &[
     command_info(CommandId::InvertSelection, Menu::Select, Shortcut::command("I"), "Invert selection", "Freeze what may be painted, and the other way round."),
     command_info(CommandId::RefineSelection, Menu::Select, Shortcut::command_alt("R"), "Refine edges", "Move the outline of what may be painted to the nearest edges of the surface."),
     command_info(CommandId::MaskFromSelection, Menu::Select, None, "Mask from selection", "Let this layer count only where it may be painted."),
+    command_info(CommandId::HideSelectedSplats, Menu::Select, None, "Hide splats", "Hide the Gaussian splats that may be painted. Their file is not changed."),
+    command_info(CommandId::ShowAllSplats, Menu::Select, None, "Show all splats", "Show all Gaussian splats again: those hidden one by one, those outside the crop box, and those too faint, large or alone."),
     command_info(CommandId::FrameAll, Menu::View, Shortcut::key("Home"), "Frame all", "Show the whole scene in the paint view."),
     command_info(CommandId::FrameCursor, Menu::View, Shortcut::key("F"), "Orbit around cursor", "Centre the paint view on what lies under the cursor."),
     command_info(CommandId::ViewFromCamera, Menu::View, Shortcut::key("0"), "View from camera", "Look through the shot camera in the paint view."),
@@ -422,6 +426,8 @@ impl CommandId {
             SelectAll
                 | InvertSelection
                 | MaskFromSelection
+                | HideSelectedSplats
+                | ShowAllSplats
                 | FillAll
                 | ResetMap
                 | AddLayer

@@ -51,6 +51,10 @@ impl Session {
             Command::SetVariant(name) => {
                 self.rebuild_stage(StageChange::Variant { name, cause: ChangeCause::Command })
             }
+            Command::EditSplats(name, edit) => {
+                self.rebuild_stage(StageChange::Splats { name, edit, cause: ChangeCause::Command })
+            }
+            Command::HideSelectedSplats => self.hide_selected_splats(),
             Command::SetDisplay(display) => {
                 self.display = display;
                 self.show_tone();

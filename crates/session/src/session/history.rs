@@ -82,6 +82,10 @@ impl Session {
             Some(StepEffect::Variant(name)) => {
                 self.rebuild_stage(StageChange::Variant { name, cause: ChangeCause::History })
             }
+            Some(StepEffect::Splats(edit)) => {
+                let cause = ChangeCause::History;
+                self.rebuild_stage(StageChange::Splats { name: "Splats", edit, cause })
+            }
             Some(StepEffect::Depth) => {
                 self.document_mut()?.revision += 1;
                 self.rebuild_depth()

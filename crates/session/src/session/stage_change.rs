@@ -5,7 +5,7 @@ use crate::job_steps::JobSteps;
 use document::Stage;
 use jobs::JobProgress;
 use project::{CaptureChoices, WorldFile};
-use scene::{BackFaces, World};
+use scene::{BackFaces, SplatEdit, World};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -20,6 +20,8 @@ pub(super) enum StageChange {
     Environment(PathBuf),
     /// The scene's variant; none: its own materials.
     Variant { name: Option<String>, cause: ChangeCause },
+    /// Where splats stand, and which are hidden; the name of the step of undo.
+    Splats { name: &'static str, edit: Box<SplatEdit>, cause: ChangeCause },
     /// The depth of a picture: what was chosen of it, and the strokes that repair it.
     Depth(CaptureChoices),
 }
@@ -51,6 +53,7 @@ impl StageChange {
             Self::BackFaces(_) => "looking at other faces",
             Self::World(_) | Self::Environment(_) => "changing the world",
             Self::Variant { .. } => "changing the variant",
+            Self::Splats { .. } => "placing splats",
             Self::Depth(_) => "repairing depth",
         }
     }
@@ -63,6 +66,7 @@ impl StageChange {
             Self::World(world) => scene.world != *world,
             Self::Environment(_) => true,
             Self::Variant { name, .. } => scene.variant != *name,
+            Self::Splats { edit, .. } => scene.splats.as_ref().is_some_and(|splats| splats.edit != **edit),
             Self::Depth(choices) => *stage.depth_strokes != choices.depth_strokes,
         }
     }
@@ -94,6 +98,7 @@ impl StageChange {
                 stage.with_world(Some(world), progress)?
             }
             Self::Variant { name, .. } => stage.with_variant(name.as_deref(), progress)?,
+            Self::Splats { edit, .. } => stage.with_splat_edit(edit, progress)?,
             Self::Depth(choices) => stage.with_depth_repaired(choices, &JobSteps { progress })?,
         };
         Ok((stage, warnings))

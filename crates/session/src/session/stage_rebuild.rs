@@ -1,4 +1,4 @@
-//! The scene seen or lit in another way: other faces, another world, another variant; or its surface made anew, of repaired depth.
+//! The scene seen or lit in another way: other faces, another world, another variant, splats moved or hidden; or its surface made anew, of repaired depth.
 //!
 //! The stage is prepared anew in the background and taken up when it is ready. Of two changes of one kind the later counts; one
 //! that was prepared from a stage that is no longer there, because another change came first, is prepared once more.
@@ -47,11 +47,25 @@ impl Session {
             document.recomposite(None);
             self.map_serial += 1;
         } else {
-            if let StageChange::Variant { name, cause: ChangeCause::Command } = change {
-                document.undo.push_variant(base.scene.variant.clone(), name);
+            let is_moved = matches!(change, StageChange::Splats { .. });
+            match change {
+                StageChange::Variant { name, cause: ChangeCause::Command } => {
+                    document.undo.push_variant(base.scene.variant.clone(), name);
+                }
+                StageChange::Splats { name, edit, cause: ChangeCause::Command } => {
+                    let before = base.scene.splats.as_ref().map(|splats| splats.edit.clone());
+                    document.undo.push_splats(name, before.unwrap_or_default(), *edit);
+                }
+                _ => {}
             }
-            document.stage = Arc::new(stage);
             document.revision += 1;
+            if is_moved {
+                document.replace_surface(stage);
+                document.recomposite(None);
+                self.map_serial += 1;
+            } else {
+                document.stage = Arc::new(stage);
+            }
         }
         let document = self.document_mut()?;
         let (stage, map, shot_camera) =
@@ -63,6 +77,22 @@ impl Session {
         self.events.extend(new_warnings.into_iter().map(Event::Notice));
         self.events.push(Event::SurfaceChanged);
         Ok(())
+    }
+
+    /// Hides the splats that are selected: a step of undo.
+    pub(super) fn hide_selected_splats(&mut self) -> Result<(), SessionError> {
+        self.commit_stroke()?;
+        let document = self.document_mut()?;
+        match document.splat_edit_hiding_selection() {
+            Some(edit) => {
+                let (name, cause) = ("Hide splats", ChangeCause::Command);
+                self.rebuild_stage(StageChange::Splats { name, edit: edit.into(), cause })
+            }
+            None => {
+                let what = "no Gaussian splat is selected (select what is to be hidden)";
+                Err(SessionError::bad_file(&document.scene().path, what))
+            }
+        }
     }
 
     /// Repairs the depth of a picture by another stroke: a step of undo. The surface follows in the background.

@@ -59,6 +59,8 @@ pub fn synonyms(id: CommandId) -> &'static str {
         SelectSimilar => "magic wand contiguous flood polygon fill",
         RefineSelection => "feather edge matte",
         SpreadStrokes => "scribble propagate segment quick select smart fill",
+        HideSelectedSplats => "delete remove erase floaters gaussians points",
+        ShowAllSplats => "restore unhide floaters gaussians",
         AddMask | MaskFromSelection => "layer mask black white",
         OpenAperture | CloseAperture => "f-stop f-number iris depth of field dof bokeh",
         FocusNearer | FocusFarther => "focus distance rack",

@@ -1,4 +1,8 @@
-//! The objects and materials of the scene, each with a button to fill it.
+//! The objects and materials of the scene, each with a button to fill it; and its splats.
+
+mod splats_rows;
+
+pub use splats_rows::SplatsRows;
 
 use crate::window::Action;
 use document::{Document, FillRegion, SurfaceHit};

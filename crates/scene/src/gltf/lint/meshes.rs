@@ -6,6 +6,7 @@ use crate::gltf::container::json_object::Object;
 use crate::gltf::document::Document;
 use crate::gltf::extension;
 use crate::gltf::geometry::accessor::{Accessor, Component, component_from_code};
+use crate::gltf::geometry::splat_primitive;
 use crate::gltf::materials::variants;
 use std::collections::{HashMap, HashSet};
 
@@ -120,6 +121,7 @@ impl<'a> MeshLint<'a> {
             match AttributeName::parse(name) {
                 Some(AttributeName { base, set: Some(set) }) => sets.entry(base).or_default().push(set),
                 Some(_) => {}
+                None if name.starts_with(splat_primitive::EXTENSION) => {}
                 None => self.warn(&format!("{}/{name}", attributes.place), "is not an attribute name"),
             }
         }
