@@ -6,8 +6,8 @@ use damage::{damage, is_one_line};
 use focus::{Brush, BrushMode, FocusMap};
 use lens::{Aperture, ApertureMask, ApertureShape, Camera, Exposure, FocusOffset};
 use project::{
-    CaptureChoices, NamedCamera, ProjectError, ProjectFile, SceneState, TexelSet, Thumbnail, find_recovery,
-    recovery_path_for, remove_recovery, unsaved_recovery_path,
+    CaptureChoices, NamedCamera, ProjectError, ProjectFile, SceneState, SplatsFile, TexelSet, Thumbnail,
+    find_recovery, recovery_path_for, remove_recovery, unsaved_recovery_path,
 };
 use relief::{DepthRepair, DepthStroke};
 use std::io::{Read, Write};
