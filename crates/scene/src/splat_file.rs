@@ -55,6 +55,13 @@ pub fn add_splat_file(scene: &mut Scene, path: &Path, progress: &dyn Progress) -
     }
     let SplatFile { cloud, format, warnings } = gaussians::open(path, &ReadOptions::default(), progress)?;
     let placement = Placement::upright(cloud.traits().axes);
+    if !scene.has_light_sources() && scene.embedded_world.is_none() {
+        scene.warnings.push(
+            "no light is in the file, and splats give none: its surfaces are black unless a world is chosen \
+             (the studio, for example)"
+                .into(),
+        );
+    }
     scene.add_splats(name_of(path), Arc::new(cloud), placement, format.name());
     if let Some(splats) = scene.splats.as_mut().map(Arc::make_mut) {
         splats.file = Some(path.into());
@@ -91,6 +98,7 @@ fn scene_camera(view: &CapturedView, placement: &Placement) -> SceneCamera {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::World;
     use gaussians::{CloudBuilder, CloudTraits, Splat, write_ply};
     use glam::{Quat, Vec3};
     use progress::Unwatched;
@@ -135,5 +143,17 @@ mod tests {
         assert!(scene.has_default_camera && scene.warnings[0].ends_with("its views are left out"));
         assert!(load_splats(&file, Some("red"), &Unwatched).unwrap_err().to_string().contains("no variant"));
         assert!(load_splats(&folder.path().join("none.ply"), None, &Unwatched).is_err());
+    }
+
+    #[test]
+    fn surfaces_beside_splats_that_nothing_lights_are_reported() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("room.ply");
+        write_file(&file);
+        for (embedded_world, warnings) in [(None, 1), (Some(World::studio()), 0)] {
+            let mut scene = Scene { embedded_world, ..Scene::default() };
+            add_splat_file(&mut scene, &file, &Unwatched).unwrap();
+            assert_eq!(scene.warnings.len(), warnings, "{:?}", scene.warnings);
+        }
     }
 }
