@@ -1,5 +1,6 @@
 //! The preview thread's work: processing requests.
 
+mod backdrop;
 mod idle_work;
 mod showing;
 
@@ -17,11 +18,10 @@ use crate::preview::request::PreviewRequest;
 use crate::preview::spare_field::{SpareField, SpareTask};
 use document::Stage;
 use focus::{Focus, FocusMap};
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use jobs::catch_panics;
 use lens::Camera;
 use render::LightFieldStore;
-use scene::{Backdrop, World};
 use splat::Tolerance;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -220,17 +220,6 @@ impl Worker {
         Ok(())
     }
 
-    /// What the next light field begins with.
-    fn next_origin(&mut self, camera: &Camera) -> FieldOrigin {
-        let before = self.before_backdrop.take().filter(|(field, _)| field.can_show(camera));
-        match (self.fine.take(), before) {
-            (Some(fine), _) => FieldOrigin::Resum(Box::new(fine)),
-            (None, Some((field, radiance))) => FieldOrigin::OtherBackdrop(Box::new(field), radiance),
-            (None, None) if std::mem::take(&mut self.bakes_anew) => FieldOrigin::Bake,
-            (None, None) => FieldOrigin::LoadOrBake { least_margin_px: 0.0 },
-        }
-    }
-
     /// Works with the light field whose aperture fits the lens best; gives up those of another view.
     fn choose_field(&mut self, camera: &Camera) {
         self.spare.tidy(camera);
@@ -263,7 +252,7 @@ impl Worker {
         let mut backdrop = None;
         if let Some((stage, generation)) = request.stage {
             let (before, camera) = (self.stage.take(), request.camera.as_ref().or(self.camera.as_ref()));
-            backdrop = before.and_then(|before| plain_backdrop(&before, &stage, camera?));
+            backdrop = before.and_then(|before| backdrop::plain_backdrop(&before, &stage, camera?));
             self.stage = Some(stage);
             self.pinhole.forget();
             self.coarse_pace = None;
@@ -312,16 +301,6 @@ impl Worker {
             spare.unwrap_or(Ok(())).and_then(|()| self.take_up()).and_then(|()| self.take_up_light());
         self.refinement.tidy(self.fine.as_ref());
         taken_up
-    }
-
-    /// Keeps the light fields if nothing but the backdrop changed, which has this radiance; otherwise gives them up.
-    fn take_up_backdrop(&mut self, backdrop: Option<Vec3>) {
-        let (coarse, fine) = (self.coarse.take(), self.fine.take());
-        // One that was not taken up yet is followed by another backdrop.
-        let before = self.before_backdrop.take().map(|(field, _)| field);
-        let (Some(radiance), Some(stage)) = (backdrop, &self.stage) else { return };
-        self.coarse = coarse.and_then(|field| field.with_backdrop(stage, radiance, self.shared.gpu()));
-        self.before_backdrop = fine.or(before).map(|field| (field, radiance));
     }
 
     /// Takes up the light field that was made first, in place of the coarse one.
@@ -391,14 +370,4 @@ impl Worker {
         let order = FieldOrder { origin, stage, camera, interim, focus, tolerance, epoch };
         self.maker.start(&self.shared, order);
     }
-}
-
-/// The radiance of the backdrop of `after`, if it is the same in all directions, and all else of the stage is as in `before`.
-fn plain_backdrop(before: &Stage, after: &Stage, camera: &Camera) -> Option<Vec3> {
-    let background = camera.background.map(|radiance| DVec3::from_array(radiance).as_vec3());
-    let [world_before, world] = [before, after].map(|stage| World::from_scene(&stage.scene, background));
-    let is_same_light = after.differs_in_world_alone(before) && world.lighting() == world_before.lighting();
-    let Backdrop::Color(radiance) = world.backdrop else { return None };
-    // Photographs have a backdrop of their own.
-    (is_same_light && after.scene.views.is_empty()).then_some(radiance)
 }
