@@ -252,7 +252,7 @@ impl Worker {
         let mut backdrop = None;
         if let Some((stage, generation)) = request.stage {
             let (before, camera) = (self.stage.take(), request.camera.as_ref().or(self.camera.as_ref()));
-            backdrop = before.and_then(|before| backdrop::plain_backdrop(&before, &stage, camera?));
+            backdrop = before.and_then(|before| Self::plain_backdrop(&before, &stage, camera?));
             self.stage = Some(stage);
             self.pinhole.forget();
             self.coarse_pace = None;

@@ -28,14 +28,15 @@ impl Worker {
             (None, None) => FieldOrigin::LoadOrBake { least_margin_px: 0.0 },
         }
     }
-}
 
-/// The radiance of the backdrop of `after`, if it is the same in all directions, and all else of the stage is as in `before`.
-pub(super) fn plain_backdrop(before: &Stage, after: &Stage, camera: &Camera) -> Option<Vec3> {
-    let background = camera.background.map(|radiance| DVec3::from_array(radiance).as_vec3());
-    let [world_before, world] = [before, after].map(|stage| World::from_scene(&stage.scene, background));
-    let is_same_light = after.differs_in_world_alone(before) && world.lighting() == world_before.lighting();
-    let Backdrop::Color(radiance) = world.backdrop else { return None };
-    // Photographs have a backdrop of their own.
-    (is_same_light && after.scene.views.is_empty()).then_some(radiance)
+    /// The radiance of the backdrop of `after`, if it is the same in all directions, and all else of the stage is as in `before`.
+    pub(super) fn plain_backdrop(before: &Stage, after: &Stage, camera: &Camera) -> Option<Vec3> {
+        let background = camera.background.map(|radiance| DVec3::from_array(radiance).as_vec3());
+        let [world_before, world] = [before, after].map(|stage| World::from_scene(&stage.scene, background));
+        let is_same_light =
+            after.differs_in_world_alone(before) && world.lighting() == world_before.lighting();
+        let Backdrop::Color(radiance) = world.backdrop else { return None };
+        // Photographs have a backdrop of their own.
+        (is_same_light && after.scene.views.is_empty()).then_some(radiance)
+    }
 }
