@@ -134,10 +134,7 @@ pub struct LightArguments {
 impl LightArguments {
     /// The light quality these options select.
     pub fn light_quality(&self) -> LightQuality {
-        match self.light_passes {
-            0 => LightQuality::Fine,
-            passes => LightQuality::Refined { passes },
-        }
+        LightQuality::from_passes(self.light_passes)
     }
 }
 

@@ -68,12 +68,21 @@ impl Drop for LitScene {
 impl LitScene {
     /// The scene in `tracer`, with no light solved for yet.
     pub fn new(tracer: Arc<Tracer>, options: LightOptions, resources: &Resources) -> Arc<Self> {
+        Self::with_irradiance_cache(tracer, options, resources, IrradianceCache::default())
+    }
+
+    fn with_irradiance_cache(
+        tracer: Arc<Tracer>,
+        options: LightOptions,
+        resources: &Resources,
+        irradiance: IrradianceCache,
+    ) -> Arc<Self> {
         let cancel = CancelToken::default();
         let photographs = !tracer.scene().views.is_empty();
         let photographs =
             photographs.then(|| PhotographLightCache::new(&tracer, options, resources, &cancel));
-        let (irradiance, resources) = (IrradianceCache::default(), resources.clone());
         let (rough_light, bounce_limit) = (Mutex::default(), BounceLimit::default());
+        let resources = resources.clone();
         Arc::new(Self {
             tracer,
             options,
@@ -89,11 +98,8 @@ impl LitScene {
     /// The scene in another world (none: its own): what is solved for worlds of the same lighting still holds.
     pub fn in_world(&self, world: Option<World>) -> Arc<Self> {
         let scene = Arc::new(Scene { world, ..(**self.scene()).clone() });
-        let mut lit = Self::new(Arc::new(Tracer::new(scene)), self.options, &self.resources);
-        if let Some(lit) = Arc::get_mut(&mut lit) {
-            lit.irradiance = self.irradiance.solved();
-        }
-        lit
+        let irradiance = self.irradiance.solved();
+        Self::with_irradiance_cache(Arc::new(Tracer::new(scene)), self.options, &self.resources, irradiance)
     }
 
     /// The tracer, by which rays are traced in the scene.

@@ -45,3 +45,10 @@ pub enum LightQuality {
         passes: u32,
     },
 }
+
+impl LightQuality {
+    /// Light for a picture that is refined by so many passes; 0: not at all.
+    pub fn from_passes(passes: u32) -> Self {
+        if passes == 0 { Self::Fine } else { Self::Refined { passes } }
+    }
+}

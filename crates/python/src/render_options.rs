@@ -36,7 +36,7 @@ pub fn render_options(fields: Option<&Bound<'_, PyDict>>, input: &Input) -> PyRe
                 options.scatter = ScatterOptions { seed, ..options.scatter };
             }
             "cells" => options.cells_a_side = whole(&name, &value, 1..=MAX_CELLS_A_SIDE)?,
-            "light_passes" => options.light = light_quality(whole(&name, &value, 0..=1 << 16)?),
+            "light_passes" => options.light = LightQuality::from_passes(whole(&name, &value, 0..=1 << 16)?),
             "aov" => options.aovs = aovs(&value)?,
             "backend" => backend = choice(&name, &value, &BACKENDS)?,
             _ => {
@@ -50,14 +50,6 @@ pub fn render_options(fields: Option<&Bound<'_, PyDict>>, input: &Input) -> PyRe
     check(&mut options, input)?;
     options.gpu = open_gpu(backend, options.renderer)?;
     Ok(options)
-}
-
-/// How the light is computed, by the number of passes that refine it.
-pub fn light_quality(passes: u32) -> LightQuality {
-    match passes {
-        0 => LightQuality::Fine,
-        passes => LightQuality::Refined { passes },
-    }
 }
 
 /// The backends by name.

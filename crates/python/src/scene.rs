@@ -6,12 +6,12 @@ use crate::field::Field;
 use crate::focus::{Focus, FocusArgument, FocusValues, Over};
 use crate::lit_input::LitInput;
 use crate::picture::Picture;
-use crate::render_options::{light_quality, render_options};
+use crate::render_options::render_options;
 use crate::rendering::picture;
 use crate::work;
 use atlas::UnwrapOptions;
 use document::{CameraChoice, Input};
-use light::{DiskCache, Resources};
+use light::{DiskCache, LightQuality, Resources};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -180,7 +180,8 @@ impl Scene {
         let focus = FocusArgument::from_python(focus)?;
         let LitInput { input, unwrap, .. } = &self.0;
         let camera = camera.map_or_else(|| input.camera.clone(), |camera| camera.0.clone());
-        let options = RenderOptions { light: light_quality(light_passes), ..RenderOptions::default() };
+        let options =
+            RenderOptions { light: LightQuality::from_passes(light_passes), ..RenderOptions::default() };
         let salf = work::run(py, "baking", progress, |steps| {
             camera.validate().map_err(|error| RenderError::bad_file(&input.path, error))?;
             let focus = focus.evaluate(input, unwrap, steps)?;

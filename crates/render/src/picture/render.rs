@@ -1,6 +1,6 @@
 //! Rendering a picture without a window, for the command line and the window's export.
 
-use crate::bake::{bake_with, is_compatible};
+use crate::bake::bake_with;
 use crate::error::RenderError;
 use crate::mattes::{BlackBackground, LightFieldMattes, MatteRequest, Mattes, SampleParts, TruthMattes};
 use crate::picture::aov::{Aov, LayerInputs};
@@ -9,7 +9,6 @@ use crate::picture::photographed::{light_of_photographs, photographed_shares};
 use crate::picture::renderer::Renderer;
 use crate::picture::splat_truth::{Dilation, SplatTruth};
 use baselines::{BaselineError, FirstHits, LayeredOptions, ScatterOptions, ViewsOptions};
-use document::Input;
 use focus::Focus;
 use lens::{Camera, Character, FocusOffset, Picture};
 use light::{LightQuality, LitScene, Steps};
@@ -263,13 +262,8 @@ pub fn render(
             let radiance: &dyn Radiance = if options.has_aov(Aov::Alpha) { &premultiplied } else { &*light };
             if let Some(splats) = &lit.scene().splats {
                 let truth = SplatTruth {
-                    tracer: lit.tracer(),
-                    splats,
-                    radiance,
-                    focus,
-                    camera,
                     samples_per_pixel: options.truth.samples_per_pixel,
-                    dilation: None,
+                    ..SplatTruth::new(lit.tracer(), splats, radiance, focus, camera)
                 };
                 let picture = truth.render(&*steps.begin("tracing"))?.picture;
                 if let Some(request) = options.matte_request() {
@@ -304,14 +298,10 @@ pub fn render(
                 return Err(RenderError::BadInput(what.into()));
             };
             let light = lit.solve(camera, options.light, &*steps.begin("light"))?;
+            let pinhole = without_aperture(camera);
             let dilated = SplatTruth {
-                tracer: lit.tracer(),
-                splats,
-                radiance: &*light,
-                focus,
-                camera: &Camera { aperture_radius: 0.0, ..camera.clone() },
-                samples_per_pixel: 1,
                 dilation: Some(Dilation { lens: camera, sigma_radii: options.dilation_sigma_radii }),
+                ..SplatTruth::new(lit.tracer(), splats, &*light, focus, &pinhole)
             };
             dilated.render(&*steps.begin("dilating"))?.picture
         }
@@ -342,81 +332,6 @@ pub(crate) fn draw_baked(
     let shot = Shot { lit, camera, focus };
     let drawn = draw_light_field(salf.clone(), shot, options.cells_a_side, options, steps)?;
     finish(shot, options, drawn, steps)
-}
-
-/// Renders an input: a scene, a project, or a light field (if the renderer draws from one).
-///
-/// # Errors
-/// The camera is invalid, or incompatible with the light field; otherwise as [`render`].
-pub fn render_input(
-    input: &Input,
-    camera: &Camera,
-    focus: &Focus,
-    options: &RenderOptions,
-    steps: &dyn Steps,
-) -> Result<Rendered, RenderError> {
-    let start = Instant::now();
-    let lit = lit_scene_of(input, camera)?;
-    let prepare_seconds = start.elapsed().as_secs_f64();
-    let mut rendered = render_lit_input(input, &lit, camera, focus, options, steps)?;
-    rendered.cost.prepare_seconds = prepare_seconds;
-    Ok(rendered)
-}
-
-/// Renders an input whose lit scene ([`Input::lit_scene`]) is at hand, which serves any number of pictures.
-///
-/// # Errors
-/// As [`render_input`].
-pub fn render_lit_input(
-    input: &Input,
-    lit: &Arc<LitScene>,
-    camera: &Camera,
-    focus: &Focus,
-    options: &RenderOptions,
-    steps: &dyn Steps,
-) -> Result<Rendered, RenderError> {
-    check_camera(input, camera)?;
-    let Some(salf) = input.salf.as_ref().filter(|_| options.renderer.draws_light_field()) else {
-        return render(lit, camera, focus, options, steps);
-    };
-    if let Some(difference) = incompatibility(&salf.camera, camera) {
-        let what = format!("it was baked {difference} (bake it again for this camera)");
-        return Err(RenderError::bad_file(&input.path, what));
-    }
-    let mut rendered = options.sum_light_field(salf.clone(), lit, camera, focus, steps)?;
-    let needed = BakeOptions::for_focus(lit.tracer(), camera, focus).margin_px;
-    if needed > salf.margin_px as f64 {
-        rendered.warnings.push(format!(
-            "{}: paint spreads light from {needed:.0} px outside the frame, but only {} px were baked (bake it with --focus)",
-            input.path.display(),
-            salf.margin_px
-        ));
-    }
-    Ok(rendered)
-}
-
-/// The lit scene of `input`, after checking that `camera` is valid.
-pub(crate) fn lit_scene_of(input: &Input, camera: &Camera) -> Result<Arc<LitScene>, RenderError> {
-    check_camera(input, camera)?;
-    Ok(input.lit_scene()?)
-}
-
-fn check_camera(input: &Input, camera: &Camera) -> Result<(), RenderError> {
-    camera.validate().map_err(|error| RenderError::bad_file(&input.path, error))
-}
-
-/// Why a light field of `baked` cannot show `camera`; `None` if it can.
-fn incompatibility(baked: &Camera, camera: &Camera) -> Option<String> {
-    if is_compatible(baked, camera) {
-        return None;
-    }
-    Some(if (baked.width, baked.height) != (camera.width, camera.height) {
-        format!("for {} × {} px, not {} × {}", baked.width, baked.height, camera.width, camera.height)
-    } else if camera.aperture_radius > baked.aperture_radius {
-        format!("for an aperture radius of {}, not {}", baked.aperture_radius, camera.aperture_radius)
-    } else {
-        "for another pose, angle of view, sensor or background".into()
-    })
 }
 
 /// Draws a light field with `cells_a_side` cells per side of a pixel.
@@ -593,6 +508,10 @@ fn render_pinhole(
     Ok((rendered.picture, rendered.layers.pop()))
 }
 
+fn without_aperture(camera: &Camera) -> Camera {
+    Camera { aperture_radius: 0.0, ..camera.clone() }
+}
+
 fn first_hits(
     lit: &Arc<LitScene>,
     camera: &Camera,
@@ -604,15 +523,8 @@ fn first_hits(
     let mut hits = FirstHits::trace(lit.tracer(), &*light, focus, camera, &*steps.begin("first hits"))?;
     if let Some(splats) = &lit.scene().splats {
         // What a ray through splats brings is no light of one surface.
-        let truth = SplatTruth {
-            tracer: lit.tracer(),
-            splats,
-            radiance: &*light,
-            focus,
-            camera: &Camera { aperture_radius: 0.0, ..camera.clone() },
-            samples_per_pixel: 1,
-            dilation: None,
-        };
+        let pinhole = without_aperture(camera);
+        let truth = SplatTruth::new(lit.tracer(), splats, &*light, focus, &pinhole);
         hits.radiance = truth.render(&*steps.begin("pinhole"))?.picture.radiance;
     }
     Ok(hits)

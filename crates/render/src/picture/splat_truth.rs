@@ -34,7 +34,18 @@ pub(crate) struct Dilation<'a> {
     pub sigma_radii: f64,
 }
 
-impl SplatTruth<'_> {
+impl<'a> SplatTruth<'a> {
+    /// One ray a pixel of the splats of a scene.
+    pub fn new(
+        tracer: &'a Tracer,
+        splats: &'a PlacedCloud,
+        radiance: &'a dyn Radiance,
+        focus: &'a Focus,
+        camera: &'a Camera,
+    ) -> Self {
+        Self { tracer, splats, radiance, focus, camera, samples_per_pixel: 1, dilation: None }
+    }
+
     /// Renders it: light from `radiance` for surfaces, and from splats their own.
     ///
     /// # Errors

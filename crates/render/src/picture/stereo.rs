@@ -4,8 +4,9 @@
 //! sub-aperture, focused on the point that both eyes fixate: that point has no disparity, and nothing is cut off at the sides of the frame.
 
 use crate::error::RenderError;
+use crate::picture::input_picture::{lit_scene_of, render_input};
 use crate::picture::pixel_ray::pixel_ray;
-use crate::picture::render::{RenderCost, RenderOptions, Rendered, draw_baked, lit_scene_of, render_input};
+use crate::picture::render::{RenderCost, RenderOptions, Rendered, draw_baked};
 use crate::picture::renderer::Renderer;
 use document::Input;
 use focus::Focus;

@@ -12,10 +12,7 @@ const NEIGHBOR: f32 = 0.125;
 /// The picture with softer edges, as if the area of each pixel had been seen.
 pub(crate) fn antialiased(picture: &Picture) -> Picture {
     let (width, height) = (picture.width as usize, picture.height as usize);
-    let value = |index: usize| {
-        let [r, g, b] = picture.radiance[index];
-        [r, g, b, picture.coverage[index]]
-    };
+    let value = |index: usize| rgb_and_coverage(picture, index);
     let mix = |before: [f32; 4], own: [f32; 4], after: [f32; 4]| -> [f32; 4] {
         std::array::from_fn(|c| NEIGHBOR * (before[c] + after[c]) + (1.0 - 2.0 * NEIGHBOR) * own[c])
     };
@@ -31,6 +28,12 @@ pub(crate) fn antialiased(picture: &Picture) -> Picture {
     });
     let (radiance, coverage) = values.map(|[r, g, b, coverage]| ([r, g, b], coverage)).unzip();
     Picture { radiance, coverage, ..picture.clone() }
+}
+
+/// Radiance and coverage of a pixel.
+pub(crate) fn rgb_and_coverage(picture: &Picture, index: usize) -> [f32; 4] {
+    let [r, g, b] = picture.radiance[index];
+    [r, g, b, picture.coverage[index]]
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@
 //! circle of confusion is small, and no blur of something nearer reaches, it is shown itself; where the circle is a few pixels of the rough
 //! picture, the detail that is left of it in a blur over that circle is added to the rough picture. What is blurred more has no detail.
 
-use crate::display::antialiasing::antialiased;
+use crate::display::antialiasing::{antialiased, rgb_and_coverage};
 use crate::display::enlarging::{enlarged, reduced};
 use crate::display::picture_ring::Rectangle;
 use baselines::FirstHits;
@@ -58,7 +58,7 @@ impl SharpLayer {
         };
         let layer = |index: usize| {
             let circle = circles[at(index, own)].max(reaching[at(index, rough)]);
-            let [base, value] = [&smooth, &blurred].map(|picture| value_at(picture, index));
+            let [base, value] = [&smooth, &blurred].map(|picture| rgb_and_coverage(picture, index));
             let weight = share_below(circle, &FADING_CIRCLES);
             let detail = std::array::from_fn(|c| (value[c] - base[c]) * weight);
             ((base, share_below(circle, &ROUGH_CIRCLES)), detail)
@@ -87,11 +87,6 @@ fn share_below(value: f32, range: &RangeInclusive<f32>) -> f32 {
     1.0 - ((value - range.start()) / (range.end() - range.start())).clamp(0.0, 1.0)
 }
 
-fn value_at(picture: &Picture, index: usize) -> [f32; 4] {
-    let [r, g, b] = picture.radiance[index];
-    [r, g, b, picture.coverage[index]]
-}
-
 /// A picture without blur, blurred where circles are so small that detail is left: every pixel by its own circle, of what is not nearer.
 fn slightly_blurred(sharp: &Picture, hits: &FirstHits, circles: &[f32], per_hit: f32) -> Picture {
     // Vogel's spiral (1979): points of equal density in the unit disc.
@@ -105,17 +100,17 @@ fn slightly_blurred(sharp: &Picture, hits: &FirstHits, circles: &[f32], per_hit:
         let radius = circles[index] / 2.0 / per_hit;
         let is_wanted = circles[index] < *FADING_CIRCLES.end();
         if radius <= 0.5 || !is_wanted {
-            return value_at(sharp, index);
+            return rgb_and_coverage(sharp, index);
         }
         let (x, y) = ((index % width) as f32, (index / width) as f32);
         let nearest = hits.depth[index] * (1.0 - NEARER_SHARE);
-        let (mut sum, mut count) = (value_at(sharp, index), 1.0);
+        let (mut sum, mut count) = (rgb_and_coverage(sharp, index), 1.0);
         for [u, v] in points {
             let column = ((x + u * radius).round().max(0.0) as usize).min(width - 1);
             let row = ((y + v * radius).round().max(0.0) as usize).min(height - 1);
             let other = row * width + column;
             if hits.depth[other] >= nearest {
-                let value = value_at(sharp, other);
+                let value = rgb_and_coverage(sharp, other);
                 (0..4).for_each(|c| sum[c] += value[c]);
                 count += 1.0;
             }

@@ -41,31 +41,25 @@ impl Session {
         }
         let mut new_warnings = document.add_warnings_of(&stage.scene);
         new_warnings.extend(warnings);
-        if let StageChange::Depth(_) = change {
-            // The strokes were counted as a change when they were made.
+        // The strokes that repair depth were counted as a change when they were made.
+        document.revision += u64::from(!matches!(change, StageChange::Depth(_)));
+        let is_another_surface = matches!(change, StageChange::Depth(_) | StageChange::Splats { .. });
+        match change {
+            StageChange::Variant { name, cause: ChangeCause::Command } => {
+                document.undo.push_variant(base.scene.variant.clone(), name);
+            }
+            StageChange::Splats { name, edit, cause: ChangeCause::Command } => {
+                let before = base.scene.splats.as_ref().map(|splats| splats.edit.clone());
+                document.undo.push_splats(name, before.unwrap_or_default(), *edit);
+            }
+            _ => {}
+        }
+        if is_another_surface {
             document.replace_surface(stage);
             document.recomposite(None);
             self.map_serial += 1;
         } else {
-            let is_moved = matches!(change, StageChange::Splats { .. });
-            match change {
-                StageChange::Variant { name, cause: ChangeCause::Command } => {
-                    document.undo.push_variant(base.scene.variant.clone(), name);
-                }
-                StageChange::Splats { name, edit, cause: ChangeCause::Command } => {
-                    let before = base.scene.splats.as_ref().map(|splats| splats.edit.clone());
-                    document.undo.push_splats(name, before.unwrap_or_default(), *edit);
-                }
-                _ => {}
-            }
-            document.revision += 1;
-            if is_moved {
-                document.replace_surface(stage);
-                document.recomposite(None);
-                self.map_serial += 1;
-            } else {
-                document.stage = Arc::new(stage);
-            }
+            document.stage = Arc::new(stage);
         }
         let document = self.document_mut()?;
         let (stage, map, shot_camera) =
