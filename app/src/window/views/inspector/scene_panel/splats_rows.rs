@@ -1,7 +1,7 @@
 //! Gaussian splats: where they stand, and which of them are hidden.
 
 use crate::window::Action;
-use crate::window::widgets::controls::{beside, proportional_value, row, rows};
+use crate::window::widgets::controls::{beside, format_number, proportional_value, row, rows};
 use document::Document;
 use egui::{DragValue, Response, Ui};
 use glam::{DQuat, DVec3, EulerRot};
@@ -48,7 +48,8 @@ fn transform_rows(ui: &mut Ui, transform: &mut SplatTransform, note: &mut Note<'
     let tip = "Moves the splats, from where their file puts them.";
     note(row(ui, "Position", tip, |ui| vector(ui, &mut transform.translation)), "Move splats");
     let (x, y, z) = transform.rotation.to_euler(EulerRot::XYZ);
-    let mut degrees = DVec3::new(x, y, z).map(f64::to_degrees);
+    // Of the angles of no turn some are −0.
+    let mut degrees = DVec3::new(x, y, z).map(f64::to_degrees) + DVec3::ZERO;
     let before = degrees;
     let tip = "Turns the splats about the axes x, y and z, degrees.";
     note(row(ui, "Turn", tip, |ui| vector(ui, &mut degrees)), "Turn splats");
@@ -94,7 +95,10 @@ fn cleanup_rows(ui: &mut Ui, cleanup: &mut SplatCleanup, note: &mut Note<'_>) {
 /// A length, or 0 for no limit.
 fn limit(ui: &mut Ui, limit: &mut Option<f64>) -> Response {
     let mut length = limit.unwrap_or(0.0);
-    let response = ui.add(proportional_value(&mut length, 0.0..=1e9));
+    // From 0, too, a drag leads somewhere.
+    let speed = (0.01 * length).max(1e-3);
+    let value = DragValue::new(&mut length).speed(speed).range(0.0..=1e9);
+    let response = ui.add(value.custom_formatter(format_number));
     if response.changed() {
         *limit = (length > 0.0).then_some(length);
     }
