@@ -111,6 +111,9 @@ pub struct AppearanceArguments {
     /// stands and which of its splats are hidden (default: those of the scene or the project)
     #[arg(long, value_name = "SPLATS.json|SCAN.ply|spz|…")]
     pub splats: Option<PathBuf>,
+    /// Put a matte floor under the scene that looks like the backdrop and catches shadows (default: the project's setting)
+    #[arg(long)]
+    pub floor: bool,
     /// Leave out light scattered by microfacets more than once, to compare with renderers that do so
     #[arg(long)]
     pub single_scattering: bool,

@@ -55,6 +55,9 @@ pub fn open_input(
     if let Some(splats) = read_splats(appearance.splats.as_deref())? {
         input.set_splats(&splats, steps)?;
     }
+    if appearance.floor {
+        input.set_floor(true)?;
+    }
     input.transfer_paint_if_changed(&unwrap_options(None), steps)?;
     if let Some(back_faces) = appearance.back_faces {
         input.set_back_faces(back_faces);
@@ -104,12 +107,15 @@ pub fn read_splats(file: Option<&Path>) -> Result<Option<SplatsFile>, Failure> {
     }
 }
 
-/// Refuses splats that only one run would know of, where a project has to say what is shown.
+/// Refuses splats and a floor that only one run would know of, where a project has to say what is shown.
 ///
 /// # Errors
-/// Splats are requested.
-pub fn refuse_splats(appearance: &AppearanceArguments) -> Result<(), Failure> {
+/// Splats or a floor are requested.
+pub fn refuse_additions(appearance: &AppearanceArguments) -> Result<(), Failure> {
     match &appearance.splats {
+        None if appearance.floor => Err(Failure::wrong_usage(
+            "--floor: a floor must be in a project here (make one: `focus-brush new SCENE --floor -o PROJECT.fbrush`)",
+        )),
         None => Ok(()),
         Some(file) => Err(Failure::wrong_usage(format!(
             "{}: splats must be in a project here (make one: `focus-brush new SCENE --splats … -o PROJECT.fbrush`)",

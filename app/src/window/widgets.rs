@@ -4,6 +4,7 @@ pub mod brush_controls;
 pub mod controls;
 pub mod false_colour;
 pub mod focus_slider;
+pub mod focus_thumbnail;
 pub mod icon;
 pub mod keys;
 pub mod ray_diagram;

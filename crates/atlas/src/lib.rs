@@ -33,6 +33,7 @@
 mod atlas;
 mod bytes;
 mod error;
+mod floor_place;
 mod glb;
 mod options;
 mod packing;

@@ -48,6 +48,9 @@ impl Atlas {
                 None => Self::of_splats(scene, splats),
             };
         }
+        if let Some(floor) = &scene.floor {
+            return Self::unwrap(&scene.without_floor(), options, progress)?.with_floor(scene, floor);
+        }
         let parts: Vec<PreparedPart> = (0..scene.parts.len() as u32)
             .into_par_iter()
             .map(|part| {

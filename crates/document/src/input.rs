@@ -25,7 +25,7 @@ use crate::input::capture_scene::{
 };
 use crate::paint_transfer::TransferredPaint;
 use crate::scene_camera::{shot_camera_from, shot_camera_in_any_unit};
-use crate::scene_file::{atlas_error, load_variant, show_splats};
+use crate::scene_file::{add_floor, atlas_error, load_variant, show_splats};
 use crate::splat_focus::{is_focus_table, read_splat_focus};
 use atlas::{Atlas, AtlasError, UnwrapOptions};
 use focus::{Focus, FocusMap, FocusRecipe, RecipeEntry};
@@ -295,7 +295,7 @@ impl Input {
         let splats = project.splats.as_ref();
         let load_scene_variant =
             |variant| load_variant(&project.scene, variant, splats, &*steps.begin("reading"));
-        let scene = match load_scene_variant(variant.name(project.variant.as_deref())) {
+        let mut scene = match load_scene_variant(variant.name(project.variant.as_deref())) {
             Err(SceneError::Bad { file, fault: fault @ Fault::NoVariant { .. } })
                 if *variant == VariantChoice::AsSaved =>
             {
@@ -305,6 +305,9 @@ impl Input {
             }
             loaded => loaded?,
         };
+        if let Some(is_shown) = project.floor {
+            add_floor(Arc::make_mut(&mut scene), is_shown, path)?;
+        }
         Ok(Self::from_project(path, project, scene, warnings, resources))
     }
 
@@ -369,10 +372,29 @@ impl Input {
         Ok(())
     }
 
+    /// Puts a floor under the scene that catches its shadows, or hides it, overriding the project.
+    ///
+    /// # Errors
+    /// The scene casts no shadow, or is of a light field or a project that has no room for the paint of a floor.
+    pub fn set_floor(&mut self, is_shown: bool) -> Result<(), DocumentError> {
+        let has_room = self.scene.floor.is_some() || self.project.is_none() && self.salf.is_none();
+        if is_shown && !has_room {
+            let message =
+                "its paint has no room for a floor (make a project with one, or add it in the window)";
+            return Err(DocumentError::bad_file(&self.path, message));
+        }
+        if is_shown || self.scene.floor.is_some() {
+            add_floor(Arc::make_mut(&mut self.scene), is_shown, &self.path)?;
+        }
+        Ok(())
+    }
+
     /// Sets the scene's world, overriding the project; `None` for the scene's own.
     pub fn set_world(&mut self, world: Option<World>) {
         if world != self.scene.world {
-            Arc::make_mut(&mut self.scene).world = world;
+            let scene = Arc::make_mut(&mut self.scene);
+            scene.world = world;
+            scene.color_floor();
         }
     }
 

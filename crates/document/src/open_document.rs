@@ -41,6 +41,8 @@ pub struct NewDocumentOptions<'a> {
     pub variant: VariantChoice,
     /// Gaussian splats that are added to the scene, or how those that it has are shown.
     pub splats: Option<&'a SplatsFile>,
+    /// Whether a floor that catches shadows is put under the scene.
+    pub floor: bool,
 }
 
 /// An open document. Focus map, camera and the scene's variant are saved, and their changes can be undone. The selection is saved and can be
@@ -215,6 +217,9 @@ impl Document {
         if let Some(splats) = options.splats {
             input.set_splats(splats, steps)?;
         }
+        if options.floor {
+            input.set_floor(true)?;
+        }
         if let Some(project) = options.paint_from {
             input.import_paint_from(project, unwrap, steps)?;
         }
@@ -362,6 +367,7 @@ impl Document {
         project.exposure = self.exposure;
         project.back_faces = scene.back_faces;
         project.variant = scene.variant.clone();
+        project.floor = scene.floor.map(|floor| floor.is_shown);
         project.splats = scene.splats.as_ref().and_then(|splats| SplatsFile::of_scene(splats));
         project.world = scene.world.as_ref().map(|world| WorldFile::from_world(world, scene));
         project.brush = self.brush.clone();
@@ -405,12 +411,19 @@ impl Document {
         choices.map(|choices| CaptureChoices { depth_strokes: (*self.depth_strokes).clone(), ..choices })
     }
 
-    /// Replaces the stage by another surface in the same atlas; paint and selections stay where they are.
+    /// Replaces the stage by another surface in the same atlas, which may have more rows; paint and selections stay where they are.
     pub fn replace_surface(&mut self, stage: Stage) {
         let before = std::mem::replace(&mut self.stage, Arc::new(stage));
         let after = self.stage.clone();
         let remap_selection =
             |selection: &Selection| selection_from_texels(&after, &selection_to_texels(&before, selection));
+        if after.atlas.height > self.map.height() {
+            let height = after.atlas.height;
+            self.map.extend_rows(height);
+            self.thumbnail_base.extend_rows(height);
+            self.layers.extend_rows(height);
+            self.undo.extend_rows(height);
+        }
         self.selection = self.selection.as_ref().and_then(remap_selection);
         self.undo.map_selections(remap_selection);
         for index in 0..self.layers.layers().len() {

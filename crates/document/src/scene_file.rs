@@ -4,7 +4,7 @@ use crate::error::DocumentError;
 use atlas::AtlasError;
 use progress::Progress;
 use project::SplatsFile;
-use scene::{LoadOptions, Scene, SceneError};
+use scene::{Floor, LoadOptions, Scene, SceneError};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -52,6 +52,24 @@ pub(crate) fn load_variant(
         show_splats(&mut scene, splats, progress)?;
     }
     Ok(Arc::new(scene))
+}
+
+/// Puts a floor under the scene at `path` that catches its shadows, unless it has one, and shows it or not. Returns a floor that is new.
+///
+/// # Errors
+/// The scene casts no shadow.
+pub(crate) fn add_floor(
+    scene: &mut Scene,
+    is_shown: bool,
+    path: &Path,
+) -> Result<Option<Floor>, DocumentError> {
+    if let Some(problem) = scene.floor_problem() {
+        let message = format!("a floor would catch no shadow: {problem} (leave the floor out)");
+        return Err(DocumentError::bad_file(path, message));
+    }
+    let is_new = scene.floor.is_none();
+    scene.set_floor(is_shown);
+    Ok(scene.floor.filter(|_| is_new))
 }
 
 /// Adds splats to a scene that was read, if they are of another file; and shows them as `splats` says.

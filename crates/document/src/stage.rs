@@ -5,7 +5,7 @@ mod surface_colors;
 use crate::error::DocumentError;
 use crate::input::{Input, load_capture, picture_atlas};
 use crate::picking::SurfaceHit;
-use crate::scene_file::load_variant;
+use crate::scene_file::{add_floor, atlas_error, load_variant};
 use atlas::{Atlas, TexelMap, UnwrapOptions};
 use focus::{Canvas, FocusMap, SurfaceGraph};
 use glam::{DVec2, DVec3};
@@ -119,8 +119,10 @@ impl Stage {
     /// # Errors
     /// `progress` was cancelled.
     pub fn with_world(&self, world: Option<World>, progress: &dyn Progress) -> Result<Self, DocumentError> {
-        let surface = self.surface.clone();
-        Ok(Self { surface, ..self.with_lit_scene(self.lit.in_world(world), progress)? })
+        let lit = self.lit.in_world(world);
+        let is_same_surface = lit.scene().floor_color() == self.scene.floor_color();
+        let surface = if is_same_surface { self.surface.clone() } else { Arc::default() };
+        Ok(Self { surface, ..self.with_lit_scene(lit, progress)? })
     }
 
     /// Whether `other` is the same scene, in another world at most.
@@ -139,7 +141,12 @@ impl Stage {
     ) -> Result<Self, DocumentError> {
         let before = &self.scene;
         let splats = before.splats.as_ref().and_then(|splats| SplatsFile::of_scene(splats));
-        let reloaded = load_variant(&before.path, variant, splats.as_ref(), progress)?;
+        let loaded = load_variant(&before.path, variant, splats.as_ref(), progress)?;
+        let mut reloaded = Arc::unwrap_or_clone(loaded);
+        if let Some(floor) = &before.floor {
+            reloaded.world = before.world.clone();
+            reloaded.set_floor(floor.is_shown);
+        }
         if !is_same_surface(before, &reloaded) {
             return Err(DocumentError::bad_file(
                 &before.path,
@@ -150,7 +157,7 @@ impl Stage {
             back_faces: before.back_faces,
             world: before.world.clone(),
             embedded_world: before.embedded_world.clone(),
-            ..Arc::unwrap_or_clone(reloaded)
+            ..reloaded
         };
         let canvas = Arc::new(self.canvas.with_part_owners(&scene));
         Ok(Self { canvas, ..self.with_scene(scene, progress)? })
@@ -170,6 +177,23 @@ impl Stage {
         progress.check()?;
         let depth_strokes = self.depth_strokes.clone();
         Ok(Self { depth_strokes, ..Self::new(self.relit(Arc::new(scene)), self.atlas.clone(), progress)? })
+    }
+
+    /// The stage with a floor that catches shadows, or without. The first time the atlas gets rows at the bottom; after that it keeps them.
+    ///
+    /// # Errors
+    /// The scene casts no shadow, the atlas has no room, or `progress` was cancelled.
+    pub fn with_floor(&self, is_shown: bool, progress: &dyn Progress) -> Result<Self, DocumentError> {
+        let (mut scene, path) = ((*self.scene).clone(), &self.scene.path);
+        let atlas = match add_floor(&mut scene, is_shown, path)? {
+            Some(floor) => {
+                let atlas = (*self.atlas).clone().with_floor(&scene, &floor);
+                Arc::new(atlas.map_err(|error| atlas_error(path, error))?)
+            }
+            None => self.atlas.clone(),
+        };
+        progress.check()?;
+        Self::new(self.relit(Arc::new(scene)), atlas, progress)
     }
 
     /// The stage with its surface made anew from the picture and its depth, which are read again, with the depth strokes of `choices`. Paint

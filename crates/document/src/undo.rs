@@ -26,6 +26,8 @@ enum Change {
     Variant { before: Option<String>, after: Option<String> },
     /// How splats are placed, and which are hidden. Undoing it requires the caller to show them so.
     Splats { before: Box<SplatEdit>, after: Box<SplatEdit> },
+    /// Whether there is a floor. Undoing it requires the caller to show it or not.
+    Floor { before: bool, after: bool },
     /// The strokes that repair depth. Undoing it requires the caller to make the surface anew.
     Depth { before: Arc<Vec<DepthStroke>>, after: Arc<Vec<DepthStroke>> },
 }
@@ -47,6 +49,7 @@ impl Change {
                 .into_iter()
                 .map(|edit| size_of::<SplatEdit>() + size_of_val(&edit.hidden[..]))
                 .sum(),
+            Self::Floor { .. } => 0,
             Self::Variant { before, after } => [before, after].into_iter().flatten().map(String::len).sum(),
         }
     }
@@ -109,6 +112,8 @@ pub enum StepEffect {
     Variant(Option<String>),
     /// How the splats must be shown now.
     Splats(Box<SplatEdit>),
+    /// Whether there must be a floor now.
+    Floor(bool),
     /// The strokes that repair depth.
     Depth,
 }
@@ -243,10 +248,26 @@ impl UndoHistory {
         self.is_run_open = false;
     }
 
+    /// Adds a floor's coming or going.
+    pub fn push_floor(&mut self, name: &str, before: bool, after: bool) {
+        self.push(Step::new(name.into(), Change::Floor { before, after }, None));
+        self.is_run_open = false;
+    }
+
     /// Adds a change of the strokes that repair depth.
     pub fn push_depth(&mut self, name: &str, before: Arc<Vec<DepthStroke>>, after: Arc<Vec<DepthStroke>>) {
         self.push(Step::new(name.into(), Change::Depth { before, after }, None));
         self.is_run_open = false;
+    }
+
+    /// Adds rows at the bottom of all maps in the history.
+    pub(crate) fn extend_rows(&mut self, height: u32) {
+        for step in self.done.iter_mut().chain(&mut self.undone) {
+            if let Change::Layers { before, after } = &mut step.change {
+                before.extend_rows(height);
+                after.extend_rows(height);
+            }
+        }
     }
 
     /// Replaces all selections in the history, after the texels of the canvas have changed.
@@ -381,6 +402,7 @@ impl UndoHistory {
             }
             Change::Variant { before, .. } => StepEffect::Variant(before.clone()),
             Change::Splats { before, .. } => StepEffect::Splats(before.clone()),
+            Change::Floor { before, .. } => StepEffect::Floor(*before),
             Change::Depth { before, .. } => {
                 *state.depth_strokes = before.clone();
                 StepEffect::Depth
@@ -418,6 +440,7 @@ impl UndoHistory {
             }
             Change::Variant { after, .. } => StepEffect::Variant(after.clone()),
             Change::Splats { after, .. } => StepEffect::Splats(after.clone()),
+            Change::Floor { after, .. } => StepEffect::Floor(*after),
             Change::Depth { after, .. } => {
                 *state.depth_strokes = after.clone();
                 StepEffect::Depth

@@ -132,6 +132,18 @@ impl FocusMap {
         self.background_mask = 1.0 - self.background_mask;
     }
 
+    /// Adds rows at the bottom, down to a height that is not below the present one: the atlas got rows for another surface. They have the ordinary lens,
+    /// and no weight in a map with a mask.
+    pub fn extend_rows(&mut self, height: u32) {
+        let standard = FocusOffset::STANDARD;
+        self.texels.extend_rows(height, to_texel(standard));
+        self.gloss.extend_rows(height, standard.gloss as f32);
+        self.gloss = std::mem::replace(&mut self.gloss, TileGrid::blank(1, 1)).with_blank_tiles();
+        if let Some(mask) = &mut self.mask {
+            mask.extend_rows(height, 0.0);
+        }
+    }
+
     /// The number of columns of texels, that of the atlas.
     pub fn width(&self) -> u32 {
         self.size()[0]

@@ -97,8 +97,11 @@ impl LitScene {
 
     /// The scene in another world (none: its own): what is solved for worlds of the same lighting still holds.
     pub fn in_world(&self, world: Option<World>) -> Arc<Self> {
-        let scene = Arc::new(Scene { world, ..(**self.scene()).clone() });
-        let irradiance = self.irradiance.solved();
+        let mut scene = Scene { world, ..(**self.scene()).clone() };
+        scene.color_floor();
+        let is_same_surface = scene.floor_color() == self.scene().floor_color();
+        let irradiance = if is_same_surface { self.irradiance.solved() } else { Default::default() };
+        let scene = Arc::new(scene);
         Self::with_irradiance_cache(Arc::new(Tracer::new(scene)), self.options, &self.resources, irradiance)
     }
 

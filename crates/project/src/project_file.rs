@@ -102,6 +102,8 @@ pub struct ProjectFile {
     pub world: Option<WorldFile>,
     /// Gaussian splats that were added to the scene, moved or hidden; `None`: as in the scene's file.
     pub splats: Option<SplatsFile>,
+    /// If a floor was put under the scene: whether it is shown.
+    pub floor: Option<bool>,
     /// The brush.
     pub brush: Brush,
     /// Layout and viewpoint of the window; any JSON.
@@ -157,6 +159,7 @@ impl ProjectFile {
             capture: None,
             world: None,
             splats: None,
+            floor: None,
             brush: Brush::default(),
             view: Value::Null,
             atlas: None,
@@ -312,6 +315,7 @@ impl ProjectFile {
             capture: self.capture.as_ref().map(|choices| CaptureEntry::new(choices, file)),
             world: self.world.as_ref().map(|world| world.to_json(file)),
             splats: self.splats.as_ref().map(|splats| splats.to_json(file)),
+            floor: self.floor,
             background_focus: [background.t, background.anchor],
             background_gloss: background.gloss,
             brush: self.brush.clone(),
@@ -423,6 +427,7 @@ impl ProjectFile {
             capture,
             world,
             splats,
+            floor: manifest.floor,
             brush: manifest.brush,
             view: manifest.view,
             atlas,

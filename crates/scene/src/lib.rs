@@ -6,6 +6,7 @@
 //! * [`AnimatedScene`]: the scene of a file with animations, at any [`AnimationTime`].
 //! * [`Scene`]: what everything else works on; [`Scene::from_mesh`] makes one of a [`SurfaceMesh`] from elsewhere.
 //! * [`PlacedCloud`]: the Gaussian splats of a scene, each with a triangle of its own.
+//! * [`Floor`]: a floor that was put under a scene to catch its shadows.
 //! * [`SurfacePoint`]: an address on the surface: triangle and barycentrics. The surface's appearance there:
 //!   [`Scene::base_color`], [`Scene::emitted_radiance`], [`Scene::opacity`], [`Scene::shading_normal`], [`Scene::bumped_normal`].
 //! * [`Material`]: the material of a surface. [`World`]: environment and backdrop.
@@ -41,6 +42,7 @@
 //! ```
 
 mod error;
+mod floor;
 mod gltf;
 mod load_options;
 mod model;
@@ -59,6 +61,7 @@ pub use self::gltf::{
     PosedScene, RestTriangle, StoredElements, inspect, load, with_source,
 };
 pub use error::{Fault, SceneError};
+pub use floor::Floor;
 pub use load_options::LoadOptions;
 pub use model::{
     AlphaMode, Anisotropy, BackFaces, CameraLens, Clearcoat, DiffuseTransmission, Iridescence, Light,

@@ -20,7 +20,7 @@ pub use placed_cloud::PlacedCloud;
 pub use splat_edit::{SplatCleanup, SplatEdit, SplatTransform};
 pub use surface_point::{SurfaceField, SurfacePoint};
 
-use crate::{Image, PictureTexture, View, World};
+use crate::{Floor, Image, PictureTexture, View, World};
 use glam::{DMat4, DVec3, Vec2, Vec3, Vec4};
 use std::ops::Range;
 use std::path::PathBuf;
@@ -78,6 +78,8 @@ pub struct Scene {
     pub world: Option<World>,
     /// Gaussian splats.
     pub splats: Option<Arc<PlacedCloud>>,
+    /// The floor that was put under it, to catch its shadows: the last part. A scene has splats or a floor.
+    pub floor: Option<Floor>,
     /// The photographs that light it.
     pub views: Vec<View>,
     /// Photographs that are viewed and compared with but do not light it: excluded ones, and the views of a light
@@ -221,8 +223,15 @@ impl Scene {
         (b - a).cross(c - a)
     }
 
-    /// The lower and upper corner of the bounding box of all triangles, and of most splats.
+    /// The lower and upper corner of the bounding box of all triangles but the floor's, and of most splats.
     pub fn bounds(&self) -> (DVec3, DVec3) {
         self.extent().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)))
+    }
+}
+
+/// Lengthens an attribute that some part has.
+pub(crate) fn fill_attribute<T: Clone>(attribute: &mut Vec<T>, length: usize, value: T) {
+    if !attribute.is_empty() {
+        attribute.resize(length, value);
     }
 }

@@ -3,7 +3,8 @@
 //! To all that knows surfaces a splat is a triangle: one standard deviation wide, in the plane of its two longest axes, about its mean, in its mean colour. So
 //! each has an address, a place in the atlas and paint, and can be shown by what draws triangles. Rays do not hit these triangles; what they meet of the cloud itself, the crates that trace decide.
 
-use crate::{Material, Node, Part, PlacedCloud, RestTriangle, Scene, SplatEdit, SurfacePoint, Triangle};
+use crate::model::fill_attribute;
+use crate::{Material, Node, Part, PlacedCloud, Scene, SplatEdit, SurfacePoint, Triangle};
 use gaussians::cloud::{harmonics, srgb_to_linear};
 use gaussians::{ColorSpace, GaussianCloud, Placement};
 use glam::{DMat4, DQuat, DVec2, DVec3, Vec2, Vec3, Vec4};
@@ -56,13 +57,13 @@ impl Scene {
         self.colors.par_extend((0..count).into_par_iter().flat_map_iter(color));
         let corners = |splat: u32| splat_corners(&cloud, &placement, splat);
         self.positions.par_extend((0..count).into_par_iter().flat_map_iter(corners));
-        fill(&mut self.normals, self.positions.len(), Vec3::ZERO);
+        fill_attribute(&mut self.normals, self.positions.len(), Vec3::ZERO);
         let further = self.further_uv.iter_mut();
-        self.uv.iter_mut().chain(further).for_each(|uv| fill(uv, self.positions.len(), Vec2::ZERO));
+        self.uv.iter_mut().chain(further).for_each(|uv| fill_attribute(uv, self.positions.len(), Vec2::ZERO));
         let part = self.parts.len() as u32;
         let vertices = |splat: u32| [0, 1, 2].map(|corner| first_vertex + 3 * splat + corner);
         self.triangles.extend((0..count).map(|splat| Triangle { vertices: vertices(splat), part }));
-        fill(&mut self.tangents, self.triangles.len(), [Vec4::ZERO; 3]);
+        fill_attribute(&mut self.tangents, self.triangles.len(), [Vec4::ZERO; 3]);
         let (node, material) = (self.nodes.len() as u32, self.materials.len() as u32);
         let triangles = first_triangle..first_triangle + count;
         self.parts.push(Part { node, material, triangles, has_uv: [false; 2], mirrored: false });
@@ -82,10 +83,7 @@ impl Scene {
     }
 
     /// Adds the splats of the scene at rest to the scene at a time of an animation: splats do not move. Returns the triangles at rest.
-    pub(crate) fn add_splats_of(
-        &mut self,
-        rest: &Self,
-    ) -> impl Iterator<Item = Option<RestTriangle>> + use<> {
+    pub(crate) fn add_splats_of(&mut self, rest: &Self) -> Range<u32> {
         let triangles = rest.splats.as_ref().map_or(0..0, |splats| splats.triangles());
         if let Some(splats) = &rest.splats {
             let name = rest.nodes[rest.part_of(triangles.start).node as usize].name.clone();
@@ -93,7 +91,7 @@ impl Scene {
             let first_triangle = self.surface_triangles().end;
             self.splats = Some(Arc::new(PlacedCloud { first_triangle, ..(**splats).clone() }));
         }
-        triangles.map(|triangle| Some(RestTriangle { triangle, is_flipped: false }))
+        triangles
     }
 
     /// The scene without its splats; `None` if there is nothing else.
@@ -108,12 +106,14 @@ impl Scene {
         (count > 0).then_some(scene)
     }
 
-    /// Whether this scene, which has no splats, has the triangles and parts of another that are not splats.
+    /// Whether this scene, as it was read from its file, has the triangles and parts of another that are not splats, nor its floor.
     pub fn is_surface_of(&self, other: &Self) -> bool {
-        let end = other.surface_triangles().end as usize;
+        let added = other.floor.as_ref().map(|floor| floor.triangles().start);
+        let end = added.unwrap_or(other.surface_triangles().end) as usize;
+        let added_parts = usize::from(other.splats.is_some()) + usize::from(other.floor.is_some());
         other.triangles[..end] == self.triangles
             && other.positions.starts_with(&self.positions)
-            && other.parts.len() - usize::from(other.splats.is_some()) == self.parts.len()
+            && other.parts.len() - added_parts == self.parts.len()
     }
 
     /// The triangles that rays can hit: all but those of splats.
@@ -127,9 +127,10 @@ impl Scene {
         self.splats.as_ref().is_some_and(|splats| triangle >= splats.first_triangle)
     }
 
-    /// World positions in whose hull the scene lies, but for what is far from most of a cloud of splats.
+    /// World positions in whose hull the scene lies, but for its floor, and what is far from most of a cloud of splats.
     pub(crate) fn extent(&self) -> impl Iterator<Item = DVec3> {
-        let surface = &self.triangles[..self.surface_triangles().end as usize];
+        let end = self.floor.as_ref().map_or(self.surface_triangles().end, |floor| floor.triangles().start);
+        let surface = &self.triangles[..end as usize];
         let vertices = surface.iter().flat_map(|t| t.vertices).map(|v| self.positions[v as usize]);
         let of_splats = self.splats.iter().flat_map(|splats| {
             let (low, high) = splats.bounds;
@@ -139,13 +140,6 @@ impl Scene {
             })
         });
         vertices.chain(of_splats)
-    }
-}
-
-/// Lengthens an attribute that some part has.
-fn fill<T: Clone>(attribute: &mut Vec<T>, length: usize, value: T) {
-    if !attribute.is_empty() {
-        attribute.resize(length, value);
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::cli::arguments::BakeArguments;
 use crate::cli::console::{Console, path_text, print_json};
 use crate::cli::failure::Failure;
-use crate::cli::input::{camera_and_focus, check_folder, open_input, refuse_splats};
+use crate::cli::input::{camera_and_focus, check_folder, open_input, refuse_additions};
 use document::InputKind;
 use render::{RenderOptions, write_salf};
 use serde_json::json;
@@ -19,7 +19,7 @@ pub fn run(arguments: &BakeArguments, console: &Console) -> Result<(), Failure> 
         let what = "already baked (give the scene or project)";
         return Err(Failure::bad_input(format!("{}: {what}", arguments.file.display())));
     }
-    refuse_splats(&arguments.shot.appearance)?;
+    refuse_additions(&arguments.shot.appearance)?;
     check_folder(&arguments.output)?;
     let start = Instant::now();
     let input = open_input(&arguments.file, &arguments.shot.appearance, None, console.resources(), console)?;

@@ -19,6 +19,7 @@ pub fn run(arguments: &NewArguments, console: &Console) -> Result<(), Failure> {
     let splats = read_splats(arguments.appearance.splats.as_deref())?;
     let beginning = NewDocumentOptions {
         splats: splats.as_ref(),
+        floor: arguments.appearance.floor,
         camera: arguments.camera.as_ref(),
         focus: arguments.focus.as_deref(),
         paint_from: arguments.paint_from.as_deref(),

@@ -4,7 +4,7 @@ use super::render::open_gpu;
 use crate::cli::arguments::{BackendName, ReportArguments};
 use crate::cli::console::{Console, path_texts, print_json};
 use crate::cli::failure::Failure;
-use crate::cli::input::{read_world, refuse_splats, unwrap_options};
+use crate::cli::input::{read_world, refuse_additions, unwrap_options};
 use crate::window::demo;
 use document::InputKind;
 use report::{ReportOptions, SceneRequest};
@@ -113,7 +113,7 @@ fn backends(arguments: &ReportArguments) -> Result<Vec<Option<Gpu>>, Failure> {
 /// The named scenes; by default the demo, or nothing if the hard cases were requested.
 fn scene_requests(arguments: &ReportArguments) -> Result<Vec<SceneRequest>, Failure> {
     let shot = &arguments.shot;
-    refuse_splats(&shot.appearance)?;
+    refuse_additions(&shot.appearance)?;
     let world = read_world(&shot.appearance)?;
     let request = |file: &PathBuf| SceneRequest {
         file: file.clone(),

@@ -1,6 +1,5 @@
 //! The inspector: the settings of the document, section by section. Panels read the document and emit actions.
 
-mod bokeh_thumbnails;
 mod brush_panel;
 mod cameras_panel;
 mod character_panel;
@@ -13,7 +12,7 @@ mod lens_panel;
 mod memory_panel;
 mod modelled_panel;
 mod plane_editor;
-mod preset_row;
+mod presets;
 mod scene_panel;
 mod shape_panel;
 mod spread_rows;

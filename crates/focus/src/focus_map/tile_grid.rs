@@ -52,6 +52,17 @@ impl<T: Copy + PartialEq> TileGrid<T> {
         Some(Self { width, height, tiles: tiles.collect() })
     }
 
+    /// Adds rows at the bottom, down to a height that is not below the present one, with one value.
+    pub fn extend_rows(&mut self, height: u32, value: T) {
+        let from = std::mem::replace(&mut self.height, height);
+        let tile = Arc::new([value; TILE_TEXELS]);
+        self.tiles.resize(Self::tile_count(self.width, height), tile);
+        // What the last tiles hold below the rows that there were is of no meaning.
+        for y in from..from.next_multiple_of(TILE_SIDE).min(height) {
+            (0..self.width).for_each(|x| self.set(x, y, value));
+        }
+    }
+
     /// The values of all texels, row by row from the top. Inverse of [`Self::from_rows`].
     pub fn to_rows(&self) -> Vec<T> {
         let mut rows = Vec::with_capacity(self.width as usize * self.height as usize);

@@ -68,6 +68,16 @@ impl LayerStack {
         self.active = index.min(self.layers.len() - 1);
     }
 
+    /// Adds rows at the bottom of all maps ([`FocusMap::extend_rows`]).
+    pub fn extend_rows(&mut self, height: u32) {
+        for layer in &mut self.layers {
+            layer.map.extend_rows(height);
+            if let Some(spread) = &mut layer.spread {
+                spread.strokes.extend_rows(height);
+            }
+        }
+    }
+
     /// Columns and rows of texels of every layer.
     pub fn size(&self) -> [u32; 2] {
         self.layers[0].map.size()

@@ -20,6 +20,9 @@ pub(crate) const MANIFEST: &str = "manifest.json";
 const WITHOUT_DEPTH: u64 = 6;
 const WITHOUT_CHOSEN_LAYER: u64 = 7;
 
+/// The version of a project without a floor that was put under its scene: older programs would take its atlas for that of another scene.
+const WITHOUT_FLOOR: u64 = 10;
+
 /// The version of a project whose splats are those of its scene's file, unedited: older programs would show no others.
 const WITHOUT_SPLATS: u64 = 9;
 
@@ -74,6 +77,9 @@ pub(crate) struct Manifest {
     /// Gaussian splats that were added, moved or hidden; as in a file of their own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub splats: Option<Value>,
+    /// If a floor was put under the scene: whether it is shown.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub floor: Option<bool>,
     pub background_focus: [f64; 2],
     /// The background's gloss, if not 0.
     #[serde(default, skip_serializing_if = "is_zero")]
@@ -131,7 +137,7 @@ impl Manifest {
     pub const FORMAT: &str = "focus-brush project";
 
     /// The newest version. It is increased whenever an older program would misread the file.
-    pub const VERSION: u64 = 10;
+    pub const VERSION: u64 = 11;
 
     /// The same in the oldest version that can express it.
     pub fn with_oldest_version(self) -> Self {
@@ -143,7 +149,8 @@ impl Manifest {
             || any_row(LayerEntry::has_gloss);
         let capture_has = |of: fn(&CaptureEntry) -> bool| self.capture.as_ref().is_some_and(of);
         let version = match () {
-            _ if self.splats.is_some() => Self::VERSION,
+            _ if self.floor.is_some() => Self::VERSION,
+            _ if self.splats.is_some() => WITHOUT_FLOOR,
             _ if any_row(|row| row.spread.is_some()) => WITHOUT_SPLATS,
             _ if capture_has(CaptureEntry::has_layer) => WITHOUT_SPREAD,
             _ if capture_has(CaptureEntry::has_depth_strokes) => WITHOUT_CHOSEN_LAYER,

@@ -1,7 +1,7 @@
 //! From a file to a scene: the steps of reading one, from top to bottom.
 
 use crate::error::{Fault, Stop};
-use crate::gltf::animation::pose::{PosedScene, RestParts};
+use crate::gltf::animation::pose::{PosedScene, RestParts, RestTriangle};
 use crate::gltf::animation::{self, Animation, AnimationTime};
 use crate::gltf::compressed;
 use crate::gltf::document::{Document, nonempty_name};
@@ -165,7 +165,9 @@ impl AnimatedScene {
             self.copy_static_state(&mut scene);
             let mut rest_triangles =
                 self.parts.rest_triangles(&scene, &sources.unwrap_or_default()).ok_or_else(file_changed)?;
-            rest_triangles.extend(scene.add_splats_of(rest));
+            let unmoved = |triangle| Some(RestTriangle { triangle, is_flipped: false });
+            rest_triangles.extend(scene.add_floor_of(rest).map(unmoved));
+            rest_triangles.extend(scene.add_splats_of(rest).map(unmoved));
             let mut warnings = document.warnings();
             warnings.retain(|warning| !rest.warnings.contains(warning));
             scene.warnings = warnings;
@@ -175,7 +177,8 @@ impl AnimatedScene {
 
     /// Whether the scene at rest uses glTF's default material.
     fn has_default(&self, document: &Document<'_>) -> bool {
-        self.rest.materials.len() - usize::from(self.rest.splats.is_some()) > document.len("materials")
+        let added = usize::from(self.rest.splats.is_some()) + usize::from(self.rest.floor.is_some());
+        self.rest.materials.len() - added > document.len("materials")
     }
 
     /// Copies what is not animated from the scene at rest.

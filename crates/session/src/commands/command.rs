@@ -86,6 +86,8 @@ pub enum Command {
     SetVariant(Option<String>),
     /// Moves Gaussian splats or hides some, as an undo step of this name. The scene is prepared again in the background.
     EditSplats(&'static str, Box<SplatEdit>),
+    /// Puts a floor that catches shadows under the scene, or takes it away. The scene is prepared again in the background. An undo step.
+    SetFloor(bool),
     /// Hides the Gaussian splats that are selected. An undo step.
     HideSelectedSplats,
     /// Sets the display settings. Not part of the document.

@@ -54,6 +54,9 @@ impl Session {
             Command::EditSplats(name, edit) => {
                 self.rebuild_stage(StageChange::Splats { name, edit, cause: ChangeCause::Command })
             }
+            Command::SetFloor(is_shown) => {
+                self.rebuild_stage(StageChange::Floor { is_shown, cause: ChangeCause::Command })
+            }
             Command::HideSelectedSplats => self.hide_selected_splats(),
             Command::SetDisplay(display) => {
                 self.display = display;

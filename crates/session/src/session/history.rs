@@ -86,6 +86,9 @@ impl Session {
                 let cause = ChangeCause::History;
                 self.rebuild_stage(StageChange::Splats { name: "Splats", edit, cause })
             }
+            Some(StepEffect::Floor(is_shown)) => {
+                self.rebuild_stage(StageChange::Floor { is_shown, cause: ChangeCause::History })
+            }
             Some(StepEffect::Depth) => {
                 self.document_mut()?.revision += 1;
                 self.rebuild_depth()

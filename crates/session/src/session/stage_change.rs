@@ -22,6 +22,8 @@ pub(super) enum StageChange {
     Variant { name: Option<String>, cause: ChangeCause },
     /// Where splats stand, and which are hidden; the name of the step of undo.
     Splats { name: &'static str, edit: Box<SplatEdit>, cause: ChangeCause },
+    /// Whether a floor catches shadows.
+    Floor { is_shown: bool, cause: ChangeCause },
     /// The depth of a picture: what was chosen of it, and the strokes that repair it.
     Depth(CaptureChoices),
 }
@@ -47,6 +49,11 @@ pub(super) struct RebuiltStage {
 }
 
 impl StageChange {
+    /// Whether it makes another surface, and not only another appearance of the same.
+    pub fn makes_surface(&self) -> bool {
+        matches!(self, Self::Depth(_) | Self::Splats { .. } | Self::Floor { .. })
+    }
+
     /// The name of the job that makes the change; a later job of the same name replaces it.
     pub fn job_label(&self) -> &'static str {
         match self {
@@ -54,6 +61,7 @@ impl StageChange {
             Self::World(_) | Self::Environment(_) => "changing the world",
             Self::Variant { .. } => "changing the variant",
             Self::Splats { .. } => "placing splats",
+            Self::Floor { .. } => "changing the floor",
             Self::Depth(_) => "repairing depth",
         }
     }
@@ -67,6 +75,9 @@ impl StageChange {
             Self::Environment(_) => true,
             Self::Variant { name, .. } => scene.variant != *name,
             Self::Splats { edit, .. } => scene.splats.as_ref().is_some_and(|splats| splats.edit != **edit),
+            Self::Floor { is_shown, .. } => {
+                scene.floor.as_ref().is_some_and(|floor| floor.is_shown) != *is_shown
+            }
             Self::Depth(choices) => *stage.depth_strokes != choices.depth_strokes,
         }
     }
@@ -99,6 +110,7 @@ impl StageChange {
             }
             Self::Variant { name, .. } => stage.with_variant(name.as_deref(), progress)?,
             Self::Splats { edit, .. } => stage.with_splat_edit(edit, progress)?,
+            Self::Floor { is_shown, .. } => stage.with_floor(*is_shown, progress)?,
             Self::Depth(choices) => stage.with_depth_repaired(choices, &JobSteps { progress })?,
         };
         Ok((stage, warnings))

@@ -1,4 +1,4 @@
-//! The scene seen or lit in another way: other faces, another world, another variant, splats moved or hidden; or its surface made anew, of repaired depth.
+//! The scene seen or lit in another way: other faces, another world, another variant, splats moved or hidden, with a floor; or its surface made anew, of repaired depth.
 //!
 //! The stage is prepared anew in the background and taken up when it is ready. Of two changes of one kind the later counts; one
 //! that was prepared from a stage that is no longer there, because another change came first, is prepared once more.
@@ -43,7 +43,7 @@ impl Session {
         new_warnings.extend(warnings);
         // The strokes that repair depth were counted as a change when they were made.
         document.revision += u64::from(!matches!(change, StageChange::Depth(_)));
-        let is_another_surface = matches!(change, StageChange::Depth(_) | StageChange::Splats { .. });
+        let is_another_surface = change.makes_surface();
         match change {
             StageChange::Variant { name, cause: ChangeCause::Command } => {
                 document.undo.push_variant(base.scene.variant.clone(), name);
@@ -51,6 +51,9 @@ impl Session {
             StageChange::Splats { name, edit, cause: ChangeCause::Command } => {
                 let before = base.scene.splats.as_ref().map(|splats| splats.edit.clone());
                 document.undo.push_splats(name, before.unwrap_or_default(), *edit);
+            }
+            StageChange::Floor { is_shown, cause: ChangeCause::Command } => {
+                document.undo.push_floor("Floor", !is_shown, is_shown);
             }
             _ => {}
         }

@@ -1,7 +1,7 @@
 //! Settings of the brush.
 
 use super::falloff_editor::{falloff_choice, falloff_editor};
-use super::preset_row::preset_row;
+use super::presets::preset_row;
 use crate::window::widgets::brush_controls::{
     HARDNESS_TIP, SIZE_TIP, STRENGTH_TIP, largest_radius, push_brush_change,
 };
@@ -24,7 +24,8 @@ pub fn brush_panel(
     let mut brush = document.brush.clone();
     rows(ui, "brush", |ui| {
         let current = &document.brush;
-        preset_row(ui, presets, PresetKind::Brush, |preset| preset.matches_brush(current), actions);
+        let camera = &document.camera;
+        preset_row(ui, presets, camera, PresetKind::Brush, |preset| preset.matches_brush(current), actions);
         row(ui, "Size", SIZE_TIP, |ui| {
             controls::beside(ui, |ui| {
                 let largest = largest_radius(document);

@@ -1,11 +1,10 @@
 //! The history: every step with a thumbnail of what it changed; a click goes to that step.
 
 use crate::window::Action;
-use crate::window::widgets::brush_controls::signed_circle_px;
-use crate::window::widgets::{controls, false_colour, keys};
+use crate::window::widgets::focus_thumbnail::focus_thumbnail;
+use crate::window::widgets::{controls, keys};
 use document::{Document, HistoryStep};
-use egui::{Color32, Rect, RichText, ScrollArea, Sense, Ui, pos2, vec2};
-use focus::EditThumbnail;
+use egui::{Rect, RichText, ScrollArea, Sense, Ui, pos2, vec2};
 use lens::Optics;
 use session::{Command, CommandId};
 
@@ -62,9 +61,11 @@ fn step_row(ui: &mut Ui, optics: &Optics, number: usize, step: Option<&HistorySt
         ui.painter().rect_filled(rect, visuals.corner_radius, visuals.weak_bg_fill);
     }
     let picture = Rect::from_min_size(rect.min, vec2(THUMBNAIL_SIDE, THUMBNAIL_SIDE)).shrink(1.0);
-    ui.painter().rect_filled(picture, 2.0, ui.visuals().extreme_bg_color);
-    if let Some(thumbnail) = step.and_then(|step| step.thumbnail) {
-        paint_thumbnail(ui, picture, thumbnail, optics);
+    match step.and_then(|step| step.thumbnail) {
+        Some(thumbnail) => focus_thumbnail(ui, picture, thumbnail, optics),
+        None => {
+            ui.painter().rect_filled(picture, 2.0, ui.visuals().extreme_bg_color);
+        }
     }
     let color = if is_done { visuals.text_color() } else { ui.visuals().weak_text_color() };
     let at = pos2(picture.right() + 8.0, rect.center().y);
@@ -76,19 +77,4 @@ fn step_row(ui: &mut Ui, optics: &Optics, number: usize, step: Option<&HistorySt
         (false, false) => "Redo everything up to this.",
     };
     response.on_hover_text(RichText::new(tip)).clicked()
-}
-
-/// Draws the changed cells in the false colours of their new blur.
-fn paint_thumbnail(ui: &Ui, rect: Rect, thumbnail: &EditThumbnail, optics: &Optics) {
-    let side = rect.width() / EditThumbnail::SIDE as f32;
-    let mut mesh = egui::Mesh::default();
-    for (k, cell) in thumbnail.cells().iter().enumerate().filter(|(_, cell)| cell.changed > 0.0) {
-        let corner = vec2((k % EditThumbnail::SIDE) as f32, (k / EditThumbnail::SIDE) as f32) * side;
-        let color = false_colour::color(signed_circle_px(optics, f64::from(cell.t)));
-        let [r, g, b, _] = color.to_array();
-        let alpha = (100.0 + 155.0 * cell.changed) as u8;
-        let place = Rect::from_min_size(rect.min + corner, vec2(side, side));
-        mesh.add_colored_rect(place, Color32::from_rgba_unmultiplied(r, g, b, alpha));
-    }
-    ui.painter().add(egui::Shape::mesh(mesh));
 }

@@ -5,18 +5,59 @@ use super::plane_editor::plane_editor;
 use super::spread_rows::spread_rows;
 use crate::window::Action;
 use crate::window::widgets::controls::{self, finish_edit, row, rows};
+use crate::window::widgets::focus_thumbnail::focus_thumbnail;
 use crate::window::widgets::icon::{Icon, icon_button};
 use crate::window::widgets::keys;
 use crate::window::widgets::rename_field::RenameField;
-use document::Document;
-use egui::{Button, ComboBox, Slider, TextEdit, Ui, Vec2, vec2};
-use focus::{Adjustment, BlendMode, FocusLayer, LayerEdit, SpreadSettings};
+use document::{Document, SavedState, Stage};
+use egui::{Button, ComboBox, Sense, Slider, TextEdit, Ui, Vec2, vec2};
+use focus::{Adjustment, BlendMode, EditThumbnail, FocusLayer, FocusMap, LayerEdit, SpreadSettings};
+use lens::Optics;
+
 use session::{Command, CommandId};
+use std::sync::{Arc, Weak};
 
 /// State of the list.
 #[derive(Default)]
 pub struct LayersPanel {
     renaming: RenameField,
+    thumbnails: LayerThumbnails,
+}
+
+/// What each layer holds, as a small picture, made anew when a step of the history is.
+#[derive(Default)]
+struct LayerThumbnails {
+    /// The stage and the state of the document that they are of.
+    shown: Option<(Weak<Stage>, SavedState)>,
+    /// The maps from the lowest layer on, with their pictures.
+    pictures: Vec<(FocusMap, EditThumbnail)>,
+}
+
+impl LayerThumbnails {
+    /// Follows the layers of a document.
+    fn update(&mut self, document: &Document) {
+        let is_shown = |(stage, state): &(Weak<Stage>, SavedState)| {
+            Weak::as_ptr(stage) == Arc::as_ptr(&document.stage) && *state == document.state()
+        };
+        if self.shown.as_ref().is_some_and(is_shown) {
+            return;
+        }
+        self.shown = Some((Arc::downgrade(&document.stage), document.state()));
+        let before = std::mem::take(&mut self.pictures);
+        let picture = |(index, layer): (usize, &FocusLayer)| match before.get(index) {
+            Some((map, picture)) if *map == layer.map => (map.clone(), picture.clone()),
+            _ => (layer.map.clone(), EditThumbnail::from_layer(&layer.map)),
+        };
+        self.pictures = document.layers.layers().iter().enumerate().map(picture).collect();
+    }
+
+    /// Draws the picture of a layer.
+    fn show(&self, ui: &mut Ui, index: usize, optics: &Optics) {
+        let (rect, _) = ui.allocate_exact_size(Vec2::splat(ICON_BUTTON.y), Sense::hover());
+        if let Some((_, picture)) = self.pictures.get(index) {
+            focus_thumbnail(ui, rect.shrink(1.0), picture, optics);
+        }
+    }
 }
 
 /// What the menu of a layer offers.
@@ -42,9 +83,12 @@ impl LayersPanel {
     ) {
         let layers = document.layers.layers();
         let active = document.layers.active_index();
+        let optics = document.camera.optics();
+        self.thumbnails.update(document);
         for (index, layer) in layers.iter().enumerate().rev() {
             ui.horizontal(|ui| {
                 visibility_button(ui, index, layer, actions);
+                self.thumbnails.show(ui, index, &optics);
                 self.layer_row(ui, document, index, layer, actions);
             });
         }

@@ -1,7 +1,6 @@
 //! Settings of the lens in photographic terms, and of the picture.
 
-use super::bokeh_thumbnails::bokeh_thumbnails;
-use super::preset_row::preset_row;
+use super::presets::{bokeh_thumbnails, preset_row};
 use super::shape_panel::shape_panel;
 use crate::window::view_settings::LARGEST_TOLERANCE_PX;
 use crate::window::widgets::controls::{self, finish_edit, format_number, proportional_value, row, rows};
@@ -27,7 +26,7 @@ pub fn lens_panel(ui: &mut Ui, document: &Document, presets: &PresetLibrary, act
         if document.scene_cameras().count() > 1 {
             scene_camera_row(ui, document, actions);
         }
-        preset_row(ui, presets, PresetKind::Lens, |preset| preset.matches_camera(camera), actions);
+        preset_row(ui, presets, camera, PresetKind::Lens, |preset| preset.matches_camera(camera), actions);
         let mut number = camera.f_number();
         let tip = "The f-number: focal length over the aperture's diameter. Smaller means more blur. Keys: + \
                    and −.";
@@ -94,7 +93,7 @@ pub fn lens_panel(ui: &mut Ui, document: &Document, presets: &PresetLibrary, act
         }
         finish_edit(&response, actions);
         shift_rows(ui, camera, actions);
-        preset_row(ui, presets, PresetKind::Bokeh, |preset| preset.matches_camera(camera), actions);
+        preset_row(ui, presets, camera, PresetKind::Bokeh, |preset| preset.matches_camera(camera), actions);
         shape_panel(ui, camera, actions);
     });
     bokeh_thumbnails(ui, presets, camera, actions);

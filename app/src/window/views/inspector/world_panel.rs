@@ -73,6 +73,20 @@ pub fn world_panel(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) 
         if let Backdrop::Color(color) = &mut world.backdrop {
             row(ui, "Backdrop color", "Linear radiance of the backdrop.", |ui| color_edit(ui, color));
         }
+        let problem = scene.floor_problem();
+        let mut has_floor = scene.floor.is_some_and(|floor| floor.is_shown);
+        let tip = match problem {
+            None => {
+                "Puts a matte floor under the scene that looks like the backdrop and catches shadows.".into()
+            }
+            Some(problem) => format!("No floor: {problem}."),
+        };
+        let changed = row(ui, "Floor", &tip, |ui| {
+            ui.add_enabled(problem.is_none(), egui::Checkbox::new(&mut has_floor, "Catches shadows"))
+        });
+        if changed.changed() {
+            actions.push(Command::SetFloor(has_floor).into());
+        }
         let tip = "Maximum number of bounces of light between surfaces: 0 is direct light only.";
         row(ui, "Bounces", tip, |ui| bounces(ui, &mut world.bounces));
         if world != shown {

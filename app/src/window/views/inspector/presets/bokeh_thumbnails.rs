@@ -1,21 +1,15 @@
 //! The aperture shapes of the presets as small pictures, to be chosen by a click.
 
+use super::preset_picture::bokeh_picture;
 use crate::window::Action;
 use crate::window::action::PresetAction;
 use crate::window::widgets::controls::set_accessible_name;
-use egui::{Color32, Mesh, Rect, Response, Sense, Ui, Vec2, vec2};
-use glam::DVec2;
+use egui::{Response, Sense, Ui, Vec2, vec2};
 use lens::{Aperture, Camera};
 use project::{Preset, PresetContent, PresetKind, PresetLibrary};
 
 /// Side of a picture, points.
 const SIDE: f32 = 32.0;
-
-/// Cells along a side of a picture.
-const CELLS: usize = 26;
-
-/// What the shape of a light out of focus looks like.
-const LIGHT: Color32 = Color32::from_rgb(236, 220, 176);
 
 /// The pictures of all shapes; the one that `camera` has is framed.
 pub fn bokeh_thumbnails(ui: &mut Ui, presets: &PresetLibrary, camera: &Camera, actions: &mut Vec<Action>) {
@@ -38,23 +32,7 @@ fn thumbnail(ui: &mut Ui, preset: &Preset, aperture: &Aperture, is_chosen: bool)
         let visuals = ui.style().interact_selectable(&response, is_chosen);
         let fill = if is_chosen { visuals.weak_bg_fill } else { ui.visuals().extreme_bg_color };
         ui.painter().rect(rect, 3.0, fill, visuals.bg_stroke, egui::StrokeKind::Inside);
-        ui.painter().add(egui::Shape::mesh(picture(aperture, rect.shrink(5.0))));
+        ui.painter().add(egui::Shape::mesh(bokeh_picture(aperture, rect.shrink(5.0))));
     }
     response.on_hover_text(format!("{}: the shape of lights out of focus.", preset.name))
-}
-
-/// What of each cell of the aperture is open.
-fn picture(aperture: &Aperture, rect: Rect) -> Mesh {
-    let mut mesh = Mesh::default();
-    let cell = rect.size() / CELLS as f32;
-    for (row, column) in (0..CELLS).flat_map(|row| (0..CELLS).map(move |column| (row, column))) {
-        let at = |index: usize| (2 * index + 1) as f64 / CELLS as f64 - 1.0;
-        // The aperture's v points up.
-        let open = aperture.transmission(DVec2::new(at(column), -at(row)));
-        if open > 0.0 {
-            let corner = rect.min + vec2(column as f32, row as f32) * cell;
-            mesh.add_colored_rect(Rect::from_min_size(corner, cell), LIGHT.gamma_multiply(open as f32));
-        }
-    }
-    mesh
 }
