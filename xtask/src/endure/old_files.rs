@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 pub const PROMISE: Promise = Promise {
     name: "old-files",
     sentence: "Old files open, or it says which version reads them",
-    what_is_done: "a file of each version: projects 1 to 8 and that of the first demo, strokes 1 to 5, presets 1, light \
+    what_is_done: "a file of each version: projects 1 to 11 and that of the first demo, strokes 1 to 5, presets 1, light \
                    fields 1 to 6, and of versions that do not exist yet",
     full: GOLDENS.len(),
     short: GOLDENS.len(),
@@ -60,7 +60,7 @@ const fn preset(version: u64) -> Golden {
     Golden { what: "a preset", version, write: write_preset, command, says }
 }
 
-const GOLDENS: [Golden; 25] = [
+const GOLDENS: [Golden; 28] = [
     Golden {
         what: "the project of the first demo",
         version: 1,
@@ -76,6 +76,9 @@ const GOLDENS: [Golden; 25] = [
     project(6),
     project(7),
     project(8),
+    project(9),
+    project(10),
+    project(11),
     Golden {
         what: "a project",
         version: LATER,

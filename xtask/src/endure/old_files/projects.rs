@@ -81,6 +81,9 @@ fn of_scene(place: &Workplace, version: u64) -> Result<Project, String> {
         quad["extensions"] = json!({"KHR_materials_variants": {"variants": [{"name": "Other"}]}});
         quad["extensionsUsed"] = json!(["KHR_materials_unlit", "KHR_materials_variants"]);
     }
+    if version == 11 {
+        quad["materials"] = json!([{"name": "matte", "doubleSided": true}]);
+    }
     let scene = glb_of(&quad);
     put(&place.own, "s.glb", &scene)?;
     let mut manifest = manifest(version, "s.glb", &scene);
@@ -121,9 +124,40 @@ fn of_scene(place: &Workplace, version: u64) -> Result<Project, String> {
             let gloss = (0..SIDE * SIDE).flat_map(|k| ((k % 2) as f32).to_le_bytes()).collect();
             entries.push(("focus.gloss.f32", gloss));
         }
+        9 => {
+            let mut spread = layer("Paint", "set", 1.0, 1.0);
+            spread["values"] = json!("layers/0.f32");
+            spread["spread"] = json!({
+                "strokes": {"background": [1.0, 0.0, 0.0], "values": "layers/0.strokes.f32"},
+                "settings": {"reach": 12.0, "softness": 0.5, "contrast": 0.5},
+            });
+            manifest["layers"] = json!({"active": 0, "layers": [spread]});
+            entries.push(("layers/0.f32", painted(0.95, 1.0)));
+            entries.push(("layers/0.strokes.f32", painted(0.95, 1.0)));
+        }
+        // What is added has no place in an atlas of the quad alone: the scene is unwrapped when it is opened.
+        10 => {
+            put(&place.own, "scan.splat", splats())?;
+            manifest["splats"] = json!({"file": "scan.splat", "scale": 2.0, "hidden": [[1, 2]]});
+            (manifest["focus_map"], entries) = (Value::Null, Vec::new());
+        }
+        11 => {
+            manifest["floor"] = json!(true);
+            (manifest["focus_map"], entries) = (Value::Null, Vec::new());
+        }
         _ => {}
     }
     Ok(Project { manifest, entries })
+}
+
+/// Three splats (.splat) in a row.
+fn splats() -> Vec<u8> {
+    let row = |k: u8| {
+        let floats = [0.2 * f32::from(k), 0.0, 0.0, 0.1, 0.1, 0.1];
+        let floats = floats.into_iter().flat_map(f32::to_le_bytes);
+        floats.chain([200, 90, 40, 250, 255, 128, 128, 128]).collect::<Vec<_>>()
+    };
+    (0..3).flat_map(row).collect()
 }
 
 /// A project of a picture with depth, which was repaired (7), or is the layer of a file that was chosen (8).
