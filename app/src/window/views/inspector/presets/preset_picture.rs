@@ -9,6 +9,8 @@ use project::{Preset, PresetContent};
 
 /// Cells along a side of a picture.
 const CELLS: usize = 26;
+/// Parts of a cell along its side, whose mean it shows.
+const PARTS: usize = 3;
 
 /// What the shape of a light out of focus looks like.
 const LIGHT: Color32 = Color32::from_rgb(236, 220, 176);
@@ -61,8 +63,12 @@ fn cells(rect: Rect, color: Color32, opacity: impl Fn(DVec2) -> f64) -> Mesh {
     let mut mesh = Mesh::default();
     let cell = rect.size() / CELLS as f32;
     for (row, column) in (0..CELLS).flat_map(|row| (0..CELLS).map(move |column| (row, column))) {
-        let at = |index: usize| (2 * index + 1) as f64 / CELLS as f64 - 1.0;
-        let opacity = opacity(DVec2::new(at(column), -at(row))).clamp(0.0, 1.0);
+        let at = |cell: usize, part: usize| {
+            let place = cell as f64 + (part as f64 + 0.5) / PARTS as f64;
+            2.0 * place / CELLS as f64 - 1.0
+        };
+        let parts = (0..PARTS * PARTS).map(|k| DVec2::new(at(column, k % PARTS), -at(row, k / PARTS)));
+        let opacity = parts.map(|place| opacity(place).clamp(0.0, 1.0)).sum::<f64>() / (PARTS * PARTS) as f64;
         if opacity > 0.0 {
             let corner = rect.min + vec2(column as f32, row as f32) * cell;
             mesh.add_colored_rect(Rect::from_min_size(corner, cell), color.gamma_multiply(opacity as f32));
