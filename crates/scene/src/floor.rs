@@ -4,23 +4,12 @@
 //! contact, and light from the scene. Towards its rim it becomes transparent. It is a part of the scene like any other: rays hit it, and it takes paint.
 
 use crate::model::fill_attribute;
-use crate::{AlphaMode, Backdrop, Environment, LightKind, Material, Node, Part, Scene, Triangle, World};
+use crate::{
+    AlphaMode, Backdrop, Environment, Floor, LightKind, Material, Node, Part, Scene, Triangle, World,
+};
 use glam::{DMat4, DVec2, DVec3, Vec2, Vec3, Vec4};
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
-
-/// The floor of a scene.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Floor {
-    /// Whether it is there; otherwise all its vertices are one point, which nothing sees.
-    pub is_shown: bool,
-    /// The middle of the disc.
-    pub center: DVec3,
-    /// The radius of the disc, in scene units.
-    pub radius: f64,
-    first_triangle: u32,
-    first_vertex: u32,
-}
 
 /// The name of its node and its material.
 const NAME: &str = "shadow floor";
@@ -29,53 +18,11 @@ const NAME: &str = "shadow floor";
 const REACH: f64 = 3.2;
 /// How far below the lowest vertex it lies, over the radius of the scene: a scene with a floor of its own hides it.
 const DEPTH: f64 = 1e-4;
-/// Corners of each ring.
-const SECTORS: u32 = 48;
-/// The radii of its rings over its own, and its opacity there: linear between them.
-const RINGS: [(f64, f32); 8] =
-    [(0.12, 1.0), (0.25, 1.0), (0.4, 1.0), (0.55, 0.96), (0.65, 0.8), (0.8, 0.4), (0.9, 0.12), (1.0, 0.0)];
 
 /// The share of light that it reflects.
 const REFLECTANCE: [f32; 2] = [0.02, 0.9];
 /// The same where no light comes from far away: middle grey.
 const REFLECTANCE_WITHOUT_SKY: f32 = 0.5;
-
-impl Floor {
-    /// Number of its triangles.
-    pub const TRIANGLES: u32 = SECTORS * (2 * RINGS.len() as u32 - 1);
-    const VERTICES: u32 = 1 + SECTORS * RINGS.len() as u32;
-
-    /// Its triangles.
-    pub fn triangles(&self) -> Range<u32> {
-        self.first_triangle..self.first_triangle + Self::TRIANGLES
-    }
-
-    /// The corners of one of its triangles on the unit disc, x and z of the scene, whether it is shown or not.
-    pub fn corners_on_disc(&self, triangle: u32) -> [DVec2; 3] {
-        disc_triangle(triangle - self.first_triangle).map(|vertex| disc_vertex(vertex).0)
-    }
-}
-
-/// A vertex of the unit disc: its place, counter-clockwise seen from above (x, z), and its opacity.
-fn disc_vertex(vertex: u32) -> (DVec2, f32) {
-    let Some(on_ring) = vertex.checked_sub(1) else { return (DVec2::ZERO, 1.0) };
-    let (radius, opacity) = RINGS[(on_ring / SECTORS) as usize];
-    let (sin, cos) = (TAU * f64::from(on_ring % SECTORS) / f64::from(SECTORS)).sin_cos();
-    (radius * DVec2::new(cos, -sin), opacity)
-}
-
-/// The vertices of a triangle of the unit disc.
-fn disc_triangle(triangle: u32) -> [u32; 3] {
-    let (sector, row) = (triangle % SECTORS, triangle / SECTORS);
-    let at = |ring: u32, sector: u32| 1 + ring * SECTORS + sector % SECTORS;
-    match row.checked_sub(1) {
-        None => [0, at(0, sector), at(0, sector + 1)],
-        Some(row) if row % 2 == 0 => {
-            [at(row / 2, sector), at(row / 2 + 1, sector), at(row / 2 + 1, sector + 1)]
-        }
-        Some(row) => [at(row / 2, sector), at(row / 2 + 1, sector + 1), at(row / 2, sector + 1)],
-    }
-}
 
 impl Scene {
     /// Why the scene cannot have a floor that catches shadows; `None` if it can.
@@ -105,7 +52,7 @@ impl Scene {
         let floor = *floor;
         let radius = if is_shown { floor.radius } else { 0.0 };
         for vertex in 0..Floor::VERTICES {
-            let (place, _) = disc_vertex(vertex);
+            let (place, _) = Floor::disc_vertex(vertex);
             let offset = radius * DVec3::new(place.x, 0.0, place.y);
             self.positions[(floor.first_vertex + vertex) as usize] = floor.center + offset;
         }
@@ -122,14 +69,14 @@ impl Scene {
         let middle = 0.5 * (low + high);
         let center = DVec3::new(middle.x, low.y - DEPTH * radius, middle.z);
         self.colors.resize(self.positions.len(), Vec4::ONE);
-        self.colors.extend((0..Floor::VERTICES).map(|v| Vec3::ONE.extend(disc_vertex(v).1)));
+        self.colors.extend((0..Floor::VERTICES).map(|v| Vec3::ONE.extend(Floor::disc_vertex(v).1)));
         let count = self.positions.len() + Floor::VERTICES as usize;
         self.positions.resize(count, center);
         fill_attribute(&mut self.normals, count, Vec3::Y);
         let further = self.further_uv.iter_mut();
         self.uv.iter_mut().chain(further).for_each(|uv| fill_attribute(uv, count, Vec2::ZERO));
         let part = self.parts.len() as u32;
-        let triangle = |k: u32| disc_triangle(k).map(|vertex| first_vertex + vertex);
+        let triangle = |k: u32| Floor::disc_triangle(k).map(|vertex| first_vertex + vertex);
         self.triangles.extend((0..Floor::TRIANGLES).map(|k| Triangle { vertices: triangle(k), part }));
         fill_attribute(&mut self.tangents, self.triangles.len(), [Vec4::ZERO; 3]);
         let floor = Floor { is_shown: false, center, radius: REACH * radius, first_triangle, first_vertex };

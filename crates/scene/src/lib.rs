@@ -61,10 +61,9 @@ pub use self::gltf::{
     PosedScene, RestTriangle, StoredElements, inspect, load, with_source,
 };
 pub use error::{Fault, SceneError};
-pub use floor::Floor;
 pub use load_options::LoadOptions;
 pub use model::{
-    AlphaMode, Anisotropy, BackFaces, CameraLens, Clearcoat, DiffuseTransmission, Iridescence, Light,
+    AlphaMode, Anisotropy, BackFaces, CameraLens, Clearcoat, DiffuseTransmission, Floor, Iridescence, Light,
     LightKind, Material, MeshHealth, Node, NormalMap, Part, PlacedCloud, Scalar, Scene, SceneCamera, Sheen,
     SplatCleanup, SplatEdit, SplatTransform, SurfaceField, SurfacePoint, Tint, Triangle, Volume, Workflow,
 };

@@ -2,6 +2,7 @@
 
 mod back_faces;
 mod camera_lens;
+mod floor;
 mod inverted_faces;
 mod material;
 mod mesh_health;
@@ -11,6 +12,7 @@ mod surface_point;
 
 pub use back_faces::BackFaces;
 pub use camera_lens::CameraLens;
+pub use floor::Floor;
 pub use material::{
     AlphaMode, Anisotropy, Clearcoat, DiffuseTransmission, Iridescence, Material, NormalMap, Scalar, Sheen,
     Tint, Volume, Workflow,
@@ -20,7 +22,7 @@ pub use placed_cloud::PlacedCloud;
 pub use splat_edit::{SplatCleanup, SplatEdit, SplatTransform};
 pub use surface_point::{SurfaceField, SurfacePoint};
 
-use crate::{Floor, Image, PictureTexture, View, World};
+use crate::{Image, PictureTexture, View, World};
 use glam::{DMat4, DVec3, Vec2, Vec3, Vec4};
 use std::ops::Range;
 use std::path::PathBuf;

@@ -18,6 +18,11 @@ const MAX_STARTS: usize = 256;
 /// rather than with the ground.
 const OTHER_PART_FACTOR: f64 = 4.0;
 
+/// Across a gap within the same part that is at most this many texels wide, an island is joined along its whole border.
+const SEAM_TEXELS: f64 = 3.0;
+/// The conductance of each link of such a border: more than between other parts that touch.
+const SEAM_CONDUCTANCE: f32 = 0.2;
+
 /// Rounds in which every island joins its nearest neighbour: each at least halves their number.
 const MAX_ROUNDS: usize = 8;
 
@@ -53,8 +58,11 @@ pub(crate) fn join_islands(
             .par_iter()
             .enumerate()
             .filter(|(island, _)| *island != largest)
-            .filter_map(|(_, texels)| nearest_to(canvas, spacings, texels, &island_of))
-            .map(|nearest| gap_link(spacings, nearest))
+            .filter_map(|(_, texels)| Some((texels, nearest_to(canvas, spacings, texels, &island_of)?)))
+            .flat_map_iter(|(texels, nearest)| {
+                let seam = seam_of(canvas, spacings, texels, nearest, &island_of);
+                [gap_link(spacings, nearest)].into_iter().chain(seam)
+            })
             .collect();
         if joined.is_empty() {
             return Ok(());
@@ -94,6 +102,35 @@ fn nearest_to(canvas: &Canvas, spacings: &[f64], texels: &[u32], island_of: &[u3
         }
     }
     best
+}
+
+/// What of an island lies along a narrow gap to the same part, texel by texel, if it is joined across one: a head that is set upon a body hangs together with it
+/// by their whole border, of which some is alike, and not by one place.
+fn seam_of(
+    canvas: &Canvas,
+    spacings: &[f64],
+    texels: &[u32],
+    nearest: Nearest,
+    island_of: &[u32],
+) -> Vec<SurfaceLink> {
+    let [part, other_part] = nearest.texels.map(|texel| canvas.texel(texel as usize).part);
+    let is_narrow = nearest.distance <= SEAM_TEXELS * spacings[nearest.texels[0] as usize];
+    if part != other_part || !is_narrow {
+        return Vec::new();
+    }
+    let across = |&start: &u32| {
+        let (from, mut best) = (canvas.texel(start as usize), None::<Nearest>);
+        canvas.visit_within(from.position, SEAM_TEXELS * spacings[start as usize], |other, distance| {
+            let distance = f64::from(distance);
+            let is_across =
+                island_of[other] != island_of[start as usize] && canvas.texel(other).part == from.part;
+            if is_across && best.is_none_or(|best| distance < best.distance) {
+                best = Some(Nearest { reach: distance, distance, texels: [start, other as u32] });
+            }
+        });
+        best.map(|best| SurfaceLink { texels: best.texels, conductance: SEAM_CONDUCTANCE })
+    };
+    texels.iter().filter_map(across).collect()
 }
 
 fn gap_link(spacings: &[f64], Nearest { distance, texels, .. }: Nearest) -> SurfaceLink {
