@@ -40,6 +40,8 @@ pub struct Outcomes<'a> {
     /// The rung below, and how far the reach is from there to the next, in [0, 1].
     rung: usize,
     share: f32,
+    /// Below this logit no label can win: its probability is less than 1/(labels + 1), and thus the least of all. A little less, for rounding.
+    least_winning_logit: f32,
 }
 
 impl WalkerField {
@@ -137,7 +139,8 @@ impl WalkerField {
     pub fn at_reach(&self, reach: f64) -> Outcomes<'_> {
         assert!(self.is_solved_at(reach), "only a reach that is solved for has outcomes");
         let (rung, share) = rung_below(reach);
-        Outcomes { field: self, rung, share }
+        let least_winning_logit = -(self.labels as f32).ln() - 1e-3;
+        Outcomes { field: self, rung, share, least_winning_logit }
     }
 
     /// The memory that it takes, in bytes.
@@ -166,6 +169,9 @@ impl Outcomes<'_> {
         // Above one half it needs no exponentials, nor below the share that each outcome has if all are equal.
         if greatest > 0.0 {
             return Some(winner);
+        }
+        if greatest < self.least_winning_logit {
+            return None;
         }
         let p = self.probability(node, winner);
         if p * (self.field.labels as f32 + 1.0) <= 1.0 {
