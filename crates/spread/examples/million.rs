@@ -31,7 +31,9 @@ fn main() -> Result<(), spread::SpreadError> {
         let is_reached = |node: &usize| outcomes.weights(*node, softness, &mut [0.0; 3]) < 0.5;
         let reached = (0..field.nodes()).into_par_iter().filter(is_reached).count();
         let ms = start.elapsed().as_secs_f64() * 1e3;
-        println!("reach {reach}, softness {softness}: {ms:.0} ms on {threads} threads, {reached} nodes reached");
+        println!(
+            "reach {reach}, softness {softness}: {ms:.0} ms on {threads} threads, {reached} nodes reached"
+        );
     }
     Ok(())
 }

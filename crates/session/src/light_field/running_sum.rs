@@ -141,10 +141,18 @@ impl LightField {
         Self::resting(salf, index, modelled, tolerance, gpu)
     }
 
-    /// The same light field without sum and hierarchy, which are made again when it is summed.
+    /// The same light field and hierarchy without its sum, which is made again when it is needed.
     pub fn at_rest(self, gpu: Option<Gpu>) -> Self {
-        let (salf, tolerance) = (self.splatter.salf().clone(), self.splatter.tolerance());
-        Self::resting(salf, self.index, self.modelled, tolerance, gpu).refined(self.light_passes)
+        let tolerance = self.splatter.tolerance();
+        let twin = Self::with_splatter(self.splatter.twin(), self.index, self.modelled, tolerance, gpu);
+        Self { whole_seconds: self.whole_seconds, ..twin.refined(self.light_passes) }
+    }
+
+    /// Takes the time that a whole sum of another light field of the same view took for that of its own, unless it knows better.
+    pub fn expect_pace_of(&mut self, other: &Self) {
+        if self.whole_seconds.is_infinite() {
+            self.whole_seconds = other.whole_seconds;
+        }
     }
 
     /// The same light field for a `stage` that differs in its backdrop alone, which has this radiance (linear RGB) everywhere; `None` if that is
@@ -162,7 +170,16 @@ impl LightField {
         tolerance: Tolerance,
         gpu: Option<Gpu>,
     ) -> Self {
-        let mut splatter = Splatter::new(salf);
+        Self::with_splatter(Splatter::new(salf), index, modelled, tolerance, gpu)
+    }
+
+    fn with_splatter(
+        mut splatter: Splatter,
+        index: Arc<SampleIndex>,
+        modelled: Modelled,
+        tolerance: Tolerance,
+        gpu: Option<Gpu>,
+    ) -> Self {
         splatter.set_tolerance(tolerance);
         // The first dab on it is to cost what any dab does.
         splatter.set_live(true);

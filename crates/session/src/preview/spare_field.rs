@@ -107,7 +107,7 @@ impl SpareField {
     }
 
     /// Exchanges the spare with the light field that is worked with, if the spare shows what `camera` sees better. Returns whether it does. What
-    /// is not worked with keeps its samples alone: hierarchy and sum take several times their memory.
+    /// is not worked with keeps no sum.
     pub fn exchange(&mut self, current: &mut Option<LightField>, camera: &Camera, gpu: Option<Gpu>) -> bool {
         let fit = |field: &Option<LightField>| field.as_ref()?.aperture_fit(camera);
         let is_better = match (fit(&self.field), fit(current)) {
@@ -116,7 +116,10 @@ impl SpareField {
         };
         if is_better {
             std::mem::swap(&mut self.field, current);
-            self.field = self.field.take().map(|field| field.at_rest(gpu));
+            if let (Some(replaced), Some(current)) = (self.field.take(), current) {
+                current.expect_pace_of(&replaced);
+                self.field = Some(replaced.at_rest(gpu));
+            }
         }
         is_better
     }

@@ -26,8 +26,11 @@ use splat::Tolerance;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// A whole sum that takes less than this many seconds is made at once for every new lens: two frames.
-const QUICK_SECONDS: f64 = 0.033;
+/// A whole sum that takes less than this many seconds is made at once for every new lens: what is dragged then follows the hand.
+const QUICK_SECONDS: f64 = 0.1;
+
+/// Before a whole sum that takes longer than this many seconds, a coarse picture is shown, which takes most of them itself.
+const SOON_SECONDS: f64 = 0.5;
 
 /// The thread's own state.
 pub(crate) struct Worker {
@@ -210,7 +213,8 @@ impl Worker {
         }
         // What is kept is there sooner than the coarse picture.
         let is_stored = self.fine.is_none() && !self.bakes_anew && self.maker.has_stored(&stage, &camera);
-        if !is_stored {
+        let is_soon = self.fine.as_ref().is_some_and(|fine| fine.whole_seconds() < SOON_SECONDS);
+        if !is_stored && !is_soon {
             self.show_coarse(&stage, &camera, &focus)?;
         }
         if !self.maker.is_at_work() && !self.is_paused {
