@@ -23,7 +23,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("slf", &["material", "trace", "scene", "atlas", "numerics", "progress"]),
     ("salf", &["slf", "trace", "scene", "gaussians", "lens", "numerics", "progress"]),
     ("focus", &["spread", "atlas", "scene", "lens", "numerics", "progress"]),
-    ("splat", &["salf", "focus", "scene", "lens", "progress"]),
+    ("splat", &["salf", "focus", "scene", "lens", "numerics", "progress"]),
     ("test-scenes", &["scene"]),
     (
         "hard-cases",

@@ -1,5 +1,5 @@
 //! Small numerical routines that several crates share: order statistics, robust scale, Cholesky solves, luminance,
-//! smooth steps, PSNR, the sRGB curve.
+//! smooth steps, PSNR, the sRGB curve; and inner loops compiled for the widest SIMD instructions of the machine.
 //!
 //! Results are bitwise reproducible. The order of the floating-point operations is part of each function's contract;
 //! values are compared by [`f64::total_cmp`], so that NaN and signed zeros have a place, too.
@@ -22,6 +22,7 @@ mod order_statistics;
 mod psnr;
 mod real;
 mod robust_scale;
+mod simd_dispatch;
 mod smoothstep;
 mod srgb;
 
@@ -33,5 +34,6 @@ pub use order_statistics::{
 pub use psnr::psnr;
 pub use real::Real;
 pub use robust_scale::{MAD_OF_NORMAL, MAD_SCALE, scaled_mad};
+pub use simd_dispatch::{prefetch, with_widest_simd};
 pub use smoothstep::{smooth_fraction, smoothstep};
 pub use srgb::{linear_from_srgb, srgb_from_linear};

@@ -8,7 +8,7 @@
 //! Beside every row stands how much coverage was thrown at it. If the pixels of the row do not sum to that, one of
 //! them has wrapped: it is never unseen.
 
-use crate::simd_dispatch::prefetch;
+use numerics::prefetch;
 use salf::tree::{BLOCK_PX, LEVELS};
 
 /// Bits behind the point of positions: 1/4096 px.

@@ -4,7 +4,7 @@ use crate::draw::Pen;
 use crate::lens_in_use::{LensInUse, NodeFocus, Placed};
 use crate::nodes::{Nodes, SplatNode};
 use crate::paint::Paint;
-use crate::simd_dispatch::{prefetch, with_widest_simd};
+use numerics::{prefetch, with_widest_simd};
 use rayon::prelude::*;
 use std::cmp::Ordering;
 use std::ops::Range;

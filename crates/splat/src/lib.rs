@@ -66,7 +66,6 @@ mod lens_in_use;
 mod nodes;
 mod paint;
 mod resolve;
-mod simd_dispatch;
 mod splatter;
 mod sums;
 

@@ -8,7 +8,7 @@ pub mod parts_to_pixels;
 
 use crate::canvas::{Accumulator, Level, Pixel, Row, Word};
 use crate::resolve::marks::{Mark, Marks, SPAN, spans};
-use crate::simd_dispatch::with_widest_simd;
+use numerics::with_widest_simd;
 use std::ops::Range;
 
 /// A pixel holds more light than its integers are sure to hold.

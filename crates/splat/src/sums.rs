@@ -8,7 +8,7 @@ use crate::lens_in_use::Placed;
 use crate::nodes::SplatNode;
 use crate::resolve::marks::Marks;
 use crate::resolve::{Columns, LevelRows, Light, Overflow, Quanta, Room, Window, add_row};
-use crate::simd_dispatch::{prefetch, with_widest_simd};
+use numerics::{prefetch, with_widest_simd};
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;
 use salf::tree::{BLOCK_PX, LEVELS};

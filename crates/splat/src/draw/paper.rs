@@ -4,7 +4,7 @@ use crate::canvas::{Rows, Word};
 use crate::draw::sized_box::{UnsizedBox, too_blurred};
 use crate::draw::small::SmallBoxes;
 use crate::draw::visible_runs::VisibleRun;
-use crate::simd_dispatch::with_widest_simd;
+use numerics::with_widest_simd;
 
 /// Some rows of a level, and what waits to be drawn on them.
 pub struct Paper<'a, W> {

@@ -8,7 +8,7 @@ use crate::draw::pen::Pen;
 use crate::draw::visible_runs::{Row, VisibleRun, VisibleRuns};
 use crate::fixed::{ONE, mul_shift, ratio};
 use crate::nodes::Cells;
-use crate::simd_dispatch::with_widest_simd;
+use numerics::with_widest_simd;
 
 /// What is let through of a stencil is scaled by this at most.
 pub const LARGEST_SCALE: u32 = 4;

@@ -24,7 +24,7 @@
 //! makes it what it was ([`rest`]).
 
 use crate::resolve::knots::{KnotSums, Knots, SPACING, SharedSums, position};
-use crate::simd_dispatch::with_widest_simd;
+use numerics::with_widest_simd;
 use rayon::prelude::*;
 
 /// Which light is scaled: that of the sharing samples, where the picture is not evened out; else all.

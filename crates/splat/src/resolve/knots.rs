@@ -2,8 +2,8 @@
 
 use crate::resolve::Light;
 use crate::resolve::partition::{Parts, Share};
-use crate::simd_dispatch::with_widest_simd;
 use glam::Vec4;
+use numerics::with_widest_simd;
 use rayon::prelude::*;
 
 /// How far knots lie apart, px. What is taken from a surface is given back within that of it.

@@ -20,7 +20,7 @@
 
 use crate::fixed::{floored, ratio};
 use crate::resolve::Light;
-use crate::simd_dispatch::with_widest_simd;
+use numerics::with_widest_simd;
 
 /// A pixel's factors.
 #[derive(Clone, Copy, Debug, PartialEq)]

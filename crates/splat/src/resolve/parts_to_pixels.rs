@@ -4,7 +4,7 @@ use crate::resolve::balance::RowGains;
 use crate::resolve::knots::{SPACING, SharedSums};
 use crate::resolve::partition::{Parts, Share};
 use crate::resolve::{BLACK, Light};
-use crate::simd_dispatch::with_widest_simd;
+use numerics::with_widest_simd;
 
 impl Parts<'_> {
     /// Joins them to pixels, scaled by `gains` if given; evened out if requested: only where nothing is painted.
