@@ -95,6 +95,7 @@ impl Hierarchy {
 
     /// Visits the items of every leaf whose box overlaps `space` and begins nearer than `far` (see
     /// [`Halfspaces::height`]), nearer ones first by and large; the visit of a leaf returns the new `far`.
+    #[inline(always)]
     pub fn walk_halfspaces(&self, space: &Halfspaces, far: f32, visit: &mut impl Visit) {
         if self.stack_size <= SHALLOW_STACK {
             self.walk_halfspaces_with(&mut [Pending::default(); SHALLOW_STACK], space, far, visit);
@@ -158,9 +159,10 @@ impl Hierarchy {
         if self.nodes.is_empty() {
             return;
         }
-        let [near_x, near_y, near_z] = ray.near_origin.to_array().map(Vec4::splat);
-        let [far_x, far_y, far_z] = ray.far_origin.to_array().map(Vec4::splat);
-        let [inverse_x, inverse_y, inverse_z] = ray.inverse.to_array().map(Vec4::splat);
+        let splat = |v: Vec3| [Vec4::splat(v.x), Vec4::splat(v.y), Vec4::splat(v.z)];
+        let [near_x, near_y, near_z] = splat(ray.near_origin);
+        let [far_x, far_y, far_z] = splat(ray.far_origin);
+        let [inverse_x, inverse_y, inverse_z] = splat(ray.inverse);
         let [side_x, side_y, side_z] = ray.near_side;
         let mut waiting = 0;
         let mut current = Pending { near: 0.0, first: 0, count: 0 };
@@ -224,7 +226,7 @@ pub(crate) struct Halfspaces {
 }
 
 impl Halfspaces {
-    const MAX_PLANES: usize = 5;
+    const MAX_PLANES: usize = 6;
 
     /// What f32 may be wrong by, as a share of what is summed.
     const SLACK: f64 = 1.0 / (1u32 << 20) as f64;
@@ -257,14 +259,15 @@ impl Halfspaces {
         let mut overlapping = low.cmple(high).bitmask();
         for (normal, offset) in &self.planes[..self.count] {
             let mut farthest = Vec4::splat(*offset);
+            let normal = normal.to_array();
             for axis in 0..3 {
                 farthest += node.sides[axis][usize::from(normal[axis] >= 0.0)] * normal[axis];
             }
             overlapping &= farthest.cmpge(Vec4::ZERO).bitmask();
         }
-        let mut nearest = Vec4::ZERO;
+        let (mut nearest, toward) = (Vec4::ZERO, self.toward.to_array());
         for axis in 0..3 {
-            nearest += node.sides[axis][usize::from(self.toward[axis] < 0.0)] * self.toward[axis];
+            nearest += node.sides[axis][usize::from(toward[axis] < 0.0)] * toward[axis];
         }
         (overlapping, nearest)
     }

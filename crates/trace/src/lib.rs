@@ -2,8 +2,8 @@
 //!
 //! [`Tracer`] finds what a ray hits: the ray is transformed to the f32 space of the bounding boxes (`local_space`), traverses the
 //! tree (`hierarchy`) and is intersected with triangles in f64 (`watertight`), whose points may be transparent
-//! (`transparency`). The visibility of a whole [`Square`] from a point takes a single traversal (`visibility`), as do the rays of
-//! a [`Beam`]. [`truth`] integrates such rays to the reference picture, from the light that a [`Radiance`] provides.
+//! (`transparency`). The visibility of a whole [`Square`] from a point, or from many ([`SquareOccluders`]), takes a single traversal
+//! (`visibility`), as do the rays of a [`Beam`]. [`truth`] integrates such rays to the reference picture, from the light that a [`Radiance`] provides.
 //!
 //! ```
 //! use glam::DVec3;
@@ -30,5 +30,5 @@ mod watertight;
 pub use beam::Beam;
 pub use radiance::{IncidentLight, OutgoingRadiance, Radiance, SampleSlot, ShadingPoint};
 pub use ray::{Hit, Ray};
-pub use tracer::Tracer;
+pub use tracer::{SquareOccluders, Tracer};
 pub use visibility::{PointSet, Square, SquareVisibility, TargetPoints, Viewpoint};

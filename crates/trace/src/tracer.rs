@@ -12,8 +12,11 @@ use crate::visibility::Outline;
 use crate::watertight::{Crossing, ShearedRay, has_area, in_plane};
 use crate::{Hit, Ray};
 use glam::DVec3;
+use numerics::with_widest_simd;
 use scene::{AlphaMode, Scene, SurfacePoint};
 use splat_tree::SplatTree;
+pub use square_visibility::SquareOccluders;
+use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
 /// Finds what a ray hits.
@@ -124,12 +127,30 @@ impl Tracer {
         let local = self.space.ray(ray)?;
         let sheared = ShearedRay::new(ray.origin, ray.direction);
         let mut nearest = Nearest { hit: None, t_max: ray.t_max };
-        self.hierarchy.walk(&local, local.local_t(ray.t_max), |leaf| {
-            for triangle in &self.triangles[leaf] {
-                self.accept_triangle(&mut nearest, triangle, ray, &sheared, mode);
-            }
-            Some(local.local_t(nearest.t_max))
-        });
+        with_widest_simd(
+            #[inline(always)]
+            || {
+                self.hierarchy.walk(
+                    &local,
+                    local.local_t(ray.t_max),
+                    #[inline(always)]
+                    |leaf| {
+                        self.visit_crossed(
+                            leaf,
+                            &sheared,
+                            #[inline(always)]
+                            |triangle, crossing| {
+                                if crossing.from_front || !triangle.culls_back {
+                                    self.accept_crossing(&mut nearest, triangle, ray, crossing, mode);
+                                }
+                                true
+                            },
+                        );
+                        Some(local.local_t(nearest.t_max))
+                    },
+                );
+            },
+        );
         nearest.hit
     }
 
@@ -141,21 +162,31 @@ impl Tracer {
         let local = self.space.ray(&ray)?;
         let sheared = ShearedRay::new(origin, direction);
         let mut nearest = Nearest { hit: None, t_max: ray.t_max };
-        self.hierarchy.walk(&local, local.local_t(ray.t_max), |leaf| {
-            for triangle in &self.triangles[leaf] {
-                let Some(crossing) = sheared.cross(&triangle.corners) else { continue };
-                if !in_plane(&triangle.corners, origin) {
-                    self.accept_crossing(
-                        &mut nearest,
-                        triangle,
-                        &ray,
-                        &crossing,
-                        TransparencyMode::Stochastic,
-                    );
-                }
-            }
-            Some(local.local_t(nearest.t_max))
-        });
+        with_widest_simd(
+            #[inline(always)]
+            || {
+                self.hierarchy.walk(
+                    &local,
+                    local.local_t(ray.t_max),
+                    #[inline(always)]
+                    |leaf| {
+                        self.visit_crossed(
+                            leaf,
+                            &sheared,
+                            #[inline(always)]
+                            |triangle, crossing| {
+                                if !in_plane(&triangle.corners, origin) {
+                                    let mode = TransparencyMode::Stochastic;
+                                    self.accept_crossing(&mut nearest, triangle, &ray, crossing, mode);
+                                }
+                                true
+                            },
+                        );
+                        Some(local.local_t(nearest.t_max))
+                    },
+                );
+            },
+        );
         nearest.hit
     }
 
@@ -165,6 +196,31 @@ impl Tracer {
         let origin = from.position(&self.scene);
         let ray = Ray { origin, direction, t_min: 0.0, t_max: f64::INFINITY, skip: Some(from.triangle) };
         self.any_hit_where(&ray, |triangle, _| !in_plane(&triangle.corners, origin))
+    }
+
+    /// Visits each triangle of a leaf that the line of a ray crosses; ends where `visit` returns `false`.
+    #[inline(always)]
+    fn visit_crossed(
+        &self,
+        leaf: Range<usize>,
+        sheared: &ShearedRay,
+        mut visit: impl FnMut(&LeafTriangle, &Crossing) -> bool,
+    ) {
+        for triangles in self.triangles[leaf].chunks(ShearedRay::AT_ONCE) {
+            let last = triangles.len() - 1;
+            let corners = |k: usize| &triangles[k.min(last)].corners;
+            let corners = [corners(0), corners(1), corners(2), corners(3)];
+            let mut near = sheared.may_cross(corners) & (0b1111 >> (3 - last));
+            while near != 0 {
+                let triangle = &triangles[near.trailing_zeros() as usize & 3];
+                near &= near - 1;
+                if let Some(crossing) = sheared.cross(&triangle.corners)
+                    && !visit(triangle, &crossing)
+                {
+                    return;
+                }
+            }
+        }
     }
 
     /// Records a triangle as the nearest visible hit, if it is.
@@ -256,23 +312,38 @@ impl Tracer {
         let sheared = ShearedRay::new(ray.origin, ray.direction);
         let far = local.local_t(ray.t_max);
         let mut has_hit = false;
-        self.hierarchy.walk(&local, far, |leaf| {
-            for triangle in &self.triangles[leaf] {
-                let Some(crossing) = sheared.cross(&triangle.corners) else { continue };
-                let within = crossing.t > ray.t_min && crossing.t < ray.t_max;
-                if !within || ray.skip == Some(triangle.index) || !counts(triangle, &crossing) {
-                    continue;
-                }
-                let point = SurfacePoint { triangle: triangle.index, barycentric: crossing.barycentric };
-                if !triangle.may_be_transparent
-                    || TransparencyMode::Stochastic.is_hit(&self.scene, point, ray)
-                {
-                    has_hit = true;
-                    return None;
-                }
-            }
-            Some(far)
-        });
+        with_widest_simd(
+            #[inline(always)]
+            || {
+                self.hierarchy.walk(
+                    &local,
+                    far,
+                    #[inline(always)]
+                    |leaf| {
+                        self.visit_crossed(
+                            leaf,
+                            &sheared,
+                            #[inline(always)]
+                            |triangle, crossing| {
+                                let within = crossing.t > ray.t_min && crossing.t < ray.t_max;
+                                if !within || ray.skip == Some(triangle.index) || !counts(triangle, crossing)
+                                {
+                                    return true;
+                                }
+                                let point = SurfacePoint {
+                                    triangle: triangle.index,
+                                    barycentric: crossing.barycentric,
+                                };
+                                has_hit = !triangle.may_be_transparent
+                                    || TransparencyMode::Stochastic.is_hit(&self.scene, point, ray);
+                                !has_hit
+                            },
+                        );
+                        if has_hit { None } else { Some(far) }
+                    },
+                );
+            },
+        );
         has_hit
     }
 }

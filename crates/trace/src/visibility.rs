@@ -5,6 +5,7 @@
 mod point_set;
 mod projection;
 mod shadow;
+mod shaft;
 mod square;
 mod target_points;
 mod viewpoint;
@@ -15,9 +16,10 @@ use crate::local_space::LocalSpace;
 use crate::watertight::in_plane;
 use glam::{DVec2, DVec3};
 pub use point_set::PointSet;
-pub(crate) use projection::Outline;
 use projection::{Boxes, Projection};
+pub(crate) use projection::{Outline, OutlineGroup};
 use shadow::Shadow;
+pub(crate) use shaft::shaft_from_many;
 pub use square::Square;
 pub use target_points::TargetPoints;
 pub(crate) use viewpoint::Eye;
@@ -126,6 +128,23 @@ impl<'a> VisibilityQuery<'a> {
                 let near = boxes.get(at).map_or(self.points.all(), |bounds| self.points.near_box(&bounds));
                 visit(chunk * Boxes::MAX + at, near);
             }
+        }
+    }
+
+    /// The same of a group of `count` triangles.
+    #[inline(always)]
+    pub fn visit_near_of_group(
+        &self,
+        group: &OutlineGroup,
+        count: usize,
+        mut visit: impl FnMut(usize, PointSet),
+    ) {
+        let boxes = self.projection.group_boxes(group);
+        let mut left = boxes.reaching & (u32::MAX >> (u32::BITS as usize - count));
+        while left != 0 {
+            let at = left.trailing_zeros() as usize;
+            left &= left - 1;
+            visit(at, boxes.get(at).map_or(self.points.all(), |bounds| self.points.near_box(&bounds)));
         }
     }
 

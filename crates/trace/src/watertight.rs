@@ -30,6 +30,9 @@ pub(crate) struct Crossing {
 }
 
 impl ShearedRay {
+    /// How many triangles [`Self::may_cross`] tests.
+    pub const AT_ONCE: usize = 4;
+
     /// Prepares a ray for intersection with triangles (Woop et al., 2013). `direction` must be finite and not zero.
     pub fn new(origin: DVec3, direction: DVec3) -> Self {
         let length = direction.abs();
@@ -45,13 +48,46 @@ impl ShearedRay {
         Self { origin, axes: [x, y, z], shear: [d[x] / d[z], d[y] / d[z], 1.0 / d[z]] }
     }
 
+    /// A bit for each triangle that the ray's line does not pass beside: those that [`Self::cross`] may find crossed.
+    #[inline(always)]
+    pub fn may_cross(&self, triangles: [&[DVec3; 3]; Self::AT_ONCE]) -> u32 {
+        let [sx, sy, _] = self.shear;
+        let origin = self.origin.as_ref();
+        // By corner and axis, a triangle a lane. Loops, here and below: what maps an array is not always inlined.
+        let mut sheared = [[[0.0; Self::AT_ONCE]; 2]; 3];
+        for (corner, [across, up]) in sheared.iter_mut().enumerate() {
+            let [x, y, z] = self.axes;
+            for lane in 0..Self::AT_ONCE {
+                let position = triangles[lane][corner].as_ref();
+                let along = position[z] - origin[z];
+                across[lane] = (position[x] - origin[x]) - sx * along;
+                up[lane] = (position[y] - origin[y]) - sy * along;
+            }
+        }
+        let [[ax, ay], [bx, by], [cx, cy]] = &sheared;
+        let mut near = 0;
+        for lane in 0..Self::AT_ONCE {
+            let u = cx[lane] * by[lane] - cy[lane] * bx[lane];
+            let v = ax[lane] * cy[lane] - ay[lane] * cx[lane];
+            let w = bx[lane] * ay[lane] - by[lane] * ax[lane];
+            let is_negative = (u < 0.0) | (v < 0.0) | (w < 0.0);
+            let is_positive = (u > 0.0) | (v > 0.0) | (w > 0.0);
+            near |= u32::from(!(is_negative & is_positive)) << lane;
+        }
+        near
+    }
+
     /// Where the ray's line, to both sides without end, crosses the triangle from either side; `None` beside
     /// it or edge-on.
     #[inline(always)]
     pub fn cross(&self, corners: &[DVec3; 3]) -> Option<Crossing> {
         let [x, y, z] = self.axes;
         let [sx, sy, sz] = self.shear;
-        let [a, b, c] = corners.map(|corner| (corner - self.origin).to_array());
+        let [a, b, c] = [
+            (corners[0] - self.origin).to_array(),
+            (corners[1] - self.origin).to_array(),
+            (corners[2] - self.origin).to_array(),
+        ];
         let (ax, ay) = (a[x] - sx * a[z], a[y] - sy * a[z]);
         let (bx, by) = (b[x] - sx * b[z], b[y] - sy * b[z]);
         let (cx, cy) = (c[x] - sx * c[z], c[y] - sy * c[z]);
@@ -96,9 +132,13 @@ impl ShearedRayPacket {
     #[inline(always)]
     pub fn may_hit(&self, corners: &[DVec3; 3]) -> u32 {
         let [x, y, z] = self.axes;
-        let [a, b, c] = corners.map(|corner| (corner - self.origin).to_array());
-        let mut is_near = [false; Self::MAX];
-        for (at, is_near) in is_near.iter_mut().enumerate() {
+        let [a, b, c] = [
+            (corners[0] - self.origin).to_array(),
+            (corners[1] - self.origin).to_array(),
+            (corners[2] - self.origin).to_array(),
+        ];
+        let mut near = 0;
+        for at in 0..Self::MAX {
             let (sx, sy) = (self.shear[0][at], self.shear[1][at]);
             let (ax, ay) = (a[x] - sx * a[z], a[y] - sy * a[z]);
             let (bx, by) = (b[x] - sx * b[z], b[y] - sy * b[z]);
@@ -108,9 +148,9 @@ impl ShearedRayPacket {
             let w = bx * ay - by * ax;
             let is_negative = (u < 0.0) | (v < 0.0) | (w < 0.0);
             let is_positive = (u > 0.0) | (v > 0.0) | (w > 0.0);
-            *is_near = !(is_negative & is_positive);
+            near |= u32::from(!(is_negative & is_positive)) << at;
         }
-        is_near.iter().enumerate().map(|(at, &is_near)| u32::from(is_near) << at).sum()
+        near
     }
 }
 
@@ -163,6 +203,34 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn several_triangles_are_tested_as_each_is() {
+        // Whole coordinates, so that many edges are met exactly.
+        let mut state = 1u64;
+        let mut coordinate = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 60) as f64 - 8.0
+        };
+        let mut corner = || DVec3::new(coordinate(), coordinate(), coordinate());
+        let (mut crossed, mut beside) = (0, 0);
+        for _ in 0..3000 {
+            let triangles: [[DVec3; 3]; 4] = std::array::from_fn(|_| [corner(), corner(), corner()]);
+            let direction = corner();
+            if direction == DVec3::ZERO {
+                continue;
+            }
+            let ray = ShearedRay::new(corner(), direction);
+            let near = ray.may_cross(triangles.each_ref());
+            for (lane, triangle) in triangles.iter().enumerate() {
+                let is_crossed = ray.cross(triangle).is_some();
+                assert!(!is_crossed || near >> lane & 1 == 1, "{ray:?} {triangle:?}");
+                crossed += u32::from(is_crossed);
+                beside += u32::from(near >> lane & 1 == 0);
+            }
+        }
+        assert!(crossed > 500 && beside > 5000, "{crossed} {beside}");
     }
 
     #[test]

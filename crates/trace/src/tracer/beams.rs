@@ -5,6 +5,7 @@ use crate::transparency::TransparencyMode;
 use crate::watertight::{ShearedRay, ShearedRayPacket};
 use crate::{Beam, Hit, Ray};
 use glam::DVec3;
+use numerics::with_widest_simd;
 use std::ops::Range;
 
 /// Rays of a beam, prepared for the test of many triangles.
@@ -63,24 +64,31 @@ impl Tracer {
             if farthest.is_finite() { beam.height(&self.space, farthest) } else { f32::INFINITY }
         };
         let mut farthest = far(&nearest);
-        self.hierarchy.walk_halfspaces(&beam.shaft(&self.space), farthest, &mut |leaf: Range<usize>| {
-            let mut is_changed = false;
-            for triangle in &self.triangles[leaf] {
-                packet.visit_near_rays(triangle, |at, ray, sheared| {
-                    is_changed |= self.accept_triangle(
-                        &mut nearest[at],
-                        triangle,
-                        ray,
-                        sheared,
-                        TransparencyMode::Fractional,
-                    );
+        with_widest_simd(
+            #[inline(always)]
+            || {
+                self.hierarchy.walk_halfspaces(&beam.shaft(&self.space), farthest, &mut |leaf: Range<
+                    usize,
+                >| {
+                    let mut is_changed = false;
+                    for triangle in &self.triangles[leaf] {
+                        packet.visit_near_rays(
+                            triangle,
+                            #[inline(always)]
+                            |at, ray, sheared| {
+                                let mode = TransparencyMode::Fractional;
+                                is_changed |=
+                                    self.accept_triangle(&mut nearest[at], triangle, ray, sheared, mode);
+                            },
+                        );
+                    }
+                    if is_changed {
+                        farthest = far(&nearest);
+                    }
+                    farthest
                 });
-            }
-            if is_changed {
-                farthest = far(&nearest);
-            }
-            farthest
-        });
+            },
+        );
         nearest.map(|nearest| nearest.hit)
     }
 
@@ -90,16 +98,27 @@ impl Tracer {
     pub fn all_hits(&self, beam: &Beam, rays: &[Ray], max_hits: usize) -> Vec<(usize, Hit)> {
         let Some(packet) = RayPacket::new(rays) else { return self.all_hits_per_ray(rays, max_hits) };
         let mut hits: Vec<(usize, Hit)> = Vec::new();
-        self.hierarchy.walk_halfspaces(&beam.shaft(&self.space), f32::INFINITY, &mut |leaf: Range<usize>| {
-            for triangle in &self.triangles[leaf] {
-                packet.visit_near_rays(triangle, |at, ray, sheared| {
-                    let mut only = Nearest { hit: None, t_max: ray.t_max };
-                    self.accept_triangle(&mut only, triangle, ray, sheared, TransparencyMode::Fractional);
-                    hits.extend(only.hit.map(|hit| (at, hit)));
+        with_widest_simd(
+            #[inline(always)]
+            || {
+                let shaft = beam.shaft(&self.space);
+                self.hierarchy.walk_halfspaces(&shaft, f32::INFINITY, &mut |leaf: Range<usize>| {
+                    for triangle in &self.triangles[leaf] {
+                        packet.visit_near_rays(
+                            triangle,
+                            #[inline(always)]
+                            |at, ray, sheared| {
+                                let mut only = Nearest { hit: None, t_max: ray.t_max };
+                                let mode = TransparencyMode::Fractional;
+                                self.accept_triangle(&mut only, triangle, ray, sheared, mode);
+                                hits.extend(only.hit.map(|hit| (at, hit)));
+                            },
+                        );
+                    }
+                    f32::INFINITY
                 });
-            }
-            f32::INFINITY
-        });
+            },
+        );
         // Of several hits at one t only the first triangle counts.
         let key = |(at, hit): &(usize, Hit)| (*at, hit.t, hit.point.triangle);
         hits.sort_unstable_by(|a, b| key(a).partial_cmp(&key(b)).expect("t is a number"));

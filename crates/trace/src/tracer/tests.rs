@@ -428,6 +428,45 @@ fn sight_is_what_single_rays_see() {
 }
 
 #[test]
+fn many_viewpoints_see_what_each_sees_alone() {
+    let mut random = Random(7);
+    let (mut partial, mut missed) = (0, 0);
+    for (round, offset) in OFFSETS.into_iter().cycle().take(60).enumerate() {
+        let mut mesh = random_triangles(&mut random, 400, 0.15);
+        mesh.positions.iter_mut().for_each(|p| *p += offset);
+        let material = if round % 3 == 0 { one_sided() } else { white() };
+        let tracer = Tracer::new(scene_of([(mesh, material)]));
+        let toward = random.direction();
+        let right = toward.any_orthonormal_vector();
+        let up = toward.cross(right);
+        let square = Square { center: offset + 3.0 * toward, right: 0.4 * right, up: 0.4 * up };
+        let places = TargetPoints::new(&places(&mut random));
+        let of_triangle = |triangle: u32| {
+            Viewpoint::Surface(SurfacePoint { triangle, barycentric: DVec2::splat(0.3) })
+        };
+        let mut viewpoints: Vec<_> = (0..9).map(|k| of_triangle(40 * k)).collect();
+        if round % 2 == 1 {
+            viewpoints.push(Viewpoint::Infinity(0.1 * random.in_cube() - toward));
+        }
+        let occluders = tracer.square_occluders(&viewpoints, &square).expect("all are on one side");
+        let of_first = tracer.square_occluders(&viewpoints[..1], &square).expect("it is on one side");
+        for &viewpoint in &viewpoints {
+            let alone = tracer.square_visibility(viewpoint, &square, &places);
+            assert_eq!(occluders.visibility(viewpoint, &places), alone, "{round}: {viewpoint:?}");
+            partial += u32::from(!alone.hidden.is_empty() && alone.hidden != places.all());
+            missed += u32::from(of_first.visibility(viewpoint, &places) != alone);
+        }
+    }
+    assert!(partial > 200, "{partial} see a part");
+    assert!(missed > 200, "the control: what stands before one viewpoint is not all, {missed}");
+    let tracer = Tracer::new(scene_of([(random_triangles(&mut random, 50, 0.5), white())]));
+    let square = Square { center: DVec3::ZERO, right: DVec3::X, up: DVec3::Y };
+    let sides = [DVec3::Z, DVec3::NEG_Z].map(Viewpoint::Infinity);
+    assert!(tracer.square_occluders(&sides, &square).is_none());
+    assert!(tracer.square_occluders(&[], &square).is_none());
+}
+
+#[test]
 fn no_place_shows_between_triangles() {
     let mut random = Random(6);
     let tracer = Tracer::new(scene_of([

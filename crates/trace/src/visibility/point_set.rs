@@ -26,7 +26,8 @@ impl PointSet {
     #[inline(always)]
     pub fn is_empty(&self) -> bool {
         // Together, not compared: that would send the words through memory.
-        self.0.iter().fold(0, |all, word| all | word) == 0
+        let [a, b, c, d] = self.0;
+        a | b | c | d == 0
     }
 
     /// Whether the point with this number is in the set.
@@ -59,14 +60,17 @@ impl BitAnd for PointSet {
 
     #[inline(always)]
     fn bitand(self, other: Self) -> Self {
-        Self(std::array::from_fn(|k| self.0[k] & other.0[k]))
+        let ([a, b, c, d], [e, f, g, h]) = (self.0, other.0);
+        Self([a & e, b & f, c & g, d & h])
     }
 }
 
 impl BitOrAssign for PointSet {
     #[inline(always)]
     fn bitor_assign(&mut self, other: Self) {
-        (0..Self::WORDS).for_each(|k| self.0[k] |= other.0[k]);
+        for k in 0..Self::WORDS {
+            self.0[k] |= other.0[k];
+        }
     }
 }
 
@@ -76,7 +80,8 @@ impl Sub for PointSet {
     /// Those that `other` lacks.
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
-        Self(std::array::from_fn(|k| self.0[k] & !other.0[k]))
+        let ([a, b, c, d], [e, f, g, h]) = (self.0, other.0);
+        Self([a & !e, b & !f, c & !g, d & !h])
     }
 }
 

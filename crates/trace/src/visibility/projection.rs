@@ -18,6 +18,23 @@ impl Outline {
     }
 }
 
+/// Triangles whose corners are projected at once, by corner and axis, a triangle a lane.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct OutlineGroup([[[f32; Self::MAX]; 3]; 3]);
+
+impl OutlineGroup {
+    /// The most triangles of a group.
+    pub const MAX: usize = 16;
+
+    /// The outlines of at least one triangle, at most [`Self::MAX`].
+    pub fn new(outlines: &[Outline]) -> Self {
+        let last = outlines.len() - 1;
+        let lane = |corner: usize, axis: usize, lane: usize| outlines[lane.min(last)].0[axis][corner];
+        let of_axis = |corner, axis| std::array::from_fn(|k| lane(corner, axis, k));
+        Self([0, 1, 2].map(|corner| [0, 1, 2].map(|axis| of_axis(corner, axis))))
+    }
+}
+
 /// The projection from a viewpoint onto the square, of local space.
 ///
 /// A point at c, projected from o, is at u = right·(c − o)/depth − middle.x, depth = toward·(c − o) being 1 on the square; v
@@ -106,6 +123,46 @@ impl Projection {
         Boxes::new(low, high, is_bounded, u32::MAX >> (31 - last))
     }
 
+    /// The boxes in the square's plane around the projections of a group of triangles: those of [`Self::boxes`].
+    #[inline(always)]
+    pub fn group_boxes(&self, OutlineGroup(corners): &OutlineGroup) -> GroupBoxes {
+        const N: usize = OutlineGroup::MAX;
+        let (mut low, mut high) = ([[f32::INFINITY; N]; 2], [[f32::NEG_INFINITY; N]; 2]);
+        let mut is_bounded = [true; N];
+        for [x, y, z] in corners {
+            for k in 0..N {
+                let from_origin = [x[k] - self.origin.x, y[k] - self.origin.y, z[k] - self.origin.z];
+                let along =
+                    |side: Vec3| from_origin[0] * side.x + from_origin[1] * side.y + from_origin[2] * side.z;
+                let (mut per_depth, mut depth_share) = (1.0, 0.0);
+                if let Some(toward) = self.toward {
+                    let depth = along(toward);
+                    is_bounded[k] &= depth > 16.0 * self.depth_error;
+                    per_depth = 1.0 / depth;
+                    depth_share = per_depth * (1.1 * self.depth_error);
+                }
+                for axis in 0..2 {
+                    let numerator = along(self.sides[axis]);
+                    let error = (numerator.abs() * depth_share + self.side_error) * (per_depth * 1.1) + SLACK;
+                    let at = numerator * per_depth - self.middle[axis];
+                    let (from, to) = (at - error, at + error);
+                    low[axis][k] = if low[axis][k] < from { low[axis][k] } else { from };
+                    high[axis][k] = if high[axis][k] > to { high[axis][k] } else { to };
+                }
+            }
+        }
+        let (mut bounded, mut reaching) = (0, 0);
+        for k in 0..N {
+            // A square without extent gives no bounds.
+            let has_bounds = is_bounded[k] & (low[0][k] <= high[0][k]) & (low[1][k] <= high[1][k]);
+            let is_outside =
+                (low[0][k] > 1.0) | (high[0][k] < -1.0) | (low[1][k] > 1.0) | (high[1][k] < -1.0);
+            bounded |= u32::from(has_bounds) << k;
+            reaching |= u32::from(!(has_bounds & is_outside)) << k;
+        }
+        GroupBoxes { low, high, bounded, reaching }
+    }
+
     /// The boxes in the square's plane around the projections of a node's boxes.
     #[inline(always)]
     pub fn node_boxes(&self, node: &Node) -> Boxes {
@@ -141,6 +198,26 @@ impl Projection {
             high[axis] = (most * nearest).max(most * farthest) - self.middle[axis] + error;
         }
         Boxes::new(low, high, is_bounded, 0b1111)
+    }
+}
+
+/// Boxes on the square around the triangles of a group.
+pub(super) struct GroupBoxes {
+    low: [[f32; OutlineGroup::MAX]; 2],
+    high: [[f32; OutlineGroup::MAX]; 2],
+    /// See [`Boxes`].
+    bounded: u32,
+    /// A bit for each box that may overlap the square.
+    pub reaching: u32,
+}
+
+impl GroupBoxes {
+    /// See [`Boxes::get`].
+    #[inline(always)]
+    pub fn get(&self, index: usize) -> Option<Bounds> {
+        let is_bounded = self.bounded >> index & 1 == 1;
+        let at = |sides: &[[f32; OutlineGroup::MAX]; 2]| [sides[0][index], sides[1][index]];
+        is_bounded.then(|| Bounds { low: at(&self.low), high: at(&self.high) })
     }
 }
 

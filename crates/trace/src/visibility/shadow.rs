@@ -12,11 +12,11 @@
 //! functions there, so that no ray passes between them. Toward a point at infinity the same holds with its direction.
 
 use crate::visibility::{Eye, Square};
-use glam::{DVec3, Vec4};
+use glam::DVec3;
 
 /// A linear function of u and v.
 #[derive(Clone, Copy)]
-pub(super) struct Linear([f32; 3]);
+struct Linear([f32; 3]);
 
 impl Linear {
     /// a·u + b·v + c, scaled.
@@ -25,13 +25,13 @@ impl Linear {
         let largest = a.abs().max(b.abs()).max(c.abs());
         let exponent = (largest.to_bits() >> 52).min(2045);
         let scale = f64::from_bits((2046 - exponent) << 52);
-        Self([a, b, c].map(|part| (part * scale) as f32))
+        Self([(a * scale) as f32, (b * scale) as f32, (c * scale) as f32])
     }
 
-    /// The values of the linear function at four places with these coordinates.
+    /// The value of the linear function at a place with these coordinates.
     #[inline(always)]
-    pub fn evaluate(self, [u, v]: [Vec4; 2]) -> Vec4 {
-        let [a, b, c] = self.0.map(Vec4::splat);
+    fn evaluate(self, [u, v]: [f32; 2]) -> f32 {
+        let [a, b, c] = self.0;
         (a * u + b * v) + c
     }
 
@@ -45,8 +45,8 @@ impl Linear {
 
 /// The places behind a triangle: where its edges' functions are not negative, and that of its plane is positive.
 pub(super) struct Shadow {
-    pub edges: [Linear; 3],
-    pub beyond: Linear,
+    edges: [Linear; 3],
+    beyond: Linear,
 }
 
 impl Shadow {
@@ -57,7 +57,7 @@ impl Shadow {
         let Square { center, right, up } = *square;
         match eye {
             Eye::At(point) => {
-                let [a, b, c] = corners.map(|corner| corner - point);
+                let [a, b, c] = [corners[0] - point, corners[1] - point, corners[2] - point];
                 let to_square = center - point;
                 let normal = (b - a).cross(c - a);
                 let height = normal.dot(a);
@@ -69,7 +69,7 @@ impl Shadow {
                 Self::within(height != 0.0, linear(normal, height), [(b, c), (c, a), (a, b)], edge)
             }
             Eye::Toward(direction) => {
-                let [a, b, c] = corners.map(|corner| corner - center);
+                let [a, b, c] = [corners[0] - center, corners[1] - center, corners[2] - center];
                 let normal = (b - a).cross(c - a);
                 let facing = normal.dot(direction);
                 let sign = facing.signum();
@@ -85,6 +85,19 @@ impl Shadow {
         }
     }
 
+    /// A bit for each of some places, by their coordinates, that lies behind the triangle.
+    #[inline(always)]
+    pub fn covers<const COUNT: usize>(&self, [u, v]: &[[f32; COUNT]; 2]) -> u32 {
+        let [a, b, c] = self.edges;
+        let mut covered = 0;
+        for k in 0..COUNT {
+            let at = [u[k], v[k]];
+            let is_within = (a.evaluate(at) >= 0.0) & (b.evaluate(at) >= 0.0) & (c.evaluate(at) >= 0.0);
+            covered |= u32::from(is_within & (self.beyond.evaluate(at) > 0.0)) << k;
+        }
+        covered
+    }
+
     /// From its parts, as long as each leaves something of the square.
     #[inline(always)]
     fn within(
@@ -97,9 +110,10 @@ impl Shadow {
             return None;
         }
         let mut edges = [beyond; 3];
-        for (edge_line, (from, to)) in edges.iter_mut().zip(sides) {
-            *edge_line = edge(from, to);
-            if edge_line.max_on_square() < 0.0 {
+        for k in 0..3 {
+            let (from, to) = sides[k];
+            edges[k] = edge(from, to);
+            if edges[k].max_on_square() < 0.0 {
                 return None;
             }
         }

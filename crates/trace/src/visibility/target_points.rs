@@ -2,17 +2,23 @@
 
 use crate::visibility::PointSet;
 use crate::visibility::shadow::Shadow;
-use glam::{DVec2, Vec4};
+use glam::DVec2;
 
 /// Points on a square, up to [`PointSet::MAX`].
 #[derive(Clone, Debug, Default)]
 pub struct TargetPoints {
-    /// By fours; what the last four do not use is at the square's middle.
-    coordinates: Vec<[Vec4; 2]>,
+    /// By groups; what the last group does not use is at the square's middle.
+    coordinates: Vec<[[f32; GROUP]; 2]>,
     all: PointSet,
     /// By axis and strip of the square: the places in this strip and in those after it, in this and in those before.
     strips: [[[PointSet; 2]; STRIPS]; 2],
 }
+
+/// Points that are tested at once.
+const GROUP: usize = 16;
+
+/// Groups to a word of a [`PointSet`].
+const GROUPS_PER_WORD: usize = u64::BITS as usize / GROUP;
 
 /// Strips that the square is cut into along either axis: finer than places lie, so that what is small has few of them.
 const STRIPS: usize = 32;
@@ -42,11 +48,8 @@ impl TargetPoints {
     /// If there are more than [`PointSet::MAX`].
     pub fn new(places: &[DVec2]) -> Self {
         assert!(places.len() <= PointSet::MAX, "at most {} points", PointSet::MAX);
-        let four = |four: &[DVec2]| {
-            let of = |axis: usize| {
-                Vec4::from_array(std::array::from_fn(|k| four.get(k).map_or(0.0, |p| p[axis] as f32)))
-            };
-            [of(0), of(1)]
+        let group = |group: &[DVec2]| {
+            [0, 1].map(|axis| std::array::from_fn(|k| group.get(k).map_or(0.0, |p| p[axis] as f32)))
         };
         let of_strips = |axis: usize| {
             let strip_of = |k: usize| strip(places[k][axis] as f32);
@@ -55,7 +58,7 @@ impl TargetPoints {
             std::array::from_fn(|strip| [those(&|mine| mine >= strip), those(&|mine| mine <= strip)])
         };
         Self {
-            coordinates: places.chunks(4).map(four).collect(),
+            coordinates: places.chunks(GROUP).map(group).collect(),
             all: (0..places.len()).collect(),
             strips: [of_strips(0), of_strips(1)],
         }
@@ -68,8 +71,8 @@ impl TargetPoints {
 
     /// The coordinates, in [−1, 1]², of the point with number `index`, as they are used: rounded to f32.
     pub fn position(&self, index: usize) -> DVec2 {
-        let [u, v] = self.coordinates[index / 4];
-        DVec2::new(f64::from(u[index % 4]), f64::from(v[index % 4]))
+        let [u, v] = &self.coordinates[index / GROUP];
+        DVec2::new(f64::from(u[index % GROUP]), f64::from(v[index % GROUP]))
     }
 
     /// Those in a box, and some that are not.
@@ -85,17 +88,11 @@ impl TargetPoints {
     /// Those of some that lie in a shadow.
     #[inline(always)]
     pub(super) fn in_shadow(&self, shadow: &Shadow, candidates: PointSet) -> PointSet {
-        let [a, b, c] = shadow.edges;
         let mut shadowed = PointSet::default();
-        for (word, chunks) in self.coordinates.chunks(16).enumerate() {
-            let mut left = candidates.words()[word];
-            while left != 0 {
-                let chunk = left.trailing_zeros() / 4;
-                let at = chunks[chunk as usize];
-                let within = a.evaluate(at).min(b.evaluate(at)).min(c.evaluate(at)).cmpge(Vec4::ZERO);
-                let behind = within & shadow.beyond.evaluate(at).cmpgt(Vec4::ZERO);
-                shadowed.words_mut()[word] |= u64::from(behind.bitmask()) << (4 * chunk);
-                left &= !(0b1111 << (4 * chunk));
+        for (number, group) in self.coordinates.iter().enumerate() {
+            let (word, first) = (number / GROUPS_PER_WORD, number % GROUPS_PER_WORD * GROUP);
+            if candidates.words()[word] >> first & ((1 << GROUP) - 1) != 0 {
+                shadowed.words_mut()[word] |= u64::from(shadow.covers(group)) << first;
             }
         }
         shadowed & candidates
