@@ -5,7 +5,7 @@ use crate::baker::occluders::{Depths, Footprint, Occluders};
 use crate::baker::outgoing::{self, ApertureRadiance, RadianceQuery};
 use crate::baker::outliers::{self, Outliers};
 use crate::baker::placement::Placement;
-use crate::baker::shadow_rays::{self, Fineness, Patterns, VisiblePart};
+use crate::baker::shadow_rays::{self, Patterns, VisibilityRequest, VisiblePart};
 use crate::domain::{Cell, Density, Domain};
 use crate::margin::standard_margin_px;
 use crate::options::BakeOptions;
@@ -20,7 +20,10 @@ use trace::{IncidentLight, Radiance, Tracer, Viewpoint};
 
 /// The number of cells that are traced together unless light is computed for more at once: few, so that the allocator reuses the
 /// same memory for the next ones.
-const BATCH_CELLS: usize = 4;
+const BATCH_CELLS: usize = TILE_CELLS;
+
+/// The number of cells, one after the other along Morton's curve, whose occluders are searched for together.
+const TILE_CELLS: usize = 16;
 
 /// A surface of a cell whose visibility has not been computed yet.
 struct Candidate {
@@ -235,17 +238,36 @@ impl<'a> BlockBaker<'a> {
             survey.has_pane
                 || !is_pinhole && (survey.has_gap || occluders.may_reveal(survey.cell, survey.depths.nearest))
         };
-        let behind = |survey: &CellSurvey| {
-            let layers = self.trace_layers(survey.cell, survey.density, true);
-            let visible = |(index, group): (usize, &Group)| {
-                let candidate = self.candidate(survey.cell, &layers, group);
-                self.visible_parts(occluders, survey.cell, &candidate, index)
-            };
-            let visible: Vec<_> = layers.groups.iter().enumerate().map(visible).collect();
-            let groups = layers.groups.into_iter().zip(visible).filter(|(_, parts)| !parts.is_empty());
-            groups.collect::<Vec<_>>()
-        };
+        let behind = |survey: &CellSurvey| self.trace_layers(survey.cell, survey.density, true);
         let behind: Vec<_> = surveys.iter().map(|survey| may_show(survey).then(|| behind(survey))).collect();
+        let candidates_behind = |survey: &CellSurvey, layers: &Layers| -> Vec<Candidate> {
+            layers.groups.iter().map(|group| self.candidate(survey.cell, layers, group)).collect()
+        };
+        let candidates: Vec<Option<Vec<Candidate>>> = surveys
+            .iter()
+            .zip(&behind)
+            .map(|(survey, layers)| layers.as_ref().map(|layers| candidates_behind(survey, layers)))
+            .collect();
+        let visible: Vec<Vec<Vec<VisiblePart>>> = surveys
+            .chunks(TILE_CELLS)
+            .zip(candidates.chunks(TILE_CELLS))
+            .flat_map(|(surveys, candidates)| {
+                let of_cells = surveys.iter().zip(candidates).map(|(survey, candidates)| {
+                    let nearest = || survey.surfaces.iter().map(|(candidate, _)| candidate).collect();
+                    let all = candidates.as_ref().map_or_else(nearest, |all| all.iter().collect());
+                    (survey.cell, all)
+                });
+                self.visible_parts(occluders, &of_cells.collect::<Vec<_>>())
+            })
+            .collect();
+        let behind: Vec<Option<Vec<_>>> = behind
+            .into_iter()
+            .zip(&visible)
+            .map(|(layers, visible)| {
+                let groups = layers?.groups.into_iter().zip(visible);
+                Some(groups.filter(|(_, parts)| !parts.is_empty()).collect())
+            })
+            .collect();
         let groups = surveys
             .iter()
             .zip(&behind)
@@ -258,11 +280,11 @@ impl<'a> BlockBaker<'a> {
                 baked.iter().flat_map(|sample| parts.iter().filter_map(|part| occluded(sample, part))),
             );
         };
-        for (survey, behind) in surveys.iter().zip(&behind) {
+        for ((survey, behind), visible) in surveys.iter().zip(&behind).zip(&visible) {
             match behind {
-                None => survey.surfaces.iter().enumerate().for_each(|(index, (candidate, baked))| {
-                    push(&self.visible_parts(occluders, survey.cell, candidate, index), baked);
-                }),
+                None => {
+                    survey.surfaces.iter().zip(visible).for_each(|((_, baked), parts)| push(parts, baked));
+                }
                 Some(groups) => {
                     groups.iter().zip(&mut sampled).for_each(|((_, parts), baked)| push(parts, &baked))
                 }
@@ -271,23 +293,35 @@ impl<'a> BlockBaker<'a> {
         samples
     }
 
-    /// The visible parts of the aperture from a cell's `index`-th surface.
+    /// The visible parts of the aperture from the surfaces of some cells that lie together, cell by cell.
     fn visible_parts(
         &self,
         occluders: &Occluders,
-        cell: Cell,
-        candidate: &Candidate,
-        index: usize,
-    ) -> Vec<VisiblePart> {
+        cells: &[(Cell, Vec<&Candidate>)],
+    ) -> Vec<Vec<Vec<VisiblePart>>> {
         let Self { tracer, view, patterns, .. } = self;
-        let Candidate { center, inverse_depth, slope, viewpoint, is_in_front } = *candidate;
-        let is_open =
-            || is_in_front && !occluders.may_occlude(&Footprint { center, cell, inverse_depth, slope });
-        if view.optics.aperture_radius == 0.0 || is_open() {
-            return vec![(Visibility::Open, 1.0)];
-        }
-        let (fineness, number) = (Fineness::for_depth(view, inverse_depth), Patterns::number_of(cell, index));
-        shadow_rays::visible_parts(tracer, view, patterns, viewpoint, fineness, number, |_| true)
+        let is_open = |cell: Cell, candidate: &Candidate| {
+            let Candidate { center, inverse_depth, slope, is_in_front, .. } = *candidate;
+            let may_be_hidden = || occluders.may_occlude(&Footprint { center, cell, inverse_depth, slope });
+            view.optics.aperture_radius == 0.0 || is_in_front && !may_be_hidden()
+        };
+        let request = |&(cell, ref candidates): &(Cell, Vec<&Candidate>)| -> Vec<Option<VisibilityRequest>> {
+            let request = |(index, candidate): (usize, &&Candidate)| {
+                let Candidate { viewpoint, inverse_depth, .. } = **candidate;
+                let number = Patterns::number_of(cell, index);
+                let request = VisibilityRequest { from: viewpoint, inverse_depth, number };
+                (!is_open(cell, candidate)).then_some(request)
+            };
+            candidates.iter().enumerate().map(request).collect()
+        };
+        let requests: Vec<_> = cells.iter().map(request).collect();
+        let asked: Vec<_> = requests.iter().flatten().flatten().copied().collect();
+        let mut found = shadow_rays::visible_parts_of_many(tracer, view, patterns, &asked).into_iter();
+        let mut parts = |request: Option<VisibilityRequest>| match request {
+            None => vec![(Visibility::Open, 1.0)],
+            Some(_) => found.next().expect("every request is answered"),
+        };
+        requests.into_iter().map(|cell| cell.into_iter().map(&mut parts).collect()).collect()
     }
 }
 

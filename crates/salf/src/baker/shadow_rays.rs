@@ -117,7 +117,17 @@ pub fn visible_parts(
     is_on_side: impl Fn(DVec2) -> bool,
 ) -> Vec<VisiblePart> {
     let places = patterns.pattern_points(fineness, number);
-    let SquareVisibility { hidden, shares } = tracer.square_visibility(from, &view.aperture_square(), places);
+    let visibility = tracer.square_visibility(from, &view.aperture_square(), places);
+    parts(visibility, places, fineness, is_on_side)
+}
+
+/// The parts of the aperture by what is visible of its places.
+fn parts(
+    SquareVisibility { hidden, shares }: SquareVisibility,
+    places: &TargetPoints,
+    fineness: Fineness,
+    is_on_side: impl Fn(DVec2) -> bool,
+) -> Vec<VisiblePart> {
     let visible = (places.all() - hidden).iter().filter(|&cell| is_on_side(places.position(cell)));
     let part =
         |cells: PointSet| Visibility::from_words(&cells.words()[..fineness.cells_per_side().pow(2) / 64]);
@@ -131,6 +141,65 @@ pub fn visible_parts(
             levels.into_iter().map(|(share, cells)| (part(cells.into_iter().collect()), share)).collect()
         }
     }
+}
+
+/// A surface point of whose view of the aperture is asked.
+#[derive(Clone, Copy, Debug)]
+pub struct VisibilityRequest {
+    /// The point.
+    pub from: Viewpoint,
+    /// Its inverse depth, 1/length.
+    pub inverse_depth: f64,
+    /// The number of its pattern.
+    pub number: u32,
+}
+
+/// Points that are so far apart in depth, px of parallax over half the aperture, share no search for what hides them.
+const TOGETHER_PX: f64 = 4.0;
+
+/// [`visible_parts`] of points that lie close together in the picture, in their order. What may hide any of them is searched for once.
+pub fn visible_parts_of_many(
+    tracer: &Tracer,
+    view: &View,
+    patterns: &Patterns,
+    requests: &[VisibilityRequest],
+) -> Vec<Vec<VisiblePart>> {
+    let alone = |request: &VisibilityRequest| {
+        let VisibilityRequest { from, inverse_depth, number } = *request;
+        let fineness = Fineness::for_depth(view, inverse_depth);
+        visible_parts(tracer, view, patterns, from, fineness, number, |_| true)
+    };
+    // Shares of light are multiplied in the order in which what is half transparent is found.
+    if requests.len() < 2 || tracer.has_transparency() {
+        return requests.iter().map(alone).collect();
+    }
+    let mut by_depth: Vec<usize> = (0..requests.len()).collect();
+    let depth = |&at: &usize| requests[at].inverse_depth;
+    by_depth.sort_by(|a, b| depth(a).total_cmp(&depth(b)).then(a.cmp(b)));
+    let mut found = vec![Vec::new(); requests.len()];
+    let square = view.aperture_square();
+    let mut left = by_depth.as_slice();
+    while let Some(first) = left.first() {
+        let farthest = depth(first);
+        let is_near = |at: &&usize| (depth(at) - farthest) * view.radius_per_kappa_px <= TOGETHER_PX;
+        let count = left.iter().take_while(is_near).count().max(1);
+        let (together, others) = left.split_at(count);
+        left = others;
+        let viewpoints: Vec<Viewpoint> = together.iter().map(|&at| requests[at].from).collect();
+        let occluders = if count > 1 { tracer.square_occluders(&viewpoints, &square) } else { None };
+        for &at in together {
+            let VisibilityRequest { from, inverse_depth, number } = requests[at];
+            found[at] = match &occluders {
+                None => alone(&requests[at]),
+                Some(occluders) => {
+                    let fineness = Fineness::for_depth(view, inverse_depth);
+                    let places = patterns.pattern_points(fineness, number);
+                    parts(occluders.visibility(from, places), places, fineness, |_| true)
+                }
+            };
+        }
+    }
+    found
 }
 
 /// Shares that differ by no more than this part of them are one.
