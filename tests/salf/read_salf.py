@@ -14,7 +14,7 @@ import struct
 import sys
 from collections import namedtuple
 
-VERSION = 6
+VERSION, VERSION_WITH_SPLATS = 6, 7
 MAGIC = b"FBSALF\r\n"
 LONGEST_TEXT = 65536
 LARGEST_SIDE = 16384
@@ -22,6 +22,7 @@ FARTHEST_BLOCK = 1 << 20
 NO_PLANE = 0xFFFF
 NO_TRIANGLE = 0xFFFFFFFF
 FORMS = ("whole_cell", "part_of_cell", "patch", "part_of_quadrant")
+SPLAT, SPLAT_LEVEL = "splat", 7
 WORDS_OF_FORM = (0, 4, 0, 1)
 RECORD = struct.Struct("<HHHH3s5s")
 
@@ -238,7 +239,8 @@ class Salf:
             raise Damaged("not a .salf file")
         file.take(len(MAGIC))
         self.version = file.number("I")
-        require(self.version == VERSION, f"version {self.version} is not known, only version {VERSION}")
+        known = f"only {VERSION} and {VERSION_WITH_SPLATS}"
+        require(self.version in (VERSION, VERSION_WITH_SPLATS), f"version {self.version} is not known, {known}")
         self.source = file.path()
         self.triangles = file.number("I")
         self.camera = read_camera(file)
@@ -314,8 +316,10 @@ class Salf:
         records = self.records[RECORD.size * record : RECORD.size * ends[0]]
         for place, number, b1, b2, inverse_depth, rgb in RECORD.iter_unpack(records):
             level, form, view = place >> 8 & 7, place >> 11 & 3, place >> 13 & 3
-            is_patch, is_quadrant = form == 2, form == 3
+            is_patch, is_quadrant, is_splat = form == 2, form == 3, (form, level) == (0, SPLAT_LEVEL)
+            level = 0 if is_splat else level
             require(level <= (3 if is_quadrant else 4) and view <= 2, "a sample that makes no sense")
+            require(self.version == VERSION_WITH_SPLATS or not is_splat, "a splat in a version without them")
             inverse_depth = f24(inverse_depth)
             require(math.isfinite(inverse_depth), "a depth that is not finite")
             corner = [k + (place >> shift & 15) for k, shift in zip(self.blocks[index].corner, (0, 4))]
@@ -335,7 +339,12 @@ class Salf:
                 if is_quadrant:
                     sub_cells, level = sub_cells << 16 * level, 0
                 center, half_size, scale = part_of_cell(corner, 1 << level, sub_cells)
-            if number == NO_PLANE and not is_patch:
+            if is_splat:
+                triangle, barycentric = b1 | b2 << 16, (0.0, 0.0)
+                self.check_triangle(triangle)
+                shares = (*struct.unpack("<e", struct.pack("<H", number)), 0.0, 0.0)
+                require(math.isfinite(shares[0]) and shares[0] >= 0, "a weight that makes no sense")
+            elif number == NO_PLANE and not is_patch:
                 triangle, barycentric, shares = None, None, (1.0, 0.0, 0.0)
             else:
                 require(number < len(planes), f"block {index}")
@@ -347,7 +356,7 @@ class Salf:
             quantum = 2.0 ** ((bits & 0x7F) - 74)
             weight, *tilt = (f32(f32(scale) * share) for share in shares)
             yield Sample(
-                FORMS[form],
+                SPLAT if is_splat else FORMS[form],
                 tuple(map(f32, center)),
                 tuple(map(f32, half_size)),
                 inverse_depth,
@@ -383,7 +392,7 @@ def share_seen(sample):
 
 
 def summary(salf):
-    forms = dict.fromkeys((*FORMS, "loose"), 0)
+    forms = dict.fromkeys((*FORMS, SPLAT, "loose"), 0)
     count = partial = background = 0
     seen, radiance, by_weight = Mean(1), Mean(3), Mean(3)
     low, high = math.inf, 0.0

@@ -4,14 +4,15 @@
 //!
 //! ```text
 //! magic        8 bytes   "FBSALF\r\n"
-//! version      u32       6
+//! version      u32       6, or 7 where there are records of splats
 //! source       path      the scene or project it was baked from
 //! triangles    u32       of that scene: what surface addresses count in
 //! camera       see `write_camera`
 //! margin       u32       px sampled outside the frame
 //! counts       7 × u64   of blocks, records, planes, sub-cells, patches, codes, loose samples
 //! blocks       each: corner 2 × i32 (px), where its records, planes, sub-cells, patches and codes begin, 5 × u32
-//! records      16 bytes each: place, plane, barycentric 2 × u16, inverse depth (3 bytes), radiance (5 bytes)
+//! records      16 bytes each: place, plane, barycentric 2 × u16, inverse depth (3 bytes), radiance (5 bytes);
+//!              of splats: weight f16 and triangle u32 in place of plane and barycentric
 //! planes       10 bytes each: triangle u32, weights 3 × f16
 //! sub-cells    u16 each
 //! patches      10 bytes each: place in the pixel (3 bytes), half size 2 × u16, largest weight (3 bytes)
@@ -37,7 +38,7 @@ mod samples;
 use crate::{Carried, Salf};
 use camera::{read_camera, write_camera};
 pub use error::SalfFileError;
-use error::VERSION;
+use error::{VERSION, VERSION_WITH_SPLATS};
 use little_endian::{bytes, read_path, write_text};
 use samples::{read_samples, write_samples};
 use sha2::{Digest, Sha256};
@@ -66,7 +67,8 @@ impl SalfFile {
     pub fn write(&self, to: impl Write) -> io::Result<()> {
         let mut to = Hashing { inner: to, hash: Sha256::new() };
         to.write_all(MAGIC)?;
-        to.write_all(&VERSION.to_le_bytes())?;
+        let version = if self.salf.samples.has_splats() { VERSION_WITH_SPLATS } else { VERSION };
+        to.write_all(&version.to_le_bytes())?;
         write_text(&mut to, self.source.as_os_str().as_encoded_bytes())?;
         to.write_all(&self.triangles.to_le_bytes())?;
         write_camera(&mut to, &self.salf.camera)?;
@@ -88,7 +90,7 @@ impl SalfFile {
             return Err(SalfFileError::NotSalf);
         }
         let version = u32::from_le_bytes(bytes(&mut from)?);
-        if version != VERSION {
+        if ![VERSION, VERSION_WITH_SPLATS].contains(&version) {
             return Err(SalfFileError::Version(version));
         }
         let source = read_path(&mut from)?;
@@ -97,6 +99,9 @@ impl SalfFile {
         camera.validate().map_err(|error| SalfFileError::Damaged(error.to_string()))?;
         let margin_px = u32::from_le_bytes(bytes(&mut from)?);
         let samples = read_samples(&mut from, triangles)?;
+        if samples.has_splats() != (version == VERSION_WITH_SPLATS) {
+            return Err(SalfFileError::Damaged("splats in a version without them, or none".into()));
+        }
         let expected = from.hash.clone().finalize();
         let stored: [u8; 32] = bytes(&mut from)?;
         if stored[..] != expected[..] {

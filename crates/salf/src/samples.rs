@@ -3,8 +3,8 @@
 //! A [`Sample`](crate::Sample) takes a hundred bytes and more. Packed, a cell of the picture, or a part of one, takes 16 bytes: which cell
 //! of which block, the plane it lies on (a number among those of its block), its surface address, depth and radiance. Where
 //! its footprint is and what it weighs follows from the cell and its sub-cells ([`crate::Cell::part`]), how its weight changes over the
-//! aperture from the plane. A patch of surface takes 10 bytes more, a partly visible aperture about 4 ([`masks`]). What does
-//! not fit such a form, like a radiance of 2⁶⁴, is stored unpacked.
+//! aperture from the plane. A patch of surface takes 10 bytes more, a partly visible aperture about 4 ([`masks`]). A Gaussian splat has no plane: nearly
+//! each would need one of its own, for its weight. What does not fit such a form, like a radiance of 2⁶⁴, is stored unpacked.
 //!
 //! What is lost: depths are exact to 2⁻¹⁷ of themselves, radiances to 2⁻¹⁰ of their largest channel, addresses to 1/65535 of
 //! their triangle, weights over the aperture to 2⁻¹¹ beside its centre; places of patches to 1/4096 px. Footprints and

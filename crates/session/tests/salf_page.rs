@@ -118,7 +118,17 @@ impl Baked {
         let folder = tempfile::tempdir().unwrap();
         let scene = folder.path().join("quads.glb");
         tiny_glb::write(&scene);
-        let input = Input::open(&scene, &Default::default(), &Unwatched).unwrap();
+        Self::of_file(folder, &scene, change, materials)
+    }
+
+    /// Bakes a file in a folder.
+    fn of_file(
+        folder: TempDir,
+        scene: &Path,
+        change: impl FnOnce(&mut Camera),
+        materials: impl FnOnce(&mut [Material]),
+    ) -> Self {
+        let input = Input::open(scene, &Default::default(), &Unwatched).unwrap();
         let lens = Camera { aperture_radius: 0.1, sensor_height: 0.1, ..input.camera.clone() };
         let mut camera = Camera { width: 60, height: 40, background: Some([0.1, 0.05, 0.2]), ..lens };
         change(&mut camera);
@@ -128,7 +138,7 @@ impl Baked {
         let lit = LitScene::new(Arc::new(Tracer::new(changed.into())), input.light, &input.resources);
         let salf = Arc::new(RenderOptions::default().bake(&lit, &camera, &focus, &Unwatched).unwrap());
         let baked = Self { folder, salf };
-        write_salf(&baked.path(), &scene, &input.scene, &baked.salf).unwrap();
+        write_salf(&baked.path(), scene, &input.scene, &baked.salf).unwrap();
         baked
     }
 
@@ -151,6 +161,21 @@ impl Baked {
             wall.workflow = Workflow::MetallicRoughness { metallic: scalar(0.9), roughness: scalar(0.1) };
         };
         Self::of_materials(|camera| camera.focus_distance = 1.0, change)
+    }
+
+    /// Three walls of splats behind each other, with gaps.
+    fn of_splats() -> Self {
+        let splat = |k: u16| {
+            let [x, y] = [k % 10, k / 10 % 10].map(|step| 0.08 * f32::from(step) - 0.36);
+            let floats = [x, y, 2.0 + f32::from(k / 100), 0.04, 0.03, 0.01];
+            let color = [k, 3 * k, 5 * k, 230].map(|value| value as u8);
+            floats.into_iter().flat_map(f32::to_le_bytes).chain(color).chain([255, 128, 128, 128])
+        };
+        let folder = tempfile::tempdir().unwrap();
+        let scan = folder.path().join("scan.splat");
+        std::fs::write(&scan, (0..300).flat_map(splat).collect::<Vec<_>>()).unwrap();
+        let camera = |camera: &mut Camera| (camera.focus_distance, camera.aperture_radius) = (2.0, 0.05);
+        Self::of_file(folder, &scan, camera, |_| ())
     }
 
     /// From the left, in the card's plane: the card is edge-on, the sky behind it is seen.
@@ -238,6 +263,7 @@ fn a_reader_by_the_page_finds_every_sample_as_we_do() {
         (Baked::from_the_front(), ["whole_cell", "part_of_cell", "part_of_quadrant"], 8),
         (Baked::from_the_side(), ["whole_cell", "part_of_cell", "patch"], 16),
         (Baked::of_glass_and_gloss(), ["whole_cell", "part_of_cell", "part_of_quadrant"], 16),
+        (Baked::of_splats(), ["splat", "splat", "splat"], 16),
     ] {
         let found = lines(&baked.path());
         assert_eq!(found.len(), baked.salf.samples.len());

@@ -89,7 +89,8 @@ impl<'a> BlockBaker<'a> {
         if !self.packs {
             return Samples::from(baked.into_iter().map(|baked| baked.sample).collect::<Vec<_>>());
         }
-        let mut packer = Packer::new(corner);
+        let splats = self.tracer.scene().splats.as_ref().map_or(0..0, |splats| splats.triangles());
+        let mut packer = Packer::new(corner, splats);
         baked.into_iter().for_each(|baked| packer.push(baked));
         packer.finish()
     }

@@ -2,8 +2,10 @@
 
 use std::io;
 
-/// The version of the format that is written, and the only one that is read.
+/// The version of the format that is written where no sample is a splat's.
 pub const VERSION: u32 = 6;
+/// The version that has records of splats.
+pub const VERSION_WITH_SPLATS: u32 = 7;
 
 /// Why a `.salf` file cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -15,7 +17,9 @@ pub enum SalfFileError {
     #[error("not a .salf file (bake one with `focus-brush bake`)")]
     NotSalf,
     /// It is of another version.
-    #[error("version {0} of the .salf format is not known, only version {VERSION} (bake it again)")]
+    #[error(
+        "version {0} of the .salf format is not known, only {VERSION} and {VERSION_WITH_SPLATS} (bake it again)"
+    )]
     Version(u32),
     /// It ends early.
     #[error("cut short (copy it again, or bake it again)")]

@@ -5,7 +5,7 @@ use crate::sample::{Sample, Visibility};
 use crate::samples::numbers::Rgb40;
 use crate::samples::plane::Plane;
 use crate::samples::record::{Patch, Record};
-use glam::{IVec2, Vec3};
+use glam::{DVec2, IVec2, Vec3};
 use scene::SurfacePoint;
 
 /// The samples of a light field, numbered from 0.
@@ -53,6 +53,11 @@ impl Samples {
     /// Whether there are no samples.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
+    }
+
+    /// Whether some of its records are of splats.
+    pub(crate) fn has_splats(&self) -> bool {
+        self.records.iter().any(Record::is_splat)
     }
 
     /// Bytes of memory of all samples, and of these what partly occluded samples take.
@@ -150,10 +155,14 @@ impl Samples {
 
     pub(super) fn plane_of(&self, chunk: usize, record: &Record) -> Option<&Plane> {
         let first = self.chunks[chunk].starts.planes as usize;
-        (record.plane != Record::BACKGROUND).then(|| &self.planes[first + record.plane as usize])
+        (record.plane != Record::BACKGROUND && !record.is_splat())
+            .then(|| &self.planes[first + record.plane as usize])
     }
 
     pub(super) fn surface_of(&self, chunk: usize, record: &Record) -> Option<SurfacePoint> {
+        if let Some((triangle, _)) = record.splat() {
+            return Some(SurfacePoint { triangle, barycentric: DVec2::ZERO });
+        }
         let plane = self.plane_of(chunk, record).filter(|plane| plane.triangle != Plane::NO_TRIANGLE)?;
         Some(SurfacePoint { triangle: plane.triangle, barycentric: record.barycentric() })
     }

@@ -15,13 +15,16 @@ impl Samples {
         let is_of_scene =
             |plane: &Plane| plane.triangle == Plane::NO_TRIANGLE || !lies_elsewhere(plane.triangle);
         if !self.planes.iter().all(is_of_scene)
+            || self.records.iter().filter_map(Record::splat).any(|(triangle, _)| lies_elsewhere(triangle))
             || self.loose.iter().any(|s| s.surface.is_some_and(|point| lies_elsewhere(point.triangle)))
         {
             return Err("a sample lies on a triangle that the scene does not have".into());
         }
+        let is_weighed = |(_, weight): (u32, f32)| weight.is_finite() && weight >= 0.0;
         let undefined = self.planes.iter().any(|plane| !plane.weights().iter().all(|w| w.is_finite()))
             || self.patches.iter().any(|patch| !patch.largest.get().is_finite());
-        if undefined || !self.records.iter().all(Record::is_sound) {
+        let is_sound = |record: &Record| record.is_sound() && record.splat().is_none_or(is_weighed);
+        if undefined || !self.records.iter().all(is_sound) {
             return Err("a sample that makes no sense".into());
         }
         if self.chunks.is_empty() != self.records.is_empty()
@@ -59,7 +62,7 @@ impl Samples {
             let (words, others) = sub_cells.split_at_checked(shape.words()).ok_or_else(wrong)?;
             sub_cells = others;
             let is_empty = shape.words() > 0 && words.iter().all(|&word| word == 0);
-            if !(of_plane || is_background && !is_patch) || is_empty {
+            if !(of_plane || record.is_splat() || is_background && !is_patch) || is_empty {
                 return Err(wrong());
             }
         }

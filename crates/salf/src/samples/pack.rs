@@ -11,6 +11,7 @@ use crate::samples::record::{Kind, Patch, Record, Shape};
 use glam::{DVec2, IVec2, Vec2, Vec3};
 use half::f16;
 use std::collections::HashMap;
+use std::ops::Range;
 
 /// A sample and its origin.
 #[derive(Clone, Debug)]
@@ -26,6 +27,8 @@ pub struct BakedSample {
 /// Packs the samples of one block.
 pub struct Packer {
     corner: IVec2,
+    /// The triangles of splats.
+    splats: Range<u32>,
     part: Samples,
     plane_of: HashMap<Plane, u16>,
     masks: MaskWriter,
@@ -38,10 +41,11 @@ pub fn block_corner(pixel: IVec2) -> IVec2 {
 }
 
 impl Packer {
-    /// An empty packer for a chunk whose upper left corner is at `corner`, px.
-    pub fn new(corner: IVec2) -> Self {
+    /// An empty packer for a chunk whose upper left corner is at `corner`, px, in a scene whose splats have the triangles `splats`.
+    pub fn new(corner: IVec2, splats: Range<u32>) -> Self {
         Self {
             corner,
+            splats,
             part: Samples::default(),
             plane_of: HashMap::new(),
             masks: MaskWriter::new(),
@@ -84,7 +88,9 @@ impl Packer {
         };
         let pixel = pixel - self.corner;
         let is_inside = pixel.cmpge(IVec2::ZERO).all() && pixel.cmplt(IVec2::splat(Domain::BLOCK)).all();
+        let triangle = sample.surface.map_or(Plane::NO_TRIANGLE, |point| point.triangle);
         let shape = match part_of {
+            Some((Cell { side: 1, .. }, u64::MAX)) if self.splats.contains(&triangle) => Shape::Splat,
             Some((_, u64::MAX)) => Shape::WholeCell,
             Some((Cell { side: 1, .. }, sub_cells)) => match Cell::only_quadrant(*sub_cells) {
                 Some(quadrant) => Shape::PartOfQuadrant(quadrant as u8),
@@ -110,8 +116,15 @@ impl Packer {
                 (Some(Patch::new(fraction, sample.half_size, Float24::new(largest)?)?), largest)
             }
         };
-        let triangle = sample.surface.map_or(Plane::NO_TRIANGLE, |point| point.triangle);
         let (weight, tilt) = (sample.weight / scale, sample.tilt / scale);
+        if shape == Shape::Splat {
+            let weight = f16::from_f32(weight);
+            let is_weight = weight.is_finite() && weight >= f16::ZERO && tilt == Vec2::ZERO;
+            let record =
+                is_weight.then(|| Record::of_splat(kind, weight, triangle, inverse_depth, radiance))?;
+            self.push_record(record, &sample.visibility);
+            return Some(());
+        }
         let plane = match sample.surface {
             None if patch.is_some() => return None,
             None if weight == 1.0 && tilt == Vec2::ZERO => Record::BACKGROUND,
@@ -119,20 +132,25 @@ impl Packer {
         };
         let barycentric = sample.surface.map_or(DVec2::ZERO, |point| point.barycentric);
         // Nothing fails from here on.
-        self.part.records.push(Record::new(kind, plane, barycentric, inverse_depth, radiance));
+        let record = Record::new(kind, plane, barycentric, inverse_depth, radiance);
         self.part.patches.extend(patch);
         if let Some((_, sub_cells)) = part_of {
             let words = std::array::from_fn::<_, 4, _>(|quadrant| (sub_cells >> (16 * quadrant)) as u16);
             self.part.sub_cells.extend(match shape {
-                Shape::WholeCell | Shape::Patch => &[],
+                Shape::WholeCell | Shape::Patch | Shape::Splat => &[],
                 Shape::PartOfCell => &words[..],
                 Shape::PartOfQuadrant(quadrant) => &words[quadrant as usize..][..1],
             });
         }
-        if let Visibility::Cells { words } = &sample.visibility {
+        self.push_record(record, &sample.visibility);
+        Some(())
+    }
+
+    fn push_record(&mut self, record: Record, visibility: &Visibility) {
+        self.part.records.push(record);
+        if let Visibility::Cells { words } = visibility {
             self.masks.write(words);
         }
-        Some(())
     }
 
     fn plane(&mut self, triangle: u32, weight: f32, tilt: Vec2) -> Option<u16> {

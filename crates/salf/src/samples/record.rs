@@ -3,8 +3,12 @@
 use crate::domain::Cell;
 use crate::samples::numbers::{Float24, Rgb40};
 use glam::{DVec2, IVec2, Vec2};
+use half::f16;
 
 /// What all packed samples have: 16 bytes.
+///
+/// A Gaussian splat has no plane and no place in its triangle: its weight takes the place of the one, as a half float, and the number of its triangle that
+/// of the other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct Record {
@@ -31,13 +35,15 @@ pub enum Shape {
     PartOfQuadrant(u8),
     /// A patch of surface, whose size is stored beside the record as a [`Patch`].
     Patch,
+    /// A Gaussian splat, as wide as a cell of one pixel.
+    Splat,
 }
 
 impl Shape {
     /// The number of 16-bit words beside the record that list its sub-cells.
     pub fn words(self) -> usize {
         match self {
-            Self::WholeCell | Self::Patch => 0,
+            Self::WholeCell | Self::Patch | Self::Splat => 0,
             Self::PartOfCell => 4,
             Self::PartOfQuadrant(_) => 1,
         }
@@ -59,6 +65,9 @@ pub struct Kind {
     pub is_carried: bool,
 }
 
+/// The level of a whole cell that says that it is a splat.
+const SPLAT_LEVEL: u8 = 7;
+
 impl Kind {
     /// In 16 bits: x and y 4 each, level or quadrant 3, shape 2, visibility 2, carried 1.
     fn place(self) -> u16 {
@@ -67,6 +76,7 @@ impl Kind {
             Shape::PartOfCell => (1, self.level),
             Shape::Patch => (2, self.level),
             Shape::PartOfQuadrant(quadrant) => (3, quadrant),
+            Shape::Splat => (0, SPLAT_LEVEL),
         };
         let cells = match self.cells {
             None => 0,
@@ -82,6 +92,7 @@ impl Kind {
         let bits = |at: u32, count: u32| i32::from(place >> at & ((1 << count) - 1));
         let level = bits(8, 3) as u8;
         let (shape, level, most) = match bits(11, 2) {
+            0 if level == SPLAT_LEVEL => (Shape::Splat, 0, i32::from(SPLAT_LEVEL)),
             0 => (Shape::WholeCell, level, 4),
             1 => (Shape::PartOfCell, level, 4),
             2 => (Shape::Patch, level, 4),
@@ -118,6 +129,25 @@ impl Record {
         // Rounding may put it beside its triangle by 1/65535 of it.
         let barycentric = barycentric.to_array().map(|b| (b * 65535.0).round() as u16);
         Self { place: kind.place(), plane, barycentric, inverse_depth: depth, radiance }
+    }
+
+    /// A record of a splat, whose `kind` says that it is one: its weight, px², its triangle, its inverse depth and its radiance.
+    pub fn of_splat(kind: Kind, weight: f16, triangle: u32, depth: Float24, radiance: Rgb40) -> Self {
+        let barycentric = [triangle as u16, (triangle >> 16) as u16];
+        Self { place: kind.place(), plane: weight.to_bits(), barycentric, inverse_depth: depth, radiance }
+    }
+
+    /// Whether it is that of a splat.
+    #[inline]
+    pub fn is_splat(&self) -> bool {
+        self.place >> 8 & 0x1F == u16::from(SPLAT_LEVEL)
+    }
+
+    /// The triangle and the weight, px², of a splat.
+    #[inline]
+    pub fn splat(&self) -> Option<(u32, f32)> {
+        let [low, high] = self.barycentric.map(u32::from);
+        self.is_splat().then(|| (low | high << 16, f16::from_bits(self.plane).to_f32()))
     }
 
     /// The kind of sample.
@@ -235,18 +265,29 @@ mod tests {
     #[test]
     fn records_and_patches_keep_to_their_bytes() {
         assert_eq!((Record::BYTES, Patch::BYTES), (16, 10));
-        for shape in [Shape::WholeCell, Shape::PartOfCell, Shape::Patch, Shape::PartOfQuadrant(2)] {
+        for shape in
+            [Shape::WholeCell, Shape::PartOfCell, Shape::Patch, Shape::PartOfQuadrant(2), Shape::Splat]
+        {
             for cells in [None, Some(8), Some(16)] {
-                let levels = if shape == Shape::PartOfQuadrant(2) { 0..1 } else { 0..5 };
+                let is_of_pixel = matches!(shape, Shape::PartOfQuadrant(_) | Shape::Splat);
+                let levels = if is_of_pixel { 0..1 } else { 0..5 };
                 for level in levels {
                     let is_carried = level % 2 == 1;
                     let kind = Kind { pixel: IVec2::new(3, 14), level, shape, cells, is_carried };
                     let depth = Float24::new(0.3).unwrap();
                     let radiance = Rgb40::new(Vec3::new(0.1, 2.0, 0.7), [0.5; 3]).unwrap();
-                    let record = Record::new(kind, 17, DVec2::new(0.0, 1.0), depth, radiance);
+                    let record = match shape {
+                        Shape::Splat => {
+                            Record::of_splat(kind, f16::from_f32(0.75), 0x1234_5678, depth, radiance)
+                        }
+                        _ => Record::new(kind, 17, DVec2::new(0.0, 1.0), depth, radiance),
+                    };
                     assert_eq!(record.kind(), kind);
                     assert_eq!(record.is_partial(), cells.is_some());
-                    assert_eq!(record.barycentric(), DVec2::Y);
+                    match record.splat() {
+                        Some(splat) => assert_eq!((shape, splat), (Shape::Splat, (0x1234_5678, 0.75))),
+                        None => assert_eq!(record.barycentric(), DVec2::Y),
+                    }
                     assert_eq!(Record::from_bytes(record.to_bytes()), record);
                 }
             }
@@ -263,6 +304,6 @@ mod tests {
     #[test]
     fn places_that_make_no_sense_are_told() {
         let sound = (0..=u16::MAX).filter(|&place| Kind::from_place(place).is_some());
-        assert_eq!(sound.count(), 256 * (5 * 3 + 4) * 3 * 2);
+        assert_eq!(sound.count(), 256 * (5 * 3 + 4 + 1) * 3 * 2);
     }
 }

@@ -235,7 +235,7 @@ impl<'a> Decoder<'a> {
         };
         let word = |k: usize| u64::from(self.samples.sub_cells[self.sub_cells + k]);
         match kind.shape {
-            Shape::WholeCell => of_cell(u64::MAX),
+            Shape::WholeCell | Shape::Splat => of_cell(u64::MAX),
             Shape::PartOfCell => of_cell((0..4).fold(0, |all, k| all | word(k) << (16 * k))),
             Shape::PartOfQuadrant(quadrant) => of_cell(word(0) << (16 * quadrant)),
             Shape::Patch => {
@@ -259,7 +259,10 @@ impl<'a> Decoder<'a> {
 
     fn sample(&self, record: &Record, visibility: Visibility) -> Sample {
         let [center, half_size, Vec2 { x: scale, .. }] = self.footprint(record.kind());
-        let weights = self.samples.plane_of(self.chunk, record).map_or([1.0, 0.0, 0.0], Plane::weights);
+        let weights = match record.splat() {
+            Some((_, weight)) => [weight, 0.0, 0.0],
+            None => self.samples.plane_of(self.chunk, record).map_or([1.0, 0.0, 0.0], Plane::weights),
+        };
         let [weight, tilt_x, tilt_y] = weights.map(|weight| scale * weight);
         Sample {
             center,

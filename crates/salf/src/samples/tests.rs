@@ -53,7 +53,7 @@ fn found(count: u32) -> Vec<BakedSample> {
 }
 
 fn packed(found: &[BakedSample]) -> Samples {
-    let mut packer = Packer::new(IVec2::new(32, -16));
+    let mut packer = Packer::new(IVec2::new(32, -16), 0..0);
     found.iter().for_each(|found| packer.push(found.clone()));
     packer.finish()
 }

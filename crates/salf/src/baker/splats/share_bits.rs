@@ -1,8 +1,11 @@
 //! Shares of the aperture's cells as bits with one weight.
 //!
-//! The weight is the largest share. Each of 16 × 16 cells is visible or not, so that the mean over any part of the aperture is about that of the shares: by
-//! error diffusion along a Hilbert curve, from a random start with a random error, without bias (as Velho and Gomes 1991 dither pictures). Patterns of
-//! neighbours differ, so that their errors do not add up.
+//! The weight is that of what sees most: the mean of the shares that are about the largest. Each cell of a field is visible or not, so that the mean over any
+//! part of the aperture is about that of the shares: by error diffusion along a Hilbert curve, from a random start with a random error, without bias (as Velho
+//! and Gomes 1991 dither pictures). Patterns of neighbours differ, so that their errors do not add up.
+//!
+//! A bit of a field stands for at most about as much light as one of the finest field of an opaque sample: what weighs less has a coarser field
+//! ([`Fineness`]), which takes fewer bytes for the same error.
 
 use crate::jitter::jitter;
 use crate::sample::Visibility;
@@ -10,34 +13,70 @@ use std::sync::LazyLock;
 
 /// Cells a side for which shares are computed.
 pub const CELLS: usize = 8;
-/// Cells a side of the bits.
-const BITS: usize = 16;
 
-/// Shares that vary no more than from this part of the largest to it are one share of the whole aperture.
+/// Shares that vary no more than from this part of the largest to it are one share.
 const EVEN: f32 = 0.8;
 
 /// Shares below it are either this or nothing, at random, without bias: fewer samples for the same light.
 const LEAST: f32 = 0.03;
 
-/// The cells of the bits, row · 16 + column, along a Hilbert curve.
-static HILBERT: LazyLock<[u8; BITS * BITS]> = LazyLock::new(|| {
-    let mut curve = [0; BITS * BITS];
-    for (place, cell) in curve.iter_mut().enumerate() {
-        let (mut x, mut y, mut rest, mut side) = (0, 0, place, 1);
-        while side < BITS {
+/// How fine the field of a sample is.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Fineness {
+    /// 4 × 4 cells, as a field of 8 × 8.
+    Coarse,
+    /// 8 × 8 cells.
+    Medium,
+    /// 16 × 16 cells.
+    Fine,
+}
+
+impl Fineness {
+    /// For a weight, px², and what else hides parts of the aperture.
+    fn of(weight: f32, visibility: &Visibility) -> Self {
+        let of_weight = match weight {
+            weight if weight < 1.0 / 16.0 => Self::Coarse,
+            weight if weight < 1.0 / 4.0 => Self::Medium,
+            _ => Self::Fine,
+        };
+        let of_cells = match visibility {
+            Visibility::Open => Self::Coarse,
+            Visibility::Cells { words } if Visibility::side_of(words) == CELLS => Self::Medium,
+            Visibility::Cells { .. } => Self::Fine,
+        };
+        of_weight.max(of_cells)
+    }
+
+    /// Cells a side whose bits are chosen.
+    fn side(self) -> usize {
+        4 << self as usize
+    }
+
+    /// The cells, row · side + column, along a Hilbert curve.
+    fn curve(self) -> &'static [u8] {
+        static CURVES: LazyLock<[Vec<u8>; 3]> = LazyLock::new(|| [4, 8, 16].map(hilbert_curve));
+        &CURVES[self as usize]
+    }
+}
+
+/// The cells of a square of `side` × `side`, a power of two up to 16, row · side + column, along a Hilbert curve.
+fn hilbert_curve(side: usize) -> Vec<u8> {
+    let cell = |place: usize| {
+        let (mut x, mut y, mut rest, mut part) = (0, 0, place, 1);
+        while part < side {
             let (right, up) = (rest >> 1 & 1, (rest ^ rest >> 1) & 1);
             if up == 0 {
                 if right == 1 {
-                    (x, y) = (side - 1 - x, side - 1 - y);
+                    (x, y) = (part - 1 - x, part - 1 - y);
                 }
                 (x, y) = (y, x);
             }
-            (x, y, rest, side) = (x + side * right, y + side * up, rest >> 2, 2 * side);
+            (x, y, rest, part) = (x + part * right, y + part * up, rest >> 2, 2 * part);
         }
-        *cell = (y * BITS + x) as u8;
-    }
-    curve
-});
+        (y * side + x) as u8
+    };
+    (0..side * side).map(cell).collect()
+}
 
 /// Weight and visibility of something of which the cells of the aperture see these shares, row by row: 8 × 8, or one for all. `visibility` is the part of the
 /// aperture from which nothing else hides it, `seed` chooses the pattern. `None` if nothing is visible.
@@ -60,34 +99,66 @@ pub fn share_bits(
     if chance >= f64::from(1.0 / scale) {
         return None;
     }
-    if list.iter().all(|share| *share >= EVEN * largest) {
-        let mean = list.iter().sum::<f32>() / list.len() as f32;
-        return Some((mean * scale, visibility.clone()));
+    let most = list.iter().copied().filter(|share| *share >= EVEN * largest);
+    let (sum, count) = most.fold((0.0, 0), |(sum, count), share| (sum + share, count + 1));
+    let weight = sum / count as f32;
+    if count == list.len() {
+        return Some((weight * scale, visibility.clone()));
     }
-    let sees = |cell: usize| match visibility {
+    let fineness = Fineness::of(weight * scale, visibility);
+    let relative = list.map(|share| if share >= EVEN * largest { 1.0 } else { share / weight });
+    let bits = choose_bits(&relative, fineness, visibility, start, error as f32 - 0.5)?;
+    Some((weight * scale, bits))
+}
+
+/// A field whose bits are as often set as `shares`, in [0, 1], say, where `visibility` lets them. `start` chooses where the curve begins, in [0, 1), with the error
+/// `error`, in [−½, ½). `None` if no bit is set.
+fn choose_bits(
+    shares: &[f32; CELLS * CELLS],
+    fineness: Fineness,
+    visibility: &Visibility,
+    start: f64,
+    mut error: f32,
+) -> Option<Visibility> {
+    let (side, curve) = (fineness.side(), fineness.curve());
+    let share = |row: usize, column: usize| {
+        if side >= CELLS {
+            let part = side / CELLS;
+            return shares[row / part * CELLS + column / part];
+        }
+        let part = CELLS / side;
+        let rows = part * row..part * (row + 1);
+        let cells =
+            rows.flat_map(|row| (part * column..part * (column + 1)).map(move |column| row * CELLS + column));
+        cells.map(|cell| shares[cell]).sum::<f32>() / (part * part) as f32
+    };
+    let sees = |row: usize, column: usize| match visibility {
         Visibility::Open => true,
         Visibility::Cells { words } => {
-            let part = BITS / Visibility::side_of(words);
-            Visibility::row(words, cell / BITS / part) >> (cell % BITS / part) & 1 == 1
+            let part = side / Visibility::side_of(words);
+            Visibility::row(words, row / part) >> (column / part) & 1 == 1
         }
     };
-    let (mut error, start) = (error as f32 - 0.5, (start * (BITS * BITS) as f64) as usize);
     let mut words = [0u64; 4];
-    for step in 0..BITS * BITS {
-        let cell = usize::from(HILBERT[(start + step) % (BITS * BITS)]);
-        if !sees(cell) {
+    let field = side.max(CELLS);
+    let start = (start * curve.len() as f64) as usize;
+    for step in 0..curve.len() {
+        let cell = usize::from(curve[(start + step) % curve.len()]);
+        let (row, column) = (cell / side, cell % side);
+        if !sees(row, column) {
             continue;
         }
-        let (row, column) = (cell / BITS, cell % BITS);
-        let part = BITS / CELLS;
-        error += list[row / part * CELLS + column / part] / largest;
+        error += share(row, column);
         if error >= 0.5 {
             error -= 1.0;
-            words[row / 4] |= 1 << (row % 4 * BITS + column);
+            let part = field / side;
+            for bit in (0..part * part).map(|k| (part * row + k / part) * field + part * column + k % part) {
+                words[bit / 64] |= 1 << (bit % 64);
+            }
         }
     }
-    let is_visible = words.iter().any(|word| *word != 0);
-    is_visible.then(|| (largest * scale, Visibility::from_words(&words)))
+    let words = &words[..field * field / 64];
+    words.iter().any(|word| *word != 0).then(|| Visibility::from_words(words))
 }
 
 #[cfg(test)]
@@ -96,12 +167,16 @@ mod tests {
 
     #[test]
     fn the_curve_visits_every_cell_once_and_steps_to_neighbours() {
-        let mut visited = [false; BITS * BITS];
-        HILBERT.iter().for_each(|cell| visited[usize::from(*cell)] = true);
-        assert!(visited.iter().all(|is_visited| *is_visited));
-        for pair in HILBERT.windows(2) {
-            let [[x, y], [u, v]] = [pair[0], pair[1]].map(|cell| [cell % 16, cell / 16]);
-            assert_eq!(x.abs_diff(u) + y.abs_diff(v), 1);
+        for fineness in [Fineness::Coarse, Fineness::Medium, Fineness::Fine] {
+            let (side, curve) = (fineness.side(), fineness.curve());
+            let mut visited = vec![false; side * side];
+            curve.iter().for_each(|cell| visited[usize::from(*cell)] = true);
+            assert!(curve.len() == side * side && visited.iter().all(|is_visited| *is_visited));
+            for pair in curve.windows(2) {
+                let [[x, y], [u, v]] =
+                    [pair[0], pair[1]].map(|cell| [usize::from(cell) % side, usize::from(cell) / side]);
+                assert_eq!(x.abs_diff(u) + y.abs_diff(v), 1);
+            }
         }
     }
 
@@ -117,13 +192,36 @@ mod tests {
                 Visibility::Open => vec![u64::MAX; 4],
                 Visibility::Cells { words } => words.to_vec(),
             };
-            for cell in 0..BITS * BITS {
-                let is_visible = Visibility::row(&words, cell / BITS) >> (cell % BITS) & 1 == 1;
-                let light = if is_visible { f64::from(weight) / 4.0 } else { 0.0 };
-                sums[cell / BITS / 2 * 8 + cell % BITS / 2] += light / f64::from(COUNT);
+            let side = Visibility::side_of(&words);
+            let part = side / CELLS;
+            for cell in 0..side * side {
+                let is_visible = Visibility::row(&words, cell / side) >> (cell % side) & 1 == 1;
+                let light = if is_visible { f64::from(weight) / (part * part) as f64 } else { 0.0 };
+                sums[cell / side / part * CELLS + cell % side / part] += light / f64::from(COUNT);
             }
         }
         sums
+    }
+
+    #[test]
+    fn what_weighs_little_has_a_coarse_field() {
+        for (share, sides) in [(0.9, 16), (0.2, 8), (0.05, 8)] {
+            let half = |k: usize| if k % 8 < 4 { share } else { 0.4 * share };
+            let (weight, bits) = share_bits((0..64).map(half), &Visibility::Open, [3; 3]).expect("visible");
+            let Visibility::Cells { words } = bits else { panic!("part of it is hidden") };
+            assert!(
+                (weight - share).abs() < 1e-6 && Visibility::side_of(&words) == sides,
+                "{weight} {words:?}"
+            );
+            let row = |row| Visibility::row(&words, row);
+            // Of 4 × 4 cells, rows and columns are pairs.
+            let is_coarse =
+                (0..4).all(|k| row(2 * k) == row(2 * k + 1) && row(2 * k) & 0x55 == row(2 * k) >> 1 & 0x55);
+            assert_eq!(is_coarse, share < 0.0625);
+        }
+        let hidden = Visibility::from_words(&[0, u64::MAX, u64::MAX, u64::MAX]);
+        let (_, bits) = share_bits((0..64).map(|k| 0.0005 * k as f32), &hidden, [9; 3]).expect("visible");
+        assert!(matches!(bits, Visibility::Cells { words } if words.len() == 4 && words[0] == 0));
     }
 
     #[test]
@@ -132,10 +230,14 @@ mod tests {
         let faint: [f32; 64] = std::array::from_fn(|k| if k < 32 { 0.01 } else { 0.002 });
         for shares in [ramp, faint] {
             let largest = f64::from(shares.iter().copied().fold(0.0, f32::max)).max(f64::from(LEAST));
-            for (mean, share) in mean_of(shares, &Visibility::Open).iter().zip(shares) {
-                // Four bits of either value, 4000 times.
-                assert!((mean - f64::from(share)).abs() < 0.03 * largest, "{mean} {share}");
+            let means = mean_of(shares, &Visibility::Open);
+            for (mean, share) in means.iter().zip(shares) {
+                // Four bits of either value, 4000 times; those from 0.8 on are one.
+                let even = if f64::from(share) < 0.8 * largest { 0.03 } else { 0.2 };
+                assert!((mean - f64::from(share)).abs() < even * largest, "{mean} {share}");
             }
+            let [mean, share] = [means.iter().sum::<f64>(), shares.iter().copied().map(f64::from).sum()];
+            assert!((mean / share - 1.0).abs() < 0.01, "{mean} {share}");
         }
         let hidden = Visibility::from_words(&[0x0000_0000_FFFF_FFFF]);
         for (cell, mean) in mean_of(ramp, &hidden).iter().enumerate() {
