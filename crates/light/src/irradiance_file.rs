@@ -15,7 +15,7 @@ use slf::{Irradiance, IrradianceOptions, IrradianceSolution};
 pub(super) const SECTION: CacheSection = CacheSection { name: "light", budget_bytes: 256 << 20 };
 
 /// Counts the solvers whose results differ.
-const SOLVER_VERSION: u32 = 3;
+const SOLVER_VERSION: u32 = 4;
 
 /// Hashes everything that the irradiance of a scene in a world depends on.
 pub(super) fn hash_inputs(

@@ -7,7 +7,8 @@
 //! cells: nowhere does the radiance exceed four times the value its cell was chosen for, so the sun neither vanishes
 //! nor causes fireflies. Everything that emits light has a density above 0.
 
-use glam::{DVec2, DVec3};
+use crate::cumulative_tables::CumulativeTables;
+use glam::{DQuat, DVec2, DVec3, Vec3};
 use numerics::luminance;
 use scene::{Environment, EnvironmentMap, World};
 use std::f64::consts::TAU;
@@ -17,12 +18,26 @@ use std::sync::Arc;
 #[derive(Debug)]
 pub(crate) struct EnvironmentLight {
     map: Arc<EnvironmentMap>,
-    /// Cumulative probabilities of rows of cells, from the top; starts with 0.
-    rows: Vec<f64>,
-    /// Cumulative probabilities of the cells of each row, given the row, from the left; each row starts with 0.
-    cells: Vec<f64>,
+    /// Rows of cells, from the top.
+    rows: CumulativeTables,
+    /// The cells of each row, from the left.
+    cells: CumulativeTables,
     /// Sines of the latitudes that bound each row of cells, from the top.
     sines: Vec<[f64; 2]>,
+    /// From the environment's axes to the world's.
+    to_world: DQuat,
+    strength: f32,
+}
+
+/// Light from a direction of the environment.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct EnvironmentSample {
+    /// Unit direction toward it, in the world.
+    pub direction: DVec3,
+    /// Linear RGB.
+    pub radiance: Vec3,
+    /// Density, 1/sr, with which the direction is sampled.
+    pub density: f64,
 }
 
 impl EnvironmentLight {
@@ -44,76 +59,61 @@ impl EnvironmentLight {
                 let corners = [row - 1, row].map(|row| luminance(column, row) + luminance(column + 1, row));
                 corners[0] + corners[1]
             };
-            let weights: Vec<f64> = (0..width).map(cell_weight).collect();
-            rows.push(weights.iter().sum::<f64>() * (top - bottom));
-            cells.extend(cumulative_shares(&weights));
+            let first = cells.len();
+            cells.extend((0..width).map(cell_weight));
+            rows.push(cells[first..].iter().sum::<f64>() * (top - bottom));
         }
         let rows_sum: f64 = rows.iter().sum();
-        let rows = cumulative_shares(&rows);
-        (rows_sum > 0.0 && rows_sum.is_finite()).then(|| Self { map: map.clone(), rows, cells, sines })
+        (rows_sum > 0.0 && rows_sum.is_finite()).then(|| Self {
+            map: map.clone(),
+            rows: CumulativeTables::new(rows.len(), &rows),
+            cells: CumulativeTables::new(map.width as usize, &cells),
+            sines,
+            to_world: DQuat::from_rotation_y(world.rotation),
+            strength: world.strength,
+        })
     }
 
-    /// Cumulative probabilities of the cells of a row.
-    fn row(&self, row: usize) -> &[f64] {
-        let ends = self.map.width as usize + 1;
-        &self.cells[row * ends..(row + 1) * ends]
-    }
-
-    /// Samples a direction in the environment's own axes from uniform numbers; returns it with its density, 1/sr.
-    pub fn sample(&self, u: [f64; 2]) -> (DVec3, f64) {
-        let (row, down) = invert_cumulative(&self.rows, u[1]);
-        let (column, along) = invert_cumulative(self.row(row), u[0]);
+    /// Samples a direction from uniform numbers.
+    pub fn sample(&self, u: [f64; 2]) -> EnvironmentSample {
+        let (row, down) = self.rows.invert(0, u[1]);
+        let (column, along) = self.cells.invert(row, u[0]);
         let [top, bottom] = self.sines[row];
         let sine = top + (bottom - top) * down;
         let position = column as f64 + 0.5 + along;
-        let longitude = self.map.direction_at(DVec2::new(position, f64::from(self.map.height) / 2.0));
+        let longitude = (position / f64::from(self.map.width) - 0.5) * TAU;
         let flat = (1.0 - sine * sine).max(0.0).sqrt();
-        let direction = DVec3::new(longitude.x * flat, sine, longitude.z * flat);
-        (direction, self.density_of_cell(row, column))
+        let direction = DVec3::new(longitude.cos() * flat, sine, longitude.sin() * flat);
+        EnvironmentSample {
+            direction: self.to_world * direction,
+            radiance: self.map.radiance_at(DVec2::new(position, self.map.row_of_sine(sine))) * self.strength,
+            density: self.density_of_cell(row, column),
+        }
     }
 
-    /// Density, 1/sr, with which a direction in the environment's own axes is sampled.
-    pub fn density(&self, direction: DVec3) -> f64 {
-        let at = self.map.texel_position(direction) - 0.5;
-        let column = (at.x.floor() as i64).rem_euclid(i64::from(self.map.width));
-        let row = (at.y.floor() as i64 + 1).clamp(0, i64::from(self.map.height));
-        self.density_of_cell(row as usize, column as usize)
+    /// What arrives from a direction (unit, world), as it would be sampled.
+    pub fn along(&self, direction: DVec3) -> EnvironmentSample {
+        let position = self.map.texel_position(self.to_world.conjugate() * direction);
+        let cell = position - 0.5;
+        let column = (cell.x.floor() as i64).rem_euclid(i64::from(self.map.width));
+        let row = (cell.y.floor() as i64 + 1).clamp(0, i64::from(self.map.height));
+        EnvironmentSample {
+            direction,
+            radiance: self.map.radiance_at(position) * self.strength,
+            density: self.density_of_cell(row as usize, column as usize),
+        }
     }
 
     fn density_of_cell(&self, row: usize, column: usize) -> f64 {
         let [top, bottom] = self.sines[row];
-        let cells = self.row(row);
-        let probability = (self.rows[row + 1] - self.rows[row]) * (cells[column + 1] - cells[column]);
+        let probability = self.rows.probability(0, row) * self.cells.probability(row, column);
         probability / ((top - bottom) * TAU / f64::from(self.map.width))
     }
-}
-
-/// Cumulative sums of weights, scaled to end at 1; starts with 0. Even steps if all weights are 0.
-fn cumulative_shares(weights: &[f64]) -> Vec<f64> {
-    let sum: f64 = weights.iter().sum();
-    let (terms, total) =
-        if sum > 0.0 { (weights.to_vec(), sum) } else { (vec![1.0; weights.len()], weights.len() as f64) };
-    let mut sum_so_far = 0.0;
-    let mut steps = vec![0.0];
-    steps.extend(terms.iter().map(|weight| {
-        sum_so_far += weight;
-        (sum_so_far / total).min(1.0)
-    }));
-    steps[weights.len()] = 1.0;
-    steps
-}
-
-/// The interval of cumulative sums that contains a uniform number, and the relative position within it.
-fn invert_cumulative(steps: &[f64], u: f64) -> (usize, f64) {
-    let step = steps.partition_point(|&sum| sum <= u).clamp(1, steps.len() - 1) - 1;
-    let (from, to) = (steps[step], steps[step + 1]);
-    (step, if to > from { ((u - from) / (to - from)).clamp(0.0, 1.0) } else { 0.5 })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::Vec3;
 
     /// A dim sky with a sun of one texel.
     fn sunny(sun: f32) -> World {
@@ -132,12 +132,19 @@ mod tests {
 
     #[test]
     fn density_is_of_what_is_drawn_and_sums_to_one() {
-        let light = EnvironmentLight::from_world(&sunny(1e5)).unwrap();
+        let world = World { rotation: 0.7, strength: 2.0, ..sunny(1e5) };
+        let light = EnvironmentLight::from_world(&world).unwrap();
         for [a, b] in spread(5000) {
-            let (direction, density) = light.sample([a, b]);
+            let EnvironmentSample { direction, radiance, density } = light.sample([a, b]);
             assert!((direction.length() - 1.0).abs() < 1e-12);
-            let again = light.density(direction);
-            assert!((again / density - 1.0).abs() < 1e-9, "{direction}: {density} {again}");
+            let again = light.along(direction);
+            assert!((again.density / density - 1.0).abs() < 1e-9, "{direction}: {density} {again:?}");
+            for seen in [again.radiance, world.radiance(direction)] {
+                assert!(
+                    (seen - radiance).abs().max_element() < 1e-3 * radiance.max_element(),
+                    "{seen} {radiance}"
+                );
+            }
         }
         let n = 2000u32;
         let mut sum = 0.0;
@@ -146,7 +153,7 @@ mod tests {
             let sine = 1.0 - 2.0 * v / f64::from(n / 4);
             let turn = TAU * u / f64::from(n);
             let flat = (1.0 - sine * sine).sqrt();
-            sum += light.density(DVec3::new(flat * turn.cos(), sine, flat * turn.sin()));
+            sum += light.along(DVec3::new(flat * turn.cos(), sine, flat * turn.sin())).density;
         }
         let whole = sum * 2.0 * TAU / f64::from(n * n / 4);
         assert!((whole - 1.0).abs() < 5e-3, "{whole}");
@@ -159,7 +166,7 @@ mod tests {
             let light = EnvironmentLight::from_world(&world).unwrap();
             let ratios: Vec<f64> = spread(20_000)
                 .map(|[a, b]| {
-                    let (direction, density) = light.sample([a, b]);
+                    let EnvironmentSample { direction, density, .. } = light.sample([a, b]);
                     f64::from(world.radiance(direction).y) / density
                 })
                 .collect();

@@ -87,10 +87,10 @@ impl Irradiance {
 
     fn interpolate(&self, place: &Place, value: impl Fn(usize) -> Vec3) -> Option<Vec3> {
         let (mut sum, mut weights) = (Vec3::ZERO, 0.0);
-        self.patches.visit_around(place, |patch, weight| {
+        for (patch, weight) in self.patches.around(place) {
             sum += value(patch as usize) * weight;
             weights += weight;
-        });
+        }
         (weights > 0.0).then(|| sum / weights)
     }
 }

@@ -172,16 +172,16 @@ fn row_sum(links: &[(u32, Vec3)]) -> DVec3 {
 
 /// Samples a patch around a place by its interpolation weight.
 fn choose_patch(patches: &Patches, place: &Place, choice: f64) -> Option<u32> {
-    let mut sum = 0.0;
-    patches.visit_around(place, |_, weight| sum += weight);
+    let around = patches.around(place);
+    let sum: f32 = around.clone().map(|(_, weight)| weight).sum();
     let mut rest = choice as f32 * sum;
     let mut chosen = None;
-    patches.visit_around(place, |patch, weight| {
+    for (patch, weight) in around {
         if rest >= 0.0 {
             chosen = Some(patch);
         }
         rest -= weight;
-    });
+    }
     chosen
 }
 

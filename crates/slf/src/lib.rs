@@ -11,7 +11,7 @@
 //! | module | what it holds |
 //! | --- | --- |
 //! | `material_point` | the material and shading frame of a surface point |
-//! | `lights` | light sampling: `punctual` (point, spot, directional), `emitters` (emissive triangles, chosen by `light_tree`), `environment_light` |
+//! | `lights` | light sampling: `punctual` (point, spot, directional), `emitters` (emissive triangles, chosen by `light_tree`), `environment_light` (by `cumulative_tables`) |
 //! | `media` | the nested media a path is in |
 //! | `path_random` | random numbers of paths |
 //! | `transport` | path tracing |
@@ -44,6 +44,7 @@
 //! ```
 
 mod bounce_limit;
+mod cumulative_tables;
 mod emitters;
 mod environment_light;
 mod irradiance;

@@ -1,7 +1,7 @@
 //! Light sampling: all light sources of a scene and its world.
 
 use crate::emitters::Emitters;
-use crate::environment_light::EnvironmentLight;
+use crate::environment_light::{EnvironmentLight, EnvironmentSample};
 use crate::punctual::{PunctualLight, unshadowed_light};
 use glam::{DVec3, Vec3};
 use scene::{Scene, World};
@@ -73,6 +73,11 @@ impl Lights {
         self.environment.is_some() || !self.emitters.is_empty()
     }
 
+    /// Whether the environment is sampled.
+    pub fn has_sky(&self) -> bool {
+        self.environment.is_some()
+    }
+
     /// Whether any surface emits light.
     pub fn has_emitters(&self) -> bool {
         !self.emitters.is_empty()
@@ -90,13 +95,12 @@ impl Lights {
     pub fn sample(
         &self,
         scene: &Scene,
-        world: &World,
         position: DVec3,
         with_punctual: bool,
         mut draw: impl FnMut() -> f64,
         mut visit: impl FnMut(LightSample),
     ) {
-        self.sample_areas(scene, world, position, &mut draw, &mut visit);
+        self.sample_areas(scene, position, &mut draw, &mut visit);
         if with_punctual {
             self.sample_punctual(scene, position, MAX_PUNCTUAL_ENUMERATED, draw, visit);
         }
@@ -107,38 +111,58 @@ impl Lights {
     pub fn sample_areas(
         &self,
         scene: &Scene,
-        world: &World,
         position: DVec3,
         mut draw: impl FnMut() -> f64,
         mut visit: impl FnMut(LightSample),
     ) {
-        if let Some(environment) = &self.environment {
-            let (direction, density) = environment.sample([draw(), draw()]);
-            let world_direction = world.world_from_environment(direction);
-            let light = world.radiance(world_direction) / density as f32;
-            let source = position + world_direction * self.outside_distance;
-            let density = Some(density);
+        if self.has_sky()
+            && let Some(sky) = self.sample_sky([draw(), draw()])
+        {
+            visit(self.sky_at(&sky, position));
+        }
+        self.sample_emitters(scene, position, draw, visit);
+    }
+
+    /// Samples one direction of the environment from uniform numbers, as it is for light that arrives at the origin. `None`
+    /// if the environment is not sampled.
+    pub fn sample_sky(&self, u: [f64; 2]) -> Option<LightSample> {
+        let EnvironmentSample { direction, radiance, density } = self.environment.as_ref()?.sample(u);
+        Some(LightSample {
+            direction,
+            source: direction * self.outside_distance,
+            is_near: false,
+            light: radiance / density as f32,
+            density: Some(density),
+            punctual_index: None,
+        })
+    }
+
+    /// A direction of the environment, for light that arrives at `position`.
+    pub fn sky_at(&self, sky: &LightSample, position: DVec3) -> LightSample {
+        LightSample { source: position + sky.direction * self.outside_distance, ..*sky }
+    }
+
+    /// Samples one point on an emitter, for light that arrives at `position`. `draw` makes uniform numbers in [0, 1).
+    pub fn sample_emitters(
+        &self,
+        scene: &Scene,
+        position: DVec3,
+        mut draw: impl FnMut() -> f64,
+        mut visit: impl FnMut(LightSample),
+    ) {
+        if self.emitters.is_empty() {
+            return;
+        }
+        let (choice, place) = (draw(), [draw(), draw()]);
+        if let Some(sample) = self.emitters.sample(scene, position, choice, place) {
             visit(LightSample {
-                direction: world_direction,
-                source,
-                is_near: false,
-                light,
-                density,
+                direction: sample.direction,
+                source: sample.place,
+                is_near: true,
+                light: sample.radiance / sample.density as f32,
+                density: Some(sample.density),
                 punctual_index: None,
             });
-        }
-        if !self.emitters.is_empty() {
-            let (choice, place) = (draw(), [draw(), draw()]);
-            if let Some(sample) = self.emitters.sample(scene, position, choice, place) {
-                visit(LightSample {
-                    direction: sample.direction,
-                    source: sample.place,
-                    is_near: true,
-                    light: sample.radiance / sample.density as f32,
-                    density: Some(sample.density),
-                    punctual_index: None,
-                });
-            }
         }
     }
 
@@ -180,11 +204,16 @@ impl Lights {
         }
     }
 
-    /// Density, 1/sr, with which [`Self::sample`] chooses a direction (unit) of the environment.
-    pub fn environment_density(&self, world: &World, direction: DVec3) -> f64 {
-        self.environment
-            .as_ref()
-            .map_or(0.0, |environment| environment.density(world.environment_from_world(direction)))
+    /// The radiance (linear RGB) that arrives from a direction (unit, world) of `world`, and the density, 1/sr, with which
+    /// [`Self::sample`] chooses it: 0 if the environment is not sampled.
+    pub fn environment_along(&self, world: &World, direction: DVec3) -> (Vec3, f64) {
+        match &self.environment {
+            Some(environment) => {
+                let EnvironmentSample { radiance, density, .. } = environment.along(direction);
+                (radiance, density)
+            }
+            None => (world.radiance(direction), 0.0),
+        }
     }
 
     /// Density, 1/sr, with which [`Self::sample`] chooses a point on a triangle from a position.

@@ -319,7 +319,6 @@ impl Transport {
         let (inside, random) = (path.inside, &mut path.random);
         self.lights.sample(
             self.scene(),
-            &self.world,
             at.position,
             with_punctual,
             || random.next(),

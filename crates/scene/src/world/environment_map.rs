@@ -39,8 +39,7 @@ impl EnvironmentMap {
     /// The position of a (unit) direction: texels from the upper left corner.
     pub fn texel_position(&self, direction: DVec3) -> DVec2 {
         let u = direction.z.atan2(direction.x) / TAU + 0.5;
-        let v = 0.5 - direction.y.clamp(-1.0, 1.0).asin() / PI;
-        DVec2::new(u * f64::from(self.width), v * f64::from(self.height))
+        DVec2::new(u * f64::from(self.width), self.row_of_sine(direction.y))
     }
 
     /// The unit direction at a position of the map, px from its upper left corner.
@@ -55,13 +54,31 @@ impl EnvironmentMap {
         FRAC_PI_2 - row / f64::from(self.height) * PI
     }
 
+    /// The row, px from the top, at a latitude with this sine.
+    pub fn row_of_sine(&self, sine: f64) -> f64 {
+        (0.5 - sine.clamp(-1.0, 1.0).asin() / PI) * f64::from(self.height)
+    }
+
     /// The radiance (linear RGB) from a unit direction in the environment's axes.
     pub fn radiance(&self, direction: DVec3) -> Vec3 {
-        let at = self.texel_position(direction) - 0.5;
+        self.radiance_at(self.texel_position(direction))
+    }
+
+    /// The radiance (linear RGB) at a position of the map, px from its upper left corner.
+    pub fn radiance_at(&self, position: DVec2) -> Vec3 {
+        let at = position - 0.5;
         let low = at.floor();
         let share = (at - low).as_vec2();
         let (x, y) = (low.x as i64, low.y as i64);
-        let row = |y: i64| self.texel(x, y).lerp(self.texel(x + 1, y), share.x);
+        // A remainder takes longer than all else here.
+        let width = i64::from(self.width);
+        let wrapped = |x: i64| if (0..width).contains(&x) { x } else { x.rem_euclid(width) };
+        let [left, right] = [wrapped(x), wrapped(x + 1)].map(|column| column as usize);
+        let row = |y: i64| {
+            let first = y.clamp(0, i64::from(self.height) - 1) as usize * self.width as usize;
+            let texel = |column: usize| Vec3::from_array(self.texels[first + column]);
+            texel(left).lerp(texel(right), share.x)
+        };
         row(y).lerp(row(y + 1), share.y)
     }
 }

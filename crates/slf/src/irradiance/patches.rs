@@ -150,32 +150,28 @@ impl Patches {
         &self.points[patch.first_point as usize..(patch.first_point + patch.points) as usize]
     }
 
-    /// Visits the patches around a place with their interpolation weights, by distance along and off the surface and by
+    /// The patches around a place with their interpolation weights, above 0: by distance along and off the surface and by
     /// orientation.
     #[inline]
-    pub fn visit_around(&self, place: &Place, mut visit: impl FnMut(u32, f32)) {
+    pub fn around<'a>(&'a self, place: &'a Place) -> impl Iterator<Item = (u32, f32)> + Clone + 'a {
         let lattice = self.lattice(place.part);
         let spacing = lattice.spacing;
-        lattice.visit_around(place.position, |number, share| {
+        lattice.around(place.position).filter_map(move |(number, share)| {
             let patch = &self.patches[number as usize];
             if patch.part != place.part {
-                return;
+                return None;
             }
             let facing = patch.normal.dot(place.normal);
             let off = (place.position - patch.position).dot(place.normal).abs() / spacing;
             // Patches that face more than 70° away, or lie more than a cell off the tangent plane, do not contribute.
             let weight = share * (facing - 0.35).max(0.0).powi(2) * (1.0 - off).max(0.0);
-            if weight > 0.0 {
-                visit(number, weight as f32);
-            }
-        });
+            (weight > 0.0).then_some((number, weight as f32))
+        })
     }
 
     /// Whether any patch contributes to the irradiance at a place.
     pub fn covers(&self, place: &Place) -> bool {
-        let mut is_covered = false;
-        self.visit_around(place, |_, _| is_covered = true);
-        is_covered
+        self.around(place).next().is_some()
     }
 
     /// Visits the patches in the surrounding cells that face roughly the same direction.

@@ -55,8 +55,8 @@ impl Transport {
             let length = hit.map_or(f64::INFINITY, |hit| hit.t);
             throughput *= self.media.attenuation(&path.inside, length);
             let Some(Hit { point, t }) = hit else {
-                let light_density = self.lights.environment_density(&self.world, step.direction);
-                let light = throughput * self.world.radiance(step.direction).as_dvec3();
+                let (radiance, light_density) = self.lights.environment_along(&self.world, step.direction);
+                let light = throughput * radiance.as_dvec3();
                 let draws_per_direction = path.lights.sky;
                 result.add(light, step.density, [light_density, draws_per_direction], scatterings);
                 return result;

@@ -5,7 +5,7 @@ use crate::light_interpolation::LightVisibility;
 use crate::lights::LightSample;
 use crate::path_random::PathRandom;
 use crate::transport::Transport;
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 
 /// Samples of sky and emitters, over those of a single point, where a point sees all of them or none.
 const LIGHTS_FACTOR: u32 = 4;
@@ -60,14 +60,8 @@ impl Transport {
     /// Sampled directions of the sky, the first of which are those used for points. Empty if the sky is not sampled.
     pub(super) fn sky_samples(&self) -> &[LightSample] {
         self.sky_samples.get_or_init(|| {
-            let mut sky = Vec::new();
-            for turn in 0..SKY_DIRECTIONS {
-                let mut random = PathRandom::new(LIGHT_SEED, turn);
-                let draw = || random.next();
-                let mut retain = |sample: LightSample| sky.extend(sample.is_sky().then_some(sample));
-                self.lights.sample_areas(self.scene(), &self.world, DVec3::ZERO, draw, &mut retain);
-            }
-            sky
+            let sample = |turn| self.lights.sample_sky(PathRandom::new(LIGHT_SEED, turn).next2());
+            (0..SKY_DIRECTIONS).filter_map(sample).collect()
         })
     }
 }
@@ -141,11 +135,24 @@ impl PointBatch<'_> {
         }
     }
 
-    fn visit_areas(&self, index: usize, turn: u32, visit: impl FnMut(LightSample)) {
-        let (transport, position) = (self.transport, self.places[index].position);
+    fn visit_areas(&self, index: usize, turn: u32, mut visit: impl FnMut(LightSample)) {
+        let (lights, position) = (&self.transport.lights, self.places[index].position);
+        let known_sky = self.sky_samples.get(turn as usize);
+        if let Some(sky) = known_sky {
+            visit(lights.sky_at(sky, position));
+            if !lights.has_emitters() {
+                return;
+            }
+        }
         let mut random = PathRandom::new(LIGHT_SEED, turn);
-        let draw = || random.next();
-        transport.lights.sample_areas(transport.scene(), &transport.world, position, draw, visit);
+        let scene = self.transport.scene();
+        if known_sky.is_some() {
+            // The sky has these.
+            random.next2();
+            lights.sample_emitters(scene, position, || random.next(), visit);
+        } else {
+            lights.sample_areas(scene, position, || random.next(), visit);
+        }
     }
 
     fn visit_punctual(&self, index: usize, turn: u32, visit: impl FnMut(LightSample)) {
