@@ -441,9 +441,8 @@ fn many_viewpoints_see_what_each_sees_alone() {
         let up = toward.cross(right);
         let square = Square { center: offset + 3.0 * toward, right: 0.4 * right, up: 0.4 * up };
         let places = TargetPoints::new(&places(&mut random));
-        let of_triangle = |triangle: u32| {
-            Viewpoint::Surface(SurfacePoint { triangle, barycentric: DVec2::splat(0.3) })
-        };
+        let of_triangle =
+            |triangle: u32| Viewpoint::Surface(SurfacePoint { triangle, barycentric: DVec2::splat(0.3) });
         let mut viewpoints: Vec<_> = (0..9).map(|k| of_triangle(40 * k)).collect();
         if round % 2 == 1 {
             viewpoints.push(Viewpoint::Infinity(0.1 * random.in_cube() - toward));
