@@ -259,15 +259,14 @@ impl Halfspaces {
         let mut overlapping = low.cmple(high).bitmask();
         for (normal, offset) in &self.planes[..self.count] {
             let mut farthest = Vec4::splat(*offset);
-            let normal = normal.to_array();
-            for axis in 0..3 {
-                farthest += node.sides[axis][usize::from(normal[axis] >= 0.0)] * normal[axis];
+            for (sides, normal) in node.sides.iter().zip(normal.to_array()) {
+                farthest += sides[usize::from(normal >= 0.0)] * normal;
             }
             overlapping &= farthest.cmpge(Vec4::ZERO).bitmask();
         }
-        let (mut nearest, toward) = (Vec4::ZERO, self.toward.to_array());
-        for axis in 0..3 {
-            nearest += node.sides[axis][usize::from(toward[axis] < 0.0)] * toward[axis];
+        let mut nearest = Vec4::ZERO;
+        for (sides, toward) in node.sides.iter().zip(self.toward.to_array()) {
+            nearest += sides[usize::from(toward < 0.0)] * toward;
         }
         (overlapping, nearest)
     }
