@@ -14,6 +14,8 @@ pub fn workplace() -> TempDir {
     let folder = place.path();
     let text = |name: &str, text: &str| std::fs::write(folder.join(name), text).unwrap();
     tiny_glb::write(&folder.join("quads.glb"));
+    // Light changes how it looks.
+    std::fs::write(folder.join("helmet.glb"), tiny_glb::metal(&tiny_glb::QUADS)).unwrap();
     text(
         "camera.json",
         r#"{"width": 96, "height": 64, "focus_distance": 2.0, "aperture_radius": 0.1, "sensor_height": 0.1}"#,

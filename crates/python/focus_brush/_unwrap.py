@@ -6,6 +6,6 @@ It is started as a script, without the package around it: NumPy would take longe
 if __name__ == "__main__":
     import sys
 
-    import _native  # type: ignore[import-not-found]
+    import _native  # type: ignore
 
     _native._run_unwrap_child(sys.argv[1:])
