@@ -349,7 +349,7 @@ fn wrong_content_is_reported_with_its_entry() {
     };
     assert!(load(&|_, bytes| bytes).is_ok());
     let cases: [(Change<'_>, &str); 8] = [
-        (&in_manifest("\"version\": 1", "\"version\": 11"), "update the program"),
+        (&in_manifest("\"version\": 1", "\"version\": 12"), "update the program"),
         (&in_manifest("focus-brush project", "shopping list"), "shopping list"),
         (&in_manifest("\"active_camera\": 1", "\"active_camera\": 2"), "camera 2 of 2"),
         (&in_manifest("\"width\": 130", "\"width\": 131"), "focus.f32"),

@@ -384,7 +384,7 @@ fn a_malformed_file_is_told_in_one_line() {
     refused(&[&good[..], &[0]].concat(), "more bytes");
     // What a checksum does not tell: place and value, by what is wrong then.
     for (at, value, why) in [
-        (8, 7, "version 7"),
+        (8, 8, "version 8"),
         (12, 0xFF, "picture without a size"),
         (14, 0xFF, "a text of"),
         (24, 1, "triangle"),
@@ -394,7 +394,7 @@ fn a_malformed_file_is_told_in_one_line() {
         (249 + 3, 0x7F, "cut short"),
         (249 + 48 + 3, 0x7F, "cut short"),
         (305 + 3, 0x7F, "block 0"),
-        (333 + 1, 0x07, "makes no sense"),
+        (333 + 1, 0x07, "a splat in a version without them"),
         (333 + 2, 9, "block 0"),
         (333 + 10, 0xFF, "depth that is not finite"),
         (401, 0, "block 0"),
