@@ -13,7 +13,6 @@ use document::{Document, SavedState, Stage};
 use egui::{Button, ComboBox, Sense, Slider, TextEdit, Ui, Vec2, vec2};
 use focus::{Adjustment, BlendMode, EditThumbnail, FocusLayer, FocusMap, LayerEdit, SpreadSettings};
 use lens::Optics;
-
 use session::{Command, CommandId};
 use std::sync::{Arc, Weak};
 
