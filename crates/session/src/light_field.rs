@@ -3,6 +3,7 @@
 mod aperture_fit;
 mod aperture_image;
 mod changes;
+mod draft;
 mod field_watch;
 mod margin_reach;
 mod running_sum;
@@ -12,5 +13,5 @@ pub(crate) use aperture_fit::{ApertureFit, spare_camera};
 pub use aperture_image::{ApertureCell, ApertureImage, BakedVisibility};
 pub(crate) use changes::Changes;
 pub(crate) use field_watch::{BakeState, FieldWatch};
-pub(crate) use margin_reach::MarginReach;
+pub(crate) use margin_reach::exceeds_margin;
 pub(crate) use running_sum::{BakedField, FieldOptions, LightField, Plan, SumUpdate};

@@ -127,7 +127,8 @@ fn may_merge(at: u32, painted: Focus, radius: i32) -> bool {
     let size = u32(abs(radius));
     let level = level_of(at);
     let is_sharp = level == 0u && size <= SHARP;
-    if !is_sharp && size < lens.smallest_joint_radius[LEVELS * (FINENESSES * contrast_of(at) + fineness_of(at)) + level] {
+    let is_blurred = size >= lens.smallest_joint_radius[LEVELS * (FINENESSES * contrast_of(at) + fineness_of(at)) + level];
+    if !is_sharp && !is_blurred {
         return false;
     }
     let of_depth = exact(painted.t * (1.0 - painted.anchor));
@@ -139,7 +140,7 @@ fn may_merge(at: u32, painted: Focus, radius: i32) -> bool {
         apart += exact(by_t * painted.t_apart) + exact(by_anchor * painted.anchor_apart);
     }
     let side = f32(u32(PIXEL) << level);
-    return apart <= select(max(FLAT * side, ALIKE * float_of(size)), f32(SHARP), is_sharp);
+    return apart <= select(f32(SHARP), max(FLAT * side, ALIKE * float_of(size)), is_blurred);
 }
 
 // Whether a node above replaces it.

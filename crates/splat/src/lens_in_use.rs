@@ -4,6 +4,7 @@ use crate::aperture::shape::Shape;
 use crate::canvas::POSITION_BITS;
 use crate::character::magnification::Magnification;
 use crate::fixed::ONE;
+use crate::node_view::{DraftScale, NodeView};
 use crate::nodes::{CONTRASTS, SplatNode, wider_by_contrast};
 use lens::{Camera, FocusOffset, Optics};
 use salf::tree::LEVELS;
@@ -164,6 +165,8 @@ pub struct LensInUse {
     pub field: Option<FieldCurvature>,
     /// How much larger the picture of the colour that is drawn is, where it is.
     pub magnification: Option<Magnification>,
+    /// How large the picture is beside the light field's, if it is a draft.
+    pub draft_scale: Option<DraftScale>,
     /// How exactly what is drawn is drawn.
     pub detail: Detail,
     /// From which |radius| on, 1/4096 px, nodes may be drawn on each level: by [`Fineness`].
@@ -277,6 +280,7 @@ impl LensInUse {
             colour_radius: 0.0,
             field: None,
             magnification: None,
+            draft_scale: None,
             detail: Detail::for_tolerance(tolerance),
             smallest_radius: Fineness::FINER.map(|finer| smallest(finer, 1.0)),
             smallest_joint_radius: std::array::from_fn(|contrast| {
@@ -311,6 +315,22 @@ impl LensInUse {
                 .then(|| Magnification { lateral: size - 1.0, axis: axis.to_array() }),
             ..self
         }
+    }
+
+    /// The same for a draft of this scale: nodes that are smaller than its pixels are not drawn where those of a pixel are alike.
+    pub fn for_draft(mut self, scale: DraftScale) -> Self {
+        for of_fineness in &mut self.smallest_joint_radius {
+            for fineness in [Fineness::Open, Fineness::PartlyOccluded, Fineness::Highlight] {
+                of_fineness[fineness as usize][0] = 0;
+            }
+        }
+        Self { draft_scale: Some(scale), ..self }
+    }
+
+    /// How its picture sees the nodes; `None`: where they are.
+    pub fn view(&self) -> Option<NodeView> {
+        let Self { draft_scale, magnification, .. } = *self;
+        (draft_scale.is_some() || magnification.is_some()).then_some(NodeView { draft_scale, magnification })
     }
 
     /// The lens's aperture radius as a share of the baked one (`baked_radius`, scene units), in [0, 1].
@@ -366,7 +386,8 @@ impl LensInUse {
         let is_sharp = node.level == 0 && size <= SHARP;
         let of_contrast = &self.smallest_joint_radius[node.contrast as usize];
         let smallest = of_contrast[Fineness::classify(node) as usize][node.level as usize];
-        if !is_sharp && size < smallest {
+        let is_blurred = size >= smallest;
+        if !is_sharp && !is_blurred {
             return false;
         }
         let of_depth = focus.t * (1.0 - focus.anchor);
@@ -383,7 +404,7 @@ impl LensInUse {
             let slope = 2.0 * field.radius_per_square * field.square(node).sqrt() * field.per_position;
             apart += (of_depth * slope).abs() * side;
         }
-        apart <= if is_sharp { SHARP as f32 } else { (FLAT * side).max(ALIKE * size as f32) }
+        apart <= if is_blurred { (FLAT * side).max(ALIKE * size as f32) } else { SHARP as f32 }
     }
 }
 

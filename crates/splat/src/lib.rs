@@ -63,6 +63,7 @@ mod draw_list;
 mod fixed;
 mod gpu;
 mod lens_in_use;
+mod node_view;
 mod nodes;
 mod paint;
 mod resolve;
@@ -76,4 +77,4 @@ pub use crop::{
 pub use gpu::{AdapterDescription, BackendChoice, Gpu, GpuAbsent, PictureOnCard, adapters};
 pub use lens_in_use::Tolerance;
 pub use nodes::QUANTUM;
-pub use splatter::{Mattes, SETS, SplatError, Splatter};
+pub use splatter::{Mattes, SETS, SplatError, Splatter, WideImage};

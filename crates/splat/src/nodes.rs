@@ -320,6 +320,18 @@ impl Nodes {
         &self.nodes[range.start as usize..range.end as usize]
     }
 
+    /// The nodes of these samples, in order.
+    pub fn leaves_of(&self, samples: &[u32]) -> Vec<u32> {
+        let mut leaves: Vec<_> = samples.iter().map(|&sample| self.node_of_sample[sample as usize]).collect();
+        leaves.par_sort_unstable();
+        leaves
+    }
+
+    /// How many nodes see a part of the aperture.
+    pub fn partial_count(&self) -> usize {
+        self.cells.len()
+    }
+
     /// Which cells of the aperture see the node; `None` if it sees the whole aperture.
     #[inline(always)]
     pub fn cells(&self, node: &SplatNode) -> Option<&Cells> {

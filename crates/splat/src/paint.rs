@@ -7,12 +7,13 @@ use lens::FocusOffset;
 use rayon::prelude::*;
 use salf::{Address, SampleFocus, Samples};
 use scene::SurfaceField;
+use std::sync::Arc;
 
 /// Focus of all nodes, block by block; a block on which nothing is painted has none.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Paint {
-    /// By block: the focus of its nodes.
-    pub blocks: Vec<Option<Box<[NodeFocus]>>>,
+    /// By block: the focus of its nodes, which clones share until it changes.
+    pub blocks: Vec<Option<Arc<[NodeFocus]>>>,
 }
 
 /// Nothing is painted.
@@ -26,18 +27,18 @@ impl Paint {
             let first = nodes.blocks[block].start as usize;
             let of_nodes = nodes.block_nodes(block);
             let mut addresses = samples.addresses();
-            let mut painted: Option<Box<[NodeFocus]>> = None;
+            let mut painted: Option<Vec<NodeFocus>> = None;
             for index in (0..of_nodes.len()).filter(|&index| of_nodes[index].is_leaf()) {
                 let focus_of_node = offset(addresses.get(nodes.sample_of_node[first + index]), focus);
                 if focus_of_node != NodeFocus::STANDARD {
-                    painted.get_or_insert_with(|| vec![NodeFocus::STANDARD; of_nodes.len()].into())[index] =
+                    painted.get_or_insert_with(|| vec![NodeFocus::STANDARD; of_nodes.len()])[index] =
                         focus_of_node;
                 }
             }
             if let Some(painted) = &mut painted {
                 (0..of_nodes.len()).rev().for_each(|index| combine_children(nodes, block, painted, index));
             }
-            painted
+            painted.map(Arc::from)
         });
         Self { blocks: blocks.collect() }
     }
@@ -61,7 +62,7 @@ impl Paint {
         leaves: &[u32],
         samples: &Samples,
         focus: &dyn SurfaceField<FocusOffset>,
-    ) -> Vec<(usize, Option<Box<[NodeFocus]>>)> {
+    ) -> Vec<(usize, Option<Arc<[NodeFocus]>>)> {
         let focus = SampleFocus::new(focus);
         let block_of = |leaf: &u32| nodes.block_of_node[*leaf as usize] as usize;
         let groups: Vec<&[u32]> = leaves.chunk_by(|a, b| block_of(a) == block_of(b)).collect();
@@ -84,18 +85,19 @@ impl Paint {
         leaves: &[u32],
         samples: &Samples,
         focus: SampleFocus,
-    ) -> Option<Box<[NodeFocus]>> {
+    ) -> Option<Arc<[NodeFocus]>> {
         let first = nodes.blocks[block].start;
         let mut painted = self.blocks[block]
             .clone()
             .unwrap_or_else(|| vec![NodeFocus::STANDARD; nodes.block_nodes(block).len()].into());
+        let of_nodes = Arc::make_mut(&mut painted);
         let mut addresses = samples.addresses();
         for &leaf in leaves {
-            painted[(leaf - first) as usize] =
+            of_nodes[(leaf - first) as usize] =
                 offset(addresses.get(nodes.sample_of_node[leaf as usize]), focus);
         }
-        (0..painted.len()).rev().for_each(|index| combine_children(nodes, block, &mut painted, index));
-        let is_standard = painted.iter().all(|focus| *focus == NodeFocus::STANDARD);
+        (0..of_nodes.len()).rev().for_each(|index| combine_children(nodes, block, of_nodes, index));
+        let is_standard = of_nodes.iter().all(|focus| *focus == NodeFocus::STANDARD);
         (!is_standard).then_some(painted)
     }
 

@@ -9,14 +9,17 @@ mod mattes;
 mod on_card;
 mod resolve_steps;
 mod resolver;
+mod wide_images;
 
 pub use error::SplatError;
 pub use mattes::{Mattes, SETS};
+pub use wide_images::WideImage;
 
 use crate::bands::Pace;
 use crate::draw::Pen;
 use crate::draw_list::{BlockList, Changes};
 use crate::lens_in_use::{LensInUse, Tolerance};
+use crate::node_view::DraftScale;
 use crate::nodes::{Nodes, Scale};
 use crate::paint::Paint;
 use crate::sums::Sums;
@@ -25,10 +28,10 @@ use card::Card;
 use character_in_use::CharacterInUse;
 use lens::{Camera, FocusOffset, GREEN, Picture};
 use progress::{Progress, Stage};
-use rayon::prelude::*;
 use resolve_steps::{Finish, ResolveOutput, SummedPaint};
 use resolver::Resolver;
 use salf::Salf;
+use salf::tree::LEVELS;
 use scene::SurfaceField;
 use std::ops::Range;
 use std::sync::Arc;
@@ -36,6 +39,10 @@ use std::sync::Arc;
 /// The picture of a SALF as running sums that follow the focus as it is painted.
 pub struct Splatter {
     salf: Arc<Salf>,
+    /// How often the picture's sides are halved: 0, but for a [draft](Self::draft).
+    halvings: u8,
+    /// Columns and rows of the picture.
+    size: [u32; 2],
     /// The hierarchy, which twins share; none if a sample is too bright.
     nodes: Option<Arc<Nodes>>,
     tolerance: Tolerance,
@@ -69,27 +76,53 @@ impl Splatter {
     pub fn new(salf: Arc<Salf>) -> Self {
         let nodes = Nodes::new(&salf, Scale::FINEST).map(Arc::new);
         let aperture = ApertureInUse::new(&salf.camera.aperture, 1.0, nodes.as_deref());
-        Self::with_nodes(salf, nodes, Arc::new(aperture))
+        Self::with_nodes(salf, nodes, Arc::new(aperture), 0)
     }
 
     /// Another splatter of the same light field, with sums of its own: quick to make, since the hierarchy is shared. It starts like a
     /// new one, on the same card.
     pub fn twin(&self) -> Self {
-        let mut twin = Self::with_nodes(self.salf.clone(), self.nodes.clone(), self.aperture.clone());
+        let mut twin = self.halved(self.halvings);
         twin.card = self.card.twin();
-        twin.set_live(self.is_live);
         twin
     }
 
-    fn with_nodes(salf: Arc<Salf>, nodes: Option<Arc<Nodes>>, aperture: Arc<ApertureInUse>) -> Self {
-        let camera = &salf.camera;
-        let (width, height) = (camera.width as usize, camera.height as usize);
+    /// A splatter of the same light field whose picture's sides are halved so often (at least once): what is painted, it
+    /// [takes over](Self::take_paint_of). What is alike within its pixels is drawn as one, so that each halving takes less than half of the
+    /// time. It works on the processor.
+    pub fn draft(&self, halvings: u8) -> Self {
+        self.halved(halvings.clamp(1, LEVELS as u8 - 1))
+    }
+
+    /// The same light field, hierarchy and paint without the sums, which take most of the memory.
+    pub fn without_sums(self) -> Self {
+        let twin = self.twin();
+        Self { paint: self.paint, ..twin }
+    }
+
+    fn halved(&self, halvings: u8) -> Self {
+        let mut new =
+            Self::with_nodes(self.salf.clone(), self.nodes.clone(), self.aperture.clone(), halvings);
+        new.set_live(self.is_live);
+        new
+    }
+
+    fn with_nodes(
+        salf: Arc<Salf>,
+        nodes: Option<Arc<Nodes>>,
+        aperture: Arc<ApertureInUse>,
+        halvings: u8,
+    ) -> Self {
+        let size = [salf.camera.width, salf.camera.height].map(|side| side.div_ceil(1 << halvings));
+        let [width, height] = size.map(|side| side as usize);
         let tolerance = Tolerance::default();
         let shape = &aperture.stencils.shape;
         let has_bright = nodes.as_ref().is_some_and(|nodes| nodes.has_bright);
         let sums = Sums::new([width, height], has_bright);
         Self {
-            lens: LensInUse::new(camera.optics(), shape, tolerance),
+            lens: LensInUse::new(salf.camera.optics(), shape, tolerance),
+            size,
+            halvings,
             aperture,
             tolerance,
             is_live: false,
@@ -187,31 +220,58 @@ impl Splatter {
         focus: &dyn SurfaceField<FocusOffset>,
         progress: &dyn Progress,
     ) -> Result<(), SplatError> {
-        self.set_lens(camera);
-        let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
-        self.paint = Paint::sample(nodes, &self.salf.samples, focus);
+        self.look_up_paint(focus);
+        self.refocus(camera, progress)
+    }
+
+    /// Looks up the focus of every sample, for the next [`Self::refocus`].
+    pub fn look_up_paint(&mut self, focus: &dyn SurfaceField<FocusOffset>) {
+        if let Some(nodes) = &self.nodes {
+            self.set_paint(Paint::sample(nodes, &self.salf.samples, focus));
+        }
+    }
+
+    /// Looks up again the focus of the given samples, in any order, for the next [`Self::refocus`].
+    ///
+    /// # Panics
+    /// If no paint was looked up before.
+    pub fn update_paint(&mut self, focus: &dyn SurfaceField<FocusOffset>, samples: &[u32]) {
+        let Some(nodes) = &self.nodes else { return };
+        assert!(self.has_paint(), "paint is updated after it was looked up");
+        let mut paint = self.paint.clone();
+        paint.update(nodes, &nodes.leaves_of(samples), &self.salf.samples, focus);
+        self.set_paint(paint);
+    }
+
+    /// Takes over what `other`, of the same light field, has of the paint.
+    pub fn take_paint_of(&mut self, other: &Self) {
+        self.set_paint(other.paint.clone());
+    }
+
+    /// Whether paint was looked up before.
+    pub fn has_paint(&self) -> bool {
+        self.nodes.as_ref().is_some_and(|nodes| self.paint.blocks.len() == nodes.blocks.len())
+    }
+
+    fn set_paint(&mut self, paint: Paint) {
+        for colour in self.colours.iter_mut().flat_map(|colours| &mut **colours) {
+            colour.set_paint(paint.clone());
+        }
+        self.paint = paint;
         self.card.invalidate_paint();
-        self.sum(&self.green_stage(progress))?;
-        let render = |colour: &mut Self, progress: &dyn Progress| {
-            colour.render(camera, focus, progress)?;
-            Ok(colour.frame())
-        };
-        self.draw_colours(self.frame(), progress, render)?;
-        Ok(())
     }
 
     /// Sums the whole picture for the lens of `camera`, with the paint of before.
     ///
     /// # Panics
-    /// If nothing was rendered before.
+    /// If nothing was rendered before, and no paint looked up.
     ///
     /// # Errors
     /// [`SplatError::Cancelled`] if `progress` is cancelled; [`SplatError::Overflow`] if the picture is too bright
     /// for its integers.
     pub fn refocus(&mut self, camera: &Camera, progress: &dyn Progress) -> Result<(), SplatError> {
         self.set_lens(camera);
-        let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
-        assert_eq!(self.paint.blocks.len(), nodes.blocks.len(), "refocus follows a render");
+        assert!(self.nodes.is_none() || self.has_paint(), "refocus follows a render");
         self.sum(&self.green_stage(progress))?;
         let refocus = |colour: &mut Self, progress: &dyn Progress| {
             colour.set_lens(camera);
@@ -224,16 +284,19 @@ impl Splatter {
 
     /// Puts on a lens.
     fn set_lens(&mut self, camera: &Camera) {
+        let [width, height] = self.size;
+        let camera = &Camera { width, height, ..camera.clone() };
         let (optics, baked_radius) = (camera.optics(), self.salf.camera.aperture_radius);
         let stop = LensInUse::stop(&optics, baked_radius);
         if (&self.aperture.aperture, self.aperture.stop) != (&camera.aperture, stop) {
-            self.aperture = Arc::new(ApertureInUse::new(&camera.aperture, stop, self.nodes.as_deref()));
+            self.aperture = Arc::new(self.aperture.changed(&camera.aperture, stop, self.nodes.as_deref()));
             self.shares_of = None;
             self.card.invalidate_aperture();
         }
         let plain = LensInUse::new(optics, &self.aperture.stencils.shape, self.tolerance);
         let has_character = !camera.character.is_neutral();
-        self.lens = if has_character { plain.with_character(camera, self.channel) } else { plain };
+        let lens = if has_character { plain.with_character(camera, self.channel) } else { plain };
+        self.lens = if self.halvings == 0 { lens } else { lens.for_draft(self.draft_scale()) };
         // A card draws the discs of plain lenses.
         if self.card.bypass(has_character) {
             self.shares_of = None;
@@ -245,8 +308,7 @@ impl Splatter {
     /// Sums all and resolves the picture; on the processor once the card is lost.
     fn sum(&mut self, progress: &dyn Progress) -> Result<(), SplatError> {
         if let Some(nodes) = &self.nodes {
-            let camera = &self.salf.camera;
-            self.card.upload_nodes(nodes, [camera.width as usize, camera.height as usize]);
+            self.card.upload_nodes(nodes, self.size.map(|side| side as usize));
         }
         self.card.begin();
         let summed = self.sum_all(progress);
@@ -317,7 +379,7 @@ impl Splatter {
     fn sum_nodes(&mut self, summed: SummedPaint, progress: &dyn Progress) -> Result<(), SplatError> {
         let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
         let paint = summed.paint(&self.paint);
-        let mut scene = self.aperture.scene(nodes, &self.lens, paint, &self.salf.camera);
+        let mut scene = self.aperture.scene(nodes, &self.lens, paint, self.size);
         if summed == SummedPaint::Painted {
             scene.pen.shaper = self.character.shaper();
         }
@@ -353,16 +415,13 @@ impl Splatter {
     ) -> Result<[Range<u32>; 2], SplatError> {
         let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
         assert_eq!(self.paint.blocks.len(), nodes.blocks.len(), "update follows a render");
-        let mut leaves: Vec<u32> =
-            samples.iter().map(|&sample| nodes.node_of_sample[sample as usize]).collect();
-        leaves.par_sort_unstable();
         self.card.begin();
-        let before = self.paint.update(nodes, &leaves, &self.salf.samples, focus);
+        let before = self.paint.update(nodes, &nodes.leaves_of(samples), &self.salf.samples, focus);
         self.card.invalidate_paint();
-        let scene = self.aperture.scene(nodes, &self.lens, &self.paint, &self.salf.camera);
+        let scene = self.aperture.scene(nodes, &self.lens, &self.paint, self.size);
         let before = before.iter().map(|(block, paint)| (*block, paint.as_deref()));
         self.changes.update(&scene, &before.collect::<Vec<_>>());
-        let mut window = self.changes.window(&scene.pen, self.salf.camera.width);
+        let mut window = self.changes.window(&scene.pen, self.size[0]);
         // Once nothing is painted any more, the picture is evened.
         if nodes.scale != Scale::FINEST || !self.has_shares() {
             return self.sum_again();
@@ -448,9 +507,16 @@ impl Splatter {
         was_lost
     }
 
+    /// How large its picture is beside that of the light field.
+    fn draft_scale(&self) -> DraftScale {
+        let of_field = [self.salf.camera.width, self.salf.camera.height];
+        let sides = [0, 1].map(|axis| f64::from(self.size[axis]) / f64::from(of_field[axis]));
+        DraftScale { halvings: self.halvings, sides }
+    }
+
     /// All rows and columns.
     fn frame(&self) -> [Range<u32>; 2] {
-        [0..self.salf.camera.height, 0..self.salf.camera.width]
+        [0..self.size[1], 0..self.size[0]]
     }
 }
 

@@ -376,7 +376,7 @@ impl Band<'_> {
         let prefetch_cells = |at: usize| {
             if let Some(node) = node_at(at) {
                 prefetch(pen.nodes.cells(node));
-                prefetch(pen.moments.get(node.cells as usize));
+                pen.moments.prefetch(node);
             }
         };
         (0..CELLS_AHEAD).for_each(prefetch_cells);
@@ -387,12 +387,12 @@ impl Band<'_> {
                 continue;
             }
             let node = &pen.nodes.nodes[drawn.index as usize];
-            let moved;
-            let node = match &pen.magnification {
+            let seen;
+            let node = match &pen.view {
                 None => node,
-                Some(magnification) => {
-                    moved = magnification.moved(node);
-                    &moved
+                Some(view) => {
+                    seen = view.seen(node);
+                    &seen
                 }
             };
             let is_sharing = is_sharing(node, drawn.placed);

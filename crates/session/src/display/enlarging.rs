@@ -66,18 +66,14 @@ pub(crate) fn enlarged_part(picture: &Picture, size: [u32; 2], rectangle: Rectan
     residual.update_each(|x, y, value| value - cubic.mean_within(x, y, size, own));
     let corner = [rectangle[0].start, rectangle[1].start];
     let mut shown = PixelGrid::interpolated(&residual, &output_taps, corner);
+    let [low, high] = small.extremes(output_taps.each_ref().map(|taps| pixels_within(taps)), own);
     shown.update_each(|x, y, added| {
-        let [column, row] =
-            [&output_taps[0][(x - corner[0]) as usize], &output_taps[1][(y - corner[1]) as usize]];
-        let (mut low, mut high) = (Vec4::INFINITY, Vec4::NEG_INFINITY);
-        for y in row.around(own[1]) {
-            for x in column.around(own[0]) {
-                let pixel = small.at(x, y);
-                (low, high) = (low.min(pixel), high.max(pixel));
-            }
-        }
+        let [column, row] = [
+            output_taps[0][(x - corner[0]) as usize].within,
+            output_taps[1][(y - corner[1]) as usize].within,
+        ];
         // No clamp: it would not let through what is no number.
-        (cubic.at(x, y) + added).max(low).min(high)
+        (cubic.at(x, y) + added).max(low.at(column, row)).min(high.at(column, row))
     });
     shown.into_picture()
 }
@@ -96,6 +92,12 @@ fn pixels_in(small: Range<u32>, size: u32, own: u32) -> Range<u32> {
 fn source_range(taps: &[Taps]) -> Range<u32> {
     let first = taps.first().map_or(0, |taps| taps.at[0]);
     first..taps.last().map_or(0, |taps| taps.at[3] + 1)
+}
+
+/// The small pixels that some large ones lie in.
+fn pixels_within(taps: &[Taps]) -> Range<u32> {
+    let first = taps.first().map_or(0, |taps| taps.within);
+    first..taps.last().map_or(0, |taps| taps.within + 1)
 }
 
 /// The four pixels that one is interpolated of along an axis, each with its weight; those beyond the border are the last one.
@@ -126,11 +128,6 @@ impl Taps {
             ],
             within: (place as u32).min(own - 1),
         }
-    }
-
-    /// The pixel it lies in, and those beside that.
-    fn around(&self, own: u32) -> Range<u32> {
-        self.within.saturating_sub(1)..(self.within + 2).min(own)
     }
 
     fn weighted_mean(&self, value_at: impl Fn(u32) -> Vec4) -> Vec4 {
@@ -166,6 +163,20 @@ impl PixelGrid {
         Self { corner, width, values: rows.flat_map(row).collect() }
     }
 
+    /// The least and the largest of the values around each of a rectangle, of a field of `size` columns and rows.
+    fn extremes(&self, rectangle: Rectangle, size: [u32; 2]) -> [Self; 2] {
+        let around = |at: u32, axis: usize| at.saturating_sub(1)..(at + 2).min(size[axis]);
+        let extreme = |start: Vec4, choose: fn(Vec4, Vec4) -> Vec4| {
+            let mut field = self.part(rectangle.clone());
+            field.update_each(|x, y, _| {
+                let values = around(y, 1).flat_map(|y| around(x, 0).map(move |x| self.at(x, y)));
+                values.fold(start, choose)
+            });
+            field
+        };
+        [extreme(Vec4::INFINITY, Vec4::min), extreme(Vec4::NEG_INFINITY, Vec4::max)]
+    }
+
     /// The mean of the large pixels, of `size`, whose middles lie in a pixel of a picture of `own` columns and rows.
     fn mean_within(&self, x: u32, y: u32, size: [u32; 2], own: [u32; 2]) -> Vec4 {
         let [columns, rows] = [pixels_in(x..x + 1, size[0], own[0]), pixels_in(y..y + 1, size[1], own[1])];
@@ -177,12 +188,11 @@ impl PixelGrid {
     fn into_picture(self) -> Picture {
         let (width, height) = (self.width as u32, (self.values.len() / self.width) as u32);
         let mut picture = Picture::black(width, height);
-        for ((radiance, coverage), value) in
-            picture.radiance.iter_mut().zip(&mut picture.coverage).zip(self.values)
-        {
+        let pixels = picture.radiance.par_iter_mut().zip(&mut picture.coverage).zip(self.values);
+        pixels.with_min_len(1 << 14).for_each(|((radiance, coverage), value)| {
             let [r, g, b, covered] = value.to_array();
             (*radiance, *coverage) = ([r, g, b], covered);
-        }
+        });
         picture
     }
 
@@ -214,8 +224,11 @@ impl PixelGrid {
         let width = columns.len();
         let mut values = vec![Vec4::ZERO; width * rows.len()];
         values.par_chunks_mut(width).zip(rows).for_each(|(values, taps)| {
+            // Rows side by side, so that several columns are computed at a time.
+            let [a, b, c, d] = taps.at.map(|row| &along[(row - source_rows.start) as usize][..width]);
+            let [wa, wb, wc, wd] = taps.weights;
             for (x, value) in values.iter_mut().enumerate() {
-                *value = taps.weighted_mean(|row| along[(row - source_rows.start) as usize][x]);
+                *value = a[x] * wa + b[x] * wb + c[x] * wc + d[x] * wd;
             }
         });
         Self { corner, width, values }

@@ -8,6 +8,7 @@ use glam::DVec2;
 use lens::Camera;
 use rayon::prelude::*;
 use salf::{LARGEST_MARGIN_HEIGHTS, Salf, SampleFocus, SampleLocation};
+use splat::{Splatter, WideImage};
 
 /// Which samples of a light field reach the frame with a circle of confusion that is wider than the baked margin.
 ///
@@ -20,17 +21,18 @@ pub(crate) struct MarginReach {
 }
 
 impl MarginReach {
-    /// Tests which samples of the light field reach too far for its margin.
-    pub fn survey(salf: &Salf, camera: &Camera, focus: &Focus) -> Self {
-        let test = MarginTest::new(salf, camera, focus);
-        let far_in_run = |run: usize| {
-            let run = salf.samples.run(run);
-            let spots = run.indices.clone().zip(run.locations());
-            spots.filter(|(_, spot)| test.exceeds_margin(spot)).map(|(index, _)| index).collect::<Vec<_>>()
-        };
-        let far: Vec<Vec<u32>> = (0..salf.samples.run_count()).into_par_iter().map(far_in_run).collect();
+    /// Tests which samples reach too far for the margin of their light field, as they were summed for `camera`.
+    pub fn survey(splatter: &Splatter, camera: &Camera) -> Self {
+        let salf = splatter.salf();
+        let [margin_px, largest_px] = margins(salf, camera);
+        let frame = frame(camera);
+        // One that is as large as can be is enough.
+        let least_px = if margin_px < largest_px { margin_px } else { f64::INFINITY };
+        let images = splatter.images_wider_than(least_px);
+        let is_in_frame =
+            |image: &&WideImage| f64::from(image.radius_px) >= outside(image.center_px.as_dvec2(), frame);
         let mut too_far = vec![0; salf.samples.len().div_ceil(WORD as usize)];
-        set(&mut too_far, far.iter().flatten());
+        set(&mut too_far, images.iter().filter(is_in_frame).map(|image| &image.sample));
         Self { moved: vec![0; too_far.len()], too_far }
     }
 
@@ -69,6 +71,14 @@ impl MarginReach {
     }
 }
 
+/// Whether any sample of a light field that is not summed reaches too far for its margin.
+pub(crate) fn exceeds_margin(salf: &Salf, camera: &Camera, focus: &Focus) -> bool {
+    let test = MarginTest::new(salf, camera, focus);
+    (0..salf.samples.run_count())
+        .into_par_iter()
+        .any(|run| salf.samples.run(run).locations().any(|spot| test.exceeds_margin(&spot)))
+}
+
 /// Bits per word.
 const WORD: u32 = u64::BITS;
 
@@ -96,14 +106,9 @@ struct MarginTest<'a> {
 
 impl<'a> MarginTest<'a> {
     fn new(salf: &Salf, camera: &Camera, focus: &'a Focus) -> Self {
-        let frame = DVec2::new(f64::from(camera.width), f64::from(camera.height));
-        Self {
-            focus: SampleFocus::new(focus),
-            optics: camera.optics(),
-            frame,
-            margin_px: f64::from(salf.margin_px),
-            largest_px: LARGEST_MARGIN_HEIGHTS * f64::from(camera.height),
-        }
+        let [margin_px, largest_px] = margins(salf, camera);
+        let (focus, optics) = (SampleFocus::new(focus), camera.optics());
+        Self { focus, optics, frame: frame(camera), margin_px, largest_px }
     }
 
     /// The radius of its circle of confusion, px.
@@ -116,8 +121,21 @@ impl<'a> MarginTest<'a> {
     /// Whether it reaches the frame from further outside than the margin.
     fn exceeds_margin(&self, spot: &SampleLocation) -> bool {
         let radius = self.radius_px(spot);
-        let center = spot.center.as_dvec2();
-        let outside = (-center).max(center - self.frame).max_element();
-        radius.min(self.largest_px) > self.margin_px && radius >= outside
+        radius.min(self.largest_px) > self.margin_px && radius >= outside(spot.center.as_dvec2(), self.frame)
     }
+}
+
+/// The margin that is baked, and the largest that could be, px.
+fn margins(salf: &Salf, camera: &Camera) -> [f64; 2] {
+    [salf.margin_px.into(), LARGEST_MARGIN_HEIGHTS * f64::from(camera.height)]
+}
+
+/// Columns and rows.
+fn frame(camera: &Camera) -> DVec2 {
+    DVec2::new(camera.width.into(), camera.height.into())
+}
+
+/// How far outside of the frame a place is, px; below 0 inside.
+fn outside(center: DVec2, frame: DVec2) -> f64 {
+    (-center).max(center - frame).max_element()
 }

@@ -4,6 +4,7 @@ use crate::display::{PictureSource, Rectangle};
 use crate::error::SessionError;
 use crate::light_field::aperture_fit::{ApertureFit, is_spare_for};
 use crate::light_field::changes::Changes;
+use crate::light_field::draft::Draft;
 use crate::light_field::margin_reach::MarginReach;
 use crate::light_field::sample_index::SampleIndex;
 use document::Stage;
@@ -82,6 +83,8 @@ pub(crate) struct LightField {
     reach: Option<MarginReach>,
     /// Time of the last whole sum, s.
     whole_seconds: f64,
+    /// What draws drafts, once one was asked for.
+    draft: Option<Draft>,
     /// Number of passes by which its light was refined; 0 for cached light.
     light_passes: u32,
 }
@@ -119,9 +122,9 @@ impl LightField {
 
     /// The memory of the light field with its index, and of the sum, in bytes.
     pub fn bytes(&self) -> [usize; 2] {
-        let samples = self.splatter.salf().statistics().bytes;
         let [nodes, sums] = self.splatter.bytes();
-        [samples + self.index.bytes(), nodes + sums]
+        let draft = self.draft.as_ref().map_or(0, Draft::bytes);
+        [self.index.bytes_with_samples() + nodes, sums + draft]
     }
 
     /// The light field, with the number of passes by which its light was refined.
@@ -141,11 +144,24 @@ impl LightField {
         Self::resting(salf, index, modelled, tolerance, gpu)
     }
 
-    /// The same light field and hierarchy without its sum, which is made again when it is needed.
+    /// The same light field, hierarchy and paint without its sum, which is made again when it is needed.
     pub fn at_rest(self, gpu: Option<Gpu>) -> Self {
         let tolerance = self.splatter.tolerance();
-        let twin = Self::with_splatter(self.splatter.twin(), self.index, self.modelled, tolerance, gpu);
-        Self { whole_seconds: self.whole_seconds, ..twin.refined(self.light_passes) }
+        let splatter = self.splatter.without_sums();
+        let resting = Self::with_splatter(splatter, self.index, self.modelled, tolerance, gpu);
+        Self {
+            whole_seconds: self.whole_seconds,
+            pending_changes: self.pending_changes,
+            has_moved_carried: self.has_moved_carried,
+            ..resting.refined(self.light_passes)
+        }
+    }
+
+    /// Looks up the paint of all samples, so that the next sum need not.
+    pub fn look_up_paint(&mut self, focus: &Focus) {
+        self.splatter.look_up_paint(focus);
+        self.has_moved_carried = focus.affects_carried_light();
+        self.pending_changes = Changes::default();
     }
 
     /// Takes the time that a whole sum of another light field of the same view took for that of its own, unless it knows better.
@@ -153,6 +169,35 @@ impl LightField {
         if self.whole_seconds.is_infinite() {
             self.whole_seconds = other.whole_seconds;
         }
+    }
+
+    /// Looks up the paint that has changed.
+    fn take_up_paint(&mut self, focus: &Focus) {
+        match self.few_changed_samples(focus) {
+            None => self.look_up_paint(focus),
+            Some(samples) if samples.is_empty() => {}
+            Some(samples) => {
+                self.splatter.update_paint(focus, &samples);
+                self.has_moved_carried |= focus.affects_carried_light();
+                self.pending_changes = Changes::default();
+            }
+        }
+    }
+
+    /// A draft of the picture for a lens and a focus: smaller, so that it takes a twentieth of a second if possible. The sum itself is to be
+    /// made again.
+    ///
+    /// # Errors
+    /// The sum overflows, or the work was cancelled.
+    pub fn sum_draft(
+        &mut self,
+        camera: &Camera,
+        focus: &Focus,
+        progress: &dyn Progress,
+    ) -> Result<&Picture, SessionError> {
+        self.summed_camera = None;
+        self.take_up_paint(focus);
+        Draft::sum(&mut self.draft, (&self.splatter, self.whole_seconds), camera, progress)
     }
 
     /// The same light field for a `stage` that differs in its backdrop alone, which has this radiance (linear RGB) everywhere; `None` if that is
@@ -200,6 +245,7 @@ impl LightField {
             pending_changes: Changes::default(),
             reach: None,
             whole_seconds: f64::INFINITY,
+            draft: None,
             light_passes: 0,
         }
     }
@@ -212,6 +258,7 @@ impl LightField {
 
     /// See [`Splatter::release_room`].
     pub fn release_room(&mut self) {
+        self.draft = None;
         self.splatter.release_room();
     }
 
@@ -280,7 +327,7 @@ impl LightField {
         let salf = self.splatter.salf();
         match &mut self.reach {
             Some(reach) => reach.retest_moved(salf, camera, focus),
-            None => self.reach = Some(MarginReach::survey(salf, camera, focus)),
+            None => self.reach = Some(MarginReach::survey(&self.splatter, camera)),
         }
     }
 
@@ -291,16 +338,24 @@ impl LightField {
 
     /// What it takes to bring the sum to a lens, a focus and all changes.
     pub fn plan(&self, camera: &Camera, focus: &Focus) -> Plan {
-        let texels = match &self.pending_changes {
-            Changes::Texels(texels) if self.summed_camera.as_ref() == Some(camera) => texels,
-            _ => return Plan::Whole,
-        };
+        if self.summed_camera.as_ref() != Some(camera) {
+            return Plan::Whole;
+        }
+        self.few_changed_samples(focus).map_or(Plan::Whole, Plan::Move)
+    }
+
+    /// The samples whose paint has changed since it was looked up; `None` if these are many, or it was never looked up.
+    fn few_changed_samples(&self, focus: &Focus) -> Option<Vec<u32>> {
+        let Changes::Texels(texels) = &self.pending_changes else { return None };
+        if !self.splatter.has_paint() {
+            return None;
+        }
         let mut samples = self.index.samples_reading(texels);
         if self.has_moved_carried || focus.affects_carried_light() {
             samples.extend(self.index.carried_reading(texels));
         }
-        let few = samples.len() as f64 <= LARGEST_UPDATE * self.splatter.salf().samples.len() as f64;
-        if few { Plan::Move(samples) } else { Plan::Whole }
+        let most = LARGEST_UPDATE * self.splatter.salf().samples.len() as f64;
+        Some(samples).filter(|samples| samples.len() as f64 <= most)
     }
 
     /// Whether the sum shows this lens and all changes.
@@ -339,7 +394,7 @@ impl LightField {
         progress: &dyn Progress,
     ) -> Result<SumUpdate, SessionError> {
         // Until all is through, the sum is of no lens.
-        let was_summed = self.summed_camera.take().is_some();
+        self.summed_camera = None;
         let update = match plan {
             Plan::Move(samples) if samples.is_empty() => SumUpdate::Unchanged,
             Plan::Move(samples) => {
@@ -351,13 +406,9 @@ impl LightField {
             }
             Plan::Whole => {
                 self.reach = None;
-                self.has_moved_carried = false;
                 let start = Instant::now();
-                if was_summed && self.pending_changes.is_none() {
-                    self.splatter.refocus(camera, progress)?;
-                } else {
-                    self.splatter.render(camera, focus, progress)?;
-                }
+                self.take_up_paint(focus);
+                self.splatter.refocus(camera, progress)?;
                 self.whole_seconds = start.elapsed().as_secs_f64();
                 SumUpdate::Whole
             }

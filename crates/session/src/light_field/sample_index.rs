@@ -16,18 +16,21 @@ pub(crate) struct SampleIndex {
     atlas: Arc<Atlas>,
     own: Tiles,
     carried: OnceLock<Tiles>,
+    /// The memory of the samples, bytes.
+    sample_bytes: usize,
 }
 
 impl SampleIndex {
     /// The index of the samples of `salf` by the texels of `atlas`.
     pub fn new(salf: Arc<Salf>, atlas: Arc<Atlas>) -> Self {
         let own = Tiles::from_samples(&salf, &atlas, |address| !address.is_carried);
-        Self { salf, atlas, own, carried: OnceLock::new() }
+        let sample_bytes = salf.statistics().bytes;
+        Self { salf, atlas, own, carried: OnceLock::new(), sample_bytes }
     }
 
-    /// The memory that it takes, in bytes.
-    pub fn bytes(&self) -> usize {
-        self.own.bytes() + self.carried.get().map_or(0, Tiles::bytes)
+    /// The memory that it takes with the samples, in bytes.
+    pub fn bytes_with_samples(&self) -> usize {
+        self.sample_bytes + self.own.bytes() + self.carried.get().map_or(0, Tiles::bytes)
     }
 
     /// The samples of own light whose bilinear lookup may read one of `texels` (column and row), each once, in no order.

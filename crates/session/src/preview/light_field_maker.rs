@@ -22,9 +22,7 @@ use std::time::{Duration, Instant};
 
 /// What is begun with.
 pub(crate) enum FieldOrigin {
-    /// A light field that is there.
-    Resum(Box<LightField>),
-    /// One that is there, before another backdrop, which has this radiance everywhere.
+    /// A light field that is there, before another backdrop, which has this radiance everywhere.
     OtherBackdrop(Box<LightField>, Vec3),
     /// None: it is taken from the store or baked, with a margin of at least this many pixels.
     LoadOrBake { least_margin_px: f64 },
@@ -84,22 +82,16 @@ impl LightFieldMaker {
 
     /// Begins, unless that is already known to be useless. What is made is delivered to `shared`.
     pub fn start(&mut self, shared: &Arc<Shared>, order: FieldOrder) {
-        let is_baked = matches!(order.origin, FieldOrigin::Resum(_));
-        let activity = if is_baked { PreviewActivity::Splatting } else { PreviewActivity::Baking };
-        if !shared.begin_helper(activity) {
+        if !shared.begin_helper(PreviewActivity::Baking) {
             return;
         }
         self.pending_changes = Changes::default();
         let (thread_shared, epoch, store) = (shared.clone(), order.epoch, self.store.clone());
-        if !is_baked {
-            // Whoever asks from now on waits for it.
-            shared.field.begin(&order.stage);
-        }
-        // One that is there has only to be summed for another lens that somebody turns.
-        let urgency = if is_baked { Urgency::Interactive } else { Urgency::Background };
+        // Whoever asks from now on waits for it.
+        shared.field.begin(&order.stage);
         let work = move || {
             let make = || make(order, &thread_shared, store.as_ref());
-            let result = catch_panics("drawing the preview", || run_in_own_pool(urgency, make));
+            let result = catch_panics("drawing the preview", || run_in_own_pool(Urgency::Background, make));
             thread_shared.field.end();
             thread_shared.deliver(FieldDelivery { result, epoch });
         };
@@ -176,10 +168,7 @@ fn make(
         }
         Ok::<_, SessionError>(field)
     };
-    // One that is there has another lens to show, and no time.
-    let is_resum = matches!(origin, FieldOrigin::Resum(_));
     let mut field = match origin {
-        FieldOrigin::Resum(field) => *field,
         FieldOrigin::Bake => bake(0.0)?,
         FieldOrigin::OtherBackdrop(field, radiance) => {
             let start = Instant::now();
@@ -209,8 +198,6 @@ fn make(
     shared.progress.begin_step("", BAKE_SHARE, 1.0);
     field.update_sum(&camera, &focus, &Share::new(&shared.progress, BAKE_SHARE, 1.0))?;
     field.survey(&camera, &focus);
-    if !is_resum {
-        field.prepare()(&shared.progress);
-    }
+    field.prepare()(&shared.progress);
     Ok(field)
 }

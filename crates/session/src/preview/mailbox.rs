@@ -20,6 +20,8 @@ pub(crate) struct Shared {
     wake: Condvar,
     /// Progress of the thread's own work: short.
     pub quick: JobProgress,
+    /// Whether a request for another camera waits.
+    is_camera_waiting: AtomicBool,
     /// Whether the thread makes a picture that is shown even if the camera moves on.
     is_following: AtomicBool,
     /// Progress of its helper's work: long.
@@ -62,6 +64,7 @@ impl Shared {
             request: Mutex::default(),
             wake: Condvar::new(),
             quick: JobProgress::default(),
+            is_camera_waiting: AtomicBool::new(false),
             is_following: AtomicBool::new(false),
             progress: JobProgress::default(),
             refining: JobProgress::default(),
@@ -99,6 +102,7 @@ impl Shared {
         }
         // What was cancelled is over, and this is new.
         self.quick.reset();
+        self.is_camera_waiting.store(false, Ordering::Relaxed);
         self.activity.store(PreviewActivity::Splatting as u8, Ordering::Relaxed);
         if request.delivery.is_some() {
             self.helper.store(PreviewActivity::Idle as u8, Ordering::Relaxed);
@@ -132,6 +136,7 @@ impl Shared {
         let mut request = lock(&self.request);
         change(&mut request);
         request.is_posted = true;
+        self.is_camera_waiting.store(request.camera.is_some(), Ordering::Relaxed);
         if scope != StopScope::Nothing {
             self.refining.cancel();
         }
@@ -370,5 +375,18 @@ impl Shared {
         }
         let published = lock(&self.published);
         published.events.failures.is_empty() && published.latest.as_ref().is_none_or(|p| p.id <= id)
+    }
+}
+
+/// The thread's own work on a picture that is of no use once the camera is another.
+pub(crate) struct UntilCameraMoves<'a>(pub &'a Shared);
+
+impl Progress for UntilCameraMoves<'_> {
+    fn report(&self, fraction: f32) {
+        self.0.quick.report(fraction);
+    }
+
+    fn cancelled(&self) -> bool {
+        self.0.quick.cancelled() || self.0.is_camera_waiting.load(Ordering::Relaxed)
     }
 }

@@ -157,7 +157,7 @@ fn make(
 ) -> Result<LightField, SessionError> {
     let SpareTask { stage, baked_camera, focus, tolerance, .. } = task;
     let stored = store.and_then(|store| store.find(&stage, &baked_camera, 0.0, Carried::for_focus(&focus)));
-    let field = match stored {
+    let mut field = match stored {
         Some((salf, passes)) => {
             LightField::from_salf(&stage, Arc::new(salf), tolerance, shared.gpu()).refined(passes)
         }
@@ -173,5 +173,6 @@ fn make(
             field
         }
     };
+    field.look_up_paint(&focus);
     Ok(field)
 }

@@ -26,11 +26,8 @@ use splat::Tolerance;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// A whole sum that takes less than this many seconds is made at once for every new lens: what is dragged then follows the hand.
+/// Before a whole sum that takes longer than this many seconds a draft is shown: what is dragged then follows the hand.
 const QUICK_SECONDS: f64 = 0.1;
-
-/// Before a whole sum that takes longer than this many seconds, a coarse picture is shown, which takes most of them itself.
-const SOON_SECONDS: f64 = 0.5;
 
 /// The thread's own state.
 pub(crate) struct Worker {
@@ -201,20 +198,22 @@ impl Worker {
         }
 
         self.choose_field(&camera);
-        let plan =
-            self.fine.as_ref().map(|fine| (fine.plan(&camera, &focus), fine.whole_seconds() < QUICK_SECONDS));
-        if let Some((plan, is_quick)) = plan
-            && (is_quick || matches!(plan, Plan::Move(_)))
-        {
+        if let Some(fine) = &self.fine {
+            let plan = fine.plan(&camera, &focus);
+            if matches!(plan, Plan::Whole) && fine.whole_seconds() >= QUICK_SECONDS {
+                if self.is_paused {
+                    return Ok(());
+                }
+                self.show_draft(&camera, &focus)?;
+            }
             return self.show_fine(plan, &stage, &camera, focus);
         }
         if !self.show_pinhole(&stage, &camera, &focus)? {
             return Ok(());
         }
         // What is kept is there sooner than the coarse picture.
-        let is_stored = self.fine.is_none() && !self.bakes_anew && self.maker.has_stored(&stage, &camera);
-        let is_soon = self.fine.as_ref().is_some_and(|fine| fine.whole_seconds() < SOON_SECONDS);
-        if !is_stored && !is_soon {
+        let is_stored = !self.bakes_anew && self.maker.has_stored(&stage, &camera);
+        if !is_stored {
             self.show_coarse(&stage, &camera, &focus)?;
         }
         if !self.maker.is_at_work() && !self.is_paused {

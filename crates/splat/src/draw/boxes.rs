@@ -62,7 +62,7 @@ impl Pen<'_> {
     /// One box of the light, mean and variance that a partly occluded node sends, within a pixel of its image.
     #[inline(always)]
     pub fn draw_partial_box<W: Word>(&self, image: &mut Image, paper: &mut Paper<W>, sign: i32) {
-        let moments = &self.moments[image.node.cells as usize];
+        let moments = self.moments.of(self.nodes, image.node);
         image.shift([moments.mean[0].into(), moments.mean[1].into()]);
         image.share = moments.share;
         let half_size = image.node.half_size;

@@ -1,13 +1,13 @@
 //! What nodes are drawn with, and in which form each is drawn.
 
-use crate::aperture::moments::ApertureMoments;
+use crate::aperture::moments::MomentCache;
 use crate::aperture::stencil::Stencils;
 use crate::canvas::{PIXEL, POSITION_BITS};
-use crate::character::magnification::Magnification;
 use crate::character::shaper::Shaper;
 use crate::draw::image::{Image, Light, seed};
 use crate::fixed::{ONE, WHOLE, mul_shift};
 use crate::lens_in_use::{Detail, Placed};
+use crate::node_view::NodeView;
 use crate::nodes::{Cells, Nodes, SplatNode};
 
 /// Aperture images of a smaller standard deviation, px, are boxes.
@@ -28,12 +28,12 @@ pub struct Pen<'a> {
     pub nodes: &'a Nodes,
     /// What cuts and weighs the aperture, if anything does.
     pub shaper: Option<&'a Shaper>,
-    /// How much larger the picture of a colour is, where it is.
-    pub magnification: Option<Magnification>,
+    /// How the picture sees the nodes; `None`: where they are.
+    pub view: Option<NodeView>,
     /// The images of the aperture, by size.
     pub stencils: &'a Stencils,
     /// The aperture moments of partly occluded nodes.
-    pub moments: &'a [ApertureMoments],
+    pub moments: &'a MomentCache,
     /// The lens's aperture radius as a share of the baked one, in 1/16384.
     pub stop: i32,
     /// Its reciprocal, in 1/16384.
@@ -111,7 +111,7 @@ impl<'a> Pen<'a> {
     pub fn new(
         nodes: &'a Nodes,
         stencils: &'a Stencils,
-        moments: &'a [ApertureMoments],
+        moments: &'a MomentCache,
         stop: f64,
         detail: Detail,
     ) -> Self {
@@ -155,7 +155,7 @@ impl<'a> Pen<'a> {
         Self {
             nodes,
             shaper: None,
-            magnification: None,
+            view: None,
             stencils,
             moments,
             stop,
@@ -177,11 +177,11 @@ impl<'a> Pen<'a> {
         }
     }
 
-    /// The node with this index, where the colour that is drawn shows it.
+    /// The node with this index, as the picture sees it.
     #[inline(always)]
     pub fn node(&self, index: u32) -> SplatNode {
         let node = &self.nodes.nodes[index as usize];
-        self.magnification.map_or(*node, |magnification| magnification.moved(node))
+        self.view.map_or(*node, |view| view.seen(node))
     }
 
     /// The image of a node that was placed, with this light.
@@ -202,7 +202,7 @@ impl<'a> Pen<'a> {
     #[inline(always)]
     pub fn visible_part<'n>(&'n self, node: &SplatNode) -> (&'n Cells, u32) {
         match self.nodes.cells(node) {
-            Some(cells) => (cells, self.moments[node.cells as usize].share),
+            Some(cells) => (cells, self.moments.of(self.nodes, node).share),
             None => (&ALL, WHOLE),
         }
     }

@@ -1,6 +1,6 @@
 //! Nodes in the card's memory.
 
-use crate::aperture::moments::ApertureMoments;
+use crate::aperture::moments::MomentCache;
 use crate::gpu::Gpu;
 use crate::gpu::device::Lost;
 use crate::gpu::formats::{
@@ -86,14 +86,14 @@ impl Scene {
     }
 
     /// Uploads the cells and aperture moments of partly occluded nodes.
-    pub fn upload_moments(&self, gpu: &Gpu, nodes: &Nodes, moments: &[ApertureMoments]) {
+    pub fn upload_moments(&self, gpu: &Gpu, nodes: &Nodes, moments: &MomentCache) {
         for chunk in &self.chunks {
             let partial = &chunk.shared.partial;
             let mut words = Vec::with_capacity(partial.len() * PARTIAL_WORDS);
             for &index in partial {
                 let node = &nodes.nodes[index as usize];
                 if let Some(cells) = nodes.cells(node) {
-                    let node_moments = &moments[node.cells as usize];
+                    let node_moments = moments.of(nodes, node);
                     words.extend(cells.chunks_exact(2).map(|pair| pack_pair(pair[0], pair[1])));
                     words.extend([
                         node_moments.share,

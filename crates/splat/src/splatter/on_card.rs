@@ -20,8 +20,7 @@ impl Splatter {
 
     /// The picture on the card, which the next sum writes over. None where it is summed on the processor.
     pub fn picture_on_card(&self) -> Option<PictureOnCard> {
-        let camera = &self.salf.camera;
-        self.card.picture([camera.width, camera.height])
+        self.card.picture(self.size)
     }
 
     /// Brings back what of the picture stayed on the card; from the processor, summed anew, if that is lost.

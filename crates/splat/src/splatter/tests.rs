@@ -1,6 +1,7 @@
 //! The promises of the sums: order, threads and paint leave no trace.
 
 mod character;
+mod draft;
 mod mattes;
 
 use super::*;

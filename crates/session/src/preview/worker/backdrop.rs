@@ -21,11 +21,10 @@ impl Worker {
     /// What the next light field begins with.
     pub(super) fn next_origin(&mut self, camera: &Camera) -> FieldOrigin {
         let before = self.before_backdrop.take().filter(|(field, _)| field.can_show(camera));
-        match (self.fine.take(), before) {
-            (Some(fine), _) => FieldOrigin::Resum(Box::new(fine)),
-            (None, Some((field, radiance))) => FieldOrigin::OtherBackdrop(Box::new(field), radiance),
-            (None, None) if std::mem::take(&mut self.bakes_anew) => FieldOrigin::Bake,
-            (None, None) => FieldOrigin::LoadOrBake { least_margin_px: 0.0 },
+        match before {
+            Some((field, radiance)) => FieldOrigin::OtherBackdrop(Box::new(field), radiance),
+            None if std::mem::take(&mut self.bakes_anew) => FieldOrigin::Bake,
+            None => FieldOrigin::LoadOrBake { least_margin_px: 0.0 },
         }
     }
 

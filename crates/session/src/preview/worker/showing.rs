@@ -7,6 +7,7 @@ use crate::light_field::{FieldOptions, LightField, Plan, SumUpdate, spare_camera
 use crate::preview::activity::PreviewActivity;
 use crate::preview::deliveries::ExactDelivery;
 use crate::preview::light_field_maker::FieldOrigin;
+use crate::preview::mailbox::UntilCameraMoves;
 use crate::preview::picture::{PreviewKind, Quality};
 use crate::preview::picture_sizes::{
     has_coarse_pictures, moving_camera, next_coarse_camera, pixel_count, resized, resting_camera,
@@ -43,7 +44,7 @@ impl Worker {
         let Some(fine) = &mut self.fine else { return Ok(()) };
         self.shared.begin(PreviewActivity::Splatting)?;
         let start = Instant::now();
-        let update = fine.execute_plan(plan, camera, &focus, &self.shared.quick)?;
+        let update = fine.execute_plan(plan, camera, &focus, &UntilCameraMoves(&self.shared))?;
         let light_passes = fine.light_passes();
         let is_new = std::mem::take(&mut self.is_new);
         if update != SumUpdate::Unchanged || is_new {
@@ -58,8 +59,8 @@ impl Worker {
                 let seconds = if is_exact { &mut costs.exact_seconds } else { &mut costs.viewing_seconds };
                 *seconds = Some(fine.whole_seconds());
             }
-            // The sum of a new one was made elsewhere.
-            let elsewhere = if is_new { fine.whole_seconds() } else { 0.0 };
+            // The sum of a new one may have been made elsewhere.
+            let elsewhere = if update == SumUpdate::Unchanged { fine.whole_seconds() } else { 0.0 };
             self.presenter.show(NewPicture {
                 picture: fine.source(),
                 camera,
@@ -83,6 +84,27 @@ impl Worker {
             self.coarse = None;
             self.make_field(FieldOrigin::LoadOrBake { least_margin_px }, stage, camera, focus);
         }
+        Ok(())
+    }
+
+    /// A draft of the fine picture, which takes longer.
+    pub(super) fn show_draft(&mut self, camera: &Camera, focus: &Focus) -> Result<(), SessionError> {
+        let Some(fine) = &mut self.fine else { return Ok(()) };
+        self.shared.begin(PreviewActivity::Splatting)?;
+        let start = Instant::now();
+        let modelled = fine.modelled();
+        let draft = fine.sum_draft(camera, focus, &self.shared.quick)?;
+        self.presenter.show(NewPicture {
+            camera: &resized(camera, [draft.width, draft.height]),
+            picture: PictureSource::InMemory(draft),
+            enlarged_to: Some([camera.width, camera.height]),
+            sharp_layer: None,
+            kind: PreviewKind::Splat,
+            quality: Quality::Coarse,
+            seconds: start.elapsed().as_secs_f64(),
+            modelled,
+            relation: Relation::New,
+        });
         Ok(())
     }
 
@@ -147,9 +169,6 @@ impl Worker {
         if let Some((_, small)) = standing.filter(|(coarse, small)| coarse.can_show(small)) {
             shown_pixels = pixel_count(&small);
             self.show_small(stage, &small, size, focus)?;
-        } else if self.fine.is_some() {
-            // The fine one is summed sooner than a coarse one is baked.
-            return Ok(());
         }
         while (shown_pixels == 0.0 || !self.is_painting)
             && let Some(small) = next_coarse_camera(camera, shown_pixels, self.coarse_pace)

@@ -3,7 +3,7 @@
 use crate::error::SessionError;
 use crate::exported_picture::PictureExport;
 use crate::job_steps::JobSteps;
-use crate::light_field::MarginReach;
+use crate::light_field::exceeds_margin;
 use crate::preview::{Exporting, Quality, Shared};
 use crate::session::job_outcome::JobOutcome;
 use crate::session::state::Session;
@@ -85,7 +85,7 @@ impl AvailableFields {
 
 /// Whether a light field tells carried light finely enough, and its margin holds all that comes into the frame.
 fn covers_focus(salf: &Salf, camera: &Camera, focus: &Focus) -> bool {
-    salf.carried >= Carried::for_focus(focus) && !MarginReach::survey(salf, camera, focus).is_exceeded()
+    salf.carried >= Carried::for_focus(focus) && !exceeds_margin(salf, camera, focus)
 }
 
 impl Session {
