@@ -62,9 +62,8 @@ fn a_draft_is_the_picture_with_fewer_pixels() {
             let size = [draft.picture().width, draft.picture().height];
             assert_eq!(size, [96, 64].map(|side: u32| side >> halvings));
             let apart = distance(draft.picture(), whole.picture(), halvings);
-            println!("{halvings} {distance_of_focus} {apart}");
             assert!(apart < 0.02, "{halvings} at {distance_of_focus}: {apart}");
-            let unfocused = Camera { focus_distance: 4.0, ..camera };
+            let unfocused = Camera { focus_distance: 1.2, ..camera };
             whole.refocus(&unfocused, &Unwatched).unwrap();
             let control = distance(draft.picture(), whole.picture(), halvings);
             assert!(control > 2.0 * apart, "the control: {control}");
@@ -119,16 +118,4 @@ fn wide_images_are_those_of_the_samples_that_are_painted_so() {
     assert_eq!((widest.sample, widest.center_px), (40 * 96 + 50, Vec2::new(50.5, 40.5)));
     let wide = splatter.images_wider_than(f64::from(widest.radius_px) - 1.5 / f64::from(PIXEL));
     assert_eq!(wide, [widest]);
-}
-
-#[test]
-fn a_draft_of_odd_sides_holds_them_all() {
-    let mut whole = Splatter::new(light_field());
-    whole.render(&camera(), &standard(), &Unwatched).unwrap();
-    let mut draft = whole.draft(5);
-    draft.take_paint_of(&whole);
-    draft.refocus(&camera(), &Unwatched).unwrap();
-    assert_eq!([draft.picture().width, draft.picture().height], [3, 3], "80 rows are 2.5 of 32");
-    let coverage: f32 = draft.picture().coverage.iter().sum();
-    assert!((coverage / 9.0 - 1.0).abs() < 0.2, "{coverage}");
 }
