@@ -10,6 +10,7 @@ mod eye;
 mod eye_raster;
 mod ray_light;
 mod shape;
+mod span_bins;
 mod tile_tracer;
 mod tiles;
 mod world_ray;
@@ -50,6 +51,7 @@ pub struct GaussianView<'a> {
 }
 
 /// A splat in camera space.
+#[derive(Clone, Copy)]
 pub(crate) struct ViewSplat {
     pub shape: CameraShape,
     /// Its index in the cloud.
@@ -166,6 +168,12 @@ impl<'a> GaussianView<'a> {
     pub fn direction(&self, u: DVec2, pixel: DVec2) -> DVec3 {
         let slope = self.camera.q_from_pixel(pixel) * self.optics.tan_half_yfov;
         (slope - u * self.optics.inverse_focus_distance).extend(1.0)
+    }
+
+    /// The view of some of its splats, which `numbers` names in ascending order.
+    pub(crate) fn of_some(&self, numbers: &[u32]) -> Self {
+        let splats = numbers.iter().map(|number| self.splats[*number as usize]).collect();
+        Self { splats, ..*self }
     }
 
     pub(crate) fn splats(&self) -> &[ViewSplat] {

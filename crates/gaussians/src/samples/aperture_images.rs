@@ -118,6 +118,7 @@ pub fn aperture_images(
     let mut images = ApertureImages { cells: Vec::new(), light: vec![(Vec3::ZERO, 0.0); clusters] };
     let grid = grid_of_all(scene);
     let targets = clusters + scene.points.len();
+    let seen = SeenSplats::new(scene, &grid, targets);
     images.cells = vec![Vec::new(); count];
     let (first, others): (Vec<usize>, Vec<usize>) =
         (0..count).partition(|cell| is_first(*cell, cells as usize));
@@ -130,7 +131,7 @@ pub fn aperture_images(
         let middle = |index: usize| (2.0 * index as f64 + 1.0) / f64::from(cells) - 1.0;
         let u = DVec2::new(middle(cell % cells as usize), middle(cell / cells as usize));
         let u = u * scene.view.optics().aperture_radius;
-        let bake = CellBake::new(scene, &grid, u, &is_wanted);
+        let bake = CellBake::new(scene, &seen, &grid, u, &is_wanted);
         let mut values = vec![f16::ZERO; targets];
         for (index, share, light) in bake.run(progress)? {
             values[index] = f16::from_f32(share);
@@ -164,28 +165,60 @@ fn grid_of_all(scene: &ApertureScene<'_>) -> RayGrid {
     )
 }
 
+/// The splats that rays toward targets can meet, from whatever point of the aperture: of a band of a picture few of all.
+struct SeenSplats<'v> {
+    view: GaussianView<'v>,
+    /// What the splats of `view` are in the scene's view.
+    numbers: Vec<u32>,
+}
+
+impl<'v> SeenSplats<'v> {
+    fn new(scene: &ApertureScene<'v>, grid: &RayGrid, targets: usize) -> Self {
+        let radius = scene.view.optics().aperture_radius;
+        let rows =
+            |index: usize| [-radius, radius].map(|y| target_tile(scene, grid, DVec2::new(0.0, y), index)[1]);
+        let none = || [u32::MAX, 0];
+        let hull = |a: [u32; 2], b: [u32; 2]| [a[0].min(b[0]).min(b[1]), a[1].max(b[0]).max(b[1])];
+        let [first, last] = (0..targets).into_par_iter().map(rows).fold(none, hull).reduce(none, hull);
+        let numbers = grid.seen_in_rows(scene.view, first..=last);
+        Self { view: scene.view.of_some(&numbers), numbers }
+    }
+}
+
+/// The tile (column, row) of the ray from the aperture point `u` through a target.
+fn target_tile(scene: &ApertureScene<'_>, grid: &RayGrid, u: DVec2, index: usize) -> [u32; 2] {
+    let optics = scene.view.optics();
+    let PicturePoint { pixel, inverse_depth } = point_of(scene, index);
+    let kappa = optics.standard_kappa(inverse_depth);
+    let shift = kappa * u / optics.tan_half_yfov * optics.half_height_px;
+    grid.tile_at(pixel + DVec2::new(shift.x, -shift.y))
+}
+
 /// The rays of one cell.
 struct CellBake<'v> {
     raster: EyeRaster<'v>,
+    seen: &'v SeenSplats<'v>,
     scene: &'v ApertureScene<'v>,
     /// In the order of tiles.
     targets: Vec<Target>,
 }
 
 impl<'v> CellBake<'v> {
-    fn new(scene: &'v ApertureScene<'v>, grid: &'v RayGrid, u: DVec2, is_wanted: &[bool]) -> Self {
-        let optics = scene.view.optics();
+    fn new(
+        scene: &'v ApertureScene<'v>,
+        seen: &'v SeenSplats<'v>,
+        grid: &'v RayGrid,
+        u: DVec2,
+        is_wanted: &[bool],
+    ) -> Self {
         let target = |index: usize| {
-            let PicturePoint { pixel, inverse_depth } = point_of(scene, index);
-            let kappa = optics.standard_kappa(inverse_depth);
-            let shift = kappa * u / optics.tan_half_yfov * optics.half_height_px;
-            let [tile_column, tile_row] = grid.tile_at(pixel + DVec2::new(shift.x, -shift.y));
+            let [tile_column, tile_row] = target_tile(scene, grid, u, index);
             Target { tile_row, tile_column, index }
         };
         let wanted = (0..is_wanted.len()).into_par_iter().filter(|index| is_wanted[*index]);
         let mut targets: Vec<Target> = wanted.map(target).collect();
         targets.par_sort_unstable_by_key(|target| (target.tile_row, target.tile_column, target.index));
-        Self { raster: EyeRaster::new(scene.view, u, grid), scene, targets }
+        Self { raster: EyeRaster::new(&seen.view, u, grid), seen, scene, targets }
     }
 
     /// Share and light of what the cell sees.
@@ -238,10 +271,16 @@ impl<'v> CellBake<'v> {
         if end < f64::INFINITY {
             end_at(hits, end);
         }
-        let members = self.scene.clusters.members(cluster);
+        let mut members = self.scene.clusters.members(cluster).iter().copied().peekable();
         let area = (1.0 - u.dot(cluster.gradient)).max(0.0);
         let (mut share, mut light) = (0.0, Vec3::ZERO);
-        for hit in hits.iter().filter(|hit| members.binary_search(&hit.splat).is_ok()) {
+        // Hits and members are in the same order.
+        for hit in hits.iter() {
+            let number = self.seen.numbers[hit.splat as usize];
+            while members.next_if(|member| *member < number).is_some() {}
+            if members.peek() != Some(&number) {
+                continue;
+            }
             let weight = (hit.weight * area) as f32;
             share += weight;
             light += weight * self.raster.radiance(hit.splat);

@@ -33,6 +33,7 @@ pub(crate) struct Growth {
 }
 
 /// A splat before a camera.
+#[derive(Clone, Copy)]
 pub(crate) struct CameraShape {
     /// Camera space.
     pub mean: DVec3,

@@ -54,8 +54,8 @@ pub(crate) enum Follow {
 
 impl TileTracer {
     /// For rays near the direction `middle` (z = 1) from an eye, which meet no splats but `candidates`.
-    pub fn new(eye: &Eye<'_>, middle: DVec3, candidates: &[u32]) -> Self {
-        let splats = candidates.iter().map(|index| TileSplat::new(eye, middle, *index)).collect();
+    pub fn new(eye: &Eye<'_>, middle: DVec3, candidates: impl Iterator<Item = u32>) -> Self {
+        let splats = candidates.map(|index| TileSplat::new(eye, middle, index)).collect();
         Self { middle, splats }
     }
 
@@ -177,8 +177,7 @@ mod tests {
         let view = GaussianView::new(&cloud, &Placement::IDENTITY, &camera);
         let eye = Eye::new(&view, DVec2::new(0.01, -0.005));
         let middle = DVec3::new(0.02, -0.01, 1.0);
-        let all: Vec<u32> = (0..view.len() as u32).collect();
-        let tracer = TileTracer::new(&eye, middle, &all);
+        let tracer = TileTracer::new(&eye, middle, 0..view.len() as u32);
         let directions: Vec<DVec3> =
             (0..5).map(|k| middle + DVec3::new(0.002 * f64::from(k), -0.001, 0.0)).collect();
         for (follow, stops) in [(Follow::Visible, true), (Follow::All, false)] {

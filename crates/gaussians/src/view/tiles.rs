@@ -1,17 +1,27 @@
 //! Which splats the rays of a part of the picture can meet.
 //!
 //! Rays form a grid. A splat's outline as an eye sees it is a conic; the tiles that its bounds meet are those whose rays must test it. Splats are
-//! filtered by rows of tiles, then by tiles, when these are drawn: nothing grows with splats times tiles.
+//! listed by rows of tiles, and those of a row by tiles when it is drawn; what spans many is listed once, so that nothing grows with splats times tiles.
 
 use super::eye::Eye;
 use super::shape::CameraShape;
+use super::span_bins::SpanBins;
 use super::tile_tracer::{LANES, TileTracer};
+use super::{GaussianView, ViewSplat};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 
 /// Rays of a side of a tile: a row of them is traced at once.
 const TILE: u32 = LANES as u32;
+
+/// The rays of a grid between which a splat is, whole numbers, perhaps beyond the grid.
+struct RayBounds {
+    left: f64,
+    right: f64,
+    top: f64,
+    bottom: f64,
+}
 
 /// Rays through a picture and a margin about it, evenly spaced.
 #[derive(Clone, Copy, Debug)]
@@ -31,19 +41,24 @@ pub(crate) struct TileRow<'g> {
     grid: &'g RayGrid,
     /// Its rows of rays.
     pub rays: Range<u32>,
-    /// The splats that it meets, in order, with the columns of tiles.
-    splats: Vec<(u32, [u32; 2])>,
+    /// The splats that it meets, by tiles.
+    splats: SpanBins,
 }
 
-/// The bounds of each splat of a view, in tiles: first and last column, first and last row; the first is after the last where it is not visible.
-pub(crate) struct Outlines(Vec<[u32; 4]>);
+/// The splats of a view as an eye sees them.
+pub(crate) struct Outlines {
+    /// In tiles: first and last column, first and last row; the first is after the last where a splat is not visible.
+    bounds: Vec<[u32; 4]>,
+    /// By rows of tiles.
+    by_row: SpanBins,
+}
 
 const HIDDEN: [u32; 4] = [1, 0, 1, 0];
 
 impl Outlines {
     /// Whether a ray of the grid can meet a splat.
     pub fn is_met(&self, splat: u32) -> bool {
-        self.0[splat as usize] != HIDDEN
+        self.bounds[splat as usize] != HIDDEN
     }
 }
 
@@ -75,40 +90,64 @@ impl RayGrid {
 
     /// The bounds of all splats as an eye sees them.
     pub fn outlines(&self, eye: &Eye<'_>) -> Outlines {
-        Outlines(eye.view().splats().par_iter().map(|splat| self.outline(eye, &splat.shape)).collect())
+        let outline = |splat: &ViewSplat| self.outline(eye.view(), eye.point(), &splat.shape);
+        let bounds: Vec<[u32; 4]> = eye.view().splats().par_iter().map(outline).collect();
+        let rows = (0..).zip(&bounds).map(|(splat, [_, _, top, bottom])| (splat, [*top, *bottom]));
+        Outlines { by_row: SpanBins::new(self.tile_rows(), rows), bounds }
     }
 
-    fn outline(&self, eye: &Eye<'_>, shape: &CameraShape) -> [u32; 4] {
-        let (view, u) = (eye.view(), eye.point());
-        let whole = [0.0, f64::from(self.columns - 1), 0.0, f64::from(self.rows - 1)];
-        let [left, right, top, bottom] = match slope_bounds(shape, u) {
-            None => whole,
-            Some([least, most]) => {
-                let ray = |slope: DVec2| {
-                    let slope = slope + u * view.optics().inverse_focus_distance;
-                    let pixel = view.camera().pixel_from_q(slope / view.optics().tan_half_yfov);
-                    (pixel + f64::from(self.margin_px)) * f64::from(self.rays_per_px) - 0.5
-                };
-                let (from, to) = (ray(DVec2::new(least.x, most.y)), ray(DVec2::new(most.x, least.y)));
-                [from.x.floor(), to.x.ceil(), from.y.floor(), to.y.ceil()]
-            }
+    /// The splats of a view, in order, that rays of some rows of tiles can meet, from whatever point of the aperture.
+    ///
+    /// Where the ray through a point of an ellipsoid is on the grid is linear in the aperture point. So what rows an ellipsoid spans from all of the aperture
+    /// is what it spans from its lower and its upper end.
+    pub fn seen_in_rows(&self, view: &GaussianView<'_>, rows: RangeInclusive<u32>) -> Vec<u32> {
+        let radius = view.optics().aperture_radius;
+        let is_seen = |splat: &ViewSplat| {
+            let [a, b] = [-radius, radius].map(|y| self.ray_bounds(view, DVec2::new(0.0, y), &splat.shape));
+            let tile = |ray: f64| ray.clamp(0.0, f64::from(self.rows - 1)) as u32 / TILE;
+            let (top, bottom) = (a.top.min(b.top), a.bottom.max(b.bottom));
+            tile(top) <= *rows.end() && *rows.start() <= tile(bottom)
         };
-        if right < 0.0 || bottom < 0.0 || left > whole[1] || top > whole[3] {
+        let numbered = view.splats().par_iter().enumerate();
+        numbered.filter(|(_, splat)| is_seen(splat)).map(|(number, _)| number as u32).collect()
+    }
+
+    /// The bounds of a splat as it is seen from the aperture point `u`.
+    fn ray_bounds(&self, view: &GaussianView<'_>, u: DVec2, shape: &CameraShape) -> RayBounds {
+        let (right, bottom) = (f64::from(self.columns - 1), f64::from(self.rows - 1));
+        let Some([least, most]) = slope_bounds(shape, u) else {
+            return RayBounds { left: 0.0, right, top: 0.0, bottom };
+        };
+        let ray = |slope: DVec2| {
+            let slope = slope + u * view.optics().inverse_focus_distance;
+            let pixel = view.camera().pixel_from_q(slope / view.optics().tan_half_yfov);
+            (pixel + f64::from(self.margin_px)) * f64::from(self.rays_per_px) - 0.5
+        };
+        let (from, to) = (ray(DVec2::new(least.x, most.y)), ray(DVec2::new(most.x, least.y)));
+        RayBounds { left: from.x.floor(), right: to.x.ceil(), top: from.y.floor(), bottom: to.y.ceil() }
+    }
+
+    fn outline(&self, view: &GaussianView<'_>, u: DVec2, shape: &CameraShape) -> [u32; 4] {
+        let RayBounds { left, right, top, bottom } = self.ray_bounds(view, u, shape);
+        let last = [self.columns - 1, self.rows - 1].map(f64::from);
+        if right < 0.0 || bottom < 0.0 || left > last[0] || top > last[1] {
             return HIDDEN;
         }
         let tile = |ray: f64, last: f64| ray.clamp(0.0, last) as u32 / TILE;
-        [tile(left, whole[1]), tile(right, whole[1]), tile(top, whole[3]), tile(bottom, whole[3])]
+        [tile(left, last[0]), tile(right, last[0]), tile(top, last[1]), tile(bottom, last[1])]
     }
 
     /// A row of tiles with the splats that it meets.
     pub fn tile_row<'g>(&'g self, outlines: &Outlines, index: u32) -> TileRow<'g> {
-        let is_met =
-            |[left, right, top, bottom]: &[u32; 4]| left <= right && *top <= index && index <= *bottom;
-        let splats = outlines.0.iter().enumerate().filter(|(_, bounds)| is_met(bounds));
+        let columns = |splat: u32| {
+            let [left, right, ..] = outlines.bounds[splat as usize];
+            (splat, [left, right])
+        };
+        let splats: Vec<_> = outlines.by_row.at(index).map(columns).collect();
         TileRow {
             grid: self,
             rays: index * TILE..(index * TILE + TILE).min(self.rows),
-            splats: splats.map(|(splat, bounds)| (splat as u32, [bounds[0], bounds[1]])).collect(),
+            splats: SpanBins::new(self.columns.div_ceil(TILE), splats.iter().copied()),
         }
     }
 }
@@ -123,11 +162,8 @@ impl TileRow<'_> {
 
     /// What the rays of a tile can meet.
     pub fn tracer(&self, eye: &Eye<'_>, tile: u32) -> TileTracer {
-        let is_met = |columns: &[u32; 2]| columns[0] <= tile && tile <= columns[1];
-        let met = self.splats.iter().filter(|(_, columns)| is_met(columns));
-        let candidates: Vec<u32> = met.map(|(splat, _)| *splat).collect();
         let middle = self.grid.pixel(tile * TILE + TILE / 2, self.rays.start + TILE / 2);
-        TileTracer::new(eye, eye.view().direction(eye.point(), middle), &candidates)
+        TileTracer::new(eye, eye.view().direction(eye.point(), middle), self.splats.at(tile))
     }
 }
 

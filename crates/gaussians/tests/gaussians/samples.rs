@@ -4,9 +4,10 @@ use crate::comparison::{normalised_psnr_between, psnr_between};
 use crate::sample_sum::{clusters, margin_px, splat_samples, white};
 use crate::scene::{camera, scattered, still_life};
 use gaussians::{
-    ClusterOptions, GaussianView, Placement, TruthOptions, cluster_picture, render_pinhole, render_truth,
+    ApertureScene, ClusterOptions, GaussianView, Placement, TruthOptions, aperture_images, cluster_picture,
+    render_pinhole, render_truth,
 };
-use glam::DVec2;
+use glam::{DVec2, Vec3};
 use lens::Camera;
 use progress::Unwatched;
 
@@ -74,4 +75,32 @@ fn every_splat_of_a_chief_ray_is_in_one_cluster() {
             assert!(clusters.members(cluster).contains(&cluster.heaviest));
         }
     }
+}
+
+/// Of a band only the splats that it can see are looked at: it is as in the whole picture.
+#[test]
+fn bands_are_parts_of_the_picture() {
+    let (cloud, camera) = (still_life(), Camera { width: 48, height: 36, ..camera() });
+    let view = GaussianView::new(&cloud, &Placement::IDENTITY, &camera);
+    let shares = |rows: Option<[u32; 2]>| -> Vec<(DVec2, u32, Vec<f32>, Vec3)> {
+        let clusters = clusters(&view, &ClusterOptions { rows, ..ClusterOptions::default() });
+        let scene = ApertureScene {
+            view: &view,
+            clusters: &clusters,
+            points: &[],
+            ray_end: &|_, _| f64::INFINITY,
+            margin_px: margin_px(&view),
+        };
+        let images = aperture_images(&scene, 4, &Unwatched).expect("not cancelled");
+        let each = clusters.list.iter().enumerate().map(|(number, cluster)| {
+            (cluster.pixel, cluster.heaviest, images.shares(number).collect(), images.radiance(number))
+        });
+        each.collect()
+    };
+    let first = (margin_px(&view) + 16) / 8 * 8;
+    let (all, band) = (shares(None), shares(Some([first, first + 8])));
+    let rows = band[0].0.y..=band[band.len() - 1].0.y;
+    let expected: Vec<_> = all.into_iter().filter(|(pixel, ..)| rows.contains(&pixel.y)).collect();
+    assert!(band.len() > 100 && band.iter().any(|(_, _, shares, _)| shares.iter().any(|share| *share > 0.1)));
+    assert_eq!(band, expected);
 }
