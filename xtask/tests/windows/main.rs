@@ -190,3 +190,23 @@ fn long_paths_and_other_scripts_are_names_like_others() {
     }
     assert!(folder.join("Ωß.png").exists() && folder.join("λ.png").exists());
 }
+
+#[test]
+fn kinds_of_files_are_registered_and_unregistered() {
+    let Some(programs) = Programs::find() else { return };
+    let registered = || programs.tool(&["reg", "query", "HKCU\\Software\\Classes\\FocusBrush.Project", "/s"]);
+    let (done, said) = programs.tool(&["cmd", "/c", "register.cmd"]);
+    assert!(done && said.contains("focus-brush-window.exe"), "{said}");
+    let (known, entries) = registered();
+    assert!(known && entries.contains("focus-brush-window.exe\" \"%1\""), "{entries}");
+    assert!(programs.tool(&["cmd", "/c", "unregister.cmd"]).0);
+    assert!(!registered().0);
+}
+
+#[test]
+fn nothing_but_the_program_is_packed() {
+    let Some(programs) = Programs::find() else { return };
+    let packed = programs.packed();
+    assert!(packed.iter().any(|name| name == "focus-brush-window.exe"), "{packed:?}");
+    assert!(packed.iter().all(|name| !name.ends_with(".dll")), "{packed:?}");
+}

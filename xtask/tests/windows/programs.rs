@@ -7,6 +7,9 @@ use std::sync::OnceLock;
 /// Both programs.
 pub struct Programs {
     here: PathBuf,
+    /// The folder of the package, as it was made.
+    package: PathBuf,
+    /// A copy of it, in a folder with spaces, and with what Wine lacks.
     windows: PathBuf,
     /// Wine's settings and drives.
     prefix: PathBuf,
@@ -36,7 +39,7 @@ impl Programs {
         let windows = target.join("windows under wine");
         copy(&package, &windows)?;
         let prefix = target.join("wine");
-        let ready = Self { here, windows: windows.join("bin/focus-brush.exe"), prefix };
+        let ready = Self { here, package, windows: windows.clone(), prefix };
         let runs = |programs: &Self| {
             let output = programs.command(true, &target).arg("--version").output();
             let output =
@@ -56,18 +59,38 @@ impl Programs {
     /// A command of either program, run in `folder`, without a screen and without what earlier runs kept.
     pub fn command(&self, on_windows: bool, folder: &Path) -> Command {
         let mut command = if on_windows {
-            let mut wine = Command::new("wine");
-            wine.arg(&self.windows).env("WINEPREFIX", &self.prefix).env("WINEDEBUG", "-all");
+            let mut wine = self.wine();
+            wine.arg(self.windows.join("bin/focus-brush.exe"));
             wine
         } else {
             Command::new(&self.here)
         };
-        command.current_dir(folder);
+        command.current_dir(folder).env("XDG_CACHE_HOME", folder.join("cache"));
         for variable in ["DISPLAY", "WAYLAND_DISPLAY", "XDG_RUNTIME_DIR", "LD_LIBRARY_PATH"] {
             command.env_remove(variable);
         }
-        command.env("XDG_CACHE_HOME", folder.join("cache"));
         command
+    }
+
+    fn wine(&self) -> Command {
+        let mut wine = Command::new("wine");
+        wine.env("WINEPREFIX", &self.prefix).env("WINEDEBUG", "-all");
+        wine
+    }
+
+    /// Runs a program of Wine's in the folder of the package: whether it succeeded, and what it printed.
+    pub fn tool(&self, arguments: &[&str]) -> (bool, String) {
+        let output = self.wine().args(arguments).current_dir(&self.windows).output().unwrap();
+        (output.status.success(), String::from_utf8_lossy(&output.stdout).into_owned())
+    }
+
+    /// The names of the files beside and below which the programs lie.
+    pub fn packed(&self) -> Vec<String> {
+        let names = |folder: &Path| {
+            let entries = std::fs::read_dir(folder).unwrap().flatten();
+            entries.map(|entry| entry.file_name().to_string_lossy().into_owned()).collect::<Vec<_>>()
+        };
+        [names(&self.package), names(&self.package.join("bin"))].concat()
     }
 }
 
