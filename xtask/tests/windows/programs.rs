@@ -39,6 +39,10 @@ impl Programs {
         let windows = target.join("windows under wine");
         copy(&package, &windows)?;
         let prefix = target.join("wine");
+        // What earlier runs kept would not be computed again.
+        for user in std::fs::read_dir(prefix.join("drive_c/users")).into_iter().flatten().flatten() {
+            let _ = std::fs::remove_dir_all(user.path().join("AppData/Local/focus-brush"));
+        }
         let ready = Self { here, package, windows: windows.clone(), prefix };
         let runs = |programs: &Self| {
             let output = programs.command(true, &target).arg("--version").output();

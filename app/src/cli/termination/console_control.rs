@@ -26,7 +26,7 @@ pub fn install(on_request: fn()) -> Result<()> {
 }
 
 /// The handler: whether the event was dealt with.
-unsafe extern "system" fn handle(event: u32) -> BOOL {
+extern "system" fn handle(event: u32) -> BOOL {
     if event == CTRL_C_EVENT {
         return FALSE;
     }
