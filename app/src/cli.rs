@@ -2,8 +2,8 @@
 //!
 //! * `arguments`: the arguments and their parsers. `commands`: one file per subcommand; below `render`, its
 //!   variants for frames and tiles.
-//! * `input`: opens the scene, camera and focus that the arguments describe. `termination`: handling of
-//!   SIGTERM.
+//! * `input`: opens the scene, camera and focus that the arguments describe. `termination`: being asked to end.
+//! * `own_console`: the console that Windows opens for the program alone.
 //! * `console`: progress on stderr, results on stdout. `stderr`: lines there that may fail. `failure`: errors and exit codes.
 
 mod arguments;
@@ -12,6 +12,7 @@ mod commands;
 mod console;
 mod failure;
 mod input;
+mod own_console;
 mod stderr;
 mod termination;
 
@@ -131,6 +132,7 @@ fn open_window(arguments: Arguments) -> Result<(), Failure> {
         backend: backend.into(),
         ..Default::default()
     };
+    own_console::close();
     window::run(options).map_err(|error| {
         let why = format!("{error:#}").replace('\n', " ");
         Failure::bad_input(format!("no window: {why} (`focus-brush doctor` says what is missing)"))

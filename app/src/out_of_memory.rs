@@ -74,8 +74,21 @@ fn end(line: &[u8]) -> ! {
     unsafe { libc::_exit(focus_brush::cli::TRY_AGAIN.into()) }
 }
 
+/// The same on Windows.
+#[cfg(windows)]
+#[allow(unsafe_code, reason = "the standard library cannot end a program without its handlers")]
+fn end(line: &[u8]) -> ! {
+    use windows_sys::Win32::System::Threading::{GetCurrentProcess, TerminateProcess};
+    let _ = std::io::stderr().lock().write_all(line);
+    // SAFETY: they take a handle that is always valid, and a number.
+    unsafe {
+        TerminateProcess(GetCurrentProcess(), focus_brush::cli::TRY_AGAIN.into());
+    }
+    std::process::abort()
+}
+
 /// The same elsewhere.
-#[cfg(not(unix))]
+#[cfg(not(any(unix, windows)))]
 fn end(line: &[u8]) -> ! {
     let _ = std::io::stderr().lock().write_all(line);
     std::process::exit(focus_brush::cli::TRY_AGAIN.into())

@@ -11,6 +11,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("material", &[]),
     ("progress", &[]),
     ("numerics", &[]),
+    ("window-launcher", &[]),
     ("atomic-file", &[]),
     ("spread", &["numerics", "progress"]),
     ("web-page", &["numerics"]),

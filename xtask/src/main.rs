@@ -22,6 +22,7 @@ mod chore;
 mod ci;
 mod crate_directions;
 mod demo;
+#[cfg(target_os = "linux")]
 mod endure;
 mod figures;
 mod licences;
@@ -32,6 +33,7 @@ mod run;
 mod shared_build;
 mod spelling;
 mod wheel;
+mod zip_archive;
 
 use chore::Failure;
 
@@ -44,6 +46,9 @@ usage: cargo xtask CHORE
   package [deb|tarball|source…]
                 packages to install, a folder that runs from anywhere, a source archive that
                 builds without a network; in target/package
+  package --windows [--dev] [-- ARG…]
+                a zip for Windows, built with mingw-w64; ARGs go to cargo (--dev: from the quick
+                build of the tests)
   wheel [--dev] the Python package, for CPython 3.10 and newer; in target/package
                 (--dev: from the quick build of the tests)
   book [FOLDER] write the book as HTML pages; into target/book
@@ -78,7 +83,15 @@ fn main() -> std::process::ExitCode {
         "wheel" => wheel::wheel(&rest),
         "lint" => ci::lint(),
         "ci" => ci::ci(),
+        #[cfg(target_os = "linux")]
         "endure" => endure::endure(&rest),
+        #[cfg(not(target_os = "linux"))]
+        "endure" => {
+            eprintln!(
+                "SKIPPED: promises are measured through /proc, prlimit and strace, which only Linux has"
+            );
+            Ok(())
+        }
         "book" => book::write(&rest.first().map_or_else(book::default_folder, Into::into)),
         "demo" => demo::demo(sky_rays(&rest)),
         "figures" => figures::figures(&rest),

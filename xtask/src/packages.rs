@@ -25,6 +25,10 @@ pub const TO_BUILD: &[Package] = &[
     package("libclang-dev"),
 ];
 
+/// For building programs for Windows.
+pub const TO_BUILD_FOR_WINDOWS: &[Package] =
+    &[Package { name: "g++-mingw-w64-x86-64-posix", provides: Some("x86_64-w64-mingw32-g++") }];
+
 /// For the window and GPU interfaces: winit and wgpu load these at run time.
 pub const TO_RUN: &[Package] = &[
     package("mesa-vulkan-drivers"),
@@ -120,7 +124,8 @@ fn is_there(package: &Package) -> bool {
     query.output().is_ok_and(|output| output.stdout == b"installed")
 }
 
-fn has_program(name: &str) -> bool {
+/// Whether a program of this name is found on the path.
+pub fn has_program(name: &str) -> bool {
     let path = std::env::var_os("PATH").unwrap_or_default();
     std::env::split_paths(&path).any(|folder| folder.join(name).is_file())
 }

@@ -1,9 +1,11 @@
-//! Handling of SIGTERM, as sent by render farms: the work stops at the next opportunity, and finished files
-//! are kept.
+//! Being asked to end, as render farms do: by SIGTERM on Unix, by Ctrl+Break, closing of the console or the end of the session on Windows.
+//! The work stops at the next opportunity, and finished files are kept. (Ctrl+C ends the program at once, on all systems.)
+
+#[cfg(windows)]
+mod console_control;
 
 use super::failure::{Failure, TRY_AGAIN};
 use super::stderr::write_line;
-use signal_hook::consts::SIGTERM;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
@@ -22,8 +24,7 @@ const GRACE_PERIOD: Duration = Duration::from_secs(3);
 /// # Errors
 /// The system refuses the handler.
 pub fn install_handler() -> Result<(), Failure> {
-    let flag = REQUESTED.get_or_init(Arc::default).clone();
-    signal_hook::flag::register(SIGTERM, flag).map_err(|error| {
+    listen(REQUESTED.get_or_init(Arc::default)).map_err(|error| {
         Failure::try_again(format!("the signal handler cannot be installed: {error} (try again)"))
     })?;
     let watch = || {
@@ -40,7 +41,27 @@ pub fn install_handler() -> Result<(), Failure> {
         .map_err(|error| Failure::try_again(format!("no thread could be started: {error} (try again)")))
 }
 
-/// Whether the signal was received.
+/// Sets the flag when SIGTERM is received.
+#[cfg(unix)]
+fn listen(flag: &Arc<AtomicBool>) -> std::io::Result<()> {
+    signal_hook::flag::register(signal_hook::consts::SIGTERM, flag.clone()).map(|_| ())
+}
+
+/// Sets the flag when the console asks the program to end.
+#[cfg(windows)]
+fn listen(_: &Arc<AtomicBool>) -> std::io::Result<()> {
+    console_control::install(request)
+}
+
+/// What the handler of the console's events does.
+#[cfg(windows)]
+fn request() {
+    if let Some(flag) = REQUESTED.get() {
+        flag.store(true, Ordering::Relaxed);
+    }
+}
+
+/// Whether the program was asked to end.
 pub fn is_requested() -> bool {
     REQUESTED.get().is_some_and(|flag| flag.load(Ordering::Relaxed))
 }

@@ -14,5 +14,5 @@ pub fn find(shared: &str, source: &str, name: &str) -> Option<PathBuf> {
         Some(PathBuf::from(source)),
     ];
     let file = folders.into_iter().flatten().map(|folder| folder.join(name)).find(|file| file.is_file())?;
-    Some(file.canonicalize().unwrap_or(file))
+    Some(dunce::canonicalize(&file).unwrap_or(file))
 }

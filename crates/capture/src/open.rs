@@ -108,7 +108,7 @@ fn capture_folder(path: &Path) -> Result<(Folder, PathBuf), CaptureError> {
     if !is_model(path) {
         return Ok((Folder::open(path)?, path.into()));
     }
-    let within = path.canonicalize().map_err(|source| CaptureError::unreadable(path, source))?;
+    let within = dunce::canonicalize(path).map_err(|source| CaptureError::unreadable(path, source))?;
     // The nearest folder above that is no model's; a folder of photographs may be called 2024, too, and has no model
     // of its own.
     let above = within.ancestors().skip(1).find(|above| !is_model(above)).map(Folder::open).transpose()?;

@@ -29,8 +29,23 @@ impl Urgency {
         }
     }
 
+    /// The same on Windows.
+    #[cfg(windows)]
+    #[allow(unsafe_code, reason = "the standard library has no priorities")]
+    fn declare(self) {
+        use windows_sys::Win32::System::Threading::{
+            GetCurrentThread, SetThreadPriority, THREAD_PRIORITY_BELOW_NORMAL,
+        };
+        if self == Self::Background {
+            // SAFETY: they take a handle that is always valid, and a number; on failure the thread keeps its priority.
+            unsafe {
+                SetThreadPriority(GetCurrentThread(), THREAD_PRIORITY_BELOW_NORMAL);
+            }
+        }
+    }
+
     /// Other systems only let whole processes lower their priority.
-    #[cfg(not(target_os = "linux"))]
+    #[cfg(not(any(target_os = "linux", windows)))]
     fn declare(self) {}
 }
 

@@ -75,9 +75,7 @@ impl CacheEntry {
             return None;
         }
         bytes.truncate(content_len);
-        // If this fails, the file keeps the time of its last use or of its writing.
-        let file = File::options().write(true).open(&self.path);
-        let _ = file.and_then(|file| file.set_modified(SystemTime::now()));
+        mark_used(&self.path);
         Some(bytes)
     }
 
@@ -97,6 +95,13 @@ impl CacheEntry {
 }
 
 const CHECKSUM_BYTES: usize = 32;
+
+/// Marks a file of a cache as used now. If this fails, it keeps the time of its last use or of its writing.
+pub fn mark_used(path: &Path) {
+    // Windows changes times only through a file that may be written to.
+    let file = File::options().write(true).open(path);
+    let _ = file.and_then(|file| file.set_modified(SystemTime::now()));
+}
 
 /// Removes the least recently used files of an extension in `folder`, until the rest fit `budget_bytes`. The `newest` always stays.
 pub fn evict_oldest(folder: &Path, extension: &str, budget_bytes: u64, newest: &Path) {

@@ -37,7 +37,7 @@ mod steps;
 mod tiny_glb;
 
 pub use atlas_cache::load_or_unwrap_atlas;
-pub use disk_cache::{CacheEntry, CacheSection, DiskCache, build_id, evict_oldest};
+pub use disk_cache::{CacheEntry, CacheSection, DiskCache, build_id, evict_oldest, mark_used};
 pub use error::LightError;
 pub use light_errors::LightErrors;
 pub use lit_scene::{LitScene, SceneLight};

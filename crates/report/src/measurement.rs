@@ -8,3 +8,5 @@ pub mod memory;
 pub mod record;
 pub mod reference;
 pub mod stopwatch;
+#[cfg(windows)]
+mod windows_system;

@@ -39,7 +39,7 @@ use crate::{Carried, Salf};
 use camera::{read_camera, write_camera};
 pub use error::SalfFileError;
 use error::{VERSION, VERSION_WITH_SPLATS};
-use little_endian::{bytes, read_path, write_text};
+use little_endian::{bytes, read_path, write_path};
 use samples::{read_samples, write_samples};
 use sha2::{Digest, Sha256};
 use std::io::{self, Read, Write};
@@ -69,7 +69,7 @@ impl SalfFile {
         to.write_all(MAGIC)?;
         let version = if self.salf.samples.has_splats() { VERSION_WITH_SPLATS } else { VERSION };
         to.write_all(&version.to_le_bytes())?;
-        write_text(&mut to, self.source.as_os_str().as_encoded_bytes())?;
+        write_path(&mut to, &self.source)?;
         to.write_all(&self.triangles.to_le_bytes())?;
         write_camera(&mut to, &self.salf.camera)?;
         to.write_all(&self.salf.margin_px.to_le_bytes())?;

@@ -28,6 +28,13 @@ const LIBRARIES: [Library; 8] = [
 /// The package with software drivers, for machines without a graphics driver.
 const DRIVERS: &str = "mesa-vulkan-drivers";
 
+/// How a machine without an adapter gets one.
+const ADAPTER_ADVICE: &str = if cfg!(target_os = "linux") {
+    "mesa-vulkan-drivers has one in software"
+} else {
+    "install the driver of the graphics card's maker"
+};
+
 /// Prints which parts of the machine the program can use, what is missing and how to install it.
 ///
 /// # Errors
@@ -42,7 +49,7 @@ pub fn run(arguments: &DoctorArguments) -> Result<(), Failure> {
     let display = ["WAYLAND_DISPLAY", "DISPLAY"].into_iter().find(|name| std::env::var_os(name).is_some());
     let has_display = display.is_some() || !cfg!(target_os = "linux");
     let mut packages: Vec<&str> = missing.iter().map(|library| library.package).collect();
-    if adapters.is_empty() {
+    if adapters.is_empty() && cfg!(target_os = "linux") {
         packages.push(DRIVERS);
     }
     let install_command = (!packages.is_empty()).then(|| format!("apt-get install {}", packages.join(" ")));
@@ -68,9 +75,7 @@ pub fn run(arguments: &DoctorArguments) -> Result<(), Failure> {
     let processor_use = used.map_or("every picture is computed here", |_| "light fields are baked here");
     print_line(format!("  processor    {threads} threads: {processor_use}"));
     if adapters.is_empty() {
-        print_line(format!(
-            "  graphics     no adapter (the window needs one: {DRIVERS} has one in software)"
-        ));
+        print_line(format!("  graphics     no adapter (the window needs one: {ADAPTER_ADVICE})"));
     }
     for adapter in &adapters {
         let splat::AdapterDescription { name, kind, interface, is_used } = adapter;

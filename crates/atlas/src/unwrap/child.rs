@@ -33,6 +33,10 @@ const POLL_INTERVAL: Duration = Duration::from_millis(4);
 /// How much longer than its deadline an orphaned child lives.
 const ORPHAN_GRACE: Duration = Duration::from_secs(5);
 
+/// How Windows starts a program of the console without one (`CREATE_NO_WINDOW`, winbase.h).
+#[cfg(windows)]
+const CREATE_NO_WINDOW: u32 = 0x0800_0000;
+
 /// Maximum number of triangles or vertices of a patch; a request for more is broken.
 const MAX_PATCH_TRIANGLES: u32 = 1 << 26;
 
@@ -213,7 +217,11 @@ fn start(
     let mut input = input.into_inner()?;
     input.rewind()?;
     let output = tempfile::tempfile()?;
-    let process = Command::new(program.path)
+    let mut command = Command::new(program.path);
+    // Programs without a console would open one for each child.
+    #[cfg(windows)]
+    std::os::windows::process::CommandExt::creation_flags(&mut command, CREATE_NO_WINDOW);
+    let process = command
         .args(program.arguments)
         .args([CHILD_ARGUMENT, engine.name(), &program.deadline.as_millis().to_string()])
         .stdin(Stdio::from(input))

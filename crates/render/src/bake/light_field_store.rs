@@ -7,14 +7,14 @@
 use crate::bake::salf_file::write_salf;
 use document::Stage;
 use lens::{Aperture, Camera, Character};
-use light::{build_id, evict_oldest};
+use light::{build_id, evict_oldest, mark_used};
 use salf::{Carried, Salf, SalfFile};
 use sha2::{Digest, Sha256};
 use std::fs::File;
 use std::io::BufReader;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::time::{Duration, SystemTime};
+use std::time::Duration;
 
 /// Maximum size of the folder: about six light fields of 1920 × 1080 pixels.
 const BUDGET_BYTES: u64 = 2 << 30;
@@ -85,8 +85,7 @@ impl LightFieldStore {
     ) -> Option<Salf> {
         let path = self.file(stage, camera, light_passes)?;
         let file = File::open(&path).ok()?;
-        // Marks the file as recently used. If that fails, its age is the time since it was written.
-        let _ = file.set_modified(SystemTime::now());
+        mark_used(&path);
         let salf_file = SalfFile::read(BufReader::with_capacity(1 << 20, file)).ok()?;
         let salf = Arc::into_inner(salf_file.salf)?;
         let fits = compatibility_key(&salf.camera) == compatibility_key(camera)

@@ -34,7 +34,7 @@ pub fn write_salf(
 /// The path of `file` relative to the folder of `from`; absolute if the two have no common ancestor.
 fn relative_to(file: &Path, from: &Path) -> PathBuf {
     let absolute = |path: &Path| {
-        let path = std::fs::canonicalize(path).or_else(|_| std::path::absolute(path));
+        let path = dunce::canonicalize(path).or_else(|_| std::path::absolute(path));
         path.unwrap_or_else(|_| file.to_owned())
     };
     let file = absolute(file);

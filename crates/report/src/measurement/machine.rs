@@ -1,5 +1,6 @@
 //! The machine of the measurements.
 
+#[cfg(not(windows))]
 use super::memory::parse_kilobytes;
 use serde::Serialize;
 use std::time::SystemTime;
@@ -26,13 +27,12 @@ pub struct Machine {
 impl Machine {
     /// The current machine and time.
     pub fn current() -> Self {
-        let cpuinfo = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-        let meminfo = std::fs::read_to_string("/proc/meminfo").unwrap_or_default();
+        let (processor, memory_bytes) = processor_and_memory();
         Self {
-            processor: processor_name(&cpuinfo).unwrap_or_else(|| std::env::consts::ARCH.into()),
+            processor: processor.unwrap_or_else(|| std::env::consts::ARCH.into()),
             cores: std::thread::available_parallelism().map_or(1, |cores| cores.get()),
             threads: rayon::current_num_threads(),
-            memory_bytes: parse_kilobytes(&meminfo, "MemTotal:"),
+            memory_bytes,
             system: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
             version: format!(
                 "{}{}",
@@ -44,7 +44,23 @@ impl Machine {
     }
 }
 
+/// The name of the processor, and the memory in bytes.
+#[cfg(not(windows))]
+fn processor_and_memory() -> (Option<String>, Option<u64>) {
+    let cpuinfo = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let meminfo = std::fs::read_to_string("/proc/meminfo").unwrap_or_default();
+    (processor_name(&cpuinfo), parse_kilobytes(&meminfo, "MemTotal:"))
+}
+
+/// The same on Windows.
+#[cfg(windows)]
+fn processor_and_memory() -> (Option<String>, Option<u64>) {
+    use super::windows_system::{processor_name, total_memory_bytes};
+    (processor_name(), total_memory_bytes())
+}
+
 /// The model name in the text of /proc/cpuinfo.
+#[cfg(any(test, not(windows)))]
 fn processor_name(cpuinfo: &str) -> Option<String> {
     let line = cpuinfo.lines().find(|line| line.starts_with("model name"))?;
     let name = line.split_once(':')?.1.split_whitespace().collect::<Vec<_>>().join(" ");

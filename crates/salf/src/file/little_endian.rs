@@ -2,7 +2,7 @@
 
 use super::SalfFileError;
 use std::io::{self, Read, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// More than any path takes.
 const LONGEST_TEXT: u32 = 1 << 16;
@@ -29,6 +29,20 @@ pub fn bytes<const N: usize>(from: &mut impl Read) -> Result<[u8; N], SalfFileEr
 pub fn write_text(to: &mut impl Write, text: &[u8]) -> io::Result<()> {
     to.write_all(&(text.len() as u32).to_le_bytes())?;
     to.write_all(text)
+}
+
+/// Writes a path as a text, with slashes on every system: that of Windows is then the same as of others.
+///
+/// # Errors
+/// Errors of `to`.
+pub fn write_path(to: &mut impl Write, path: &Path) -> io::Result<()> {
+    let bytes = path.as_os_str().as_encoded_bytes();
+    // Paths that begin with two backslashes and a question mark know no slashes; none is relative.
+    if cfg!(windows) && !bytes.starts_with(br"\\?\") {
+        let slashes: Vec<u8> = bytes.iter().map(|&byte| if byte == b'\\' { b'/' } else { byte }).collect();
+        return write_text(to, &slashes);
+    }
+    write_text(to, bytes)
 }
 
 /// Reads a text as [`write_text`] writes it.

@@ -28,13 +28,18 @@ pub struct AdapterDescription {
     pub is_used: bool,
 }
 
+/// How a machine without a driver gets one.
+const DRIVER_ADVICE: &str = if cfg!(target_os = "linux") {
+    "install a Vulkan driver; the package mesa-vulkan-drivers has one in software"
+} else {
+    "install the driver of the graphics card's maker"
+};
+
 /// Why pictures cannot be summed on a graphics card.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum GpuAbsent {
     /// There is none.
-    #[error(
-        "no GPU was found (install a Vulkan driver; the package mesa-vulkan-drivers has one in software)"
-    )]
+    #[error("no GPU was found ({})", DRIVER_ADVICE)]
     NoAdapter,
     /// None of that name.
     #[error("no GPU's name contains \"{0}\" (focus-brush doctor lists what there is)")]

@@ -1,0 +1,73 @@
+//! Small files of every kind that the program opens.
+
+use crate::{card_light_field, tiny_glb, wall_capture};
+use std::path::Path;
+
+const CAMERA: &str =
+    r#"{"width": 64, "height": 40, "focus_distance": 2.0, "aperture_radius": 0.1, "sensor_height": 0.1}"#;
+const RECIPE: &str = r#"{"background": {"t": 0.9, "anchor": 0.5},
+    "nodes": {"card": {"t": 1.2, "anchor": 1}}, "materials": {"wall paint": {"t": 0.8, "anchor": 0.5}}}"#;
+const STROKES: &str = r#"{"format": "focus-brush strokes", "version": 3, "steps": [
+    {"fill": {"layer": "Paint", "targets": [{"node": 1}], "focus": {"t": 1.1, "anchor": 0.5}}}]}"#;
+
+/// Writes all of them into a new folder.
+pub fn write(folder: &Path) {
+    std::fs::create_dir_all(folder).unwrap();
+    let put = |name: &str, text: &str| std::fs::write(folder.join(name), text).unwrap();
+    tiny_glb::write(&folder.join("scene.glb"));
+    std::fs::write(folder.join("metal.glb"), tiny_glb::metal(&tiny_glb::QUADS)).unwrap();
+    put("camera.json", CAMERA);
+    put("recipe.json", RECIPE);
+    put("strokes.json", STROKES);
+    gltf(&folder.join("folder"));
+    wall_capture::write(&folder.join("photos"));
+    card_light_field::write(&folder.join("views"));
+    card_light_field::view([0.0; 2]).save(folder.join("cat.png")).unwrap();
+    depth(&folder.join("cat_depth.png"));
+    splats(&folder.join("splats.ply"));
+    std::fs::create_dir_all(folder.join("demo")).unwrap();
+    let demo = Path::new(env!("CARGO_MANIFEST_DIR")).join("../assets/demo");
+    for entry in std::fs::read_dir(demo).unwrap().flatten() {
+        std::fs::copy(entry.path(), folder.join("demo").join(entry.file_name())).unwrap();
+    }
+}
+
+/// The scene as a `.gltf` whose buffer lies in another folder, named as programs on Windows do.
+fn gltf(folder: &Path) {
+    let (mut document, buffer) = tiny_glb::parts(&tiny_glb::glb(&tiny_glb::QUADS));
+    std::fs::create_dir_all(folder.join("buffers")).unwrap();
+    std::fs::write(folder.join("buffers/all.bin"), buffer).unwrap();
+    document["buffers"][0]["uri"] = "buffers\\all.bin".into();
+    std::fs::write(folder.join("scene.gltf"), document.to_string()).unwrap();
+}
+
+/// White is near.
+fn depth(file: &Path) {
+    let [width, height] = card_light_field::SIZE;
+    let depth = image::GrayImage::from_fn(width, height, |x, y| {
+        let (_, disparity) = card_light_field::shown(f64::from(x) + 0.5, f64::from(y) + 0.5, [0.0; 2]);
+        image::Luma([if disparity == card_light_field::CARD { 220 } else { 40 }])
+    });
+    depth.save(file).unwrap();
+}
+
+/// A hundred splats on a sphere before the camera.
+fn splats(file: &Path) {
+    const PROPERTIES: [&str; 14] = [
+        "x", "y", "z", "f_dc_0", "f_dc_1", "f_dc_2", "opacity", "scale_0", "scale_1", "scale_2", "rot_0",
+        "rot_1", "rot_2", "rot_3",
+    ];
+    let mut bytes = b"ply\nformat binary_little_endian 1.0\nelement vertex 100\n".to_vec();
+    PROPERTIES.iter().for_each(|name| bytes.extend(format!("property float {name}\n").bytes()));
+    bytes.extend(b"end_header\n");
+    for k in 0..100u8 {
+        let turn = f32::from(k) * 2.4;
+        let height = f32::from(k) / 50.0 - 1.0;
+        let radius = (1.0 - height * height).max(0.0).sqrt();
+        let place = [0.6 * radius * turn.cos(), 0.6 * height, -2.5 + 0.6 * radius * turn.sin()];
+        let color = [turn.sin(), height, 0.5];
+        let rest = [2.0, -2.5, -2.0, -3.0, 1.0, 0.1, 0.2, 0.3];
+        place.iter().chain(&color).chain(&rest).for_each(|number| bytes.extend(number.to_le_bytes()));
+    }
+    std::fs::write(file, bytes).unwrap();
+}
