@@ -17,9 +17,9 @@ use super::release::Release;
 use super::staging::{empty_folder, write};
 use crate::chore::{Failure, cargo, copy, execute, file_failure, repository};
 use crate::zip_archive::{Entry, write_zip};
-use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use toolchain::Toolchain;
+pub use toolchain::WindowsOptions;
 
 /// A program of the package.
 struct Program {
@@ -36,14 +36,6 @@ const PROGRAMS: [Program; 2] = [
 
 /// The texts of the package, in `assets/windows`.
 const TEXTS: [&str; 3] = ["READ_ME_FIRST.txt", "register.cmd", "unregister.cmd"];
-
-/// How the package is built.
-pub struct WindowsOptions {
-    /// Whether to build with the profile of the tests, which is quick.
-    pub is_dev: bool,
-    /// More arguments of cargo, as for compilers that bring no standard library for Windows (`-Z build-std`).
-    pub cargo_arguments: Vec<OsString>,
-}
 
 /// Builds the package.
 ///

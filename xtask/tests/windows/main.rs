@@ -83,7 +83,7 @@ fn names(folder: &Path) -> Vec<String> {
 #[test]
 fn files_have_the_same_bytes_on_windows() {
     let Some(programs) = Programs::find() else { return };
-    let (here, windows) = (outcome(&programs, false), outcome(&programs, true));
+    let (here, windows) = (outcome(programs, false), outcome(programs, true));
     assert_eq!(here.keys().collect::<Vec<_>>(), windows.keys().collect::<Vec<_>>());
     assert!(here.values().all(|bytes| !bytes.starts_with(b"FAILED")), "commands failed here, see above");
     let files = here.keys().filter(|name| !name.starts_with("printed by")).count();

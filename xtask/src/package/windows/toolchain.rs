@@ -1,9 +1,9 @@
 //! The compilers for Windows, and how cargo is told to use them.
 
-use super::WindowsOptions;
 use crate::chore::{Failure, copy, output_of};
 use crate::package::release::target;
 use crate::packages::{TO_BUILD, TO_BUILD_FOR_WINDOWS, has_program, install_missing};
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -15,6 +15,14 @@ const STATIC_LIBRARIES: [&str; 2] = ["libstdc++.a", "libwinpthread.a"];
 
 /// Size of the main thread's stack, bytes: that of Linux. Windows' own would be an eighth of it.
 const STACK_BYTES: u32 = 8 << 20;
+
+/// How the package is built.
+pub struct WindowsOptions {
+    /// Whether to build with the profile of the tests, which is quick.
+    pub is_dev: bool,
+    /// More arguments of cargo, as for compilers that bring no standard library for Windows (`-Z build-std`).
+    pub cargo_arguments: Vec<OsString>,
+}
 
 /// The compilers that were found.
 pub struct Toolchain {
