@@ -243,8 +243,9 @@ impl Splatter {
         self.set_paint(paint);
     }
 
-    /// Takes over what `other`, of the same light field, has of the paint.
+    /// Takes over what `other`, of the same light field, has of the paint, and shares its hierarchy.
     pub fn take_paint_of(&mut self, other: &Self) {
+        self.nodes = other.nodes.clone();
         self.set_paint(other.paint.clone());
     }
 
@@ -363,7 +364,9 @@ impl Splatter {
         &mut self,
         work: impl Fn(&mut Self) -> Result<(), SplatError>,
     ) -> Result<(), SplatError> {
-        let mut scale = Some(Scale::FINEST);
+        // A draft's sums are hardly larger than those of the picture, whose hierarchy it shares.
+        let shared = self.nodes.as_ref().filter(|_| self.halvings > 0);
+        let mut scale = Some(shared.map_or(Scale::FINEST, |nodes| nodes.scale));
         while let (Some(finest), Some(nodes)) = (scale, &mut self.nodes) {
             if nodes.scale != finest {
                 Arc::make_mut(nodes).rescale(finest);
