@@ -27,7 +27,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// Before a whole sum that takes longer than this many seconds a draft is shown: what is dragged then follows the hand.
-const QUICK_SECONDS: f64 = 0.1;
+const QUICK_SECONDS: f64 = 0.05;
 
 /// The thread's own state.
 pub(crate) struct Worker {
