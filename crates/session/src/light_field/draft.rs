@@ -11,8 +11,8 @@ const DRAFT_SECONDS: f64 = 0.05;
 /// What share of a picture's time that of a picture with half the sides takes.
 const SHARE_OF_HALVED: f64 = 0.45;
 
-/// How often sides are halved at most; twice, if it is not known how long a whole sum takes.
-const MOST_HALVINGS: u8 = 3;
+/// How often sides are halved at most, and if it is not known how long a whole sum takes: a third time makes discs squares.
+const MOST_HALVINGS: u8 = 2;
 
 /// What draws drafts of a light field.
 pub(crate) struct Draft {
@@ -53,7 +53,7 @@ impl Draft {
 /// How often the sides of a draft are halved, if a whole sum takes so many seconds.
 fn halvings(whole_seconds: f64) -> u8 {
     if whole_seconds.is_infinite() {
-        return 2;
+        return MOST_HALVINGS;
     }
     let needed = (DRAFT_SECONDS / whole_seconds).log(SHARE_OF_HALVED).ceil();
     needed.clamp(1.0, MOST_HALVINGS.into()) as u8
@@ -65,6 +65,6 @@ mod tests {
 
     #[test]
     fn the_longer_a_sum_takes_the_smaller_is_its_draft() {
-        assert_eq!([0.0, 0.1, 0.2, 0.5, 9.0, f64::INFINITY].map(halvings), [1, 1, 2, 3, 3, 2]);
+        assert_eq!([0.0, 0.1, 0.2, 0.5, 9.0, f64::INFINITY].map(halvings), [1, 1, 2, 2, 2, 2]);
     }
 }
