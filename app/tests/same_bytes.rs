@@ -1,19 +1,14 @@
 //! Reproducibility: the same commands give the same bytes in another process, at another time, with any number
 //! of threads.
 
+mod command_inputs;
 #[path = "../../crates/session/tests/tiny_glb/mod.rs"]
 mod tiny_glb;
 
+use command_inputs::{CAMERA, RECIPE, STROKES};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
-
-const CAMERA: &str =
-    r#"{"width": 64, "height": 40, "focus_distance": 2.0, "aperture_radius": 0.1, "sensor_height": 0.1}"#;
-const RECIPE: &str = r#"{"background": {"t": 0.9, "anchor": 0.5},
-    "nodes": {"card": {"t": 1.2, "anchor": 1}}, "materials": {"wall paint": {"t": 0.8, "anchor": 0.5}}}"#;
-const STROKES: &str = r#"{"format": "focus-brush strokes", "version": 3, "steps": [
-    {"fill": {"layer": "Paint", "targets": [{"node": 1}], "focus": {"t": 1.1, "anchor": 0.5}}}]}"#;
 
 const COMMANDS: [&str; 14] = [
     "render scene.glb --camera camera.json --focus recipe.json -o picture.exr --aov coverage,coc,depth,t",

@@ -28,7 +28,7 @@ pub fn workplace() -> TempDir {
     let middle = card_light_field::view([0.0; 2]);
     middle.save(folder.join("cat.png")).unwrap();
     middle.save(folder.join("cat.jpg")).unwrap();
-    depth(&folder.join("cat_depth.png"));
+    card_light_field::write_depth(&folder.join("cat_depth.png"));
     // A scene with its own lens, and thereby a small picture.
     done(folder, "new quads.glb --camera camera.json -o small.fbrush");
     done(folder, "export small.fbrush --glb garden.glb");
@@ -63,14 +63,4 @@ fn strokes(project: &ProjectFile, file: &Path) {
     let points = (0..20).map(|k| [0.3 + 0.02 * f64::from(k), 0.5, 1.0]).collect();
     let stroke = RecordedStroke { layer: "Paint".into(), brush, view: view.into(), points };
     project::write_strokes(file, &[RecordedStep::Stroke(stroke)]).unwrap();
-}
-
-/// White is near.
-fn depth(file: &Path) {
-    let [width, height] = card_light_field::SIZE;
-    let depth = image::GrayImage::from_fn(width, height, |x, y| {
-        let (_, disparity) = card_light_field::shown(f64::from(x) + 0.5, f64::from(y) + 0.5, [0.0; 2]);
-        image::Luma([if disparity == card_light_field::CARD { 220 } else { 40 }])
-    });
-    depth.save(file).unwrap();
 }

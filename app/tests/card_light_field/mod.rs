@@ -124,3 +124,14 @@ pub fn write_moved(folder: &Path, scale: f64, offset: f64) {
     std::fs::write(folder.join("views.json"), list).unwrap();
     pfm(&folder.join("middle.pfm"), |disparity| scale * disparity + offset);
 }
+
+/// Writes the depth of the middle view: white is near.
+#[allow(dead_code, reason = "not every test needs it")]
+pub fn write_depth(file: &Path) {
+    let [width, height] = SIZE;
+    let depth = image::GrayImage::from_fn(width, height, |x, y| {
+        let (_, disparity) = shown(f64::from(x) + 0.5, f64::from(y) + 0.5, [0.0; 2]);
+        image::Luma([if disparity == CARD { 220 } else { 40 }])
+    });
+    depth.save(file).unwrap();
+}

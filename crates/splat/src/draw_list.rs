@@ -45,12 +45,12 @@ impl Scene<'_> {
             for index in span {
                 let node = &nodes[index as usize];
                 prefetch(nodes.get(index as usize + AHEAD));
-                let seen;
+                let moved;
                 let node = match &self.pen.view {
                     None => node,
                     Some(view) => {
-                        seen = view.seen(node);
-                        &seen
+                        moved = view.moved(node);
+                        &moved
                     }
                 };
                 let focus = paint.map_or(NodeFocus::STANDARD, |paint| paint[(index - first) as usize]);

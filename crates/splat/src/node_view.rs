@@ -1,4 +1,4 @@
-//! How nodes are seen by a picture that does not show them where they were baked: a draft of fewer pixels, or the picture of a colour
+//! How nodes are moved for a picture that does not show them where they were baked: a draft of fewer pixels, or the picture of a colour
 //! that the lens shows larger.
 
 use crate::canvas::PIXEL;
@@ -29,9 +29,9 @@ pub struct DraftScale {
 impl NodeView {
     /// A node as the picture shows it.
     #[inline(always)]
-    pub fn seen(&self, node: &SplatNode) -> SplatNode {
-        let seen = self.draft_scale.map_or(*node, |scale| node.in_draft(scale));
-        self.magnification.map_or(seen, |magnification| magnification.moved(&seen))
+    pub fn moved(&self, node: &SplatNode) -> SplatNode {
+        let node = self.draft_scale.map_or(*node, |scale| node.in_draft(scale));
+        self.magnification.map_or(node, |magnification| magnification.moved(&node))
     }
 }
 
@@ -45,14 +45,14 @@ impl SplatNode {
             let half = f64::from(self.half_size[axis]) * sides[axis];
             half.round_ties_even().max(LEAST_HALF) as u16
         };
-        let mut seen = *self;
-        seen.center = [center(0), center(1)];
-        seen.half_size = [half(0), half(1)];
-        seen.level = self.level.saturating_sub(halvings);
+        let mut moved = *self;
+        moved.center = [center(0), center(1)];
+        moved.half_size = [half(0), half(1)];
+        moved.level = self.level.saturating_sub(halvings);
         if self.level < halvings {
             let area = 1.0 / (1u32 << (2 * (halvings - self.level))) as f32;
-            seen.light = self.light.map(|light| light * area);
+            moved.light = self.light.map(|light| light * area);
         }
-        seen
+        moved
     }
 }

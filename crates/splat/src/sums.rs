@@ -387,12 +387,12 @@ impl Band<'_> {
                 continue;
             }
             let node = &pen.nodes.nodes[drawn.index as usize];
-            let seen;
+            let moved;
             let node = match &pen.view {
                 None => node,
                 Some(view) => {
-                    seen = view.seen(node);
-                    &seen
+                    moved = view.moved(node);
+                    &moved
                 }
             };
             let is_sharing = is_sharing(node, drawn.placed);

@@ -10,8 +10,8 @@ use std::process::{Command, ExitCode, Stdio};
 /// The name of the program that is started, without the ending that programs have here.
 const PROGRAM: &str = "focus-brush";
 
-/// How much of what is printed is kept, bytes: the last line is far shorter.
-const KEPT: usize = 1 << 16;
+/// How much of the end of what is printed is shown at most, bytes: the last line is far shorter.
+const TAIL_BYTES: usize = 1 << 16;
 
 fn main() -> ExitCode {
     match run() {
@@ -39,7 +39,7 @@ fn run() -> Result<(i32, Vec<u8>), Error> {
         std::os::windows::process::CommandExt::creation_flags(&mut command, CREATE_NO_WINDOW);
     }
     let mut child = command.spawn()?;
-    let printed = child.stderr.take().map(|from| end_of(from, KEPT)).unwrap_or_default();
+    let printed = child.stderr.take().map(|from| end_of(from, TAIL_BYTES)).unwrap_or_default();
     Ok((child.wait()?.code().unwrap_or(1), printed))
 }
 
@@ -53,14 +53,14 @@ fn program(own: &Path) -> PathBuf {
 
 /// The last `most` bytes that `from` has, and up to as many before them.
 fn end_of(mut from: impl Read, most: usize) -> Vec<u8> {
-    let (mut kept, mut chunk) = (Vec::new(), [0; 4096]);
+    let (mut tail, mut chunk) = (Vec::new(), [0; 4096]);
     while let Ok(length @ 1..) = from.read(&mut chunk) {
-        kept.extend_from_slice(&chunk[..length]);
-        if kept.len() > 2 * most {
-            kept.drain(..kept.len() - most);
+        tail.extend_from_slice(&chunk[..length]);
+        if tail.len() > 2 * most {
+            tail.drain(..tail.len() - most);
         }
     }
-    kept
+    tail
 }
 
 /// The last line with something on it.
@@ -74,11 +74,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_last_line_is_kept() {
+    fn the_last_line_remains() {
         let long = "x\n".repeat(100_000) + "error: no window (try doctor)\r\n\n";
-        let kept = end_of(long.as_bytes(), 1000);
-        assert!((1000..6100).contains(&kept.len()), "{}", kept.len());
-        assert_eq!(last_line(&kept).as_deref(), Some("error: no window (try doctor)"));
+        let tail = end_of(long.as_bytes(), 1000);
+        assert!((1000..6100).contains(&tail.len()), "{}", tail.len());
+        assert_eq!(last_line(&tail).as_deref(), Some("error: no window (try doctor)"));
         assert_eq!(last_line(b" \n"), None);
     }
 

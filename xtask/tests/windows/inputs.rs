@@ -1,14 +1,8 @@
 //! Small files of every kind that the program opens.
 
+use crate::command_inputs::{CAMERA, RECIPE, STROKES};
 use crate::{card_light_field, tiny_glb, wall_capture};
 use std::path::Path;
-
-const CAMERA: &str =
-    r#"{"width": 64, "height": 40, "focus_distance": 2.0, "aperture_radius": 0.1, "sensor_height": 0.1}"#;
-const RECIPE: &str = r#"{"background": {"t": 0.9, "anchor": 0.5},
-    "nodes": {"card": {"t": 1.2, "anchor": 1}}, "materials": {"wall paint": {"t": 0.8, "anchor": 0.5}}}"#;
-const STROKES: &str = r#"{"format": "focus-brush strokes", "version": 3, "steps": [
-    {"fill": {"layer": "Paint", "targets": [{"node": 1}], "focus": {"t": 1.1, "anchor": 0.5}}}]}"#;
 
 /// Writes all of them into a new folder.
 pub fn write(folder: &Path) {
@@ -23,7 +17,7 @@ pub fn write(folder: &Path) {
     wall_capture::write(&folder.join("photos"));
     card_light_field::write(&folder.join("views"));
     card_light_field::view([0.0; 2]).save(folder.join("cat.png")).unwrap();
-    depth(&folder.join("cat_depth.png"));
+    card_light_field::write_depth(&folder.join("cat_depth.png"));
     splats(&folder.join("splats.ply"));
     std::fs::create_dir_all(folder.join("demo")).unwrap();
     let demo = Path::new(env!("CARGO_MANIFEST_DIR")).join("../assets/demo");
@@ -39,16 +33,6 @@ fn gltf(folder: &Path) {
     std::fs::write(folder.join("buffers/all.bin"), buffer).unwrap();
     document["buffers"][0]["uri"] = "buffers\\all.bin".into();
     std::fs::write(folder.join("scene.gltf"), document.to_string()).unwrap();
-}
-
-/// White is near.
-fn depth(file: &Path) {
-    let [width, height] = card_light_field::SIZE;
-    let depth = image::GrayImage::from_fn(width, height, |x, y| {
-        let (_, disparity) = card_light_field::shown(f64::from(x) + 0.5, f64::from(y) + 0.5, [0.0; 2]);
-        image::Luma([if disparity == card_light_field::CARD { 220 } else { 40 }])
-    });
-    depth.save(file).unwrap();
 }
 
 /// A hundred splats on a sphere before the camera.

@@ -5,6 +5,8 @@
 
 #[path = "../../../app/tests/card_light_field/mod.rs"]
 mod card_light_field;
+#[path = "../../../app/tests/command_inputs/mod.rs"]
+mod command_inputs;
 mod inputs;
 mod programs;
 #[path = "../../../crates/session/tests/tiny_glb/mod.rs"]

@@ -118,7 +118,7 @@ pub fn aperture_images(
     let mut images = ApertureImages { cells: Vec::new(), light: vec![(Vec3::ZERO, 0.0); clusters] };
     let grid = grid_of_all(scene);
     let targets = clusters + scene.points.len();
-    let seen = SeenSplats::new(scene, &grid, targets);
+    let reachable = ReachableSplats::new(scene, &grid, targets);
     images.cells = vec![Vec::new(); count];
     let (first, others): (Vec<usize>, Vec<usize>) =
         (0..count).partition(|cell| is_first(*cell, cells as usize));
@@ -131,7 +131,7 @@ pub fn aperture_images(
         let middle = |index: usize| (2.0 * index as f64 + 1.0) / f64::from(cells) - 1.0;
         let u = DVec2::new(middle(cell % cells as usize), middle(cell / cells as usize));
         let u = u * scene.view.optics().aperture_radius;
-        let bake = CellBake::new(scene, &seen, &grid, u, &is_wanted);
+        let bake = CellBake::new(scene, &reachable, &grid, u, &is_wanted);
         let mut values = vec![f16::ZERO; targets];
         for (index, share, light) in bake.run(progress)? {
             values[index] = f16::from_f32(share);
@@ -166,13 +166,13 @@ fn grid_of_all(scene: &ApertureScene<'_>) -> RayGrid {
 }
 
 /// The splats that rays toward targets can meet, from whatever point of the aperture: of a band of a picture few of all.
-struct SeenSplats<'v> {
+struct ReachableSplats<'v> {
     view: GaussianView<'v>,
     /// What the splats of `view` are in the scene's view.
     numbers: Vec<u32>,
 }
 
-impl<'v> SeenSplats<'v> {
+impl<'v> ReachableSplats<'v> {
     fn new(scene: &ApertureScene<'v>, grid: &RayGrid, targets: usize) -> Self {
         let radius = scene.view.optics().aperture_radius;
         let rows =
@@ -197,7 +197,7 @@ fn target_tile(scene: &ApertureScene<'_>, grid: &RayGrid, u: DVec2, index: usize
 /// The rays of one cell.
 struct CellBake<'v> {
     raster: EyeRaster<'v>,
-    seen: &'v SeenSplats<'v>,
+    reachable: &'v ReachableSplats<'v>,
     scene: &'v ApertureScene<'v>,
     /// In the order of tiles.
     targets: Vec<Target>,
@@ -206,7 +206,7 @@ struct CellBake<'v> {
 impl<'v> CellBake<'v> {
     fn new(
         scene: &'v ApertureScene<'v>,
-        seen: &'v SeenSplats<'v>,
+        reachable: &'v ReachableSplats<'v>,
         grid: &'v RayGrid,
         u: DVec2,
         is_wanted: &[bool],
@@ -218,7 +218,7 @@ impl<'v> CellBake<'v> {
         let wanted = (0..is_wanted.len()).into_par_iter().filter(|index| is_wanted[*index]);
         let mut targets: Vec<Target> = wanted.map(target).collect();
         targets.par_sort_unstable_by_key(|target| (target.tile_row, target.tile_column, target.index));
-        Self { raster: EyeRaster::new(&seen.view, u, grid), seen, scene, targets }
+        Self { raster: EyeRaster::new(&reachable.view, u, grid), reachable, scene, targets }
     }
 
     /// Share and light of what the cell sees.
@@ -276,7 +276,7 @@ impl<'v> CellBake<'v> {
         let (mut share, mut light) = (0.0, Vec3::ZERO);
         // Hits and members are in the same order.
         for hit in hits.iter() {
-            let number = self.seen.numbers[hit.splat as usize];
+            let number = self.reachable.numbers[hit.splat as usize];
             while members.next_if(|member| *member < number).is_some() {}
             if members.peek() != Some(&number) {
                 continue;

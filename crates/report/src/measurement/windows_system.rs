@@ -22,8 +22,8 @@ pub fn working_set() -> Option<WorkingSet> {
     const SIZE: u32 = size_of::<PROCESS_MEMORY_COUNTERS>() as u32;
     let mut counters = PROCESS_MEMORY_COUNTERS { cb: SIZE, ..Default::default() };
     // SAFETY: the handle is always valid, and the structure has the size that is given.
-    let told = unsafe { K32GetProcessMemoryInfo(GetCurrentProcess(), &mut counters, SIZE) };
-    (told != FALSE).then_some(WorkingSet {
+    let succeeded = unsafe { K32GetProcessMemoryInfo(GetCurrentProcess(), &mut counters, SIZE) };
+    (succeeded != FALSE).then_some(WorkingSet {
         current: counters.WorkingSetSize as u64,
         peak: counters.PeakWorkingSetSize as u64,
     })
@@ -34,8 +34,8 @@ pub fn working_set() -> Option<WorkingSet> {
 pub fn total_memory_bytes() -> Option<u64> {
     let mut status = MEMORYSTATUSEX { dwLength: size_of::<MEMORYSTATUSEX>() as u32, ..Default::default() };
     // SAFETY: the structure's length is in its first field.
-    let told = unsafe { GlobalMemoryStatusEx(&mut status) };
-    (told != FALSE).then_some(status.ullTotalPhys)
+    let succeeded = unsafe { GlobalMemoryStatusEx(&mut status) };
+    (succeeded != FALSE).then_some(status.ullTotalPhys)
 }
 
 /// The name of the processor; `None` if the registry does not have it.

@@ -181,7 +181,7 @@ impl<'a> Pen<'a> {
     #[inline(always)]
     pub fn node(&self, index: u32) -> SplatNode {
         let node = &self.nodes.nodes[index as usize];
-        self.view.map_or(*node, |view| view.seen(node))
+        self.view.map_or(*node, |view| view.moved(node))
     }
 
     /// The image of a node that was placed, with this light.
