@@ -1,8 +1,8 @@
 //! The light field.
 
 use crate::carried::Carried;
+use crate::light_change::LightChange;
 use crate::samples::Samples;
-use glam::Vec3;
 use lens::Camera;
 use serde::{Deserialize, Serialize};
 
@@ -41,10 +41,9 @@ pub struct SalfStatistics {
 }
 
 impl Salf {
-    /// The same light field before a backdrop of one radiance (linear RGB, ≥ 0) wherever no surface is; `None` if that is too large to be
-    /// stored.
-    pub fn with_backdrop(&self, radiance: Vec3) -> Option<Self> {
-        Some(Self { camera: self.camera.clone(), samples: self.samples.with_backdrop(radiance)?, ..*self })
+    /// The same light field in other light; `None` if a radiance is too large to be stored.
+    pub fn in_light(&self, light: &LightChange) -> Option<Self> {
+        Some(Self { camera: self.camera.clone(), samples: self.samples.in_light(light)?, ..*self })
     }
 
     /// Counts the light field's samples by kind.

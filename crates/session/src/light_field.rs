@@ -6,6 +6,7 @@ mod changes;
 mod draft;
 mod field_watch;
 mod margin_reach;
+mod relighting;
 mod running_sum;
 mod sample_index;
 
@@ -14,4 +15,5 @@ pub use aperture_image::{ApertureCell, ApertureImage, BakedVisibility};
 pub(crate) use changes::Changes;
 pub(crate) use field_watch::{BakeState, FieldWatch};
 pub(crate) use margin_reach::exceeds_margin;
+pub(crate) use relighting::Relightable;
 pub(crate) use running_sum::{BakedField, FieldOptions, LightField, Plan, SumUpdate};

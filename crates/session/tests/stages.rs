@@ -26,12 +26,17 @@ struct Stage {
     pixels: Vec<[u8; 4]>,
 }
 
-/// Applies a command; returns everything that is shown until the picture is fine, in order.
+/// What is on the screen.
+fn shown(session: &Session, name: String) -> Stage {
+    Stage { name, size: session.screen().size(), pixels: session.screen().pixels().to_vec() }
+}
+
+/// Applies a command; returns what was shown before, and everything that is until the picture is fine, in order.
 fn stages_after(session: &mut Session, command: Command) -> Vec<Stage> {
     let (start, mut last) = (Instant::now(), session.preview().map_or(0, |preview| preview.id));
+    let mut stages = vec![shown(session, "what stood".into())];
     session.apply(command).unwrap();
     session.apply(Command::FinishEdit).unwrap();
-    let mut stages = Vec::new();
     loop {
         assert!(start.elapsed() < PATIENCE, "no fine picture comes");
         session.poll();
@@ -46,11 +51,7 @@ fn stages_after(session: &mut Session, command: Command) -> Vec<Stage> {
         let kind = if preview.kind == PreviewKind::Pinhole { "pinhole" } else { "blurred" };
         let quality = if preview.quality > Quality::Coarse { "fine" } else { "coarse" };
         let name = format!("{quality} {kind} {} × {}", preview.camera.width, preview.camera.height);
-        stages.push(Stage {
-            name,
-            size: session.screen().size(),
-            pixels: session.screen().pixels().to_vec(),
-        });
+        stages.push(shown(session, name));
     }
 }
 
@@ -89,7 +90,7 @@ fn distance(stage: &Stage, last: &Stage) -> (f64, f32) {
     (-10.0 * mean.log10(), FlipPool::from_image(&map).mean())
 }
 
-/// Moves the camera, takes that back, changes the backdrop, and opens the aperture by a stop.
+/// Moves the camera, takes that back, changes the world's brightness and its backdrop, opens the aperture by a stop, and racks the focus.
 fn check(scene: &Path, preview_size: u32) {
     let mut session = Session::new(SessionOptions { preview_size, ..SessionOptions::default() }).unwrap();
     session.apply(Command::Open(scene.into())).unwrap();
@@ -100,12 +101,15 @@ fn check(scene: &Path, preview_size: u32) {
     let moved = camera.camera_to_world * DMat4::from_translation(aside);
     let background = camera.background.map(|color| DVec3::from_array(color).as_vec3());
     let world = World::from_scene(document.scene(), background);
-    let backdrop = World { backdrop: Backdrop::Color(Vec3::new(0.2, 0.3, 0.5)), ..world };
+    let brighter = World { strength: 1.5 * world.strength, ..world.clone() };
+    let backdrop = World { backdrop: Backdrop::Color(Vec3::new(0.2, 0.3, 0.5)), ..brighter.clone() };
     let changes = [
         ("a move", Command::EditCamera(CameraEdit::Pose(moved))),
         ("its undo", Command::Undo),
+        ("a brighter world", Command::SetWorld(Some(brighter))),
         ("another backdrop", Command::SetWorld(Some(backdrop))),
         ("a wider aperture", Command::EditCamera(CameraEdit::ApertureRadius(camera.aperture_radius * 1.42))),
+        ("a rack", Command::EditCamera(CameraEdit::FocusDistance(camera.focus_distance * 1.15))),
     ];
     for (change, command) in changes {
         let stages = stages_after(&mut session, command);
@@ -138,7 +142,7 @@ fn the_demo_only_gets_better() {
     for name in ["demo.fbrush", "demo.glb"] {
         std::fs::copy(demo.join(name), folder.path().join(name)).unwrap();
     }
-    check(&folder.path().join("demo.fbrush"), 480);
+    check(&folder.path().join("demo.fbrush"), 640);
 }
 
 #[test]

@@ -208,6 +208,8 @@ pub enum Detail {
     Fine,
     /// Small images of partly occluded ones as boxes, too.
     Sketch,
+    /// The same of few pixels, to be enlarged: highlights of a few pixels are round.
+    Draft,
 }
 
 impl Detail {
@@ -324,7 +326,8 @@ impl LensInUse {
                 of_fineness[fineness as usize][0] = 0;
             }
         }
-        Self { draft_scale: Some(scale), ..self }
+        let detail = if self.detail == Detail::Sketch { Detail::Draft } else { self.detail };
+        Self { draft_scale: Some(scale), detail, ..self }
     }
 
     /// How its picture sees the nodes; `None`: where they are.

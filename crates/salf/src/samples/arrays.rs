@@ -1,11 +1,12 @@
 //! The arrays that samples lie in.
 
 use crate::jitter::jitter;
+use crate::light_change::LightChange;
 use crate::sample::{Sample, Visibility};
 use crate::samples::numbers::Rgb40;
 use crate::samples::plane::Plane;
 use crate::samples::record::{Patch, Record};
-use glam::{DVec2, IVec2, Vec3};
+use glam::{DVec2, IVec2};
 use scene::SurfacePoint;
 
 /// The samples of a light field, numbered from 0.
@@ -95,19 +96,21 @@ impl Samples {
         [self.len() - partial, partial, background, carried]
     }
 
-    /// The same samples, with this radiance of those of the background; `None` if it is too large to be stored.
-    pub(crate) fn with_backdrop(&self, radiance: Vec3) -> Option<Self> {
+    /// The same samples in `light`; `None` if a radiance is too large to be stored.
+    pub(crate) fn in_light(&self, light: &LightChange) -> Option<Self> {
         let mut samples = self.clone();
         for chunk in 0..self.chunks.len() {
             let [start, end] = [chunk, chunk + 1].map(|chunk| self.starts(chunk).records as usize);
             for (index, record) in (start..end).zip(&mut samples.records[start..end]) {
-                if self.surface_of(chunk, record).is_none() {
+                let is_background = self.surface_of(chunk, record).is_none();
+                if light.changes(is_background) {
+                    let radiance = light.changed(record.radiance.get(), is_background);
                     record.radiance = Rgb40::new(radiance, jitter(chunk as u32, index as u32, 0))?;
                 }
             }
         }
-        for sample in samples.loose.iter_mut().filter(|sample| sample.surface.is_none()) {
-            sample.radiance = radiance;
+        for sample in &mut samples.loose {
+            sample.radiance = light.changed(sample.radiance, sample.surface.is_none());
         }
         Some(samples)
     }

@@ -24,6 +24,19 @@ impl Scene {
         !self.lights.is_empty() || self.has_emissive_materials()
     }
 
+    /// Whether no surface reflects light: all bring their own colours.
+    pub fn is_unlit(&self) -> bool {
+        self.parts.iter().all(|part| self.materials[part.material as usize].unlit)
+    }
+
+    /// Whether all its light comes from the world: nothing in it emits any, not even a weak glow, or brings its own colours.
+    pub fn is_lit_by_world_alone(&self) -> bool {
+        let emits = |material: &Material| material.unlit || material.emissive != Vec3::ZERO;
+        let is_dark = !self.parts.iter().any(|part| emits(&self.materials[part.material as usize]));
+        let is_photographed = self.picture.is_some() || !self.views.is_empty();
+        is_dark && self.lights.is_empty() && self.splats.is_none() && !is_photographed
+    }
+
     /// Whether a surface emits light: unlit, or emissive. A texture of emission up to 1 is a screen or a glow, not a
     /// light source for the scene.
     pub(crate) fn has_emissive_materials(&self) -> bool {

@@ -6,10 +6,10 @@ use crate::light_field::aperture_fit::{ApertureFit, is_spare_for};
 use crate::light_field::changes::Changes;
 use crate::light_field::draft::Draft;
 use crate::light_field::margin_reach::MarginReach;
+use crate::light_field::relighting::Relightable;
 use crate::light_field::sample_index::SampleIndex;
 use document::Stage;
 use focus::Focus;
-use glam::Vec3;
 use lens::{Camera, Picture};
 use light::LightQuality;
 use progress::{Progress, Stage as Share};
@@ -200,15 +200,14 @@ impl LightField {
         Draft::sum(&mut self.draft, (&self.splatter, self.whole_seconds), camera, progress)
     }
 
-    /// The same light field for a `stage` that differs in its backdrop alone, which has this radiance (linear RGB) everywhere; `None` if that is
-    /// too large to be stored.
-    pub fn with_backdrop(&self, stage: &Stage, radiance: Vec3, gpu: Option<Gpu>) -> Option<Self> {
-        let salf = self.splatter.salf().with_backdrop(radiance)?;
-        let field = Self::from_salf(stage, Arc::new(salf), self.splatter.tolerance(), gpu);
-        Some(field.refined(self.light_passes))
+    /// What is needed to show it in other light.
+    pub fn relightable(&self) -> Relightable {
+        let (modelled, light_passes) = (self.modelled, self.light_passes);
+        Relightable { baked: self.baked(), modelled, light_passes, tolerance: self.splatter.tolerance() }
     }
 
-    fn resting(
+    /// A light field that is not summed.
+    pub(super) fn resting(
         salf: Arc<Salf>,
         index: Arc<SampleIndex>,
         modelled: Modelled,

@@ -14,7 +14,7 @@ const TILE: u32 = 8;
 pub(crate) struct SampleIndex {
     salf: Arc<Salf>,
     atlas: Arc<Atlas>,
-    own: Tiles,
+    own: Arc<Tiles>,
     carried: OnceLock<Tiles>,
     /// The memory of the samples, bytes.
     sample_bytes: usize,
@@ -23,9 +23,15 @@ pub(crate) struct SampleIndex {
 impl SampleIndex {
     /// The index of the samples of `salf` by the texels of `atlas`.
     pub fn new(salf: Arc<Salf>, atlas: Arc<Atlas>) -> Self {
-        let own = Tiles::from_samples(&salf, &atlas, |address| !address.is_carried);
+        let own = Arc::new(Tiles::from_samples(&salf, &atlas, |address| !address.is_carried));
         let sample_bytes = salf.statistics().bytes;
         Self { salf, atlas, own, carried: OnceLock::new(), sample_bytes }
+    }
+
+    /// The index of `salf`, whose samples are at the same places.
+    pub fn of_same_places(&self, salf: Arc<Salf>) -> Self {
+        let (atlas, own) = (self.atlas.clone(), self.own.clone());
+        Self { salf, atlas, own, carried: OnceLock::new(), sample_bytes: self.sample_bytes }
     }
 
     /// The memory that it takes with the samples, in bytes.

@@ -1,20 +1,19 @@
 //! Making the light field of the preview: a thread of its own bakes and sums it.
 
 use crate::error::SessionError;
-use crate::light_field::{Changes, FieldOptions, LightField, spare_camera};
+use crate::light_field::{Changes, FieldOptions, LightField, Relightable, spare_camera};
 use crate::preview::activity::PreviewActivity;
 use crate::preview::deliveries::{BAKE_SHARE, FieldDelivery, INTERIM_SHARE, InterimField};
 use crate::preview::helper_thread;
 use crate::preview::mailbox::Shared;
 use document::Stage;
 use focus::Focus;
-use glam::Vec3;
 use jobs::{Urgency, catch_panics, run_in_own_pool};
 use lens::Camera;
 use light::LightQuality;
-use progress::Stage as Share;
+use progress::{Progress, Stage as Share, Unwatched};
 use render::LightFieldStore;
-use salf::Carried;
+use salf::{Carried, LightChange};
 use splat::Tolerance;
 use std::sync::Arc;
 use std::thread::JoinHandle;
@@ -22,8 +21,8 @@ use std::time::{Duration, Instant};
 
 /// What is begun with.
 pub(crate) enum FieldOrigin {
-    /// A light field that is there, before another backdrop, which has this radiance everywhere.
-    OtherBackdrop(Box<LightField>, Vec3),
+    /// One that is there, in other light.
+    Relit(Relightable, LightChange),
     /// None: it is taken from the store or baked, with a margin of at least this many pixels.
     LoadOrBake { least_margin_px: f64 },
     /// None: it is baked, whatever is in the store.
@@ -47,14 +46,25 @@ pub(crate) struct FieldOrder {
 pub(crate) struct LightFieldMaker {
     store: Option<LightFieldStore>,
     thread: Option<JoinHandle<()>>,
+    /// What it is made for.
+    stage: Option<Arc<Stage>>,
     /// What changed since it began.
     pending_changes: Changes,
+}
+
+/// What was made, with all that changed meanwhile noted.
+pub(crate) struct MadeField {
+    pub field: LightField,
+    /// What it was made for.
+    pub stage: Arc<Stage>,
+    /// The epoch in which it was asked for.
+    pub epoch: u64,
 }
 
 impl LightFieldMaker {
     /// At rest. What is baked is kept in `store`, if there is one.
     pub fn new(store: Option<LightFieldStore>) -> Self {
-        Self { store, thread: None, pending_changes: Changes::default() }
+        Self { store, thread: None, stage: None, pending_changes: Changes::default() }
     }
 
     /// Whether a stored light field can be read, so that none need be baked.
@@ -86,6 +96,7 @@ impl LightFieldMaker {
             return;
         }
         self.pending_changes = Changes::default();
+        self.stage = Some(order.stage.clone());
         let (thread_shared, epoch, store) = (shared.clone(), order.epoch, self.store.clone());
         // Whoever asks from now on waits for it.
         shared.field.begin(&order.stage);
@@ -116,16 +127,16 @@ impl LightFieldMaker {
         (field, epoch)
     }
 
-    /// The light field that was made, with all that changed meanwhile noted, and the epoch it was made for.
+    /// The light field that was made; `None` if it never began.
     ///
     /// # Errors
     /// The error of the thread.
-    pub fn take_up(&mut self, delivery: FieldDelivery) -> Result<(LightField, u64), SessionError> {
+    pub fn take_up(&mut self, delivery: FieldDelivery) -> Result<Option<MadeField>, SessionError> {
         self.join();
         let pending_changes = std::mem::take(&mut self.pending_changes);
-        let mut field = delivery.result?;
+        let (mut field, epoch) = (delivery.result?, delivery.epoch);
         field.note(&pending_changes);
-        Ok((field, delivery.epoch))
+        Ok(self.stage.take().map(|stage| MadeField { field, stage, epoch }))
     }
 
     /// Waits for the thread, which was told to stop or is done.
@@ -168,20 +179,13 @@ fn make(
         }
         Ok::<_, SessionError>(field)
     };
-    let mut field = match origin {
+    let field = match origin {
         FieldOrigin::Bake => bake(0.0)?,
-        FieldOrigin::OtherBackdrop(field, radiance) => {
-            let start = Instant::now();
-            match field.with_backdrop(&stage, radiance, shared.gpu()) {
-                Some(field) => {
-                    if let Some(store) = store {
-                        store.save(&stage, &field.baked().salf, field.light_passes(), start.elapsed());
-                    }
-                    field
-                }
-                None => bake(0.0)?,
-            }
-        }
+        FieldOrigin::Relit(field, light) => match field.in_light(&light, shared.gpu()) {
+            // It is shown even if the light changes again: what is dragged is followed.
+            Some(field) => return summed(field, &camera, &focus, &Unwatched),
+            None => bake(0.0)?,
+        },
         FieldOrigin::LoadOrBake { least_margin_px } => {
             let carried = Carried::for_focus(&focus);
             let stored = store.and_then(|store| store.find(&stage, &camera, least_margin_px, carried));
@@ -193,11 +197,22 @@ fn make(
             }
         }
     };
+    // Exports share it; not what was shown in other light, which is rounded otherwise than what is baked in it.
     shared.field.set_baked(&field.baked().salf);
     shared.begin_helper_sum();
     shared.progress.begin_step("", BAKE_SHARE, 1.0);
-    field.update_sum(&camera, &focus, &Share::new(&shared.progress, BAKE_SHARE, 1.0))?;
-    field.survey(&camera, &focus);
-    field.prepare()(&shared.progress);
+    summed(field, &camera, &focus, &Share::new(&shared.progress, BAKE_SHARE, 1.0))
+}
+
+/// A light field with its sum, ready for dabs.
+fn summed(
+    mut field: LightField,
+    camera: &Camera,
+    focus: &Focus,
+    progress: &dyn Progress,
+) -> Result<LightField, SessionError> {
+    field.update_sum(camera, focus, progress)?;
+    field.survey(camera, focus);
+    field.prepare()(progress);
     Ok(field)
 }

@@ -1,14 +1,15 @@
 //! The preview thread's work: processing requests.
 
-mod backdrop;
 mod idle_work;
+mod relighting;
 mod showing;
 
+use self::relighting::Relighting;
 use crate::error::SessionError;
-use crate::light_field::{LightField, Plan};
+use crate::light_field::{Changes, LightField, Plan};
 use crate::preview::deliveries::{FieldDelivery, FinerField, InterimField};
 use crate::preview::exact_refinement::ExactRefinement;
-use crate::preview::light_field_maker::{FieldOrder, FieldOrigin, LightFieldMaker};
+use crate::preview::light_field_maker::{FieldOrder, FieldOrigin, LightFieldMaker, MadeField};
 use crate::preview::light_refinement::LightRefinement;
 use crate::preview::mailbox::Shared;
 use crate::preview::picture_sizes::interim_camera;
@@ -18,7 +19,6 @@ use crate::preview::request::PreviewRequest;
 use crate::preview::spare_field::{SpareField, SpareTask};
 use document::Stage;
 use focus::{Focus, FocusMap};
-use glam::Vec3;
 use jobs::catch_panics;
 use lens::Camera;
 use render::LightFieldStore;
@@ -39,8 +39,10 @@ pub(crate) struct Worker {
     /// Seconds that a pixel of it took to bake; `None` before the scene's first.
     coarse_pace: Option<f64>,
     fine: Option<LightField>,
-    /// The fine light field of before the backdrop changed, and the backdrop's radiance.
-    before_backdrop: Option<(LightField, Vec3)>,
+    /// What the light fields show: the stage, or it in other light until there are new ones.
+    shown_stage: Option<Arc<Stage>>,
+    /// How the fine light field becomes one of the stage, if it shows it in another world.
+    relighting: Option<Relighting>,
     /// Whether the fine light field's picture has not been shown yet.
     is_new: bool,
     /// Makes or sums the fine light field.
@@ -96,7 +98,8 @@ impl Worker {
             coarse: None,
             coarse_pace: None,
             fine: None,
-            before_backdrop: None,
+            shown_stage: None,
+            relighting: None,
             is_new: false,
             maker: LightFieldMaker::new(store),
             delivery: None,
@@ -198,6 +201,10 @@ impl Worker {
         }
 
         self.choose_field(&camera);
+        if self.fine.is_none() {
+            (self.shown_stage, self.relighting) = (Some(stage.clone()), None);
+        }
+        self.make_relit(&stage, &camera, &focus);
         if let Some(fine) = &self.fine {
             let plan = fine.plan(&camera, &focus);
             if matches!(plan, Plan::Whole) && fine.whole_seconds() >= QUICK_SECONDS {
@@ -217,7 +224,11 @@ impl Worker {
             self.show_coarse(&stage, &camera, &focus)?;
         }
         if !self.maker.is_at_work() && !self.is_paused {
-            let origin = self.next_origin(&camera);
+            let origin = if std::mem::take(&mut self.bakes_anew) {
+                FieldOrigin::Bake
+            } else {
+                FieldOrigin::LoadOrBake { least_margin_px: 0.0 }
+            };
             self.make_field(origin, &stage, &camera, focus);
         }
         Ok(())
@@ -251,33 +262,35 @@ impl Worker {
                 .flatten()
                 .for_each(|field| field.set_tolerance(tolerance));
         }
-        let is_opened = request.stage.is_some();
-        let mut backdrop = None;
+        let (is_opened, has_camera) = (request.stage.is_some(), request.camera.is_some());
+        self.camera = request.camera.or(self.camera.take());
+        let mut changed = request.changed;
         if let Some((stage, generation)) = request.stage {
-            let (before, camera) = (self.stage.take(), request.camera.as_ref().or(self.camera.as_ref()));
-            backdrop = before.and_then(|before| Self::plain_backdrop(&before, &stage, camera?));
             self.stage = Some(stage);
             self.pinhole.forget();
             self.coarse_pace = None;
             self.presenter.open(generation);
         }
         if is_opened || request.bake {
-            self.take_up_backdrop(backdrop.filter(|_| !request.bake));
+            let stays = self.relight(!request.bake);
+            if let (true, Some(map), Some((new_map, _))) = (stays, &self.map, &request.map)
+                && map.shares_tiles_with(new_map)
+            {
+                changed = Changes::default();
+            }
             self.refinement.forget();
             self.light.forget();
             self.spare.forget();
             self.epoch += 1;
             self.bakes_anew = request.bake;
         }
-        let resumes_work =
-            self.stage.is_some() && (request.camera.is_some() || request.bake || request.edit_done);
+        let resumes_work = self.stage.is_some() && (has_camera || request.bake || request.edit_done);
         self.is_paused = request.pause || (self.is_paused && !resumes_work);
         self.is_background_paused = request.pause_background || (self.is_background_paused && !resumes_work);
         let is_complete = request.edit_done || is_opened;
         self.is_painting = !is_complete && (self.is_painting || request.map.is_some());
         // A stroke that goes on is no time for more.
         self.is_edit_done = request.edit_done || (self.is_edit_done && request.map.is_none());
-        self.camera = request.camera.or(self.camera.take());
         if let Some(tone) = request.tone {
             self.presenter.set_tone(tone);
         }
@@ -286,12 +299,12 @@ impl Worker {
             self.presenter.map_serial = serial;
         }
         for field in [&mut self.coarse, &mut self.fine].into_iter().flatten() {
-            field.note(&request.changed);
+            field.note(&changed);
         }
-        self.maker.note(&request.changed);
-        self.refinement.note(&request.changed);
-        self.light.note(&request.changed);
-        self.spare.note(&request.changed);
+        self.maker.note(&changed);
+        self.refinement.note(&changed);
+        self.light.note(&changed);
+        self.spare.note(&changed);
         if let Some(refined_light) = request.refined_light {
             self.light.take_back(refined_light);
         }
@@ -320,7 +333,11 @@ impl Worker {
         let has_time = !self.is_painting || self.fine.is_none();
         let Some(delivery) = self.delivery.take_if(|_| has_time) else { return Ok(()) };
         match self.maker.take_up(delivery) {
-            Ok((mut field, epoch)) if epoch == self.epoch => {
+            Ok(Some(made)) if self.is_wanted(&made) => {
+                let MadeField { mut field, stage, .. } = made;
+                let is_of_stage = self.stage.as_ref().is_some_and(|current| Arc::ptr_eq(current, &stage));
+                self.relighting = if is_of_stage { None } else { self.relighting_from(&stage) };
+                self.shown_stage = Some(stage);
                 field.set_tolerance(self.tolerance);
                 self.presenter.check_glare(&field.baked().salf);
                 self.shared.publish_field(self.presenter.generation, field.baked());

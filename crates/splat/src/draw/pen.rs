@@ -50,6 +50,8 @@ pub struct Pen<'a> {
     pub per_variance: i64,
     /// Images of partly occluded nodes of a smaller radius, 1/4096 px of their level, are boxes.
     pub box_radius: u32,
+    /// The same of highlights, whose rims show.
+    pub highlight_box_radius: u32,
     /// Smaller changes of an open node's weight over the aperture, as a share of it in 1/16384, only move its image.
     pub even_tilt: i32,
     /// Changes of a partly occluded node's weight that are not larger do not count.
@@ -135,22 +137,24 @@ impl<'a> Pen<'a> {
         // For viewing, one box is sufficient until stencils take over.
         let [stencil_radius, one_box_radius] = match detail {
             Detail::Exact => [deviations(0.5), deviations(0.5)],
-            Detail::Fine | Detail::Sketch => [deviations(0.3), u32::MAX],
+            _ => [deviations(0.3), u32::MAX],
         };
         let [even_tilt, even_partial_tilt] = match detail {
             Detail::Exact => [ONE / 40, 0],
-            Detail::Fine | Detail::Sketch => [ONE / 20, ONE / 20],
+            _ => [ONE / 20, ONE / 20],
         };
-        let box_radius = deviations(match detail {
-            Detail::Exact => 1.0,
-            Detail::Fine => 1.5,
-            Detail::Sketch => 2.0,
-        });
+        let [box_radius, highlight_box_radius] = match detail {
+            Detail::Exact => [1.0, 1.0],
+            Detail::Fine => [1.5, 1.5],
+            Detail::Sketch => [2.0, 2.0],
+            Detail::Draft => [2.0, 1.0],
+        }
+        .map(deviations);
         // Below 3 px, one of three or more rows of cells would represent a pixel row.
         let all_rows_radius = match detail {
             Detail::Exact => u32::MAX,
             Detail::Fine => 3 * PIXEL as u32,
-            Detail::Sketch => 0,
+            Detail::Sketch | Detail::Draft => 0,
         };
         Self {
             nodes,
@@ -170,6 +174,7 @@ impl<'a> Pen<'a> {
             stencil_radius,
             per_stencil_radius: u32::MAX / stencil_radius,
             box_radius,
+            highlight_box_radius,
             all_rows_radius,
             one_box_radius,
             even_tilt,
@@ -225,7 +230,8 @@ impl<'a> Pen<'a> {
     pub fn forms(&self, node: &SplatNode, placed: Placed, mut visit: impl FnMut(Form)) {
         let radius = placed.radius.unsigned_abs();
         if !node.is_open() {
-            let is_box = radius >> placed.level < self.box_radius;
+            let box_radius = if node.is_highlight { self.highlight_box_radius } else { self.box_radius };
+            let is_box = radius >> placed.level < box_radius;
             return if is_box { visit(Form::PartialBox) } else { visit(Form::PartialImage) };
         }
         let is_even = self.is_even(node);

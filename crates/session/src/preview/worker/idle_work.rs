@@ -22,7 +22,8 @@ impl Worker {
 
     /// Whether nobody waits for anything else.
     pub(super) fn is_quiet(&self) -> bool {
-        !self.is_paused && !self.is_painting && !self.maker.is_at_work() && !self.shared.is_exporting()
+        let is_at_work = self.maker.is_at_work() || self.relighting.is_some();
+        !self.is_paused && !self.is_painting && !is_at_work && !self.shared.is_exporting()
     }
 
     /// Whether light fields may be made that are not needed for the picture that is shown.
