@@ -20,7 +20,7 @@ use crate::preview::spare_field::{SpareField, SpareTask};
 use document::Stage;
 use focus::{Focus, FocusMap};
 use jobs::catch_panics;
-use lens::Camera;
+use lens::{Camera, Picture};
 use render::LightFieldStore;
 use splat::Tolerance;
 use std::sync::Arc;
@@ -43,6 +43,8 @@ pub(crate) struct Worker {
     shown_stage: Option<Arc<Stage>>,
     /// How the fine light field becomes one of the stage, if it shows it in another world.
     relighting: Option<Relighting>,
+    /// The last fine picture, while drafts of pictures through other lenses are shown, and what it shows.
+    standing: Option<(Arc<Picture>, Camera)>,
     /// Whether the fine light field's picture has not been shown yet.
     is_new: bool,
     /// Makes or sums the fine light field.
@@ -100,6 +102,7 @@ impl Worker {
             fine: None,
             shown_stage: None,
             relighting: None,
+            standing: None,
             is_new: false,
             maker: LightFieldMaker::new(store),
             delivery: None,

@@ -1,7 +1,7 @@
 //! The pictures that the preview's thread shows: without blur, of few pixels, fine, and exact.
 
 use super::Worker;
-use crate::display::PictureSource;
+use crate::display::{PictureSource, SharpLayer};
 use crate::error::SessionError;
 use crate::light_field::{FieldOptions, LightField, Plan, SumUpdate, spare_camera};
 use crate::preview::activity::PreviewActivity;
@@ -45,6 +45,7 @@ impl Worker {
         self.shared.begin(PreviewActivity::Splatting)?;
         let start = Instant::now();
         let update = fine.execute_plan(plan, camera, &focus, &UntilCameraMoves(&self.shared))?;
+        self.standing = None;
         let light_passes = fine.light_passes();
         let is_new = std::mem::take(&mut self.is_new);
         if update != SumUpdate::Unchanged || is_new {
@@ -87,18 +88,31 @@ impl Worker {
         Ok(())
     }
 
+    /// Keeps the picture that is shown, if it is a fine one: drafts that follow lie below what stays of it.
+    fn keep_standing(&mut self) {
+        let shown = self.presenter.shown().filter(|shown| shown.quality > Quality::Coarse);
+        let Some(camera) = shown.map(|shown| shown.camera.clone()) else { return };
+        let plain = self.presenter.followed().filter(|picture| picture.colour_coverage.is_none());
+        self.standing = plain.map(|picture| (picture, camera));
+    }
+
     /// A draft of the fine picture, which takes longer.
     pub(super) fn show_draft(&mut self, camera: &Camera, focus: &Focus) -> Result<(), SessionError> {
+        self.keep_standing();
         let Some(fine) = &mut self.fine else { return Ok(()) };
         self.shared.begin(PreviewActivity::Splatting)?;
         let start = Instant::now();
         let modelled = fine.modelled();
         let draft = fine.sum_draft(camera, focus, &self.shared.quick)?;
+        let has_pixels = |picture: &Picture| [picture.width, picture.height] == [camera.width, camera.height];
+        let standing =
+            self.standing.as_ref().filter(|(picture, of)| has_pixels(picture) && is_same_view(of, camera));
+        let sharp_layer = standing.map(|(picture, _)| SharpLayer::of_standing(picture, draft).into());
         self.presenter.show(NewPicture {
             camera: &resized(camera, [draft.width, draft.height]),
             picture: PictureSource::InMemory(draft),
             enlarged_to: Some([camera.width, camera.height]),
-            sharp_layer: None,
+            sharp_layer,
             kind: PreviewKind::Splat,
             quality: Quality::Coarse,
             seconds: start.elapsed().as_secs_f64(),
