@@ -1,7 +1,7 @@
 //! What the aperture images of a scene take: counts, and seconds of this process' threads where Linux tells them.
 //!
 //! ```text
-//! bake_cost SCENE CAMERA.json [WIDTH] [EXTENT_PX] [ROW END]
+//! bake_cost SCENE CAMERA.json [WIDTH] [EXTENT_PX] [ROW END] [COARSE_BELOW_PX2] [RAYS_PER_PX]
 //! ```
 
 #[path = "../tests/gaussians/camera_file.rs"]
@@ -59,6 +59,8 @@ fn main() {
         points: &[],
         ray_end: &|_, _| f64::INFINITY,
         margin_px: 0,
+        coarse_below_px2: number(4).unwrap_or(0.0) as f32,
+        rays_per_px: number(5).unwrap_or(1.0) as u32,
     };
     let images = aperture_images(&scene, 8, &Unwatched).expect("not cancelled");
     let sums = (0..clusters.list.len()).map(|cluster| images.shares(cluster).map(f64::from).sum::<f64>());

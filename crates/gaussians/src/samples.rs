@@ -6,6 +6,7 @@
 
 mod aperture_images;
 mod clusters;
+mod eye_picture;
 
 pub use aperture_images::{ApertureImages, ApertureScene, PicturePoint, aperture_images};
 pub use clusters::{Cluster, ClusterOptions, Clusters, cluster_picture};

@@ -20,7 +20,7 @@ pub(crate) use eye_raster::EyeRaster;
 pub(crate) use ray_light::end_at;
 pub use ray_light::{RayLight, median_depth};
 pub(crate) use tile_tracer::{Follow, LANES, LaneHits};
-pub(crate) use tiles::{RayGrid, TileRow};
+pub(crate) use tiles::{RayGrid, TILE, TileRow};
 
 use crate::cloud::GaussianCloud;
 use crate::placement::Placement;

@@ -27,7 +27,7 @@ pub mod surface_patches;
 use crate::baker::block_baker::{BlockBaker, CellSurvey};
 use crate::baker::occluders::Occluders;
 use crate::baker::outliers::Outliers;
-use crate::baker::splats::{BlockSamples, add_splats};
+use crate::baker::splats::{BlockSamples, SplatBands};
 use crate::options::BakeOptions;
 use crate::salf::Salf;
 use crate::sample::Sample;
@@ -147,16 +147,23 @@ pub fn pack_blocks(
         .unzip();
         return Ok((samples, outliers.iter().fold(Outliers::default(), merge)));
     };
-    let (mut baked, outliers): (Vec<BlockSamples>, Vec<_>) =
-        map_rows(blocks, &Stage::new(progress, 0.0, 0.1), |&(number, block)| {
-            let (baked, outliers) = bake(number, block);
-            ((baker.domain.corner_of_block(block), baked), outliers)
-        })?
-        .into_iter()
-        .unzip();
-    add_splats(baker, splats, &mut baked, &Stage::new(progress, 0.1, 1.0))?;
-    let packed = baked.into_par_iter().map(|(corner, baked)| baker.pack(corner, baked));
-    Ok((packed.collect(), outliers.iter().fold(Outliers::default(), merge)))
+    let bands = SplatBands::new(baker, splats);
+    let (mut packed, mut all) = (Vec::with_capacity(blocks.len()), Outliers::default());
+    for band in blocks.chunk_by(|(_, a), (_, b)| bands.band(a.y) == bands.band(b.y)) {
+        let share = |done: usize| done as f32 / blocks.len() as f32;
+        let stage = Stage::new(progress, share(packed.len()), share(packed.len() + band.len()));
+        let (mut baked, outliers): (Vec<BlockSamples>, Vec<_>) =
+            map_rows(band, &Stage::new(&stage, 0.0, 0.1), |&(number, block)| {
+                let (baked, outliers) = bake(number, block);
+                ((baker.domain.corner_of_block(block), baked), outliers)
+            })?
+            .into_iter()
+            .unzip();
+        all = outliers.iter().fold(all, merge);
+        bands.add(&mut baked, &Stage::new(&stage, 0.1, 1.0))?;
+        packed.par_extend(baked.into_par_iter().map(|(corner, baked)| baker.pack(corner, baked)));
+    }
+    Ok((packed, all))
 }
 
 /// The samples that are placed on surfaces, of selected blocks, by the corners of their blocks.

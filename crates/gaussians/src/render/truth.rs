@@ -202,7 +202,7 @@ impl<'v> Truth<'v> {
                 pixels.extend(columns.clone().map(|column| self.grid.pixel(column, row)));
                 directions.clear();
                 directions.extend(pixels.iter().map(|pixel| self.view.direction(raster.eye.point(), *pixel)));
-                tracer.trace(&directions, Follow::Visible, &mut lanes);
+                tracer.trace(row, &directions, Follow::Visible, &mut lanes);
                 for (pixel, (hits, rest)) in pixels.iter().zip(lanes.hits.iter_mut().zip(lanes.rest)) {
                     self.add_ray(raster, *pixel, hits, rest, &mut sums);
                 }

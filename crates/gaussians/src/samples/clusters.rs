@@ -139,7 +139,7 @@ pub fn cluster_picture(
                     let pixels: Vec<DVec2> = columns.clone().map(|column| grid.pixel(column, row)).collect();
                     let directions: Vec<DVec3> =
                         pixels.iter().map(|pixel| view.direction(DVec2::ZERO, *pixel)).collect();
-                    tracer.trace(&directions, Follow::All, &mut lanes);
+                    tracer.trace(row, &directions, Follow::All, &mut lanes);
                     for (pixel, hits) in pixels.iter().zip(&mut lanes.hits) {
                         clusters.push_ray(&raster.eye, *pixel, hits, options);
                     }

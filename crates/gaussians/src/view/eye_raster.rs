@@ -13,7 +13,7 @@ pub(crate) struct EyeRaster<'v> {
     pub eye: Eye<'v>,
     grid: &'v RayGrid,
     outlines: Outlines,
-    /// As they are blended, and as light.
+    /// As they are blended, and as light; empty where no light is asked for.
     colors: Vec<(Vec3, Vec3)>,
     space: ColorSpace,
 }
@@ -21,14 +21,20 @@ pub(crate) struct EyeRaster<'v> {
 impl<'v> EyeRaster<'v> {
     /// The eye at the aperture point `u`, scene units.
     pub fn new(view: &'v GaussianView<'v>, u: DVec2, grid: &'v RayGrid) -> Self {
-        let eye = Eye::new(view, u);
-        let outlines = grid.outlines(&eye);
+        let raster = Self::without_light(view, u, grid);
         let color = |splat: u32| {
-            let color = if outlines.is_met(splat) { eye.color(splat) } else { Vec3::ZERO };
-            (color, eye.decoded(color))
+            let color = if raster.outlines.is_met(splat) { raster.eye.color(splat) } else { Vec3::ZERO };
+            (color, raster.eye.decoded(color))
         };
         let colors = (0..view.len() as u32).into_par_iter().map(color).collect();
-        Self { eye, grid, outlines, colors, space: view.cloud().traits().color_space }
+        Self { colors, ..raster }
+    }
+
+    /// The same without colours, which must not be asked for.
+    pub fn without_light(view: &'v GaussianView<'v>, u: DVec2, grid: &'v RayGrid) -> Self {
+        let eye = Eye::new(view, u);
+        let outlines = grid.outlines(&eye);
+        Self { eye, grid, outlines, colors: Vec::new(), space: view.cloud().traits().color_space }
     }
 
     /// A row of tiles with the splats that it meets.

@@ -28,6 +28,8 @@ struct TileSplat {
     opacity: f32,
     /// Its index in the view.
     index: u32,
+    /// The first and the last row of rays that it can meet.
+    rows: [u32; 2],
 }
 
 /// The splats that rays of a tile can meet.
@@ -50,17 +52,19 @@ pub(crate) enum Follow {
     Visible,
     /// To its end.
     All,
+    /// Each until nearly nothing of it is left, and at most to before this splat of the view; 0: not at all.
+    Before([u32; LANES]),
 }
 
 impl TileTracer {
-    /// For rays near the direction `middle` (z = 1) from an eye, which meet no splats but `candidates`.
-    pub fn new(eye: &Eye<'_>, middle: DVec3, candidates: impl Iterator<Item = u32>) -> Self {
-        let splats = candidates.map(|index| TileSplat::new(eye, middle, index)).collect();
+    /// For rays near the direction `middle` (z = 1) from an eye, which meet no splats but `candidates`, in the rows of rays beside each.
+    pub fn new(eye: &Eye<'_>, middle: DVec3, candidates: impl Iterator<Item = (u32, [u32; 2])>) -> Self {
+        let splats = candidates.map(|(index, rows)| TileSplat::new(eye, middle, index, rows)).collect();
         Self { middle, splats }
     }
 
-    /// Traces up to [`LANES`] rays in `directions` (z = 1).
-    pub fn trace(&self, directions: &[DVec3], follow: Follow, lanes: &mut LaneHits) {
+    /// Traces up to [`LANES`] rays of row `row` in `directions` (z = 1).
+    pub fn trace(&self, row: u32, directions: &[DVec3], follow: Follow, lanes: &mut LaneHits) {
         lanes.hits.iter_mut().for_each(Vec::clear);
         lanes.rest = [1.0; LANES];
         let (mut x, mut y) = ([0.0; LANES], [0.0; LANES]);
@@ -68,9 +72,29 @@ impl TileTracer {
             let offset = *direction - self.middle;
             (x[lane], y[lane]) = (offset.x as f32, offset.y as f32);
         }
-        // A bit for each ray of which something is left.
-        let mut active = (1u32 << directions.len()) - 1;
+        let (least_rest, before) = match follow {
+            Follow::Visible => (MIN_TRANSMITTANCE, [u32::MAX; LANES]),
+            Follow::All => (0.0, [u32::MAX; LANES]),
+            Follow::Before(splats) => (MIN_TRANSMITTANCE, splats),
+        };
+        // A bit for each ray that is followed further, and the first splat at which that changes.
+        let mut active = (0..directions.len()).map(|lane| u32::from(before[lane] > 0) << lane).sum::<u32>();
+        let next_end = |active: u32| {
+            let ends = (0..LANES).filter(|lane| active >> lane & 1 == 1).map(|lane| before[lane]);
+            ends.min().unwrap_or(0)
+        };
+        let mut end = next_end(active);
         for splat in &self.splats {
+            if splat.index >= end {
+                (0..LANES).for_each(|lane| active &= !(u32::from(before[lane] <= splat.index) << lane));
+                end = next_end(active);
+            }
+            if active == 0 {
+                break;
+            }
+            if row < splat.rows[0] || splat.rows[1] < row {
+                continue;
+            }
             let distances = squared_lengths(&splat.cross, &x, &y);
             let squares = squared_lengths(&splat.q, &x, &y);
             let mut near = 0;
@@ -78,12 +102,19 @@ impl TileTracer {
                 near |= u32::from(distances[lane] <= splat.cutoff * squares[lane]) << lane;
             }
             near &= active;
+            if near == 0 {
+                continue;
+            }
+            let (mut alphas, mut depths) = ([0.0; LANES], [0.0; LANES]);
+            for lane in 0..LANES {
+                let response = exp_of_negative(-0.5 * distances[lane] / squares[lane]);
+                alphas[lane] = (splat.opacity * response).min(MAX_ALPHA as f32);
+                depths[lane] = splat.depth(x[lane], y[lane], squares[lane]);
+            }
             while near != 0 {
                 let lane = near.trailing_zeros() as usize;
                 near &= near - 1;
-                let depth = splat.depth(x[lane], y[lane], squares[lane]);
-                let alpha =
-                    (splat.opacity * (-0.5 * distances[lane] / squares[lane]).exp()).min(MAX_ALPHA as f32);
+                let (alpha, depth) = (alphas[lane], depths[lane]);
                 // What is behind the aperture is not met.
                 if alpha < MIN_ALPHA as f32 || depth <= 0.0 {
                     continue;
@@ -96,15 +127,28 @@ impl TileTracer {
                     depth: depth.into(),
                 });
                 *rest *= 1.0 - alpha;
-                if follow == Follow::Visible && *rest < MIN_TRANSMITTANCE {
+                if *rest < least_rest {
                     active &= !(1 << lane);
                 }
             }
-            if active == 0 {
-                break;
-            }
         }
     }
+}
+
+/// eˣ for −6 ≤ x ≤ 0, to 1e-6 of itself, by operations that round alike on every machine; less exact below.
+///
+/// x log₂e = n + f with |f| ≤ ½; 2ᶠ by its Taylor polynomial.
+#[inline(always)]
+fn exp_of_negative(x: f32) -> f32 {
+    /// Its sum with a small number has the nearest integer in its lowest bits.
+    const ROUNDING: f32 = 12_582_912.0;
+    let exponent = x * std::f32::consts::LOG2_E;
+    let rounded = exponent + ROUNDING;
+    let f = (exponent - (rounded - ROUNDING)) * std::f32::consts::LN_2;
+    let power =
+        1.0 + f * (1.0 + f * (0.5 + f * (1.0 / 6.0 + f * (1.0 / 24.0 + f * (1.0 / 120.0 + f / 720.0)))));
+    let scale = rounded.to_bits().wrapping_sub(ROUNDING.to_bits()).wrapping_add(127) << 23;
+    power * f32::from_bits(scale)
 }
 
 /// |v + x vₓ + y vᵧ|² of rays with offsets x and y, of the vectors v, vₓ and vᵧ.
@@ -121,7 +165,7 @@ fn squared_lengths([v, vx, vy]: &[[f32; 3]; 3], x: &[f32; LANES], y: &[f32; LANE
 }
 
 impl TileSplat {
-    fn new(eye: &Eye<'_>, middle: DVec3, index: u32) -> Self {
+    fn new(eye: &Eye<'_>, middle: DVec3, index: u32, rows: [u32; 2]) -> Self {
         let shape = &eye.view().splats()[index as usize].shape;
         let q = shape.whitened(middle);
         let unit = q.length().recip();
@@ -135,6 +179,7 @@ impl TileSplat {
             cutoff: shape.cutoff as f32,
             opacity: shape.opacity as f32,
             index,
+            rows,
         }
     }
 
@@ -154,6 +199,16 @@ mod tests {
     use crate::placement::Placement;
     use crate::view::GaussianView;
     use glam::{DVec2, Quat, Vec3};
+
+    #[test]
+    fn exponentials_are_exact_to_single_precision() {
+        for k in 0..=6000 {
+            let x = -0.001 * k as f32;
+            let (value, expected) = (f64::from(exp_of_negative(x)), f64::from(x).exp());
+            assert!((value / expected - 1.0).abs() < 1e-6, "{x}: {value} {expected}");
+        }
+        assert_eq!(exp_of_negative(0.0), 1.0);
+    }
 
     /// Thin splats at all angles, each 1e-4 as thick as wide: 32 bits beside 64.
     #[test]
@@ -177,12 +232,12 @@ mod tests {
         let view = GaussianView::new(&cloud, &Placement::IDENTITY, &camera);
         let eye = Eye::new(&view, DVec2::new(0.01, -0.005));
         let middle = DVec3::new(0.02, -0.01, 1.0);
-        let tracer = TileTracer::new(&eye, middle, 0..view.len() as u32);
+        let tracer = TileTracer::new(&eye, middle, (0..view.len() as u32).map(|splat| (splat, [0, 0])));
         let directions: Vec<DVec3> =
             (0..5).map(|k| middle + DVec3::new(0.002 * f64::from(k), -0.001, 0.0)).collect();
         for (follow, stops) in [(Follow::Visible, true), (Follow::All, false)] {
             let mut lanes = LaneHits::default();
-            tracer.trace(&directions, follow, &mut lanes);
+            tracer.trace(0, &directions, follow, &mut lanes);
             for (direction, hits) in directions.iter().zip(&lanes.hits) {
                 let expected = if stops { eye.hits(*direction) } else { eye.all_hits(*direction) };
                 let sum = |hits: &[Hit]| hits.iter().map(|hit| hit.weight).sum::<f64>();

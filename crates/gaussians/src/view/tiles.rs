@@ -8,12 +8,12 @@ use super::shape::CameraShape;
 use super::span_bins::SpanBins;
 use super::tile_tracer::{LANES, TileTracer};
 use super::{GaussianView, ViewSplat};
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, Vec2};
 use rayon::prelude::*;
 use std::ops::{Range, RangeInclusive};
 
 /// Rays of a side of a tile: a row of them is traced at once.
-const TILE: u32 = LANES as u32;
+pub(crate) const TILE: u32 = LANES as u32;
 
 /// The rays of a grid between which a splat is, whole numbers, perhaps beyond the grid.
 struct RayBounds {
@@ -39,6 +39,7 @@ pub(crate) struct RayGrid {
 /// A row of tiles.
 pub(crate) struct TileRow<'g> {
     grid: &'g RayGrid,
+    outlines: &'g Outlines,
     /// Its rows of rays.
     pub rays: Range<u32>,
     /// The splats that it meets, by tiles.
@@ -47,13 +48,13 @@ pub(crate) struct TileRow<'g> {
 
 /// The splats of a view as an eye sees them.
 pub(crate) struct Outlines {
-    /// In tiles: first and last column, first and last row; the first is after the last where a splat is not visible.
+    /// In rays: first and last column, first and last row; the first is after the last where a splat is not visible.
     bounds: Vec<[u32; 4]>,
     /// By rows of tiles.
     by_row: SpanBins,
 }
 
-const HIDDEN: [u32; 4] = [1, 0, 1, 0];
+const HIDDEN: [u32; 4] = [TILE, 0, TILE, 0];
 
 impl Outlines {
     /// Whether a ray of the grid can meet a splat.
@@ -76,11 +77,18 @@ impl RayGrid {
         DVec2::new(at(column), at(row))
     }
 
-    /// The tile (column, row) of a pixel position; the nearest for those outside.
-    pub fn tile_at(&self, pixel: DVec2) -> [u32; 2] {
-        let ray = (pixel + f64::from(self.margin_px)) * f64::from(self.rays_per_px);
-        let tile = |ray: f64, count: u32| ray.clamp(0.0, f64::from(count - 1)) as u32 / TILE;
-        [tile(ray.x, self.columns), tile(ray.y, self.rows)]
+    /// The ray (column, row) that is nearest to a pixel position.
+    #[inline]
+    pub fn ray_at(&self, pixel: Vec2) -> [u32; 2] {
+        let ray = (pixel + self.margin_px as f32) * self.rays_per_px as f32;
+        // What is left of the first, or above it, becomes 0.
+        let nearest = |ray: f32, count: u32| (ray as u32).min(count - 1);
+        [nearest(ray.x, self.columns), nearest(ray.y, self.rows)]
+    }
+
+    /// The number of tiles of a row.
+    pub fn tile_columns(&self) -> u32 {
+        self.columns.div_ceil(TILE)
     }
 
     /// The number of rows of tiles.
@@ -92,7 +100,8 @@ impl RayGrid {
     pub fn outlines(&self, eye: &Eye<'_>) -> Outlines {
         let outline = |splat: &ViewSplat| self.outline(eye.view(), eye.point(), &splat.shape);
         let bounds: Vec<[u32; 4]> = eye.view().splats().par_iter().map(outline).collect();
-        let rows = (0..).zip(&bounds).map(|(splat, [_, _, top, bottom])| (splat, [*top, *bottom]));
+        let rows =
+            (0..).zip(&bounds).map(|(splat, [_, _, top, bottom])| (splat, [*top / TILE, *bottom / TILE]));
         Outlines { by_row: SpanBins::new(self.tile_rows(), rows), bounds }
     }
 
@@ -133,21 +142,22 @@ impl RayGrid {
         if right < 0.0 || bottom < 0.0 || left > last[0] || top > last[1] {
             return HIDDEN;
         }
-        let tile = |ray: f64, last: f64| ray.clamp(0.0, last) as u32 / TILE;
-        [tile(left, last[0]), tile(right, last[0]), tile(top, last[1]), tile(bottom, last[1])]
+        let ray = |ray: f64, last: f64| ray.clamp(0.0, last) as u32;
+        [ray(left, last[0]), ray(right, last[0]), ray(top, last[1]), ray(bottom, last[1])]
     }
 
     /// A row of tiles with the splats that it meets.
-    pub fn tile_row<'g>(&'g self, outlines: &Outlines, index: u32) -> TileRow<'g> {
+    pub fn tile_row<'g>(&'g self, outlines: &'g Outlines, index: u32) -> TileRow<'g> {
         let columns = |splat: u32| {
             let [left, right, ..] = outlines.bounds[splat as usize];
-            (splat, [left, right])
+            (splat, [left / TILE, right / TILE])
         };
         let splats: Vec<_> = outlines.by_row.at(index).map(columns).collect();
         TileRow {
             grid: self,
+            outlines,
             rays: index * TILE..(index * TILE + TILE).min(self.rows),
-            splats: SpanBins::new(self.columns.div_ceil(TILE), splats.iter().copied()),
+            splats: SpanBins::new(self.tile_columns(), splats.iter().copied()),
         }
     }
 }
@@ -155,7 +165,7 @@ impl RayGrid {
 impl TileRow<'_> {
     /// Visits the tiles from left to right: their columns of rays, and what these can meet.
     pub fn for_each_tile(&self, eye: &Eye<'_>, mut visit: impl FnMut(Range<u32>, &TileTracer)) {
-        for tile in 0..self.grid.columns.div_ceil(TILE) {
+        for tile in 0..self.grid.tile_columns() {
             visit(tile * TILE..(tile * TILE + TILE).min(self.grid.columns), &self.tracer(eye, tile));
         }
     }
@@ -163,7 +173,11 @@ impl TileRow<'_> {
     /// What the rays of a tile can meet.
     pub fn tracer(&self, eye: &Eye<'_>, tile: u32) -> TileTracer {
         let middle = self.grid.pixel(tile * TILE + TILE / 2, self.rays.start + TILE / 2);
-        TileTracer::new(eye, eye.view().direction(eye.point(), middle), self.splats.at(tile))
+        let rows = |splat: u32| {
+            let [.., top, bottom] = self.outlines.bounds[splat as usize];
+            (splat, [top, bottom])
+        };
+        TileTracer::new(eye, eye.view().direction(eye.point(), middle), self.splats.at(tile).map(rows))
     }
 }
 

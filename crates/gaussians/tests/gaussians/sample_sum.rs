@@ -21,6 +21,8 @@ pub fn splat_samples(
         points: &[],
         ray_end: &|_, _| f64::INFINITY,
         margin_px: margin_px(view),
+        coarse_below_px2: 0.0,
+        rays_per_px: 2,
     };
     let images = aperture_images(&scene, cells, &Unwatched).expect("not cancelled");
     let (camera, optics) = (view.camera(), view.optics());

@@ -90,6 +90,8 @@ fn bands_are_parts_of_the_picture() {
             points: &[],
             ray_end: &|_, _| f64::INFINITY,
             margin_px: margin_px(&view),
+            coarse_below_px2: 0.0,
+            rays_per_px: 2,
         };
         let images = aperture_images(&scene, 4, &Unwatched).expect("not cancelled");
         let each = clusters.list.iter().enumerate().map(|(number, cluster)| {

@@ -3,8 +3,6 @@
 //! The splats on a pixel's chief ray are clusters ([`gaussians::cluster_picture`]), a sample each, with the address of the heaviest splat. Toward each of
 //! 8 × 8 cells of the aperture a cluster has a share, and whatever else the light field shows has what splats in front of it let through. A share is a weight
 //! and a pattern of bits ([`share_bits`]), like that of a pane, so that samples of splats are samples like all others.
-//!
-//! The picture is baked in bands of blocks: the images of all cells of a band are in memory at once.
 
 mod share_bits;
 
@@ -20,59 +18,56 @@ use glam::{DVec2, DVec3, IVec2, Vec2, Vec3};
 use progress::{Cancelled, Progress, Stage};
 use rayon::prelude::*;
 use scene::PlacedCloud;
-use share_bits::{CELLS, share_bits};
+use share_bits::{CELLS, COARSE_BELOW_PX2, share_bits};
 use std::collections::HashMap;
 
 /// Pixels of a band.
-const BAND_PX: i64 = 1 << 19;
+const BAND_PX: i64 = 1 << 18;
+
+/// Below this tolerance, px, clusters are looked up on rays at most a quarter of a pixel away, from it on on those of pixels.
+const EXACT_BELOW_PX: f64 = 1.0;
 
 /// The samples of a block, and the corner of the block.
 pub type BlockSamples = (IVec2, Vec<BakedSample>);
 
-/// Adds the samples of splats to those of blocks, which are in rows, and takes from those what splats in front of them hide.
-///
-/// # Errors
-/// [`Cancelled`] if `progress` is cancelled.
-pub fn add_splats(
-    baker: &BlockBaker,
-    splats: &PlacedCloud,
-    blocks: &mut [BlockSamples],
-    progress: &dyn Progress,
-) -> Result<(), Cancelled> {
-    let camera = baker.view.camera;
-    let view = GaussianView::with_pixel(&splats.cloud, &splats.placement, camera, baker.pixel_px);
-    let row_px = i64::from(baker.domain.extent().x) * i64::from(Domain::BLOCK);
-    let rows_of_band = (BAND_PX / row_px).max(1) as i32;
-    let band_of =
-        |(corner, _): &BlockSamples| (corner.y + baker.domain.margin) / (rows_of_band * Domain::BLOCK);
-    let (count, mut done) = (blocks.len() as f32, 0);
-    for band in blocks.chunk_by_mut(|a, b| band_of(a) == band_of(b)) {
-        let from = done as f32 / count;
-        done += band.len();
-        let stage = Stage::new(progress, from, done as f32 / count);
-        Band { baker, splats, view: &view }.add(band, &stage)?;
-    }
-    Ok(())
-}
-
-/// Some rows of blocks.
-struct Band<'a> {
+/// The splats of a light field that is baked in bands of blocks: the images of all cells of a band are in memory at once, and its samples before they are
+/// packed.
+pub struct SplatBands<'a> {
     baker: &'a BlockBaker<'a>,
     splats: &'a PlacedCloud,
-    view: &'a GaussianView<'a>,
+    view: GaussianView<'a>,
 }
 
-impl Band<'_> {
-    fn add(&self, blocks: &mut [BlockSamples], progress: &dyn Progress) -> Result<(), Cancelled> {
+impl<'a> SplatBands<'a> {
+    /// For the light field of `baker`.
+    pub fn new(baker: &'a BlockBaker<'a>, splats: &'a PlacedCloud) -> Self {
+        let camera = baker.view.camera;
+        let view = GaussianView::with_pixel(&splats.cloud, &splats.placement, camera, baker.pixel_px);
+        Self { baker, splats, view }
+    }
+
+    /// The band in which a row of blocks lies.
+    pub fn band(&self, row: i32) -> i32 {
+        let row_px = i64::from(self.baker.domain.extent().x) * i64::from(Domain::BLOCK);
+        row / (BAND_PX / row_px).max(1) as i32
+    }
+
+    /// Adds the samples of splats to those of the blocks of a band, which are in rows, and takes from those what splats in front of them hide.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if `progress` is cancelled.
+    pub fn add(&self, blocks: &mut [BlockSamples], progress: &dyn Progress) -> Result<(), Cancelled> {
         let clusters = self.clusters(blocks, &Stage::new(progress, 0.0, 0.1))?;
         let baked = blocks.iter().flat_map(|(_, samples)| samples);
         let points: Vec<PicturePoint> = baked.map(|baked| point_of(&baked.sample)).collect();
         let scene = ApertureScene {
-            view: self.view,
+            view: &self.view,
             clusters: &clusters,
             points: &points,
             ray_end: &|u, direction| self.ray_end(u, direction),
             margin_px: self.baker.domain.margin as u32,
+            coarse_below_px2: COARSE_BELOW_PX2,
+            rays_per_px: if self.baker.view.tolerance_px < EXACT_BELOW_PX { 2 } else { 1 },
         };
         let cells = if self.view.optics().aperture_radius == 0.0 { 1 } else { CELLS as u32 };
         let images = aperture_images(&scene, cells, &Stage::new(progress, 0.1, 1.0))?;
@@ -110,7 +105,7 @@ impl Band<'_> {
             margin_px: self.baker.domain.margin as u32,
             rows: Some([first, end].map(|row| row as u32)),
         };
-        cluster_picture(self.view, &options, progress)
+        cluster_picture(&self.view, &options, progress)
     }
 
     /// The depth of the nearest surface of a mesh along a ray from the aperture.

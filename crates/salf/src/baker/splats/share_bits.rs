@@ -20,6 +20,9 @@ const EVEN: f32 = 0.8;
 /// Shares below it are either this or nothing, at random, without bias: fewer samples for the same light.
 const LEAST: f32 = 0.03;
 
+/// What weighs less, px², has a field of 4 × 4.
+pub const COARSE_BELOW_PX2: f32 = 1.0 / 16.0;
+
 /// How fine the field of a sample is.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Fineness {
@@ -35,7 +38,7 @@ impl Fineness {
     /// For a weight, px², and what else hides parts of the aperture.
     fn of(weight: f32, visibility: &Visibility) -> Self {
         let of_weight = match weight {
-            weight if weight < 1.0 / 16.0 => Self::Coarse,
+            weight if weight < COARSE_BELOW_PX2 => Self::Coarse,
             weight if weight < 1.0 / 4.0 => Self::Medium,
             _ => Self::Fine,
         };
