@@ -1,5 +1,8 @@
 //! Changes within files that have checksums or lengths: a part is taken out, changed by libFuzzer, and put back with right ones.
 
+use flate2::Compression;
+use flate2::read::GzDecoder;
+use flate2::write::GzEncoder;
 use libfuzzer_sys::fuzzer_mutate;
 use serde_json::{Map, Value};
 use sha2::{Digest, Sha256};
@@ -14,6 +17,8 @@ pub type Mutate = fn(&[u8], u32, Change<'_>) -> Option<Vec<u8>>;
 
 /// The most by which a change lengthens a part, bytes.
 const GROWTH: usize = 64;
+/// The most that is taken out of a compressed file, bytes.
+const MAX_INFLATED: u64 = 1 << 20;
 
 /// Changes the file in `data[..size]`: mostly within its parts, else anywhere. Returns its new size, at most `max_size`.
 pub fn mutated(data: &mut [u8], size: usize, max_size: usize, seed: u32, mutate: Mutate) -> usize {
@@ -37,19 +42,10 @@ pub fn mutated(data: &mut [u8], size: usize, max_size: usize, seed: u32, mutate:
 
 /// A project: an entry of it, with the manifest's checksums.
 pub fn project(bytes: &[u8], seed: u32, change: Change<'_>) -> Option<Vec<u8>> {
-    const MANIFEST: &str = "manifest.json";
-    let mut archive = ZipArchive::new(Cursor::new(bytes)).ok()?;
-    let mut entries = Vec::new();
-    for index in 0..archive.len() {
-        let mut entry = archive.by_index(index).ok()?;
-        let (name, mut content) = (entry.name().to_owned(), Vec::new());
-        entry.read_to_end(&mut content).ok()?;
-        entries.push((name, content));
-    }
-    let count = entries.len();
-    let manifest = entries.iter().position(|(name, _)| name == MANIFEST)?;
+    let mut entries = unzipped(bytes)?;
+    let manifest = entries.iter().position(|(name, _)| name == "manifest.json")?;
     // Half of the changes are to the manifest, whose fields decide most.
-    let chosen = if seed % 2 == 0 { manifest } else { (seed / 2) as usize % count };
+    let chosen = if seed % 2 == 0 { manifest } else { (seed / 2) as usize % entries.len() };
     entries[chosen].1 = change(&entries[chosen].1);
     if let Ok(mut fields) = serde_json::from_slice::<Map<String, Value>>(&entries[manifest].1) {
         if let Some(sums) = fields.get_mut("checksums").and_then(Value::as_object_mut) {
@@ -61,11 +57,47 @@ pub fn project(bytes: &[u8], seed: u32, change: Change<'_>) -> Option<Vec<u8>> {
             entries[manifest].1 = serde_json::to_vec(&fields).ok()?;
         }
     }
+    zipped(&entries)
+}
+
+/// An archive: an entry of it, half of the time its first, which describes the others.
+pub fn zip(bytes: &[u8], seed: u32, change: Change<'_>) -> Option<Vec<u8>> {
+    let mut entries = unzipped(bytes)?;
+    let chosen = if seed % 2 == 0 { 0 } else { (seed / 2) as usize % entries.len().max(1) };
+    let entry = entries.get_mut(chosen)?;
+    entry.1 = change(&entry.1);
+    zipped(&entries)
+}
+
+/// A gzip stream: what it holds.
+pub fn gzip(bytes: &[u8], _: u32, change: Change<'_>) -> Option<Vec<u8>> {
+    let mut content = Vec::new();
+    GzDecoder::new(bytes).take(MAX_INFLATED).read_to_end(&mut content).ok()?;
+    let mut encoder = GzEncoder::new(Vec::new(), Compression::fast());
+    encoder.write_all(&change(&content)).ok()?;
+    encoder.finish().ok()
+}
+
+/// Names and contents of an archive.
+fn unzipped(bytes: &[u8]) -> Option<Vec<(String, Vec<u8>)>> {
+    let mut archive = ZipArchive::new(Cursor::new(bytes)).ok()?;
+    let mut entries = Vec::new();
+    for index in 0..archive.len() {
+        let entry = archive.by_index(index).ok()?;
+        let (name, mut content) = (entry.name().to_owned(), Vec::new());
+        entry.take(MAX_INFLATED).read_to_end(&mut content).ok()?;
+        entries.push((name, content));
+    }
+    Some(entries)
+}
+
+/// An archive that is not compressed.
+fn zipped(entries: &[(String, Vec<u8>)]) -> Option<Vec<u8>> {
     let options = SimpleFileOptions::default()
         .compression_method(CompressionMethod::Stored)
         .last_modified_time(DateTime::default());
     let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
-    for (name, content) in &entries {
+    for (name, content) in entries {
         archive.start_file(name.as_str(), options).ok()?;
         archive.write_all(content).ok()?;
     }
