@@ -84,7 +84,7 @@ fn unzipped(bytes: &[u8]) -> Option<Vec<(String, Vec<u8>)>> {
     let mut entries = Vec::new();
     for index in 0..archive.len() {
         let entry = archive.by_index(index).ok()?;
-        let (name, mut content) = (entry.name().to_owned(), Vec::new());
+        let (name, mut content) = (entry.name().ok()?.into_owned(), Vec::new());
         entry.take(MAX_INFLATED).read_to_end(&mut content).ok()?;
         entries.push((name, content));
     }
