@@ -132,14 +132,14 @@ pub fn glb_buffer(bytes: &[u8], seed: u32, change: Change<'_>) -> Option<Vec<u8>
 /// JSON and buffer.
 fn glb_chunks(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
     let rest = bytes.strip_prefix(b"glTF\x02\0\0\0")?.get(4..)?;
-    let chunk = |from: &'_ [u8]| {
+    // A chunk is its length, its kind, and its bytes.
+    let chunk = |from: &[u8]| -> Option<usize> {
         let length = u32::from_le_bytes(*from.first_chunk()?) as usize;
-        (length <= from.len().saturating_sub(8)).then_some(length)
+        from.get(8..)?.get(..length).map(|_| length)
     };
-    let json = chunk(rest)?;
-    let (head, rest) = rest[8..].split_at(json);
+    let (json, rest) = rest.get(8..)?.split_at(chunk(rest)?);
     let buffer = chunk(rest).map_or(&[][..], |length| &rest[8..8 + length]);
-    Some((head, buffer))
+    Some((json, buffer))
 }
 
 fn glb_of(json: &[u8], buffer: &[u8]) -> Vec<u8> {

@@ -5,7 +5,7 @@ mod targets;
 
 use super::harness::program::{Program, Run, is_installed};
 use super::harness::promise::{Context, Promise, Verdict, Workplace};
-use crate::chore::{Failure, cargo, copy, execute, repository};
+use crate::chore::{Failure, cargo_in, copy, execute, repository};
 use std::path::{Path, PathBuf};
 use targets::TARGETS;
 
@@ -65,11 +65,8 @@ fn build() -> Result<(), Failure> {
     if time(&theirs) < time(&ours) {
         copy(&ours, &theirs)?;
     }
-    let mut build = cargo("build");
-    build
-        .args(["--quiet", "--bins", "--target", &platform()])
-        .arg("--manifest-path")
-        .arg(fuzz.join("Cargo.toml"));
+    let mut build = cargo_in(&fuzz, "build");
+    build.args(["--quiet", "--bins", "--target", &platform()]);
     build.env("CARGO_TARGET_DIR", folder()).env("RUSTFLAGS", INSTRUMENTATION);
     execute(&mut build)
 }
