@@ -6,6 +6,7 @@ mod targets;
 use super::harness::program::{Program, Run, is_installed};
 use super::harness::promise::{Context, Promise, Verdict, Workplace};
 use crate::chore::{Failure, cargo_in, copy, execute, repository};
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use targets::TARGETS;
 
@@ -82,12 +83,23 @@ fn fuzz_for_a_minute(case: usize, place: &Workplace, _: &Context) -> Verdict {
     let options = ["-max_total_time=60", "-timeout=10", "-rss_limit_mb=1024", "-print_final_stats=1", &found];
     let arguments = options.iter().map(AsRef::as_ref).chain([corpus.as_os_str(), seeds.as_os_str()]);
     let run = program.with(&place.own, arguments).env("TMPDIR", Some(files.as_os_str())).run();
+    // The clock also runs on while this machine does something else: what takes too long must do so again.
+    let again = slow_input(&place.own)
+        .map(|input| program.with(&place.own, [OsStr::new("-timeout=10"), input.as_os_str()]))
+        .map(|invocation| invocation.env("TMPDIR", Some(files.as_os_str())).run());
     let _ = std::fs::remove_dir_all(&files);
     match (run.code, &run.stopped) {
         (Some(0), None) => Ok(()),
+        _ if again.is_some_and(|again| again.code == Some(0)) => Ok(()),
         (_, Some(why)) => Err(format!("{name}: {why}")),
         _ => Err(format!("{name}: {}", fault(&run))),
     }
+}
+
+/// The input that took longer than allowed, if there was one: libFuzzer stores it under this name.
+fn slow_input(found: &Path) -> Option<PathBuf> {
+    let mut paths = std::fs::read_dir(found).ok()?.flatten().map(|entry| entry.path());
+    paths.find(|path| path.file_name().is_some_and(|name| name.to_string_lossy().starts_with("timeout-")))
 }
 
 /// A folder in memory for the files that readers open by their path: thousands a second.
