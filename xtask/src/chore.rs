@@ -37,8 +37,13 @@ pub fn repository() -> PathBuf {
 
 /// The cargo that runs this chore, set up for this repository.
 pub fn cargo(subcommand: &str) -> Command {
+    cargo_in(&repository(), subcommand)
+}
+
+/// The same for the package or workspace in a folder.
+pub fn cargo_in(folder: &Path, subcommand: &str) -> Command {
     let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    command.arg(subcommand).arg("--manifest-path").arg(repository().join("Cargo.toml"));
+    command.arg(subcommand).arg("--manifest-path").arg(folder.join("Cargo.toml"));
     command
 }
 

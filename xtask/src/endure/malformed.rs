@@ -72,7 +72,8 @@ const READABLE: &[Readable] = &[
     readable("views/parameters.cfg", "info views"),
 ];
 
-fn prepare(folder: &Path, context: &Context) -> Result<(), String> {
+/// Writes a small valid file of every kind.
+pub(super) fn prepare(folder: &Path, context: &Context) -> Result<(), String> {
     if folder.join("views").exists() {
         return Ok(());
     }

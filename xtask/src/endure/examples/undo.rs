@@ -2,6 +2,7 @@
 
 use super::{build, example, verdict};
 use crate::endure::harness::made_files::{glb, picture_with_depth, put, quad_bytes, write_inputs};
+use crate::endure::harness::program::Limits;
 use crate::endure::harness::promise::{Context, Promise, Verdict, Workplace};
 use crate::endure::old_files::projects;
 use crate::endure::same_bits::scenes::walls;
@@ -24,6 +25,8 @@ pub const PROMISE: Promise = Promise {
 
 /// Edits of a sequence.
 const EDITS: &str = "100";
+/// Processor time of all threads within which a sequence ends, s.
+const TIME_S: u64 = 480;
 /// What is edited, in turn; the project has layers.
 const FILES: [&str; 4] = ["walls.glb", "depth/a.jpg", "p.fbrush", "walls.glb"];
 
@@ -43,5 +46,6 @@ fn edit(case: usize, place: &Workplace, context: &Context) -> Verdict {
     let file = place.prepared.join(FILES[case % FILES.len()]);
     let seed = case.to_string();
     let arguments = [file.as_os_str(), seed.as_ref(), EDITS.as_ref()];
-    verdict(&example("random_edits", context).with(&place.own, arguments).run())
+    let limits = Limits { cpu_s: Some(TIME_S), ..Limits::default() };
+    verdict(&example("random_edits", context).with(&place.own, arguments).limited(limits).run())
 }

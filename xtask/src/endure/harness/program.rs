@@ -10,8 +10,12 @@ use std::time::{Duration, Instant};
 
 /// How often a running program is measured.
 const POLL: Duration = Duration::from_millis(2);
-/// A program that neither works nor ends is stopped; processor time has its own limit.
+/// A program that neither works nor ends is stopped after this time, or [`WALL_PER_CPU`] times its limit of processor time.
 const WALL_LIMIT: Duration = Duration::from_secs(240);
+/// By how much other programs may slow one down that works.
+const WALL_PER_CPU: u64 = 8;
+/// The most that counts of the time between two measurements: longer ones are those of a run that was itself halted.
+const LONGEST_POLL: Duration = Duration::from_secs(1);
 /// `sysconf(_SC_CLK_TCK)`, which is this on every Linux.
 const TICKS_PER_SECOND: f64 = 100.0;
 
@@ -159,6 +163,11 @@ impl Invocation {
         command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn()
     }
 
+    fn wall_limit(&self) -> Duration {
+        let of_cpu = Duration::from_secs(self.limits.cpu_s.unwrap_or(0).saturating_mul(WALL_PER_CPU));
+        WALL_LIMIT.max(of_cpu)
+    }
+
     /// Runs it to its end.
     pub fn run(&self) -> Run {
         let mut run = Run {
@@ -172,7 +181,7 @@ impl Invocation {
             stopped: None,
         };
         match self.start() {
-            Ok(child) => run.wait_for(child),
+            Ok(child) => run.wait_for(child, self.wall_limit()),
             Err(error) => run.stopped = Some(format!("does not start: {error}")),
         }
         run
@@ -189,10 +198,10 @@ impl Invocation {
 }
 
 impl Run {
-    /// Waits for a program that was started, and measures it.
-    fn wait_for(&mut self, mut child: Child) {
+    /// Waits for a program that was started, and measures it; stops it after `limit`.
+    fn wait_for(&mut self, mut child: Child, limit: Duration) {
         let (stdout, stderr) = (read_aside(child.stdout.take()), read_aside(child.stderr.take()));
-        let start = Instant::now();
+        let (mut waited, mut last) = (Duration::ZERO, Instant::now());
         let id = child.id();
         loop {
             let (state, cpu_s) = state_and_time(id);
@@ -201,8 +210,10 @@ impl Run {
             if state == b'Z' || state == 0 {
                 break;
             }
-            if start.elapsed() > WALL_LIMIT {
-                self.stopped = Some(format!("did not end in {} s", WALL_LIMIT.as_secs()));
+            waited += last.elapsed().min(LONGEST_POLL);
+            last = Instant::now();
+            if waited > limit {
+                self.stopped = Some(format!("did not end in {} s", limit.as_secs()));
                 let _ = child.kill();
                 break;
             }

@@ -17,7 +17,7 @@ pub struct Promise {
     pub what_is_done: &'static str,
     /// Cases of a full run.
     pub full: usize,
-    /// Cases of a short run.
+    /// Cases of a short run; 0 where it would take too long.
     pub short: usize,
     /// Cases after which a full run is written down.
     pub batch: usize,

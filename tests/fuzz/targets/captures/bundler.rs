@@ -1,0 +1,4 @@
+//! Bundler's cameras.
+#![no_main]
+
+fuzz::target!(fuzz::captures::bundler);

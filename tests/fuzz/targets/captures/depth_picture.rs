@@ -1,0 +1,4 @@
+//! Pictures with depth in them.
+#![no_main]
+
+fuzz::target!(fuzz::captures::depth_picture);

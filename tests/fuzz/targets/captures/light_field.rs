@@ -1,0 +1,4 @@
+//! Lists and parameters of light fields.
+#![no_main]
+
+fuzz::target!(fuzz::captures::light_field);

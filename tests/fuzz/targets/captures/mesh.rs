@@ -1,0 +1,4 @@
+//! Meshes of captures: PLY and OBJ.
+#![no_main]
+
+fuzz::target!(fuzz::captures::mesh);

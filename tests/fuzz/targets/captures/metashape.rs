@@ -1,0 +1,4 @@
+//! Metashape's cameras.
+#![no_main]
+
+fuzz::target!(fuzz::captures::metashape);

@@ -1,0 +1,4 @@
+//! nerfstudio's cameras.
+#![no_main]
+
+fuzz::target!(fuzz::captures::nerfstudio);

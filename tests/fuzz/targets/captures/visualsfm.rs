@@ -1,0 +1,4 @@
+//! VisualSFM's cameras.
+#![no_main]
+
+fuzz::target!(fuzz::captures::visualsfm);

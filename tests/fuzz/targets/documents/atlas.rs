@@ -1,0 +1,4 @@
+//! Cached atlases.
+#![no_main]
+
+fuzz::target!(fuzz::documents::atlas);

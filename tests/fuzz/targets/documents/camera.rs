@@ -1,0 +1,4 @@
+//! Cameras and lenses.
+#![no_main]
+
+fuzz::target!(fuzz::documents::camera);

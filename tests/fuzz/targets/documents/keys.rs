@@ -1,0 +1,4 @@
+//! Keys of the lens.
+#![no_main]
+
+fuzz::target!(fuzz::documents::keys);

@@ -1,0 +1,4 @@
+//! Parts of pictures, with the right seal after each change.
+#![no_main]
+
+fuzz::target!(fuzz::documents::part, mutated by fuzz::sealing::sealed);

@@ -1,0 +1,4 @@
+//! Recipes of focus.
+#![no_main]
+
+fuzz::target!(fuzz::documents::recipe);

@@ -1,0 +1,4 @@
+//! Recorded strokes.
+#![no_main]
+
+fuzz::target!(fuzz::documents::strokes);

@@ -1,0 +1,4 @@
+//! Worlds.
+#![no_main]
+
+fuzz::target!(fuzz::documents::world);

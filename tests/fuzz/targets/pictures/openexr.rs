@@ -1,0 +1,4 @@
+//! OpenEXR pictures.
+#![no_main]
+
+fuzz::target!(fuzz::pictures::openexr);

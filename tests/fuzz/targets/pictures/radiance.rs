@@ -1,0 +1,4 @@
+//! Radiance HDR pictures.
+#![no_main]
+
+fuzz::target!(fuzz::pictures::radiance);

@@ -1,0 +1,4 @@
+//! Splats as KSPLAT and as plain records.
+#![no_main]
+
+fuzz::target!(fuzz::splats::ksplat);
