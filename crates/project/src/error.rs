@@ -23,7 +23,7 @@ pub enum ProjectError {
         source: std::io::Error,
     },
     /// The file's content is invalid.
-    #[error("{}: {problem} ({cure})", file.display())]
+    #[error("{}: {} ({cure})", file.display(), on_one_line(problem))]
     Content {
         /// The file.
         file: PathBuf,
@@ -33,7 +33,7 @@ pub enum ProjectError {
         cure: String,
     },
     /// A field of a JSON file cannot be used.
-    #[error("{}: {field}: {problem} ({cure})", file.display())]
+    #[error("{}: {}: {} ({cure})", file.display(), on_one_line(field), on_one_line(problem))]
     Field {
         /// The file.
         file: PathBuf,
@@ -55,7 +55,7 @@ pub enum ProjectError {
         newest: u64,
     },
     /// A part of the project file is damaged.
-    #[error("{}: {entry}: {problem} ({cure})", file.display())]
+    #[error("{}: {entry}: {} ({cure})", file.display(), on_one_line(problem))]
     Entry {
         /// The file.
         file: PathBuf,
@@ -67,7 +67,7 @@ pub enum ProjectError {
         cure: String,
     },
     /// The written file did not read back the same. The previous content is still there.
-    #[error("{}: not saved: the written file did not read back the same: {problem} (check the disk, or save elsewhere)", file.display())]
+    #[error("{}: not saved: the written file did not read back the same: {} (check the disk, or save elsewhere)", file.display(), on_one_line(problem))]
     Unverified {
         /// The file.
         file: PathBuf,
@@ -102,6 +102,12 @@ impl ProjectError {
     pub(crate) fn content(file: &Path, problem: impl Into<String>, cure: impl Into<String>) -> Self {
         Self::Content { file: file.to_owned(), problem: problem.into(), cure: cure.into() }
     }
+}
+
+/// A text that may quote a file, with line breaks and other control characters escaped.
+fn on_one_line(text: &str) -> String {
+    let escaped = |c: char| if c.is_control() { c.escape_default().to_string() } else { c.to_string() };
+    text.chars().map(escaped).collect()
 }
 
 /// The remedy for an error of the file system.

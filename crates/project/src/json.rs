@@ -54,14 +54,14 @@ impl Json {
     }
 }
 
-/// The key of the last `"key":` before a position in the text.
+/// The key of the last `"key":` before a position in the text. A key on several lines is none: a quotation mark is missing.
 fn key_before(text: &str, line: usize, column: usize) -> Option<&str> {
     let line_start: usize = text.split_inclusive('\n').take(line.checked_sub(1)?).map(str::len).sum();
     let place = (line_start + column).min(text.len());
     let before = text.get(..place)?;
     let colon = before.rfind("\":").or_else(|| before.rfind("\" :"))?;
     let open = before[..colon].rfind('"')?;
-    Some(&before[open + 1..colon])
+    Some(&before[open + 1..colon]).filter(|key| !key.contains(char::is_control))
 }
 
 impl<'de> Deserialize<'de> for Json {

@@ -152,6 +152,21 @@ fn bad_cameras_are_reported_with_file_and_field() {
     );
 }
 
+/// Found by the fuzz target `camera`.
+#[test]
+fn errors_that_quote_line_breaks_are_one_line() {
+    let folder = TempDir::new().unwrap();
+    for text in [
+        "{\"a\":[[1,0],[\n0,1],[0,\":{\"b\":1}",
+        r#"{"field\nof two lines": 1}"#,
+        r#"{"aperture": {"shape": "of\r\ntwo lines"}}"#,
+    ] {
+        let file = write(&folder, "camera.json", text);
+        let error = read_camera(&file, &Camera::default()).unwrap_err().to_string();
+        assert!(!error.contains(char::is_control), "{error:?}");
+    }
+}
+
 #[test]
 fn recipes_keep_order_and_repetition() {
     let folder = TempDir::new().unwrap();

@@ -113,13 +113,9 @@ fn tempfile_folder(case: usize) -> Result<PathBuf, String> {
 
 /// What libFuzzer reports, and the panic before it.
 fn fault(run: &Run) -> String {
-    let mut lines = run.stderr.lines().peekable();
-    let mut panic = None;
-    while let Some(line) = lines.next() {
-        if line.contains("panicked at ") {
-            panic = Some(format!("{line} {}", lines.peek().unwrap_or(&"")));
-        }
-    }
+    // The first: a panic that nobody catches is followed by another.
+    let mut lines = run.stderr.lines().skip_while(|line| !line.contains("panicked at "));
+    let panic = lines.next().map(|line| format!("{line} {}", lines.next().unwrap_or_default()));
     let error = run.stderr.lines().find(|line| line.contains("ERROR: libFuzzer"));
     let error =
         error.map_or_else(|| run.last_line().to_owned(), |line| line.trim_start_matches('=').to_owned());
