@@ -28,6 +28,7 @@ mod picture;
 mod picture_sizes;
 mod pinhole;
 mod presenter;
+mod relighting;
 mod request;
 mod spare_field;
 mod thread;

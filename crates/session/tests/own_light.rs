@@ -9,6 +9,7 @@ use at_work::{opened, picture, settle};
 use glam::Vec3;
 use scene::{Backdrop, Environment, World};
 use session::{Command, Session};
+use std::path::Path;
 
 /// The radiance of the picture's upper left corner, where no quad is.
 fn corner(session: &Session) -> [f32; 3] {
@@ -51,6 +52,19 @@ fn it_is_seen_scaled_and_kept_as_the_scene_s_own() {
     assert!(corner(&without) != [0.0, 0.0, 1.0]);
 }
 
+/// The largest difference between the picture that is shown and that of a light field baked in this world.
+fn difference_from_baked(session: &Session, file: &Path, world: World) -> f32 {
+    let mut fresh = opened(file);
+    fresh.apply(Command::SetWorld(Some(world))).unwrap();
+    settle(&mut fresh);
+    fresh.apply(Command::Bake).unwrap();
+    settle(&mut fresh);
+    assert!(fresh.baked_light_fields() > 1, "it is baked");
+    let kept = picture(session).radiance.into_flattened();
+    let pairs = kept.into_iter().zip(picture(&fresh).radiance.into_flattened());
+    pairs.map(|(kept, fresh)| (kept - fresh).abs()).fold(0.0, f32::max)
+}
+
 #[test]
 fn another_backdrop_needs_no_bake() {
     let folder = tempfile::tempdir().unwrap();
@@ -59,32 +73,41 @@ fn another_backdrop_needs_no_bake() {
     let mut session = opened(&file);
     let bakes = session.baked_light_fields();
     let studio = World::studio();
-    for color in [Vec3::new(0.1, 0.5, 2.0), Vec3::new(0.9, 0.0, 0.3)] {
-        let world = World { backdrop: Backdrop::Color(color), ..studio.clone() };
-        session.apply(Command::SetWorld(Some(world.clone()))).unwrap();
+    let backdrops = [Vec3::new(0.1, 0.5, 2.0), Vec3::new(0.9, 0.0, 0.3)];
+    let world = |color| World { backdrop: Backdrop::Color(color), ..studio.clone() };
+    for color in backdrops {
+        session.apply(Command::SetWorld(Some(world(color)))).unwrap();
         settle(&mut session);
         assert_eq!(session.baked_light_fields(), bakes);
-        let kept = picture(&session);
-        assert!((Vec3::from(kept.radiance[0]) - color).abs().max_element() < 2e-3 * color.max_element());
-        if color.x < 0.5 {
-            continue;
-        }
-        let mut fresh = opened(&file);
-        fresh.apply(Command::SetWorld(Some(world))).unwrap();
-        settle(&mut fresh);
-        fresh.apply(Command::Bake).unwrap();
-        settle(&mut fresh);
-        assert!(fresh.baked_light_fields() > 1, "it is baked");
-        let pairs = kept.radiance.as_flattened().iter().zip(picture(&fresh).radiance.into_flattened());
-        let largest = pairs.map(|(kept, fresh)| (kept - fresh).abs()).fold(0.0, f32::max);
-        assert!(largest < 4e-3, "{largest}");
+        let corner = Vec3::from(corner(&session));
+        assert!((corner - color).abs().max_element() < 2e-3 * color.max_element());
     }
-    // A sky is not the same everywhere, and other light is not either.
+    let largest = difference_from_baked(&session, &file, world(backdrops[1]));
+    assert!(largest < 4e-3, "{largest}");
+    // A sky is not the same everywhere.
     let sky = World { backdrop: Backdrop::Environment, ..studio.clone() };
     session.apply(Command::SetWorld(Some(sky))).unwrap();
     settle(&mut session);
     assert_eq!(session.baked_light_fields(), bakes + 1);
-    session.apply(Command::SetWorld(Some(World { strength: 2.0, ..studio }))).unwrap();
+}
+
+#[test]
+fn another_brightness_needs_no_bake_where_all_light_is_the_world_s() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("quads.glb");
+    std::fs::write(&file, tiny_glb::metal(&tiny_glb::QUADS[1..])).unwrap();
+    let mut session = opened(&file);
+    let bakes = session.baked_light_fields();
+    let bright = World { strength: 2.0, ..World::studio() };
+    for world in [&World { strength: 0.1, ..World::studio() }, &bright] {
+        session.apply(Command::SetWorld(Some(world.clone()))).unwrap();
+        settle(&mut session);
+        assert_eq!(session.baked_light_fields(), bakes);
+    }
+    let largest = difference_from_baked(&session, &file, bright.clone());
+    assert!(largest < 1e-2, "{largest}");
+    // Light from elsewhere is other light.
+    session.apply(Command::SetWorld(Some(World { rotation: 1.0, ..bright }))).unwrap();
     settle(&mut session);
-    assert_eq!(session.baked_light_fields(), bakes + 2);
+    assert_eq!(session.baked_light_fields(), bakes + 1);
 }

@@ -295,7 +295,7 @@ mod tests {
         // Fine stripes, which the draft shows as grey; it has another light on the right.
         let mut standing = Picture::black(SIZE[0], SIZE[1]);
         standing.coverage.fill(1.0);
-        let stripes = |index: usize| [if index % 2 == 0 { 0.3 } else { 0.5 }; 3];
+        let stripes = |index: usize| [if index.is_multiple_of(2) { 0.3 } else { 0.5 }; 3];
         standing.radiance = (0..standing.radiance.len()).map(stripes).collect();
         let mut draft = reduced(&standing, ROUGH);
         let of_right = draft.radiance.iter_mut().enumerate().filter(|(index, _)| index % 40 >= 20);

@@ -18,6 +18,17 @@ pub(crate) struct Relightable {
     pub tolerance: Tolerance,
 }
 
+impl From<&LightField> for Relightable {
+    fn from(field: &LightField) -> Self {
+        Self {
+            baked: field.baked(),
+            modelled: field.modelled(),
+            light_passes: field.light_passes(),
+            tolerance: field.tolerance(),
+        }
+    }
+}
+
 impl Relightable {
     /// The light field in other light, not summed; `None` if that is too bright to be stored.
     pub fn in_light(&self, light: &LightChange, gpu: Option<Gpu>) -> Option<LightField> {

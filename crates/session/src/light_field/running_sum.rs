@@ -6,7 +6,6 @@ use crate::light_field::aperture_fit::{ApertureFit, is_spare_for};
 use crate::light_field::changes::Changes;
 use crate::light_field::draft::Draft;
 use crate::light_field::margin_reach::MarginReach;
-use crate::light_field::relighting::Relightable;
 use crate::light_field::sample_index::SampleIndex;
 use document::Stage;
 use focus::Focus;
@@ -198,12 +197,6 @@ impl LightField {
         self.summed_camera = None;
         self.take_up_paint(focus);
         Draft::sum(&mut self.draft, (&self.splatter, self.whole_seconds), camera, progress)
-    }
-
-    /// What is needed to show it in other light.
-    pub fn relightable(&self) -> Relightable {
-        let (modelled, light_passes) = (self.modelled, self.light_passes);
-        Relightable { baked: self.baked(), modelled, light_passes, tolerance: self.splatter.tolerance() }
     }
 
     /// A light field that is not summed.
@@ -440,6 +433,11 @@ impl LightField {
     /// The light field itself, and where its samples are.
     pub fn baked(&self) -> BakedField {
         BakedField { salf: self.splatter.salf().clone(), index: self.index.clone() }
+    }
+
+    /// Tolerance of its sums.
+    pub fn tolerance(&self) -> Tolerance {
+        self.splatter.tolerance()
     }
 
     /// What it holds, counted.

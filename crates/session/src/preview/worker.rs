@@ -4,7 +4,6 @@ mod idle_work;
 mod relighting;
 mod showing;
 
-use self::relighting::Relighting;
 use crate::error::SessionError;
 use crate::light_field::{Changes, LightField, Plan};
 use crate::preview::deliveries::{FieldDelivery, FinerField, InterimField};
@@ -15,6 +14,7 @@ use crate::preview::mailbox::Shared;
 use crate::preview::picture_sizes::interim_camera;
 use crate::preview::pinhole::PinholeTracer;
 use crate::preview::presenter::Presenter;
+use crate::preview::relighting::Relighting;
 use crate::preview::request::PreviewRequest;
 use crate::preview::spare_field::{SpareField, SpareTask};
 use document::Stage;
