@@ -8,6 +8,8 @@
 # FOLDER   where the screenshots go (default: target/window)
 # Needs a built focus-brush (FOCUS_BRUSH=… if it is not in target/debug), xvfb, xdotool and imagemagick.
 set -u
+# Light is refined for minutes before the window comes to rest.
+PATIENCE=${PATIENCE:-900}
 root=$(cd "$(dirname "$0")/../.." && pwd)
 scene=${1:-$root/assets/demo/demo.glb}
 out=${2:-$root/target/window}
