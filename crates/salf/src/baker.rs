@@ -72,6 +72,12 @@ pub fn bake_with_outliers(
     bake_retaining(MAX_RETAINED_PX, tracer, radiance, camera, options, progress)
 }
 
+/// The share of a bake's time that the survey takes.
+const SURVEY_SHARE: f32 = 0.25;
+
+/// The same with that of patches.
+const PATCHES_SHARE: f32 = 0.3;
+
 /// The same, retaining surveys of pictures of at most this many pixels.
 fn bake_retaining(
     max_retained_px: i64,
@@ -87,7 +93,7 @@ fn bake_retaining(
     let retains_surveys = domain.extent().as_i64vec2().element_product() <= max_retained_px;
 
     let rows: Vec<i32> = (0..rows).collect();
-    let surveyed = map_rows(&rows, &Stage::new(progress, 0.0, 0.4), |&row| {
+    let surveyed = map_rows(&rows, &Stage::new(progress, 0.0, SURVEY_SHARE), |&row| {
         // A row of a large picture takes long: what a cancelled one leaves out is never used.
         let columns = (0..columns).take_while(|_| !progress.cancelled());
         let blocks = columns.map(|column| domain.cells_of_block(IVec2::new(column, row)));
@@ -105,11 +111,12 @@ fn bake_retaining(
     let occluders = Occluders::new(whole, baker.view.radius_per_kappa_px, depths);
     let retained: Vec<Vec<CellSurvey>> = surveyed.into_iter().flat_map(|(_, surveys)| surveys).collect();
 
-    let mut patches_of_block = patches(&baker, &|_| true, &Stage::new(progress, 0.4, 0.45))?;
+    let mut patches_of_block =
+        patches(&baker, &|_| true, &Stage::new(progress, SURVEY_SHARE, PATCHES_SHARE))?;
     let blocks: Vec<IVec2> = rows.iter().flat_map(|&y| (0..columns).map(move |x| IVec2::new(x, y))).collect();
     let numbered: Vec<_> = blocks.iter().copied().enumerate().collect();
     let (parts, outliers) =
-        pack_blocks(&baker, &numbered, &Stage::new(progress, 0.45, 1.0), |number, block| {
+        pack_blocks(&baker, &numbered, &Stage::new(progress, PATCHES_SHARE, 1.0), |number, block| {
             let patches = patches_of_block.get(&domain.corner_of_block(block)).map_or(&[][..], Vec::as_slice);
             match retained.get(number) {
                 Some(surveys) => baker.bake_block(&occluders, surveys, patches),

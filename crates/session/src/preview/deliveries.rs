@@ -6,10 +6,10 @@ use lens::Camera;
 use light::LightErrors;
 
 /// The share of making a light field that the bake is; the rest is the first sum.
-pub(crate) const BAKE_SHARE: f32 = 0.7;
+pub(crate) const BAKE_SHARE: f32 = 0.95;
 
 /// The share of it that the light field between the coarse one and the fine one is, where there is one.
-pub(crate) const INTERIM_SHARE: f32 = 0.1;
+pub(crate) const INTERIM_SHARE: f32 = 0.3;
 
 /// What the maker of light fields hands over.
 pub(crate) struct FieldDelivery {
