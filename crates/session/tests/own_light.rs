@@ -9,7 +9,7 @@ use at_work::{opened, picture, settle};
 use glam::Vec3;
 use scene::{Backdrop, Environment, World};
 use session::{Command, Session};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The radiance of the picture's upper left corner, where no quad is.
 fn corner(session: &Session) -> [f32; 3] {
@@ -52,6 +52,13 @@ fn it_is_seen_scaled_and_kept_as_the_scene_s_own() {
     assert!(corner(&without) != [0.0, 0.0, 1.0]);
 }
 
+/// A card and a dot of metal, lit by the world alone, opened; and their file.
+fn opened_metal(folder: &Path) -> (Session, PathBuf) {
+    let file = folder.join("quads.glb");
+    std::fs::write(&file, tiny_glb::metal(&tiny_glb::QUADS[1..])).unwrap();
+    (opened(&file), file)
+}
+
 /// The largest difference between the picture that is shown and that of a light field baked in this world.
 fn difference_from_baked(session: &Session, file: &Path, world: World) -> f32 {
     let mut fresh = opened(file);
@@ -68,9 +75,7 @@ fn difference_from_baked(session: &Session, file: &Path, world: World) -> f32 {
 #[test]
 fn another_backdrop_needs_no_bake() {
     let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("quads.glb");
-    std::fs::write(&file, tiny_glb::metal(&tiny_glb::QUADS[1..])).unwrap();
-    let mut session = opened(&file);
+    let (mut session, file) = opened_metal(folder.path());
     let bakes = session.baked_light_fields();
     let studio = World::studio();
     let backdrops = [Vec3::new(0.1, 0.5, 2.0), Vec3::new(0.9, 0.0, 0.3)];
@@ -94,9 +99,7 @@ fn another_backdrop_needs_no_bake() {
 #[test]
 fn another_brightness_needs_no_bake_where_all_light_is_the_world_s() {
     let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("quads.glb");
-    std::fs::write(&file, tiny_glb::metal(&tiny_glb::QUADS[1..])).unwrap();
-    let mut session = opened(&file);
+    let (mut session, file) = opened_metal(folder.path());
     let bakes = session.baked_light_fields();
     let bright = World { strength: 2.0, ..World::studio() };
     for world in [&World { strength: 0.1, ..World::studio() }, &bright] {

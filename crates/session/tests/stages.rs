@@ -103,24 +103,25 @@ fn check(scene: &Path, preview_size: u32) {
     let world = World::from_scene(document.scene(), background);
     let brighter = World { strength: 1.5 * world.strength, ..world.clone() };
     let backdrop = World { backdrop: Backdrop::Color(Vec3::new(0.2, 0.3, 0.5)), ..brighter.clone() };
+    // A view that was left is no picture of the new one; nor is a draft in few pixels always nearer than what is hardly blurred.
+    let is_large = preview_size >= 480;
+    let wider = CameraEdit::ApertureRadius(camera.aperture_radius * 1.42);
+    let racked = CameraEdit::FocusDistance(camera.focus_distance * 1.15);
+    // With whether the picture that stood counts.
     let changes = [
-        ("a move", Command::EditCamera(CameraEdit::Pose(moved))),
-        ("its undo", Command::Undo),
-        ("a brighter world", Command::SetWorld(Some(brighter))),
-        ("another backdrop", Command::SetWorld(Some(backdrop))),
-        ("a wider aperture", Command::EditCamera(CameraEdit::ApertureRadius(camera.aperture_radius * 1.42))),
-        ("a rack", Command::EditCamera(CameraEdit::FocusDistance(camera.focus_distance * 1.15))),
+        ("a move", Command::EditCamera(CameraEdit::Pose(moved)), false),
+        ("its undo", Command::Undo, false),
+        ("a brighter world", Command::SetWorld(Some(brighter)), true),
+        ("another backdrop", Command::SetWorld(Some(backdrop)), true),
+        ("a wider aperture", Command::EditCamera(wider), is_large),
+        ("a rack", Command::EditCamera(racked), is_large),
     ];
-    for (change, command) in changes {
+    for (change, command, counts_standing) in changes {
         let stages = stages_after(&mut session, command);
         let Some((last, before)) = stages.split_last() else {
             println!("{}: {change}: nothing to draw", scene.display());
             continue;
         };
-        // A view that was left is no picture of the new one; nor is a draft in so few pixels always nearer than what is hardly blurred.
-        let is_move = matches!(change, "a move" | "its undo");
-        let is_lens = matches!(change, "a wider aperture" | "a rack");
-        let counts_standing = !is_move && (!is_lens || preview_size >= 480);
         let (mut best_psnr, mut best_flip) = (0.0, 1.0f32);
         for stage in &before[usize::from(!counts_standing)..] {
             let (psnr, flip) = distance(stage, last);

@@ -79,65 +79,29 @@ impl SharpLayer {
     /// The layer over a draft with the pixels of `standing`, a picture through another lens: where the lens changes less than a draft loses in
     /// detail.
     pub fn of_standing(standing: &Picture, draft: &Picture) -> Self {
-        let ([width, height], [columns, rows]) =
-            ([standing.width, standing.height], [draft.width, draft.height]);
-        // As it is shown, and as eyes see that, roughly: its root.
-        let shown = |picture: &Picture, index: usize| {
-            let coverage = picture.coverage[index].max(f32::MIN_POSITIVE);
-            picture.radiance[index].map(|c| (c / coverage).clamp(0.0, 1.0).sqrt())
-        };
-        let change = |index: usize| {
-            let [column, row] = [index as u32 % columns, index as u32 / columns];
-            let within = |at: u32, size: u32, own: u32| {
-                at * size / own..((at + 1) * size / own).max(at * size / own + 1)
-            };
-            let (mut sum, mut squares, mut count) = ([0.0; 3], [0.0; 3], 0.0);
-            for y in within(row, height, rows) {
-                for x in within(column, width, columns) {
-                    let pixel = shown(standing, (y * width + x) as usize);
-                    for c in 0..3 {
-                        sum[c] += pixel[c];
-                        squares[c] += pixel[c] * pixel[c];
-                    }
-                    count += 1.0;
-                }
-            }
-            let of_draft = shown(draft, index);
-            let of_colour = |c: usize| {
-                let mean = sum[c] / count;
-                let detail = (squares[c] / count - mean * mean).max(0.0).sqrt();
-                (of_draft[c] - mean).abs() / detail.max(LEAST_LOSS)
-            };
-            (0..3).map(of_colour).fold(0.0, f32::max)
-        };
-        let changes: Vec<f32> = (0..draft.radiance.len()).into_par_iter().map(change).collect();
-        let [last_column, last_row] = [columns, rows].map(|side| side as usize - 1);
+        let changes = changes_beside_detail(standing, draft);
+        let (width, columns, rows) = (standing.width, draft.width as usize, draft.height as usize);
         // The largest of a pixel and those beside it.
         let largest_near = |index: usize| {
-            let (x, y) = (index % columns as usize, index / columns as usize);
-            let rows = y.saturating_sub(1)..=(y + 1).min(last_row);
-            let of_row = |row: usize| {
-                &changes[row * columns as usize..][x.saturating_sub(1)..=(x + 1).min(last_column)]
-            };
-            rows.flat_map(of_row).copied().fold(0.0, f32::max)
+            let (x, y) = (index % columns, index / columns);
+            let beside = x.saturating_sub(1)..(x + 2).min(columns);
+            let rows = y.saturating_sub(1)..(y + 2).min(rows);
+            rows.flat_map(|row| &changes[row * columns..][beside.clone()]).copied().fold(0.0, f32::max)
         };
         let share = |index: usize| share_below(largest_near(index), &CHANGES);
         let shares: Vec<f32> = (0..changes.len()).into_par_iter().map(share).collect();
         let share_at = |index: usize| {
             let [x, y] = [index as u32 % width, index as u32 / width];
-            let along = |at: u32, size: u32, own: u32| {
-                let place = ((at as f32 + 0.5) * own as f32 / size as f32 - 0.5).clamp(0.0, own as f32 - 1.0);
-                (place as usize, (place as usize + 1).min(own as usize - 1), place.fract())
-            };
-            let ((left, right, u), (above, below, v)) = (along(x, width, columns), along(y, height, rows));
+            let ([left, right], u) = neighbours(x, width, draft.width);
+            let ([above, below], v) = neighbours(y, standing.height, draft.height);
             let mixed = |row: usize| {
-                let row = &shares[row * columns as usize..];
+                let row = &shares[row * columns..];
                 row[left] + (row[right] - row[left]) * u
             };
             mixed(above) + (mixed(below) - mixed(above)) * v
         };
-        let pixels = 0..standing.radiance.len();
-        let base = pixels.into_par_iter().map(|index| (rgb_and_coverage(standing, index), share_at(index)));
+        let pixels = (0..standing.radiance.len()).into_par_iter();
+        let base = pixels.map(|index| (rgb_and_coverage(standing, index), share_at(index)));
         Self { width: width as usize, base: base.collect(), detail: Vec::new() }
     }
 
@@ -154,6 +118,47 @@ impl SharpLayer {
             *coverage = shown(*coverage, 3).clamp(0.0, 1.0);
         }
     }
+}
+
+/// For each pixel of a draft, by how much it differs from the mean of what stands there, as a multiple of the standard deviation within it.
+fn changes_beside_detail(standing: &Picture, draft: &Picture) -> Vec<f32> {
+    // As it is shown, and as eyes see that, roughly: its root.
+    let shown = |picture: &Picture, index: usize| {
+        let coverage = picture.coverage[index].max(f32::MIN_POSITIVE);
+        picture.radiance[index].map(|c| (c / coverage).clamp(0.0, 1.0).sqrt())
+    };
+    let within = |at: u32, size: u32, own: u32| {
+        let start = at * size / own;
+        start..((at + 1) * size / own).max(start + 1)
+    };
+    let change = |index: usize| {
+        let [column, row] = [index as u32 % draft.width, index as u32 / draft.width];
+        let (mut sum, mut squares, mut count) = ([0.0; 3], [0.0; 3], 0.0);
+        for y in within(row, standing.height, draft.height) {
+            for x in within(column, standing.width, draft.width) {
+                let pixel = shown(standing, (y * standing.width + x) as usize);
+                for c in 0..3 {
+                    sum[c] += pixel[c];
+                    squares[c] += pixel[c] * pixel[c];
+                }
+                count += 1.0;
+            }
+        }
+        let of_draft = shown(draft, index);
+        let of_colour = |c: usize| {
+            let mean = sum[c] / count;
+            let detail = (squares[c] / count - mean * mean).max(0.0).sqrt();
+            (of_draft[c] - mean).abs() / detail.max(LEAST_LOSS)
+        };
+        (0..3).map(of_colour).fold(0.0, f32::max)
+    };
+    (0..draft.radiance.len()).into_par_iter().map(change).collect()
+}
+
+/// The pixels of a row of `own` that one of `size` lies between, and how far toward the second.
+fn neighbours(at: u32, size: u32, own: u32) -> ([usize; 2], f32) {
+    let place = ((at as f32 + 0.5) * own as f32 / size as f32 - 0.5).clamp(0.0, own as f32 - 1.0);
+    ([place as usize, (place as usize + 1).min(own as usize - 1)], place.fract())
 }
 
 /// 1 for what is below a range, 0 for what is above it.

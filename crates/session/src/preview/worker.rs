@@ -336,10 +336,15 @@ impl Worker {
         let has_time = !self.is_painting || self.fine.is_none();
         let Some(delivery) = self.delivery.take_if(|_| has_time) else { return Ok(()) };
         match self.maker.take_up(delivery) {
-            Ok(Some(made)) if self.is_wanted(&made) => {
-                let MadeField { mut field, stage, .. } = made;
-                let is_of_stage = self.stage.as_ref().is_some_and(|current| Arc::ptr_eq(current, &stage));
-                self.relighting = if is_of_stage { None } else { self.relighting_from(&stage) };
+            Ok(Some(MadeField { mut field, stage, epoch })) => {
+                if epoch == self.epoch {
+                    self.relighting = None;
+                } else {
+                    // Made for the world of before, it is nearer to the new one than what stands, if anything does.
+                    let relighting = self.fine.as_ref().and_then(|_| self.relighting_from(&stage));
+                    let Some(relighting) = relighting else { return Ok(()) };
+                    self.relighting = Some(relighting);
+                }
                 self.shown_stage = Some(stage);
                 field.set_tolerance(self.tolerance);
                 self.presenter.check_glare(&field.baked().salf);

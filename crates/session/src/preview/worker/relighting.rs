@@ -2,7 +2,7 @@
 
 use super::Worker;
 use crate::light_field::Relightable;
-use crate::preview::light_field_maker::{FieldOrigin, MadeField};
+use crate::preview::light_field_maker::FieldOrigin;
 use crate::preview::relighting::Relighting;
 use document::Stage;
 use focus::Focus;
@@ -37,11 +37,6 @@ impl Worker {
             Relighting::ByBake => FieldOrigin::LoadOrBake { least_margin_px: 0.0 },
         };
         self.make_field(origin, stage, camera, focus.clone());
-    }
-
-    /// Whether what was made is of the stage, or can be shown in its world.
-    pub(super) fn is_wanted(&self, made: &MadeField) -> bool {
-        made.epoch == self.epoch || (self.fine.is_some() && self.relighting_from(&made.stage).is_some())
     }
 
     /// How a light field of `before` becomes one of the stage.
