@@ -33,6 +33,7 @@ use resolver::Resolver;
 use salf::Salf;
 use salf::tree::LEVELS;
 use scene::SurfaceField;
+use std::mem::swap;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -98,6 +99,22 @@ impl Splatter {
     pub fn without_sums(self) -> Self {
         let twin = self.twin();
         Self { paint: self.paint, ..twin }
+    }
+
+    /// The same, whose sums' memory passes to `next`, a splatter that is to be summed instead, if it is one of the same size. Neither has
+    /// valid sums then.
+    pub fn without_sums_but_for(mut self, next: &mut Self) -> Self {
+        let has_bright = |splatter: &Self| splatter.nodes.as_ref().is_some_and(|nodes| nodes.has_bright);
+        let is_alike = (self.size, has_bright(&self)) == (next.size, has_bright(next));
+        if !is_alike || self.card.has_sums() || next.card.has_sums() {
+            return self.without_sums();
+        }
+        swap(&mut self.sums, &mut next.sums);
+        swap(&mut self.resolver, &mut next.resolver);
+        swap(&mut self.lists, &mut next.lists);
+        swap(&mut self.changes, &mut next.changes);
+        (self.shares_of, next.shares_of) = (None, None);
+        Self { colours: None, ..self }
     }
 
     fn halved(&self, halvings: u8) -> Self {

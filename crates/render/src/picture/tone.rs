@@ -17,11 +17,7 @@ const ENTRIES: usize = 1 << 13;
 const MIN_PIXELS_PER_TASK: usize = 1 << 13;
 
 /// sRGB encoding of the middle of each of [`ENTRIES`] cells of [0, 1].
-static ENCODED: LazyLock<Vec<u8>> = LazyLock::new(|| {
-    (0..ENTRIES)
-        .map(|k| (srgb_from_linear((k as f32 + 0.5) / ENTRIES as f32) * 255.0).round() as u8)
-        .collect()
-});
+struct EncodingTable(Vec<u8>);
 
 /// How a picture is shown on screen.
 ///
@@ -52,7 +48,8 @@ impl Tone {
     /// The picture as displayed, before clamping and encoding: linear RGB, row by row.
     pub fn displayed(self, picture: &Picture) -> Vec<[f32; 3]> {
         let shown = picture.radiance.par_iter().zip(&picture.coverage);
-        shown.map(|(radiance, coverage)| self.displayed_pixel(*radiance, *coverage)).collect()
+        let gain = self.display.stops.exp2();
+        shown.map(|(radiance, coverage)| self.displayed_pixel(gain, *radiance, *coverage)).collect()
     }
 
     /// Converts a rectangle of the picture (columns and rows) to screen pixels, row by row.
@@ -61,10 +58,10 @@ impl Tone {
         picture: &Picture,
         [columns, rows]: [Range<u32>; 2],
     ) -> Vec<ScreenPixel> {
+        let (gain, table) = (self.display.stops.exp2(), EncodingTable::get());
         let pixel = |index: usize| {
-            let displayed = self.displayed_pixel(picture.radiance[index], picture.coverage[index]);
-            let [r, g, b] = displayed.map(encoded);
-            [r, g, b, u8::MAX]
+            let [r, g, b] = self.displayed_pixel(gain, picture.radiance[index], picture.coverage[index]);
+            [table.encoded(r), table.encoded(g), table.encoded(b), u8::MAX]
         };
         let width = columns.len();
         let mut pixels = vec![[0; 4]; width * rows.len()];
@@ -84,20 +81,31 @@ impl Tone {
     }
 
     #[inline(always)]
-    fn displayed_pixel(self, radiance: [f32; 3], coverage: f32) -> [f32; 3] {
-        let gain = self.display.stops.exp2();
+    fn displayed_pixel(self, gain: f32, radiance: [f32; 3], coverage: f32) -> [f32; 3] {
         let scale = match self.exposure {
             Exposure::Conserve => gain,
             Exposure::Normalise if coverage > 0.0 => gain / coverage,
             Exposure::Normalise => 0.0,
         };
-        self.display.curve.map(radiance.map(|c| c * scale))
+        let [r, g, b] = radiance;
+        self.display.curve.map([r * scale, g * scale, b * scale])
     }
 }
 
-/// Encodes one channel; NaN becomes black.
-fn encoded(linear: f32) -> u8 {
-    ENCODED[((linear.max(0.0) * ENTRIES as f32) as usize).min(ENTRIES - 1)]
+impl EncodingTable {
+    fn get() -> &'static Self {
+        static TABLE: LazyLock<EncodingTable> = LazyLock::new(|| {
+            let entry = |k| (srgb_from_linear((k as f32 + 0.5) / ENTRIES as f32) * 255.0).round() as u8;
+            EncodingTable((0..ENTRIES).map(entry).collect())
+        });
+        &TABLE
+    }
+
+    /// Encodes one channel; NaN becomes black.
+    #[inline(always)]
+    fn encoded(&self, linear: f32) -> u8 {
+        self.0[((linear.max(0.0) * ENTRIES as f32) as usize).min(ENTRIES - 1)]
+    }
 }
 
 /// Converts a picture of linear light to screen pixels (8-bit), row by row from the top.

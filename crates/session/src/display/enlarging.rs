@@ -29,7 +29,8 @@ pub(crate) fn reduced(picture: &Picture, size: [u32; 2]) -> Picture {
         width: size[0] as usize,
         values: vec![Vec4::ZERO; size[0] as usize * size[1] as usize],
     };
-    reduced.update_each(|x, y, _| grid.mean_within(x, y, own, size));
+    let areas = areas_within(&reduced, own, size);
+    reduced.update_each(|x, y, _| grid.mean_within(&areas, x, y));
     reduced.into_picture()
 }
 
@@ -63,19 +64,29 @@ pub(crate) fn enlarged_part(picture: &Picture, size: [u32; 2], rectangle: Rectan
 
     let cubic = PixelGrid::interpolated(&small, &taps_within, [within[0].start, within[1].start]);
     let mut residual = small.part(near);
-    residual.update_each(|x, y, value| value - cubic.mean_within(x, y, size, own));
-    let corner = [rectangle[0].start, rectangle[1].start];
-    let mut shown = PixelGrid::interpolated(&residual, &output_taps, corner);
-    let [low, high] = small.extremes(output_taps.each_ref().map(|taps| pixels_within(taps)), own);
-    shown.update_each(|x, y, added| {
-        let [column, row] = [
-            output_taps[0][(x - corner[0]) as usize].within,
-            output_taps[1][(y - corner[1]) as usize].within,
-        ];
-        // No clamp: it would not let through what is no number.
-        (cubic.at(x, y) + added).max(low.at(column, row)).min(high.at(column, row))
-    });
-    shown.into_picture()
+    let areas = areas_within(&residual, size, own);
+    residual.update_each(|x, y, value| value - cubic.mean_within(&areas, x, y));
+    let extremes = small.extremes(output_taps.each_ref().map(|taps| pixels_within(taps)), own);
+    let added = AlongRows::of(&residual, &output_taps);
+    let mut shown = Picture::black(width, height);
+    let (width, corner) = (width as usize, [rectangle[0].start, rectangle[1].start]);
+    let shown_rows = shown.radiance.par_chunks_mut(width).zip(shown.coverage.par_chunks_mut(width));
+    shown_rows.enumerate().for_each_init(
+        || vec![Vec4::ZERO; width],
+        |room, (y, (radiance, coverage))| {
+            let taps = &output_taps[1][y];
+            added.interpolate_row(taps, room);
+            let bases = cubic.row_from(corner[0], corner[1] + y as u32);
+            let [low, high] = extremes.each_ref().map(|grid| grid.row_from(grid.corner[0], taps.within));
+            for (x, (radiance, coverage)) in radiance.iter_mut().zip(coverage).enumerate() {
+                let at = (output_taps[0][x].within - extremes[0].corner[0]) as usize;
+                // No clamp: it would not let through what is no number.
+                let [r, g, b, covered] = (bases[x] + room[x]).max(low[at]).min(high[at]).to_array();
+                (*radiance, *coverage) = ([r, g, b], covered);
+            }
+        },
+    );
+    shown
 }
 
 /// The large pixels whose centres lie in small ones, along an axis of `size` large and `own` small ones.
@@ -86,6 +97,24 @@ fn pixels_in(small: Range<u32>, size: u32, own: u32) -> Range<u32> {
         edge.saturating_sub(u64::from(own)).div_ceil(2 * u64::from(own)) as u32
     };
     first(small.start)..first(small.end).min(size)
+}
+
+/// The columns, and the rows, of the large pixels whose middles lie in each of the small pixels of a grid, from its corner.
+fn areas_within(grid: &PixelGrid, size: [u32; 2], own: [u32; 2]) -> Areas {
+    let sides = [grid.width, grid.values.len() / grid.width];
+    let ranges = std::array::from_fn(|axis| {
+        let small = grid.corner[axis]..grid.corner[axis] + sides[axis] as u32;
+        small.map(|at| pixels_in(at..at + 1, size[axis], own[axis])).collect()
+    });
+    Areas { corner: grid.corner, ranges }
+}
+
+/// Which large pixels lie in small ones.
+struct Areas {
+    /// Column and row of the first small pixel.
+    corner: [u32; 2],
+    /// The columns by its column, the rows by its row.
+    ranges: [Vec<Range<u32>>; 2],
 }
 
 /// The small pixels that some large ones are interpolated of.
@@ -130,8 +159,14 @@ impl Taps {
         }
     }
 
-    fn weighted_mean(&self, value_at: impl Fn(u32) -> Vec4) -> Vec4 {
-        (0..4).map(|k| value_at(self.at[k]) * self.weights[k]).sum()
+    /// The cubic of `values`, of which the first is that of the pixel `first`.
+    #[inline]
+    fn interpolate(&self, values: &[Vec4], first: u32) -> Vec4 {
+        let mut sum = Vec4::ZERO;
+        for (at, weight) in self.at.iter().zip(&self.weights) {
+            sum += values[(at - first) as usize] * *weight;
+        }
+        sum
     }
 }
 
@@ -145,44 +180,57 @@ struct PixelGrid {
 
 impl PixelGrid {
     fn from_picture(picture: &Picture, [columns, rows]: Rectangle) -> Self {
-        let value = |index: usize| {
-            let [r, g, b] = picture.radiance[index];
-            Vec4::new(r, g, b, picture.coverage[index])
-        };
-        let row = |row: u32| {
-            let first = row as usize * picture.width as usize;
-            columns.clone().map(move |column| value(first + column as usize))
-        };
         let (corner, width) = ([columns.start, rows.start], columns.len());
-        Self { corner, width, values: rows.flat_map(row).collect() }
+        let mut values = Vec::with_capacity(width * rows.len());
+        for row in rows {
+            let first = (row * picture.width + columns.start) as usize;
+            let within = first..first + width;
+            let pixels = picture.radiance[within.clone()].iter().zip(&picture.coverage[within]);
+            values.extend(pixels.map(|(&[r, g, b], &covered)| Vec4::new(r, g, b, covered)));
+        }
+        Self { corner, width, values }
     }
 
     fn part(&self, [columns, rows]: Rectangle) -> Self {
         let (corner, width) = ([columns.start, rows.start], columns.len());
-        let row = |row: u32| columns.clone().map(move |column| self.at(column, row));
-        Self { corner, width, values: rows.flat_map(row).collect() }
+        let mut values = Vec::with_capacity(width * rows.len());
+        rows.for_each(|row| values.extend(&self.row_from(columns.start, row)[..width]));
+        Self { corner, width, values }
     }
 
     /// The least and the largest of the values around each of a rectangle, of a field of `size` columns and rows.
     fn extremes(&self, rectangle: Rectangle, size: [u32; 2]) -> [Self; 2] {
         let around = |at: u32, axis: usize| at.saturating_sub(1)..(at + 2).min(size[axis]);
-        let extreme = |start: Vec4, choose: fn(Vec4, Vec4) -> Vec4| {
-            let mut field = self.part(rectangle.clone());
-            field.update_each(|x, y, _| {
-                let values = around(y, 1).flat_map(|y| around(x, 0).map(move |x| self.at(x, y)));
-                values.fold(start, choose)
-            });
-            field
-        };
-        [extreme(Vec4::INFINITY, Vec4::min), extreme(Vec4::NEG_INFINITY, Vec4::max)]
+        let mut extremes = [self.part(rectangle.clone()), self.part(rectangle.clone())];
+        let [low, high] = &mut extremes;
+        let width = low.width;
+        let rows = low.values.par_chunks_mut(width).zip(high.values.par_chunks_mut(width));
+        rows.zip(rectangle[1].clone()).for_each(|((low, high), row)| {
+            for row in around(row, 1) {
+                let values = self.row_from(self.corner[0], row);
+                for (column, (low, high)) in rectangle[0].clone().zip(low.iter_mut().zip(high.iter_mut())) {
+                    for near in around(column, 0) {
+                        let value = values[(near - self.corner[0]) as usize];
+                        (*low, *high) = (low.min(value), high.max(value));
+                    }
+                }
+            }
+        });
+        extremes
     }
 
-    /// The mean of the large pixels, of `size`, whose middles lie in a pixel of a picture of `own` columns and rows.
-    fn mean_within(&self, x: u32, y: u32, size: [u32; 2], own: [u32; 2]) -> Vec4 {
-        let [columns, rows] = [pixels_in(x..x + 1, size[0], own[0]), pixels_in(y..y + 1, size[1], own[1])];
+    /// The mean of the large pixels whose middles lie in a small one.
+    fn mean_within(&self, areas: &Areas, x: u32, y: u32) -> Vec4 {
+        let at = [(x - areas.corner[0]) as usize, (y - areas.corner[1]) as usize];
+        let (columns, rows) = (areas.ranges[0][at[0]].clone(), areas.ranges[1][at[1]].clone());
         let count = (columns.len() * rows.len()) as f32;
-        let pixels = rows.flat_map(|row| columns.clone().map(move |column| (column, row)));
-        pixels.map(|(column, row)| self.at(column, row)).sum::<Vec4>() / count
+        let mut sum = Vec4::ZERO;
+        for row in rows {
+            for value in &self.row_from(columns.start, row)[..columns.len()] {
+                sum += *value;
+            }
+        }
+        sum / count
     }
 
     fn into_picture(self) -> Picture {
@@ -196,10 +244,11 @@ impl PixelGrid {
         picture
     }
 
+    /// The values of a row, from a column.
     #[inline]
-    fn at(&self, column: u32, row: u32) -> Vec4 {
-        let [x, y] = [column - self.corner[0], row - self.corner[1]].map(|at| at as usize);
-        self.values[y * self.width + x]
+    fn row_from(&self, column: u32, row: u32) -> &[Vec4] {
+        let [x, y] = [(column - self.corner[0]) as usize, (row - self.corner[1]) as usize];
+        &self.values[y * self.width..][x..self.width]
     }
 
     /// Changes every value, given where it is.
@@ -215,23 +264,39 @@ impl PixelGrid {
     }
 
     /// The cubic between values of a field, with its first value at `corner`: along rows, then along columns.
-    fn interpolated(source: &Self, [columns, rows]: &[Vec<Taps>; 2], corner: [u32; 2]) -> Self {
-        let source_rows = source_range(rows);
-        let along =
-            |row: u32| columns.iter().map(move |taps| taps.weighted_mean(|column| source.at(column, row)));
-        let along: Vec<Vec<Vec4>> =
-            source_rows.clone().into_par_iter().map(|row| along(row).collect()).collect();
-        let width = columns.len();
-        let mut values = vec![Vec4::ZERO; width * rows.len()];
-        values.par_chunks_mut(width).zip(rows).for_each(|(values, taps)| {
-            // Rows side by side, so that several columns are computed at a time.
-            let [a, b, c, d] = taps.at.map(|row| &along[(row - source_rows.start) as usize][..width]);
-            let [wa, wb, wc, wd] = taps.weights;
-            for (x, value) in values.iter_mut().enumerate() {
-                *value = a[x] * wa + b[x] * wb + c[x] * wc + d[x] * wd;
-            }
-        });
+    fn interpolated(source: &Self, taps: &[Vec<Taps>; 2], corner: [u32; 2]) -> Self {
+        let along = AlongRows::of(source, taps);
+        let width = taps[0].len();
+        let mut values = vec![Vec4::ZERO; width * taps[1].len()];
+        let rows = values.par_chunks_mut(width).zip(&taps[1]);
+        rows.for_each(|(values, taps)| along.interpolate_row(taps, values));
         Self { corner, width, values }
+    }
+}
+
+/// The cubic along rows, to be interpolated along columns.
+struct AlongRows {
+    first_row: u32,
+    rows: Vec<Vec<Vec4>>,
+}
+
+impl AlongRows {
+    fn of(source: &PixelGrid, [columns, rows]: &[Vec<Taps>; 2]) -> Self {
+        let source_rows = source_range(rows);
+        let along = |row: u32| {
+            let values = source.row_from(source.corner[0], row);
+            columns.iter().map(|taps| taps.interpolate(values, source.corner[0])).collect()
+        };
+        Self { first_row: source_rows.start, rows: source_rows.into_par_iter().map(along).collect() }
+    }
+
+    /// A row between them: rows side by side, so that several columns are computed at a time.
+    fn interpolate_row(&self, taps: &Taps, values: &mut [Vec4]) {
+        let [a, b, c, d] = taps.at.map(|row| &self.rows[(row - self.first_row) as usize][..values.len()]);
+        let [wa, wb, wc, wd] = taps.weights;
+        for (x, value) in values.iter_mut().enumerate() {
+            *value = a[x] * wa + b[x] * wb + c[x] * wc + d[x] * wd;
+        }
     }
 }
 

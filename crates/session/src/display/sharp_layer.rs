@@ -3,11 +3,10 @@
 //! A rough picture has few pixels, and shows what is in focus, or nearly, as blocks. The picture without blur has that detail: where the
 //! circle of confusion is small, and no blur of something nearer reaches, it is shown itself; where the circle is a few pixels of the rough
 //! picture, the detail that is left of it in a blur over that circle is added to the rough picture. What is blurred more has no detail.
-//!
-//! So does a picture through another lens, which stood before: where it looks the same in the rough picture's pixels, it is shown itself.
 
 use crate::display::antialiasing::{antialiased, rgb_and_coverage};
 use crate::display::enlarging::{enlarged, reduced};
+use crate::display::layer::{Layer, lay_over_each, share_below};
 use crate::display::picture_ring::Rectangle;
 use baselines::FirstHits;
 use lens::{Camera, FocusOffset, Picture};
@@ -26,19 +25,13 @@ const NEARER_SHARE: f32 = 0.01;
 /// Blur reaches no farther than this many pixels of the rough picture: beyond that, all is blurred.
 const MAX_REACH: i32 = 24;
 
-/// A draft takes the place of the picture that stood before where they differ by more than so many times what a pixel of the draft loses in
-/// detail, or the least of it.
-const CHANGES: RangeInclusive<f32> = 1.0..=2.5;
-/// The least, as a share of white: drafts are so far from the means of the pixels that they stand for.
-const LEAST_LOSS: f32 = 0.03;
-
 /// What is laid over an enlarged rough picture; values are radiance in RGB, and coverage.
 #[derive(Debug)]
 pub(crate) struct SharpLayer {
     width: usize,
     /// The light that the rough picture should have, and how much of its own this replaces.
     base: Vec<([f32; 4], f32)>,
-    /// What is added to that; nothing if it is empty.
+    /// What is added to that.
     detail: Vec<[f32; 4]>,
 }
 
@@ -75,95 +68,21 @@ impl SharpLayer {
         let (base, detail) = (0..pixels).into_par_iter().map(layer).unzip();
         Self { width: size[0] as usize, base, detail }
     }
+}
 
-    /// The layer over a draft with the pixels of `standing`, a picture through another lens: where the lens changes less than a draft loses in
-    /// detail.
-    pub fn of_standing(standing: &Picture, draft: &Picture) -> Self {
-        let changes = changes_beside_detail(standing, draft);
-        let (width, columns, rows) = (standing.width, draft.width as usize, draft.height as usize);
-        // The largest of a pixel and those beside it.
-        let largest_near = |index: usize| {
-            let (x, y) = (index % columns, index / columns);
-            let beside = x.saturating_sub(1)..(x + 2).min(columns);
-            let rows = y.saturating_sub(1)..(y + 2).min(rows);
-            rows.flat_map(|row| &changes[row * columns..][beside.clone()]).copied().fold(0.0, f32::max)
-        };
-        let share = |index: usize| share_below(largest_near(index), &CHANGES);
-        let shares: Vec<f32> = (0..changes.len()).into_par_iter().map(share).collect();
-        let share_at = |index: usize| {
-            let [x, y] = [index as u32 % width, index as u32 / width];
-            let ([left, right], u) = neighbours(x, width, draft.width);
-            let ([above, below], v) = neighbours(y, standing.height, draft.height);
-            let mixed = |row: usize| {
-                let row = &shares[row * columns..];
-                row[left] + (row[right] - row[left]) * u
-            };
-            mixed(above) + (mixed(below) - mixed(above)) * v
-        };
-        let pixels = (0..standing.radiance.len()).into_par_iter();
-        let base = pixels.map(|index| (rgb_and_coverage(standing, index), share_at(index)));
-        Self { width: width as usize, base: base.collect(), detail: Vec::new() }
+impl Layer for SharpLayer {
+    fn lay_over(&self, part: &mut Picture, rectangle: &Rectangle) {
+        lay_over_each(
+            part,
+            rectangle,
+            self.width,
+            |_| (),
+            |(), _, index| {
+                let (base, share) = self.base[index];
+                (base, share, self.detail[index])
+            },
+        );
     }
-
-    /// Lays it over `part`, a rectangle of the enlarged picture.
-    pub fn lay_over(&self, part: &mut Picture, [columns, rows]: &Rectangle) {
-        let width = self.width;
-        let indices =
-            rows.clone().flat_map(|row| columns.clone().map(move |x| row as usize * width + x as usize));
-        for ((radiance, coverage), index) in part.radiance.iter_mut().zip(&mut part.coverage).zip(indices) {
-            let (base, share) = self.base[index];
-            let detail = self.detail.get(index).copied().unwrap_or_default();
-            let shown = |rough: f32, c: usize| rough + (base[c] - rough) * share + detail[c];
-            *radiance = std::array::from_fn(|c| shown(radiance[c], c).max(0.0));
-            *coverage = shown(*coverage, 3).clamp(0.0, 1.0);
-        }
-    }
-}
-
-/// For each pixel of a draft, by how much it differs from the mean of what stands there, as a multiple of the standard deviation within it.
-fn changes_beside_detail(standing: &Picture, draft: &Picture) -> Vec<f32> {
-    // As it is shown, and as eyes see that, roughly: its root.
-    let shown = |picture: &Picture, index: usize| {
-        let coverage = picture.coverage[index].max(f32::MIN_POSITIVE);
-        picture.radiance[index].map(|c| (c / coverage).clamp(0.0, 1.0).sqrt())
-    };
-    let within = |at: u32, size: u32, own: u32| {
-        let start = at * size / own;
-        start..((at + 1) * size / own).max(start + 1)
-    };
-    let change = |index: usize| {
-        let [column, row] = [index as u32 % draft.width, index as u32 / draft.width];
-        let (mut sum, mut squares, mut count) = ([0.0; 3], [0.0; 3], 0.0);
-        for y in within(row, standing.height, draft.height) {
-            for x in within(column, standing.width, draft.width) {
-                let pixel = shown(standing, (y * standing.width + x) as usize);
-                for c in 0..3 {
-                    sum[c] += pixel[c];
-                    squares[c] += pixel[c] * pixel[c];
-                }
-                count += 1.0;
-            }
-        }
-        let of_draft = shown(draft, index);
-        let of_colour = |c: usize| {
-            let mean = sum[c] / count;
-            let detail = (squares[c] / count - mean * mean).max(0.0).sqrt();
-            (of_draft[c] - mean).abs() / detail.max(LEAST_LOSS)
-        };
-        (0..3).map(of_colour).fold(0.0, f32::max)
-    };
-    (0..draft.radiance.len()).into_par_iter().map(change).collect()
-}
-
-/// The pixels of a row of `own` that one of `size` lies between, and how far toward the second.
-fn neighbours(at: u32, size: u32, own: u32) -> ([usize; 2], f32) {
-    let place = ((at as f32 + 0.5) * own as f32 / size as f32 - 0.5).clamp(0.0, own as f32 - 1.0);
-    ([place as usize, (place as usize + 1).min(own as usize - 1)], place.fract())
-}
-
-/// 1 for what is below a range, 0 for what is above it.
-fn share_below(value: f32, range: &RangeInclusive<f32>) -> f32 {
-    1.0 - ((value - range.start()) / (range.end() - range.start())).clamp(0.0, 1.0)
 }
 
 /// A picture without blur, blurred where circles are so small that detail is left: every pixel by its own circle, of what is not nearer.
@@ -293,24 +212,6 @@ mod tests {
         let layer = SharpLayer::new(&hits, &camera, ROUGH, [320, 160]);
         assert_eq!((layer.width, layer.base.len()), (320, 320 * 160));
         assert_eq!((layer.base[150].1, layer.base[170].1), (1.0, 0.0));
-    }
-
-    #[test]
-    fn what_stood_stays_where_a_draft_shows_the_same() {
-        // Fine stripes, which the draft shows as grey; it has another light on the right.
-        let mut standing = Picture::black(SIZE[0], SIZE[1]);
-        standing.coverage.fill(1.0);
-        let stripes = |index: usize| [if index.is_multiple_of(2) { 0.3 } else { 0.5 }; 3];
-        standing.radiance = (0..standing.radiance.len()).map(stripes).collect();
-        let mut draft = reduced(&standing, ROUGH);
-        let of_right = draft.radiance.iter_mut().enumerate().filter(|(index, _)| index % 40 >= 20);
-        of_right.for_each(|(_, rgb)| *rgb = [0.8; 3]);
-        let mut shown = enlarged(&draft, SIZE);
-        SharpLayer::of_standing(&standing, &draft).lay_over(&mut shown, &SIZE.map(|side| 0..side));
-        let row = 40 * SIZE[0] as usize;
-        let [left, right] = [0..70, 90..160].map(|columns| row + columns.start..row + columns.end);
-        assert_eq!(shown.radiance[left.clone()], standing.radiance[left]);
-        assert!(shown.radiance[right].iter().all(|rgb| (rgb[0] - 0.8).abs() < 1e-3));
     }
 
     #[test]

@@ -148,8 +148,18 @@ impl LightField {
 
     /// The same light field, hierarchy and paint without its sum, which is made again when it is needed.
     pub fn at_rest(self, gpu: Option<Gpu>) -> Self {
+        self.resting_with(Splatter::without_sums, gpu)
+    }
+
+    /// The same; `next`, which is worked with instead, takes over the memory of the sum.
+    pub fn at_rest_for(self, next: &mut Self, gpu: Option<Gpu>) -> Self {
+        next.summed_camera = None;
+        self.resting_with(|splatter| splatter.without_sums_but_for(&mut next.splatter), gpu)
+    }
+
+    fn resting_with(self, without_sums: impl FnOnce(Splatter) -> Splatter, gpu: Option<Gpu>) -> Self {
         let tolerance = self.splatter.tolerance();
-        let splatter = self.splatter.without_sums();
+        let splatter = without_sums(self.splatter);
         let resting = Self::with_splatter(splatter, self.index, self.modelled, tolerance, gpu);
         Self {
             whole_seconds: self.whole_seconds,

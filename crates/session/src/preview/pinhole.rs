@@ -1,7 +1,7 @@
 //! Pictures without blur: those that follow a moving camera, and what is laid over rough pictures.
 
 use super::picture_sizes::pixel_count;
-use crate::display::{SharpLayer, antialiased};
+use crate::display::{Layer, SharpLayer, antialiased};
 use crate::error::SessionError;
 use baselines::FirstHits;
 use document::Stage;
@@ -65,12 +65,12 @@ impl PinholeTracer {
     }
 
     /// What of the last picture is laid over a rough one that is enlarged to `size`; `None` if it shows another view or focus.
-    pub fn layer_over(&self, rough: &Camera, size: [u32; 2], map: &FocusMap) -> Option<Arc<SharpLayer>> {
+    pub fn layer_over(&self, rough: &Camera, size: [u32; 2], map: &FocusMap) -> Option<Arc<dyn Layer>> {
         let Pinhole { hits, camera, map: traced_map } = self.last.as_ref()?;
         let fits = is_same_view(camera, rough) && map.shares_tiles_with(traced_map);
         // The lens may be another.
         let camera = Camera { width: camera.width, height: camera.height, ..rough.clone() };
-        fits.then(|| SharpLayer::new(hits, &camera, [rough.width, rough.height], size).into())
+        fits.then(|| Arc::new(SharpLayer::new(hits, &camera, [rough.width, rough.height], size)) as _)
     }
 }
 

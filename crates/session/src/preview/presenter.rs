@@ -1,7 +1,7 @@
 //! How pictures come to be shown: where one differs from the one before, in what tone, with which number.
 
 use crate::display::{
-    Content, LivePicture, Patch, PictureRing, PictureSource, Rectangle, SharpLayer, darkening_stops,
+    Content, Layer, LivePicture, Patch, PictureRing, PictureSource, Rectangle, darkening_stops,
     enlarged_part, enlarged_rectangle, filled, whole,
 };
 use crate::preview::mailbox::Shared;
@@ -20,7 +20,7 @@ pub(crate) struct NewPicture<'a> {
     /// The size that it is shown in, if its pixels are means of many of those.
     pub enlarged_to: Option<[u32; 2]>,
     /// What is laid over a picture that is enlarged.
-    pub sharp_layer: Option<Arc<SharpLayer>>,
+    pub layer: Option<Arc<dyn Layer>>,
     /// What it has to do with the one before.
     pub relation: Relation,
     pub kind: PreviewKind,
@@ -48,7 +48,7 @@ pub(crate) struct Presenter {
     /// It and those of before.
     pictures: PictureRing,
     /// What lies over it.
-    sharp_layer: Option<Arc<SharpLayer>>,
+    layer: Option<Arc<dyn Layer>>,
     /// It, if it is on a card.
     on_card: Option<PictureOnCard>,
     tone: Tone,
@@ -72,7 +72,7 @@ impl Presenter {
             shared,
             shown: None,
             pictures: PictureRing::default(),
-            sharp_layer: None,
+            layer: None,
             on_card: None,
             tone: Tone::default(),
             last_id: 0,
@@ -120,7 +120,7 @@ impl Presenter {
     pub fn show(&mut self, new_picture: NewPicture) {
         let summed = Instant::now();
         let is_new = matches!(new_picture.relation, Relation::New);
-        self.sharp_layer = new_picture.sharp_layer;
+        self.layer = new_picture.layer;
         let (picture, changed) = self.take_up(new_picture.picture, new_picture.relation);
         self.last_id += 1;
         let preview = Preview {
@@ -217,7 +217,7 @@ impl Presenter {
         if let (Some(size), LivePicture::InMemory(picture)) = (preview.enlarged_to, picture) {
             let rectangle = enlarged_rectangle(picture, size, &rectangle);
             let mut part = enlarged_part(picture, size, rectangle.clone());
-            if let Some(layer) = &self.sharp_layer {
+            if let Some(layer) = &self.layer {
                 layer.lay_over(&mut part, &rectangle);
             }
             return Patch { size, rectangle, content: Content::Pixels(to_screen(&part, self.tone)) };

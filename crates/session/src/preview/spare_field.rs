@@ -118,7 +118,7 @@ impl SpareField {
             std::mem::swap(&mut self.field, current);
             if let (Some(replaced), Some(current)) = (self.field.take(), current) {
                 current.expect_pace_of(&replaced);
-                self.field = Some(replaced.at_rest(gpu));
+                self.field = Some(replaced.at_rest_for(current, gpu));
             }
         }
         is_better

@@ -4,6 +4,7 @@ mod idle_work;
 mod relighting;
 mod showing;
 
+use crate::display::StandingPicture;
 use crate::error::SessionError;
 use crate::light_field::{Changes, LightField, Plan};
 use crate::preview::deliveries::{FieldDelivery, FinerField, InterimField};
@@ -20,7 +21,7 @@ use crate::preview::spare_field::{SpareField, SpareTask};
 use document::Stage;
 use focus::{Focus, FocusMap};
 use jobs::catch_panics;
-use lens::{Camera, Picture};
+use lens::Camera;
 use render::LightFieldStore;
 use splat::Tolerance;
 use std::sync::Arc;
@@ -44,7 +45,7 @@ pub(crate) struct Worker {
     /// How the fine light field becomes one of the stage, if it shows it in another world.
     relighting: Option<Relighting>,
     /// The last fine picture, while drafts of pictures through other lenses are shown, and what it shows.
-    standing: Option<(Arc<Picture>, Camera)>,
+    standing: Option<(StandingPicture, Camera)>,
     /// Whether the fine light field's picture has not been shown yet.
     is_new: bool,
     /// Makes or sums the fine light field.

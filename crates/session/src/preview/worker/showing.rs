@@ -1,7 +1,7 @@
 //! The pictures that the preview's thread shows: without blur, of few pixels, fine, and exact.
 
 use super::Worker;
-use crate::display::{PictureSource, SharpLayer};
+use crate::display::{PictureSource, StandingPicture};
 use crate::error::SessionError;
 use crate::light_field::{FieldOptions, LightField, Plan, SumUpdate, spare_camera};
 use crate::preview::activity::PreviewActivity;
@@ -66,7 +66,7 @@ impl Worker {
                 picture: fine.source(),
                 camera,
                 enlarged_to: None,
-                sharp_layer: None,
+                layer: None,
                 kind: PreviewKind::from(&update),
                 quality: if is_exact { Quality::Exact } else { Quality::Viewing },
                 seconds: start.elapsed().as_secs_f64() + elsewhere,
@@ -93,7 +93,7 @@ impl Worker {
         let shown = self.presenter.shown().filter(|shown| shown.quality > Quality::Coarse);
         let Some(camera) = shown.map(|shown| shown.camera.clone()) else { return };
         let plain = self.presenter.followed().filter(|picture| picture.colour_coverage.is_none());
-        self.standing = plain.map(|picture| (picture, camera));
+        self.standing = plain.map(|picture| (StandingPicture::new(picture), camera));
     }
 
     /// A draft of the fine picture, which takes longer.
@@ -104,15 +104,16 @@ impl Worker {
         let start = Instant::now();
         let modelled = fine.modelled();
         let draft = fine.sum_draft(camera, focus, &self.shared.quick)?;
-        let has_pixels = |picture: &Picture| [picture.width, picture.height] == [camera.width, camera.height];
-        let standing =
-            self.standing.as_ref().filter(|(picture, of)| has_pixels(picture) && is_same_view(of, camera));
-        let sharp_layer = standing.map(|(picture, _)| SharpLayer::of_standing(picture, draft).into());
+        let (standing, size) = (self.standing.as_mut(), [camera.width, camera.height]);
+        let fits = |(picture, of): &&mut (StandingPicture, Camera)| {
+            picture.size() == size && is_same_view(of, camera)
+        };
+        let layer = standing.filter(fits).map(|(picture, _)| Arc::new(picture.layer_over(draft)) as _);
         self.presenter.show(NewPicture {
             camera: &resized(camera, [draft.width, draft.height]),
             picture: PictureSource::InMemory(draft),
-            enlarged_to: Some([camera.width, camera.height]),
-            sharp_layer,
+            enlarged_to: Some(size),
+            layer,
             kind: PreviewKind::Splat,
             quality: Quality::Coarse,
             seconds: start.elapsed().as_secs_f64(),
@@ -142,7 +143,7 @@ impl Worker {
             picture: PictureSource::InMemory(&traced),
             camera,
             enlarged_to: None,
-            sharp_layer: None,
+            layer: None,
             relation: Relation::New,
             kind: PreviewKind::Pinhole,
             quality: Quality::Coarse,
@@ -202,7 +203,7 @@ impl Worker {
         focus: &Focus,
     ) -> Result<(), SessionError> {
         self.coarse.take_if(|coarse| !coarse.can_show(small));
-        let sharp_layer = self.map.as_ref().and_then(|map| self.pinhole.layer_over(small, size, map));
+        let layer = self.map.as_ref().and_then(|map| self.pinhole.layer_over(small, size, map));
         let coarse = match &mut self.coarse {
             Some(coarse) => coarse,
             None => {
@@ -229,7 +230,7 @@ impl Worker {
                 picture: coarse.source(),
                 camera: small,
                 enlarged_to: Some(size),
-                sharp_layer,
+                layer,
                 kind: PreviewKind::from(&update),
                 quality: Quality::Coarse,
                 seconds: start.elapsed().as_secs_f64(),
@@ -264,7 +265,7 @@ impl Worker {
             picture: field.source(),
             camera: &exact.camera,
             enlarged_to: None,
-            sharp_layer: None,
+            layer: None,
             relation: Relation::Overlay,
             kind: PreviewKind::Splat,
             quality: Quality::Exact,

@@ -109,6 +109,22 @@ fn paint_that_is_looked_up_later_is_what_a_render_looks_up() {
 }
 
 #[test]
+fn memory_of_sums_passes_from_one_to_the_next() {
+    let focus = standard();
+    let fresh = rendered(&focus);
+    let mut painted = standard();
+    painted.0[40 * 96 + 50] = FocusOffset::new(1.5, 0.0);
+    let mut next = fresh.twin();
+    next.look_up_paint(&focus);
+    let mut resting = rendered(&painted).without_sums_but_for(&mut next);
+    for (splatter, focus) in [(&mut next, &focus), (&mut resting, &painted)] {
+        splatter.refocus(&camera(), &Unwatched).unwrap();
+        let fresh = rendered(focus);
+        assert!(splatter.sums == fresh.sums && splatter.picture().radiance == fresh.picture().radiance);
+    }
+}
+
+#[test]
 fn wide_images_are_those_of_the_samples_that_are_painted_so() {
     let mut focus = standard();
     focus.0[40 * 96 + 50] = FocusOffset::new(1.5, 0.0);
