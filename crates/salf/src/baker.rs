@@ -72,11 +72,11 @@ pub fn bake_with_outliers(
     bake_retaining(MAX_RETAINED_PX, tracer, radiance, camera, options, progress)
 }
 
-/// The share of a bake's time that the survey takes.
-const SURVEY_SHARE: f32 = 0.25;
+/// The share of a bake's progress for finding the surfaces that are seen.
+const SURFACES_SHARE: f32 = 0.35;
 
-/// The same with that of patches.
-const PATCHES_SHARE: f32 = 0.3;
+/// The share of that for the pinhole picture; the rest is for patches.
+const SURVEY_SHARE: f32 = 0.8;
 
 /// The same, retaining surveys of pictures of at most this many pixels.
 fn bake_retaining(
@@ -93,7 +93,8 @@ fn bake_retaining(
     let retains_surveys = domain.extent().as_i64vec2().element_product() <= max_retained_px;
 
     let rows: Vec<i32> = (0..rows).collect();
-    let surveyed = map_rows(&rows, &Stage::new(progress, 0.0, SURVEY_SHARE), |&row| {
+    let surveying = Stage::named(progress, "surfaces", 0.0, SURFACES_SHARE);
+    let surveyed = map_rows(&rows, &Stage::new(&surveying, 0.0, SURVEY_SHARE), |&row| {
         // A row of a large picture takes long: what a cancelled one leaves out is never used.
         let columns = (0..columns).take_while(|_| !progress.cancelled());
         let blocks = columns.map(|column| domain.cells_of_block(IVec2::new(column, row)));
@@ -111,12 +112,14 @@ fn bake_retaining(
     let occluders = Occluders::new(whole, baker.view.radius_per_kappa_px, depths);
     let retained: Vec<Vec<CellSurvey>> = surveyed.into_iter().flat_map(|(_, surveys)| surveys).collect();
 
-    let mut patches_of_block =
-        patches(&baker, &|_| true, &Stage::new(progress, SURVEY_SHARE, PATCHES_SHARE))?;
+    let mut patches_of_block = patches(&baker, &|_| true, &Stage::new(&surveying, SURVEY_SHARE, 1.0))?;
     let blocks: Vec<IVec2> = rows.iter().flat_map(|&y| (0..columns).map(move |x| IVec2::new(x, y))).collect();
     let numbered: Vec<_> = blocks.iter().copied().enumerate().collect();
-    let (parts, outliers) =
-        pack_blocks(&baker, &numbered, &Stage::new(progress, PATCHES_SHARE, 1.0), |number, block| {
+    let (parts, outliers) = pack_blocks(
+        &baker,
+        &numbered,
+        &Stage::named(progress, "visibility", SURFACES_SHARE, 1.0),
+        |number, block| {
             let patches = patches_of_block.get(&domain.corner_of_block(block)).map_or(&[][..], Vec::as_slice);
             match retained.get(number) {
                 Some(surveys) => baker.bake_block(&occluders, surveys, patches),
@@ -124,7 +127,8 @@ fn bake_retaining(
                     baker.bake_block(&occluders, &baker.survey_cells(&domain.cells_of_block(block)), patches)
                 }
             }
-        })?;
+        },
+    )?;
     blocks.iter().for_each(|&block| drop(patches_of_block.remove(&domain.corner_of_block(block))));
     let outside = outside_domain(patches_of_block);
     let samples = Samples::join(parts.into_iter().chain(outside));
@@ -199,7 +203,8 @@ pub fn outside_domain(patches: HashMap<IVec2, Vec<Sample>>) -> impl Iterator<Ite
     blocks.into_iter().map(|(_, patches)| Samples::from(patches))
 }
 
-/// Maps `rows` by `work` in parallel, in order, and reports the share that is done.
+/// Maps `rows` by `work` in parallel, and reports the share that is done. The results are in order; the work is not: at any time, what is
+/// done is a fair sample of all, so that it tells how long the rest will take.
 ///
 /// # Errors
 /// [`Cancelled`] if `progress` asks to stop.
@@ -209,13 +214,48 @@ pub fn map_rows<T: Sync, R: Send>(
     work: impl Fn(&T) -> R + Sync,
 ) -> Result<Vec<R>, Cancelled> {
     let done = AtomicUsize::new(0);
-    rows.par_iter()
-        .map(|row| {
+    let mapped: Result<Vec<(usize, R)>, Cancelled> = spread_order(rows.len())
+        .into_par_iter()
+        .map(|index| {
             progress.check()?;
-            let result = work(row);
+            let result = work(&rows[index]);
             progress.check()?;
             progress.report((done.fetch_add(1, Ordering::Relaxed) + 1) as f32 / rows.len() as f32);
-            Ok(result)
+            Ok((index, result))
         })
-        .collect()
+        .collect();
+    let mut mapped = mapped?;
+    mapped.sort_unstable_by_key(|(index, _)| *index);
+    Ok(mapped.into_iter().map(|(_, result)| result).collect())
+}
+
+/// The numbers below `count`, every run of them spread evenly: steps of the golden section.
+fn spread_order(count: usize) -> Vec<usize> {
+    let golden = (count as f64 / std::f64::consts::GOLDEN_RATIO).round() as usize;
+    let step = (golden.max(1)..).find(|&step| gcd(step, count) == 1).unwrap_or(1);
+    (0..count).map(|k| k * step % count).collect()
+}
+
+fn gcd(a: usize, b: usize) -> usize {
+    if b == 0 { a } else { gcd(b, a % b) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn work_is_spread_and_results_are_in_order() {
+        let rows: Vec<u32> = (0..997).collect();
+        let doubled = map_rows(&rows, &progress::Unwatched, |row| 2 * row).unwrap();
+        assert!(doubled.into_iter().eq((0..997).map(|row| 2 * row)));
+        for count in [0, 1, 2, 3, 10, 4034] {
+            let mut order = spread_order(count);
+            // The first quarter is a sample of all: about as many below the middle as above.
+            let low = order[..count / 4].iter().filter(|&&index| index < count / 2).count();
+            assert!((2 * low).abs_diff(count / 4) <= 4, "{count}: {low}");
+            order.sort_unstable();
+            assert!(order.into_iter().eq(0..count));
+        }
+    }
 }

@@ -88,8 +88,8 @@ pub(crate) struct LightField {
     light_passes: u32,
 }
 
-/// Share of a bake's progress for solving light.
-const LIGHT_SHARE: f32 = 0.12;
+/// Share of a bake's progress for solving light, which mostly was solved before.
+const LIGHT_SHARE: f32 = 0.05;
 
 impl LightField {
     /// Bakes a light field for `camera` and `focus`, with a margin that allows for some change.
@@ -108,12 +108,9 @@ impl LightField {
             .max(field_options.least_margin_px);
         let margin_px = needed + MARGIN_HEADROOM * camera.height as f64;
         let options = BakeOptions { margin_px, carried: Carried::for_focus(focus), ..BakeOptions::default() };
-        let radiance = stage.lit.solve(
-            camera,
-            field_options.light,
-            &Share::named(progress, "light", 0.0, LIGHT_SHARE),
-        )?;
-        let baking = Share::named(progress, "samples", LIGHT_SHARE, 1.0);
+        let solving = Share::new(progress, 0.0, LIGHT_SHARE);
+        let radiance = stage.lit.solve(camera, field_options.light, &solving)?;
+        let baking = Share::new(progress, LIGHT_SHARE, 1.0);
         let salf = salf::bake(stage.tracer(), &*radiance, camera, &options, &baking)?;
         let passes = if let LightQuality::Refined { passes } = field_options.light { passes } else { 0 };
         Ok(Self {

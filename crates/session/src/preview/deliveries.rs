@@ -8,8 +8,11 @@ use light::LightErrors;
 /// The share of making a light field that the bake is; the rest is the first sum.
 pub(crate) const BAKE_SHARE: f32 = 0.95;
 
-/// The share of it that the light field between the coarse one and the fine one is, where there is one.
-pub(crate) const INTERIM_SHARE: f32 = 0.3;
+/// How far solving the light takes it.
+pub(crate) const LIGHT_SHARE: f32 = 0.35;
+
+/// How far the light field between the coarse one and the fine one takes it, where there is one.
+pub(crate) const INTERIM_SHARE: f32 = 0.45;
 
 /// What the maker of light fields hands over.
 pub(crate) struct FieldDelivery {

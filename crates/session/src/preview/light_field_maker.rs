@@ -3,7 +3,7 @@
 use crate::error::SessionError;
 use crate::light_field::{Changes, FieldOptions, LightField, Relightable, spare_camera};
 use crate::preview::activity::PreviewActivity;
-use crate::preview::deliveries::{BAKE_SHARE, FieldDelivery, INTERIM_SHARE, InterimField};
+use crate::preview::deliveries::{BAKE_SHARE, FieldDelivery, INTERIM_SHARE, InterimField, LIGHT_SHARE};
 use crate::preview::helper_thread;
 use crate::preview::mailbox::Shared;
 use document::Stage;
@@ -155,16 +155,15 @@ fn make(
 ) -> Result<LightField, SessionError> {
     let FieldOrder { origin, stage, camera, interim, focus, tolerance, epoch } = order;
     let bake = |least_margin_px| {
-        let options_with_margin = |least_margin_px| FieldOptions {
-            least_margin_px,
-            tolerance,
-            gpu: shared.gpu(),
-            light: LightQuality::Fine,
-        };
+        let light = LightQuality::Fine;
+        let options_with_margin =
+            |least_margin_px| FieldOptions { least_margin_px, tolerance, gpu: shared.gpu(), light };
         shared.progress.begin_step("", 0.0, BAKE_SHARE);
-        let mut done_share = 0.0;
+        // Both light fields are baked in the light that is solved now.
+        stage.lit.solve(&camera, light, &Share::named(&shared.progress, "light", 0.0, LIGHT_SHARE))?;
+        let mut done_share = LIGHT_SHARE;
         if let Some(interim) = &interim {
-            let share = Share::new(&shared.progress, 0.0, INTERIM_SHARE);
+            let share = Share::new(&shared.progress, LIGHT_SHARE, INTERIM_SHARE);
             let opened = spare_camera(interim).unwrap_or_else(|| interim.clone());
             let field = LightField::bake(&stage, &opened, &focus, options_with_margin(0.0), &share)?;
             shared.deliver_interim(InterimField { field, epoch });
