@@ -153,7 +153,15 @@ fn the_demo_only_gets_better() {
 #[test]
 fn scenes_of_others_only_get_better() {
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/gltf");
-    for scene in ["Fox.glb", "FlightHelmet/FlightHelmet.gltf", "vr-gallery.glb", "portal.glb"] {
+    let scenes = [
+        "Fox.glb",
+        "FlightHelmet/FlightHelmet.gltf",
+        "vr-gallery.glb",
+        "portal.glb",
+        // Lamps and the world light it.
+        "MixedLightingExample/MixedLightingExample.gltf",
+    ];
+    for scene in scenes {
         let file = data.join(scene);
         if !file.is_file() {
             eprintln!("SKIPPED: {} is not there", file.display());

@@ -12,6 +12,7 @@ use salf::Salf;
 use splat::PictureOnCard;
 use std::sync::Arc;
 use std::time::Instant;
+use trace::truth::Region;
 
 /// A picture that was made.
 pub(crate) struct NewPicture<'a> {
@@ -19,7 +20,7 @@ pub(crate) struct NewPicture<'a> {
     pub camera: &'a Camera,
     /// The size that it is shown in, if its pixels are means of many of those.
     pub enlarged_to: Option<[u32; 2]>,
-    /// What is laid over a picture that is enlarged.
+    /// What is laid over it, in the size that it is shown in.
     pub layer: Option<Arc<dyn Layer>>,
     /// What it has to do with the one before.
     pub relation: Relation,
@@ -222,6 +223,13 @@ impl Presenter {
             }
             return Patch { size, rectangle, content: Content::Pixels(to_screen(&part, self.tone)) };
         }
+        if let Some(layer) = &self.layer
+            && let Some(mut part) = picture.fetch_region(region_of(&rectangle))
+        {
+            layer.lay_over(&mut part, &rectangle);
+            let content = Content::Pixels(to_screen(&part, self.tone));
+            return Patch { size: picture.size(), rectangle, content };
+        }
         let content = match picture {
             LivePicture::InMemory(picture) => {
                 Content::Pixels(self.tone.rectangle_to_screen(picture, rectangle.clone()))
@@ -237,4 +245,8 @@ impl Presenter {
         };
         Patch { size: picture.size(), rectangle, content }
     }
+}
+
+fn region_of([columns, rows]: &Rectangle) -> Region {
+    Region { x: columns.start, y: rows.start, width: columns.len() as u32, height: rows.len() as u32 }
 }

@@ -208,6 +208,7 @@ impl Worker {
         if self.fine.is_none() {
             (self.shown_stage, self.relighting) = (Some(stage.clone()), None);
         }
+        self.estimate_light(&stage, &camera, &focus)?;
         self.make_relit(&stage, &camera, &focus);
         if let Some(fine) = &self.fine {
             let plan = fine.plan(&camera, &focus);

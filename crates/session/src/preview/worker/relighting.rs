@@ -1,7 +1,9 @@
 //! What the preview's thread does with its light fields when the world changes.
 
 use super::Worker;
+use crate::error::SessionError;
 use crate::light_field::Relightable;
+use crate::preview::activity::PreviewActivity;
 use crate::preview::light_field_maker::FieldOrigin;
 use crate::preview::relighting::Relighting;
 use document::Stage;
@@ -26,15 +28,40 @@ impl Worker {
         self.fine.is_some()
     }
 
+    /// Looks what the light of the stage changes, where that is estimated.
+    ///
+    /// # Errors
+    /// The light cannot be solved, or the work was cancelled.
+    pub(super) fn estimate_light(
+        &mut self,
+        stage: &Stage,
+        camera: &Camera,
+        focus: &Focus,
+    ) -> Result<(), SessionError> {
+        let (Some(Relighting::ByEstimate(estimate)), Some(shown)) = (&mut self.relighting, &self.shown_stage)
+        else {
+            return Ok(());
+        };
+        if estimate.is_made() || self.is_paused {
+            return Ok(());
+        }
+        self.shared.begin(PreviewActivity::Tracing)?;
+        estimate.make([shown, stage], camera, focus, &self.shared.quick)?;
+        self.is_new = true;
+        Ok(())
+    }
+
     /// Begins to make the light field that the fine one stands in for, unless one is being made.
     pub(super) fn make_relit(&mut self, stage: &Arc<Stage>, camera: &Camera, focus: &Focus) {
-        let Some((relighting, fine)) = self.relighting.zip(self.fine.as_ref()) else { return };
+        let Some((relighting, fine)) = self.relighting.as_ref().zip(self.fine.as_ref()) else { return };
         if self.maker.is_at_work() || self.is_paused {
             return;
         }
         let origin = match relighting {
-            Relighting::OfSamples(light) => FieldOrigin::Relit(fine.into(), light),
-            Relighting::ByBake => FieldOrigin::LoadOrBake { least_margin_px: 0.0 },
+            Relighting::OfSamples(light) => FieldOrigin::Relit(fine.into(), *light),
+            Relighting::ByBake | Relighting::ByEstimate(_) => {
+                FieldOrigin::LoadOrBake { least_margin_px: 0.0 }
+            }
         };
         self.make_field(origin, stage, camera, focus.clone());
     }

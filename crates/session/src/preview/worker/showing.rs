@@ -14,6 +14,7 @@ use crate::preview::picture_sizes::{
 };
 use crate::preview::pinhole::is_same_view;
 use crate::preview::presenter::{NewPicture, Relation};
+use crate::preview::relighting::Relighting;
 use document::Stage;
 use focus::Focus;
 use lens::{Camera, Picture};
@@ -46,6 +47,7 @@ impl Worker {
         let start = Instant::now();
         let update = fine.execute_plan(plan, camera, &focus, &UntilCameraMoves(&self.shared))?;
         self.standing = None;
+        let layer = self.relighting.as_ref().and_then(Relighting::layer);
         let light_passes = fine.light_passes();
         let is_new = std::mem::take(&mut self.is_new);
         if update != SumUpdate::Unchanged || is_new {
@@ -66,9 +68,13 @@ impl Worker {
                 picture: fine.source(),
                 camera,
                 enlarged_to: None,
-                layer: None,
+                quality: match (&layer, is_exact) {
+                    (Some(_), _) => Quality::Coarse,
+                    (None, true) => Quality::Exact,
+                    (None, false) => Quality::Viewing,
+                },
+                layer,
                 kind: PreviewKind::from(&update),
-                quality: if is_exact { Quality::Exact } else { Quality::Viewing },
                 seconds: start.elapsed().as_secs_f64() + elsewhere,
                 modelled: fine.modelled(),
                 relation: match update {
@@ -108,7 +114,8 @@ impl Worker {
         let fits = |(picture, of): &&mut (StandingPicture, Camera)| {
             picture.size() == size && is_same_view(of, camera)
         };
-        let layer = standing.filter(fits).map(|(picture, _)| Arc::new(picture.layer_over(draft)) as _);
+        let standing = standing.filter(fits).map(|(picture, _)| Arc::new(picture.layer_over(draft)) as _);
+        let layer = self.relighting.as_ref().and_then(Relighting::layer).or(standing);
         self.presenter.show(NewPicture {
             camera: &resized(camera, [draft.width, draft.height]),
             picture: PictureSource::InMemory(draft),
