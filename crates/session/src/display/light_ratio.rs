@@ -32,9 +32,9 @@ impl LightRatio {
         let bounds = [brightness.min(1.0), brightness.max(1.0)];
         let factor = |cell: usize| {
             std::array::from_fn(|c| {
-                let [before, after] = [&sums[0], &sums[1]].map(|sums| sums[cell][c]);
-                // What was black may be anything: so it stays.
-                if before > 0.0 { (after / before).clamp(bounds[0], bounds[1]) } else { 1.0 }
+                let growth = sums[1][cell][c] / sums[0][cell][c];
+                // Of what was black, or is no number, nothing is known: so it stays.
+                if growth.is_finite() { growth.clamp(bounds[0], bounds[1]) } else { 1.0 }
             })
         };
         let factors = (0..sums[0].len()).map(factor).collect();
@@ -121,6 +121,6 @@ mod tests {
         let ratio = LightRatio::new([&before, &after], 2.0, [6, 4]);
         assert!(ratio.factors.iter().all(|factor| *factor == [1.0; 3]));
         let ratio = LightRatio::new([&after, &before], 0.5, [6, 4]);
-        assert!(ratio.factors.iter().all(|&[r, _, b]| r == 0.5 && b == 1.0));
+        assert!(ratio.factors.iter().all(|factor| *factor == [0.5, 1.0, 1.0]));
     }
 }
