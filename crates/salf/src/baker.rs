@@ -115,20 +115,14 @@ fn bake_retaining(
     let mut patches_of_block = patches(&baker, &|_| true, &Stage::new(&surveying, SURVEY_SHARE, 1.0))?;
     let blocks: Vec<IVec2> = rows.iter().flat_map(|&y| (0..columns).map(move |x| IVec2::new(x, y))).collect();
     let numbered: Vec<_> = blocks.iter().copied().enumerate().collect();
-    let (parts, outliers) = pack_blocks(
-        &baker,
-        &numbered,
-        &Stage::named(progress, "visibility", SURFACES_SHARE, 1.0),
-        |number, block| {
-            let patches = patches_of_block.get(&domain.corner_of_block(block)).map_or(&[][..], Vec::as_slice);
-            match retained.get(number) {
-                Some(surveys) => baker.bake_block(&occluders, surveys, patches),
-                None => {
-                    baker.bake_block(&occluders, &baker.survey_cells(&domain.cells_of_block(block)), patches)
-                }
-            }
-        },
-    )?;
+    let looking = Stage::named(progress, "visibility", SURFACES_SHARE, 1.0);
+    let (parts, outliers) = pack_blocks(&baker, &numbered, &looking, |number, block| {
+        let patches = patches_of_block.get(&domain.corner_of_block(block)).map_or(&[][..], Vec::as_slice);
+        match retained.get(number) {
+            Some(surveys) => baker.bake_block(&occluders, surveys, patches),
+            None => baker.bake_block(&occluders, &baker.survey_cells(&domain.cells_of_block(block)), patches),
+        }
+    })?;
     blocks.iter().for_each(|&block| drop(patches_of_block.remove(&domain.corner_of_block(block))));
     let outside = outside_domain(patches_of_block);
     let samples = Samples::join(parts.into_iter().chain(outside));

@@ -40,3 +40,9 @@ pub(crate) fn lay_over_each<R>(
 pub(crate) fn share_below(value: f32, range: &RangeInclusive<f32>) -> f32 {
     1.0 - ((value - range.start()) / (range.end() - range.start())).clamp(0.0, 1.0)
 }
+
+/// The pixels of a row of `own` that one of `size` lies between, and how far toward the second.
+pub(crate) fn neighbours(at: u32, size: u32, own: u32) -> ([usize; 2], f32) {
+    let place = ((at as f32 + 0.5) * own as f32 / size as f32 - 0.5).clamp(0.0, own as f32 - 1.0);
+    ([place as usize, (place as usize + 1).min(own as usize - 1)], place.fract())
+}

@@ -3,7 +3,7 @@
 //! Light is linear: where the world's is multiplied by b, and other light is not, what a point sends grows by a factor between 1 and b. Blurred
 //! pictures are multiplied by that factor as the pinhole pictures before and after show it, over cells so large that noise and blur do not matter.
 
-use crate::display::layer::Layer;
+use crate::display::layer::{Layer, neighbours};
 use crate::display::picture_ring::Rectangle;
 use lens::Picture;
 use rayon::prelude::*;
@@ -15,7 +15,7 @@ const CELLS_ACROSS: u32 = 32;
 #[derive(Debug)]
 pub(crate) struct LightRatio {
     /// Columns and rows of the cells.
-    size: [usize; 2],
+    size: [u32; 2],
     /// Columns and rows of the picture that it is laid over.
     picture_size: [u32; 2],
     factors: Vec<[f32; 3]>,
@@ -38,36 +38,25 @@ impl LightRatio {
             })
         };
         let factors = (0..sums[0].len()).map(factor).collect();
-        Self { size: [across, down].map(|cells| cells as usize), picture_size, factors }
-    }
-
-    /// The factors at a pixel: between those of the four cells around it.
-    fn at(&self, column: u32, row: u32) -> [f32; 3] {
-        let axis = |at: u32, axis: usize| {
-            let cells = self.size[axis] as f32;
-            let place = (at as f32 + 0.5) * cells / self.picture_size[axis] as f32 - 0.5;
-            let place = place.clamp(0.0, cells - 1.0);
-            (place as usize, (place as usize + 1).min(self.size[axis] - 1), place.fract())
-        };
-        let ((left, right, u), (above, below, v)) = (axis(column, 0), axis(row, 1));
-        let factors = |x: usize, y: usize| self.factors[y * self.size[0] + x];
-        let mixed = |a: f32, b: f32, share: f32| a + (b - a) * share;
-        let corners =
-            [factors(left, above), factors(right, above), factors(left, below), factors(right, below)];
-        std::array::from_fn(|c| {
-            let [a, b, d, e] = corners.map(|corner| corner[c]);
-            mixed(mixed(a, b, u), mixed(d, e, u), v)
-        })
+        Self { size: [across, down], picture_size, factors }
     }
 }
 
 impl Layer for LightRatio {
     fn lay_over(&self, part: &mut Picture, [columns, rows]: &Rectangle) {
+        let place = |at: u32, axis: usize| neighbours(at, self.picture_size[axis], self.size[axis]);
+        let across: Vec<_> = columns.clone().map(|column| place(column, 0)).collect();
+        let cells_across = self.size[0] as usize;
+        let mixed = |a: f32, b: f32, share: f32| a + (b - a) * share;
         let lines = part.radiance.par_chunks_mut(columns.len().max(1)).zip(rows.clone());
         lines.for_each(|(radiance, row)| {
-            for (radiance, column) in radiance.iter_mut().zip(columns.clone()) {
-                let factors = self.at(column, row);
-                *radiance = std::array::from_fn(|c| radiance[c] * factors[c]);
+            let (between, v) = place(row, 1);
+            let [above, below] = between.map(|row| &self.factors[row * cells_across..][..cells_across]);
+            for (radiance, ([left, right], u)) in radiance.iter_mut().zip(&across) {
+                for (c, light) in radiance.iter_mut().enumerate() {
+                    let along = |factors: &[[f32; 3]]| mixed(factors[*left][c], factors[*right][c], *u);
+                    *light *= mixed(along(above), along(below), v);
+                }
             }
         });
     }

@@ -2,7 +2,7 @@
 //! pixels, what stood is shown itself.
 
 use crate::display::antialiasing::rgb_and_coverage;
-use crate::display::layer::{Layer, lay_over_each, share_below};
+use crate::display::layer::{Layer, lay_over_each, neighbours, share_below};
 use crate::display::picture_ring::Rectangle;
 use lens::Picture;
 use rayon::prelude::*;
@@ -136,12 +136,6 @@ impl Layer for StandingLayer {
             (rgb_and_coverage(&self.picture, index), share, [0.0; 4])
         });
     }
-}
-
-/// The pixels of a row of `own` that one of `size` lies between, and how far toward the second.
-fn neighbours(at: u32, size: u32, own: u32) -> ([usize; 2], f32) {
-    let place = ((at as f32 + 0.5) * own as f32 / size as f32 - 0.5).clamp(0.0, own as f32 - 1.0);
-    ([place as usize, (place as usize + 1).min(own as usize - 1)], place.fract())
 }
 
 #[cfg(test)]
