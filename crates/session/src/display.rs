@@ -1,6 +1,8 @@
 //! Showing pictures on a screen: tone-mapped pixels, and which of them changed since the last frame.
 
 mod antialiasing;
+mod defocused_layer;
+mod defocusing;
 mod enlarging;
 mod glare;
 mod hole_filling;
@@ -9,7 +11,6 @@ mod light_ratio;
 mod live_picture;
 mod picture_ring;
 mod screen;
-mod sharp_layer;
 mod standing;
 mod thumbnails;
 
@@ -19,6 +20,7 @@ pub use screen::Screen;
 pub use thumbnails::{Thumbnail, ThumbnailResult, Thumbnails};
 
 pub(crate) use antialiasing::antialiased;
+pub(crate) use defocusing::Defocused;
 pub(crate) use enlarging::{enlarged_part, enlarged_rectangle};
 pub(crate) use glare::darkening_stops;
 pub(crate) use hole_filling::filled;
@@ -27,5 +29,5 @@ pub(crate) use light_ratio::LightRatio;
 pub(crate) use live_picture::PictureSource;
 pub(crate) use picture_ring::{PictureRing, Rectangle, whole};
 pub(crate) use screen::{Content, Patch};
-pub(crate) use sharp_layer::SharpLayer;
+
 pub(crate) use standing::StandingPicture;

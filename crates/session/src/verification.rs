@@ -1,6 +1,6 @@
 //! Verifying a rectangle of the picture against the ground truth.
 
-use crate::preview::{Preview, PreviewKind, Quality};
+use crate::preview::{Preview, Quality};
 use lens::{Camera, Exposure};
 use project::{LinearPicture, ProjectError, compare};
 use std::sync::Arc;
@@ -47,8 +47,7 @@ impl Verification {
         exposure: Exposure,
     ) -> Option<Result<VerifiedError, ProjectError>> {
         let estimate = self.estimate.as_ref()?;
-        let is_same = preview.kind != PreviewKind::Pinhole
-            && preview.quality > Quality::Coarse
+        let is_same = preview.quality > Quality::Coarse
             && preview.picture.size() == [self.camera.width, self.camera.height];
         let shown = if is_same { preview.picture.fetch_region(self.region) } else { None }?;
         let compared = || {

@@ -49,7 +49,11 @@ fn stages_after(session: &mut Session, command: Command) -> Vec<Stage> {
             continue;
         };
         last = preview.id;
-        let kind = if preview.kind == PreviewKind::Pinhole { "pinhole" } else { "blurred" };
+        let kind = match preview.kind {
+            PreviewKind::Pinhole => "pinhole",
+            PreviewKind::Defocused => "defocused",
+            PreviewKind::Splat | PreviewKind::Update => "blurred",
+        };
         let quality = if preview.quality > Quality::Coarse { "fine" } else { "coarse" };
         let name = format!("{quality} {kind} {} × {}", preview.camera.width, preview.camera.height);
         stages.push(shown(session, name));
@@ -160,8 +164,16 @@ fn the_demo_only_gets_better() {
 #[test]
 fn scenes_of_others_only_get_better() {
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/gltf");
-    // Lamps of its own and the world light the last one.
-    for scene in ["Fox.glb", "FlightHelmet/FlightHelmet.gltf", "vr-gallery.glb", "portal.glb"] {
+    let scenes = [
+        "Fox.glb",
+        "FlightHelmet/FlightHelmet.gltf",
+        "vr-gallery.glb",
+        // Lamps of its own and the world light it.
+        "portal.glb",
+        // What is ten times as bright as white stands before black.
+        "DepthOfFieldExample.glb",
+    ];
+    for scene in scenes {
         let file = data.join(scene);
         if !file.is_file() {
             eprintln!("SKIPPED: {} is not there", file.display());

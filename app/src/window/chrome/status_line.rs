@@ -99,6 +99,7 @@ fn quality_text(preview: &Preview, drawing_exactly: Option<f32>) -> String {
     let exact = drawing_exactly.map(|share| format!(", exact {:.0} %", 100.0 * share)).unwrap_or_default();
     match (preview.kind, preview.quality) {
         (PreviewKind::Pinhole, _) => "no blur yet".into(),
+        (PreviewKind::Defocused, _) => "rough blur".into(),
         (_, Quality::Coarse) => "rough picture".into(),
         (_, Quality::Viewing) => format!("live picture{exact}"),
         (_, Quality::Exact) => "exact picture".into(),

@@ -116,6 +116,7 @@ fn watch_change(
         let Some(own) = preview.picture.fetch() else { continue };
         let what = match (preview.kind, preview.quality) {
             (PreviewKind::Pinhole, _) => "pinhole",
+            (PreviewKind::Defocused, _) => "defocused",
             (_, Quality::Coarse) => "coarse",
             (_, Quality::Viewing) => "viewing",
             (_, Quality::Exact) => "exact",

@@ -19,21 +19,6 @@ pub fn enlarged(picture: &Picture, size: [u32; 2]) -> Picture {
     enlarged_part(picture, size, size.map(|side| 0..side))
 }
 
-/// The picture of `size` of which every pixel is the mean of those whose middles lie in it; at most the picture's own size.
-pub(crate) fn reduced(picture: &Picture, size: [u32; 2]) -> Picture {
-    let own = [picture.width, picture.height];
-    debug_assert!(size[0] <= own[0] && size[1] <= own[1]);
-    let grid = PixelGrid::from_picture(picture, own.map(|side| 0..side));
-    let mut reduced = PixelGrid {
-        corner: [0, 0],
-        width: size[0] as usize,
-        values: vec![Vec4::ZERO; size[0] as usize * size[1] as usize],
-    };
-    let areas = areas_within(&reduced, own, size);
-    reduced.update_each(|x, y, _| grid.mean_within(&areas, x, y));
-    reduced.into_picture()
-}
-
 /// Where an enlarged picture differs if the picture does in a rectangle.
 pub(crate) fn enlarged_rectangle(picture: &Picture, size: [u32; 2], rectangle: &Rectangle) -> Rectangle {
     let own = [picture.width, picture.height];
@@ -233,17 +218,6 @@ impl PixelGrid {
         sum / count
     }
 
-    fn into_picture(self) -> Picture {
-        let (width, height) = (self.width as u32, (self.values.len() / self.width) as u32);
-        let mut picture = Picture::black(width, height);
-        let pixels = picture.radiance.par_iter_mut().zip(&mut picture.coverage).zip(self.values);
-        pixels.with_min_len(1 << 14).for_each(|((radiance, coverage), value)| {
-            let [r, g, b, covered] = value.to_array();
-            (*radiance, *coverage) = ([r, g, b], covered);
-        });
-        picture
-    }
-
     /// The values of a row, from a column.
     #[inline]
     fn row_from(&self, column: u32, row: u32) -> &[Vec4] {
@@ -328,7 +302,7 @@ mod tests {
         let nearest = picture([96, 72], |x, y| {
             waves(((x * 32.0).floor() + 0.5) / 32.0, ((y * 24.0).floor() + 0.5) / 24.0)
         });
-        assert!(rms(&reduced(&back, [32, 24]), &large.averaged(3)) < 0.01);
+        assert!(rms(&back.averaged(3), &large.averaged(3)) < 0.01);
         assert!(rms(&back, &large) < 0.2 * rms(&nearest, &large), "{}", rms(&back, &large));
         assert!(back.coverage.iter().all(|&covered| (covered - 1.0).abs() < 1e-5));
     }

@@ -5,6 +5,7 @@ use lens::Picture;
 use rayon::prelude::*;
 use std::fmt::Debug;
 use std::ops::RangeInclusive;
+use std::sync::Arc;
 
 /// Something that is laid over an enlarged picture.
 pub(crate) trait Layer: Debug + Send + Sync {
@@ -12,28 +13,51 @@ pub(crate) trait Layer: Debug + Send + Sync {
     fn lay_over(&self, part: &mut Picture, rectangle: &Rectangle);
 }
 
-/// Lays something over each pixel of `part`, a rectangle of a picture of so many columns: `pixel` gets what `of_row` is of its row, its place in
-/// the part's row, and its place in the picture; it gives the light (RGB, and coverage) that is to be there, how much of the picture's own this
-/// replaces, and what is added.
-pub(crate) fn lay_over_each<R>(
-    part: &mut Picture,
-    [columns, rows]: &Rectangle,
-    width: usize,
-    of_row: impl Fn(u32) -> R + Sync,
-    pixel: impl Fn(&R, usize, usize) -> ([f32; 4], f32, [f32; 4]) + Sync,
-) {
-    let part_width = columns.len().max(1);
-    let part_rows = part.radiance.par_chunks_mut(part_width).zip(part.coverage.par_chunks_mut(part_width));
-    part_rows.zip(rows.clone()).for_each(|((radiance, coverage), row)| {
-        let (of_row, first) = (of_row(row), row as usize * width + columns.start as usize);
-        for (offset, (radiance, coverage)) in radiance.iter_mut().zip(coverage).enumerate() {
-            let (base, share, detail) = pixel(&of_row, offset, first + offset);
-            let shown = |rough: f32, c: usize| rough + (base[c] - rough) * share + detail[c];
-            let [r, g, b] = *radiance;
-            *radiance = [shown(r, 0).max(0.0), shown(g, 1).max(0.0), shown(b, 2).max(0.0)];
-            *coverage = shown(*coverage, 3).clamp(0.0, 1.0);
-        }
-    });
+/// A picture that is laid over others of its size, here more and there less.
+#[derive(Debug)]
+pub(crate) struct PictureLayer {
+    picture: Arc<Picture>,
+    /// Columns and rows of the shares.
+    size: [u32; 2],
+    /// How much of what lies below is replaced, 0 to 1.
+    shares: Vec<f32>,
+}
+
+impl PictureLayer {
+    /// `picture` by `shares` of `size` columns and rows, between which they change linearly.
+    pub fn new(picture: Arc<Picture>, size: [u32; 2], shares: Vec<f32>) -> Self {
+        debug_assert_eq!(shares.len(), size[0] as usize * size[1] as usize);
+        Self { picture, size, shares }
+    }
+}
+
+impl Layer for PictureLayer {
+    fn lay_over(&self, part: &mut Picture, [columns, rows]: &Rectangle) {
+        let Picture { width, height, .. } = *self.picture;
+        let across: Vec<_> = columns.clone().map(|x| neighbours(x, width, self.size[0])).collect();
+        let row_shares = |row: u32| {
+            let columns = self.size[0] as usize;
+            let ([above, below], v) = neighbours(row, height, self.size[1]);
+            let [above, below] = [above, below].map(|row| &self.shares[row * columns..][..columns]);
+            let share = |column: usize| above[column] + (below[column] - above[column]) * v;
+            (0..columns).map(share).collect::<Vec<f32>>()
+        };
+        let part_width = columns.len().max(1);
+        let part_rows =
+            part.radiance.par_chunks_mut(part_width).zip(part.coverage.par_chunks_mut(part_width));
+        part_rows.zip(rows.clone()).for_each(|((radiance, coverage), row)| {
+            let (shares, first) = (row_shares(row), row as usize * width as usize + columns.start as usize);
+            let pixels = radiance.iter_mut().zip(coverage).zip(&across);
+            for (index, ((radiance, coverage), ([left, right], u))) in (first..).zip(pixels) {
+                let share = shares[*left] + (shares[*right] - shares[*left]) * u;
+                let own = self.picture.radiance[index];
+                for c in 0..3 {
+                    radiance[c] += (own[c] - radiance[c]) * share;
+                }
+                *coverage += (self.picture.coverage[index] - *coverage) * share;
+            }
+        });
+    }
 }
 
 /// 1 for what is below a range, 0 for what is above it.

@@ -1,9 +1,7 @@
 //! What a picture through another lens, which stood before, knows better than the draft of a new one: where both look the same in the draft's
 //! pixels, what stood is shown itself.
 
-use crate::display::antialiasing::rgb_and_coverage;
-use crate::display::layer::{Layer, lay_over_each, neighbours, share_below};
-use crate::display::picture_ring::Rectangle;
+use crate::display::layer::{PictureLayer, share_below};
 use lens::Picture;
 use rayon::prelude::*;
 use std::ops::RangeInclusive;
@@ -42,7 +40,7 @@ impl StandingPicture {
     }
 
     /// What lies over `draft` when it is enlarged to the size of what stood: that, where the lens changes less than a draft loses in detail.
-    pub fn layer_over(&mut self, draft: &Picture) -> StandingLayer {
+    pub fn layer_over(&mut self, draft: &Picture) -> PictureLayer {
         let size = [draft.width, draft.height];
         if self.reduced.size != size {
             self.reduced = Reduced::new(&self.picture, size);
@@ -58,7 +56,7 @@ impl StandingPicture {
         };
         let share = |index: usize| share_below(largest_near(index), &CHANGES);
         let shares = (0..changes.len()).into_par_iter().map(share).collect();
-        StandingLayer { picture: self.picture.clone(), size, shares }
+        PictureLayer::new(self.picture.clone(), size, shares)
     }
 }
 
@@ -109,49 +107,21 @@ fn seen(picture: &Picture, index: usize) -> [f32; 3] {
     [root(r), root(g), root(b)]
 }
 
-/// What is shown of a picture that stood, over a draft that is enlarged to its size.
-#[derive(Debug)]
-pub(crate) struct StandingLayer {
-    picture: Arc<Picture>,
-    /// Columns and rows of the draft.
-    size: [u32; 2],
-    /// How much of what stood each of its pixels shows.
-    shares: Vec<f32>,
-}
-
-impl Layer for StandingLayer {
-    fn lay_over(&self, part: &mut Picture, rectangle: &Rectangle) {
-        let columns = self.size[0] as usize;
-        let across: Vec<_> =
-            rectangle[0].clone().map(|x| neighbours(x, self.picture.width, self.size[0])).collect();
-        let row_shares = |row: u32| {
-            let ([above, below], v) = neighbours(row, self.picture.height, self.size[1]);
-            let [above, below] = [above, below].map(|row| &self.shares[row * columns..][..columns]);
-            let share = |column: usize| above[column] + (below[column] - above[column]) * v;
-            (0..columns).map(share).collect::<Vec<f32>>()
-        };
-        lay_over_each(part, rectangle, self.picture.width as usize, row_shares, |shares, offset, index| {
-            let ([left, right], u) = across[offset];
-            let share = shares[left] + (shares[right] - shares[left]) * u;
-            (rgb_and_coverage(&self.picture, index), share, [0.0; 4])
-        });
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::display::enlarging::{enlarged, reduced};
+    use crate::display::enlarging::enlarged;
+    use crate::display::layer::Layer;
 
     #[test]
     fn what_stood_stays_where_a_draft_shows_the_same() {
         // Fine stripes, which the draft shows as grey; it has another light on the right.
-        let (size, rough) = ([160, 80], [40, 20]);
+        let size = [160, 80];
         let mut standing = Picture::black(size[0], size[1]);
         standing.coverage.fill(1.0);
         let stripes = |index: usize| [if index.is_multiple_of(2) { 0.3 } else { 0.5 }; 3];
         standing.radiance = (0..standing.radiance.len()).map(stripes).collect();
-        let mut draft = reduced(&standing, rough);
+        let mut draft = standing.averaged(4);
         let of_right = draft.radiance.iter_mut().enumerate().filter(|(index, _)| index % 40 >= 20);
         of_right.for_each(|(_, rgb)| *rgb = [0.8; 3]);
         let mut shown = enlarged(&draft, size);

@@ -24,7 +24,7 @@ pub struct Preview {
     pub camera: Camera,
     /// Seconds that making it took.
     pub seconds: f64,
-    /// What the light field holds; nothing for a pinhole picture.
+    /// What the light field holds; nothing for a picture without one.
     pub modelled: Modelled,
     /// How many changes of the map it has seen, as [`crate::Session::map_serial`] counts them.
     pub map_serial: u64,
@@ -35,8 +35,10 @@ pub struct Preview {
 /// How a preview was made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PreviewKind {
-    /// Without blur, while the light field is being baked.
+    /// Without blur, while the camera moves.
     Pinhole,
+    /// One without blur, blurred by itself, while the light field is being baked.
+    Defocused,
     /// From the light field, whole.
     Splat,
     /// From the light field, only what paint moved.
@@ -46,7 +48,7 @@ pub enum PreviewKind {
 /// How good a preview is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Quality {
-    /// The quick picture of few pixels, or one without blur, that a finer one is about to replace.
+    /// The quick picture of few pixels, or one without a light field, that a finer one is about to replace.
     Coarse,
     /// Of full size, summed within the tolerance, at least where it changed since it was exact.
     Viewing,

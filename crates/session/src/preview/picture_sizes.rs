@@ -11,7 +11,7 @@ const COARSE_SECONDS: f64 = 3.0;
 /// One that takes so long, s, needs none before it.
 const QUICK_COARSE_SECONDS: f64 = 0.7;
 
-/// The first blurred picture has so many pixels: less than a second's work even where each takes half a millisecond, as with glossy
+/// The first picture of a light field has so many pixels: less than a second's work even where each takes half a millisecond, as with glossy
 /// surfaces under a sky.
 const GLANCE_PIXELS: f64 = 1500.0;
 
@@ -24,8 +24,8 @@ const MIN_INTERIM_PIXELS: f64 = 200_000.0;
 /// A picture takes about so long while the camera moves, s: twenty a second.
 const MOVING_SECONDS: f64 = 0.05;
 
-/// And when it rests, s, before there is blur.
-const RESTING_SECONDS: f64 = 0.4;
+/// And when it rests, s, before it is blurred.
+const RESTING_SECONDS: f64 = 0.8;
 
 /// Sides of the picture while the camera moves are at least this share of the preview's.
 const MIN_MOVING_SCALE: f64 = 1.0 / 12.0;

@@ -1,7 +1,7 @@
-//! Pictures without blur: those that follow a moving camera, and what is laid over rough pictures.
+//! Pictures without blur: those that follow a moving camera, and those that are blurred by themselves.
 
-use super::picture_sizes::pixel_count;
-use crate::display::{Layer, SharpLayer, antialiased};
+use super::picture_sizes::{pixel_count, resized, resting_camera};
+use crate::display::{Defocused, antialiased};
 use crate::error::SessionError;
 use baselines::FirstHits;
 use document::Stage;
@@ -25,6 +25,10 @@ struct Pinhole {
     hits: FirstHits,
     camera: Camera,
     map: Arc<FocusMap>,
+    /// Whether it has as many pixels as there is time for when the camera rests.
+    is_resting: bool,
+    /// The same, blurred by the lens of a camera.
+    defocused: Option<(Camera, Arc<Defocused>)>,
 }
 
 impl PinholeTracer {
@@ -54,23 +58,58 @@ impl PinholeTracer {
         let hits = FirstHits::trace(stage.tracer(), &*radiance, focus, camera, progress)?;
         self.pace = Some(start.elapsed().as_secs_f64() / pixel_count(camera));
         let picture = antialiased(&hits.picture());
-        self.last = Some(Pinhole { hits, camera: camera.clone(), map: map.clone() });
+        self.last = Some(Pinhole {
+            hits,
+            camera: camera.clone(),
+            map: map.clone(),
+            is_resting: false,
+            defocused: None,
+        });
         Ok(picture)
     }
 
-    /// Whether the last picture shows the view of a camera with this map, in at least as many pixels.
-    pub fn shows(&self, camera: &Camera, map: &FocusMap) -> bool {
-        let fits = |last: &Pinhole| is_same_view(&last.camera, camera) && map.shares_tiles_with(&last.map);
-        self.last.as_ref().is_some_and(|last| fits(last) && last.camera.width >= camera.width)
+    /// Traces the picture of a camera that rests, unless the last one is that, or has as many pixels.
+    ///
+    /// # Errors
+    /// The light cannot be solved, or the work was cancelled.
+    pub fn trace_resting(
+        &mut self,
+        stage: &Stage,
+        camera: &Camera,
+        (focus, map): (&Focus, &Arc<FocusMap>),
+        progress: &dyn Progress,
+    ) -> Result<(), SessionError> {
+        let resting = resting_camera(camera, self.pace);
+        let is_enough =
+            |last: &Pinhole| last.shows(camera, map) && (last.is_resting || last.hits.width >= resting.width);
+        if !self.last.as_ref().is_some_and(is_enough) {
+            self.trace(stage, &resting, (focus, map), progress)?;
+        }
+        self.last.iter_mut().for_each(|last| last.is_resting = true);
+        Ok(())
     }
 
-    /// What of the last picture is laid over a rough one that is enlarged to `size`; `None` if it shows another view or focus.
-    pub fn layer_over(&self, rough: &Camera, size: [u32; 2], map: &FocusMap) -> Option<Arc<dyn Layer>> {
-        let Pinhole { hits, camera, map: traced_map } = self.last.as_ref()?;
-        let fits = is_same_view(camera, rough) && map.shares_tiles_with(traced_map);
-        // The lens may be another.
-        let camera = Camera { width: camera.width, height: camera.height, ..rough.clone() };
-        fits.then(|| Arc::new(SharpLayer::new(hits, &camera, [rough.width, rough.height], size)) as _)
+    /// The last picture, blurred by the lens of a camera, and whether it was not asked for before; `None` if it shows another view or focus.
+    pub fn defocused(&mut self, camera: &Camera, map: &FocusMap) -> Option<(Arc<Defocused>, bool)> {
+        let fits =
+            |last: &&mut Pinhole| is_same_view(&last.camera, camera) && map.shares_tiles_with(&last.map);
+        let Pinhole { hits, defocused, .. } = self.last.as_mut().filter(fits)?;
+        let camera = resized(camera, [hits.width, hits.height]);
+        if let Some((of, kept)) = defocused
+            && *of == camera
+        {
+            return Some((kept.clone(), false));
+        }
+        let made = Arc::new(Defocused::new(hits, &camera));
+        *defocused = Some((camera, made.clone()));
+        Some((made, true))
+    }
+}
+
+impl Pinhole {
+    /// Whether it is the view of a camera, with this map.
+    fn shows(&self, camera: &Camera, map: &FocusMap) -> bool {
+        is_same_view(&self.camera, camera) && map.shares_tiles_with(&self.map)
     }
 }
 

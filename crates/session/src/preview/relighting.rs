@@ -8,7 +8,7 @@ use crate::preview::picture_sizes::resized;
 use baselines::FirstHits;
 use document::Stage;
 use focus::Focus;
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use lens::Camera;
 use light::LightQuality;
 use progress::Progress;
@@ -110,7 +110,7 @@ fn light_change(scene: &Scene, from: &World, to: &World) -> Option<LightChange> 
     let is_same_but_for_brightness = World { strength: to.strength, ..from.lighting() } == to.lighting();
     let factor = match () {
         // The world lights none of it.
-        _ if scene.is_unlit() => 1.0,
+        _ if scene.is_unlit() || [from, to].map(is_dark) == [true; 2] => 1.0,
         _ if !is_same_but_for_brightness => return None,
         _ if brightness == 1.0 || (brightness.is_finite() && scene.is_lit_by_world_alone()) => brightness,
         _ => return None,
@@ -123,4 +123,12 @@ fn light_change(scene: &Scene, from: &World, to: &World) -> Option<LightChange> 
         _ => return None,
     };
     Some(LightChange { factor, backdrop })
+}
+
+/// Whether a world sends no light.
+fn is_dark(world: &World) -> bool {
+    match world.environment {
+        Environment::Uniform(radiance) => radiance * world.strength == Vec3::ZERO,
+        _ => world.strength == 0.0,
+    }
 }

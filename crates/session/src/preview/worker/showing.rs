@@ -10,7 +10,7 @@ use crate::preview::light_field_maker::FieldOrigin;
 use crate::preview::mailbox::UntilCameraMoves;
 use crate::preview::picture::{PreviewKind, Quality};
 use crate::preview::picture_sizes::{
-    has_coarse_pictures, moving_camera, next_coarse_camera, pixel_count, resized, resting_camera,
+    has_coarse_pictures, moving_camera, next_coarse_camera, pixel_count, resized,
 };
 use crate::preview::pinhole::is_same_view;
 use crate::preview::presenter::{NewPicture, Relation};
@@ -171,6 +171,29 @@ impl Worker {
         self.pinhole.trace(stage, camera, (focus, map), &self.shared.quick)
     }
 
+    /// The picture without blur of a camera that rests, blurred by itself; parts of it are laid over the pictures of few pixels, too.
+    fn show_defocused(&mut self, stage: &Stage, camera: &Camera, focus: &Focus) -> Result<(), SessionError> {
+        let Some(map) = self.map.clone() else { return Ok(()) };
+        let start = Instant::now();
+        self.shared.begin(PreviewActivity::Tracing)?;
+        self.pinhole.trace_resting(stage, camera, (focus, &map), &self.shared.quick)?;
+        if let Some((defocused, true)) = self.pinhole.defocused(camera, &map) {
+            let picture = &defocused.picture;
+            self.presenter.show(NewPicture {
+                picture: PictureSource::InMemory(picture),
+                camera: &resized(camera, [picture.width, picture.height]),
+                enlarged_to: Some([camera.width, camera.height]),
+                layer: None,
+                kind: PreviewKind::Defocused,
+                quality: Quality::Coarse,
+                seconds: start.elapsed().as_secs_f64(),
+                modelled: Modelled::default(),
+                relation: Relation::New,
+            });
+        }
+        Ok(())
+    }
+
     /// Pictures of few pixels, each of more than the one before; begins with the best that need not be baked, and ends there
     /// while a stroke waits for more.
     pub(super) fn show_coarse(
@@ -179,14 +202,10 @@ impl Worker {
         camera: &Camera,
         focus: &Focus,
     ) -> Result<(), SessionError> {
-        let size = [camera.width, camera.height];
-        let resting = resting_camera(camera, self.pinhole.pace());
-        let has_layer = self.map.as_ref().is_some_and(|map| self.pinhole.shows(&resting, map));
-        if !has_layer && !self.is_painting && has_coarse_pictures(camera) {
-            // What is laid over them.
-            self.trace_pinhole(stage, &resting, focus)?;
+        if !self.is_painting && has_coarse_pictures(camera) {
+            self.show_defocused(stage, camera, focus)?;
         }
-        let mut shown_pixels = 0.0;
+        let (size, mut shown_pixels) = ([camera.width, camera.height], 0.0);
         let standing = self.coarse.as_ref().map(|coarse| (coarse, resized(camera, coarse.size())));
         if let Some((_, small)) = standing.filter(|(coarse, small)| coarse.can_show(small)) {
             shown_pixels = pixel_count(&small);
@@ -210,7 +229,9 @@ impl Worker {
         focus: &Focus,
     ) -> Result<(), SessionError> {
         self.coarse.take_if(|coarse| !coarse.can_show(small));
-        let layer = self.map.as_ref().and_then(|map| self.pinhole.layer_over(small, size, map));
+        let rough = [small.width, small.height];
+        let defocused = self.map.as_ref().and_then(|map| self.pinhole.defocused(small, map));
+        let layer = defocused.map(|(picture, _)| Arc::new(picture.layer_over(rough, size)) as _);
         let coarse = match &mut self.coarse {
             Some(coarse) => coarse,
             None => {
