@@ -155,6 +155,11 @@ impl InputKind {
 }
 
 impl Input {
+    /// Whether file or project say from where the scene is seen.
+    pub(crate) fn has_own_camera(&self) -> bool {
+        self.project.is_some() || !self.scene.has_default_camera
+    }
+
     /// Opens the file or folder at `path`.
     ///
     /// # Errors

@@ -138,7 +138,7 @@ impl Document {
             Some(project) => Input::open_project(path, project, &VariantChoice::AsSaved, resources, steps)?,
             None => Input::open(path, resources, steps)?,
         };
-        let has_own_camera = input.project.is_some() || !input.scene.has_default_camera;
+        let has_own_camera = input.has_own_camera();
         let mut document = Self::from_input(input, unwrap, steps)?;
         if !has_own_camera {
             let first = first_view(document.stage.tracer(), &document.camera);

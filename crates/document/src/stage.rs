@@ -3,6 +3,7 @@
 mod surface_colors;
 
 use crate::error::DocumentError;
+use crate::first_view::first_view;
 use crate::input::{Input, load_capture, picture_atlas};
 use crate::picking::SurfaceHit;
 use crate::scene_file::{add_floor, atlas_error, load_variant};
@@ -303,13 +304,20 @@ impl Stage {
         let project = input.project.as_ref();
         let is_large = input.scene.triangles.len() >= LARGE_SCENE_TRIANGLES;
         let is_unwrapped = project.is_some_and(|project| project.atlas.is_some());
+        let announce = || {
+            let is_painted = project.is_some_and(|project| project.focus_map.is_some());
+            match input.has_own_camera() {
+                true => steps.scene_ready(&lit, &input.camera, is_painted),
+                false => steps.scene_ready(&lit, &first_view(lit.tracer(), &input.camera).camera, is_painted),
+            }
+        };
         if is_large && !is_unwrapped {
-            steps.scene_ready(&lit, &input.camera);
+            announce();
         }
         let atlas = input.atlas(unwrap, steps)?;
         if is_large && is_unwrapped {
             lit.set_atlas(&atlas);
-            steps.scene_ready(&lit, &input.camera);
+            announce();
         }
         let map = match project.and_then(|project| project.focus_map.clone()) {
             Some(map) => map,

@@ -13,8 +13,8 @@ pub trait Steps: Sync {
     /// A step has a message for the user, one sentence.
     fn notice(&self, _sentence: &str) {}
 
-    /// The scene can be shown through `camera`, though it cannot be painted on yet.
-    fn scene_ready(&self, _scene: &Arc<LitScene>, _camera: &Camera) {}
+    /// The scene can be shown through `camera`, though it cannot be painted on yet. Where it `is_painted`, how it is focused is not known.
+    fn scene_ready(&self, _scene: &Arc<LitScene>, _camera: &Camera, _is_painted: bool) {}
 
     /// The picture of what is being opened can be shown, though it has no surface yet.
     fn picture_ready(&self, _picture: &Picture) {}

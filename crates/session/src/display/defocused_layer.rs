@@ -11,7 +11,7 @@ use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 /// Between these diameters of the smallest circle of confusion whose light is there, in pixels of the rough picture, that one's light takes over.
-const ROUGH_CIRCLES: RangeInclusive<f32> = 2.0..=4.0;
+const ROUGH_CIRCLES: RangeInclusive<f32> = 2.5..=5.0;
 
 impl Defocused {
     /// What is laid over a picture of `rough` columns and rows that is enlarged to `size`.
@@ -67,7 +67,7 @@ mod tests {
 
     #[test]
     fn between_both_they_are_mixed() {
-        let shares = shares(3.0);
+        let shares = shares(3.75);
         assert!(shares[..160].iter().all(|&share| (share - 0.5).abs() < 1e-5), "{shares:?}");
     }
 }

@@ -137,7 +137,7 @@ mod tests {
             |pace: Option<f64>| [moving_camera(&camera, pace).width, resting_camera(&camera, pace).width];
         assert_eq!(width(None), [320, 320]);
         assert_eq!(width(Some(1e-8)), [960, 960]);
-        assert_eq!(width(Some(1e-6)), [298, 843]);
+        assert_eq!(width(Some(1e-6)), [298, 960]);
         assert_eq!(width(Some(1.0)), [80, 320]);
         assert_eq!(width(Some(0.0)), [960, 960]);
     }

@@ -1,6 +1,6 @@
-//! What is seen of a scene that takes a while to prepare, before it can be painted on: a small picture without blur.
+//! What is seen of a scene that takes a while to prepare, before it can be painted on: a small picture, blurred where nothing is painted yet.
 
-use crate::display::{Content, Patch};
+use crate::display::{Content, Defocused, Patch};
 use crate::error::SessionError;
 use crate::job_steps::JobSteps;
 use crate::session::job_outcome::JobOutcome;
@@ -43,13 +43,14 @@ impl Steps for OpeningSteps<'_> {
         self.steps.begin(label)
     }
 
-    fn scene_ready(&self, lit: &Arc<LitScene>, camera: &Camera) {
+    fn scene_ready(&self, lit: &Arc<LitScene>, camera: &Camera, is_painted: bool) {
         let camera = scale_to_fit(camera, SIDE_PX);
         let focus = Focus::constant(lit.scene().clone(), FocusOffset::STANDARD);
         let progress = self.begin("first look");
         let light = lit.quick(&camera, &*progress);
         if let Ok(hits) = FirstHits::trace(lit.tracer(), &*light, &focus, &camera, &*progress) {
-            self.picture_ready(&hits.picture());
+            let picture = if is_painted { hits.picture() } else { Defocused::new(&hits, &camera).picture };
+            self.picture_ready(&picture);
         }
         // The scene is unwrapped meanwhile.
         lit.start_rough(&camera);
