@@ -171,27 +171,30 @@ impl Worker {
         self.pinhole.trace(stage, camera, (focus, map), &self.shared.quick)
     }
 
-    /// The picture without blur of a camera that rests, blurred by itself; parts of it are laid over the pictures of few pixels, too.
-    fn show_defocused(&mut self, stage: &Stage, camera: &Camera, focus: &Focus) -> Result<(), SessionError> {
-        let Some(map) = self.map.clone() else { return Ok(()) };
-        let start = Instant::now();
+    /// The picture without blur of a camera that rests: it is laid over the pictures of few pixels, blurred by itself.
+    fn trace_resting(&mut self, stage: &Stage, camera: &Camera, focus: &Focus) -> Result<(), SessionError> {
         self.shared.begin(PreviewActivity::Tracing)?;
-        self.pinhole.trace_resting(stage, camera, (focus, &map), &self.shared.quick)?;
-        if let Some((defocused, true)) = self.pinhole.defocused(camera, &map) {
-            let picture = &defocused.picture;
-            self.presenter.show(NewPicture {
-                picture: PictureSource::InMemory(picture),
-                camera: &resized(camera, [picture.width, picture.height]),
-                enlarged_to: Some([camera.width, camera.height]),
-                layer: None,
-                kind: PreviewKind::Defocused,
-                quality: Quality::Coarse,
-                seconds: start.elapsed().as_secs_f64(),
-                modelled: Modelled::default(),
-                relation: Relation::New,
-            });
-        }
-        Ok(())
+        let Some(map) = &self.map else { return Err(SessionError::NothingOpen) };
+        self.pinhole.trace_resting(stage, camera, (focus, map), &self.shared.quick)
+    }
+
+    /// Shows that picture, unless it was before.
+    fn show_defocused(&mut self, camera: &Camera) {
+        let start = Instant::now();
+        let defocused = self.map.as_ref().and_then(|map| self.pinhole.defocused(camera, map));
+        let Some((defocused, true)) = defocused else { return };
+        let picture = &defocused.picture;
+        self.presenter.show(NewPicture {
+            picture: PictureSource::InMemory(picture),
+            camera: &resized(camera, [picture.width, picture.height]),
+            enlarged_to: Some([camera.width, camera.height]),
+            layer: None,
+            kind: PreviewKind::Defocused,
+            quality: Quality::Coarse,
+            seconds: start.elapsed().as_secs_f64(),
+            modelled: Modelled::default(),
+            relation: Relation::New,
+        });
     }
 
     /// Pictures of few pixels, each of more than the one before; begins with the best that need not be baked, and ends there
@@ -202,12 +205,16 @@ impl Worker {
         camera: &Camera,
         focus: &Focus,
     ) -> Result<(), SessionError> {
-        if !self.is_painting && has_coarse_pictures(camera) {
-            self.show_defocused(stage, camera, focus)?;
-        }
         let (size, mut shown_pixels) = ([camera.width, camera.height], 0.0);
         let standing = self.coarse.as_ref().map(|coarse| (coarse, resized(camera, coarse.size())));
-        if let Some((_, small)) = standing.filter(|(coarse, small)| coarse.can_show(small)) {
+        let standing = standing.filter(|(coarse, small)| coarse.can_show(small)).map(|(_, small)| small);
+        if !self.is_painting && has_coarse_pictures(camera) {
+            self.trace_resting(stage, camera, focus)?;
+            if standing.is_none() {
+                self.show_defocused(camera);
+            }
+        }
+        if let Some(small) = standing {
             shown_pixels = pixel_count(&small);
             self.show_small(stage, &small, size, focus)?;
         }
