@@ -306,10 +306,11 @@ impl Stage {
         let is_unwrapped = project.is_some_and(|project| project.atlas.is_some());
         let announce = || {
             let is_painted = project.is_some_and(|project| project.focus_map.is_some());
-            match input.has_own_camera() {
-                true => steps.scene_ready(&lit, &input.camera, is_painted),
-                false => steps.scene_ready(&lit, &first_view(lit.tracer(), &input.camera).camera, is_painted),
-            }
+            let camera = match input.has_own_camera() {
+                true => input.camera.clone(),
+                false => first_view(lit.tracer(), &input.camera).camera,
+            };
+            steps.scene_ready(&lit, &camera, is_painted);
         };
         if is_large && !is_unwrapped {
             announce();

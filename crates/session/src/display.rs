@@ -29,5 +29,4 @@ pub(crate) use light_ratio::LightRatio;
 pub(crate) use live_picture::PictureSource;
 pub(crate) use picture_ring::{PictureRing, Rectangle, whole};
 pub(crate) use screen::{Content, Patch};
-
 pub(crate) use standing::StandingPicture;

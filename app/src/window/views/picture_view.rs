@@ -438,7 +438,8 @@ impl PictureView {
 
     /// Draws an unobtrusive note if the picture is not final.
     fn paint_notice(&self, ui: &Ui, session: &Session) {
-        let pinhole = session.preview().is_some_and(|preview| preview.kind == PreviewKind::Pinhole);
+        let kind = session.preview().map(|preview| preview.kind);
+        let pinhole = kind == Some(PreviewKind::Pinhole);
         let text = match session.preview_activity() {
             _ if self.walk.is_on() => walk::HINT,
             _ if self.verify.is_selecting() => "drag a rectangle to verify it by ray tracing (Esc: cancel)",
@@ -449,6 +450,9 @@ impl PictureView {
             PreviewActivity::Splatting if pinhole => "drawing the picture, shown without blur meanwhile",
             PreviewActivity::Idle if pinhole => {
                 "shown without blur: the light field was not built (F5 builds it)"
+            }
+            PreviewActivity::Idle if kind == Some(PreviewKind::Defocused) => {
+                "blurred by depth: the light field was not built (F5 builds it)"
             }
             _ if self.shows_outdated_truth(session) => {
                 "ray traced before the last change (F12 traces it anew)"

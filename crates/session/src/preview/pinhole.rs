@@ -53,19 +53,8 @@ impl PinholeTracer {
         (focus, map): (&Focus, &Arc<FocusMap>),
         progress: &dyn Progress,
     ) -> Result<Picture, SessionError> {
-        let radiance = stage.lit.solve(camera, LightQuality::Rough, progress)?;
-        let start = Instant::now();
-        let hits = FirstHits::trace(stage.tracer(), &*radiance, focus, camera, progress)?;
-        self.pace = Some(start.elapsed().as_secs_f64() / pixel_count(camera));
-        let picture = antialiased(&hits.picture());
-        self.last = Some(Pinhole {
-            hits,
-            camera: camera.clone(),
-            map: map.clone(),
-            is_resting: false,
-            defocused: None,
-        });
-        Ok(picture)
+        let hits = self.trace_hits(stage, camera, (focus, map), progress)?;
+        Ok(antialiased(&hits.picture()))
     }
 
     /// Traces the picture of a camera that rests, unless the last one is that, or has as many pixels.
@@ -83,17 +72,32 @@ impl PinholeTracer {
         let is_enough =
             |last: &Pinhole| last.shows(camera, map) && (last.is_resting || last.hits.width >= resting.width);
         if !self.last.as_ref().is_some_and(is_enough) {
-            self.trace(stage, &resting, (focus, map), progress)?;
+            self.trace_hits(stage, &resting, (focus, map), progress)?;
         }
         self.last.iter_mut().for_each(|last| last.is_resting = true);
         Ok(())
     }
 
+    /// Traces a picture and keeps it.
+    fn trace_hits(
+        &mut self,
+        stage: &Stage,
+        camera: &Camera,
+        (focus, map): (&Focus, &Arc<FocusMap>),
+        progress: &dyn Progress,
+    ) -> Result<&FirstHits, SessionError> {
+        let radiance = stage.lit.solve(camera, LightQuality::Rough, progress)?;
+        let start = Instant::now();
+        let hits = FirstHits::trace(stage.tracer(), &*radiance, focus, camera, progress)?;
+        self.pace = Some(start.elapsed().as_secs_f64() / pixel_count(camera));
+        let (camera, map) = (camera.clone(), map.clone());
+        let traced = Pinhole { hits, camera, map, is_resting: false, defocused: None };
+        Ok(&self.last.insert(traced).hits)
+    }
+
     /// The last picture, blurred by the lens of a camera, and whether it was not asked for before; `None` if it shows another view or focus.
     pub fn defocused(&mut self, camera: &Camera, map: &FocusMap) -> Option<(Arc<Defocused>, bool)> {
-        let fits =
-            |last: &&mut Pinhole| is_same_view(&last.camera, camera) && map.shares_tiles_with(&last.map);
-        let Pinhole { hits, defocused, .. } = self.last.as_mut().filter(fits)?;
+        let Pinhole { hits, defocused, .. } = self.last.as_mut().filter(|last| last.shows(camera, map))?;
         let camera = resized(camera, [hits.width, hits.height]);
         if let Some((of, kept)) = defocused
             && *of == camera
