@@ -21,8 +21,8 @@ const INTERIM_SCALE: f64 = 1.0 / 3.0;
 /// Where the preview has fewer pixels, the fine one is soon there.
 const MIN_INTERIM_PIXELS: f64 = 200_000.0;
 
-/// A picture takes about so long while the camera moves, s: twenty a second.
-const MOVING_SECONDS: f64 = 0.05;
+/// A picture takes about so long while the camera moves, s: with what the window takes, some twenty a second.
+const MOVING_SECONDS: f64 = 0.035;
 
 /// And when it rests, s, before it is blurred.
 const RESTING_SECONDS: f64 = 0.8;
@@ -137,7 +137,7 @@ mod tests {
             |pace: Option<f64>| [moving_camera(&camera, pace).width, resting_camera(&camera, pace).width];
         assert_eq!(width(None), [320, 320]);
         assert_eq!(width(Some(1e-8)), [960, 960]);
-        assert_eq!(width(Some(1e-6)), [298, 960]);
+        assert_eq!(width(Some(1e-6)), [249, 960]);
         assert_eq!(width(Some(1.0)), [80, 320]);
         assert_eq!(width(Some(0.0)), [960, 960]);
     }

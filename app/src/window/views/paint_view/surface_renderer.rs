@@ -76,8 +76,8 @@ pub struct SurfaceRenderer {
     queue: wgpu::Queue,
     passes: Passes,
     frame_buffer: wgpu::Buffer,
-    /// Drawn pixels per side of a view pixel: supersampling smooths edges.
-    pixels_a_side: u32,
+    /// Whether the adapter is a software one.
+    is_software: bool,
     target: Option<Target>,
     drawn: Option<FrameUniform>,
 }
@@ -89,7 +89,7 @@ impl SurfaceRenderer {
     /// As [`catch_device_errors`].
     pub fn new(state: &egui_wgpu::RenderState) -> Result<Self, GraphicsError> {
         let (device, queue) = (state.device.clone(), state.queue.clone());
-        let software = state.adapter.get_info().device_type == wgpu::DeviceType::Cpu;
+        let is_software = state.adapter.get_info().device_type == wgpu::DeviceType::Cpu;
         let (passes, frame_buffer) = catch_device_errors(&device, || {
             let frame_buffer = device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("surface frame"),
@@ -99,8 +99,17 @@ impl SurfaceRenderer {
             });
             (Passes::new(&device), frame_buffer)
         })?;
-        let pixels_a_side = if software { 1 } else { 2 };
-        Ok(Self { device, queue, passes, frame_buffer, pixels_a_side, target: None, drawn: None })
+        Ok(Self { device, queue, passes, frame_buffer, is_software, target: None, drawn: None })
+    }
+
+    /// Whether the adapter is a software one: what is drawn takes the processor's time.
+    pub fn is_software(&self) -> bool {
+        self.is_software
+    }
+
+    /// Drawn pixels per side of a view pixel: supersampling smooths edges.
+    fn pixels_a_side(&self) -> u32 {
+        if self.is_software { 1 } else { 2 }
     }
 
     /// The device and queue to use for meshes and focus textures.
@@ -126,7 +135,7 @@ impl SurfaceRenderer {
         stale: Stale,
     ) -> Result<bool, GraphicsError> {
         let limit = self.device.limits().max_texture_dimension_2d;
-        let size = shown.size.map(|side| (side * self.pixels_a_side).clamp(1, limit));
+        let size = shown.size.map(|side| (side * self.pixels_a_side()).clamp(1, limit));
         let frame = frame_uniform(mesh, focus, SurfaceFrame { size, ..shown });
         let resized = self.target.as_ref().is_none_or(|target| target.size != size);
         let same_view = |drawn: &FrameUniform| {
@@ -140,7 +149,7 @@ impl SurfaceRenderer {
             Stale::Nothing => return Ok(false),
             Stale::Colors(rectangle) => [0, 1].map(|axis| {
                 let [start, end] = [rectangle[axis].start, rectangle[axis].end]
-                    .map(|side| side.saturating_mul(self.pixels_a_side).min(size[axis]));
+                    .map(|side| side.saturating_mul(self.pixels_a_side()).min(size[axis]));
                 start..end
             }),
             Stale::AllColors | Stale::Everything => size.map(|side| 0..side),

@@ -24,9 +24,14 @@ use light::PhotographLight;
 use session::Session;
 use std::ops::Range;
 use std::sync::{Arc, mpsc};
+use std::time::Duration;
 
 /// Margin around the picture when looking through the shot camera, as a factor.
 const FRAME_MARGIN: f64 = 1.06;
+
+/// While the shot camera is moved, a software adapter draws the view that follows it once in so long, s: most of the processor is left to the
+/// picture.
+const FOLLOWING_SECONDS: f64 = 0.5;
 
 /// Key of the viewpoint in the saved document.
 const VIEWPOINT_KEY: &str = "paint_view";
@@ -59,6 +64,8 @@ pub struct PaintView {
     snap_to_camera: bool,
     /// The view through the shot camera while it is followed.
     following: Option<OrbitCamera>,
+    /// The camera that was drawn last, and when, s.
+    last_drawn: Option<(OrbitCamera, f64)>,
 }
 
 impl PaintView {
@@ -98,6 +105,7 @@ impl PaintView {
             size: [1; 2],
             snap_to_camera: false,
             following: None,
+            last_drawn: None,
         }
     }
 
@@ -111,7 +119,7 @@ impl PaintView {
         }
         let Some(renderer) = &self.renderer else { return };
         let (device, queue) = renderer.device();
-        (self.mesh, self.drawn) = (None, None);
+        (self.mesh, self.drawn, self.last_drawn) = (None, None, None);
         match FocusTexture::new(device, queue, &document.map) {
             Ok(focus) => self.focus = Some(focus),
             Err(error) => self.problem = Some(error.to_string()),
@@ -379,6 +387,14 @@ impl PaintView {
         }
     }
 
+    /// How long the view waits until it follows the shot camera further, s; 0: it is drawn now.
+    fn waiting_seconds(&self, now: f64) -> f64 {
+        let is_software = self.renderer.as_ref().is_some_and(SurfaceRenderer::is_software);
+        let follows = is_software && self.following == Some(self.camera);
+        let behind = self.last_drawn.filter(|(camera, _)| follows && *camera != self.camera);
+        behind.map_or(0.0, |(_, drawn)| (drawn + FOLLOWING_SECONDS - now).max(0.0))
+    }
+
     fn draw(
         &mut self,
         ui: &Ui,
@@ -386,6 +402,8 @@ impl PaintView {
         appearance: SurfaceAppearance,
         actions: &mut Vec<Action>,
     ) {
+        let now = ui.input(|input| input.time);
+        let waiting = self.waiting_seconds(now);
         let (Some(blitter), Some(renderer), Some(mesh), Some(focus)) =
             (&self.blitter, &mut self.renderer, &self.mesh, &self.focus)
         else {
@@ -395,7 +413,14 @@ impl PaintView {
         let image = blit::snapped_to_pixels(self.rect, scale);
         self.size = [image.width(), image.height()].map(|side| (side * scale).round().max(1.0) as u32);
         let shown = SurfaceFrame { view: &self.camera, shot: &document.camera, appearance, size: self.size };
-        match renderer.draw(mesh, focus, shown, std::mem::take(&mut self.stale)) {
+        let drawn = if waiting > 0.0 {
+            ui.ctx().request_repaint_after(Duration::from_secs_f64(waiting));
+            Ok(false)
+        } else {
+            self.last_drawn = Some((self.camera, now));
+            renderer.draw(mesh, focus, shown, std::mem::take(&mut self.stale))
+        };
+        match drawn {
             Ok(new_texture) => {
                 if let Some(picture) = renderer.picture().filter(|_| new_texture || self.drawn.is_none()) {
                     self.drawn = Some(blitter.drawable(picture.clone()));

@@ -25,7 +25,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// A camera that has not moved for so long rests; until then, the window has the processor.
-const HAND_REST: Duration = Duration::from_millis(80);
+const HAND_REST: Duration = Duration::from_millis(200);
 
 impl From<&SumUpdate> for PreviewKind {
     fn from(update: &SumUpdate) -> Self {
