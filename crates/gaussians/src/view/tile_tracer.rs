@@ -13,6 +13,7 @@ use super::MAX_ALPHA;
 use super::eye::{Eye, Hit, MIN_TRANSMITTANCE};
 use super::shape::MIN_ALPHA;
 use glam::DVec3;
+use numerics::with_widest_simd;
 
 /// Rays that are traced at once.
 pub(crate) const LANES: usize = 8;
@@ -65,6 +66,14 @@ impl TileTracer {
 
     /// Traces up to [`LANES`] rays of row `row` in `directions` (z = 1).
     pub fn trace(&self, row: u32, directions: &[DVec3], follow: Follow, lanes: &mut LaneHits) {
+        with_widest_simd(
+            #[inline(always)]
+            || self.trace_lanes(row, directions, follow, lanes),
+        );
+    }
+
+    #[inline(always)]
+    fn trace_lanes(&self, row: u32, directions: &[DVec3], follow: Follow, lanes: &mut LaneHits) {
         lanes.hits.iter_mut().for_each(Vec::clear);
         lanes.rest = [1.0; LANES];
         let (mut x, mut y) = ([0.0; LANES], [0.0; LANES]);
@@ -145,8 +154,8 @@ fn exp_of_negative(x: f32) -> f32 {
     let exponent = x * std::f32::consts::LOG2_E;
     let rounded = exponent + ROUNDING;
     let f = (exponent - (rounded - ROUNDING)) * std::f32::consts::LN_2;
-    let power =
-        1.0 + f * (1.0 + f * (0.5 + f * (1.0 / 6.0 + f * (1.0 / 24.0 + f * (1.0 / 120.0 + f / 720.0)))));
+    let power = 1.0
+        + f * (1.0 + f * (0.5 + f * (1.0 / 6.0 + f * (1.0 / 24.0 + f * (1.0 / 120.0 + f * (1.0 / 720.0))))));
     let scale = rounded.to_bits().wrapping_sub(ROUNDING.to_bits()).wrapping_add(127) << 23;
     power * f32::from_bits(scale)
 }
@@ -184,7 +193,7 @@ impl TileSplat {
     }
 
     /// p·q / q·q.
-    #[inline]
+    #[inline(always)]
     fn depth(&self, x: f32, y: f32, square: f32) -> f32 {
         let [q, qx, qy] = &self.q;
         let along = |k: usize| self.p[k] * (q[k] + x * qx[k] + y * qy[k]);
