@@ -163,8 +163,8 @@ const ALLOWED: &[(&str, &[&str])] = &[
     (
         "python",
         &[
-            "render", "document", "light", "jobs", "project", "splat", "focus", "salf", "atlas", "scene",
-            "lens", "progress",
+            "report", "render", "document", "light", "jobs", "project", "splat", "focus", "salf", "atlas",
+            "scene", "lens", "progress",
         ],
     ),
     ("xtask", &[]),

@@ -1,4 +1,4 @@
-//! The source of the focus of a surface point: a constant, a texture in the mesh's UVs, or the painted atlas.
+//! The source of the focus of a surface point: a constant, a value for each triangle, a texture in the mesh's UVs, or the painted atlas.
 
 use crate::focus_map::focus_image::interpolate_uv;
 use crate::{FocusImage, FocusMap};
@@ -13,6 +13,8 @@ use std::sync::Arc;
 pub enum FocusSource {
     /// One value.
     Constant(FocusOffset),
+    /// A value for each triangle of the whole scene, by its index. Splats have a triangle each.
+    Triangles(Arc<[FocusOffset]>),
     /// A texture in the first UV set, bilinear.
     Uv {
         /// The texture.
@@ -61,6 +63,7 @@ impl SurfaceField<FocusOffset> for Focus {
         let part = self.scene.triangles[point.triangle as usize].part;
         match &self.parts[part as usize] {
             FocusSource::Constant(value) => *value,
+            FocusSource::Triangles(values) => values[point.triangle as usize],
             FocusSource::Uv { image, wrap } => {
                 let uv = interpolate_uv(self.scene.corner_uv(point.triangle, 0), point.weights());
                 image.sample(uv, *wrap)
@@ -74,10 +77,14 @@ impl SurfaceField<FocusOffset> for Focus {
     }
 
     fn affects_carried_light(&self) -> bool {
-        // Usually all parts share one map.
-        let mut last_checked = std::ptr::null();
+        // Usually all parts share one map, or the values of triangles.
+        let (mut last_checked, mut last_values) = (std::ptr::null(), std::ptr::null());
         let mut has_gloss = |source: &FocusSource| match source {
             FocusSource::Constant(value) => value.gloss != 0.0,
+            FocusSource::Triangles(values) => {
+                std::mem::replace(&mut last_values, values.as_ptr()) != values.as_ptr()
+                    && values.iter().any(|value| value.gloss != 0.0)
+            }
             FocusSource::Uv { image, .. } => image.gloss.is_some(),
             FocusSource::Atlas { map, .. } => {
                 std::mem::replace(&mut last_checked, Arc::as_ptr(map)) != Arc::as_ptr(map) && map.has_gloss()
@@ -97,6 +104,7 @@ impl SurfaceField<FocusOffset> for Focus {
         };
         match &self.parts[part as usize] {
             FocusSource::Constant(value) => Some([*value; 2]),
+            FocusSource::Triangles(values) => Some([values[triangle as usize]; 2]),
             FocusSource::Uv { image, wrap } => {
                 let size = DVec2::new(f64::from(image.width), f64::from(image.height));
                 let corners = self.scene.corner_uv(triangle, 0).map(|uv| uv.as_dvec2() * size);

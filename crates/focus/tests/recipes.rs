@@ -2,7 +2,8 @@
 
 use atlas::Atlas;
 use focus::{
-    Canvas, Channels, FillTarget, Focus, FocusError, FocusImage, FocusMap, FocusRecipe, RecipeEntry,
+    Canvas, Channels, FillTarget, Focus, FocusError, FocusImage, FocusMap, FocusRecipe, FocusSource,
+    RecipeEntry,
 };
 use glam::{DVec2, DVec3, Vec2};
 use lens::FocusOffset;
@@ -147,4 +148,25 @@ fn a_baked_recipe_gives_the_recipes_values() {
         assert_eq!(painted.at(SurfacePoint { triangle: 3, barycentric }), FocusOffset::SHARP);
         assert_eq!(painted.at(SurfacePoint { triangle: 1, barycentric }), FocusOffset::STANDARD);
     }
+}
+
+#[test]
+fn every_triangle_may_have_a_value_of_its_own() {
+    let scene = scene();
+    let of_triangles = |gloss: f64| {
+        let values =
+            (0..4).map(|k| FocusOffset::new(1.0 + f64::from(k), 0.25).with_gloss(gloss * f64::from(k)));
+        let source = FocusSource::Triangles(values.collect());
+        Focus { parts: vec![source; 4], ..Focus::constant(scene.clone(), FocusOffset::SHARP) }
+    };
+    let focus = of_triangles(0.0);
+    for triangle in 0..4 {
+        let value = FocusOffset::new(1.0 + f64::from(triangle), 0.25);
+        for barycentric in [DVec2::ZERO, DVec2::new(0.375, 0.125)] {
+            assert_eq!(focus.at(SurfacePoint { triangle, barycentric }), value);
+        }
+        assert_eq!(focus.bounds(triangle), Some([value; 2]));
+    }
+    assert_eq!(focus.at_infinity(), FocusOffset::SHARP);
+    assert!(!focus.affects_carried_light() && of_triangles(0.1).affects_carried_light());
 }

@@ -31,6 +31,7 @@ from ._native import (  # noqa: E402
     compare,
     open,
     read_picture,
+    report,
     set_threads,
 )
 
@@ -46,5 +47,6 @@ __all__ = [
     "compare",
     "open",
     "read_picture",
+    "report",
     "set_threads",
 ]

@@ -17,6 +17,7 @@ __all__ = [
     "compare",
     "open",
     "read_picture",
+    "report",
     "set_threads",
 ]
 
@@ -27,6 +28,7 @@ _Path = str | PathLike[str]
 _Progress = Callable[[float, str], object]
 _Exposure = Literal["normalise", "conserve"]
 _Floats = NDArray[np.float32]
+_Over = Literal["atlas", "part", "triangle", "splat"]
 
 class Cancelled(Exception): ...
 class GpuAbsent(RuntimeError): ...
@@ -104,7 +106,7 @@ class Focus:
     @background.setter
     def background(self, value: tuple[float, float, float]) -> None: ...
     @property
-    def over(self) -> Literal["atlas", "part"]: ...
+    def over(self) -> _Over: ...
     def sharpen(self) -> None: ...
     def select(self, mask: NDArray[np.bool_], camera: Camera | None = None) -> NDArray[np.bool_]: ...
 
@@ -164,7 +166,7 @@ class Scene:
         self,
         file: _Path | None = None,
         *,
-        over: Literal["atlas", "part"] = "atlas",
+        over: _Over = "atlas",
         progress: _Progress | None = None,
     ) -> Focus: ...
     def bake(
@@ -214,4 +216,16 @@ def compare(
     exposure: _Exposure | None = None,
 ) -> dict[str, float]: ...
 def read_picture(file: _Path) -> _Floats: ...
+def report(
+    scenes: _Path | Sequence[_Path],
+    folder: _Path,
+    *,
+    camera: _Path | None = None,
+    focus: _Path | None = None,
+    size: tuple[int, int] | None = None,
+    spp: int | None = None,
+    quick: bool = False,
+    hard: bool = False,
+    progress: _Progress | None = None,
+) -> dict[str, Any]: ...
 def set_threads(threads: int) -> None: ...

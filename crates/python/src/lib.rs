@@ -6,8 +6,8 @@
 //!           └ truth ──▶ Picture
 //! ```
 //!
-//! A thin layer over the crates `document` and `render`, with nothing of its own to compute: values from Python become theirs (`json`,
-//! `focus`, `render_options`), their results become arrays (`picture`, `field`) and their errors exceptions (`errors`). Long work runs on
+//! A thin layer over the crates `document`, `render` and `report`, with nothing of its own to compute: values from Python become theirs (`json`,
+//! `focus_values`, `render_options`), their results become arrays (`picture`, `field`) and their errors exceptions (`errors`). Long work runs on
 //! a thread of its own while the calling one hears Ctrl-C (`work`). What the functions do is documented for Python: in their doc
 //! comments, which are the docstrings, and with types in `focus_brush/__init__.pyi`.
 
@@ -16,11 +16,13 @@ mod comparison;
 mod errors;
 mod field;
 mod focus;
+mod focus_values;
 mod json;
 mod lit_input;
 mod picture;
 mod render_options;
 mod rendering;
+mod report;
 mod scene;
 mod threads;
 mod work;
@@ -40,6 +42,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<picture::Picture>()?;
     module.add_function(wrap_pyfunction!(scene::open, module)?)?;
     module.add_function(wrap_pyfunction!(comparison::compare, module)?)?;
+    module.add_function(wrap_pyfunction!(report::report, module)?)?;
     module.add_function(wrap_pyfunction!(picture::read_picture_file, module)?)?;
     module.add_function(wrap_pyfunction!(threads::set_threads, module)?)?;
     module.add_function(wrap_pyfunction!(threads::run_unwrap_child, module)?)

@@ -3,7 +3,8 @@
 use crate::camera::Camera;
 use crate::errors::{reading_exception, warn};
 use crate::field::Field;
-use crate::focus::{Focus, FocusArgument, FocusValues, Over};
+use crate::focus::{Focus, FocusArgument};
+use crate::focus_values::{FocusValues, Over};
 use crate::lit_input::LitInput;
 use crate::picture::Picture;
 use crate::render_options::render_options;
@@ -61,7 +62,7 @@ pub fn open(
 }
 
 /// The options for unwrapping: its engines run in children of this Python.
-fn unwrap_options(py: Python<'_>) -> PyResult<UnwrapOptions> {
+pub fn unwrap_options(py: Python<'_>) -> PyResult<UnwrapOptions> {
     let executable: Option<PathBuf> = py.import("sys")?.getattr("executable")?.extract()?;
     let script: OsString = py.import("focus_brush")?.getattr("_UNWRAP_CHILD")?.extract()?;
     Ok(UnwrapOptions {
@@ -134,9 +135,11 @@ impl Scene {
     }
 
     /// The focus of `file` (a recipe, a focus map or a table of splats), or that of the project, or of the ordinary
-    /// lens, as arrays over the texels of the atlas ("atlas") or over the parts ("part").
+    /// lens, as arrays over the texels of the atlas ("atlas"), the parts ("part"), the triangles ("triangle") or the
+    /// Gaussian splats ("splat"; what is no splat keeps its focus).
     ///
-    /// Raises FileNotFoundError, or ValueError for a file that does not fit or another `over`.
+    /// Raises FileNotFoundError, or ValueError for a file that does not fit, a focus that differs within an element, or
+    /// another `over`.
     ///
     /// >>> import focus_brush as fb
     /// >>> focus = fb.open("demo.glb").focus(over="part")
@@ -150,7 +153,7 @@ impl Scene {
         progress: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Focus> {
         if !Over::NAMES.contains(&over) {
-            let available = Over::NAMES.join(" or ");
+            let available = Over::NAMES.join(", ");
             return Err(PyValueError::new_err(format!("over: there is no {over:?} (choose {available})")));
         }
         let values = work::run(py, "reading the focus", progress, |steps| {

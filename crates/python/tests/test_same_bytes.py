@@ -3,8 +3,10 @@
 import json
 import unittest
 
+import numpy as np
+
 import focus_brush as fb
-from workplace import FOLDER, SHARED, command
+from workplace import FOLDER, SHARED, command, write_table
 
 SMALL = ["--size", "64x40"]
 
@@ -64,6 +66,34 @@ class SameBytes(unittest.TestCase):
         saved = fb.open(FOLDER / "of_recipe.fbrush").focus()
         self.assertEqual(over_atlas().t.tobytes(), saved.t.tobytes())
         self.assertEqual(over_atlas().anchor.tobytes(), saved.anchor.tobytes())
+
+    def test_a_focus_for_each_triangle(self):
+        words = ["--camera", "camera.json", "--focus", "recipe.json"]
+        read = lambda scene: scene.focus(FOLDER / "recipe.json", over="triangle")  # noqa: E731
+        self.check("scene.glb", words, lambda scene: scene.render(self.camera(scene), read(scene)))
+        scene = fb.open(FOLDER / "scene.glb")
+        over_parts, over_triangles = scene.focus(FOLDER / "recipe.json", over="part"), read(scene)
+        self.assertEqual(over_triangles.t.shape, (scene.triangles,))
+        self.assertEqual(set(over_triangles.t), set(over_parts.t))
+        # One triangle of a card alone.
+        before = scene.render(self.camera(scene), over_triangles)
+        over_triangles.t[-1], over_triangles.anchor[-1] = 1.1, 0.5
+        self.assertGreater(np.abs(scene.render(self.camera(scene), over_triangles).radiance - before.radiance).max(), 0)
+
+    def test_a_focus_for_each_splat(self):
+        count = 60
+        columns = {"t": np.linspace(0.95, 1.05, count), "anchor": np.linspace(0, 1, count), "gloss": np.zeros(count)}
+        write_table(FOLDER / "focus.ply", columns)
+        words = ["--camera", "camera.json", "--focus", "focus.ply"]
+        read = lambda scene: scene.focus(FOLDER / "focus.ply", over="splat")  # noqa: E731
+        self.check("splats.ply", words, lambda scene: scene.render(self.camera(scene), read(scene)))
+        scene = fb.open(FOLDER / "splats.ply")
+        np.testing.assert_array_equal(read(scene).t, columns["t"].astype(np.float32))
+        np.testing.assert_array_equal(read(scene).anchor, columns["anchor"].astype(np.float32))
+        written = scene.focus(over="splat")
+        self.assertTrue((written.t == 1).all())
+        written.t, written.anchor = columns["t"], columns["anchor"]
+        self.check("splats.ply", words, lambda _: scene.render(self.camera(scene), written))
 
     def test_inputs_of_other_programs(self):
         inputs = ["splats/model.spz", "photogrammetry/skull", "lightfield/hci_stillLife_3x3", "gltf/cakeBirthday.glb"]

@@ -48,6 +48,12 @@ class Values(unittest.TestCase):
             (TypeError, "focus", lambda: scene.render(camera, 3)),
             (FileNotFoundError, "x.json", lambda: scene.focus("x.json")),
             (ValueError, "over", lambda: scene.focus(over="sample")),
+            (ValueError, "no Gaussian splats", lambda: scene.focus(over="splat")),
+            (ValueError, "differs within parts", lambda: fb.open(FOLDER / "painted.fbrush").focus(over="part")),
+            (ValueError, "over triangles", lambda: scene.focus(over="triangle").select(np.zeros((40, 64), bool))),
+            (FileNotFoundError, "x.glb", lambda: fb.report("x.glb", FOLDER / "report")),
+            (ValueError, "is not a scene, project, light field", lambda: fb.report(__file__, FOLDER / "report")),
+            (ValueError, "spp: 1 is out of range", lambda: fb.report([], FOLDER / "report", spp=1)),
             (ValueError, "exposure", lambda: field.render().exposed("bright")),
             (ValueError, "name an .exr or .png", lambda: field.render().write("x.gif")),
             (fb.GpuAbsent, "no GPU backend", lambda: scene.render(renderer="blur", backend="gpu")),
@@ -89,7 +95,7 @@ class Values(unittest.TestCase):
         self.assertNotEqual(self.field.render().radiance.tobytes(), expected)
 
     def test_numbers_that_cannot_be_used_raise(self):
-        for over in ["atlas", "part"]:
+        for over in ["atlas", "part", "triangle"]:
             focus = self.scene.focus(over=over)
             for name, value in itertools.product(["t", "anchor", "gloss"], [math.nan, math.inf, -math.inf, -1, 2]):
                 if name == "t" and math.isfinite(value):

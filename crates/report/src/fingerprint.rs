@@ -95,11 +95,16 @@ pub fn camera_fingerprint(camera: &Camera) -> String {
 /// Fingerprint of a focus. It refers to parts by index, so it is meaningful only together with the scene's.
 pub fn focus_fingerprint(focus: &Focus) -> String {
     let mut fingerprint = Fingerprint::new().add_debug(&focus.background);
-    // Painted parts share one map, which is added once.
-    let mut last_map = None;
+    // Painted parts share one map, or the values of triangles, which are added once.
+    let (mut last_map, mut last_values) = (None, None);
     for part in &focus.parts {
         fingerprint = match part {
             FocusSource::Constant(value) => fingerprint.add_debug(value),
+            FocusSource::Triangles(values) if last_values == Some(values.as_ptr()) => fingerprint,
+            FocusSource::Triangles(values) => {
+                last_values = Some(values.as_ptr());
+                fingerprint.add_debug(values)
+            }
             FocusSource::Uv { image, wrap } => fingerprint
                 .add_debug(wrap)
                 .add_debug(&[image.width, image.height])
@@ -151,6 +156,12 @@ mod tests {
         let standard = Focus::constant(scene.clone(), FocusOffset::STANDARD);
         let painted = Focus::constant(scene, FocusOffset::new(1.0, 1.0));
         assert_ne!(focus_fingerprint(&standard), focus_fingerprint(&painted));
+        let by_triangle = |ts: [f64; 2]| {
+            let values = ts.map(|t| FocusOffset::new(t, 0.5)).into_iter().collect();
+            Focus { parts: vec![FocusSource::Triangles(values); 2], ..standard.clone() }
+        };
+        assert_eq!(focus_fingerprint(&by_triangle([1.0, 2.0])), focus_fingerprint(&by_triangle([1.0, 2.0])));
+        assert_ne!(focus_fingerprint(&by_triangle([1.0, 2.0])), focus_fingerprint(&by_triangle([2.0, 1.0])));
     }
 
     #[test]

@@ -56,7 +56,7 @@ pub use measurement::contender::Contender;
 pub use measurement::machine::Machine;
 pub use measurement::memory::resident_bytes;
 pub use measurement::record::{Record, Series};
-pub use options::{ReportOptions, SceneRequest};
+pub use options::{ReportOptions, SceneRequest, build_checksum};
 pub use report::Report;
 pub use run::run;
 pub use studies::left_out_photographs::{Photographs, ReconstructedPhotograph, SparseLightField};

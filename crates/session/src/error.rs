@@ -103,6 +103,21 @@ impl From<IoFault> for SessionError {
     }
 }
 
+impl From<SessionError> for RenderError {
+    fn from(error: SessionError) -> Self {
+        let text = error.to_string();
+        match error {
+            SessionError::TryAgain(_) => Self::TryAgain(text),
+            SessionError::GpuAbsent(_) => Self::GpuAbsent(text),
+            SessionError::Cancelled => Self::Cancelled,
+            SessionError::Internal(_) => Self::Internal(text),
+            SessionError::NothingOpen | SessionError::BadInput(_) | SessionError::NearUnknown { .. } => {
+                Self::BadInput(text)
+            }
+        }
+    }
+}
+
 impl SessionError {
     /// A [`SessionError::BadInput`] about `file`; `what` says what is wrong and what to do.
     pub fn bad_file(file: &Path, what: impl std::fmt::Display) -> Self {

@@ -6,13 +6,10 @@ use crate::cli::console::{Console, path_texts, print_json};
 use crate::cli::failure::Failure;
 use crate::cli::input::{read_world, refuse_additions, unwrap_options};
 use crate::window::demo;
-use document::InputKind;
-use report::{ReportOptions, SceneRequest};
+use report::{ReportOptions, SceneRequest, build_checksum};
 use serde_json::json;
-use sha2::{Digest, Sha256};
 use splat::Gpu;
-use std::io::Read;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Measures, and writes the report.
 ///
@@ -125,8 +122,9 @@ fn scene_requests(arguments: &ReportArguments) -> Result<Vec<SceneRequest>, Fail
         light: shot.appearance.light(),
     };
     if !arguments.scenes.is_empty() {
-        arguments.scenes.iter().try_for_each(|scene| check_scene(scene))?;
-        return Ok(arguments.scenes.iter().map(request).collect());
+        let requests: Vec<_> = arguments.scenes.iter().map(request).collect();
+        requests.iter().try_for_each(SceneRequest::check)?;
+        return Ok(requests);
     }
     if arguments.hard {
         return Ok(Vec::new());
@@ -136,29 +134,9 @@ fn scene_requests(arguments: &ReportArguments) -> Result<Vec<SceneRequest>, Fail
     Ok(vec![request(&demo)])
 }
 
-/// Refuses a file that is no scene before anything is measured.
-fn check_scene(file: &Path) -> Result<(), Failure> {
-    if !file.exists() {
-        return Err(Failure::bad_input(format!("{}: no such file (check the path)", file.display())));
-    }
-    InputKind::from_path(file)?;
-    Ok(())
-}
-
-/// Identifies this build of the program: the SHA-256 checksum of its executable.
+/// Identifies this build of the program.
 fn program_checksum() -> Result<String, Failure> {
-    let read_failure = |error: std::io::Error| {
+    std::env::current_exe().and_then(|program| build_checksum(&program)).map_err(|error| {
         Failure::try_again(format!("the running program cannot be read: {error} (start it by another path)"))
-    };
-    let mut program =
-        std::fs::File::open(std::env::current_exe().map_err(read_failure)?).map_err(read_failure)?;
-    let mut sum = Sha256::new();
-    let mut block = vec![0; 1 << 20];
-    loop {
-        let length = program.read(&mut block).map_err(read_failure)?;
-        if length == 0 {
-            return Ok(hex::encode(sum.finalize()));
-        }
-        sum.update(&block[..length]);
-    }
+    })
 }

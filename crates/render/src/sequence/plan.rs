@@ -55,11 +55,17 @@ pub(crate) fn still_frame_plan(
 
 fn add_focus(add: &mut dyn FnMut(&[u8]), focus: &Focus) {
     add(format!("{:?}", focus.background).as_bytes());
-    // All parts usually share one map.
+    // All parts usually share one map, or the values of triangles.
     let mut last: Option<Arc<FocusMap>> = None;
+    let mut last_values = None;
     for source in &focus.parts {
         match source {
             FocusSource::Constant(value) => add(format!("{value:?}").as_bytes()),
+            FocusSource::Triangles(values) if last_values == Some(values.as_ptr()) => add(b"the same values"),
+            FocusSource::Triangles(values) => {
+                add(format!("{values:?}").as_bytes());
+                last_values = Some(values.as_ptr());
+            }
             FocusSource::Uv { image, wrap } => {
                 add(format!("{} {} {wrap:?}", image.width, image.height).as_bytes());
                 add(bytemuck::cast_slice(&image.texels));

@@ -113,6 +113,7 @@ impl SceneInTime {
             FocusSource::Atlas { atlas, map } => {
                 FocusSource::Atlas { atlas: self.atlas(atlas).clone(), map: painted.unwrap_or(map).clone() }
             }
+            FocusSource::Triangles(values) => FocusSource::Triangles(self.of_triangles(values)),
             other => other.clone(),
         };
         let source = |part: &scene::Part| match &self.at_rest {
@@ -127,6 +128,15 @@ impl SceneInTime {
         let parts = self.scene.parts.iter().map(|part| source(part).unwrap_or(nowhere.clone())).collect();
         let background = painted.map_or(rest.background, |map| map.background);
         Focus { scene: self.scene.clone(), parts, background }
+    }
+
+    /// The values of the current triangles, of those at rest.
+    fn of_triangles(&self, values: &Arc<[FocusOffset]>) -> Arc<[FocusOffset]> {
+        let Some(at_rest) = &self.at_rest else { return values.clone() };
+        let value = |rest: &Option<RestTriangle>| {
+            rest.map_or(FocusOffset::STANDARD, |rest| values[rest.triangle as usize])
+        };
+        at_rest.iter().map(value).collect()
     }
 }
 
@@ -192,6 +202,9 @@ mod tests {
         let now = SceneInTime::moved(&moving, &moment, &still, &Unwatched).unwrap();
         assert_eq!((rest.triangles.len(), now.scene.triangles.len()), (8, 6), "the dot is hidden");
         let focus = now.focus(&painted, None);
+        let by_triangle = (0..8).map(|k| FocusOffset::new(f64::from(k), 0.5)).collect();
+        let parts = vec![FocusSource::Triangles(by_triangle); rest.parts.len()];
+        let by_triangle = Focus { parts, ..painted.clone() };
         let at_rest = now.at_rest.clone().unwrap();
         let mut moved = 0;
         for (triangle, rest_triangle) in (0..).zip(at_rest) {
@@ -199,6 +212,7 @@ mod tests {
                 let here = SurfacePoint { triangle, barycentric };
                 let there = SurfacePoint { triangle: rest_triangle.unwrap().triangle, barycentric };
                 assert_eq!(focus.at(here), painted.at(there));
+                assert_eq!(now.focus(&by_triangle, None).at(here), by_triangle.at(there));
                 assert_eq!(now.position(there), Some(here.position(&now.scene)));
                 moved += u32::from(here.position(&now.scene) != there.position(&rest));
             }
