@@ -145,12 +145,12 @@ fn click_points(file: &Path, page: &ExportedPage, points: &[KnownPoint]) {
                 assert_eq!(browser.evaluate("document.getElementById('viewer').dataset.drawn"), before);
                 continue;
             };
-            // Within a slice of the sharp distance.
-            let expected = page.nearest_slice(stack, sharp);
-            let is_near = format!(
-                "Math.abs(document.getElementById('viewer').dataset.drawn.split('/')[1] - {expected}) <= 1"
-            );
-            browser.wait_for(&is_near);
+            // Within a slice of the sharp distance, once it is drawn.
+            browser.wait_for("document.getElementById('screen').ariaBusy === 'false'");
+            let drawn =
+                browser.evaluate("Number(document.getElementById('viewer').dataset.drawn.split('/')[1])");
+            let expected = page.nearest_slice(stack, sharp) as f64;
+            assert!((drawn.as_f64().unwrap() - expected).abs() <= 1.0, "{drawn} instead of {expected}");
         }
     }
     assert_eq!(browser.complaints(&[&address]), Vec::<String>::new());

@@ -25,6 +25,7 @@ class PictureScreen {
     this.isStale = true;
     if (this.isDrawing) return;
     this.isDrawing = true;
+    this.canvas.ariaBusy = "true";
     try {
       while (this.isStale) {
         this.isStale = false;
@@ -32,6 +33,7 @@ class PictureScreen {
       }
     } finally {
       this.isDrawing = false;
+      this.canvas.ariaBusy = "false";
     }
     this.prefetch();
   }
