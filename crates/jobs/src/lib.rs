@@ -30,4 +30,4 @@ pub use error::JobError;
 pub use job::{Job, JobId, JobStatus, Waker};
 pub use job_progress::JobProgress;
 pub use shared_task::SharedTask;
-pub use threads::{Urgency, build_thread_pool, catch_panics, run_in_own_pool};
+pub use threads::{Urgency, build_thread_pool, catch_panics, run_in_own_pool, start_global_pool};

@@ -3,7 +3,8 @@
 use crate::error::JobError;
 use std::panic::AssertUnwindSafe;
 
-/// Stack size of a job's thread: import and unwrapping may recurse over a scene's hierarchy.
+/// Stack size of a job's thread, and of Rayon's: import and unwrapping may recurse over a scene's hierarchy, and a thread of Rayon that
+/// waits works on other tasks meanwhile, within its own.
 pub(crate) const STACK_BYTES: usize = 16 << 20;
 
 /// How soon work is needed.
@@ -49,6 +50,19 @@ impl Urgency {
     fn declare(self) {}
 }
 
+/// Starts Rayon's global pool with so many `threads` (0: one for each processor, or RAYON_NUM_THREADS) and the stacks of the other pools.
+///
+/// # Errors
+/// [`JobError::NoThread`]: it runs already, or the system refused a thread.
+pub fn start_global_pool(threads: usize) -> Result<(), JobError> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK_BYTES).build_global();
+    pool.map_err(|error| no_thread(&error))
+}
+
+fn no_thread(error: &rayon::ThreadPoolBuildError) -> JobError {
+    JobError::NoThread { task: "working".into(), reason: error.to_string() }
+}
+
 /// A Rayon pool for long work. In the global pool, work that the window needs at once would wait behind its long items; with separate
 /// pools, the system divides the processors between them.
 ///
@@ -59,7 +73,7 @@ pub fn build_thread_pool(urgency: Urgency) -> Result<rayon::ThreadPool, JobError
         .stack_size(STACK_BYTES)
         .start_handler(move |_| urgency.declare())
         .build();
-    pool.map_err(|error| JobError::NoThread { task: "working".into(), reason: error.to_string() })
+    pool.map_err(|error| no_thread(&error))
 }
 
 /// Runs `work` in a thread pool of its own.

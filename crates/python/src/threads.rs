@@ -39,8 +39,7 @@ pub fn set_threads(threads: usize) -> PyResult<()> {
         return Err(PyValueError::new_err("threads: 0 cannot work (give 1 or more)"));
     }
     check_process()?;
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
-    pool.map_err(|_| {
+    jobs::start_global_pool(threads).map_err(|_| {
         let what = "threads: work has begun with another number (call set_threads before anything else)";
         exception(RenderError::Internal(what.into()))
     })

@@ -29,6 +29,8 @@ pub fn run<T: Send>(
     work: impl FnOnce(&Watch) -> Result<T, RenderError> + Send,
 ) -> PyResult<T> {
     check_process()?;
+    // It runs already after the first call.
+    let _ = jobs::start_global_pool(0);
     let watch = Watch::default();
     std::thread::scope(|scope| {
         let guarded = || {

@@ -71,10 +71,11 @@ fn encode(picture: &ScreenPicture, quality: u8) -> Result<EncodedPicture, WebPag
     let mut config =
         WebPConfig::new().map_err(|()| failed("libwebp is of another version than its header".into()))?;
     config.quality = f32::from(quality.min(MAX_QUALITY));
-    // For the lowest error at a size: as slow as can be, no texture hidden where eyes would not miss it, colours filtered.
+    // For the lowest error at a size: a thorough search, no texture hidden where eyes would not miss it, colours filtered. The filter that
+    // libwebp finds by itself saves 0.5 to 3 % of this one, for five times the time.
     config.method = 6;
     config.sns_strength = 0;
-    config.autofilter = 1;
+    config.filter_strength = 40;
     config.use_sharp_yuv = 1;
     if quality > MAX_QUALITY {
         config.lossless = 1;

@@ -28,5 +28,5 @@ pub use encoding::{EncodedPicture, encode_picture};
 pub use error::WebPageError;
 pub use page::{Caption, OpeningSlice, PaintMaps, PublicAddress, Slice, SliceStack, WebPage};
 pub use pixel_map::{DistanceRange, PixelMap, paint_code};
-pub use placement::{PlacedSlices, PlacementOptions, PsnrSummary, place_slices, slice_distances};
+pub use placement::{PlacedSlices, PlacementOptions, PsnrSummary, SliceSpacing, place_slices};
 pub use screen_picture::ScreenPicture;

@@ -1,8 +1,7 @@
 //! Where the slices of a stack are placed: where the error is.
 //!
-//! Whatever can be sharp is nearly so at some slice: across distances at which nothing is, there are none yet. Half way between two
-//! slices, their cross-fade is compared with the picture there; where it is not good enough, that picture becomes a slice, and both halves are
-//! examined in turn.
+//! Whatever can be sharp is nearly so at some slice. Half way between two slices, their cross-fade is compared with the picture there:
+//! each slice is as far from the one before it as both allow.
 
 use crate::encoding::{EncodedPicture, USUAL_QUALITY, encode_picture};
 use crate::error::WebPageError;
@@ -17,8 +16,9 @@ pub struct PlacementOptions {
     pub rest_psnr: f64,
     /// PSNR that a cross-fade half way between two slices should have against the picture there, dB.
     pub midway_psnr: f64,
-    /// How often a step may be halved. Cross-fades of steps this small are kept as they are.
-    pub most_halvings: u32,
+    /// The shortest step between slices, as a share of the step without errors of cross-fades. Cross-fades of steps this short are kept as
+    /// they are.
+    pub shortest_step: f64,
     /// Bytes that the slices may take together.
     pub most_bytes: u64,
 }
@@ -58,77 +58,63 @@ impl PlacedSlices {
     }
 }
 
-/// Reciprocal distances, ascending, of the slices that a stack needs before any error is measured: the ends of `range`, `opening` (in
-/// it), and as few others as bring each of `sharp`, the ascending distances in the range at which something is sharp, within `reach` (> 0,
-/// 1/length) of one. `None` if they are more than `most`.
-pub fn slice_distances(
-    sharp: &[f64],
-    range: DistanceRange,
-    opening: f64,
-    reach: f64,
-    most: usize,
-) -> Option<Vec<f64>> {
-    let mut distances = vec![range.farthest];
-    let mut uncovered = sharp.iter().copied().peekable();
-    for end in [opening, range.nearest] {
-        while let Some(distance) = uncovered.next_if(|&distance| distance + reach < end) {
-            if distances.last().is_none_or(|last| distance > last + reach) {
-                distances.push(distance + reach);
-            }
-            if distances.len() > most {
-                return None;
-            }
-        }
-        if distances.last() != Some(&end) {
-            distances.push(end);
-        }
+/// Where a stack needs slices before any error is measured.
+#[derive(Clone, Copy, Debug)]
+pub struct SliceSpacing<'a> {
+    /// Reciprocal distances, ascending, at which something is sharp.
+    pub sharp: &'a [f64],
+    /// The focus distances of the stack.
+    pub range: DistanceRange,
+    /// The reciprocal distance in the range at which the page opens, which has a slice.
+    pub opening: f64,
+    /// How far the slice that shows a sharp distance best may be from it, > 0, 1/length.
+    pub reach: f64,
+}
+
+impl SliceSpacing<'_> {
+    /// The farthest that the slice after one at `last` may be on the way to `end`, both reciprocal distances: everything sharp between
+    /// them is within reach of one of the two.
+    fn next(&self, last: f64, end: f64) -> f64 {
+        let uncovered = self.sharp.partition_point(|&sharp| sharp <= last + self.reach);
+        self.sharp.get(uncovered).map_or(end, |sharp| end.min(sharp + self.reach))
     }
-    (distances.len() <= most).then_some(distances)
+
+    /// The ends of the parts that are filled with slices after the farthest one, ascending.
+    fn ends(&self) -> [f64; 2] {
+        [self.opening, self.range.nearest]
+    }
+
+    /// How many slices a stack has at least; `None` if they are more than `most`.
+    pub fn least_slices(&self, most: usize) -> Option<usize> {
+        let (mut last, mut count) = (self.range.farthest, 1);
+        for end in self.ends() {
+            while last < end && count <= most {
+                last = self.next(last, end);
+                count += 1;
+            }
+        }
+        (count <= most).then_some(count)
+    }
 }
 
-/// A slice that is still to be measured against its neighbour.
-struct PendingSlice {
-    inverse_distance: f64,
-    /// Its picture, if it was drawn already.
-    encoded: Option<EncodedPicture>,
-    /// How often the step was halved that leads to it.
-    halvings: u32,
-}
-
-/// Draws a stack with slices at `distances` (1/s, ascending, at least one) and wherever else a cross-fade asks for one. `draw` draws the
-/// picture at a distance; all have one size.
+/// Draws the slices of a stack, from the farthest to the nearest: each as far from the one before it as `spacing` and the error of their
+/// cross-fade allow. `draw` draws the picture at a distance; all have one size.
 ///
 /// # Errors
 /// `draw` fails, the encoder refuses a picture, or the slices would take more than [`PlacementOptions::most_bytes`].
 pub fn place_slices<E: From<WebPageError>>(
-    distances: &[f64],
+    spacing: &SliceSpacing,
     options: &PlacementOptions,
     mut draw: impl FnMut(f64) -> Result<ScreenPicture, E>,
 ) -> Result<PlacedSlices, E> {
-    let pending = |&inverse_distance| PendingSlice { inverse_distance, encoded: None, halvings: 0 };
-    let mut pending: Vec<_> = distances.iter().rev().map(pending).collect();
-    let mut placed = Placed::default();
-    while let Some(next) = pending.pop() {
-        let encoded = match next.encoded {
-            Some(encoded) => encoded,
-            None => placed.encode(&draw(next.inverse_distance)?, options)?,
-        };
-        let Some((last_distance, last)) = &placed.last else {
-            placed.push(next.inverse_distance, encoded, options)?;
-            continue;
-        };
-        let midway_distance = last_distance.midpoint(next.inverse_distance);
-        let midway = draw(midway_distance)?;
-        let psnr = last.cross_fade(&encoded.decoded).psnr(&midway);
-        if psnr < options.midway_psnr && next.halvings < options.most_halvings {
-            let halvings = next.halvings + 1;
-            let middle = Some(placed.encode(&midway, options)?);
-            pending.push(PendingSlice { encoded: Some(encoded), halvings, ..next });
-            pending.push(PendingSlice { inverse_distance: midway_distance, encoded: middle, halvings });
-            continue;
+    let farthest = spacing.range.farthest;
+    let first = encode_picture(&draw(farthest)?, options.rest_psnr, USUAL_QUALITY)?;
+    let mut placed = Placed::new(farthest, first, options)?;
+    for end in spacing.ends() {
+        while placed.last.inverse_distance < end {
+            let limit = spacing.next(placed.last.inverse_distance, end);
+            placed.advance(limit, options, &mut draw)?;
         }
-        placed.midway_psnrs.push(psnr);
-        placed.push(next.inverse_distance, encoded, options)?;
     }
     let no_distance = WebPageError::Inconsistent("a stack has no slice");
     Ok(PlacedSlices {
@@ -138,43 +124,125 @@ pub fn place_slices<E: From<WebPageError>>(
     })
 }
 
+/// By how much the PSNR of a cross-fade may exceed the lowest allowed before a longer step is tried, dB.
+const PSNR_SLACK: f64 = 0.5;
+/// How much the PSNR of a cross-fade falls where the step is ten times as long, dB: its error is what a Taylor series leaves after its
+/// linear part, which grows as the square of the step.
+const PSNR_PER_DECADE: f64 = 40.0;
+
+/// A slice that may follow the last one.
+struct Candidate {
+    inverse_distance: f64,
+    encoded: EncodedPicture,
+    /// Of the cross-fade half way to it.
+    midway_psnr: f64,
+}
+
+/// The slice that was placed last.
+struct LastSlice {
+    inverse_distance: f64,
+    decoded: ScreenPicture,
+    quality: u8,
+}
+
 /// The slices that are placed.
-#[derive(Default)]
 struct Placed {
     slices: Vec<Slice>,
     bytes: u64,
     rest_psnrs: Vec<f64>,
     midway_psnrs: Vec<f64>,
-    /// Distance and picture of the last one.
-    last: Option<(f64, ScreenPicture)>,
-    last_quality: Option<u8>,
+    last: LastSlice,
+    /// How far the last two are apart; infinite before there are two.
+    step: f64,
 }
 
 impl Placed {
-    fn encode(
-        &mut self,
-        picture: &ScreenPicture,
+    fn new(
+        inverse_distance: f64,
+        first: EncodedPicture,
         options: &PlacementOptions,
-    ) -> Result<EncodedPicture, WebPageError> {
-        let encoded = encode_picture(picture, options.rest_psnr, self.last_quality.unwrap_or(USUAL_QUALITY))?;
-        self.last_quality = Some(encoded.quality);
-        Ok(encoded)
+    ) -> Result<Self, WebPageError> {
+        let EncodedPicture { webp, psnr, quality, decoded } = first;
+        let last = LastSlice { inverse_distance, decoded, quality };
+        let (slices, rest_psnrs, midway_psnrs) = Default::default();
+        let mut placed = Self { slices, bytes: 0, rest_psnrs, midway_psnrs, last, step: f64::INFINITY };
+        placed.push(inverse_distance, webp, psnr, options)?;
+        Ok(placed)
+    }
+
+    fn keep(&mut self, best: Candidate, options: &PlacementOptions) -> Result<(), WebPageError> {
+        let Candidate { inverse_distance, encoded, midway_psnr } = best;
+        let EncodedPicture { webp, psnr, quality, decoded } = encoded;
+        self.step = inverse_distance - self.last.inverse_distance;
+        self.last = LastSlice { inverse_distance, decoded, quality };
+        self.midway_psnrs.push(midway_psnr);
+        self.push(inverse_distance, webp, psnr, options)
     }
 
     fn push(
         &mut self,
         inverse_distance: f64,
-        encoded: EncodedPicture,
+        webp: Vec<u8>,
+        psnr: f64,
         options: &PlacementOptions,
     ) -> Result<(), WebPageError> {
-        self.bytes += encoded.webp.len() as u64;
+        self.bytes += webp.len() as u64;
         if self.bytes > options.most_bytes {
             return Err(WebPageError::TooLarge);
         }
-        self.rest_psnrs.push(encoded.psnr);
-        self.slices.push(Slice { inverse_distance, webp: encoded.webp });
-        self.last = Some((inverse_distance, encoded.decoded));
+        self.rest_psnrs.push(psnr);
+        self.slices.push(Slice { inverse_distance, webp });
         Ok(())
+    }
+
+    /// Places the next slice, at most at `limit`: with the longest step whose cross-fade is good enough, roughly.
+    fn advance<E: From<WebPageError>>(
+        &mut self,
+        limit: f64,
+        options: &PlacementOptions,
+        draw: &mut impl FnMut(f64) -> Result<ScreenPicture, E>,
+    ) -> Result<(), E> {
+        let start = self.last.inverse_distance;
+        let longest = limit - start;
+        let shortest = longest * options.shortest_step;
+        let mut step = longest.min(self.step);
+        let mut good: Option<Candidate> = None;
+        let mut was_too_long = false;
+        let best = loop {
+            let is_between = start + step > start && start + step < limit;
+            let distance = if is_between { start + step } else { limit };
+            let candidate = self.candidate(distance, options, draw)?;
+            let excess = candidate.midway_psnr - options.midway_psnr;
+            if excess < 0.0
+                && let Some(good) = good.take()
+            {
+                break good;
+            }
+            let ideal = step * 10f64.powf((excess - PSNR_SLACK / 2.0) / PSNR_PER_DECADE);
+            if excess < 0.0 && step > shortest {
+                was_too_long = true;
+                step = ideal.min(0.9 * step).max(shortest);
+            } else if excess > PSNR_SLACK && is_between && !was_too_long {
+                good = Some(candidate);
+                step = ideal.min(longest);
+            } else {
+                break candidate;
+            }
+        };
+        Ok(self.keep(best, options)?)
+    }
+
+    /// The slice at a distance beyond the last.
+    fn candidate<E: From<WebPageError>>(
+        &self,
+        inverse_distance: f64,
+        options: &PlacementOptions,
+        draw: &mut impl FnMut(f64) -> Result<ScreenPicture, E>,
+    ) -> Result<Candidate, E> {
+        let encoded = encode_picture(&draw(inverse_distance)?, options.rest_psnr, self.last.quality)?;
+        let midway = draw(self.last.inverse_distance.midpoint(inverse_distance))?;
+        let midway_psnr = self.last.decoded.cross_fade(&encoded.decoded).psnr(&midway);
+        Ok(Candidate { inverse_distance, encoded, midway_psnr })
     }
 }
 
@@ -182,8 +250,12 @@ impl Placed {
 mod tests {
     use super::*;
 
-    const OPTIONS: PlacementOptions =
-        PlacementOptions { rest_psnr: 45.0, midway_psnr: 42.0, most_halvings: 5, most_bytes: u64::MAX };
+    const OPTIONS: PlacementOptions = PlacementOptions {
+        rest_psnr: 45.0,
+        midway_psnr: 42.0,
+        shortest_step: 1.0 / 32.0,
+        most_bytes: u64::MAX,
+    };
 
     /// A bar whose brightness follows a function of the distance.
     fn bar(level: f64) -> ScreenPicture {
@@ -191,30 +263,44 @@ mod tests {
         ScreenPicture::new([64, 32], (0..64 * 32).map(pixel).collect()).unwrap()
     }
 
+    /// All distances from 0 to 1 by thousandths but those of a gap are sharp.
+    fn sharp_but_in(gap: std::ops::Range<f64>) -> Vec<f64> {
+        (0..=1000).map(|k| f64::from(k) / 1000.0).filter(|distance| !gap.contains(distance)).collect()
+    }
+
+    const UNIT: DistanceRange = DistanceRange { farthest: 0.0, nearest: 1.0 };
+
+    fn distances(placed: &PlacedSlices) -> Vec<f64> {
+        placed.slices.iter().map(|slice| slice.inverse_distance).collect()
+    }
+
     #[test]
     fn whatever_is_sharp_is_within_reach_of_a_slice() {
-        let range = DistanceRange { farthest: 0.0, nearest: 1.0 };
-        let sharp: Vec<f64> =
-            (0..=1000).map(|k| f64::from(k) / 1000.0).filter(|u| !(0.4..0.8).contains(u)).collect();
-        let (opening, reach) = (0.3, 0.05);
-        let distances = slice_distances(&sharp, range, opening, reach, 100).unwrap();
+        let sharp = sharp_but_in(0.4..0.8);
+        let spacing = SliceSpacing { sharp: &sharp, range: UNIT, opening: 0.3, reach: 0.05 };
+        // All pictures are equal: only what is sharp counts.
+        let placed = place_slices(&spacing, &OPTIONS, |_| Ok::<_, WebPageError>(bar(100.0))).unwrap();
+        let distances = distances(&placed);
         assert!(distances.windows(2).all(|pair| pair[0] < pair[1]), "{distances:?}");
-        assert!([0.0, opening, 1.0].iter().all(|needed| distances.contains(needed)), "{distances:?}");
+        assert!([0.0, 0.3, 1.0].iter().all(|needed| distances.contains(needed)), "{distances:?}");
         let miss = |u: &f64| distances.iter().map(|d| (d - u).abs()).fold(f64::INFINITY, f64::min);
-        assert!(sharp.iter().map(miss).fold(0.0, f64::max) <= reach + 1e-12, "{distances:?}");
+        assert!(sharp.iter().map(miss).fold(0.0, f64::max) <= 0.05 + 1e-12, "{distances:?}");
         let in_gap = distances.iter().filter(|d| (0.46..0.8).contains(*d)).count();
         assert!(in_gap == 0 && distances.len() <= 9, "{distances:?}");
-        assert_eq!(slice_distances(&sharp, range, opening, reach, 5), None);
-        assert_eq!(slice_distances(&sharp, range, opening, 1e-300, 100), None);
+        assert_eq!(spacing.least_slices(100), Some(distances.len()));
+        assert_eq!(spacing.least_slices(5), None);
+        assert_eq!(SliceSpacing { reach: 1e-300, ..spacing }.least_slices(100), None);
     }
 
     #[test]
     fn a_flat_range_has_one_slice_and_a_pinhole_three() {
-        let flat = DistanceRange { farthest: 0.5, nearest: 0.5 };
-        assert_eq!(slice_distances(&[0.5; 7], flat, 0.5, 0.1, 100).unwrap(), [0.5]);
-        let range = DistanceRange { farthest: 0.0, nearest: 1.0 };
-        assert_eq!(slice_distances(&[0.1, 0.7], range, 0.2, f64::INFINITY, 100).unwrap(), [0.0, 0.2, 1.0]);
-        assert_eq!(slice_distances(&[], range, 1.0, 0.1, 100).unwrap(), [0.0, 1.0]);
+        let range = DistanceRange { farthest: 0.5, nearest: 0.5 };
+        let flat = SliceSpacing { sharp: &[0.5; 7], range, opening: 0.5, reach: 0.1 };
+        assert_eq!(flat.least_slices(100), Some(1));
+        let pinhole = SliceSpacing { sharp: &[0.1, 0.7], range: UNIT, opening: 0.2, reach: f64::INFINITY };
+        assert_eq!(pinhole.least_slices(100), Some(3));
+        let nothing_sharp = SliceSpacing { sharp: &[], range: UNIT, opening: 1.0, reach: 0.1 };
+        assert_eq!(nothing_sharp.least_slices(100), Some(2));
     }
 
     #[test]
@@ -222,30 +308,47 @@ mod tests {
         // Linear up to 0.5, so that cross-fades are right; then bent.
         let level = |u: f64| 40.0 + 100.0 * u + if u > 0.5 { 400.0 * (u - 0.5).powi(2) } else { 0.0 };
         let draw = |u: f64| Ok::<_, WebPageError>(bar(level(u)));
-        let placed = place_slices(&[0.0, 0.5, 1.0], &OPTIONS, draw).unwrap();
-        let distances: Vec<_> = placed.slices.iter().map(|slice| slice.inverse_distance).collect();
-        assert!(distances.windows(2).all(|pair| pair[0] < pair[1]), "{distances:?}");
-        assert_eq!(distances[..2], [0.0, 0.5], "{distances:?}");
-        assert!(distances.len() > 4, "{distances:?}");
+        let spacing = SliceSpacing { sharp: &[], range: UNIT, opening: 0.5, reach: 0.1 };
+        let placed = place_slices(&spacing, &OPTIONS, draw).unwrap();
+        let many = distances(&placed);
+        assert!(many.windows(2).all(|pair| pair[0] < pair[1]), "{many:?}");
+        assert_eq!(many[..2], [0.0, 0.5], "{many:?}");
+        assert!(many.len() > 4, "{many:?}");
         assert!(placed.at_rest.lowest >= 45.0 && placed.at_rest.mean >= placed.at_rest.lowest);
-        assert!(placed.midway.unwrap().lowest >= 42.0);
+        let midway = placed.midway.unwrap();
+        assert!(midway.lowest >= 42.0, "{midway:?}");
         assert_eq!(placed.bytes(), placed.slices.iter().map(|slice| slice.webp.len() as u64).sum::<u64>());
 
-        let few = PlacementOptions { most_halvings: 0, ..OPTIONS };
-        let coarse = place_slices(&[0.0, 0.5, 1.0], &few, draw).unwrap();
-        assert_eq!(coarse.slices.len(), 3);
+        let few = PlacementOptions { shortest_step: 1.0, ..OPTIONS };
+        let coarse = place_slices(&spacing, &few, draw).unwrap();
+        assert_eq!(distances(&coarse), [0.0, 0.5, 1.0]);
         assert!(coarse.midway.unwrap().lowest < 42.0, "the error is measured, not assumed");
+    }
+
+    #[test]
+    fn steps_become_longer_where_the_picture_straightens() {
+        // Bent up to 0.5, then linear.
+        let level = |u: f64| 40.0 + 60.0 * u + if u < 0.5 { 500.0 * (u - 0.5).powi(2) } else { 0.0 };
+        let draw = |u: f64| Ok::<_, WebPageError>(bar(level(u)));
+        let spacing = SliceSpacing { sharp: &[], range: UNIT, opening: 1.0, reach: 0.1 };
+        let placed = place_slices(&spacing, &OPTIONS, draw).unwrap();
+        let steps: Vec<_> = distances(&placed).windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let [first, longest] = [steps[0], steps.iter().copied().fold(0.0, f64::max)];
+        assert!(first < 0.2 && longest > 0.4, "{steps:?}");
     }
 
     #[test]
     fn limits_and_errors_end_it() {
         let options = PlacementOptions { most_bytes: 100, ..OPTIONS };
         let draw = |_| Ok::<_, WebPageError>(bar(100.0));
-        let distances = [0.0, 0.2, 0.4, 0.6];
-        assert_eq!(place_slices(&distances, &options, draw).unwrap_err(), WebPageError::TooLarge);
-        let stopped = place_slices(&distances, &OPTIONS, |_| Err(WebPageError::Size(0, 0)));
+        let sharp = sharp_but_in(0.0..0.0);
+        let spacing = SliceSpacing { sharp: &sharp, range: UNIT, opening: 0.3, reach: 0.1 };
+        assert_eq!(place_slices(&spacing, &options, draw).unwrap_err(), WebPageError::TooLarge);
+        let stopped = place_slices(&spacing, &OPTIONS, |_| Err(WebPageError::Size(0, 0)));
         assert_eq!(stopped.unwrap_err(), WebPageError::Size(0, 0));
-        let single = place_slices(&[0.5], &OPTIONS, draw).unwrap();
+        let range = DistanceRange { farthest: 0.5, nearest: 0.5 };
+        let single = SliceSpacing { sharp: &[0.5], range, opening: 0.5, reach: 0.1 };
+        let single = place_slices(&single, &OPTIONS, draw).unwrap();
         assert_eq!((single.slices.len(), single.midway), (1, None));
     }
 }

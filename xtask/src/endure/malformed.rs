@@ -1,6 +1,7 @@
 //! Damaged files: each is refused or read, but never takes the program down.
 
 use super::harness::made_files::{picture, picture_with_depth, put, write_all};
+use super::harness::made_splats;
 use super::harness::program::Limits;
 use super::harness::promise::{Context, Promise, Verdict, Workplace, ended_as_documented};
 use super::harness::seeded::Seeded;
@@ -70,6 +71,14 @@ const READABLE: &[Readable] = &[
     readable("colmap/mesh.obj", "info colmap"),
     readable("bundler/bundle.out", "info bundler"),
     readable("views/parameters.cfg", "info views"),
+    readable("splats/a.ply", "info splats/a.ply"),
+    readable("splats/a.compressed.ply", "info splats/a.compressed.ply"),
+    readable("splats/a.splat", "info splats/a.splat"),
+    readable("splats/a2.spz", "info splats/a2.spz"),
+    readable("splats/a4.spz", "info splats/a4.spz"),
+    readable("splats/a.sog", "info splats/a.sog"),
+    readable("splats/a.ksplat", "info splats/a.ksplat"),
+    readable("splats/a.glb", "info splats/a.glb"),
 ];
 
 /// Writes a small valid file of every kind.
@@ -79,6 +88,7 @@ pub(super) fn prepare(folder: &Path, context: &Context) -> Result<(), String> {
     }
     write_all(folder, context)?;
     write_captures(folder)?;
+    made_splats::write(folder)?;
     for Readable { file, command } in READABLE {
         let run = context.program.line(folder, &command.replace("@/", "./")).run();
         ended_as_documented(&run)?;

@@ -6,7 +6,7 @@ use lens::{Camera, FocusOffset};
 use light::LitScene;
 use progress::Unwatched;
 use scene::SurfaceField;
-use web_page::slice_distances;
+use web_page::SliceSpacing;
 
 /// Bytes of a page per pixel of its slices: measured for the demo at 1280 × 720.
 const BYTES_PER_PIXEL: f64 = 0.045;
@@ -41,8 +41,9 @@ pub fn estimate_web_page(
         let sharp = surfaces.all_sharp_distances(range, &optics, is_painted);
         let reach = WebPageOptions::LARGEST_BLUR_PX * divisor / optics.splat_radius_px(1.0);
         let most = options.most_slices();
-        let distances = slice_distances(&sharp, range, optics.inverse_focus_distance, reach, most);
-        distances.map_or(most, |distances| distances.len()) as u64
+        let opening = optics.inverse_focus_distance;
+        let spacing = SliceSpacing { sharp: &sharp, range, opening, reach };
+        spacing.least_slices(most).unwrap_or(most) as u64
     };
     let is_painted = surfaces.is_painted();
     let divisors = &options.aperture_divisors;

@@ -48,7 +48,7 @@ impl WebPageOptions {
         PlacementOptions {
             rest_psnr: Self::REST_PSNR + Self::MARGIN_OF_TOLERANCE,
             midway_psnr: Self::MIDWAY_PSNR + Self::MARGIN_OF_TOLERANCE,
-            most_halvings: 5,
+            shortest_step: 1.0 / 32.0,
             most_bytes,
         }
     }

@@ -15,7 +15,7 @@ use splat::Splatter;
 use std::path::Path;
 use std::sync::Arc;
 use web_page::{
-    DistanceRange, PlacedSlices, ScreenPicture, SliceStack, WebPageError, place_slices, slice_distances,
+    DistanceRange, PlacedSlices, ScreenPicture, SliceSpacing, SliceStack, WebPageError, place_slices,
 };
 
 /// How the surfaces of a stack are focused.
@@ -68,23 +68,23 @@ impl<'a> StackDrawing<'a> {
         let aperture_radius = self.camera.aperture_radius / divisor;
         let camera = Camera { aperture_radius, ..self.camera.clone() };
         let px_per_kappa = camera.optics().splat_radius_px(1.0);
-        let of_focusing = |focusing: &&Focusing| self.distances(&focusing.sharp, px_per_kappa);
-        let distances = focusings.iter().map(of_focusing).collect::<Result<Vec<_>, _>>()?;
+        let spacings = focusings.iter().map(|focusing| self.spacing(&focusing.sharp, px_per_kappa));
+        let spacings = spacings.collect::<Result<Vec<_>, _>>()?;
         let salf = Arc::new(self.bake(&camera, focusings)?);
         let mut splatter = new_splatter(salf, &self.options.render);
         let aperture = aperture_name(camera.f_number());
-        let draw_stack = |(focusing, distances): (&&Focusing, Vec<f64>)| {
+        let draw_stack = |(focusing, spacing): (&&Focusing, SliceSpacing)| {
             let Focusing { is_painted, focus, sharp } = focusing;
             let kind = if *is_painted { "painted" } else { "ordinary focus" };
             let label = format!("slices at {aperture}, {kind}");
-            let placed = self.place(&mut splatter, &camera, focus, &distances, &label)?;
+            let placed = self.place(&mut splatter, &camera, focus, &spacing, &label)?;
             let report = StackReport::new(&aperture, *is_painted, &placed, sharp, px_per_kappa);
             self.used_bytes += placed.bytes();
             let stack =
                 SliceStack { aperture: aperture.clone(), is_painted: *is_painted, slices: placed.slices };
             Ok((stack, report))
         };
-        focusings.iter().zip(distances).map(draw_stack).collect()
+        focusings.iter().zip(spacings).map(draw_stack).collect()
     }
 
     /// Index and picture of the slice at the camera's own focus distance, in the first stack.
@@ -98,17 +98,19 @@ impl<'a> StackDrawing<'a> {
         })
     }
 
-    /// The distances of the slices before any error is measured.
-    fn distances(&self, sharp: &[f64], px_per_kappa: f64) -> Result<Vec<f64>, RenderError> {
-        let most = self.options.most_slices();
-        let reach = WebPageOptions::LARGEST_BLUR_PX / px_per_kappa;
+    /// Where slices are needed before any error is measured.
+    fn spacing<'s>(&self, sharp: &'s [f64], px_per_kappa: f64) -> Result<SliceSpacing<'s>, RenderError> {
         let opening = self.camera.optics().inverse_focus_distance;
-        slice_distances(sharp, self.range, opening, reach, most).ok_or_else(|| {
+        let reach = WebPageOptions::LARGEST_BLUR_PX / px_per_kappa;
+        let spacing = SliceSpacing { sharp, range: self.range, opening, reach };
+        let most = self.options.most_slices();
+        if spacing.least_slices(most).is_none() {
             let what = format!(
                 "the picture is blurred so much that it needs more than {most} slices (use a smaller aperture or a smaller size)"
             );
-            RenderError::bad_file(self.path, what)
-        })
+            return Err(RenderError::bad_file(self.path, what));
+        }
+        Ok(spacing)
     }
 
     /// Bakes a light field that holds what every distance shows.
@@ -129,7 +131,7 @@ impl<'a> StackDrawing<'a> {
         splatter: &mut Splatter,
         camera: &Camera,
         focus: &Focus,
-        distances: &[f64],
+        spacing: &SliceSpacing,
         label: &str,
     ) -> Result<PlacedSlices, RenderError> {
         let options = self.options;
@@ -158,7 +160,7 @@ impl<'a> StackDrawing<'a> {
             Ok(picture)
         };
         let most_bytes = (options.most_bytes() / 4 * 3).saturating_sub(self.used_bytes);
-        let placed = place_slices(distances, &WebPageOptions::placement(most_bytes), draw);
+        let placed = place_slices(spacing, &WebPageOptions::placement(most_bytes), draw);
         let placed = placed.map_err(|error| match error {
             StackError::Drawing(error) => error,
             StackError::Page(error) => page_error(self.path, error),
