@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io::Write;
 use std::path::Path;
 use zip::write::SimpleFileOptions;
-use zip::{CompressionMethod, DateTime, ZipWriter};
+use zip::{CompressionMethod, DateTime, System, ZipWriter};
 
 /// A file of the archive.
 pub struct Entry {
@@ -22,10 +22,11 @@ pub fn write_zip(file: &Path, entries: Vec<Entry>) -> Result<(), Failure> {
     let failed = |error: zip::result::ZipError| Failure::new(format!("{}: {error}", file.display()));
     let created = File::create(file).map_err(|error| file_failure(file, &error))?;
     let mut archive = ZipWriter::new(created);
-    // The time of no file depends on when it is packed.
+    // Nothing depends on when or where it is packed.
     let options = SimpleFileOptions::default()
         .compression_method(CompressionMethod::Deflated)
-        .last_modified_time(DateTime::default());
+        .last_modified_time(DateTime::default())
+        .system(System::Unix);
     for Entry { path, bytes } in entries {
         let rights = if path.ends_with(".so") || path.ends_with(".exe") { 0o755 } else { 0o644 };
         archive.start_file(path, options.unix_permissions(rights)).map_err(failed)?;

@@ -47,8 +47,8 @@ of_one! {
 
 of_two! { atan2 atan2f pow powf hypot hypotf }
 
-/// Where compilers for Linux find both functions of one number needed.
-#[cfg(target_os = "linux")]
+/// Where compilers for Linux and GNU's for Windows find both functions of one number needed.
+#[cfg(any(target_os = "linux", windows))]
 mod together {
     /// The sine and the cosine of `x`.
     #[unsafe(no_mangle)]

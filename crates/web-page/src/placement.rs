@@ -124,11 +124,10 @@ pub fn place_slices<E: From<WebPageError>>(
     })
 }
 
-/// By how much the PSNR of a cross-fade may exceed the lowest allowed before a longer step is tried, dB.
-const PSNR_SLACK: f64 = 0.5;
-/// How much the PSNR of a cross-fade falls where the step is ten times as long, dB: its error is what a Taylor series leaves after its
-/// linear part, which grows as the square of the step.
-const PSNR_PER_DECADE: f64 = 40.0;
+/// A longer step is tried where it is likely to be longer by this factor.
+const WORTHWHILE: f64 = 1.15;
+/// The share of the error allowed that a step aims at.
+const AIM: f64 = 0.95;
 
 /// A slice that may follow the last one.
 struct Candidate {
@@ -142,6 +141,7 @@ struct Candidate {
 struct LastSlice {
     inverse_distance: f64,
     decoded: ScreenPicture,
+    psnr: f64,
     quality: u8,
 }
 
@@ -163,7 +163,7 @@ impl Placed {
         options: &PlacementOptions,
     ) -> Result<Self, WebPageError> {
         let EncodedPicture { webp, psnr, quality, decoded } = first;
-        let last = LastSlice { inverse_distance, decoded, quality };
+        let last = LastSlice { inverse_distance, decoded, psnr, quality };
         let (slices, rest_psnrs, midway_psnrs) = Default::default();
         let mut placed = Self { slices, bytes: 0, rest_psnrs, midway_psnrs, last, step: f64::INFINITY };
         placed.push(inverse_distance, webp, psnr, options)?;
@@ -174,7 +174,7 @@ impl Placed {
         let Candidate { inverse_distance, encoded, midway_psnr } = best;
         let EncodedPicture { webp, psnr, quality, decoded } = encoded;
         self.step = inverse_distance - self.last.inverse_distance;
-        self.last = LastSlice { inverse_distance, decoded, quality };
+        self.last = LastSlice { inverse_distance, decoded, psnr, quality };
         self.midway_psnrs.push(midway_psnr);
         self.push(inverse_distance, webp, psnr, options)
     }
@@ -212,17 +212,15 @@ impl Placed {
             let is_between = start + step > start && start + step < limit;
             let distance = if is_between { start + step } else { limit };
             let candidate = self.candidate(distance, options, draw)?;
-            let excess = candidate.midway_psnr - options.midway_psnr;
-            if excess < 0.0
-                && let Some(good) = good.take()
-            {
+            let is_good = candidate.midway_psnr >= options.midway_psnr;
+            if !is_good && let Some(good) = good.take() {
                 break good;
             }
-            let ideal = step * 10f64.powf((excess - PSNR_SLACK / 2.0) / PSNR_PER_DECADE);
-            if excess < 0.0 && step > shortest {
+            let ideal = step * self.lengthening(&candidate, options);
+            if !is_good && step > shortest {
                 was_too_long = true;
                 step = ideal.min(0.9 * step).max(shortest);
-            } else if excess > PSNR_SLACK && is_between && !was_too_long {
+            } else if is_good && ideal > WORTHWHILE * step && is_between && !was_too_long {
                 good = Some(candidate);
                 step = ideal.min(longest);
             } else {
@@ -230,6 +228,17 @@ impl Placed {
             }
         };
         Ok(self.keep(best, options)?)
+    }
+
+    /// By what factor the step to a candidate is likely to become as long as is allowed. The error of a cross-fade is that of the coding,
+    /// half of both slices' since they are independent, and what a Taylor series leaves after its linear part: its mean square grows as the
+    /// fourth power of the step.
+    fn lengthening(&self, candidate: &Candidate, options: &PlacementOptions) -> f64 {
+        let mean_square = |psnr: f64| 10f64.powf(-psnr / 10.0);
+        let coding = 0.25 * (mean_square(self.last.psnr) + mean_square(candidate.encoded.psnr));
+        let beyond_coding = |psnr: f64, share: f64| (share * mean_square(psnr) - coding).max(1e-3 * coding);
+        let allowed = beyond_coding(options.midway_psnr, AIM);
+        (allowed / beyond_coding(candidate.midway_psnr, 1.0)).powf(0.25)
     }
 
     /// The slice at a distance beyond the last.

@@ -4,7 +4,7 @@ use crate::ProjectError;
 use std::io::{Cursor, Read, Write};
 use std::path::Path;
 use zip::write::SimpleFileOptions;
-use zip::{CompressionMethod, DateTime, ZipArchive, ZipWriter};
+use zip::{CompressionMethod, DateTime, System, ZipArchive, ZipWriter};
 
 /// Maximum number of entries of a project.
 const MAX_ENTRIES: usize = 256;
@@ -13,13 +13,14 @@ const MAX_ENTRIES: usize = 256;
 pub(crate) const DAMAGED_CURE: &str =
     "restore the file from a backup, or open its .recovery file if there is one";
 
-/// Packs the entries, in order, compressed. The same entries give the same bytes.
+/// Packs the entries, in order, compressed. The same entries give the same bytes, on any system.
 pub(crate) fn pack(entries: &[(String, Vec<u8>)]) -> Result<Vec<u8>, std::io::Error> {
     // The fastest level: floats hardly compress further, and saving must be quick.
     let options = SimpleFileOptions::default()
         .compression_method(CompressionMethod::Deflated)
         .compression_level(Some(1))
-        .last_modified_time(DateTime::default());
+        .last_modified_time(DateTime::default())
+        .system(System::Unix);
     let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
     for (name, bytes) in entries {
         zip.start_file(name.as_str(), options.large_file(bytes.len() as u64 >= u32::MAX as u64))?;

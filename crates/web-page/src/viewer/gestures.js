@@ -1,5 +1,7 @@
 /** A pointer that moves less than this, px, clicks. */
 const CLICK_PX = 6;
+/** A mouse that rests for so long, ms, may be about to click. */
+const REST_MS = 40;
 /** How much a pixel of the wheel magnifies, as a logarithm. */
 const WHEEL_ZOOM = 0.002;
 
@@ -12,7 +14,7 @@ class Gestures {
    * @param {HTMLElement} view
    * @param {Zoom} zoom
    * @param {Rack} rack
-   * @param {{begin: () => void, click: (point: {clientX: number, clientY: number}) => void}} actions
+   * @param {{begin: () => void, aim: (point: PointerEvent, wait: number) => void, click: (point: PointerEvent) => void}} actions
    */
   constructor(view, zoom, rack, actions) {
     this.view = view;
@@ -52,6 +54,7 @@ class Gestures {
       return;
     }
     if (event.button === 1) event.preventDefault();
+    this.actions.aim(event, 0);
     this.kind = event.shiftKey || event.button === 1 ? "pan" : "click";
     [this.startX, this.startY, this.startPosition] = [event.clientX, event.clientY, this.rack.position];
   }
@@ -59,8 +62,9 @@ class Gestures {
   /** @param {PointerEvent} event */
   move(event) {
     const before = this.pointers.get(event.pointerId);
-    if (!before) return;
-    if (this.kind === "pinch") {
+    if (!before) {
+      if (!event.buttons) this.actions.aim(event, REST_MS);
+    } else if (this.kind === "pinch") {
       this.pinch(before, event);
     } else if (this.kind === "pan") {
       this.zoom.pan(event.clientX - before.clientX, event.clientY - before.clientY);
@@ -69,7 +73,7 @@ class Gestures {
       if (this.kind === "click" && Math.hypot(x, y) >= CLICK_PX) this.kind = "rack";
       if (this.kind === "rack") this.rack.move(this.startPosition + x / this.zoom.frame.width);
     }
-    this.pointers.set(event.pointerId, event);
+    if (before) this.pointers.set(event.pointerId, event);
   }
 
   /**

@@ -23,12 +23,13 @@ class Rack {
 
   /** The slice of the current stack that is nearest to the distance. */
   get slice() {
-    const distances = this.stacks[this.stack].inverseDistances;
-    let best = 0;
-    for (let k = 1; k < distances.length; k++) {
-      if (Math.abs(distances[k] - this.inverseDistance) < Math.abs(distances[best] - this.inverseDistance)) best = k;
-    }
-    return best;
+    return this.sliceAt(this.inverseDistance);
+  }
+
+  /** @param {number} inverseDistance */
+  sliceAt(inverseDistance) {
+    const off = this.stacks[this.stack].inverseDistances.map((distance) => Math.abs(distance - inverseDistance));
+    return off.indexOf(Math.min(...off));
   }
 
   /**

@@ -29,7 +29,7 @@ function showPage(page) {
   /** @type {Controls} */
   const controls = new Controls(page, rack, player);
   const zoom = new Zoom(view, element("stage", HTMLDivElement));
-  const gestures = new Gestures(view, zoom, rack, { begin, click: focusOn });
+  const gestures = new Gestures(view, zoom, rack, { begin, aim, click: focusOn });
   addEventListener("resize", () => zoom.apply());
 
   const sharpDistances = PixelMap.unpack(maps.size, maps.sharpDistances);
@@ -46,20 +46,44 @@ function showPage(page) {
     element("hint", HTMLParagraphElement).classList.add("done");
   }
 
+  const distanceMap = () => (page.stacks[rack.stack].isPainted ? paintedSharpDistances : sharpDistances);
+
+  /**
+   * The reciprocal distance that makes sharp what is at a point of the window; `null` where none does, `undefined` beside the picture.
+   *
+   * @param {{clientX: number, clientY: number}} point
+   */
+  async function sharpDistance(point) {
+    const [x, y] = zoom.place(point);
+    const map = await distanceMap();
+    return map && x >= 0 && x < 1 && y >= 0 && y < 1 ? distanceOfCode(map.at(x, y), page.range) : undefined;
+  }
+
+  let aiming = 0;
+
+  /**
+   * Decodes what a click at a point would show, unless something else is aimed at before.
+   *
+   * @param {{clientX: number, clientY: number}} point
+   * @param {number} wait ms
+   */
+  function aim(point, wait) {
+    clearTimeout(aiming);
+    aiming = setTimeout(async () => {
+      const distance = await sharpDistance(point);
+      if (typeof distance === "number") slices.get(rack.stack, rack.sliceAt(distance)).catch(() => {});
+    }, wait);
+  }
+
   /**
    * Focuses on what is at a point of the window.
    *
    * @param {{clientX: number, clientY: number}} point
    */
   async function focusOn(point) {
-    const [x, y] = zoom.place(point);
-    if (!(x >= 0 && x < 1 && y >= 0 && y < 1)) return;
-    const map = await (page.stacks[rack.stack].isPainted ? paintedSharpDistances : sharpDistances);
-    if (!map) {
-      message.show("This browser cannot focus by a click: drag from side to side");
-      return;
-    }
-    const inverseDistance = distanceOfCode(map.at(x, y), page.range);
+    if (!(await distanceMap())) message.show("This browser cannot focus by a click: drag from side to side");
+    const inverseDistance = await sharpDistance(point);
+    if (inverseDistance === undefined) return;
     showMark(point, inverseDistance !== null);
     if (inverseDistance === null) {
       message.show("Painted, stays so");
