@@ -1,6 +1,6 @@
 //! Small numerical routines that several crates share: order statistics, robust scale, Cholesky solves, luminance,
 //! smooth steps, PSNR, the sRGB curve; inner loops compiled for the widest SIMD instructions of the machine; and, for whole programs that
-//! contain this crate, sines, exponentials and their kin that are the same on every system.
+//! contain this crate, sines, exponentials and their kin, and C's sorting, that are the same on every system.
 //!
 //! Results are bitwise reproducible. The order of the floating-point operations is part of each function's contract;
 //! values are compared by [`f64::total_cmp`], so that NaN and signed zeros have a place, too.
@@ -20,6 +20,7 @@
 mod cholesky;
 mod elementary_functions;
 mod luminance;
+mod merge_sort;
 mod order_statistics;
 mod psnr;
 mod real;
