@@ -77,10 +77,13 @@ impl Ledger {
     }
 }
 
-/// The commit of the sources, marked if they differ from it.
+/// The commit of the sources, marked if they differ from it; the ledger itself, which every run changes, is none of them.
 fn commit() -> String {
     let git = |arguments: &[&str]| printed(Command::new("git").arg("-C").arg(repository()).args(arguments));
-    git(&["describe", "--always", "--exclude=*", "--abbrev=9", "--dirty"])
+    let commit = git(&["describe", "--always", "--exclude=*", "--abbrev=9"]);
+    let sources = [":/", ":(top,exclude)docs/promises.json", ":(top,exclude)docs/promises.md"];
+    let changed = git(&[&["status", "--porcelain", "--untracked-files=no", "--"][..], &sources].concat());
+    if changed.is_empty() { commit } else { format!("{commit}-dirty") }
 }
 
 fn printed(command: &mut Command) -> String {
