@@ -73,22 +73,48 @@ fn it_stays_within_its_tolerance_with_few_triangles() {
     assert!(coarse.triangles.len() < relief.triangles.len());
 }
 
-#[test]
-fn nothing_gapes_where_nothing_jumps() {
-    let relief = surface(&disparities(hill), &ReliefOptions { reach: 4.0, ..ReliefOptions::default() });
+/// Checks that sides within a picture of `size` belong to two triangles, those at its border to one, and that all triangles cover it once.
+fn assert_closed(relief: &Relief, size: [usize; 2]) {
     let mut sides: HashMap<[u32; 2], usize> = HashMap::new();
+    let mut area = 0.0;
     for &[a, b, c] in &relief.triangles {
         for [from, to] in [[a, b], [b, c], [c, a]] {
             *sides.entry([from.min(to), from.max(to)]).or_default() += 1;
         }
+        let [a, b, c] = [a, b, c].map(|v| relief.vertices[v as usize].place);
+        area += 0.5 * (b - a).perp_dot(c - a);
     }
+    assert_eq!(area.abs(), (size[0] * size[1]) as f32, "all lie the same way around");
     let on_border = |v: u32| {
         let place = relief.vertices[v as usize].place;
-        [place.x == 0.0, place.y == 0.0, place.x == SIZE[0] as f32, place.y == SIZE[1] as f32]
+        [place.x == 0.0, place.y == 0.0, place.x == size[0] as f32, place.y == size[1] as f32]
     };
     for (&[a, b], &count) in &sides {
         let is_border = on_border(a).into_iter().zip(on_border(b)).any(|(a, b)| a && b);
         assert_eq!(count, if is_border { 1 } else { 2 }, "{a} {b}");
+    }
+}
+
+#[test]
+fn nothing_gapes_where_nothing_jumps() {
+    let relief = surface(&disparities(hill), &ReliefOptions { reach: 4.0, ..ReliefOptions::default() });
+    assert_closed(&relief, SIZE);
+}
+
+#[test]
+fn elongated_pictures_are_as_closed_and_take_no_more_than_their_own_size() {
+    let options = ReliefOptions { reach: 4.0, ..ReliefOptions::default() };
+    for size in [[300, 9], [9, 300], [257, 1], [2, 70_000]] {
+        let at = |cell: usize| {
+            let [x, y] = [cell % size[0], cell / size[0]].map(|k| k as f32);
+            0.2 * (0.07 * (x + y)).sin() + 0.3 + 0.01 * x.min(9.0)
+        };
+        let disparity: Vec<f32> = (0..size[0] * size[1]).map(at).collect();
+        let picture = vec![[0.5; 3]; disparity.len()];
+        let relief =
+            Relief::build::<Infallible>(size, &disparity, &picture, &[], &options, &Unwatched).unwrap();
+        assert_closed(&relief, size);
+        assert!(relief.triangles.len() <= 2 * disparity.len(), "{size:?}");
     }
 }
 

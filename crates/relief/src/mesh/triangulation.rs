@@ -16,11 +16,16 @@ use crate::mesh::cells::{Cells, Grid};
 use crate::mesh::corners::Joint;
 use rayon::prelude::*;
 
-/// Corners of the picture's cells, in a square whose side is a power of two, and the error of omitting each.
+/// A picture whose sides' powers of two differ by this factor is covered by several squares: one would be many times as large as it is.
+const ELONGATED: usize = 4;
+
+/// Corners of the picture's cells, in squares side by side whose side is a power of two, and the error of omitting each.
 pub(crate) struct Triangulation {
     grid: Grid,
-    /// Number of cells along a side of the square.
+    /// Number of cells along a side of a square.
     side: usize,
+    /// Number of cells along the sides of all squares together.
+    extent: [usize; 2],
     errors: Vec<f32>,
 }
 
@@ -38,7 +43,7 @@ impl Triangulation {
         is_whole: &(dyn Fn(usize) -> bool + Sync),
     ) -> Self {
         let grid = cells.grid;
-        let side = grid.width.max(grid.height).next_power_of_two().max(2);
+        let (side, extent) = squares([grid.width, grid.height]);
         let row = grid.width + 1;
         let joints: Vec<f32> = (0..row * (grid.height + 1))
             .into_par_iter()
@@ -64,8 +69,9 @@ impl Triangulation {
             let mut rows = y.saturating_sub(1)..(y + 1).min(grid.height);
             rows.all(|y| columns.clone().all(|x| is_whole(grid.at(x, y))))
         };
-        let mut errors = vec![0.0; (side + 1) * (side + 1)];
-        errors.par_chunks_mut(side + 1).enumerate().for_each(|(y, errors)| {
+        let corners = extent[0] + 1;
+        let mut errors = vec![0.0; corners * (extent[1] + 1)];
+        errors.par_chunks_mut(corners).enumerate().for_each(|(y, errors)| {
             for (x, error) in errors.iter_mut().enumerate() {
                 let is_needed = at(x, y).is_nan() || !are_whole(x, y);
                 *error = if is_needed { f32::INFINITY } else { 0.0 };
@@ -83,27 +89,27 @@ impl Triangulation {
                 let mut max_error = 0.0f32;
                 for (dx, dy) in [(-1, -1), (1, -1), (-1, 1), (1, 1)] {
                     let (x, y) = (x as isize + dx * quarter as isize, y as isize + dy * quarter as isize);
-                    if (0..=side as isize).contains(&x) && (0..=side as isize).contains(&y) {
-                        max_error = max_error.max(errors[y as usize * (side + 1) + x as usize]);
+                    if (0..=extent[0] as isize).contains(&x) && (0..=extent[1] as isize).contains(&y) {
+                        max_error = max_error.max(errors[y as usize * corners + x as usize]);
                     }
                 }
                 max_error
             };
             let before = &errors;
-            let sides: Vec<Vec<(usize, f32)>> = (0..=side / half)
+            let sides: Vec<Vec<(usize, f32)>> = (0..=extent[1] / half)
                 .into_par_iter()
                 .map(|line| {
                     let y = line * half;
                     let first = if line % 2 == 0 { half } else { 0 };
                     let mut line_errors = Vec::new();
-                    for x in (first..=side).step_by(step) {
+                    for x in (first..=extent[0]).step_by(step) {
                         let ends = if line % 2 == 0 {
                             [end(x - half, y, [x, y]), end(x + half, y, [x, y])]
                         } else {
                             [end(x, y - half, [x, y]), end(x, y + half, [x, y])]
                         };
                         let error = metric.deviation(at(x, y), ends, step as f32);
-                        line_errors.push((y * (side + 1) + x, error.max(beneath(before, x, y))));
+                        line_errors.push((y * corners + x, error.max(beneath(before, x, y))));
                     }
                     line_errors
                 })
@@ -111,12 +117,12 @@ impl Triangulation {
             raise(&mut errors, sides);
             // Middles of squares: beneath are the middles of their four sides.
             let before = &errors;
-            let middles: Vec<Vec<(usize, f32)>> = (0..side / step)
+            let middles: Vec<Vec<(usize, f32)>> = (0..extent[1] / step)
                 .into_par_iter()
                 .map(|line| {
                     let y = line * step + half;
                     let mut line_errors = Vec::new();
-                    for column in 0..side / step {
+                    for column in 0..extent[0] / step {
                         let x = column * step + half;
                         let end = |x: usize, y: usize| end(x, y, [column * step + half, line * step + half]);
                         let ends = match (column + line) % 2 {
@@ -125,9 +131,9 @@ impl Triangulation {
                         };
                         let sides = [(x - half, y), (x + half, y), (x, y - half), (x, y + half)];
                         let max_error =
-                            sides.iter().fold(0.0f32, |max, &(x, y)| max.max(before[y * (side + 1) + x]));
+                            sides.iter().fold(0.0f32, |max, &(x, y)| max.max(before[y * corners + x]));
                         let error = metric.deviation(at(x, y), ends, step as f32 * std::f32::consts::SQRT_2);
-                        line_errors.push((y * (side + 1) + x, error.max(max_error)));
+                        line_errors.push((y * corners + x, error.max(max_error)));
                     }
                     line_errors
                 })
@@ -135,14 +141,24 @@ impl Triangulation {
             raise(&mut errors, middles);
             step *= 2;
         }
-        Self { grid, side, errors }
+        Self { grid, side, extent, errors }
     }
 
     /// The triangles within a tolerance, in the picture. All cells beneath one exist, or none.
     pub fn triangles(&self, tolerance: f32) -> Vec<LayerTriangle> {
-        let side = self.side;
+        let Self { side, extent, .. } = *self;
         let mut triangles = Vec::new();
-        let mut open = vec![([0, 0], [side, side], [side, 0]), ([side, side], [0, 0], [0, side])];
+        // Halves of each square; the longest side leans one way in every second one, as those of the squares in it do.
+        let mut open = Vec::new();
+        for (row, y) in (0..extent[1]).step_by(side).enumerate() {
+            for (column, x) in (0..extent[0]).step_by(side).enumerate() {
+                let [least, right, low, most] = [[x, y], [x + side, y], [x, y + side], [x + side, y + side]];
+                open.extend(match (row + column) % 2 {
+                    0 => [(least, most, right), (most, least, low)],
+                    _ => [(low, right, least), (right, low, most)],
+                });
+            }
+        }
         while let Some((a, b, apex)) = open.pop() {
             let least =
                 [a, b, apex].into_iter().fold([usize::MAX; 2], |low, p| [low[0].min(p[0]), low[1].min(p[1])]);
@@ -151,7 +167,7 @@ impl Triangulation {
             }
             let is_smallest = a[0].abs_diff(b[0]).max(a[1].abs_diff(b[1])) == 1;
             let middle = [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2];
-            let error = || self.errors[middle[1] * (side + 1) + middle[0]];
+            let error = || self.errors[middle[1] * (extent[0] + 1) + middle[0]];
             if !is_smallest && error() > tolerance {
                 open.push((apex, a, middle));
                 open.push((b, apex, middle));
@@ -161,6 +177,14 @@ impl Triangulation {
         }
         triangles
     }
+}
+
+/// The side of the squares that cover so many columns and rows of cells, and how many cells they have together along each side.
+fn squares(cells: [usize; 2]) -> (usize, [usize; 2]) {
+    let [narrow, long] =
+        [cells[0].min(cells[1]), cells[0].max(cells[1])].map(|n| n.next_power_of_two().max(2));
+    let side = if long < ELONGATED * narrow { long } else { narrow };
+    (side, cells.map(|count| count.max(1).next_multiple_of(side)))
 }
 
 /// The error measure, in pixels.
