@@ -6,6 +6,10 @@
 
 use crate::pages::{lines, pages, repository};
 use crate::workplace::workplace;
+#[cfg(unix)]
+use std::os::unix::fs::symlink as link_folder;
+#[cfg(windows)]
+use std::os::windows::fs::symlink_dir as link_folder;
 use std::process::Command;
 
 /// Large sizes of pictures, and their replacements.
@@ -52,7 +56,7 @@ fn every_command_of_the_book_runs() {
         let place = workplace();
         // Files of the repository that pages name.
         for shipped in ["assets", "docs"] {
-            std::os::unix::fs::symlink(repository().join(shipped), place.path().join(shipped)).unwrap();
+            link_folder(repository().join(shipped), place.path().join(shipped)).unwrap();
         }
         let page = page.strip_prefix(repository()).unwrap().display();
         for (number, command) in commands {
