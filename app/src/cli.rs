@@ -47,7 +47,7 @@ pub fn run() -> ExitCode {
         Err(error) => return report_usage_error(&error),
     };
     record_panic_location();
-    // If it cannot be started here, it starts with its first task, or says then that it cannot.
+    // If it runs already, or no thread can be started, the first task tells.
     let _ = jobs::start_global_pool(0);
     let outcome = match arguments {
         // The window's event loop must have the main thread.

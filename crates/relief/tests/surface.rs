@@ -73,14 +73,21 @@ fn it_stays_within_its_tolerance_with_few_triangles() {
     assert!(coarse.triangles.len() < relief.triangles.len());
 }
 
-/// Checks that sides within a picture of `size` belong to two triangles, those at its border to one, and that all triangles cover it once.
-fn assert_closed(relief: &Relief, size: [usize; 2]) {
+/// How many triangles each side belongs to.
+fn sides(relief: &Relief) -> HashMap<[u32; 2], usize> {
     let mut sides: HashMap<[u32; 2], usize> = HashMap::new();
-    let mut area = 0.0;
     for &[a, b, c] in &relief.triangles {
         for [from, to] in [[a, b], [b, c], [c, a]] {
             *sides.entry([from.min(to), from.max(to)]).or_default() += 1;
         }
+    }
+    sides
+}
+
+/// Checks that sides within a picture of `size` belong to two triangles, those at its border to one, and that all triangles cover it once.
+fn assert_closed(relief: &Relief, size: [usize; 2]) {
+    let mut area = 0.0;
+    for &[a, b, c] in &relief.triangles {
         let [a, b, c] = [a, b, c].map(|v| relief.vertices[v as usize].place);
         area += 0.5 * (b - a).perp_dot(c - a);
     }
@@ -89,7 +96,7 @@ fn assert_closed(relief: &Relief, size: [usize; 2]) {
         let place = relief.vertices[v as usize].place;
         [place.x == 0.0, place.y == 0.0, place.x == size[0] as f32, place.y == size[1] as f32]
     };
-    for (&[a, b], &count) in &sides {
+    for (&[a, b], &count) in &sides(relief) {
         let is_border = on_border(a).into_iter().zip(on_border(b)).any(|(a, b)| a && b);
         assert_eq!(count, if is_border { 1 } else { 2 }, "{a} {b}");
     }
@@ -127,13 +134,7 @@ fn only_cells_sides_gape_where_depth_jumps() {
     };
     let relief = surface(&disparities(disc), &ReliefOptions { reach: 4.0, ..ReliefOptions::default() });
     assert!(relief.hidden_triangles() > 100);
-    let mut sides: HashMap<[u32; 2], usize> = HashMap::new();
-    for &[a, b, c] in &relief.triangles {
-        for [from, to] in [[a, b], [b, c], [c, a]] {
-            *sides.entry([from.min(to), from.max(to)]).or_default() += 1;
-        }
-    }
-    for (&[a, b], &count) in &sides {
+    for (&[a, b], &count) in &sides(&relief) {
         let [a, b] = [a, b].map(|v| relief.vertices[v as usize].place);
         assert!(count == 2 || count == 1 && a.distance(b) == 1.0, "{count} at {a} {b}");
     }

@@ -22,11 +22,13 @@ mod page;
 mod pixel_map;
 mod placement;
 mod screen_picture;
+mod slice_spacing;
 mod template;
 
 pub use encoding::{EncodedPicture, encode_picture};
 pub use error::WebPageError;
 pub use page::{Caption, OpeningSlice, PaintMaps, PublicAddress, Slice, SliceStack, WebPage};
 pub use pixel_map::{DistanceRange, PixelMap, paint_code};
-pub use placement::{PlacedSlices, PlacementOptions, PsnrSummary, SliceSpacing, place_slices};
+pub use placement::{PlacedSlices, PlacementOptions, PsnrSummary, place_slices};
 pub use screen_picture::ScreenPicture;
+pub use slice_spacing::SliceSpacing;

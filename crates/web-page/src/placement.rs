@@ -6,8 +6,8 @@
 use crate::encoding::{EncodedPicture, USUAL_QUALITY, encode_picture};
 use crate::error::WebPageError;
 use crate::page::Slice;
-use crate::pixel_map::DistanceRange;
 use crate::screen_picture::ScreenPicture;
+use crate::slice_spacing::SliceSpacing;
 
 /// How good the slices of a stack are to be.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,45 +55,6 @@ impl PlacedSlices {
     /// Bytes of all pictures.
     pub fn bytes(&self) -> u64 {
         self.slices.iter().map(|slice| slice.webp.len() as u64).sum()
-    }
-}
-
-/// Where a stack needs slices before any error is measured.
-#[derive(Clone, Copy, Debug)]
-pub struct SliceSpacing<'a> {
-    /// Reciprocal distances, ascending, at which something is sharp.
-    pub sharp: &'a [f64],
-    /// The focus distances of the stack.
-    pub range: DistanceRange,
-    /// The reciprocal distance in the range at which the page opens, which has a slice.
-    pub opening: f64,
-    /// How far the slice that shows a sharp distance best may be from it, > 0, 1/length.
-    pub reach: f64,
-}
-
-impl SliceSpacing<'_> {
-    /// The farthest that the slice after one at `last` may be on the way to `end`, both reciprocal distances: everything sharp between
-    /// them is within reach of one of the two.
-    fn next(&self, last: f64, end: f64) -> f64 {
-        let uncovered = self.sharp.partition_point(|&sharp| sharp <= last + self.reach);
-        self.sharp.get(uncovered).map_or(end, |sharp| end.min(sharp + self.reach))
-    }
-
-    /// The ends of the parts that are filled with slices after the farthest one, ascending.
-    fn ends(&self) -> [f64; 2] {
-        [self.opening, self.range.nearest]
-    }
-
-    /// How many slices a stack has at least; `None` if they are more than `most`.
-    pub fn least_slices(&self, most: usize) -> Option<usize> {
-        let (mut last, mut count) = (self.range.farthest, 1);
-        for end in self.ends() {
-            while last < end && count <= most {
-                last = self.next(last, end);
-                count += 1;
-            }
-        }
-        (count <= most).then_some(count)
     }
 }
 
@@ -152,8 +113,6 @@ struct Placed {
     rest_psnrs: Vec<f64>,
     midway_psnrs: Vec<f64>,
     last: LastSlice,
-    /// How far the last two are apart; infinite before there are two.
-    step: f64,
 }
 
 impl Placed {
@@ -165,7 +124,7 @@ impl Placed {
         let EncodedPicture { webp, psnr, quality, decoded } = first;
         let last = LastSlice { inverse_distance, decoded, psnr, quality };
         let (slices, rest_psnrs, midway_psnrs) = Default::default();
-        let mut placed = Self { slices, bytes: 0, rest_psnrs, midway_psnrs, last, step: f64::INFINITY };
+        let mut placed = Self { slices, bytes: 0, rest_psnrs, midway_psnrs, last };
         placed.push(inverse_distance, webp, psnr, options)?;
         Ok(placed)
     }
@@ -173,7 +132,6 @@ impl Placed {
     fn keep(&mut self, best: Candidate, options: &PlacementOptions) -> Result<(), WebPageError> {
         let Candidate { inverse_distance, encoded, midway_psnr } = best;
         let EncodedPicture { webp, psnr, quality, decoded } = encoded;
-        self.step = inverse_distance - self.last.inverse_distance;
         self.last = LastSlice { inverse_distance, decoded, psnr, quality };
         self.midway_psnrs.push(midway_psnr);
         self.push(inverse_distance, webp, psnr, options)
@@ -195,6 +153,12 @@ impl Placed {
         Ok(())
     }
 
+    /// How far the last two slices are apart, if there are two.
+    fn last_step(&self) -> Option<f64> {
+        let [before, last] = self.slices.last_chunk()?;
+        Some(last.inverse_distance - before.inverse_distance)
+    }
+
     /// Places the next slice, at most at `limit`: with the longest step whose cross-fade is good enough, roughly.
     fn advance<E: From<WebPageError>>(
         &mut self,
@@ -205,7 +169,7 @@ impl Placed {
         let start = self.last.inverse_distance;
         let longest = limit - start;
         let shortest = longest * options.shortest_step;
-        let mut step = longest.min(self.step);
+        let mut step = self.last_step().map_or(longest, |step| longest.min(step));
         let mut good: Option<Candidate> = None;
         let mut was_too_long = false;
         let best = loop {
@@ -258,6 +222,7 @@ impl Placed {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::pixel_map::DistanceRange;
 
     const OPTIONS: PlacementOptions = PlacementOptions {
         rest_psnr: 45.0,
@@ -299,17 +264,6 @@ mod tests {
         assert_eq!(spacing.least_slices(100), Some(distances.len()));
         assert_eq!(spacing.least_slices(5), None);
         assert_eq!(SliceSpacing { reach: 1e-300, ..spacing }.least_slices(100), None);
-    }
-
-    #[test]
-    fn a_flat_range_has_one_slice_and_a_pinhole_three() {
-        let range = DistanceRange { farthest: 0.5, nearest: 0.5 };
-        let flat = SliceSpacing { sharp: &[0.5; 7], range, opening: 0.5, reach: 0.1 };
-        assert_eq!(flat.least_slices(100), Some(1));
-        let pinhole = SliceSpacing { sharp: &[0.1, 0.7], range: UNIT, opening: 0.2, reach: f64::INFINITY };
-        assert_eq!(pinhole.least_slices(100), Some(3));
-        let nothing_sharp = SliceSpacing { sharp: &[], range: UNIT, opening: 1.0, reach: 0.1 };
-        assert_eq!(nothing_sharp.least_slices(100), Some(2));
     }
 
     #[test]
