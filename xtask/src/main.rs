@@ -10,6 +10,7 @@
 //! * `package` builds packages for users without a compiler, and a source archive that builds without a
 //!   network.
 //! * `wheel` builds the Python package.
+//! * `web-engine` builds the program of web pages that visitors paint on.
 //! * `book [FOLDER]` writes the book as HTML pages.
 //! * `demo` regenerates the demo scene in `assets/demo`.
 //! * `figures` writes the tables and plots of the performance pages from `docs/figures`.
@@ -32,6 +33,7 @@ mod packages;
 mod run;
 mod shared_build;
 mod spelling;
+mod web_engine;
 mod wheel;
 mod zip_archive;
 
@@ -51,6 +53,9 @@ usage: cargo xtask CHORE
                 build of the tests)
   wheel [--dev] the Python package, for CPython 3.10 and newer; in target/package
                 (--dev: from the quick build of the tests)
+  web-engine [FILE.wasm]
+                the program of web pages that visitors paint on, as a WebAssembly module; into
+                assets/web-engine
   book [FOLDER] write the book as HTML pages; into target/book
   demo          regenerate the demo scene in assets/demo
   figures [--check]
@@ -81,6 +86,7 @@ fn main() -> std::process::ExitCode {
         "circles" => module_circles::circles(&rest),
         "package" => package::package(&rest),
         "wheel" => wheel::wheel(&rest),
+        "web-engine" => web_engine::web_engine(&rest),
         "lint" => ci::lint(),
         "ci" => ci::ci(),
         #[cfg(target_os = "linux")]

@@ -20,8 +20,13 @@ pub struct Shown {
 
 impl ExportedPage {
     pub fn read(file: &Path) -> Self {
+        Self::read_as(file, "showPage")
+    }
+
+    /// Reads a page that is shown by this function.
+    pub fn read_as(file: &Path, function: &str) -> Self {
         let html = std::fs::read_to_string(file).unwrap();
-        let (_, data) = html.rsplit_once("\nshowPage(").unwrap();
+        let (_, data) = html.rsplit_once(&format!("\n{function}(")).unwrap();
         let (data, _) = data.split_once(");\n</script>").unwrap();
         Self { data: serde_json::from_str(data).unwrap(), html }
     }
@@ -54,7 +59,7 @@ impl ExportedPage {
 }
 
 /// Bytes of text in base 91: 13 bits in two characters, the lowest first.
-fn decode_base91(text: &str) -> Vec<u8> {
+pub fn decode_base91(text: &str) -> Vec<u8> {
     let digits: Vec<u8> = (b'!'..=b'~').filter(|c| !b"\"<\\".contains(c)).collect();
     let number = |c: &u8| digits.iter().position(|digit| digit == c).unwrap() as u32;
     let (mut bytes, mut bits, mut count) = (Vec::new(), 0, 0);

@@ -3,6 +3,7 @@
 #[allow(dead_code, reason = "shared with the tests of `web-page`")]
 #[path = "../../../crates/web-page/tests/browser/chromium.rs"]
 mod chromium;
+mod engine_page;
 mod exported_page;
 #[path = "../program/mod.rs"]
 mod program;

@@ -10,6 +10,18 @@ pub enum Exposure {
     Normalise,
 }
 
+impl Exposure {
+    /// What a pixel's radiance is multiplied by, where it is shown with this gain and has this coverage. What nothing covers is black.
+    #[inline(always)]
+    pub fn scale(self, gain: f32, coverage: f32) -> f32 {
+        match self {
+            Self::Conserve => gain,
+            Self::Normalise if coverage > 0.0 => gain / coverage,
+            Self::Normalise => 0.0,
+        }
+    }
+}
+
 /// The sum of the model over a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {

@@ -39,4 +39,4 @@ pub use real::Real;
 pub use robust_scale::{MAD_OF_NORMAL, MAD_SCALE, scaled_mad};
 pub use simd_dispatch::{prefetch, with_widest_simd};
 pub use smoothstep::{smooth_fraction, smoothstep};
-pub use srgb::{linear_from_srgb, srgb_from_linear};
+pub use srgb::{linear_from_srgb, screen_level, srgb_from_linear};

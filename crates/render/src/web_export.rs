@@ -5,6 +5,7 @@
 //!        └─▶ for each aperture: bake once ─▶ sum at each distance ─▶ slices ─▶ page
 //! ```
 
+mod engine_page;
 mod estimate;
 mod export;
 mod first_surfaces;
@@ -13,6 +14,7 @@ mod page_error;
 mod report;
 mod stacks;
 
+pub use engine_page::export_engine_page;
 pub use estimate::{WebPageEstimate, estimate_web_page};
 pub use export::export_web_page;
 pub use options::WebPageOptions;

@@ -1,7 +1,7 @@
 //! The resolution of carried light.
 
 use lens::FocusOffset;
-use scene::SurfaceField;
+use surface::SurfaceField;
 
 /// How finely carried light is sampled over the aperture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]

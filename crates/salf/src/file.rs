@@ -146,7 +146,7 @@ mod tests {
     use crate::{Sample, Visibility};
     use glam::{DVec2, Vec2, Vec3};
     use lens::{Aperture, ApertureMask, ApertureShape, Camera};
-    use scene::SurfacePoint;
+    use surface::SurfacePoint;
 
     fn file() -> SalfFile {
         let mask = ApertureMask { width: 2, height: 1, transmission: vec![0.25, 1.0], file: "f.png".into() };

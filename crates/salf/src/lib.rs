@@ -26,28 +26,39 @@
 //! assert_eq!((salf.statistics().open, salf.statistics().partial), (0, 1));
 //! ```
 
+#![cfg_attr(not(feature = "bake"), allow(dead_code, unused_imports, reason = "what only baking uses"))]
+
+#[cfg(feature = "bake")]
 mod baker;
 mod carried;
 mod domain;
 mod file;
 mod jitter;
 mod light_change;
+#[cfg(feature = "bake")]
 mod margin;
+#[cfg(feature = "bake")]
 mod options;
 mod salf;
 mod sample;
 mod samples;
 pub mod tree;
+#[cfg(feature = "bake")]
 mod view;
 
+#[cfg(feature = "bake")]
 pub use baker::outliers::Outliers;
+#[cfg(feature = "bake")]
 pub use baker::parts::{PartsBaker, Surroundings};
+#[cfg(feature = "bake")]
 pub use baker::{bake, bake_with_outliers};
 pub use carried::Carried;
 pub use domain::{Cell, Domain};
 pub use file::{SalfFile, SalfFileError};
 pub use light_change::LightChange;
+#[cfg(feature = "bake")]
 pub use margin::LARGEST_MARGIN_HEIGHTS;
+#[cfg(feature = "bake")]
 pub use options::BakeOptions;
 pub use salf::{Salf, SalfStatistics};
 pub use sample::{Address, Sample, SampleFocus, Visibility};

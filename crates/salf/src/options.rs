@@ -4,7 +4,7 @@ use crate::carried::Carried;
 use crate::margin::{painted_margin_px, standard_margin_px};
 use crate::view::View;
 use lens::{Camera, FocusOffset};
-use scene::SurfaceField;
+use surface::SurfaceField;
 use trace::Tracer;
 
 /// How the light field is sampled.

@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3};
 use lens::FocusOffset;
-use scene::{SurfaceField, SurfacePoint};
+use surface::{SurfaceField, SurfacePoint};
 
 /// A patch of surface, as seen from the aperture.
 ///

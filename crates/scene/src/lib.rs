@@ -65,7 +65,8 @@ pub use load_options::LoadOptions;
 pub use model::{
     AlphaMode, Anisotropy, BackFaces, CameraLens, Clearcoat, DiffuseTransmission, Floor, Iridescence, Light,
     LightKind, Material, MeshHealth, Node, NormalMap, Part, PlacedCloud, Scalar, Scene, SceneCamera, Sheen,
-    SplatCleanup, SplatEdit, SplatTransform, SurfaceField, SurfacePoint, Tint, Triangle, Volume, Workflow,
+    SplatCleanup, SplatEdit, SplatTransform, SurfaceField, SurfacePoint, Tint, Triangle, TriangleSurface,
+    Volume, Workflow,
 };
 pub use photographs::{Mask, Photograph, PictureError, PictureGloss, PictureTexture, View};
 pub use picture_decoder::{MAX_PNG_EXTRAS_BYTES, open_picture};

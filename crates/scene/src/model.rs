@@ -8,7 +8,6 @@ mod material;
 mod mesh_health;
 mod placed_cloud;
 mod splat_edit;
-mod surface_point;
 
 pub use back_faces::BackFaces;
 pub use camera_lens::CameraLens;
@@ -20,7 +19,7 @@ pub use material::{
 pub use mesh_health::MeshHealth;
 pub use placed_cloud::PlacedCloud;
 pub use splat_edit::{SplatCleanup, SplatEdit, SplatTransform};
-pub use surface_point::{SurfaceField, SurfacePoint};
+pub use surface::{SurfaceField, SurfacePoint, TriangleSurface};
 
 use crate::{Image, PictureTexture, View, World};
 use glam::{DMat4, DVec3, Vec2, Vec3, Vec4};
@@ -178,6 +177,16 @@ pub struct SceneCamera {
     pub focus_distance: f64,
     /// The file's settings of its lens.
     pub lens: CameraLens,
+}
+
+impl TriangleSurface for Scene {
+    fn triangle_count(&self) -> usize {
+        self.triangles.len()
+    }
+    #[inline]
+    fn corners(&self, triangle: u32) -> [DVec3; 3] {
+        self.corners(triangle)
+    }
 }
 
 impl Scene {

@@ -7,9 +7,33 @@
 use salf::tree::BLOCK_PX;
 use std::ops::Range;
 use std::time::Duration;
+#[cfg(not(target_family = "wasm"))]
+use std::time::Instant;
 
 /// Rows of a slot, which is never divided: a pixel of the coarsest level.
 const SLOT_ROWS: u32 = BLOCK_PX as u32;
+
+/// Measures how long work takes; where there is no clock, nothing.
+pub struct Stopwatch {
+    #[cfg(not(target_family = "wasm"))]
+    start: Instant,
+}
+
+impl Stopwatch {
+    pub fn start() -> Self {
+        Self {
+            #[cfg(not(target_family = "wasm"))]
+            start: Instant::now(),
+        }
+    }
+
+    pub fn elapsed(&self) -> Duration {
+        #[cfg(not(target_family = "wasm"))]
+        return self.start.elapsed();
+        #[cfg(target_family = "wasm")]
+        Duration::ZERO
+    }
+}
 
 /// The work to be done, slot by slot from the picture's top.
 pub struct Work(Vec<u64>);

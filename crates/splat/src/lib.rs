@@ -5,7 +5,7 @@
 //! use lens::{Camera, FocusOffset};
 //! use progress::Unwatched;
 //! use salf::{Carried, Salf, Sample, Visibility};
-//! use scene::{SurfaceField, SurfacePoint};
+//! use surface::{SurfaceField, SurfacePoint};
 //! use splat::Splatter;
 //! use std::sync::Arc;
 //!
@@ -53,6 +53,11 @@
 //!
 //! A picture that is too large for memory is summed in crops ([`CropSums`]), from a light field in parts.
 
+#![cfg_attr(
+    not(feature = "gpu"),
+    allow(dead_code, unused_imports, reason = "what only sums on a graphics card use")
+)]
+
 mod aperture;
 mod bands;
 mod canvas;
@@ -61,6 +66,7 @@ mod crop;
 mod draw;
 mod draw_list;
 mod fixed;
+#[cfg(feature = "gpu")]
 mod gpu;
 mod lens_in_use;
 mod node_view;
@@ -74,6 +80,7 @@ pub use crop::{
     Crop, CropError, CropFacts, CropForm, CropJoiner, CropOptions, CropPicture, CropRow, CropSums, Integers,
     KNOT_NUMBERS, Kind,
 };
+#[cfg(feature = "gpu")]
 pub use gpu::{AdapterDescription, BackendChoice, Gpu, GpuAbsent, PictureOnCard, adapters};
 pub use lens_in_use::Tolerance;
 pub use nodes::QUANTUM;

@@ -5,9 +5,9 @@ use crate::lens_in_use::{LARGEST_OFFSET, NodeFocus};
 use crate::nodes::Nodes;
 use lens::FocusOffset;
 use rayon::prelude::*;
-use salf::{Address, SampleFocus, Samples};
-use scene::SurfaceField;
+use salf::{Addresses, SampleFocus, Samples};
 use std::sync::Arc;
+use surface::SurfaceField;
 
 /// Focus of all nodes, block by block; a block on which nothing is painted has none.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -20,16 +20,15 @@ pub struct Paint {
 pub static STANDARD: Paint = Paint { blocks: Vec::new() };
 
 impl Paint {
-    /// Looks up the focus of every sample in `focus`, and combines it for the nodes above.
-    pub fn sample(nodes: &Nodes, samples: &Samples, focus: &dyn SurfaceField<FocusOffset>) -> Self {
-        let focus = SampleFocus::new(focus);
+    /// Looks up the focus of every sample, and combines it for the nodes above.
+    pub fn sample(nodes: &Nodes, focus: FocusOfSamples) -> Self {
         let blocks = (0..nodes.blocks.len()).into_par_iter().map(|block| {
             let first = nodes.blocks[block].start as usize;
             let of_nodes = nodes.block_nodes(block);
-            let mut addresses = samples.addresses();
+            let mut lookup = focus.lookup();
             let mut painted: Option<Vec<NodeFocus>> = None;
             for index in (0..of_nodes.len()).filter(|&index| of_nodes[index].is_leaf()) {
-                let focus_of_node = offset(addresses.get(nodes.sample_of_node[first + index]), focus);
+                let focus_of_node = lookup.get(nodes.sample_of_node[first + index]);
                 if focus_of_node != NodeFocus::STANDARD {
                     painted.get_or_insert_with(|| vec![NodeFocus::STANDARD; of_nodes.len()])[index] =
                         focus_of_node;
@@ -60,15 +59,13 @@ impl Paint {
         &mut self,
         nodes: &Nodes,
         leaves: &[u32],
-        samples: &Samples,
-        focus: &dyn SurfaceField<FocusOffset>,
+        focus: FocusOfSamples,
     ) -> Vec<(usize, Option<Arc<[NodeFocus]>>)> {
-        let focus = SampleFocus::new(focus);
         let block_of = |leaf: &u32| nodes.block_of_node[*leaf as usize] as usize;
         let groups: Vec<&[u32]> = leaves.chunk_by(|a, b| block_of(a) == block_of(b)).collect();
         let updated = groups.par_iter().map(|leaves| {
             let block = block_of(&leaves[0]);
-            (block, self.updated(nodes, block, leaves, samples, focus))
+            (block, self.updated(nodes, block, leaves, focus))
         });
         let mut updated: Vec<_> = updated.collect();
         for (block, paint) in &mut updated {
@@ -83,18 +80,16 @@ impl Paint {
         nodes: &Nodes,
         block: usize,
         leaves: &[u32],
-        samples: &Samples,
-        focus: SampleFocus,
+        focus: FocusOfSamples,
     ) -> Option<Arc<[NodeFocus]>> {
         let first = nodes.blocks[block].start;
         let mut painted = self.blocks[block]
             .clone()
             .unwrap_or_else(|| vec![NodeFocus::STANDARD; nodes.block_nodes(block).len()].into());
         let of_nodes = Arc::make_mut(&mut painted);
-        let mut addresses = samples.addresses();
+        let mut lookup = focus.lookup();
         for &leaf in leaves {
-            of_nodes[(leaf - first) as usize] =
-                offset(addresses.get(nodes.sample_of_node[leaf as usize]), focus);
+            of_nodes[(leaf - first) as usize] = lookup.get(nodes.sample_of_node[leaf as usize]);
         }
         (0..of_nodes.len()).rev().for_each(|index| combine_children(nodes, block, of_nodes, index));
         let is_standard = of_nodes.iter().all(|focus| *focus == NodeFocus::STANDARD);
@@ -107,9 +102,44 @@ impl Paint {
     }
 }
 
-/// What is painted at a surface address, or on the background; an offset that is not valid counts as nothing.
-fn offset(address: Address, focus: SampleFocus) -> NodeFocus {
-    NodeFocus::new(focus.offset(address).or_standard())
+/// Where the focus of samples comes from. An offset that is not valid counts as none.
+#[derive(Clone, Copy)]
+pub enum FocusOfSamples<'a> {
+    /// A focus of the surface, at the samples' addresses.
+    Surface(&'a Samples, SampleFocus<'a>),
+    /// A focus for each sample.
+    Samples(&'a [FocusOffset]),
+}
+
+/// Looks up the focus of samples, quickly where one is of the same block as the one before.
+enum Lookup<'a> {
+    Surface(Addresses<'a>, SampleFocus<'a>),
+    Samples(&'a [FocusOffset]),
+}
+
+impl<'a> FocusOfSamples<'a> {
+    /// That of the surface on which the samples lie.
+    pub fn of_surface(samples: &'a Samples, focus: &'a dyn SurfaceField<FocusOffset>) -> Self {
+        Self::Surface(samples, SampleFocus::new(focus))
+    }
+
+    fn lookup(self) -> Lookup<'a> {
+        match self {
+            Self::Surface(samples, focus) => Lookup::Surface(samples.addresses(), focus),
+            Self::Samples(offsets) => Lookup::Samples(offsets),
+        }
+    }
+}
+
+impl Lookup<'_> {
+    #[inline]
+    fn get(&mut self, sample: u32) -> NodeFocus {
+        let offset = match self {
+            Self::Surface(addresses, focus) => focus.offset(addresses.get(sample)),
+            Self::Samples(offsets) => offsets[sample as usize],
+        };
+        NodeFocus::new(offset.or_standard())
+    }
 }
 
 /// Sets the focus of a node from those below it; a sample keeps its own.

@@ -1,11 +1,16 @@
 //! The picture as a running integer sum that single samples can leave and enter.
 
 mod aperture_in_use;
+#[cfg(feature = "gpu")]
+mod card;
+#[cfg(not(feature = "gpu"))]
+#[path = "splatter/no_card.rs"]
 mod card;
 mod character_in_use;
 mod colours;
 mod error;
 mod mattes;
+#[cfg(feature = "gpu")]
 mod on_card;
 mod resolve_steps;
 mod resolver;
@@ -21,7 +26,7 @@ use crate::draw_list::{BlockList, Changes};
 use crate::lens_in_use::{LensInUse, Tolerance};
 use crate::node_view::DraftScale;
 use crate::nodes::{Nodes, Scale};
-use crate::paint::Paint;
+use crate::paint::{FocusOfSamples, Paint};
 use crate::sums::Sums;
 pub(crate) use aperture_in_use::ApertureInUse;
 use card::Card;
@@ -32,10 +37,10 @@ use resolve_steps::{Finish, ResolveOutput, SummedPaint};
 use resolver::Resolver;
 use salf::Salf;
 use salf::tree::LEVELS;
-use scene::SurfaceField;
 use std::mem::swap;
 use std::ops::Range;
 use std::sync::Arc;
+use surface::SurfaceField;
 
 /// The picture of a SALF as running sums that follow the focus as it is painted.
 pub struct Splatter {
@@ -243,8 +248,23 @@ impl Splatter {
 
     /// Looks up the focus of every sample, for the next [`Self::refocus`].
     pub fn look_up_paint(&mut self, focus: &dyn SurfaceField<FocusOffset>) {
+        let salf = self.salf.clone();
+        self.take_focus(FocusOfSamples::of_surface(&salf.samples, focus));
+    }
+
+    /// Takes over the focus of every sample, in their order, for the next [`Self::refocus`]: where it is known without their addresses.
+    /// [`salf::SampleFocus`] gives it.
+    ///
+    /// # Panics
+    /// If it is that of another number of samples.
+    pub fn set_focus_of_samples(&mut self, focus: &[FocusOffset]) {
+        assert_eq!(focus.len(), self.salf.samples.len(), "a focus for each sample");
+        self.take_focus(FocusOfSamples::Samples(focus));
+    }
+
+    fn take_focus(&mut self, focus: FocusOfSamples) {
         if let Some(nodes) = &self.nodes {
-            self.set_paint(Paint::sample(nodes, &self.salf.samples, focus));
+            self.set_paint(Paint::sample(nodes, focus));
         }
     }
 
@@ -256,7 +276,8 @@ impl Splatter {
         let Some(nodes) = &self.nodes else { return };
         assert!(self.has_paint(), "paint is updated after it was looked up");
         let mut paint = self.paint.clone();
-        paint.update(nodes, &nodes.leaves_of(samples), &self.salf.samples, focus);
+        let focus = FocusOfSamples::of_surface(&self.salf.samples, focus);
+        paint.update(nodes, &nodes.leaves_of(samples), focus);
         self.set_paint(paint);
     }
 
@@ -423,6 +444,31 @@ impl Splatter {
         focus: &dyn SurfaceField<FocusOffset>,
         samples: &[u32],
     ) -> Result<[Range<u32>; 2], SplatError> {
+        let salf = self.salf.clone();
+        self.update_focus(FocusOfSamples::of_surface(&salf.samples, focus), samples)
+    }
+
+    /// The same where the focus of every sample is known: `focus` is that of all of them, `samples` those whose focus has changed.
+    ///
+    /// # Panics
+    /// If it is that of another number of samples.
+    ///
+    /// # Errors
+    /// [`SplatError::Overflow`] if the picture is too bright for its integers.
+    pub fn update_samples(
+        &mut self,
+        focus: &[FocusOffset],
+        samples: &[u32],
+    ) -> Result<[Range<u32>; 2], SplatError> {
+        assert_eq!(focus.len(), self.salf.samples.len(), "a focus for each sample");
+        self.update_focus(FocusOfSamples::Samples(focus), samples)
+    }
+
+    fn update_focus(
+        &mut self,
+        focus: FocusOfSamples,
+        samples: &[u32],
+    ) -> Result<[Range<u32>; 2], SplatError> {
         let window = self.update_channel(focus, samples)?;
         self.draw_colours(window, &progress::Unwatched, |colour, _| colour.update_channel(focus, samples))
     }
@@ -430,13 +476,13 @@ impl Splatter {
     /// The same of the one channel that it shows.
     fn update_channel(
         &mut self,
-        focus: &dyn SurfaceField<FocusOffset>,
+        focus: FocusOfSamples,
         samples: &[u32],
     ) -> Result<[Range<u32>; 2], SplatError> {
         let nodes = self.nodes.as_ref().ok_or(SplatError::Overflow)?;
         assert_eq!(self.paint.blocks.len(), nodes.blocks.len(), "update follows a render");
         self.card.begin();
-        let before = self.paint.update(nodes, &nodes.leaves_of(samples), &self.salf.samples, focus);
+        let before = self.paint.update(nodes, &nodes.leaves_of(samples), focus);
         self.card.invalidate_paint();
         let scene = self.aperture.scene(nodes, &self.lens, &self.paint, self.size);
         let before = before.iter().map(|(block, paint)| (*block, paint.as_deref()));

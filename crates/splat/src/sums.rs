@@ -1,6 +1,6 @@
 //! All nodes of a light field, summed band by band of the picture.
 
-use crate::bands::{Pace, Work};
+use crate::bands::{Pace, Stopwatch, Work};
 use crate::canvas::{Accumulator, Level, Word};
 use crate::draw::{Paper, Pen};
 use crate::draw_list::{AHEAD, BlockList, Changes, DrawnNode};
@@ -15,7 +15,6 @@ use salf::tree::{BLOCK_PX, LEVELS};
 use std::convert::Infallible;
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::time::Instant;
 
 /// A picture has no more bands of rows than one for so many: what lies at their edges is drawn twice.
 const BAND_ROWS: u32 = 64;
@@ -255,7 +254,7 @@ impl Sums {
         let (count, done) = (bands.iter().map(reach).sum::<usize>(), AtomicUsize::new(0));
         let summed = bands.into_par_iter().with_max_len(1).map(|mut band| {
             progress.check()?;
-            let begun = Instant::now();
+            let begun = Stopwatch::start();
             prepare(&mut band);
             let here = band.rows.clone();
             let lists =

@@ -27,7 +27,7 @@ const LOSSLESS: u8 = MAX_QUALITY + 2;
 const NEARLY_LOSSLESS_LEVEL: i32 = 40;
 
 /// The first quality that is tried for a picture without a neighbour.
-pub(crate) const USUAL_QUALITY: u8 = 75;
+pub const USUAL_QUALITY: u8 = 75;
 
 /// Encodes with the lowest quality whose PSNR is at least `min_psnr`, dB. The search starts at `first_quality`, that of a similar picture.
 /// Small pictures with saturated colours often need more than the best lossy one, which halves the resolution of colours.

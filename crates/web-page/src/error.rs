@@ -6,8 +6,8 @@ pub enum WebPageError {
     /// The picture has no pixel, or more than WebP allows on a side.
     #[error("a picture of {0} × {1} px does not fit a web page (each side: 1 to {MAX_SIDE_PX} px)")]
     Size(u32, u32),
-    /// The encoder refused a picture, usually for lack of memory.
-    #[error("a picture cannot be encoded as WebP: {0} (free some memory, or export a smaller picture)")]
+    /// The encoder refused a picture or other data, usually for lack of memory.
+    #[error("a picture cannot be encoded for the page: {0} (free some memory, or export a smaller picture)")]
     Encoder(String),
     /// The slices need more bytes than are allowed.
     #[error("the slices take more bytes than the page may have")]

@@ -15,19 +15,24 @@
 //! The crate draws nothing itself: pictures come from a function, already encoded for the screen.
 
 mod base91;
+mod deflate;
 mod encoding;
+mod engine_page;
 mod error;
 mod escaping;
 mod page;
+mod page_frame;
 mod pixel_map;
 mod placement;
 mod screen_picture;
 mod slice_spacing;
 mod template;
 
-pub use encoding::{EncodedPicture, encode_picture};
+pub use encoding::{EncodedPicture, USUAL_QUALITY, encode_picture};
+pub use engine_page::EnginePage;
 pub use error::WebPageError;
-pub use page::{Caption, OpeningSlice, PaintMaps, PublicAddress, Slice, SliceStack, WebPage};
+pub use page::{OpeningSlice, PaintMaps, Slice, SliceStack, WebPage};
+pub use page_frame::{Caption, PublicAddress};
 pub use pixel_map::{DistanceRange, PixelMap, paint_code};
 pub use placement::{PlacedSlices, PlacementOptions, PsnrSummary, place_slices};
 pub use screen_picture::ScreenPicture;

@@ -1,20 +1,17 @@
-//! The page: its data, and how it is written.
+//! The page of slices: its data, and how it is written.
 
 use crate::base91::encode_base91;
-use crate::encoding::encode_picture;
 use crate::error::WebPageError;
-use crate::escaping::{escape_html, script_value};
+use crate::escaping::script_value;
+use crate::page_frame::{Caption, PageContent, PageFrame, PublicAddress};
 use crate::pixel_map::{DistanceRange, PixelMap};
 use crate::screen_picture::ScreenPicture;
-use crate::template::fill_template;
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
 use serde::Serialize;
-use std::borrow::Cow;
 
 /// The parts of the viewer, in the order in which they are joined to one script.
-const VIEWER: [&str; 11] = [
+const VIEWER: [&str; 16] = [
     include_str!("viewer/page_data.js"),
+    include_str!("viewer/elements.js"),
     include_str!("viewer/base91.js"),
     include_str!("viewer/slice_cache.js"),
     include_str!("viewer/pixel_map.js"),
@@ -23,58 +20,14 @@ const VIEWER: [&str; 11] = [
     include_str!("viewer/paint_tint.js"),
     include_str!("viewer/zoom.js"),
     include_str!("viewer/gestures.js"),
+    include_str!("viewer/player.js"),
+    include_str!("viewer/message.js"),
+    include_str!("viewer/choices.js"),
+    include_str!("viewer/mark.js"),
     include_str!("viewer/controls.js"),
     include_str!("viewer/viewer.js"),
 ];
-const STYLE: &str = include_str!("viewer/page.css");
-const TEMPLATE: &str = include_str!("viewer/page.html");
-
-/// The longest side of the picture in `og:image` where the page has no public address, px, and its error.
-const THUMBNAIL_SIDE_PX: u32 = 320;
-const THUMBNAIL_PSNR: f64 = 32.0;
-
-/// Texts below the picture. An empty one is left out.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Caption {
-    /// The picture's title; also the page's.
-    pub title: String,
-    /// Who made it.
-    pub author: String,
-    /// What others may do with it.
-    pub licence: String,
-}
-
-/// Where the page is going to be published, for those who link to it.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct PublicAddress {
-    /// Of the page.
-    pub page: String,
-    /// Of a still picture beside it.
-    pub poster: String,
-}
-
-impl PublicAddress {
-    /// The address of a page, with that of a file beside it. `None` if `page` is no address of a page on a server.
-    pub fn new(page: &str, poster_file_name: &str) -> Option<Self> {
-        let (scheme, rest) = page.split_once("://")?;
-        let path = rest.split(['?', '#']).next().unwrap_or_default();
-        let (folder, _) = path.rsplit_once('/')?;
-        let is_on_server =
-            matches!(scheme, "http" | "https") && !folder.is_empty() && !folder.starts_with('/');
-        let poster = format!("{scheme}://{folder}/{}", percent_encoded(poster_file_name));
-        is_on_server.then(|| Self { page: page.into(), poster })
-    }
-}
-
-/// A file's name as a part of an address.
-fn percent_encoded(name: &str) -> String {
-    let encoded = |byte: u8| match byte {
-        b'A'..=b'Z' | b'a'..=b'z' | b'0'..=b'9' | b'-' | b'.' | b'_' | b'~' => char::from(byte).to_string(),
-        _ => format!("%{byte:02X}"),
-    };
-    name.bytes().map(encoded).collect()
-}
-
+const BAR: &str = include_str!("viewer/slice_bar.html");
 /// The picture at one focus distance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Slice {
@@ -177,28 +130,21 @@ impl WebPage {
     pub fn to_html(&self) -> Result<String, WebPageError> {
         self.check()?;
         let opening = &self.stacks[self.opening.stack].slices[self.opening.slice];
-        let data = script_value(&self.data()?)
-            .map_err(|_| WebPageError::Inconsistent("a number has no form in JSON"))?;
-        let viewer = VIEWER.concat();
-        let title = escape_html(self.title());
-        fill_template(
-            TEMPLATE,
-            &[
-                ("title", &title),
-                ("head", &self.head()?),
-                ("style", STYLE),
-                ("width", &self.size[0].to_string()),
-                ("height", &self.size[1].to_string()),
-                ("poster", &data_uri(&opening.webp)),
-                ("caption", &self.caption_html()),
-                ("viewer", &viewer),
-                ("data", &data),
-            ],
-        )
-    }
-
-    fn title(&self) -> &str {
-        if self.caption.title.trim().is_empty() { "A picture to refocus" } else { &self.caption.title }
+        let frame = PageFrame {
+            caption: &self.caption,
+            picture: &self.opening_picture,
+            poster: &opening.webp,
+            address: self.address.as_ref(),
+        };
+        frame.fill(&PageContent {
+            policy: "'unsafe-inline'",
+            hint: "Click or tap to focus. Drag to rack the focus. Scroll or pinch to zoom.",
+            bar: BAR,
+            viewer: &VIEWER,
+            call: "showPage",
+            data: script_value(&self.data()?)
+                .map_err(|_| WebPageError::Inconsistent("a number has no form in JSON"))?,
+        })
     }
 
     fn check(&self) -> Result<(), WebPageError> {
@@ -227,7 +173,7 @@ impl WebPage {
         let packed = |map: &PixelMap| map.packed().map(|bytes| encode_base91(&bytes));
         let stack_data = |(index, stack)| self.stack_data(index, stack);
         Ok(PageData {
-            title: self.title(),
+            title: self.caption.page_title(),
             size: self.size,
             opening: self.opening,
             stacks: self.stacks.iter().enumerate().map(stack_data).collect(),
@@ -258,59 +204,14 @@ impl WebPage {
             slices: stack.slices.iter().enumerate().map(picture).collect(),
         }
     }
-
-    /// Elements of the head that tell others about the page.
-    fn head(&self) -> Result<String, WebPageError> {
-        let Caption { author, licence, .. } = &self.caption;
-        let description = [self.title(), author, licence].map(str::trim);
-        let description: Vec<_> = description.into_iter().filter(|text| !text.is_empty()).collect();
-        let thumbnail = self.opening_picture.reduced(THUMBNAIL_SIDE_PX);
-        let (page, image, [width, height]) = match &self.address {
-            Some(address) => (Some(&address.page), Cow::Borrowed(&address.poster), self.size),
-            None => {
-                let encoded = encode_picture(&thumbnail, THUMBNAIL_PSNR, 60)?;
-                (None, Cow::Owned(data_uri(&encoded.webp)), thumbnail.size())
-            }
-        };
-        let named = |attribute: &str, name: &str, content: &str| {
-            format!("<meta {attribute}=\"{name}\" content=\"{}\">\n", escape_html(content))
-        };
-        let mut head = named("name", "description", &description.join(" · "));
-        if !author.trim().is_empty() {
-            head.push_str(&named("name", "author", author));
-        }
-        head.push_str(&named("name", "twitter:card", "summary_large_image"));
-        if let Some(page) = page {
-            head.push_str(&named("property", "og:url", page));
-        }
-        for (name, content) in [
-            ("og:type", "website"),
-            ("og:title", self.title()),
-            ("og:description", &description.join(" · ")),
-            ("og:image", &image),
-            ("og:image:width", &width.to_string()),
-            ("og:image:height", &height.to_string()),
-        ] {
-            head.push_str(&named("property", name, content));
-        }
-        Ok(head)
-    }
-
-    fn caption_html(&self) -> String {
-        let Caption { title, author, licence } = &self.caption;
-        let parts = [("title", title), ("author", author), ("licence", licence)];
-        let parts = parts.into_iter().filter(|(_, text)| !text.trim().is_empty());
-        parts.map(|(class, text)| format!("<span class=\"{class}\">{}</span>", escape_html(text))).collect()
-    }
-}
-
-fn data_uri(webp: &[u8]) -> String {
-    format!("data:image/webp;base64,{}", STANDARD.encode(webp))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::encoding::encode_picture;
+    use base64::Engine;
+    use base64::engine::general_purpose::STANDARD;
 
     /// A page of three slices at one aperture.
     fn page() -> WebPage {

@@ -3,10 +3,8 @@
 //! Their format: rows from the top, each byte as the difference from its left neighbour (mod 256; the first from 0), all compressed (zlib).
 //! They are no pictures, because browsers that protect against fingerprinting alter what is read from a canvas.
 
+use crate::deflate::deflate;
 use crate::error::WebPageError;
-use flate2::Compression;
-use flate2::write::ZlibEncoder;
-use std::io::Write;
 
 /// A byte for each of `size` columns × rows, row by row from the top.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -27,13 +25,11 @@ impl PixelMap {
         if width == 0 || self.codes.len() != width * height {
             return Err(WebPageError::Inconsistent("a map has another number of codes than pixels"));
         }
-        let mut encoder = ZlibEncoder::new(Vec::new(), Compression::best());
         let differences = self.codes.chunks(width).flat_map(|row| {
             let left = std::iter::once(&0).chain(row);
             row.iter().zip(left).map(|(code, left)| code.wrapping_sub(*left))
         });
-        let written = encoder.write_all(&differences.collect::<Vec<_>>()).and_then(|()| encoder.finish());
-        written.map_err(|_| WebPageError::Inconsistent("a map cannot be compressed"))
+        deflate(&differences.collect::<Vec<_>>())
     }
 }
 

@@ -11,6 +11,10 @@ pub struct WebPageArguments {
     /// on a phone, without a server or a network. Prints how close its pictures are to rendered ones
     #[arg(long, value_name = "PAGE.html")]
     pub web: Option<PathBuf>,
+    /// Put the light field and the program that draws it into the page, in place of pictures: visitors choose any
+    /// distance, aperture and bokeh, and paint. For small pictures: the demo at 640x360 takes 7 MB
+    #[arg(long, requires = "web", conflicts_with_all = ["apertures", "painted_only"])]
+    pub engine: bool,
     /// Apertures of the page, as divisors of the camera's aperture radius: 2 is half as wide, twice the f-number.
     /// The picture without paint has only the first one
     #[arg(long, value_name = "N,…", default_value = "1,2,4", value_delimiter = ',', value_parser = parse_divisor)]

@@ -11,7 +11,8 @@ use focus::FocusMap;
 use lens::{Camera, FocusOffset, Picture};
 use project::{FocusMapFile, Layer, PictureOptions, write_focus_map, write_picture};
 use render::{
-    Aov, Caption, RenderOptions, Rendered, Tone, WebPageOptions, WebPageReport, export_web_page, render_input,
+    Aov, Caption, RenderOptions, Rendered, Tone, WebPageOptions, WebPageReport, export_engine_page,
+    export_web_page, render_input,
 };
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -146,7 +147,8 @@ fn export_page(
         address: arguments.url.clone(),
         is_large_allowed: arguments.large,
     };
-    let report = export_web_page(path, &input.lit_scene()?, &camera, &focus, &options, console)?;
+    let export = if arguments.engine { export_engine_page } else { export_web_page };
+    let report = export(path, &input.lit_scene()?, &camera, &focus, &options, console)?;
     for stack in &report.stacks {
         console.note(&stack.to_string());
     }

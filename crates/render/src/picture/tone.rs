@@ -2,22 +2,15 @@
 
 use crate::picture::tone_curve::ToneCurve;
 use lens::{Exposure, Picture};
+use numerics::screen_level;
 use rayon::prelude::*;
-use scene::srgb_from_linear;
 use std::ops::Range;
-use std::sync::LazyLock;
 
 /// A screen pixel: sRGB-encoded red, green and blue, and 255.
 pub type ScreenPixel = [u8; 4];
 
-/// Entries of the encoding table. Even in the shadows, an 8-bit step is at least three entries wide.
-const ENTRIES: usize = 1 << 13;
-
 /// Minimum number of pixels per task.
 const MIN_PIXELS_PER_TASK: usize = 1 << 13;
-
-/// sRGB encoding of the middle of each of [`ENTRIES`] cells of [0, 1].
-struct EncodingTable(Vec<u8>);
 
 /// How a picture is shown on screen.
 ///
@@ -58,10 +51,10 @@ impl Tone {
         picture: &Picture,
         [columns, rows]: [Range<u32>; 2],
     ) -> Vec<ScreenPixel> {
-        let (gain, table) = (self.display.stops.exp2(), EncodingTable::get());
+        let gain = self.display.stops.exp2();
         let pixel = |index: usize| {
             let [r, g, b] = self.displayed_pixel(gain, picture.radiance[index], picture.coverage[index]);
-            [table.encoded(r), table.encoded(g), table.encoded(b), u8::MAX]
+            [screen_level(r), screen_level(g), screen_level(b), u8::MAX]
         };
         let width = columns.len();
         let mut pixels = vec![[0; 4]; width * rows.len()];
@@ -82,29 +75,9 @@ impl Tone {
 
     #[inline(always)]
     fn displayed_pixel(self, gain: f32, radiance: [f32; 3], coverage: f32) -> [f32; 3] {
-        let scale = match self.exposure {
-            Exposure::Conserve => gain,
-            Exposure::Normalise if coverage > 0.0 => gain / coverage,
-            Exposure::Normalise => 0.0,
-        };
+        let scale = self.exposure.scale(gain, coverage);
         let [r, g, b] = radiance;
         self.display.curve.map([r * scale, g * scale, b * scale])
-    }
-}
-
-impl EncodingTable {
-    fn get() -> &'static Self {
-        static TABLE: LazyLock<EncodingTable> = LazyLock::new(|| {
-            let entry = |k| (srgb_from_linear((k as f32 + 0.5) / ENTRIES as f32) * 255.0).round() as u8;
-            EncodingTable((0..ENTRIES).map(entry).collect())
-        });
-        &TABLE
-    }
-
-    /// Encodes one channel; NaN becomes black.
-    #[inline(always)]
-    fn encoded(&self, linear: f32) -> u8 {
-        self.0[((linear.max(0.0) * ENTRIES as f32) as usize).min(ENTRIES - 1)]
     }
 }
 

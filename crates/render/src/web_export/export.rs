@@ -32,9 +32,9 @@ pub fn export_web_page(
     options: &WebPageOptions,
     steps: &dyn Steps,
 ) -> Result<WebPageReport, RenderError> {
-    check(path, camera, options)?;
-    let poster_path = path.with_extension("poster.png");
-    let address = options.address.as_deref().map(|page| address(path, page, &poster_path)).transpose()?;
+    check_camera(path, camera)?;
+    check_apertures(path, camera, options)?;
+    let address = public_address(path, options)?;
     let optics = camera.optics();
     let surfaces = FirstSurfaces::trace(lit.tracer(), camera, focus, &*steps.begin("first surfaces"))?;
     let range = surfaces.range(camera);
@@ -72,19 +72,29 @@ pub fn export_web_page(
         address,
     };
     let html = page.to_html().map_err(|error| page_error(path, error))?;
-    if html.len() as u64 > options.most_bytes() {
-        return Err(page_error(path, WebPageError::TooLarge));
-    }
-    let mut files = vec![write(path, html.as_bytes())?];
-    if page.address.is_some() {
-        files.push(write(&poster_path, &png(path, &page.opening_picture)?)?);
-    }
+    let files = write_page(path, &html, &page.opening_picture, options)?;
     Ok(WebPageReport { files, bytes: html.len() as u64, stacks: reports })
 }
 
-fn check(path: &Path, camera: &Camera, options: &WebPageOptions) -> Result<(), RenderError> {
+/// Checks that `camera` has a picture that can be refocused and fits a page.
+///
+/// # Errors
+/// The camera cannot be used, or is a pinhole.
+pub fn check_camera(path: &Path, camera: &Camera) -> Result<(), RenderError> {
     camera.validate().map_err(|error| RenderError::bad_file(path, error))?;
-    ScreenPicture::check_size([camera.width, camera.height]).map_err(|error| page_error(path, error))?;
+    check_aperture(path, camera.aperture_radius)?;
+    ScreenPicture::check_size([camera.width, camera.height]).map_err(|error| page_error(path, error))
+}
+
+fn check_aperture(path: &Path, radius: f64) -> Result<(), RenderError> {
+    if radius.is_normal() {
+        return Ok(());
+    }
+    let what = "a pinhole cannot be refocused (give the camera an aperture radius above 0)";
+    Err(RenderError::bad_file(path, what))
+}
+
+fn check_apertures(path: &Path, camera: &Camera, options: &WebPageOptions) -> Result<(), RenderError> {
     let divisors = &options.aperture_divisors;
     let are_divisors = divisors.first().is_some_and(|&first| first >= 1.0)
         && divisors.iter().all(|divisor| divisor.is_finite())
@@ -94,21 +104,45 @@ fn check(path: &Path, camera: &Camera, options: &WebPageOptions) -> Result<(), R
         return Err(RenderError::bad_file(path, what));
     }
     // Also of the smallest: a divisor may be as large as a number can be.
-    let smallest = camera.aperture_radius / divisors.last().copied().unwrap_or(1.0);
-    if !smallest.is_normal() {
-        let what = "a pinhole cannot be refocused (give the camera an aperture radius above 0)";
-        return Err(RenderError::bad_file(path, what));
-    }
-    Ok(())
+    check_aperture(path, camera.aperture_radius / divisors.last().copied().unwrap_or(1.0))
 }
 
-/// The public address of the page, with that of its poster.
-fn address(path: &Path, page: &str, poster: &Path) -> Result<PublicAddress, RenderError> {
+/// The public address of the page, with that of its poster; `None` if it is not going to be published.
+///
+/// # Errors
+/// It is no address of a page.
+pub fn public_address(path: &Path, options: &WebPageOptions) -> Result<Option<PublicAddress>, RenderError> {
+    let Some(page) = &options.address else { return Ok(None) };
+    let poster = poster_path(path);
     let name = poster.file_name().unwrap_or_default().to_string_lossy();
-    PublicAddress::new(page, &name).ok_or_else(|| {
+    PublicAddress::new(page, &name).map(Some).ok_or_else(|| {
         let what = format!("{page:?} is no address of a page (give it as https://example.org/page.html)");
         RenderError::bad_file(path, what)
     })
+}
+
+fn poster_path(page: &Path) -> PathBuf {
+    page.with_extension("poster.png")
+}
+
+/// Writes a page and, if it is going to be published, its poster. Returns their files.
+///
+/// # Errors
+/// The page is larger than it may be, or a file cannot be written.
+pub fn write_page(
+    path: &Path,
+    html: &str,
+    poster: &ScreenPicture,
+    options: &WebPageOptions,
+) -> Result<Vec<PathBuf>, RenderError> {
+    if html.len() as u64 > options.most_bytes() {
+        return Err(page_error(path, WebPageError::TooLarge));
+    }
+    let mut files = vec![write(path, html.as_bytes())?];
+    if options.address.is_some() {
+        files.push(write(&poster_path(path), &png(path, poster)?)?);
+    }
+    Ok(files)
 }
 
 /// Whether any surface, or the background, is not focused by the ordinary lens.

@@ -38,7 +38,7 @@ impl WebPageOptions {
     /// The tolerance of the sums, px: many times as fast as exact ones, which are at 56 dB from them (the demo, 1280 × 720).
     const TOLERANCE_PX: f64 = 2.0;
     /// PSNR, as `compare` measures it, of slices at rest against exact pictures, and of cross-fades half way, dB.
-    const REST_PSNR: f64 = 40.0;
+    pub(crate) const REST_PSNR: f64 = 40.0;
     pub(crate) const MIDWAY_PSNR: f64 = 38.0;
     /// What the tolerance may take from it, dB.
     const MARGIN_OF_TOLERANCE: f64 = 0.1;

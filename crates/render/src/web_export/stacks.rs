@@ -116,12 +116,8 @@ impl<'a> StackDrawing<'a> {
     /// Bakes a light field that holds what every distance shows.
     fn bake(&self, camera: &Camera, focusings: &[&Focusing]) -> Result<Salf, RenderError> {
         let options = &self.options.render;
-        let finer = options.finer(camera)?;
-        let ends = [self.range.farthest, self.range.nearest].map(|inverse| focused(&finer, inverse));
-        let shots = ends.iter().flat_map(|end| {
-            focusings.iter().map(move |focusing| (end, focusing.focus as &dyn SurfaceField<_>))
-        });
-        let needed = BakeOptions::for_all(self.lit.tracer(), shots);
+        let focuses: Vec<&Focus> = focusings.iter().map(|focusing| focusing.focus).collect();
+        let needed = needed_for_range(self.lit, &options.finer(camera)?, self.range, &focuses);
         options.bake_as(self.lit, camera, needed, self.steps)
     }
 
@@ -151,7 +147,7 @@ impl<'a> StackDrawing<'a> {
                 false => splatter.render(&camera, focus, &watched)?,
             }
             is_summed = true;
-            let picture = splatter.picture().averaged(cells_a_side);
+            let picture = splatter.picture().averaged(cells_a_side).with_common_coverage();
             let pixels = to_screen(&picture, options.tone).into_iter().map(|[r, g, b, _]| [r, g, b]);
             let picture = ScreenPicture::new([picture.width, picture.height], pixels.collect())?;
             if inverse_distance == opening {
@@ -195,6 +191,19 @@ impl<E: Into<RenderError>> From<E> for StackError {
     fn from(error: E) -> Self {
         Self::Drawing(error.into())
     }
+}
+
+/// What the light field of a camera needs to hold, which is refocused over a range of distances.
+pub fn needed_for_range(
+    lit: &LitScene,
+    camera: &Camera,
+    range: DistanceRange,
+    focuses: &[&Focus],
+) -> BakeOptions {
+    let ends = [range.farthest, range.nearest].map(|inverse| focused(camera, inverse));
+    let shots =
+        ends.iter().flat_map(|end| focuses.iter().map(move |&focus| (end, focus as &dyn SurfaceField<_>)));
+    BakeOptions::for_all(lit.tracer(), shots)
 }
 
 /// The camera, focused on a reciprocal distance.

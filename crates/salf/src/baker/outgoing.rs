@@ -16,8 +16,8 @@ use crate::jitter::jitter;
 use crate::sample::Visibility;
 use crate::view::View;
 use glam::{DVec2, DVec3, Vec3};
-use scene::SurfacePoint;
 use std::f64::consts::FRAC_PI_4;
+use surface::SurfacePoint;
 use trace::{IncidentLight, OutgoingRadiance, Radiance, SampleSlot};
 
 /// Cells per side for a lobe as wide as the aperture appears.

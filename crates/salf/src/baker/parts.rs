@@ -18,8 +18,8 @@ use crate::samples::Samples;
 use glam::{IVec2, Vec2};
 use lens::{Camera, FocusOffset};
 use progress::{Cancelled, Progress, Stage};
-use scene::SurfaceField;
 use std::collections::{HashMap, HashSet};
+use surface::SurfaceField;
 use trace::{Radiance, Tracer};
 
 /// Bakes parts of one light field.

@@ -14,7 +14,7 @@ use crate::sample::Sample;
 use crate::samples::block_corner;
 use crate::view::View;
 use glam::{DVec2, DVec3, IVec2};
-use scene::SurfacePoint;
+use surface::SurfacePoint;
 use trace::Viewpoint;
 
 /// More pieces than this are not made of one triangle: the largest is then split no further.

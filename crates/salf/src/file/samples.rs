@@ -5,8 +5,8 @@ use super::little_endian::{FIRST_CAPACITY, bytes, read_f32s, read_f64s, write_f3
 use crate::samples::{Chunk, Patch, Plane, Record, Samples, Starts};
 use crate::{Sample, Visibility};
 use glam::{DVec2, IVec2, Vec2, Vec3};
-use scene::SurfacePoint;
 use std::io::{self, Read, Write};
+use surface::SurfacePoint;
 
 const BACKGROUND: u32 = u32::MAX;
 /// Added to the number of words of visibility: the light is carried.

@@ -7,7 +7,7 @@ use crate::samples::numbers::Rgb40;
 use crate::samples::plane::Plane;
 use crate::samples::record::{Patch, Record};
 use glam::{DVec2, IVec2};
-use scene::SurfacePoint;
+use surface::SurfacePoint;
 
 /// The samples of a light field, numbered from 0.
 ///
@@ -113,6 +113,21 @@ impl Samples {
             sample.radiance = light.changed(sample.radiance, sample.surface.is_none());
         }
         Some(samples)
+    }
+
+    /// The same samples without their surface addresses: each that lies on a surface is in a corner of triangle 0. For where the focus of
+    /// each sample is known: such samples take less room once they are compressed.
+    pub fn without_addresses(mut self) -> Self {
+        for record in &mut self.records {
+            *record = record.without_address();
+        }
+        for plane in self.planes.iter_mut().filter(|plane| plane.triangle != Plane::NO_TRIANGLE) {
+            plane.triangle = 0;
+        }
+        for surface in self.loose.iter_mut().filter_map(|sample| sample.surface.as_mut()) {
+            *surface = SurfacePoint { triangle: 0, barycentric: DVec2::ZERO };
+        }
+        self
     }
 
     /// Parts, one after the other; what is not packed comes last.

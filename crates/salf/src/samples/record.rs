@@ -176,6 +176,11 @@ impl Record {
         DVec2::from_array(self.barycentric.map(|b| f64::from(b) / 65535.0))
     }
 
+    /// The same in a corner of the same triangle, a splat on triangle 0.
+    pub fn without_address(self) -> Self {
+        Self { barycentric: [0; 2], ..self }
+    }
+
     /// Whether its kind of sample exists and its inverse depth is finite.
     pub fn is_sound(&self) -> bool {
         Kind::from_place(self.place).is_some() && self.inverse_depth.get().is_finite()

@@ -4,7 +4,7 @@ use crate::jitter::jitter;
 use crate::sample::{Sample, Visibility};
 use glam::{DVec2, IVec2, Vec2, Vec3};
 use half::f16;
-use scene::SurfacePoint;
+use surface::SurfacePoint;
 
 /// Cells of all sizes and parts of them, patches of surface and the background, in one block.
 fn found(count: u32) -> Vec<BakedSample> {

@@ -364,7 +364,7 @@ mod tests {
     use super::*;
     use glam::DVec2;
     use lens::Camera;
-    use scene::SurfacePoint;
+    use surface::SurfacePoint;
 
     #[test]
     fn most_is_a_majority() {

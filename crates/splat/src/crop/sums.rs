@@ -8,7 +8,7 @@ use crate::bands::Pace;
 use crate::draw_list::{BlockList, Changes, Scene};
 use crate::lens_in_use::{LensInUse, Tolerance};
 use crate::nodes::{Nodes, Scale};
-use crate::paint::{Paint, STANDARD};
+use crate::paint::{FocusOfSamples, Paint, STANDARD};
 use crate::resolve::Overflow;
 use crate::resolve::partition::Share;
 use crate::splatter::{ApertureInUse, SETS};
@@ -17,7 +17,7 @@ use lens::{Camera, FocusOffset, Picture};
 use progress::{Cancelled, Progress};
 use salf::Salf;
 use salf::tree::BLOCK_PX;
-use scene::SurfaceField;
+use surface::SurfaceField;
 
 /// The crop to sum, and how.
 #[derive(Clone, Copy)]
@@ -167,7 +167,7 @@ impl<'a> CropSums<'a> {
             of_picture.chain(&mut self.mattes).for_each(Sums::ensure_bright);
         }
         self.aperture.set_nodes(&nodes);
-        let paint = Paint::sample(&nodes, &salf.samples, focus);
+        let paint = Paint::sample(&nodes, FocusOfSamples::of_surface(&salf.samples, focus));
         let is_painted = !paint.is_standard();
         self.facts.is_painted |= is_painted;
         if let Some(is_black) = is_black {

@@ -7,8 +7,8 @@ use glam::{DVec2, Vec2, Vec3};
 use lens::{Camera, FocusOffset, Picture};
 use progress::Unwatched;
 use salf::{Salf, Sample, Visibility};
-use scene::{SurfaceField, SurfacePoint};
 use std::sync::Arc;
+use surface::{SurfaceField, SurfacePoint};
 
 const SIZE: [u32; 2] = [150, 90];
 

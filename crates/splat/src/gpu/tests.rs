@@ -11,8 +11,8 @@ use glam::{DVec2, Vec2, Vec3};
 use lens::{Aperture, ApertureMask, ApertureShape, Camera, FocusOffset, Picture};
 use progress::Unwatched;
 use salf::{Salf, Sample, Visibility};
-use scene::{SurfaceField, SurfacePoint};
 use std::sync::Arc;
+use surface::{SurfaceField, SurfacePoint};
 
 /// Pixels and totals of every level.
 pub type Accumulated = Vec<(Vec<i64>, Vec<i64>)>;

@@ -28,10 +28,8 @@ impl Splatter {
 
     /// Converts to mattes of what was rendered. They are summed on the processor.
     pub fn into_mattes(mut self) -> Mattes {
-        if self.card.has_sums() {
-            self.shares_of = None;
-        }
-        self.use_gpu(None);
+        self.card.replace(None);
+        self.shares_of = None;
         // Mattes are green's.
         self.colours = None;
         self.set_live(true);

@@ -9,7 +9,7 @@ use crate::lens_in_use::NodeFocus;
 use glam::{DVec2, Vec2, Vec3};
 use progress::Unwatched;
 use salf::{Sample, Visibility};
-use scene::SurfacePoint;
+use surface::SurfacePoint;
 
 /// Focus by the index of a sample's triangle.
 struct ByTriangle(Vec<FocusOffset>);

@@ -26,3 +26,17 @@ function decodeBase91(text) {
   }
   return bytes;
 }
+
+/**
+ * Compressed bytes of text, decompressed; `null` where the browser cannot.
+ *
+ * @param {string} text
+ * @returns {Promise<Uint8Array | null>}
+ */
+async function inflate(text) {
+  // Newer than the browser types of TypeScript 4.8, and than Safari 16.3.
+  const { DecompressionStream } = /** @type {any} */ (window);
+  if (!DecompressionStream) return null;
+  const stream = new Blob([decodeBase91(text)]).stream().pipeThrough(new DecompressionStream("deflate"));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+}

@@ -1,101 +1,3 @@
-/** Time of a rack from near to far and back, ms. */
-const RACK_PERIOD = 9000;
-/** How long a message stays, ms. */
-const MESSAGE_TIME = 3000;
-
-/** Racks the focus back and forth. */
-class Player {
-  /**
-   * @param {Rack} rack
-   * @param {(isPlaying: boolean) => void} onChange
-   */
-  constructor(rack, onChange) {
-    this.rack = rack;
-    this.onChange = onChange;
-    /** The number of the requested frame; 0 while nothing plays. */
-    this.frame = 0;
-  }
-
-  get isPlaying() {
-    return this.frame !== 0;
-  }
-
-  play() {
-    if (this.isPlaying) return;
-    // From where the focus is, toward the far end.
-    const phase = Math.acos(1 - 2 * this.rack.position);
-    /** @type {number | null} */
-    let start = null;
-    /** @param {number} time */
-    const step = (time) => {
-      start ??= time;
-      this.frame = requestAnimationFrame(step);
-      this.rack.move((1 - Math.cos(phase + (2 * Math.PI * (time - start)) / RACK_PERIOD)) / 2);
-    };
-    this.frame = requestAnimationFrame(step);
-    this.onChange(true);
-  }
-
-  stop() {
-    if (!this.isPlaying) return;
-    cancelAnimationFrame(this.frame);
-    this.frame = 0;
-    this.rack.settle();
-    this.onChange(false);
-  }
-}
-
-/** A message over the picture, which screen readers speak. */
-class Message {
-  constructor() {
-    this.paragraph = element("message", HTMLParagraphElement);
-    this.timer = 0;
-  }
-
-  /** @param {string} text */
-  show(text) {
-    this.speak(text);
-    this.paragraph.classList.remove("spoken");
-  }
-
-  /**
-   * Tells screen readers alone what others see.
-   *
-   * @param {string} text
-   */
-  speak(text) {
-    clearTimeout(this.timer);
-    this.paragraph.classList.add("spoken");
-    this.paragraph.textContent = text;
-    this.timer = setTimeout(() => (this.paragraph.textContent = ""), MESSAGE_TIME);
-  }
-}
-
-/**
- * Fills a group with a radio button for each choice, and returns the buttons.
- *
- * @param {string} id Of the group.
- * @param {string[]} labels
- * @param {(index: number) => void} onChoice
- * @returns {HTMLInputElement[]}
- */
-function addChoices(id, labels, onChoice) {
-  const group = element(id, HTMLDivElement);
-  return labels.map((text, index) => {
-    const label = document.createElement("label");
-    const input = document.createElement("input");
-    const span = document.createElement("span");
-    label.className = "choice";
-    input.type = "radio";
-    input.name = id;
-    input.addEventListener("change", () => onChoice(index));
-    span.textContent = text;
-    label.append(input, span);
-    group.append(label);
-    return input;
-  });
-}
-
 /** The bar below the picture. It shows what the rack shows. */
 class Controls {
   /**
@@ -127,9 +29,7 @@ class Controls {
     this.paintButton.hidden = page.maps.paint === null;
     this.tint = element("tint", HTMLCanvasElement);
     this.paintButton.addEventListener("click", () => this.togglePaint());
-    const fullScreen = element("full-screen", HTMLButtonElement);
-    fullScreen.hidden = !document.fullscreenEnabled;
-    fullScreen.addEventListener("click", () => this.toggleFullScreen());
+    showFullScreenButton();
     element("bar", HTMLDivElement).hidden = false;
     this.update();
   }
@@ -190,12 +90,5 @@ class Controls {
     if (this.paintButton.hidden) return;
     this.tint.hidden = !this.tint.hidden;
     this.paintButton.setAttribute("aria-pressed", String(!this.tint.hidden));
-  }
-
-  toggleFullScreen() {
-    const changed = document.fullscreenElement
-      ? document.exitFullscreen()
-      : document.documentElement.requestFullscreen();
-    changed.catch(() => {});
   }
 }

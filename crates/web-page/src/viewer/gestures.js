@@ -7,23 +7,25 @@ const WHEEL_ZOOM = 0.002;
 
 /**
  * Turns what pointers and wheel do on the picture into actions: a click focuses, a drag racks, the wheel and two fingers zoom;
- * with the shift key or the middle button a drag moves the picture.
+ * with the shift key or the middle button a drag moves the picture. While a brush is active, clicks and drags paint.
  */
 class Gestures {
   /**
    * @param {HTMLElement} view
    * @param {Zoom} zoom
-   * @param {Rack} rack
+   * @param {Racking} rack
    * @param {{begin: () => void, aim: (point: PointerEvent, wait: number) => void, click: (point: PointerEvent) => void}} actions
+   * @param {{isActive: boolean, begin: (point: PointerEvent) => void, extend: (point: PointerEvent) => void, end: () => void} | null} brush
    */
-  constructor(view, zoom, rack, actions) {
+  constructor(view, zoom, rack, actions, brush = null) {
     this.view = view;
     this.zoom = zoom;
     this.rack = rack;
     this.actions = actions;
+    this.brush = brush;
     /** @type {Map<number, PointerEvent>} The pointers that are down, and where they were last. */
     this.pointers = new Map();
-    /** @type {"click" | "rack" | "pan" | "pinch"} */
+    /** @type {"click" | "rack" | "pan" | "pinch" | "paint"} */
     this.kind = "click";
     this.startX = 0;
     this.startY = 0;
@@ -49,11 +51,16 @@ class Gestures {
     this.view.setPointerCapture(event.pointerId);
     this.pointers.set(event.pointerId, event);
     if (this.pointers.size > 1) {
-      this.rack.settle();
+      this.finish();
       this.kind = "pinch";
       return;
     }
     if (event.button === 1) event.preventDefault();
+    if (this.brush && this.brush.isActive && event.button === 0 && !event.shiftKey) {
+      this.kind = "paint";
+      this.brush.begin(event);
+      return;
+    }
     this.actions.aim(event, 0);
     this.kind = event.shiftKey || event.button === 1 ? "pan" : "click";
     [this.startX, this.startY, this.startPosition] = [event.clientX, event.clientY, this.rack.position];
@@ -66,6 +73,8 @@ class Gestures {
       if (!event.buttons) this.actions.aim(event, REST_MS);
     } else if (this.kind === "pinch") {
       this.pinch(before, event);
+    } else if (this.kind === "paint") {
+      if (this.brush) this.brush.extend(event);
     } else if (this.kind === "pan") {
       this.zoom.pan(event.clientX - before.clientX, event.clientY - before.clientY);
     } else {
@@ -95,12 +104,18 @@ class Gestures {
   up(event) {
     if (!this.pointers.delete(event.pointerId)) return;
     if (this.kind === "click") this.actions.click(event);
-    this.rack.settle();
+    this.finish();
   }
 
   /** @param {PointerEvent} event */
   cancel(event) {
-    if (this.pointers.delete(event.pointerId)) this.rack.settle();
+    if (this.pointers.delete(event.pointerId)) this.finish();
+  }
+
+  /** What was dragged or painted is done. */
+  finish() {
+    if (this.kind === "paint" && this.brush) this.brush.end();
+    this.rack.settle();
   }
 
   /** @param {WheelEvent} event */

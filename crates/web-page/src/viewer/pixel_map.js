@@ -18,11 +18,8 @@ class PixelMap {
    * @returns {Promise<PixelMap | null>}
    */
   static async unpack(size, packed) {
-    // Newer than the browser types of TypeScript 4.8, and than Safari 16.3.
-    const { DecompressionStream } = /** @type {any} */ (window);
-    if (packed === null || !DecompressionStream) return null;
-    const stream = new Blob([decodeBase91(packed)]).stream().pipeThrough(new DecompressionStream("deflate"));
-    const codes = new Uint8Array(await new Response(stream).arrayBuffer());
+    const codes = packed === null ? null : await inflate(packed);
+    if (!codes) return null;
     for (let first = 0; first < codes.length; first += size[0]) {
       for (let k = first + 1; k < first + size[0]; k++) codes[k] += codes[k - 1];
     }

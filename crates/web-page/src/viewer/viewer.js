@@ -84,31 +84,13 @@ function showPage(page) {
     if (!(await distanceMap())) message.show("This browser cannot focus by a click: drag from side to side");
     const inverseDistance = await sharpDistance(point);
     if (inverseDistance === undefined) return;
-    showMark(point, inverseDistance !== null);
+    showMark(view, point, inverseDistance !== null);
     if (inverseDistance === null) {
       message.show("Painted, stays so");
     } else {
       rack.rest(inverseDistance);
       message.speak(`Focused at ${distanceText(rack.inverseDistance)}`);
     }
-  }
-
-  /**
-   * Draws a ring at a point of the window.
-   *
-   * @param {{clientX: number, clientY: number}} point
-   * @param {boolean} hasFocused
-   */
-  function showMark({ clientX, clientY }, hasFocused) {
-    const mark = element("mark", HTMLDivElement);
-    const { left, top } = view.getBoundingClientRect();
-    mark.hidden = true;
-    mark.classList.toggle("unchanged", !hasFocused);
-    mark.style.left = `${clientX - left}px`;
-    mark.style.top = `${clientY - top}px`;
-    // Read, so that the animation starts anew.
-    void mark.offsetWidth;
-    mark.hidden = false;
   }
 
   /** @param {number} factor */
@@ -136,7 +118,7 @@ function showPage(page) {
     "]": () => controls.stepAperture(1),
     p: () => controls.toggleKind(),
     t: () => controls.togglePaint(),
-    f: () => controls.toggleFullScreen(),
+    f: toggleFullScreen,
     " ": () => controls.togglePlaying(),
     Enter: () => focusOn(middle()),
   };

@@ -4,7 +4,7 @@ use crate::baker::outgoing::aperture_parts::{ApertureCells, AperturePart, MAX_CE
 use crate::baker::outgoing::{ALIKE, LightComponent, RadianceQuery, cells_of_lobe};
 use crate::sample::Visibility;
 use glam::{DVec2, Vec3};
-use scene::SurfacePoint;
+use surface::SurfacePoint;
 
 /// By cell of the aperture, how much more own light a point sends there than to the middle.
 pub struct OwnLightChange {

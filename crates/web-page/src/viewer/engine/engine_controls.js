@@ -1,0 +1,115 @@
+/** The bar below the picture. It shows what lens and brush are. */
+class EngineControls {
+  /**
+   * @param {EngineData} page
+   * @param {LensRack} rack
+   * @param {Player} player
+   * @param {BrushTool} brush
+   */
+  constructor(page, rack, player, brush) {
+    this.page = page;
+    this.rack = rack;
+    this.player = player;
+    this.brush = brush;
+    this.distance = element("distance", HTMLInputElement);
+    this.distanceText = element("distance-text", HTMLOutputElement);
+    this.distance.addEventListener("input", () => {
+      player.stop();
+      rack.move(Number(this.distance.value));
+    });
+    this.distance.addEventListener("change", () => rack.settle());
+    this.aperture = element("aperture", HTMLInputElement);
+    this.apertureText = element("aperture-text", HTMLOutputElement);
+    this.aperture.addEventListener("input", () => rack.stopDown(Number(this.aperture.value), true));
+    this.aperture.addEventListener("change", () => rack.settle());
+    this.blades = page.hasDisc ? [0, 5, 6, 8] : [0, 1, 5, 6, 8];
+    const names = this.blades.map((blades) => (blades > 1 ? String(blades) : blades || page.hasDisc ? "Disc" : "As made"));
+    this.shapeInputs = addChoices("shape", names, (index) => rack.shape(this.blades[index]));
+    this.toolInputs = addChoices("tools", TOOLS, (index) => this.chooseTool(index));
+    this.size = this.brushSlider("brush-size", (value) => (brush.size = value));
+    this.blur = this.brushSlider("brush-blur", (value) => (brush.blur = value * MOST_BLUR));
+    this.undo = this.button("undo", () => brush.undo());
+    this.redo = this.button("redo", () => brush.redo());
+    this.save = this.button("save-strokes", () => this.saveStrokes());
+    this.playButton = this.button("play", () => this.togglePlaying());
+    element("rack", HTMLDivElement).hidden = rack.nearest === rack.farthest;
+    showFullScreenButton();
+    element("bar", HTMLDivElement).hidden = false;
+    this.update();
+  }
+
+  /**
+   * @param {string} id
+   * @param {() => void} onClick
+   */
+  button(id, onClick) {
+    const button = element(id, HTMLButtonElement);
+    button.addEventListener("click", onClick);
+    return button;
+  }
+
+  /**
+   * @param {string} id
+   * @param {(value: number) => void} set
+   */
+  brushSlider(id, set) {
+    const slider = element(id, HTMLInputElement);
+    slider.addEventListener("input", () => set(Number(slider.value)));
+    return slider;
+  }
+
+  /** Shows the state of lens and brush. */
+  update() {
+    const { rack, brush } = this;
+    const text = distanceText(rack.inverseDistance);
+    this.distance.value = String(rack.position);
+    this.distance.setAttribute("aria-valuetext", text);
+    this.distanceText.value = text;
+    this.aperture.value = String(rack.stop);
+    this.aperture.setAttribute("aria-valuetext", rack.fNumberText);
+    this.apertureText.value = rack.fNumberText;
+    this.blades.forEach((blades, index) => (this.shapeInputs[index].checked = blades === rack.blades));
+    this.toolInputs.forEach((input, index) => (input.checked = index === brush.tool));
+    this.size.value = String(brush.size);
+    this.blur.value = String(brush.blur / MOST_BLUR);
+    element("brush", HTMLDivElement).hidden = !brush.isActive;
+    element("blur-label", HTMLLabelElement).hidden = brush.tool !== 2;
+    this.blur.hidden = brush.tool !== 2;
+    const { steps, done } = brush.strokes;
+    element("history", HTMLDivElement).hidden = steps.length === 0;
+    this.undo.disabled = this.save.disabled = done === 0;
+    this.redo.disabled = done === steps.length;
+  }
+
+  /** @param {boolean} isPlaying */
+  showPlaying(isPlaying) {
+    this.playButton.setAttribute("aria-pressed", String(isPlaying));
+  }
+
+  togglePlaying() {
+    if (this.player.isPlaying) this.player.stop();
+    else this.player.play();
+  }
+
+  /** @param {number} tool */
+  chooseTool(tool) {
+    this.brush.tool = tool;
+    this.brush.ring.hidden = true;
+    this.update();
+  }
+
+  /** @param {number} factor */
+  scaleBrush(factor) {
+    this.brush.size = clamp(this.brush.size * factor, Number(this.size.min), Number(this.size.max));
+    this.update();
+  }
+
+  /** Downloads the strokes, for the program to replay. */
+  saveStrokes() {
+    const link = document.createElement("a");
+    link.href = URL.createObjectURL(new Blob([this.brush.strokes.file], { type: "application/json" }));
+    link.download = `${this.page.title.replace(/[^\p{L}\p{N} ._-]/gu, "_")}.strokes.json`;
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 60000);
+  }
+}
