@@ -66,17 +66,29 @@ impl SalfFile {
     /// Errors of `to`.
     pub fn write(&self, to: impl Write) -> io::Result<()> {
         let mut to = Hashing { inner: to, hash: Sha256::new() };
-        to.write_all(MAGIC)?;
-        let version = if self.salf.samples.has_splats() { VERSION_WITH_SPLATS } else { VERSION };
-        to.write_all(&version.to_le_bytes())?;
-        write_path(&mut to, &self.source)?;
-        to.write_all(&self.triangles.to_le_bytes())?;
-        write_camera(&mut to, &self.salf.camera)?;
-        to.write_all(&self.salf.margin_px.to_le_bytes())?;
+        self.write_head(&mut to)?;
         write_samples(&mut to, &self.salf.samples)?;
         let sum = to.hash.finalize();
         to.inner.write_all(&sum)?;
         to.inner.flush()
+    }
+
+    fn write_head(&self, to: &mut impl Write) -> io::Result<()> {
+        to.write_all(MAGIC)?;
+        let version = if self.salf.samples.has_splats() { VERSION_WITH_SPLATS } else { VERSION };
+        to.write_all(&version.to_le_bytes())?;
+        write_path(to, &self.source)?;
+        to.write_all(&self.triangles.to_le_bytes())?;
+        write_camera(to, &self.salf.camera)?;
+        to.write_all(&self.salf.margin_px.to_le_bytes())
+    }
+
+    /// The parts of the file but for its end: how many bytes each has, and in records of how many bytes. Bytes of a kind are alike.
+    pub fn parts(&self) -> Vec<(usize, usize)> {
+        let mut head = Vec::new();
+        self.write_head(&mut head).expect("memory takes what is written");
+        let lists = self.salf.samples.lists();
+        std::iter::once((head.len(), 1)).chain(lists.map(|(count, bytes)| (count * bytes, bytes))).collect()
     }
 
     /// Reads a file and checks its form, its checksum and all values.

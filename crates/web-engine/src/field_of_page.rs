@@ -9,11 +9,12 @@
 //! painted    u32       the number of samples, or 0 where none is painted
 //! t          f32 each, in four columns
 //! anchor     f32 each, in four columns
-//! field      the bytes of a .salf file whose samples have no addresses, in sixteen columns
+//! parts      u32       of the field; then the bytes of each and the columns of each, 2 × u32
+//! field      a .salf file of trimmed samples, part by part in columns; what is left in one
 //! ```
 //!
-//! *Columns*: first every nth byte from the first on, then every nth from the second on … Records of a light field have 16 bytes, so that bytes
-//! of a kind follow each other, which compresses to less.
+//! *Columns*: first every nth byte from the first on, then every nth from the second on … Bytes of a kind then follow each other, which
+//! compresses to less.
 
 use crate::error::EngineError;
 use lens::{Exposure, FocusOffset};
@@ -23,9 +24,10 @@ use surface::SurfaceField;
 
 const MAGIC: &[u8; 8] = b"FBPAGE\r\n";
 const VERSION: u32 = 1;
-/// Bytes of a record of a light field, and of a number of the paint.
-const RECORD: usize = 16;
+/// Bytes of a number of the paint.
 const NUMBER: usize = size_of::<f32>();
+/// No record has more bytes.
+const MOST_COLUMNS: usize = 64;
 /// t and anchor of what is not painted.
 const STANDARD: [f32; 2] = [1.0, 0.0];
 
@@ -41,7 +43,7 @@ pub struct FieldOfPage {
 }
 
 impl FieldOfPage {
-    /// The samples of a light field with their focus, without their addresses.
+    /// The samples of a light field, trimmed, with their focus.
     pub fn new(salf: &Salf, focus: &dyn SurfaceField<FocusOffset>, exposure: Exposure) -> Self {
         let of_samples = SampleFocus::new(focus);
         let numbers = |address: Address| {
@@ -52,7 +54,7 @@ impl FieldOfPage {
         let focus: Vec<_> =
             (0..salf.samples.len() as u32).map(|sample| numbers(addresses.get(sample))).collect();
         let is_painted = focus.iter().any(|numbers| *numbers != STANDARD);
-        let samples = salf.samples.clone().without_addresses();
+        let samples = salf.samples.clone().trimmed();
         Self {
             salf: Arc::new(Salf { camera: salf.camera.clone(), samples, ..*salf }),
             focus: is_painted.then_some(focus),
@@ -85,7 +87,19 @@ impl FieldOfPage {
         let file = SalfFile { source: "page".into(), triangles: 1, salf: self.salf.clone() };
         let mut field = Vec::new();
         file.write(&mut field).expect("memory takes what is written");
-        bytes.extend(to_columns(&field, RECORD));
+        let parts = file.parts();
+        bytes.extend((parts.len() as u32).to_le_bytes());
+        for (length, columns) in &parts {
+            bytes
+                .extend([*length, *columns].map(|number| number as u32).map(u32::to_le_bytes).as_flattened());
+        }
+        let mut rest = &*field;
+        for (length, columns) in parts {
+            let (part, after) = rest.split_at(length);
+            bytes.extend(to_columns(part, columns));
+            rest = after;
+        }
+        bytes.extend(rest);
         bytes
     }
 
@@ -111,8 +125,8 @@ impl FieldOfPage {
         if channel > rest.len() / 2 {
             return Err(damaged("its paint is cut short"));
         }
-        let (paint, field) = rest.split_at(2 * channel);
-        let salf = SalfFile::read(&*from_columns(field, RECORD))?.salf;
+        let (paint, rest) = rest.split_at(2 * channel);
+        let salf = SalfFile::read(&*field(rest).ok_or(damaged("its parts are cut short"))?)?.salf;
         let [t, anchor] = [&paint[..channel], &paint[channel..]].map(numbers);
         let focus: Vec<_> = t.into_iter().zip(anchor).map(|(t, anchor)| [t, anchor]).collect();
         if painted > 0 && focus.len() != salf.samples.len() {
@@ -120,6 +134,25 @@ impl FieldOfPage {
         }
         Ok(Self { salf, focus: (painted > 0).then_some(focus), exposure })
     }
+}
+
+/// The bytes of the field from its parts; `None` if a part is missing.
+fn field(bytes: &[u8]) -> Option<Vec<u8>> {
+    let (count, rest) = bytes.split_first_chunk()?;
+    let (table, mut rest) = rest.split_at_checked((u32::from_le_bytes(*count) as usize).checked_mul(8)?)?;
+    let mut field = Vec::with_capacity(rest.len());
+    for part in table.chunks_exact(8) {
+        let [length, columns] =
+            [0, 4].map(|at| u32::from_le_bytes(std::array::from_fn(|k| part[at + k])) as usize);
+        if !(1..=MOST_COLUMNS).contains(&columns) {
+            return None;
+        }
+        let (part, after) = rest.split_at_checked(length)?;
+        field.extend(from_columns(part, columns));
+        rest = after;
+    }
+    field.extend(rest);
+    Some(field)
 }
 
 /// Numbers from their bytes in columns.

@@ -36,6 +36,23 @@ pub fn write_samples(to: &mut impl Write, samples: &Samples) -> io::Result<()> {
     loose.iter().try_for_each(|sample| write_sample(to, sample))
 }
 
+impl Samples {
+    /// The lists that samples begin with in a file, their counts before them: how many items each has, and of how many bytes.
+    pub(super) fn lists(&self) -> impl Iterator<Item = (usize, usize)> {
+        let Samples { chunks, records, planes, sub_cells, patches, codes, .. } = self;
+        [
+            (7, size_of::<u64>()),
+            (chunks.len(), 7 * size_of::<u32>()),
+            (records.len(), Record::BYTES),
+            (planes.len(), Plane::BYTES),
+            (sub_cells.len(), size_of::<u16>()),
+            (patches.len(), Patch::BYTES),
+            (codes.len(), 1),
+        ]
+        .into_iter()
+    }
+}
+
 /// Reads samples whose surfaces are among `triangles` of the scene, and checks them.
 ///
 /// # Errors

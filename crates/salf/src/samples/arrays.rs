@@ -115,11 +115,14 @@ impl Samples {
         Some(samples)
     }
 
-    /// The same samples without their surface addresses: each that lies on a surface is in a corner of triangle 0. For where the focus of
-    /// each sample is known: such samples take less room once they are compressed.
-    pub fn without_addresses(mut self) -> Self {
+    /// The same samples, trimmed for viewing where the focus of each is known: they take less room once they are compressed.
+    ///
+    /// Surface addresses are gone: each that lies on a surface is in a corner of triangle 0. Depths are exact to 2⁻¹³ of themselves, which
+    /// moves the rim of a blur of 100 px by 0.02 px at most; radiances to 2⁻⁸ of their largest channel, most to half of that. What is
+    /// not packed keeps its numbers.
+    pub fn trimmed(mut self) -> Self {
         for record in &mut self.records {
-            *record = record.without_address();
+            *record = record.trimmed();
         }
         for plane in self.planes.iter_mut().filter(|plane| plane.triangle != Plane::NO_TRIANGLE) {
             plane.triangle = 0;

@@ -23,6 +23,15 @@ impl Float24 {
         let [a, b, c] = self.0;
         f32::from_bits(u32::from_le_bytes([a, b, c, 0]) << 7)
     }
+
+    /// The nearest number whose last `dropped` bits are 0; itself where that would be infinite.
+    pub fn coarser(self, dropped: u32) -> Self {
+        let [a, b, c] = self.0;
+        let bits = u32::from_le_bytes([a, b, c, 0]);
+        let [a, b, c, _] = (((bits + (1 << dropped >> 1)) >> dropped) << dropped).to_le_bytes();
+        let rounded = Self([a, b, c]);
+        if rounded.get().is_finite() { rounded } else { self }
+    }
 }
 
 /// Red, green and blue that are not negative: 11 bits each below a common exponent of 7 from 2⁻⁶⁴ on.
@@ -58,6 +67,20 @@ impl Rgb40 {
         Some(Self([a, b, c, d, e]))
     }
 
+    /// The nearest colour whose channels have `bits` bits, 1 to 11, below the common exponent.
+    pub fn coarser(self, bits: u32) -> Self {
+        let dropped = Self::MANTISSA_BITS as u32 - bits;
+        let [a, b, c, d, e] = self.0;
+        let all = u64::from_le_bytes([a, b, c, d, e, 0, 0, 0]);
+        let most = (1 << bits) - 1;
+        let rounded = [7, 18, 29].map(|at| {
+            let mantissa = all >> at & 0x7FF;
+            (((mantissa + (1 << dropped >> 1)) >> dropped).min(most) << dropped) << at
+        });
+        let [a, b, c, d, e, ..] = (all & 0x7F | rounded[0] | rounded[1] | rounded[2]).to_le_bytes();
+        Self([a, b, c, d, e])
+    }
+
     /// The colour, linear RGB; exact.
     pub fn get(self) -> Vec3 {
         let [a, b, c, d, e] = self.0;
@@ -72,6 +95,23 @@ impl Rgb40 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn coarser_numbers_are_near() {
+        for k in 0..20_000 {
+            let value = (k as f32 * 0.37).sin().abs() * (k as f32 * 0.005 - 50.0).exp2();
+            let number = Float24::new(value).unwrap();
+            let apart = (number.coarser(4).get() - number.get()).abs();
+            assert!(apart <= value * 2f32.powi(-13) && number.coarser(4).0[0] & 15 == 0, "{value}");
+            assert_eq!(number.coarser(0), number);
+            let rgb = Rgb40::new(Vec3::new(value, value * 0.3, value * 1e-3), [0.5; 3]).unwrap();
+            let apart = (rgb.coarser(8).get() - rgb.get()).abs().max_element();
+            assert!(apart <= rgb.get().max_element() * 2f32.powi(-8), "{value}");
+            assert_eq!(rgb.coarser(11), rgb);
+        }
+        let largest = Float24([0xFF, 0xFF, 0xFE]);
+        assert!(largest.coarser(4).get().is_finite());
+    }
 
     #[test]
     fn numbers_come_back_as_close_as_is_said() {

@@ -176,9 +176,10 @@ impl Record {
         DVec2::from_array(self.barycentric.map(|b| f64::from(b) / 65535.0))
     }
 
-    /// The same in a corner of the same triangle, a splat on triangle 0.
-    pub fn without_address(self) -> Self {
-        Self { barycentric: [0; 2], ..self }
+    /// See [`super::Samples::trimmed`].
+    pub fn trimmed(self) -> Self {
+        let (inverse_depth, radiance) = (self.inverse_depth.coarser(4), self.radiance.coarser(8));
+        Self { barycentric: [0; 2], inverse_depth, radiance, ..self }
     }
 
     /// Whether its kind of sample exists and its inverse depth is finite.
