@@ -1,14 +1,21 @@
 //! `export --web`, end to end: the slices are what `render` draws, and clicks in a browser focus on what is there.
 
+#[allow(dead_code, reason = "shared with other tests")]
+#[path = "../card_light_field/mod.rs"]
+mod card_light_field;
 #[allow(dead_code, reason = "shared with the tests of `web-page`")]
 #[path = "../../../crates/web-page/tests/browser/chromium.rs"]
 mod chromium;
 mod engine_page;
 mod exported_page;
+mod kinds;
 #[path = "../program/mod.rs"]
 mod program;
 #[path = "../../../crates/session/tests/tiny_glb/mod.rs"]
 mod tiny_glb;
+#[allow(dead_code, reason = "shared with other tests")]
+#[path = "../wall_capture/mod.rs"]
+mod wall_capture;
 
 use chromium::Chromium;
 use exported_page::{ExportedPage, Shown};
