@@ -43,5 +43,5 @@ pub use sequence::{
 pub use tiles::{Merged, TileGrid, TileOptions, TileReport, TilesReport, merge_tiles, render_tiles};
 pub use web_export::{
     Caption, StackReport, WebPageEstimate, WebPageOptions, WebPageReport, estimate_web_page,
-    export_engine_page, export_web_page,
+    export_engine_page, export_web_page, usual_engine_camera,
 };

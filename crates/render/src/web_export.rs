@@ -14,7 +14,7 @@ mod page_error;
 mod report;
 mod stacks;
 
-pub use engine_page::export_engine_page;
+pub use engine_page::{export_engine_page, usual_engine_camera};
 pub use estimate::{WebPageEstimate, estimate_web_page};
 pub use export::export_web_page;
 pub use options::WebPageOptions;

@@ -62,6 +62,10 @@ fn what_is_saved_is_opened_again() {
     assert!(settle(&mut again).contains(&Event::FileWritten(page.clone())));
     let html = std::fs::read_to_string(page).unwrap();
     assert!(html.contains("<title>quads</title>") && html.contains("\"isPainted\":true"), "as it is painted");
+    let page = folder.path().join("paint.html");
+    again.apply(Command::ExportEnginePage(page.clone())).unwrap();
+    assert!(settle(&mut again).contains(&Event::FileWritten(page.clone())));
+    assert!(std::fs::read_to_string(page).unwrap().contains("showEnginePage({\"title\":\"quads\""));
     let shot = folder.path().join("shot.png");
     again.apply(Command::ExportPicture(shot.clone(), Default::default())).unwrap();
     settle(&mut again);

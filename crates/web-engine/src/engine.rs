@@ -55,6 +55,7 @@ pub struct Engine {
     camera: Camera,
     exported: Camera,
     exposure: Exposure,
+    gain: f32,
     /// Of every sample.
     focus: Vec<FocusOffset>,
     /// Whether the full picture is that of lens and paint.
@@ -89,6 +90,7 @@ impl Engine {
             camera: exported.clone(),
             exported,
             exposure: field.exposure,
+            gain: field.gain,
             focus,
             is_current: false,
             surfaces,
@@ -150,7 +152,7 @@ impl Engine {
         }
         self.draft.take_paint_of(&self.splatter);
         self.draft.refocus(&self.camera, &Unwatched)?;
-        self.screen.show(self.draft.picture(), self.exposure);
+        self.screen.show(self.draft.picture(), self.exposure, self.gain);
         Ok(())
     }
 
@@ -251,25 +253,25 @@ impl Engine {
             return self.draw();
         }
         self.splatter.update_samples(&self.focus, samples)?;
-        self.screen.show(self.splatter.picture(), self.exposure);
+        self.screen.show(self.splatter.picture(), self.exposure, self.gain);
         Ok(())
     }
 
     fn draw(&mut self) -> Result<(), EngineError> {
         self.splatter.refocus(&self.camera, &Unwatched)?;
         self.is_current = true;
-        self.screen.show(self.splatter.picture(), self.exposure);
+        self.screen.show(self.splatter.picture(), self.exposure, self.gain);
         Ok(())
     }
 }
 
 impl ScreenPixels {
     /// Shows a picture as `render` writes PNGs.
-    fn show(&mut self, picture: &Picture, exposure: Exposure) {
+    fn show(&mut self, picture: &Picture, exposure: Exposure, gain: f32) {
         let common = picture.colour_coverage.is_some().then(|| picture.clone().with_common_coverage());
         let picture = common.as_ref().unwrap_or(picture);
         let pixel = |(radiance, coverage): (&[f32; 3], &f32)| {
-            let scale = exposure.scale(1.0, *coverage);
+            let scale = exposure.scale(gain, *coverage);
             let [r, g, b] = radiance.map(|light| screen_level(light * scale));
             [r, g, b, u8::MAX]
         };

@@ -6,6 +6,7 @@
 //! magic      8 bytes   "FBPAGE\r\n"
 //! version    u32       1
 //! exposure   u32       0 conserved, 1 normalised
+//! gain       f32       what radiances are multiplied by
 //! painted    u32       the number of samples, or 0 where none is painted
 //! t          f32 each, in four columns
 //! anchor     f32 each, in four columns
@@ -40,6 +41,8 @@ pub struct FieldOfPage {
     pub focus: Option<Vec<[f32; 2]>>,
     /// How the picture is exposed.
     pub exposure: Exposure,
+    /// What its radiance is multiplied by, > 0.
+    pub gain: f32,
 }
 
 impl FieldOfPage {
@@ -59,6 +62,7 @@ impl FieldOfPage {
             salf: Arc::new(Salf { camera: salf.camera.clone(), samples, ..*salf }),
             focus: is_painted.then_some(focus),
             exposure,
+            gain: 1.0,
         }
     }
 
@@ -77,7 +81,7 @@ impl FieldOfPage {
         let exposure = u32::from(self.exposure == Exposure::Normalise);
         let focus = self.focus.as_deref().unwrap_or_default();
         let mut bytes = MAGIC.to_vec();
-        for number in [VERSION, exposure, focus.len() as u32] {
+        for number in [VERSION, exposure, self.gain.to_bits(), focus.len() as u32] {
             bytes.extend(number.to_le_bytes());
         }
         for channel in [0, 1] {
@@ -110,9 +114,9 @@ impl FieldOfPage {
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, EngineError> {
         let damaged = EngineError::Damaged;
         let head = bytes.strip_prefix(MAGIC).ok_or(damaged("it is none"))?;
-        let (head, rest) = head.split_first_chunk::<12>().ok_or(damaged("it is cut short"))?;
-        let [version, exposure, painted] =
-            [0, 4, 8].map(|at| u32::from_le_bytes(std::array::from_fn(|k| head[at + k])));
+        let (head, rest) = head.split_first_chunk::<16>().ok_or(damaged("it is cut short"))?;
+        let [version, exposure, gain, painted] =
+            [0, 4, 8, 12].map(|at| u32::from_le_bytes(std::array::from_fn(|k| head[at + k])));
         if version != VERSION {
             return Err(damaged("it is of another version than the page's program"));
         }
@@ -121,6 +125,10 @@ impl FieldOfPage {
             1 => Exposure::Normalise,
             _ => return Err(damaged("its exposure makes no sense")),
         };
+        let gain = f32::from_bits(gain);
+        if !(gain.is_finite() && gain > 0.0) {
+            return Err(damaged("its gain makes no sense"));
+        }
         let channel = painted as usize * NUMBER;
         if channel > rest.len() / 2 {
             return Err(damaged("its paint is cut short"));
@@ -132,7 +140,7 @@ impl FieldOfPage {
         if painted > 0 && focus.len() != salf.samples.len() {
             return Err(damaged("its paint is that of another light field"));
         }
-        Ok(Self { salf, focus: (painted > 0).then_some(focus), exposure })
+        Ok(Self { salf, focus: (painted > 0).then_some(focus), exposure, gain })
     }
 }
 
@@ -195,10 +203,14 @@ mod tests {
         let salf = wall();
         for field in [
             FieldOfPage::new(&salf, &PaintedWall, Exposure::Normalise),
-            FieldOfPage { focus: None, ..FieldOfPage::new(&salf, &PaintedWall, Exposure::Conserve) },
+            FieldOfPage {
+                focus: None,
+                gain: 2.0,
+                ..FieldOfPage::new(&salf, &PaintedWall, Exposure::Conserve)
+            },
         ] {
             let read = FieldOfPage::from_bytes(&field.to_bytes()).unwrap();
-            assert_eq!((read.exposure, &read.focus), (field.exposure, &field.focus));
+            assert_eq!((read.exposure, read.gain, &read.focus), (field.exposure, field.gain, &field.focus));
             assert_eq!((&read.salf.samples, &read.salf.camera), (&field.salf.samples, &salf.camera));
             assert_eq!(read.focus_of_samples().len(), salf.samples.len());
         }
@@ -214,7 +226,7 @@ mod tests {
         for length in (0..good.len()).step_by(997) {
             assert!(is_refused(&good[..length]), "cut at {length}");
         }
-        let paint = 20..20 + 8 * field.salf.samples.len();
+        let paint = 24..24 + 8 * field.salf.samples.len();
         for index in (0..good.len()).step_by(211).filter(|index| !paint.contains(index)) {
             let mut bad = good.clone();
             bad[index] ^= 0x22;

@@ -31,6 +31,9 @@ fn exact(camera: &Camera, focus: &dyn SurfaceField<FocusOffset>) -> Vec<[u8; 4]>
     picture.radiance.iter().zip(&picture.coverage).map(levels).collect()
 }
 
+/// No pixels.
+const NONE: [usize; 0] = [];
+
 /// The pixels in which the engine's picture is not the expected one.
 fn differing(engine: &Engine, expected: &[[u8; 4]]) -> Vec<usize> {
     let pixels = &engine.screen().pixels;
@@ -57,7 +60,7 @@ fn the_picture_is_that_of_the_splatter() {
             };
             assert_eq!(engine.screen().size, SIZE);
             let apart = differing(&engine, &exact(&camera, &PaintedWall));
-            assert_eq!(apart, [], "{inverse_distance} {aperture:?}");
+            assert_eq!(apart, NONE, "{inverse_distance} {aperture:?}");
         }
     }
     let full = engine.screen().clone();
@@ -82,7 +85,7 @@ fn lenses_that_make_no_sense_are_refused() {
     }
     engine.refocus(LensChoice { aperture_share: 7.0, ..default }, false).unwrap();
     let expected = exact(&Camera { focus_distance: 2.5, ..camera() }, &PaintedWall);
-    assert_eq!(differing(&engine, &expected), [], "no wider than exported");
+    assert_eq!(differing(&engine, &expected), NONE, "no wider than exported");
 }
 
 #[test]
@@ -133,7 +136,7 @@ fn strokes_paint_what_lies_in_their_dabs() {
         }
     }
     let expected = exact(&Camera { focus_distance: 2.5, ..camera() }, &OnCard(target));
-    assert_eq!(differing(&engine, &expected), []);
+    assert_eq!(differing(&engine, &expected), NONE);
     assert_eq!(engine.sharp_inverse_distance(0.75, 0.6), Some(None));
 
     assert!(engine.end_stroke());
@@ -180,5 +183,5 @@ fn a_stroke_is_no_stronger_where_dabs_overlap() {
         }
     }
     // The wall alone was painted, and all of it lies within 60 px of depth 4.
-    assert_eq!(differing(&engine, &exact(&camera, &Unpainted)), []);
+    assert_eq!(differing(&engine, &exact(&camera, &Unpainted)), NONE);
 }

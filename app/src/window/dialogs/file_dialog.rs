@@ -28,6 +28,8 @@ pub enum Purpose {
     ExportShown,
     /// The web page.
     ExportWebPage,
+    /// The web page to paint on.
+    ExportEnginePage,
     /// The focus map.
     ExportFocusMap,
     /// The unwrapped scene.
@@ -55,6 +57,7 @@ impl Purpose {
             Self::ExportPicture => "Export the picture",
             Self::ExportShown => "Export the picture as shown",
             Self::ExportWebPage => "Export a web page to refocus",
+            Self::ExportEnginePage => "Export a web page to paint on",
             Self::ExportFocusMap => "Export the focus map",
             Self::ExportScene => "Export the unwrapped scene",
             Self::ExportStrokes => "Export the strokes",
@@ -77,7 +80,7 @@ impl Purpose {
             Self::ExportPicture | Self::ExportShown => &["exr", "png"],
             Self::ExportFocusMap => &["exr", "png", "ply"],
             Self::ImportFocusMap => &["exr", "png", "json", "ply"],
-            Self::ExportWebPage => &["html"],
+            Self::ExportWebPage | Self::ExportEnginePage => &["html"],
             Self::ExportScene => &["glb"],
             Self::ExportStrokes | Self::ImportPreset | Self::ExportPreset => &["json"],
             Self::Environment => &["hdr", "exr"],
@@ -114,6 +117,7 @@ impl Purpose {
                 | Self::ExportPicture
                 | Self::ExportShown
                 | Self::ExportWebPage
+                | Self::ExportEnginePage
                 | Self::ExportFocusMap
                 | Self::ExportScene
                 | Self::ExportStrokes

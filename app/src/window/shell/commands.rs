@@ -42,6 +42,7 @@ impl Shell {
             CommandId::ExportPicture => self.open_export_dialog(),
             CommandId::ExportShown => self.open_file_dialog(Purpose::ExportShown, context),
             CommandId::ExportWebPage => self.open_file_dialog(Purpose::ExportWebPage, context),
+            CommandId::ExportEnginePage => self.open_file_dialog(Purpose::ExportEnginePage, context),
             CommandId::ExportFocusMap => self.open_file_dialog(Purpose::ExportFocusMap, context),
             CommandId::ExportScene => self.open_file_dialog(Purpose::ExportScene, context),
             CommandId::ExportStrokes => self.open_file_dialog(Purpose::ExportStrokes, context),

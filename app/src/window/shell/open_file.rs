@@ -87,6 +87,7 @@ impl Shell {
             Purpose::ExportPicture => self.export_file_name.clone(),
             Purpose::ExportShown => format!("{stem}.png"),
             Purpose::ExportWebPage => format!("{stem}.html"),
+            Purpose::ExportEnginePage => format!("{stem}-paint.html"),
             Purpose::ExportFocusMap => format!("{stem}-focus.exr"),
             Purpose::ExportScene => format!("{stem}-unwrapped.glb"),
             Purpose::ExportStrokes => format!("{stem}-strokes.json"),
@@ -121,6 +122,13 @@ impl Shell {
                      the background; the status line shows how long that takes.",
                     controls::bytes_text(estimate.bytes as usize),
                     estimate.slices
+                )
+            }),
+            Purpose::ExportEnginePage => self.session.document().map(|document| {
+                format!(
+                    "{}, usually 10 to 30 MB: the light field and the program that draws it. It is baked in the \
+                     background. Tone mapping stays here.",
+                    size(&render::usual_engine_camera(&document.camera))
                 )
             }),
             _ => None,
@@ -168,6 +176,7 @@ impl Shell {
             }
             Purpose::ExportShown => self.apply(Command::ExportShown(path)),
             Purpose::ExportWebPage => self.apply(Command::ExportWebPage(path)),
+            Purpose::ExportEnginePage => self.apply(Command::ExportEnginePage(path)),
             Purpose::ExportFocusMap => self.apply(Command::ExportFocusMap(path)),
             Purpose::ExportScene => self.apply(Command::ExportScene(path)),
             Purpose::ExportStrokes => self.apply(Command::ExportStrokes(path)),

@@ -33,6 +33,8 @@ pub enum Command {
     ExportShown(PathBuf),
     /// Writes a web page on which anyone can refocus the picture, in the background.
     ExportWebPage(PathBuf),
+    /// Writes a web page on which anyone can choose any lens, and paint, in the background.
+    ExportEnginePage(PathBuf),
     /// Writes the focus map as EXR or 16-bit PNG, by the file's extension.
     ExportFocusMap(PathBuf),
     /// Writes the scene as GLB with the atlas as a second UV set.

@@ -143,6 +143,7 @@ impl Session {
             Command::ExportPicture(path, export) => self.export_picture(path, export),
             Command::ExportShown(path) => self.export_shown(path),
             Command::ExportWebPage(path) => self.export_web_page(path),
+            Command::ExportEnginePage(path) => self.export_engine_page(path),
             Command::ExportFocusMap(path) => self.export_focus_map(path),
             Command::ExportScene(path) => self.export_scene(path),
             Command::ExportStrokes(path) => self.export_strokes(&path),

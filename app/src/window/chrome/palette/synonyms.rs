@@ -10,6 +10,7 @@ pub fn synonyms(id: CommandId) -> &'static str {
         Save | SaveAs => "store keep write",
         ExportPicture => "render image write",
         ExportWebPage => "html share publish refocus",
+        ExportEnginePage => "html share publish refocus wasm webassembly interactive",
         ExportScene => "uv unwrap glb",
         Quit => "exit close",
         SelectLasso => "freehand",
