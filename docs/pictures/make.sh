@@ -70,6 +70,29 @@ draw --bokeh Heart --focus "$here/lens-and-bokeh/lights-in-near-blur.focus.json"
 convert whole.png -crop "$lights" +repage turned.png
 sheet 16 -tile 2x1 -label 'far blur' far.png -label 'painted near' turned.png -quality 88 "$here/lens-and-bokeh/near-and-far.jpg"
 
+# Six lenses with a character: small lamps behind and before the focus, and the demo.
+for subject in lamps demo; do
+    sheets=()
+    while IFS='|' read -r name focal_length f_number; do
+        picture="$subject-$focal_length.png"
+        if [ $subject = lamps ]; then
+            python3 "$here/lens-and-bokeh/lamps.py" "$focal_length" "$f_number" lamps.glb lamps.json
+            "$program" render lamps.glb --camera lamps.json --lens "$name" -o "$picture"
+        else
+            "$program" render demo.glb --camera "$demo/demo.camera.json" --size 640x360 --lens "$name" -o "$picture"
+        fi
+        sheets+=(-label "$name" "$picture")
+    done <<'LENSES'
+Swirling portrait lens 58 mm f/2|0.058|2
+Soap-bubble triplet 100 mm f/2.8|0.1|2.8
+Soft-rimmed portrait lens 135 mm f/2.8|0.135|2.8
+Early ultra-fast 50 mm f/0.95|0.05|0.95
+Curved-field projection lens 85 mm f/2.2|0.085|2.2
+Wide angle 24 mm f/1.4 with falloff|0.024|1.4
+LENSES
+    sheet 26 -tile 2x3 "${sheets[@]}" -quality 88 "$here/lens-and-bokeh/character-$subject.jpg"
+done
+
 # Beside Cycles, and how far two pictures of Cycles are from each other.
 if [ -n "${PYTHON_WITH_BPY:-}" ]; then
     for seed in 0 1; do

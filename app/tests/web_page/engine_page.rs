@@ -53,14 +53,15 @@ impl OpenPage {
     /// The lens that the page says it shows.
     fn lens(&mut self) -> LensChoice {
         self.browser.wait_for("document.getElementById('screen').ariaBusy === 'false'");
-        let [inverse_distance, aperture_share, blades] = ["inverseDistance", "apertureShare", "blades"]
-            .map(|name| self.number(&format!("document.getElementById('viewer').dataset.{name}")));
+        let [inverse_distance, aperture_share, blades, painted] =
+            ["inverseDistance", "apertureShare", "blades", "isPainted"]
+                .map(|name| self.number(&format!("document.getElementById('viewer').dataset.{name}")));
         let aperture = match blades as u32 {
             0 => ApertureChoice::Exported,
             1 => ApertureChoice::Disc,
             blades => ApertureChoice::Blades(blades),
         };
-        LensChoice { inverse_distance, aperture_share, aperture }
+        LensChoice { inverse_distance, aperture_share, aperture, is_painted: painted == 1.0 }
     }
 
     /// The bytes on the canvas are those of the engine. Returns the lens.
@@ -152,11 +153,23 @@ fn the_demo_to_paint_on() {
     page.browser.evaluate("document.querySelectorAll('#shape input')[2].click()");
     assert_eq!(page.check("with six blades").aperture, ApertureChoice::Blades(6));
 
+    page.browser.key("p");
+    assert!(!page.check("with the ordinary lens").is_painted);
+    page.browser.key("p");
+    page.check("as painted again");
+
     // A drag racks: drafts, then the whole picture.
     page.drag(&[[0.62, 0.5], [0.5, 0.5], [0.4, 0.5]]);
     page.browser.wait_for("document.getElementById('viewer').dataset.drawn === 'full'");
     let lens = page.check("after a drag");
     assert!(lens.inverse_distance > 0.0);
+
+    page.browser.key("t");
+    let tint = "(() => { const c = document.getElementById('tint'); const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data; let n = 0; for (let k = 3; k < d.length; k += 4) n += d[k] ? 1 : 0; return n; })()";
+    let painted = page.engine.paint_map().iter().filter(|code| **code > 0).count();
+    assert_eq!(page.browser.evaluate(tint), painted, "all that is painted is tinted");
+    assert!(painted > 100);
+    page.browser.key("t");
 
     // Paint, and its history.
     let before = page.browser.evaluate("document.getElementById('screen').toDataURL()");
@@ -187,10 +200,12 @@ fn the_demo_to_paint_on() {
     // The program replays the stroke on the project: the fox is blurred there, too.
     std::fs::write(place.join("strokes.json"), strokes.to_string()).unwrap();
     done(place, &format!("replay {project} strokes.json -o painted.fbrush"));
+    let start: [f64; 3] = serde_json::from_value(strokes["steps"][0]["stroke"]["points"][0].clone()).unwrap();
+    let pixel = (start[1] * 108.0) as usize * 192 + (start[0] * 192.0) as usize;
     let t_of = |project: &str| {
         done(place, &format!("render {project} --size 192x108 --renderer blur -o layers.exr --aov t"));
         let picture = project::read_picture(&place.join("layers.exr")).unwrap();
-        f64::from(picture.layers["t"][(65 * 192 + 69) as usize])
+        f64::from(picture.layers["t"][pixel])
     };
     let target = strokes["steps"][0]["stroke"]["brush"]["target"]["t"].as_f64().unwrap();
     assert!((t_of("painted.fbrush") - target).abs() < 1e-3, "{} {target}", t_of("painted.fbrush"));

@@ -26,6 +26,7 @@
 //! ```
 
 mod aperture;
+pub mod blur_scale;
 mod calibrated_lens;
 mod camera;
 mod character;

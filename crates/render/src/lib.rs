@@ -33,8 +33,8 @@ pub use export::{export_glb, write_scene, write_unwrapped};
 pub use picture::{
     Aov, CocConvention, Display, LeftOut, LeftOutPicture, LeftOutPrediction, MAX_CELLS_A_SIDE, OcioViews,
     RenderCost, RenderOptions, Rendered, Renderer, ScreenPixel, Stereo, StereoForm, Tone, ToneCurve,
-    blur_scale, leave_photographs_out, light_of_photographs, photograph_picture, read_thumbnail, render,
-    render_input, render_lit_input, render_photograph, render_stereo, to_screen,
+    leave_photographs_out, light_of_photographs, photograph_picture, read_thumbnail, render, render_input,
+    render_lit_input, render_photograph, render_stereo, to_screen,
 };
 pub use sequence::{
     Baking, FrameFiles, FrameList, FrameReport, Outcome, SequenceOptions, SequenceReport, Shard, Take,

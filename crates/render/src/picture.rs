@@ -1,7 +1,6 @@
 //! Full-size pictures and what belongs to them: AOVs, stereo pairs, photographs for comparison, thumbnails and tone mapping.
 
 mod aov;
-pub mod blur_scale;
 mod coc_convention;
 mod cross_validation;
 mod input_picture;

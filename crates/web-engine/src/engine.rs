@@ -8,6 +8,7 @@ use crate::history::History;
 use crate::sample_places::{SamplePlaces, world_point};
 use crate::stroke::Stroke;
 use glam::DVec2;
+use lens::blur_scale::paint_code;
 use lens::{Aperture, ApertureShape, Camera, Exposure, FocusOffset, Picture};
 use numerics::screen_level;
 use progress::Unwatched;
@@ -25,6 +26,8 @@ pub struct LensChoice {
     pub aperture_share: f64,
     /// The aperture's shape.
     pub aperture: ApertureChoice,
+    /// Whether it focuses as painted, or as an ordinary lens.
+    pub is_painted: bool,
 }
 
 /// The shape of the aperture.
@@ -58,6 +61,8 @@ pub struct Engine {
     gain: f32,
     /// Of every sample.
     focus: Vec<FocusOffset>,
+    /// Whether it is shown, or the ordinary lens.
+    is_painted: bool,
     /// Whether the full picture is that of lens and paint.
     is_current: bool,
     surfaces: FirstSurfaces,
@@ -92,6 +97,7 @@ impl Engine {
             exposure: field.exposure,
             gain: field.gain,
             focus,
+            is_painted: true,
             is_current: false,
             surfaces,
             places: None,
@@ -141,11 +147,11 @@ impl Engine {
             ..self.exported.clone()
         };
         camera.validate()?;
-        if !self.undrawn.is_empty() {
-            self.undrawn.clear();
-            self.splatter.set_focus_of_samples(&self.focus);
-        }
         self.camera = camera;
+        if self.is_painted != lens.is_painted || !self.undrawn.is_empty() {
+            self.undrawn.clear();
+            self.show_paint(lens.is_painted);
+        }
         self.is_current = false;
         if !is_draft {
             return self.draw();
@@ -156,18 +162,51 @@ impl Engine {
         Ok(())
     }
 
+    /// Shows the focus as painted, or as an ordinary lens has it, with the next picture.
+    fn show_paint(&mut self, is_painted: bool) {
+        self.is_painted = is_painted;
+        self.is_current = false;
+        if is_painted {
+            self.splatter.set_focus_of_samples(&self.focus);
+        } else {
+            self.splatter.set_focus_of_samples(&vec![FocusOffset::STANDARD; self.focus.len()]);
+        }
+    }
+
+    /// The focus of a sample, as it is shown.
+    fn shown_focus(&self, sample: u32) -> FocusOffset {
+        if self.is_painted { self.focus[sample as usize] } else { FocusOffset::STANDARD }
+    }
+
+    /// How the first surface of each pixel is painted, row by row from the top ([`lens::blur_scale::paint_code`], of blur at the anchor).
+    pub fn paint_map(&self) -> Vec<u8> {
+        let optics = self.exported.optics();
+        let code = |surface: &Option<FirstSurface>| {
+            let focus = surface.map(|surface| self.focus[surface.sample as usize]);
+            let painted = focus.filter(|focus| !focus.is_standard());
+            let circle_px =
+                |focus: FocusOffset| 2.0 * optics.splat_radius_px((focus.t - 1.0) / optics.image_distance);
+            paint_code(painted.map(circle_px))
+        };
+        self.surfaces.iter().map(code).collect()
+    }
+
     /// What is at a place of the picture, from 0 at the upper left to 1: the reciprocal distance that makes it sharp, 1/length, or none where
     /// paint alone decides; `None` where there is no surface.
     pub fn sharp_inverse_distance(&self, x: f64, y: f64) -> Option<Option<f64>> {
         let FirstSurface { inverse_depth, sample } = self.surfaces.at(x, y)?;
-        let focus = self.focus[sample as usize];
+        let focus = self.shown_focus(sample);
         Some(self.exported.optics().sharp_inverse_focus_distance(inverse_depth.into(), focus))
     }
 
-    /// Begins a stroke on the surface at a place of the picture. Returns whether there is one. It is drawn by [`Self::draw_stroke`].
+    /// Begins a stroke on the surface at a place of the picture. Returns whether there is one. It is drawn by [`Self::draw_stroke`], and paint
+    /// is shown.
     pub fn begin_stroke(&mut self, brush: PageBrush, x: f64, y: f64) -> bool {
         self.end_stroke();
         let Some(surface) = self.surfaces.at(x, y) else { return false };
+        if !self.is_painted {
+            self.show_paint(true);
+        }
         let optics = self.exported.optics();
         let length_per_px = optics.tan_half_yfov / optics.half_height_px / f64::from(surface.inverse_depth);
         let target = brush.paint.target(&optics);
@@ -248,8 +287,8 @@ impl Engine {
         if samples.is_empty() {
             return Ok(());
         }
-        if !self.is_current {
-            self.splatter.set_focus_of_samples(&self.focus);
+        if !self.is_painted || !self.is_current {
+            self.show_paint(true);
             return self.draw();
         }
         self.splatter.update_samples(&self.focus, samples)?;

@@ -13,11 +13,14 @@ struct State {
     /// The bytes that the page fills in before `open`.
     input: Vec<u8>,
     engine: Option<Engine>,
+    /// How the picture is painted, when it was asked for last.
+    paint_map: Vec<u8>,
     /// Why the last call failed.
     message: String,
 }
 
-static STATE: Mutex<State> = Mutex::new(State { input: Vec::new(), engine: None, message: String::new() });
+static STATE: Mutex<State> =
+    Mutex::new(State { input: Vec::new(), engine: None, paint_map: Vec::new(), message: String::new() });
 
 /// There is one thread, so that nothing waits.
 fn state() -> MutexGuard<'static, State> {
@@ -109,13 +112,30 @@ pub extern "C" fn exported_f_number() -> f64 {
 
 /// Puts on a lens and draws. `blades`: 0 as exported, 1 a disc, else the number of blades. A draft has half the columns and rows.
 #[unsafe(no_mangle)]
-pub extern "C" fn refocus(inverse_distance: f64, aperture_share: f64, blades: u32, is_draft: u32) -> u32 {
+pub extern "C" fn refocus(
+    inverse_distance: f64,
+    aperture_share: f64,
+    blades: u32,
+    is_painted: u32,
+    is_draft: u32,
+) -> u32 {
     let aperture = match blades {
         0 => ApertureChoice::Exported,
         1 => ApertureChoice::Disc,
         _ => ApertureChoice::Blades(blades),
     };
-    attempt(|engine| engine.refocus(LensChoice { inverse_distance, aperture_share, aperture }, is_draft != 0))
+    let lens = LensChoice { inverse_distance, aperture_share, aperture, is_painted: is_painted != 0 };
+    attempt(|engine| engine.refocus(lens, is_draft != 0))
+}
+
+/// Finds how the first surface of each pixel is painted: a byte each, from 1 (near) over 128 (sharp) to 255 (far), 0 where it is not. Returns
+/// where they begin, row by row; there are as many as pixels of the full picture.
+#[unsafe(no_mangle)]
+pub extern "C" fn paint_map() -> *const u8 {
+    let mut state = state();
+    let found = state.engine.as_ref().map(Engine::paint_map);
+    state.paint_map = found.unwrap_or_default();
+    state.paint_map.as_ptr()
 }
 
 /// Where the pixels of the picture begin: red, green, blue and 255, row by row.

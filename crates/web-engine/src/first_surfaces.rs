@@ -72,6 +72,11 @@ impl FirstSurfaces {
         is_in_frame.then(|| self.surfaces[row as usize * self.size[0] as usize + column as usize])?
     }
 
+    /// All of them, row by row from the top.
+    pub fn iter(&self) -> impl Iterator<Item = &Option<FirstSurface>> {
+        self.surfaces.iter()
+    }
+
     /// The reciprocal distances of the farthest and the nearest; where something is missing, it is infinitely far. `None` without any surface.
     pub fn range(&self) -> Option<[f64; 2]> {
         let of =

@@ -15,7 +15,7 @@ fn engine() -> Engine {
 }
 
 fn lens(inverse_distance: f64) -> LensChoice {
-    LensChoice { inverse_distance, aperture_share: 1.0, aperture: ApertureChoice::Exported }
+    LensChoice { inverse_distance, aperture_share: 1.0, aperture: ApertureChoice::Exported, is_painted: true }
 }
 
 /// The pixels of the splatter itself, which looks the focus up on the surface.
@@ -51,7 +51,8 @@ fn the_picture_is_that_of_the_splatter() {
             (1.0, ApertureChoice::Exported, camera().aperture.shape),
             (0.5, ApertureChoice::Blades(6), polygon(6)),
         ] {
-            engine.refocus(LensChoice { inverse_distance, aperture_share, aperture }, false).unwrap();
+            let choice = LensChoice { aperture_share, aperture, ..lens(inverse_distance) };
+            engine.refocus(choice, false).unwrap();
             let camera = Camera {
                 focus_distance: 1.0 / inverse_distance,
                 aperture_radius: 0.1 * aperture_share,
@@ -67,6 +68,41 @@ fn the_picture_is_that_of_the_splatter() {
     engine.refocus(lens(1.0), true).unwrap();
     assert_eq!(engine.screen().size, [24, 16], "a draft");
     assert_ne!(engine.screen(), &full);
+}
+
+/// Nothing is painted.
+struct Unpainted;
+
+impl SurfaceField<FocusOffset> for Unpainted {
+    fn at(&self, _: surface::SurfacePoint) -> FocusOffset {
+        FocusOffset::STANDARD
+    }
+    fn at_infinity(&self) -> FocusOffset {
+        FocusOffset::STANDARD
+    }
+}
+
+#[test]
+fn paint_is_shown_or_the_ordinary_lens() {
+    let mut engine = engine();
+    let ordinary = LensChoice { is_painted: false, ..lens(0.4) };
+    let camera = Camera { focus_distance: 2.5, ..camera() };
+    engine.refocus(ordinary, false).unwrap();
+    assert_eq!(differing(&engine, &exact(&camera, &Unpainted)), NONE);
+    assert_eq!(engine.sharp_inverse_distance(0.1, 0.1), Some(Some(0.25)));
+    engine.refocus(lens(0.4), false).unwrap();
+    assert_eq!(differing(&engine, &exact(&camera, &PaintedWall)), NONE);
+    let map = engine.paint_map();
+    let at = |x: u32, y: u32| map[(y * SIZE[0] + x) as usize];
+    assert_eq!((map.len(), at(3, 3), at(30, 3), at(46, 3)), (48 * 32, 128, 0, 0));
+    assert!(at(3, 25) > 128, "t above 1 blurs as far");
+
+    // Painting shows the paint.
+    engine.refocus(ordinary, false).unwrap();
+    let brush = PageBrush { radius_px: 0.1, hardness: 1.0, paint: Paint::Circle(0.0) };
+    assert!(engine.begin_stroke(brush, 0.1, 0.1));
+    engine.draw_stroke().unwrap();
+    assert_eq!(differing(&engine, &exact(&camera, &PaintedWall)), NONE, "it is sharp there already");
 }
 
 #[test]
@@ -173,15 +209,6 @@ fn a_stroke_is_no_stronger_where_dabs_overlap() {
     engine.begin_stroke(erase, 0.25, 0.8);
     engine.draw_stroke().unwrap();
     let camera = Camera { focus_distance: 2.5, ..camera() };
-    struct Unpainted;
-    impl SurfaceField<FocusOffset> for Unpainted {
-        fn at(&self, _: surface::SurfacePoint) -> FocusOffset {
-            FocusOffset::STANDARD
-        }
-        fn at_infinity(&self) -> FocusOffset {
-            FocusOffset::STANDARD
-        }
-    }
     // The wall alone was painted, and all of it lies within 60 px of depth 4.
     assert_eq!(differing(&engine, &exact(&camera, &Unpainted)), NONE);
 }

@@ -9,9 +9,11 @@ use crate::screen_picture::ScreenPicture;
 use serde::Serialize;
 
 /// The parts of the viewer, in the order in which they are joined to one script.
-const VIEWER: [&str; 16] = [
+const VIEWER: [&str; 18] = [
     include_str!("viewer/elements.js"),
     include_str!("viewer/base91.js"),
+    include_str!("viewer/pixel_map.js"),
+    include_str!("viewer/paint_tint.js"),
     include_str!("viewer/zoom.js"),
     include_str!("viewer/gestures.js"),
     include_str!("viewer/player.js"),
@@ -46,6 +48,8 @@ pub struct EnginePage {
     pub view: serde_json::Value,
     /// Whether the exported aperture is a plain disc.
     pub has_disc: bool,
+    /// Whether any of the field's samples is painted.
+    pub is_painted: bool,
     /// Whether the focus moves by itself until somebody touches the page.
     pub is_autoplaying: bool,
     /// Where the page is going to be published.
@@ -61,6 +65,7 @@ struct EngineData<'a> {
     field: String,
     view: &'a serde_json::Value,
     has_disc: bool,
+    is_painted: bool,
     autoplays: bool,
 }
 
@@ -82,6 +87,7 @@ impl EnginePage {
             field: encode_base91(&deflate(&self.field)?),
             view: &self.view,
             has_disc: self.has_disc,
+            is_painted: self.is_painted,
             autoplays: self.is_autoplaying,
         };
         frame.fill(&PageContent {

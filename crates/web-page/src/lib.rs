@@ -33,7 +33,7 @@ pub use engine_page::EnginePage;
 pub use error::WebPageError;
 pub use page::{OpeningSlice, PaintMaps, Slice, SliceStack, WebPage};
 pub use page_frame::{Caption, PublicAddress};
-pub use pixel_map::{DistanceRange, PixelMap, paint_code};
+pub use pixel_map::{DistanceRange, PixelMap};
 pub use placement::{PlacedSlices, PlacementOptions, PsnrSummary, place_slices};
 pub use screen_picture::ScreenPicture;
 pub use slice_spacing::SliceSpacing;

@@ -87,7 +87,7 @@ pub struct WebPage {
 pub struct PaintMaps {
     /// Code of the focus distance that makes the first surface sharp; 0 where none does.
     pub sharp_distances: PixelMap,
-    /// Code of the paint ([`crate::paint_code`]).
+    /// Code of the paint (`lens::blur_scale::paint_code`).
     pub paint: PixelMap,
 }
 

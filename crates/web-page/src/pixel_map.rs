@@ -11,7 +11,7 @@ use crate::error::WebPageError;
 pub struct PixelMap {
     /// Columns and rows.
     pub size: [u32; 2],
-    /// One code a pixel: of [`DistanceRange::code`] or [`paint_code`].
+    /// One code a pixel: of [`DistanceRange::code`] or of paint.
     pub codes: Vec<u8>,
 }
 
@@ -58,12 +58,6 @@ impl DistanceRange {
     }
 }
 
-/// The code of paint that blurs by a signed position on the scale of false colours, −1 (near) over 0 (sharp) to 1 (far): 1 to 255.
-/// `None`, what is not painted, is 0.
-pub fn paint_code(position: Option<f64>) -> u8 {
-    position.map_or(0, |position| (128.0 + 127.0 * position.clamp(-1.0, 1.0)).round() as u8)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -95,10 +89,5 @@ mod tests {
         assert_eq!((range.code(None), range.code(Some(f64::NAN))), (0, 0));
         let flat = DistanceRange { farthest: 0.5, nearest: 0.5 };
         assert_eq!((flat.code(Some(0.5)), flat.code(Some(0.4))), (1, 0));
-    }
-
-    #[test]
-    fn unpainted_and_painted_sharp_differ() {
-        assert_eq!([None, Some(0.0), Some(-1.0), Some(7.0)].map(paint_code), [0, 128, 1, 255]);
     }
 }

@@ -5,7 +5,7 @@
 //! The position on the map is logarithmic in the circle of confusion: the first pixels matter most.
 
 use egui::{Color32, Mesh, Painter, Rect, Shape, pos2};
-pub use render::blur_scale::{LARGEST_CIRCLE_PX, circle_px, position};
+pub use lens::blur_scale::{LARGEST_CIRCLE_PX, circle_px, position};
 
 /// The map's colours from the nearest blur over sharp to the farthest: sRGB-encoded, equally spaced.
 pub const STOPS: [[f32; 3]; 7] = [

@@ -78,6 +78,7 @@ pub fn export_engine_page(
         field: field.to_bytes(),
         view,
         has_disc: camera.aperture.shape == ApertureShape::Disc && camera.aperture.ratio == 1.0,
+        is_painted: field.focus.is_some(),
         is_autoplaying: options.is_autoplaying,
         address,
     };

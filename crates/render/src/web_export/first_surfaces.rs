@@ -1,13 +1,13 @@
 //! The first surfaces of a picture, in cells of a few pixels: how far they are, and how they are painted.
 
-use crate::picture::blur_scale;
 use glam::DVec2;
+use lens::blur_scale::paint_code;
 use lens::{Camera, FocusOffset, Optics};
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;
 use scene::SurfaceField;
 use trace::{Ray, Tracer};
-use web_page::{DistanceRange, PaintMaps, PixelMap, paint_code};
+use web_page::{DistanceRange, PaintMaps, PixelMap};
 
 /// Pixels along a side of a cell, at least.
 const PIXELS_A_SIDE: u32 = 2;
@@ -91,7 +91,7 @@ impl FirstSurfaces {
             paint: self.map(|_, focus| {
                 // What the paint adds to the defocus at the anchor.
                 let circle_px = 2.0 * optics.splat_radius_px((focus.t - 1.0) / optics.image_distance);
-                paint_code((!focus.is_standard()).then(|| blur_scale::position(circle_px)))
+                paint_code((!focus.is_standard()).then_some(circle_px))
             }),
         }
     }

@@ -39,14 +39,3 @@ class PixelMap {
     return this.codes[row * width + column];
   }
 }
-
-/**
- * The distance that a code means; `null` where no distance makes the pixel sharp.
- *
- * @param {number} code
- * @param {[number, number]} range
- * @returns {number | null}
- */
-function distanceOfCode(code, [farthest, nearest]) {
-  return code === 0 ? null : farthest + ((nearest - farthest) * (code - 1)) / 254;
-}

@@ -105,3 +105,14 @@ class Rack {
     return exact >= 0 ? exact : this.stacks.findIndex((s) => s.isPainted === isPainted);
   }
 }
+
+/**
+ * The distance that a code means; `null` where no distance makes the pixel sharp.
+ *
+ * @param {number} code
+ * @param {[number, number]} range
+ * @returns {number | null}
+ */
+function distanceOfCode(code, [farthest, nearest]) {
+  return code === 0 ? null : farthest + ((nearest - farthest) * (code - 1)) / 254;
+}

@@ -7,14 +7,15 @@ class BrushTool {
   /**
    * @param {HTMLElement} view
    * @param {Zoom} zoom
-   * @param {Engine} engine
+   * @param {LensRack} rack
    * @param {EngineScreen} screen
    * @param {RecordedStrokes} strokes
    * @param {{painted: () => void, failed: (error: unknown) => void}} on
    */
-  constructor(view, zoom, engine, screen, strokes, on) {
+  constructor(view, zoom, rack, screen, strokes, on) {
     this.zoom = zoom;
-    this.engine = engine;
+    this.rack = rack;
+    this.engine = screen.engine;
     this.screen = screen;
     this.strokes = strokes;
     this.on = on;
@@ -23,9 +24,9 @@ class BrushTool {
     /** Radius and diameter of the blur as shares of the picture's height. */
     this.size = 0.06;
     this.blur = 0.08;
-    /** @type {[number, number, number][]} The places of the stroke. */
+    /** @type {[number, number, number][]} Of the stroke. */
     this.points = [];
-    /** @type {object | null} The brush of the stroke. */
+    /** @type {object | null} Of the stroke. */
     this.brush = null;
     /** Whether a frame is requested that draws the stroke. */
     this.isWaiting = false;
@@ -47,6 +48,8 @@ class BrushTool {
     const height = this.screen.canvas.height;
     const [x, y] = this.zoom.place(point);
     const circle = [NaN, 0, this.blur * height, NaN][this.tool];
+    // Painting shows the paint.
+    this.rack.isPainted = true;
     exports.begin_stroke(x, y, this.size * height, 0.5, circle);
     const radius = exports.stroke_radius();
     this.points = [[x, y, 1]];
@@ -64,9 +67,13 @@ class BrushTool {
   /** @param {PointerEvent} point */
   extend(point) {
     if (!this.brush) return;
-    const [x, y] = this.zoom.place(point);
-    this.points.push([x, y, 1]);
-    this.engine.exports.extend_stroke(x, y);
+    // Where the pointer was since the last frame; scripts' events do not tell.
+    const events = point.getCoalescedEvents();
+    for (const event of events.length ? events : [point]) {
+      const [x, y] = this.zoom.place(event);
+      this.points.push([x, y, 1]);
+      this.engine.exports.extend_stroke(x, y);
+    }
     this.draw();
   }
 

@@ -11,7 +11,7 @@ class Engine {
    */
   static async open(page) {
     const [program, field] = await Promise.all([inflate(page.program), inflate(page.field)]);
-    if (!program || !field) throw new Error("This browser is too old for this page (it needs DecompressionStream)");
+    if (!program || !field) throw new Error("This browser is too old for this page");
     const { instance } = await WebAssembly.instantiate(program, {});
     const engine = new Engine(/** @type {any} */ (instance.exports));
     const start = engine.exports.make_room(field.length);
@@ -29,6 +29,16 @@ class Engine {
     if (status === 0) return;
     const { memory, message_start, message_length } = this.exports;
     throw new Error(new TextDecoder().decode(new Uint8Array(memory.buffer, message_start(), message_length())));
+  }
+
+  /**
+   * How the picture is painted, of a size of columns and rows.
+   *
+   * @param {[number, number]} size
+   */
+  paintMap(size) {
+    const start = this.exports.paint_map();
+    return new PixelMap(size, new Uint8Array(this.exports.memory.buffer, start, size[0] * size[1]));
   }
 
   /** The picture that was drawn last, as it lies in the module's memory: valid until the next call. */

@@ -25,6 +25,9 @@ class EngineControls {
     this.blades = page.hasDisc ? [0, 5, 6, 8] : [0, 1, 5, 6, 8];
     const names = this.blades.map((blades) => (blades > 1 ? String(blades) : blades || page.hasDisc ? "Disc" : "As made"));
     this.shapeInputs = addChoices("shape", names, (index) => rack.shape(this.blades[index]));
+    this.kindInputs = addChoices("focusing", ["Painted", "Ordinary lens"], (index) => rack.showPaint(index === 0));
+    this.tint = element("tint", HTMLCanvasElement);
+    this.paintButton = this.button("show-paint", () => this.togglePaint());
     this.toolInputs = addChoices("tools", TOOLS, (index) => this.chooseTool(index));
     this.size = this.brushSlider("brush-size", (value) => (brush.size = value));
     this.blur = this.brushSlider("brush-blur", (value) => (brush.blur = value * MOST_BLUR));
@@ -69,6 +72,9 @@ class EngineControls {
     this.aperture.setAttribute("aria-valuetext", rack.fNumberText);
     this.apertureText.value = rack.fNumberText;
     this.blades.forEach((blades, index) => (this.shapeInputs[index].checked = blades === rack.blades));
+    const hasPaint = this.page.isPainted || brush.strokes.done > 0;
+    element("focusing", HTMLDivElement).hidden = this.paintButton.hidden = !hasPaint;
+    this.kindInputs.forEach((input, index) => (input.checked = rack.isPainted === (index === 0)));
     this.toolInputs.forEach((input, index) => (input.checked = index === brush.tool));
     this.size.value = String(brush.size);
     this.blur.value = String(brush.blur / MOST_BLUR);
@@ -91,6 +97,23 @@ class EngineControls {
     else this.player.play();
   }
 
+  toggleKind() {
+    if (!this.paintButton.hidden) this.rack.showPaint(!this.rack.isPainted);
+  }
+
+  togglePaint() {
+    if (this.paintButton.hidden) return;
+    this.tint.hidden = !this.tint.hidden;
+    this.paintButton.setAttribute("aria-pressed", String(!this.tint.hidden));
+    this.drawPaint();
+  }
+
+  /** Draws the tint of what is painted, where it is shown. */
+  drawPaint() {
+    const { width, height } = this.brush.screen.canvas;
+    if (!this.tint.hidden) drawTint(this.tint, this.brush.engine.paintMap([width, height]));
+  }
+
   /** @param {number} tool */
   chooseTool(tool) {
     this.brush.tool = tool;
@@ -104,7 +127,7 @@ class EngineControls {
     this.update();
   }
 
-  /** Downloads the strokes, for the program to replay. */
+  /** Downloads the strokes. */
   saveStrokes() {
     const link = document.createElement("a");
     link.href = URL.createObjectURL(new Blob([this.brush.strokes.file], { type: "application/json" }));

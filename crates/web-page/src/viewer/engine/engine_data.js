@@ -5,14 +5,15 @@
  * @property {string} title
  * @property {string} program The WebAssembly module, compressed, in base 91.
  * @property {string} field The light field, likewise.
- * @property {object} view The view in which strokes are recorded.
+ * @property {object} view In which strokes are recorded.
  * @property {boolean} hasDisc Whether the exported aperture is a plain disc.
+ * @property {boolean} isPainted Whether it has paint.
  * @property {boolean} autoplays
  */
 
 /**
  * The functions of the module. Distances are reciprocals, in 1/length; places of the picture go from 0 at the upper left to 1.
- * Those that can fail return 0 or, with a message, 1.
+ * Those that can fail return 1, and there is a message.
  *
  * @typedef {object} EngineExports
  * @property {WebAssembly.Memory} memory
@@ -24,7 +25,8 @@
  * @property {() => number} nearest
  * @property {() => number} exported_distance
  * @property {() => number} exported_f_number
- * @property {(inverseDistance: number, apertureShare: number, blades: number, isDraft: number) => number} refocus
+ * @property {(inverseDistance: number, apertureShare: number, blades: number, isPainted: number, isDraft: number) => number} refocus
+ * @property {() => number} paint_map
  * @property {() => number} pixels_start
  * @property {() => number} columns
  * @property {() => number} rows

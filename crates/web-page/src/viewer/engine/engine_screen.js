@@ -32,10 +32,11 @@ class EngineScreen {
   }
 
   drawNow() {
-    const { rack, engine } = this;
+    const { engine } = this;
+    const { inverseDistance, apertureShare, blades, isPainted, isMoving } = this.rack;
     try {
       engine.check(
-        engine.exports.refocus(rack.inverseDistance, rack.apertureShare, rack.blades, Number(rack.isMoving)),
+        engine.exports.refocus(inverseDistance, apertureShare, blades, Number(isPainted), Number(isMoving)),
       );
       this.show();
     } catch (error) {

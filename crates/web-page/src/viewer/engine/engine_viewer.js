@@ -29,7 +29,7 @@ async function showEnginePage(page) {
   const player = new Player(rack, (isPlaying) => controls.showPlaying(isPlaying));
   const zoom = new Zoom(view, element("stage", HTMLDivElement));
   const strokes = new RecordedStrokes(page.view);
-  const brush = new BrushTool(view, zoom, engine, screen, strokes, { painted: () => controls.update(), failed });
+  const brush = new BrushTool(view, zoom, rack, screen, strokes, { painted, failed });
   /** @type {EngineControls} */
   const controls = new EngineControls(page, rack, player, brush);
   const gestures = new Gestures(view, zoom, rack, { begin, aim: () => {}, click: focusOn }, brush);
@@ -43,6 +43,12 @@ async function showEnginePage(page) {
     viewer.dataset.inverseDistance = String(rack.inverseDistance);
     viewer.dataset.apertureShare = String(rack.apertureShare);
     viewer.dataset.blades = String(rack.blades);
+    viewer.dataset.isPainted = String(Number(rack.isPainted));
+  }
+
+  function painted() {
+    controls.update();
+    controls.drawPaint();
   }
 
   /** Somebody touches the page. */
@@ -96,6 +102,8 @@ async function showEnginePage(page) {
     ".": () => controls.scaleBrush(1.25),
     b: () => controls.chooseTool((brush.tool + 1) % TOOLS.length),
     Escape: () => controls.chooseTool(0),
+    p: () => controls.toggleKind(),
+    t: () => controls.togglePaint(),
     f: toggleFullScreen,
     " ": () => controls.togglePlaying(),
     Enter: () => focusOn(middle()),

@@ -16,6 +16,8 @@ class LensRack {
     this.apertureShare = 1;
     /** 0: as exported, 1: a disc, else the number of blades. */
     this.blades = 0;
+    /** Whether it focuses as painted, or as an ordinary lens. */
+    this.isPainted = true;
     this.isMoving = false;
     this.onChange = onChange;
   }
@@ -72,6 +74,12 @@ class LensRack {
   stopDown(stop, isMoving) {
     this.apertureShare = APERTURE_RATIO ** -clamp(stop, 0, 1);
     this.isMoving = isMoving;
+    this.onChange();
+  }
+
+  /** @param {boolean} isPainted */
+  showPaint(isPainted) {
+    this.isPainted = isPainted;
     this.onChange();
   }
 

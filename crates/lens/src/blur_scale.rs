@@ -19,6 +19,11 @@ pub fn circle_px(position: f64) -> f64 {
     (position.abs() * LARGEST_CIRCLE_PX.ln_1p()).exp_m1() * position.signum()
 }
 
+/// The byte for paint that blurs by a signed circle of confusion: 1 (near) over 128 (sharp) to 255 (far). `None`, what is not painted, is 0.
+pub fn paint_code(circle_px: Option<f64>) -> u8 {
+    circle_px.map_or(0, |circle_px| (128.0 + 127.0 * position(circle_px)).round() as u8)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -30,5 +35,6 @@ mod tests {
             assert!((circle_px(position(px)) - px).abs() < 1e-9, "{px}");
         }
         assert_eq!(position(-1e9), -1.0);
+        assert_eq!([Some(-1e9), Some(0.0), Some(1e9), None].map(paint_code), [1, 128, 255, 0]);
     }
 }
