@@ -31,7 +31,7 @@ const DRAWN: [&str; 20] = [
     "render @/p.fbrush --frames 1-2 --size 64x48 -o o.####.exr",
     "render @/lit.glb --camera @/dark.json --bokeh @/bokeh.json -o o.exr",
     "render @/views -o o.exr",
-    "render @/photos --camera photo:1 --aperture-radius 0.05 -o o.exr",
+    "render @/photos --camera photo:1.png --aperture-radius 0.05 -o o.exr",
     "render @/painted.fbrush --exposure conserve -o o.exr",
     "render @/texture.gltf --camera @/cam.json --size 200x150 -o o.exr",
     "render @/lit.glb --camera @/dark.json --world @/world.json -o o.exr",
