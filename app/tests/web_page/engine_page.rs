@@ -133,6 +133,9 @@ fn the_demo_to_paint_on() {
     assert!(file.metadata().unwrap().len() < 3_000_000);
     let Some(mut page) = OpenPage::open(&file) else { return };
 
+    let unnamed = "[...document.querySelectorAll('button, input')].filter((e) => !(e.ariaLabel || e.textContent.trim() || e.labels?.length)).length";
+    assert_eq!(page.browser.evaluate(unnamed), 0, "every control has a name for screen readers");
+
     // Ten states of the lens.
     let opening = page.check("as it opens");
     assert!((opening.inverse_distance - 1.0 / 0.72).abs() < 1e-6, "{opening:?}");

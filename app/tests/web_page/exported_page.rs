@@ -2,6 +2,7 @@
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
+use image::RgbImage;
 use serde_json::Value;
 use std::path::Path;
 
@@ -15,7 +16,8 @@ pub struct ExportedPage {
 /// A slice.
 pub struct Shown {
     pub inverse_distance: f64,
-    pub webp: Vec<u8>,
+    /// What a browser shows of it.
+    pub picture: RgbImage,
 }
 
 impl ExportedPage {
@@ -43,11 +45,30 @@ impl ExportedPage {
         let stack = &self.data["stacks"][stack];
         let poster = self.html.split_once("id=\"poster\" src=\"data:image/webp;base64,").unwrap().1;
         let poster = poster.split_once('"').unwrap().0;
-        let webp = match stack["slices"][slice].as_str() {
-            Some(text) => decode_base91(text),
-            None => STANDARD.decode(poster).unwrap(),
+        let decoded = |slice: usize| {
+            let webp = match stack["slices"][slice].as_str() {
+                Some(text) => decode_base91(text),
+                None => STANDARD.decode(poster).unwrap(),
+            };
+            // As browsers do: others enlarge colours in other ways.
+            let picture = webp::Decoder::new(&webp).decode().unwrap();
+            RgbImage::from_raw(picture.width(), picture.height(), picture.to_vec()).unwrap()
         };
-        Shown { inverse_distance: stack["inverseDistances"][slice].as_f64().unwrap(), webp }
+        let mut picture = decoded(slice);
+        if let Some(base) = stack["bases"][slice].as_u64() {
+            let base = decoded(base as usize);
+            for (level, under) in picture.iter_mut().zip(base.iter()) {
+                *level = (i16::from(*level) + i16::from(*under) - 128).clamp(0, 255) as u8;
+            }
+        }
+        Shown { inverse_distance: stack["inverseDistances"][slice].as_f64().unwrap(), picture }
+    }
+
+    /// How many slices are differences from others.
+    pub fn differences(&self) -> usize {
+        let stacks = self.data["stacks"].as_array().unwrap();
+        let bases = stacks.iter().flat_map(|stack| stack["bases"].as_array().unwrap());
+        bases.filter(|base| !base.is_null()).count()
     }
 
     /// The slice nearest to a reciprocal distance.

@@ -1,8 +1,10 @@
-//! Web pages: a picture that anyone can refocus, drawn at many focus distances.
+//! Web pages: a picture that anyone can refocus, drawn at many focus distances; or a light field with the program that draws it.
 //!
 //! ```text
 //! first surfaces ─▶ range of distances, maps ──────────────────────────┐
 //!        └─▶ for each aperture: bake once ─▶ sum at each distance ─▶ slices ─▶ page
+//!
+//! light field, focus of its samples ─▶ page of the engine, which draws and paints by itself
 //! ```
 
 mod engine_page;

@@ -39,11 +39,41 @@ pub fn encode_picture(
     min_psnr: f64,
     first_quality: u8,
 ) -> Result<EncodedPicture, WebPageError> {
+    encode_upon(None, picture, min_psnr, first_quality)
+}
+
+/// The same of the [difference](ScreenPicture::difference_from) of a picture from `base`, which the browser has. What it decodes is the sum. Where
+/// they differ too much for that, the PSNR is lower than asked.
+///
+/// # Errors
+/// [`WebPageError::Encoder`]: libwebp refuses the picture.
+pub(crate) fn encode_difference(
+    picture: &ScreenPicture,
+    base: &ScreenPicture,
+    min_psnr: f64,
+    first_quality: u8,
+) -> Result<EncodedPicture, WebPageError> {
+    encode_upon(Some(base), picture, min_psnr, first_quality)
+}
+
+fn encode_upon(
+    base: Option<&ScreenPicture>,
+    picture: &ScreenPicture,
+    min_psnr: f64,
+    first_quality: u8,
+) -> Result<EncodedPicture, WebPageError> {
+    let difference = base.map(|base| picture.difference_from(base));
+    let encode = |quality: u8| {
+        let encoded = encode(difference.as_ref().unwrap_or(picture), quality)?;
+        let Some(base) = base else { return Ok(encoded) };
+        let decoded = base.plus_difference(&encoded.decoded);
+        Ok(EncodedPicture { psnr: decoded.psnr(picture), decoded, ..encoded })
+    };
     let (mut failing, mut passing) = (MIN_QUALITY - 1, NEARLY_LOSSLESS);
     let (mut quality, mut step) = (first_quality.clamp(MIN_QUALITY, MAX_QUALITY), 1);
     let mut smallest = None;
     while passing - failing > 1 {
-        let encoded = encode(picture, quality)?;
+        let encoded = encode(quality)?;
         if encoded.psnr >= min_psnr {
             passing = quality;
             smallest = Some(encoded);
@@ -62,8 +92,8 @@ pub fn encode_picture(
     if let Some(smallest) = smallest {
         return Ok(smallest);
     }
-    let nearly_lossless = encode(picture, NEARLY_LOSSLESS)?;
-    if nearly_lossless.psnr >= min_psnr { Ok(nearly_lossless) } else { encode(picture, LOSSLESS) }
+    let nearly_lossless = encode(NEARLY_LOSSLESS)?;
+    if nearly_lossless.psnr >= min_psnr { Ok(nearly_lossless) } else { encode(LOSSLESS) }
 }
 
 fn encode(picture: &ScreenPicture, quality: u8) -> Result<EncodedPicture, WebPageError> {
@@ -121,6 +151,20 @@ mod tests {
                 assert!(again.psnr >= min_psnr && (0.85..1.15).contains(&larger), "{larger}");
             }
         }
+    }
+
+    #[test]
+    fn a_difference_takes_less_and_is_as_good() {
+        let picture = waves();
+        let brighter = picture.pixels().iter().map(|color| color.map(|level| level + 9)).collect();
+        let base = encode_picture(&ScreenPicture::new(picture.size(), brighter).unwrap(), 38.0, 75).unwrap();
+        let whole = encode_picture(&picture, 38.0, 75).unwrap();
+        let difference = encode_difference(&picture, &base.decoded, 38.0, 75).unwrap();
+        assert!(difference.psnr >= 38.0 && difference.webp.len() < whole.webp.len() / 2);
+        assert_eq!(difference.decoded.psnr(&picture), difference.psnr);
+        let black = ScreenPicture::new([80, 48], vec![[0; 3]; 80 * 48]).unwrap();
+        let far = encode_difference(&picture, &black, 38.0, 75).unwrap();
+        assert!(far.psnr < 38.0, "too far for a difference");
     }
 
     #[test]

@@ -33,6 +33,8 @@ const BAR: &str = include_str!("viewer/slice_bar.html");
 pub struct Slice {
     /// 1/s, 1/length; 0 at infinity.
     pub inverse_distance: f64,
+    /// Index of the slice of the same stack that the picture is the difference from, 128 where there is none; `None`: it is whole.
+    pub base: Option<usize>,
     /// The picture, a WebP file.
     pub webp: Vec<u8>,
 }
@@ -109,6 +111,7 @@ struct StackData<'a> {
     aperture: &'a str,
     is_painted: bool,
     inverse_distances: Vec<f64>,
+    bases: Vec<Option<usize>>,
     /// In base 91; the opening slice is `null`, since the document shows it before the script runs.
     slices: Vec<Option<String>>,
 }
@@ -151,6 +154,8 @@ impl WebPage {
         let require = |holds: bool, what| if holds { Ok(()) } else { Err(WebPageError::Inconsistent(what)) };
         let opening = self.stacks.get(self.opening.stack).map(|stack| stack.slices.len());
         require(opening.is_some_and(|slices| self.opening.slice < slices), "there is no slice to open with")?;
+        let is_whole = |stack: &SliceStack| stack.slices[self.opening.slice].base.is_none();
+        require(self.stacks.get(self.opening.stack).is_some_and(is_whole), "the opening slice is not whole")?;
         require(self.opening_picture.size() == self.size, "the opening picture is of another size")?;
         require(
             (self.range.nearest - self.range.farthest).is_finite(),
@@ -162,6 +167,9 @@ impl WebPage {
                 stack.slices.windows(2).all(|pair| pair[0].inverse_distance < pair[1].inverse_distance);
             let are_finite = stack.slices.iter().all(|slice| slice.inverse_distance.is_finite());
             require(are_ascending && are_finite, "slices are not sorted by distance")?;
+            let is_whole = |index: usize| stack.slices.get(index).is_some_and(|slice| slice.base.is_none());
+            let have_bases = stack.slices.iter().filter_map(|slice| slice.base).all(is_whole);
+            require(have_bases, "a slice is the difference from none that is whole")?;
         }
         let are_of_one_size = self.paint.iter().all(|maps| {
             [&maps.sharp_distances, &maps.paint].iter().all(|map| map.size == self.sharp_distances.size)
@@ -201,6 +209,7 @@ impl WebPage {
             aperture: &stack.aperture,
             is_painted: stack.is_painted,
             inverse_distances: stack.slices.iter().map(|slice| slice.inverse_distance).collect(),
+            bases: stack.slices.iter().map(|slice| slice.base).collect(),
             slices: stack.slices.iter().enumerate().map(picture).collect(),
         }
     }
@@ -221,6 +230,7 @@ mod tests {
         };
         let slice = |k: u8| Slice {
             inverse_distance: f64::from(k),
+            base: None,
             webp: encode_picture(&grey(40 * k), 40.0, 75).unwrap().webp,
         };
         WebPage {
@@ -288,6 +298,10 @@ mod tests {
         assert!(is_refused(&|page| page
             .stacks
             .push(SliceStack { slices: Vec::new(), ..page.stacks[0].clone() })));
+        assert!(!is_refused(&|page| page.stacks[0].slices[2].base = Some(0)));
+        assert!(is_refused(&|page| page.stacks[0].slices[2].base = Some(2)));
+        assert!(is_refused(&|page| page.stacks[0].slices[2].base = Some(3)));
+        assert!(is_refused(&|page| page.stacks[0].slices[1].base = Some(0)), "it opens with it");
         assert!(is_refused(&|page| page.range.nearest = f64::INFINITY));
         assert!(is_refused(&|page| page.sharp_distances.codes.push(1)));
         assert!(is_refused(&|page| {

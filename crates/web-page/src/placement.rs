@@ -2,8 +2,11 @@
 //!
 //! Whatever can be sharp is nearly so at some slice. Half way between two slices, their cross-fade is compared with the picture there:
 //! each slice is as far from the one before it as both allow.
+//!
+//! Slices follow each other in small groups: a whole one, and some that are differences from it, which take half of the bytes and less. So
+//! no more than two pictures are decoded to show one.
 
-use crate::encoding::{EncodedPicture, USUAL_QUALITY, encode_picture};
+use crate::encoding::{EncodedPicture, USUAL_QUALITY, encode_difference, encode_picture};
 use crate::error::WebPageError;
 use crate::page::Slice;
 use crate::screen_picture::ScreenPicture;
@@ -70,7 +73,7 @@ pub fn place_slices<E: From<WebPageError>>(
 ) -> Result<PlacedSlices, E> {
     let farthest = spacing.range.farthest;
     let first = encode_picture(&draw(farthest)?, options.rest_psnr, USUAL_QUALITY)?;
-    let mut placed = Placed::new(farthest, first, options)?;
+    let mut placed = Placed::new(farthest, first, spacing.opening, options)?;
     for end in spacing.ends() {
         while placed.last.inverse_distance < end {
             let limit = spacing.next(placed.last.inverse_distance, end);
@@ -90,9 +93,15 @@ const WORTHWHILE: f64 = 1.15;
 /// The share of the error allowed that a step aims at.
 const AIM: f64 = 0.95;
 
+/// After a difference that takes so much of what the whole slice takes, a whole one begins the next group: the mean of the group would not
+/// be lowered.
+const LARGEST_DIFFERENCE: f64 = 0.6;
+
 /// A slice that may follow the last one.
 struct Candidate {
     inverse_distance: f64,
+    /// See [`Slice::base`].
+    base: Option<usize>,
     encoded: EncodedPicture,
     /// Of the cross-fade half way to it.
     midway_psnr: f64,
@@ -106,50 +115,60 @@ struct LastSlice {
     quality: u8,
 }
 
+/// The whole slice of the group.
+struct WholeSlice {
+    index: usize,
+    bytes: usize,
+    decoded: ScreenPicture,
+}
+
 /// The slices that are placed.
 struct Placed {
+    /// The distance whose slice must be whole.
+    opening: f64,
     slices: Vec<Slice>,
     bytes: u64,
     rest_psnrs: Vec<f64>,
     midway_psnrs: Vec<f64>,
     last: LastSlice,
+    whole: WholeSlice,
 }
 
 impl Placed {
     fn new(
         inverse_distance: f64,
         first: EncodedPicture,
+        opening: f64,
         options: &PlacementOptions,
     ) -> Result<Self, WebPageError> {
         let EncodedPicture { webp, psnr, quality, decoded } = first;
+        let whole = WholeSlice { index: 0, bytes: webp.len(), decoded: decoded.clone() };
         let last = LastSlice { inverse_distance, decoded, psnr, quality };
         let (slices, rest_psnrs, midway_psnrs) = Default::default();
-        let mut placed = Self { slices, bytes: 0, rest_psnrs, midway_psnrs, last };
-        placed.push(inverse_distance, webp, psnr, options)?;
+        let mut placed = Self { opening, slices, bytes: 0, rest_psnrs, midway_psnrs, last, whole };
+        placed.push(Slice { inverse_distance, base: None, webp }, psnr, options)?;
         Ok(placed)
     }
 
     fn keep(&mut self, best: Candidate, options: &PlacementOptions) -> Result<(), WebPageError> {
-        let Candidate { inverse_distance, encoded, midway_psnr } = best;
+        let Candidate { inverse_distance, base, encoded, midway_psnr } = best;
         let EncodedPicture { webp, psnr, quality, decoded } = encoded;
+        if base.is_none() {
+            let (index, bytes) = (self.slices.len(), webp.len());
+            self.whole = WholeSlice { index, bytes, decoded: decoded.clone() };
+        }
         self.last = LastSlice { inverse_distance, decoded, psnr, quality };
         self.midway_psnrs.push(midway_psnr);
-        self.push(inverse_distance, webp, psnr, options)
+        self.push(Slice { inverse_distance, base, webp }, psnr, options)
     }
 
-    fn push(
-        &mut self,
-        inverse_distance: f64,
-        webp: Vec<u8>,
-        psnr: f64,
-        options: &PlacementOptions,
-    ) -> Result<(), WebPageError> {
-        self.bytes += webp.len() as u64;
+    fn push(&mut self, slice: Slice, psnr: f64, options: &PlacementOptions) -> Result<(), WebPageError> {
+        self.bytes += slice.webp.len() as u64;
         if self.bytes > options.most_bytes {
             return Err(WebPageError::TooLarge);
         }
         self.rest_psnrs.push(psnr);
-        self.slices.push(Slice { inverse_distance, webp });
+        self.slices.push(slice);
         Ok(())
     }
 
@@ -212,10 +231,31 @@ impl Placed {
         options: &PlacementOptions,
         draw: &mut impl FnMut(f64) -> Result<ScreenPicture, E>,
     ) -> Result<Candidate, E> {
-        let encoded = encode_picture(&draw(inverse_distance)?, options.rest_psnr, self.last.quality)?;
+        let picture = draw(inverse_distance)?;
+        let (base, encoded) = self.encode(inverse_distance, &picture, options.rest_psnr)?;
         let midway = draw(self.last.inverse_distance.midpoint(inverse_distance))?;
         let midway_psnr = self.last.decoded.cross_fade(&encoded.decoded).psnr(&midway);
-        Ok(Candidate { inverse_distance, encoded, midway_psnr })
+        Ok(Candidate { inverse_distance, base, encoded, midway_psnr })
+    }
+
+    /// A slice beyond the last as the difference from the whole one of the group, whose index comes with it, unless a whole one is better.
+    fn encode(
+        &self,
+        inverse_distance: f64,
+        picture: &ScreenPicture,
+        min_psnr: f64,
+    ) -> Result<(Option<usize>, EncodedPicture), WebPageError> {
+        let WholeSlice { index, bytes, decoded } = &self.whole;
+        let last = self.slices.last().filter(|last| last.base.is_some());
+        let is_group_full =
+            last.is_some_and(|last| last.webp.len() as f64 > LARGEST_DIFFERENCE * *bytes as f64);
+        if inverse_distance != self.opening && !is_group_full {
+            let difference = encode_difference(picture, decoded, min_psnr, self.last.quality)?;
+            if difference.psnr >= min_psnr && difference.webp.len() < *bytes {
+                return Ok((Some(*index), difference));
+            }
+        }
+        Ok((None, encode_picture(picture, min_psnr, self.last.quality)?))
     }
 }
 

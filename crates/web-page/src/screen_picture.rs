@@ -59,6 +59,22 @@ impl ScreenPicture {
         numerics::psnr(squares.sum::<f64>() / (3 * self.pixels.len()) as f64)
     }
 
+    /// What is to be added to `base`, a picture of the same size, for this one: their differences, 128 where there is none, as far as that goes.
+    pub(crate) fn difference_from(&self, base: &Self) -> Self {
+        self.combined(base, |own, base| own - base + 128)
+    }
+
+    /// The picture of which `difference` is the [difference](Self::difference_from) from this one.
+    pub(crate) fn plus_difference(&self, difference: &Self) -> Self {
+        self.combined(difference, |own, difference| own + difference - 128)
+    }
+
+    fn combined(&self, other: &Self, level: impl Fn(i16, i16) -> i16) -> Self {
+        let level = |a: u8, b: u8| level(i16::from(a), i16::from(b)).clamp(0, 255) as u8;
+        let color = |(a, b): (&[u8; 3], &[u8; 3])| std::array::from_fn(|c| level(a[c], b[c]));
+        Self { size: self.size, pixels: self.pixels.iter().zip(&other.pixels).map(color).collect() }
+    }
+
     /// What a browser shows half way through a cross-fade of two pictures of the same size.
     pub(crate) fn cross_fade(&self, other: &Self) -> Self {
         let mean = |a: u8, b: u8| u16::from(a).midpoint(u16::from(b) + 1) as u8;
@@ -110,6 +126,14 @@ mod tests {
         assert!((a.psnr(&b) + 20.0 * (1.0 - 0.5029f64).log10()).abs() < 1e-3, "{}", a.psnr(&b));
         assert_eq!(a.psnr(&a), 200.0);
         assert_eq!(grey(&[0]).psnr(&grey(&[255])), 0.0);
+    }
+
+    #[test]
+    fn a_difference_leads_back() {
+        let (base, picture) = (grey(&[0, 255, 10, 200]), grey(&[100, 200, 13, 60]));
+        let difference = picture.difference_from(&base);
+        assert_eq!(difference, grey(&[228, 73, 131, 0]));
+        assert_eq!(base.plus_difference(&difference), grey(&[100, 200, 13, 72]), "no more than 128 darker");
     }
 
     #[test]

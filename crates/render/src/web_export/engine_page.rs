@@ -50,7 +50,7 @@ pub fn export_engine_page(
     let address = public_address(path, options)?;
     let display = Display { curve: ToneCurve::Clip, ..options.tone.display };
     let tone = Tone { display, ..options.tone };
-    let render = &options.render;
+    let render = &options.render_options(camera);
     let surfaces = FirstSurfaces::trace(lit.tracer(), camera, focus, &*steps.begin("first surfaces"))?;
     let needed = needed_for_range(lit, camera, surfaces.range(camera), &[focus]);
     // Visitors may paint blur.

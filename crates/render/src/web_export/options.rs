@@ -1,6 +1,7 @@
 //! What a web page shows, and how large it may be.
 
 use crate::picture::{RenderOptions, Tone};
+use lens::Camera;
 use splat::Tolerance;
 use web_page::{Caption, PlacementOptions};
 
@@ -17,7 +18,7 @@ pub struct WebPageOptions {
     pub is_autoplaying: bool,
     /// How the pictures are shown.
     pub tone: Tone,
-    /// How the pictures are drawn. Renderer, AOVs and overscan are not used.
+    /// How the pictures are drawn. Renderer, tolerance of the splat, AOVs and overscan are not used.
     pub render: RenderOptions,
     /// Where the page is going to be published. A poster is then written beside the page.
     pub address: Option<String>,
@@ -35,14 +36,23 @@ impl WebPageOptions {
     /// The radius of the blur that may remain at the slice that shows a surface best, px: neighbouring slices are two of it apart, where
     /// anything is sharp between them.
     pub(crate) const LARGEST_BLUR_PX: f64 = 1.0;
-    /// The tolerance of the sums, px: many times as fast as exact ones, from which they are at 56 dB (the demo, 1280 × 720). With 2 px they
-    /// are 1 dB nearer and take three times as long.
+    /// The tolerance of the sums, px, of pictures that are at least so high, px: many times as fast as exact ones, from which they are at 51 to
+    /// 57 dB (the demo, 1280 × 720). Smaller pictures have smaller blur, and so a smaller tolerance: with the same they would be as far as
+    /// 37 dB from the exact ones (192 × 108).
     const TOLERANCE_PX: f64 = 3.0;
+    const TOLERANT_HEIGHT_PX: f64 = 720.0;
     /// PSNR, as `compare` measures it, of slices at rest against exact pictures, and of cross-fades half way, dB.
     pub(crate) const REST_PSNR: f64 = 40.0;
     pub(crate) const MIDWAY_PSNR: f64 = 38.0;
     /// What the tolerance may take from it, dB.
     const MARGIN_OF_TOLERANCE: f64 = 0.12;
+
+    /// How the pictures of a camera are drawn.
+    pub(crate) fn render_options(&self, camera: &Camera) -> RenderOptions {
+        let share = (f64::from(camera.height) / Self::TOLERANT_HEIGHT_PX).min(1.0);
+        let splat_tolerance = Tolerance::px(Self::TOLERANCE_PX * share);
+        RenderOptions { splat_tolerance, ..self.render.clone() }
+    }
 
     /// How good the slices are to be; together they may take `most_bytes`.
     pub(crate) fn placement(most_bytes: u64) -> PlacementOptions {
@@ -71,10 +81,7 @@ impl Default for WebPageOptions {
             has_ordinary_focus: true,
             is_autoplaying: false,
             tone: Tone::default(),
-            render: RenderOptions {
-                splat_tolerance: Tolerance::px(Self::TOLERANCE_PX),
-                ..RenderOptions::default()
-            },
+            render: RenderOptions::default(),
             address: None,
             is_large_allowed: false,
         }

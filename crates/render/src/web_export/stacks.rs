@@ -1,7 +1,7 @@
 //! Draws the stacks of a web page: bakes each aperture once, and sums its light field at each focus distance.
 
 use crate::error::RenderError;
-use crate::picture::{new_splatter, to_screen};
+use crate::picture::{RenderOptions, new_splatter, to_screen};
 use crate::web_export::options::WebPageOptions;
 use crate::web_export::page_error::page_error;
 use crate::web_export::report::StackReport;
@@ -35,6 +35,7 @@ pub struct StackDrawing<'a> {
     camera: &'a Camera,
     range: DistanceRange,
     options: &'a WebPageOptions,
+    render: RenderOptions,
     steps: &'a dyn Steps,
     /// Index and picture of the slice at the camera's own focus distance, in the first stack.
     opening: Option<(usize, ScreenPicture)>,
@@ -52,7 +53,8 @@ impl<'a> StackDrawing<'a> {
         options: &'a WebPageOptions,
         steps: &'a dyn Steps,
     ) -> Self {
-        Self { path, lit, camera, range, options, steps, opening: None, used_bytes: 0 }
+        let render = options.render_options(camera);
+        Self { path, lit, camera, range, options, render, steps, opening: None, used_bytes: 0 }
     }
 
     /// Bakes the light field of an aperture, whose radius is the camera's by `divisor`, and draws a stack for each focusing. The field of
@@ -71,7 +73,7 @@ impl<'a> StackDrawing<'a> {
         let spacings = focusings.iter().map(|focusing| self.spacing(&focusing.sharp, px_per_kappa));
         let spacings = spacings.collect::<Result<Vec<_>, _>>()?;
         let salf = Arc::new(self.bake(&camera, focusings)?);
-        let mut splatter = new_splatter(salf, &self.options.render);
+        let mut splatter = new_splatter(salf, &self.render);
         let aperture = aperture_name(camera.f_number());
         let draw_stack = |(focusing, spacing): (&&Focusing, SliceSpacing)| {
             let Focusing { is_painted, focus, sharp } = focusing;
@@ -115,7 +117,7 @@ impl<'a> StackDrawing<'a> {
 
     /// Bakes a light field that holds what every distance shows.
     fn bake(&self, camera: &Camera, focusings: &[&Focusing]) -> Result<Salf, RenderError> {
-        let options = &self.options.render;
+        let options = &self.render;
         let focuses: Vec<&Focus> = focusings.iter().map(|focusing| focusing.focus).collect();
         let needed = needed_for_range(self.lit, &options.finer(camera)?, self.range, &focuses);
         options.bake_as(self.lit, camera, needed, self.steps)
@@ -131,7 +133,7 @@ impl<'a> StackDrawing<'a> {
         label: &str,
     ) -> Result<PlacedSlices, RenderError> {
         let options = self.options;
-        let cells_a_side = options.render.cells_a_side;
+        let cells_a_side = self.render.cells_a_side;
         let progress = self.steps.begin(label);
         let mut is_summed = false;
         let mut opening_picture = None;

@@ -1,5 +1,7 @@
 /** At most this many slices are decoded at a time: one of 1280 × 720 px takes 3.7 MB. */
-const MOST_DECODED = 8;
+const MOST_DECODED = 6;
+/** And the pixels of so many that others are differences from. */
+const MOST_BASES = 2;
 
 /** Decodes slices, and keeps those that were used last. */
 class SliceCache {
@@ -12,10 +14,14 @@ class SliceCache {
     this.poster = poster;
     /** @type {Map<string, Promise<ImageBitmap>>} In the order of their use. */
     this.decoded = new Map();
+    /** @type {Map<string, Promise<ImageData>>} Likewise. */
+    this.bases = new Map();
+    const canvas = document.createElement("canvas");
+    this.context = canvas.getContext("2d", { willReadFrequently: true });
   }
 
   /**
-   * The picture of a slice. It is closed once seven others were used after it.
+   * The picture of a slice. It is closed once some others were used after it.
    *
    * @param {number} stack
    * @param {number} slice
@@ -27,17 +33,63 @@ class SliceCache {
     if (picture) {
       this.decoded.delete(key);
     } else {
-      picture = this.makeRoom().then(() => this.decode(this.stacks[stack].slices[slice]));
+      picture = this.makeRoom().then(() => this.decode(stack, slice));
     }
     this.decoded.set(key, picture);
     return picture;
   }
 
   /**
+   * @param {number} stack
+   * @param {number} slice
+   * @returns {Promise<ImageBitmap>}
+   */
+  async decode(stack, slice) {
+    const { slices, bases } = this.stacks[stack];
+    const base = bases[slice];
+    if (base === null) return this.decodeText(slices[slice]);
+    const [under, sum] = await Promise.all([this.base(stack, base), this.pixels(slices[slice])]);
+    // Sums are clamped.
+    for (let k = 0; k < sum.data.length; k++) sum.data[k] += under.data[k] - 128;
+    return createImageBitmap(sum);
+  }
+
+  /**
+   * The pixels of a whole slice.
+   *
+   * @param {number} stack
+   * @param {number} slice
+   * @returns {Promise<ImageData>}
+   */
+  base(stack, slice) {
+    const key = `${stack}/${slice}`;
+    const pixels = this.bases.get(key) || this.pixels(this.stacks[stack].slices[slice]);
+    this.bases.delete(key);
+    this.bases.set(key, pixels);
+    if (this.bases.size > MOST_BASES) this.bases.delete([...this.bases.keys()][0]);
+    return pixels;
+  }
+
+  /**
+   * @param {string | null} text
+   * @returns {Promise<ImageData>}
+   */
+  async pixels(text) {
+    const { context } = this;
+    if (!context) throw new Error("the browser has no canvas");
+    const bitmap = await this.decodeText(text);
+    const { width, height } = bitmap;
+    Object.assign(context.canvas, { width, height });
+    context.drawImage(bitmap, 0, 0);
+    bitmap.close();
+    return context.getImageData(0, 0, width, height);
+  }
+
+  /**
    * @param {string | null} text `null`: the poster.
    * @returns {Promise<ImageBitmap>}
    */
-  async decode(text) {
+  async decodeText(text) {
     if (text !== null) return createImageBitmap(new Blob([decodeBase91(text)], { type: "image/webp" }));
     await this.poster.decode();
     return createImageBitmap(this.poster);

@@ -36,8 +36,12 @@ pub fn page() -> WebPage {
     let stack = |stack: usize, aperture: &str, count: usize, is_painted| {
         let slice = |slice: usize| {
             let inverse_distance = 2.0 * slice as f64 / (count - 1) as f64;
-            let webp = encode_picture(&uniform(grey(stack, slice)), 45.0, 75).unwrap().webp;
-            Slice { inverse_distance, webp }
+            // Every third is the difference from the one before it.
+            let base = (slice % 3 == 2).then(|| slice - 1);
+            let own = grey(stack, slice);
+            let level = base.map_or(own, |base| 128 + own - grey(stack, base));
+            let webp = encode_picture(&uniform(level), 45.0, 75).unwrap().webp;
+            Slice { inverse_distance, base, webp }
         };
         SliceStack { aperture: aperture.into(), is_painted, slices: (0..count).map(slice).collect() }
     };
