@@ -64,11 +64,14 @@ impl ExportedPage {
         Shown { inverse_distance: stack["inverseDistances"][slice].as_f64().unwrap(), picture }
     }
 
-    /// How many slices are differences from others.
-    pub fn differences(&self) -> usize {
+    /// How many slices are differences from the one before them, and from the one after them.
+    pub fn differences(&self) -> [usize; 2] {
         let stacks = self.data["stacks"].as_array().unwrap();
-        let bases = stacks.iter().flat_map(|stack| stack["bases"].as_array().unwrap());
-        bases.filter(|base| !base.is_null()).count()
+        let bases = stacks.iter().flat_map(|stack| stack["bases"].as_array().unwrap().iter().enumerate());
+        let bases: Vec<_> =
+            bases.filter_map(|(slice, base)| Some((slice, base.as_u64()? as usize))).collect();
+        let count = |is_kind: fn(&(usize, usize)) -> bool| bases.iter().filter(|pair| is_kind(pair)).count();
+        [count(|(slice, base)| *base + 1 == *slice), count(|(slice, base)| *base == *slice + 1)]
     }
 
     /// The slice nearest to a reciprocal distance.

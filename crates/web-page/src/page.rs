@@ -120,7 +120,8 @@ struct StackData<'a> {
 #[serde(rename_all = "camelCase")]
 struct MapData {
     size: [u32; 2],
-    sharp_distances: String,
+    /// `None` where no stack has the ordinary lens.
+    sharp_distances: Option<String>,
     painted_sharp_distances: Option<String>,
     paint: Option<String>,
 }
@@ -179,6 +180,7 @@ impl WebPage {
 
     fn data(&self) -> Result<PageData<'_>, WebPageError> {
         let packed = |map: &PixelMap| map.packed().map(|bytes| encode_base91(&bytes));
+        let has_ordinary = self.stacks.iter().any(|stack| !stack.is_painted);
         let stack_data = |(index, stack)| self.stack_data(index, stack);
         Ok(PageData {
             title: self.caption.page_title(),
@@ -188,7 +190,7 @@ impl WebPage {
             range: [self.range.farthest, self.range.nearest],
             maps: MapData {
                 size: self.sharp_distances.size,
-                sharp_distances: packed(&self.sharp_distances)?,
+                sharp_distances: has_ordinary.then(|| packed(&self.sharp_distances)).transpose()?,
                 painted_sharp_distances: self
                     .paint
                     .as_ref()

@@ -3,8 +3,9 @@
 //! Whatever can be sharp is nearly so at some slice. Half way between two slices, their cross-fade is compared with the picture there:
 //! each slice is as far from the one before it as both allow.
 //!
-//! Slices follow each other in small groups: a whole one, and some that are differences from it, which take half of the bytes and less. So
-//! no more than two pictures are decoded to show one.
+//! Of three slices one is whole; its neighbours on both sides are differences from it, which take half of the bytes. So no more than two
+//! pictures are decoded to show one. The neighbour before a whole slice is placed as a whole one first, and becomes a difference
+//! once that is known, if it is still as good.
 
 use crate::encoding::{EncodedPicture, USUAL_QUALITY, encode_difference, encode_picture};
 use crate::error::WebPageError;
@@ -93,17 +94,16 @@ const WORTHWHILE: f64 = 1.15;
 /// The share of the error allowed that a step aims at.
 const AIM: f64 = 0.95;
 
-/// After a difference that takes so much of what the whole slice takes, a whole one begins the next group: the mean of the group would not
-/// be lowered.
-const LARGEST_DIFFERENCE: f64 = 0.6;
-
 /// A slice that may follow the last one.
 struct Candidate {
     inverse_distance: f64,
     /// See [`Slice::base`].
     base: Option<usize>,
     encoded: EncodedPicture,
-    /// Of the cross-fade half way to it.
+    picture: ScreenPicture,
+    /// The picture half way to it.
+    midway: ScreenPicture,
+    /// Of the cross-fade there.
     midway_psnr: f64,
 }
 
@@ -115,11 +115,12 @@ struct LastSlice {
     quality: u8,
 }
 
-/// The whole slice of the group.
-struct WholeSlice {
-    index: usize,
-    bytes: usize,
-    decoded: ScreenPicture,
+/// A whole slice that is to become the difference from the next one.
+struct Pending {
+    picture: ScreenPicture,
+    /// The slice before it, decoded, and the picture half way from there.
+    before: ScreenPicture,
+    midway: ScreenPicture,
 }
 
 /// The slices that are placed.
@@ -131,7 +132,8 @@ struct Placed {
     rest_psnrs: Vec<f64>,
     midway_psnrs: Vec<f64>,
     last: LastSlice,
-    whole: WholeSlice,
+    /// What the last slice is to become.
+    pending: Option<Pending>,
 }
 
 impl Placed {
@@ -142,24 +144,55 @@ impl Placed {
         options: &PlacementOptions,
     ) -> Result<Self, WebPageError> {
         let EncodedPicture { webp, psnr, quality, decoded } = first;
-        let whole = WholeSlice { index: 0, bytes: webp.len(), decoded: decoded.clone() };
         let last = LastSlice { inverse_distance, decoded, psnr, quality };
         let (slices, rest_psnrs, midway_psnrs) = Default::default();
-        let mut placed = Self { opening, slices, bytes: 0, rest_psnrs, midway_psnrs, last, whole };
+        let mut placed = Self { opening, slices, bytes: 0, rest_psnrs, midway_psnrs, last, pending: None };
         placed.push(Slice { inverse_distance, base: None, webp }, psnr, options)?;
         Ok(placed)
     }
 
-    fn keep(&mut self, best: Candidate, options: &PlacementOptions) -> Result<(), WebPageError> {
-        let Candidate { inverse_distance, base, encoded, midway_psnr } = best;
-        let EncodedPicture { webp, psnr, quality, decoded } = encoded;
-        if base.is_none() {
-            let (index, bytes) = (self.slices.len(), webp.len());
-            self.whole = WholeSlice { index, bytes, decoded: decoded.clone() };
+    fn keep(&mut self, mut best: Candidate, options: &PlacementOptions) -> Result<(), WebPageError> {
+        let follows_difference = self.slices.last().is_some_and(|last| last.base.is_some());
+        let pending = self.pending.take();
+        if let Some(pending) = &pending {
+            self.make_difference(pending, &mut best, options)?;
         }
-        self.last = LastSlice { inverse_distance, decoded, psnr, quality };
+        let Candidate { inverse_distance, base, encoded, picture, midway, midway_psnr } = best;
+        let EncodedPicture { webp, psnr, quality, decoded } = encoded;
+        let before =
+            std::mem::replace(&mut self.last, LastSlice { inverse_distance, decoded, psnr, quality });
+        let becomes_difference = follows_difference && pending.is_none() && base.is_none();
+        if becomes_difference && inverse_distance != self.opening {
+            self.pending = Some(Pending { picture, before: before.decoded, midway });
+        }
         self.midway_psnrs.push(midway_psnr);
         self.push(Slice { inverse_distance, base, webp }, psnr, options)
+    }
+
+    /// Makes the last slice the difference from `next`, which follows it, unless it would be larger or worse.
+    fn make_difference(
+        &mut self,
+        pending: &Pending,
+        next: &mut Candidate,
+        options: &PlacementOptions,
+    ) -> Result<(), WebPageError> {
+        let (min_psnr, whole) = (options.rest_psnr, &next.encoded.decoded);
+        let difference = encode_difference(&pending.picture, whole, min_psnr, self.last.quality)?;
+        let before = pending.before.cross_fade(&difference.decoded).psnr(&pending.midway);
+        let after = difference.decoded.cross_fade(whole).psnr(&next.midway);
+        let (last, next_index) = (self.slices.len() - 1, self.slices.len());
+        let is_as_good = |psnr: f64, before: f64| psnr >= options.midway_psnr || psnr >= before;
+        let saved = self.slices[last].webp.len().checked_sub(difference.webp.len());
+        let (Some(saved), true) = (saved, difference.psnr >= min_psnr) else { return Ok(()) };
+        if is_as_good(before, self.midway_psnrs[last - 1]) && is_as_good(after, next.midway_psnr) {
+            self.bytes -= saved as u64;
+            self.rest_psnrs[last] = difference.psnr;
+            self.midway_psnrs[last - 1] = before;
+            next.midway_psnr = after;
+            let slice = &mut self.slices[last];
+            (slice.base, slice.webp) = (Some(next_index), difference.webp);
+        }
+        Ok(())
     }
 
     fn push(&mut self, slice: Slice, psnr: f64, options: &PlacementOptions) -> Result<(), WebPageError> {
@@ -235,24 +268,22 @@ impl Placed {
         let (base, encoded) = self.encode(inverse_distance, &picture, options.rest_psnr)?;
         let midway = draw(self.last.inverse_distance.midpoint(inverse_distance))?;
         let midway_psnr = self.last.decoded.cross_fade(&encoded.decoded).psnr(&midway);
-        Ok(Candidate { inverse_distance, base, encoded, midway_psnr })
+        Ok(Candidate { inverse_distance, base, encoded, picture, midway, midway_psnr })
     }
 
-    /// A slice beyond the last as the difference from the whole one of the group, whose index comes with it, unless a whole one is better.
+    /// The slice beyond the last, as the difference from that if it is whole and stays so: then its index comes with it. A slice that becomes
+    /// a difference needs a whole one after it.
     fn encode(
         &self,
         inverse_distance: f64,
         picture: &ScreenPicture,
         min_psnr: f64,
     ) -> Result<(Option<usize>, EncodedPicture), WebPageError> {
-        let WholeSlice { index, bytes, decoded } = &self.whole;
-        let last = self.slices.last().filter(|last| last.base.is_some());
-        let is_group_full =
-            last.is_some_and(|last| last.webp.len() as f64 > LARGEST_DIFFERENCE * *bytes as f64);
-        if inverse_distance != self.opening && !is_group_full {
-            let difference = encode_difference(picture, decoded, min_psnr, self.last.quality)?;
-            if difference.psnr >= min_psnr && difference.webp.len() < *bytes {
-                return Ok((Some(*index), difference));
+        let last = self.slices.last().filter(|last| last.base.is_none() && self.pending.is_none());
+        if let Some(last) = last.filter(|_| inverse_distance != self.opening) {
+            let difference = encode_difference(picture, &self.last.decoded, min_psnr, self.last.quality)?;
+            if difference.psnr >= min_psnr && difference.webp.len() < last.webp.len() {
+                return Ok((Some(self.slices.len() - 1), difference));
             }
         }
         Ok((None, encode_picture(picture, min_psnr, self.last.quality)?))
@@ -320,6 +351,10 @@ mod tests {
         assert!(placed.at_rest.lowest >= 45.0 && placed.at_rest.mean >= placed.at_rest.lowest);
         let midway = placed.midway.unwrap();
         assert!(midway.lowest >= 42.0, "{midway:?}");
+        let bases: Vec<_> = placed.slices.iter().map(|slice| slice.base).collect();
+        let is_whole = |index: usize| bases[index].is_none();
+        assert!(bases.iter().flatten().all(|&base| is_whole(base)), "{bases:?}");
+        assert!(bases[1].is_none(), "the opening slice is whole: {bases:?}");
         assert_eq!(placed.bytes(), placed.slices.iter().map(|slice| slice.webp.len() as u64).sum::<u64>());
 
         let few = PlacementOptions { shortest_step: 1.0, ..OPTIONS };

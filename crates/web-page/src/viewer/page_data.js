@@ -10,7 +10,7 @@
  *
  * @typedef {object} MapData Packed maps of one byte a pixel (`PixelMap`).
  * @property {[number, number]} size Columns and rows.
- * @property {string} sharpDistances Which distance makes a pixel sharp, for the ordinary lens.
+ * @property {string | null} sharpDistances Which distance makes a pixel sharp, for the ordinary lens.
  * @property {string | null} paintedSharpDistances The same, as painted.
  * @property {string | null} paint How the paint blurs.
  *
