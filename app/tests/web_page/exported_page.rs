@@ -50,9 +50,7 @@ impl ExportedPage {
                 Some(text) => decode_base91(text),
                 None => STANDARD.decode(poster).unwrap(),
             };
-            // As browsers do: others enlarge colours in other ways.
-            let picture = webp::Decoder::new(&webp).decode().unwrap();
-            RgbImage::from_raw(picture.width(), picture.height(), picture.to_vec()).unwrap()
+            image::load_from_memory(&webp).unwrap().into_rgb8()
         };
         let mut picture = decoded(slice);
         if let Some(base) = stack["bases"][slice].as_u64() {
