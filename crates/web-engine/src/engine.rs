@@ -284,7 +284,7 @@ impl Engine {
 
     /// Draws the focus of some samples, which has changed.
     fn repaint(&mut self, samples: &[u32]) -> Result<(), EngineError> {
-        if samples.is_empty() {
+        if samples.is_empty() && self.is_current {
             return Ok(());
         }
         if !self.is_painted || !self.is_current {

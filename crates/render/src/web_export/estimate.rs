@@ -9,7 +9,7 @@ use scene::SurfaceField;
 use web_page::SliceSpacing;
 
 /// Bytes of a page per pixel of its slices: measured for the demo at 1280 × 720.
-const BYTES_PER_PIXEL: f64 = 0.045;
+const BYTES_PER_PIXEL: f64 = 0.035;
 /// The largest side of the picture whose surfaces are looked up, px.
 const LARGEST_SIDE_PX: u32 = 160;
 
