@@ -9,7 +9,7 @@ use crate::screen_picture::ScreenPicture;
 use serde::Serialize;
 
 /// The parts of the viewer, in the order in which they are joined to one script.
-const VIEWER: [&str; 18] = [
+const VIEWER: [&str; 19] = [
     include_str!("viewer/elements.js"),
     include_str!("viewer/base91.js"),
     include_str!("viewer/pixel_map.js"),
@@ -20,6 +20,7 @@ const VIEWER: [&str; 18] = [
     include_str!("viewer/message.js"),
     include_str!("viewer/choices.js"),
     include_str!("viewer/mark.js"),
+    include_str!("viewer/focus_bar.js"),
     include_str!("viewer/engine/engine_data.js"),
     include_str!("viewer/engine/engine.js"),
     include_str!("viewer/engine/lens_rack.js"),

@@ -9,12 +9,13 @@ use crate::screen_picture::ScreenPicture;
 use serde::Serialize;
 
 /// The parts of the viewer, in the order in which they are joined to one script.
-const VIEWER: [&str; 16] = [
+const VIEWER: [&str; 18] = [
     include_str!("viewer/page_data.js"),
     include_str!("viewer/elements.js"),
     include_str!("viewer/base91.js"),
     include_str!("viewer/slice_cache.js"),
     include_str!("viewer/pixel_map.js"),
+    include_str!("viewer/packed_map.js"),
     include_str!("viewer/rack.js"),
     include_str!("viewer/picture_screen.js"),
     include_str!("viewer/paint_tint.js"),
@@ -24,6 +25,7 @@ const VIEWER: [&str; 16] = [
     include_str!("viewer/message.js"),
     include_str!("viewer/choices.js"),
     include_str!("viewer/mark.js"),
+    include_str!("viewer/focus_bar.js"),
     include_str!("viewer/controls.js"),
     include_str!("viewer/viewer.js"),
 ];

@@ -11,6 +11,8 @@ use std::borrow::Cow;
 
 const STYLE: &str = include_str!("viewer/page.css");
 const TEMPLATE: &str = include_str!("viewer/page.html");
+/// The controls of the focus, which all pages have.
+const RACK_BAR: &str = include_str!("viewer/rack_bar.html");
 
 /// The longest side of the picture in `og:image` where the page has no public address, px, and its error.
 const THUMBNAIL_SIDE_PX: u32 = 320;
@@ -74,7 +76,7 @@ pub struct PageContent<'a> {
     pub policy: &'a str,
     /// What the visitor can do, over the picture until it is touched.
     pub hint: &'a str,
-    /// The controls below the picture, HTML.
+    /// The controls below the picture beside those of the focus, HTML.
     pub bar: &'a str,
     /// The parts of the script, in order.
     pub viewer: &'a [&'a str],
@@ -109,7 +111,7 @@ impl PageFrame<'_> {
                 ("height", &height),
                 ("poster", &data_uri(self.poster)),
                 ("hint", content.hint),
-                ("bar", content.bar),
+                ("bar", &[RACK_BAR, content.bar].concat()),
                 ("caption", &self.caption_html()),
                 ("viewer", &content.viewer.concat()),
                 ("call", content.call),

@@ -8,23 +8,13 @@ class Controls {
   constructor(page, rack, player) {
     const { stacks } = page;
     this.rack = rack;
-    this.player = player;
     this.apertures = [...new Set(stacks.map((stack) => stack.aperture))];
     this.kinds = [true, false].filter((isPainted) => stacks.some((stack) => stack.isPainted === isPainted));
-    this.distance = element("distance", HTMLInputElement);
-    this.distanceText = element("distance-text", HTMLOutputElement);
-    this.distance.addEventListener("input", () => {
-      player.stop();
-      rack.move(Number(this.distance.value));
-    });
-    this.distance.addEventListener("change", () => rack.settle());
+    this.focusBar = new FocusBar(rack, player);
     this.apertureInputs = addChoices("apertures", this.apertures, (index) => this.chooseAperture(index));
     const names = this.kinds.map((isPainted) => (isPainted ? "Painted" : "Ordinary lens"));
     this.kindInputs = addChoices("focusing", names, (index) => this.chooseKind(this.kinds[index]));
     element("focusing", HTMLDivElement).hidden = this.kinds.length < 2;
-    element("rack", HTMLDivElement).hidden = rack.nearest === rack.farthest;
-    this.playButton = element("play", HTMLButtonElement);
-    this.playButton.addEventListener("click", () => this.togglePlaying());
     this.paintButton = element("show-paint", HTMLButtonElement);
     this.paintButton.hidden = page.maps.paint === null;
     this.tint = element("tint", HTMLCanvasElement);
@@ -38,26 +28,13 @@ class Controls {
   update() {
     const { rack } = this;
     const stack = rack.stacks[rack.stack];
-    const text = distanceText(rack.inverseDistance);
-    this.distance.value = String(rack.position);
-    this.distance.setAttribute("aria-valuetext", text);
-    this.distanceText.value = text;
+    this.focusBar.update();
     this.apertures.forEach((aperture, index) => {
       const input = this.apertureInputs[index];
       input.checked = aperture === stack.aperture;
       input.disabled = !rack.stacks.some((s) => s.aperture === aperture && s.isPainted === stack.isPainted);
     });
     this.kinds.forEach((isPainted, index) => (this.kindInputs[index].checked = isPainted === stack.isPainted));
-  }
-
-  /** @param {boolean} isPlaying */
-  showPlaying(isPlaying) {
-    this.playButton.setAttribute("aria-pressed", String(isPlaying));
-  }
-
-  togglePlaying() {
-    if (this.player.isPlaying) this.player.stop();
-    else this.player.play();
   }
 
   /** @param {number} index */

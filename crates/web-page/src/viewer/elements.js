@@ -2,6 +2,9 @@
  * Where the focus is, and how pointers and the player move it.
  *
  * @typedef {object} Racking
+ * @property {number} farthest The reciprocal of the farthest distance.
+ * @property {number} nearest
+ * @property {number} inverseDistance
  * @property {number} position 0 at the nearest distance, 1 at the farthest.
  * @property {(position: number) => void} move Moves to a position, and may move on.
  * @property {() => void} settle Rests where it is.

@@ -44,6 +44,12 @@ class Gestures {
     this.view.style.touchAction = this.isFramed && this.zoom.scale === 1 ? "pan-y" : "none";
   }
 
+  /** @param {number} factor */
+  magnifyMiddle(factor) {
+    this.zoom.magnify(factor, this.zoom.middle);
+    this.allowScrolling();
+  }
+
   /** @param {PointerEvent} event */
   down(event) {
     if (event.button > 1) return;

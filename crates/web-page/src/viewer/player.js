@@ -34,6 +34,11 @@ class Player {
     this.onChange(true);
   }
 
+  toggle() {
+    if (this.isPlaying) this.stop();
+    else this.play();
+  }
+
   stop() {
     if (!this.isPlaying) return;
     cancelAnimationFrame(this.frame);

@@ -25,16 +25,16 @@ function showPage(page) {
     viewer.dataset.inverseDistance = String(rack.inverseDistance);
   });
   /** @type {Player} */
-  const player = new Player(rack, (isPlaying) => controls.showPlaying(isPlaying));
+  const player = new Player(rack, (isPlaying) => controls.focusBar.showPlaying(isPlaying));
   /** @type {Controls} */
   const controls = new Controls(page, rack, player);
   const zoom = new Zoom(view, element("stage", HTMLDivElement));
   const gestures = new Gestures(view, zoom, rack, { begin, aim, click: focusOn });
   addEventListener("resize", () => zoom.apply());
 
-  const sharpDistances = PixelMap.unpack(maps.size, maps.sharpDistances);
-  const paintedSharpDistances = PixelMap.unpack(maps.size, maps.paintedSharpDistances);
-  PixelMap.unpack(maps.size, maps.paint).then((paint) => paint && drawTint(controls.tint, paint));
+  const sharpDistances = unpackMap(maps.size, maps.sharpDistances);
+  const paintedSharpDistances = unpackMap(maps.size, maps.paintedSharpDistances);
+  unpackMap(maps.size, maps.paint).then((paint) => paint && drawTint(controls.tint, paint));
 
   function draw() {
     screen.draw().catch(() => message.show("This browser cannot show the pictures of this page (WebP)"));
@@ -93,34 +93,23 @@ function showPage(page) {
     }
   }
 
-  /** @param {number} factor */
-  function magnifyMiddle(factor) {
-    zoom.magnify(factor, middle());
-    gestures.allowScrolling();
-  }
-
-  function middle() {
-    const { left, top, width, height } = view.getBoundingClientRect();
-    return { clientX: left + width / 2, clientY: top + height / 2 };
-  }
-
   /** @type {{[key: string]: () => void}} */
   const actions = {
     ArrowLeft: () => rack.step(-1),
     ArrowRight: () => rack.step(1),
     Home: () => rack.rest(rack.nearest),
     End: () => rack.rest(rack.farthest),
-    "+": () => magnifyMiddle(1.25),
-    "=": () => magnifyMiddle(1.25),
-    "-": () => magnifyMiddle(0.8),
-    0: () => magnifyMiddle(0),
+    "+": () => gestures.magnifyMiddle(1.25),
+    "=": () => gestures.magnifyMiddle(1.25),
+    "-": () => gestures.magnifyMiddle(0.8),
+    0: () => gestures.magnifyMiddle(0),
     "[": () => controls.stepAperture(-1),
     "]": () => controls.stepAperture(1),
     p: () => controls.toggleKind(),
     t: () => controls.togglePaint(),
     f: toggleFullScreen,
-    " ": () => controls.togglePlaying(),
-    Enter: () => focusOn(middle()),
+    " ": () => player.toggle(),
+    Enter: () => focusOn(zoom.middle),
   };
 
   addEventListener("keydown", (event) => {

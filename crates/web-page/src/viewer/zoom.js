@@ -21,6 +21,12 @@ class Zoom {
     return { left, top, width, height };
   }
 
+  /** The middle of the view, as a point of the window. */
+  get middle() {
+    const { left, top, width, height } = this.view.getBoundingClientRect();
+    return { clientX: left + width / 2, clientY: top + height / 2 };
+  }
+
   /**
    * Where a point of the window lies in the picture: from 0 at the upper left to 1.
    *

@@ -9,15 +9,8 @@ class EngineControls {
   constructor(page, rack, player, brush) {
     this.page = page;
     this.rack = rack;
-    this.player = player;
     this.brush = brush;
-    this.distance = element("distance", HTMLInputElement);
-    this.distanceText = element("distance-text", HTMLOutputElement);
-    this.distance.addEventListener("input", () => {
-      player.stop();
-      rack.move(Number(this.distance.value));
-    });
-    this.distance.addEventListener("change", () => rack.settle());
+    this.focusBar = new FocusBar(rack, player);
     this.aperture = element("aperture", HTMLInputElement);
     this.apertureText = element("aperture-text", HTMLOutputElement);
     this.aperture.addEventListener("input", () => rack.stopDown(Number(this.aperture.value), true));
@@ -34,8 +27,6 @@ class EngineControls {
     this.undo = this.button("undo", () => brush.undo());
     this.redo = this.button("redo", () => brush.redo());
     this.save = this.button("save-strokes", () => this.saveStrokes());
-    this.playButton = this.button("play", () => this.togglePlaying());
-    element("rack", HTMLDivElement).hidden = rack.nearest === rack.farthest;
     showFullScreenButton();
     element("bar", HTMLDivElement).hidden = false;
     this.update();
@@ -64,10 +55,7 @@ class EngineControls {
   /** Shows the state of lens and brush. */
   update() {
     const { rack, brush } = this;
-    const text = distanceText(rack.inverseDistance);
-    this.distance.value = String(rack.position);
-    this.distance.setAttribute("aria-valuetext", text);
-    this.distanceText.value = text;
+    this.focusBar.update();
     this.aperture.value = String(rack.stop);
     this.aperture.setAttribute("aria-valuetext", rack.fNumberText);
     this.apertureText.value = rack.fNumberText;
@@ -85,16 +73,6 @@ class EngineControls {
     element("history", HTMLDivElement).hidden = steps.length === 0;
     this.undo.disabled = this.save.disabled = done === 0;
     this.redo.disabled = done === steps.length;
-  }
-
-  /** @param {boolean} isPlaying */
-  showPlaying(isPlaying) {
-    this.playButton.setAttribute("aria-pressed", String(isPlaying));
-  }
-
-  togglePlaying() {
-    if (this.player.isPlaying) this.player.stop();
-    else this.player.play();
   }
 
   toggleKind() {

@@ -26,7 +26,7 @@ async function showEnginePage(page) {
   });
   const screen = new EngineScreen(canvas, engine, rack, { drawn, failed });
   /** @type {Player} */
-  const player = new Player(rack, (isPlaying) => controls.showPlaying(isPlaying));
+  const player = new Player(rack, (isPlaying) => controls.focusBar.showPlaying(isPlaying));
   const zoom = new Zoom(view, element("stage", HTMLDivElement));
   const strokes = new RecordedStrokes(page.view);
   const brush = new BrushTool(view, zoom, rack, screen, strokes, { painted, failed });
@@ -75,27 +75,16 @@ async function showEnginePage(page) {
     }
   }
 
-  function middle() {
-    const { left, top, width, height } = view.getBoundingClientRect();
-    return { clientX: left + width / 2, clientY: top + height / 2 };
-  }
-
-  /** @param {number} factor */
-  function magnifyMiddle(factor) {
-    zoom.magnify(factor, middle());
-    gestures.allowScrolling();
-  }
-
   /** @type {{[key: string]: () => void}} */
   const actions = {
     ArrowLeft: () => rack.step(-0.02),
     ArrowRight: () => rack.step(0.02),
     Home: () => rack.rest(rack.nearest),
     End: () => rack.rest(rack.farthest),
-    "+": () => magnifyMiddle(1.25),
-    "=": () => magnifyMiddle(1.25),
-    "-": () => magnifyMiddle(0.8),
-    0: () => magnifyMiddle(0),
+    "+": () => gestures.magnifyMiddle(1.25),
+    "=": () => gestures.magnifyMiddle(1.25),
+    "-": () => gestures.magnifyMiddle(0.8),
+    0: () => gestures.magnifyMiddle(0),
     "[": () => rack.stopDown(rack.stop - 0.1, false),
     "]": () => rack.stopDown(rack.stop + 0.1, false),
     ",": () => controls.scaleBrush(0.8),
@@ -105,8 +94,8 @@ async function showEnginePage(page) {
     p: () => controls.toggleKind(),
     t: () => controls.togglePaint(),
     f: toggleFullScreen,
-    " ": () => controls.togglePlaying(),
-    Enter: () => focusOn(middle()),
+    " ": () => player.toggle(),
+    Enter: () => focusOn(zoom.middle),
   };
 
   addEventListener("keydown", (event) => {
