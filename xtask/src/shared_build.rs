@@ -1,8 +1,8 @@
-//! The program and its tests must be built from the same dependencies with the same features.
+//! The program, its tests and the whole workspace must be built from the same dependencies with the same features.
 //!
-//! A test dependency may enable features of a crate that the program uses, too. That crate and its dependents
-//! are then compiled twice, for the program and for its tests, which takes minutes for the window. Features
-//! that test dependencies need are therefore enabled for the program as well.
+//! A test dependency, or another crate of the workspace, may enable features of a crate that the program uses, too. That crate and its
+//! dependents are then compiled twice, which takes minutes for the window: for the program and for its tests, or for `--workspace` and for
+//! `--package focus-brush`. Features that others need are therefore enabled for the program as well.
 
 use crate::chore::{Failure, cargo, output_of};
 use std::collections::BTreeSet;
@@ -10,31 +10,33 @@ use std::collections::BTreeSet;
 /// Checks the workspace.
 ///
 /// # Errors
-/// A crate is built with other features for the tests, or `cargo tree` fails.
+/// A crate is built with other features for the tests or the workspace, or `cargo tree` fails.
 pub fn check() -> Result<(), Failure> {
-    let (program, with_tests) = (crates("normal,build")?, crates("normal,build,dev")?);
-    let twice = built_twice(&program, &with_tests);
-    if twice.is_empty() {
-        return Ok(());
+    let program = crates(&["--package", "focus-brush", "-e", "normal,build"])?;
+    let with_tests = crates(&["--package", "focus-brush", "-e", "normal,build,dev"])?;
+    let workspace = crates(&["--workspace", "-e", "normal,build,dev"])?;
+    for (larger, name) in [(&with_tests, "the tests of focus-brush"), (&workspace, "the whole workspace")] {
+        let twice = built_twice(&program, larger);
+        if !twice.is_empty() {
+            return Err(Failure::new(format!(
+                "{name} need these built once more, with other features (turn those on in Cargo.toml):\n  {}",
+                twice.join("\n  ")
+            )));
+        }
     }
-    Err(Failure::new(format!(
-        "the tests of focus-brush build these once more, with other features (turn those on in \
-         Cargo.toml):\n  {}",
-        twice.join("\n  ")
-    )))
+    Ok(())
 }
 
-/// The dependencies of focus-brush by edges of these kinds, one line each: name, version, features.
-fn crates(edges: &str) -> Result<String, Failure> {
-    let arguments =
-        ["-p", "focus-brush", "-e", edges, "--prefix", "none", "--no-dedupe", "-f", "{p} {f}", "--locked"];
-    let listed = output_of(cargo("tree").args(arguments))?;
+/// The dependencies of these packages by these edges, one line each: name, version, features.
+fn crates(of: &[&str]) -> Result<String, Failure> {
+    let arguments = ["--prefix", "none", "--no-dedupe", "-f", "{p} {f}", "--locked"];
+    let listed = output_of(cargo("tree").args(of).args(arguments))?;
     Ok(String::from_utf8_lossy(&listed).into_owned())
 }
 
-/// Lines of the program that are not among those of its tests.
-fn built_twice<'a>(program: &'a str, tests: &str) -> Vec<&'a str> {
-    let shared: BTreeSet<_> = tests.lines().collect();
+/// Lines of the program that are not among those of what is larger than it.
+fn built_twice<'a>(program: &'a str, larger: &str) -> Vec<&'a str> {
+    let shared: BTreeSet<_> = larger.lines().collect();
     let own: BTreeSet<_> = program.lines().filter(|line| !shared.contains(line)).collect();
     own.into_iter().collect()
 }
@@ -44,7 +46,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_program_and_its_tests_share_their_dependencies() {
+    fn the_program_its_tests_and_the_workspace_share_their_dependencies() {
         check().unwrap_or_else(|failure| panic!("{failure}"));
     }
 

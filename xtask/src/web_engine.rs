@@ -28,8 +28,11 @@ pub fn web_engine(arguments: &[OsString]) -> Result<(), Failure> {
         _ => return Err(Failure::new("usage: cargo xtask web-engine [FILE.wasm]")),
     };
     let folder = target().join("web-engine");
-    let mut build = cargo("build");
-    build.args(["--package", "web-engine", "--release", "--target", TARGET]).arg("--target-dir").arg(&folder);
+    // The type of the crate is chosen here and not in its manifest: files of a `cdylib` have no checksum in their names, so that builds with
+    // other features would take each other's place.
+    let mut build = cargo("rustc");
+    build.args(["--package", "web-engine", "--lib", "--crate-type", "cdylib"]);
+    build.args(["--release", "--target", TARGET]).arg("--target-dir").arg(&folder);
     let profile =
         [("LTO", "fat"), ("CODEGEN_UNITS", "1"), ("PANIC", "abort"), ("STRIP", "true"), ("DEBUG", "false")];
     build.envs(profile.map(|(option, value)| (format!("CARGO_PROFILE_RELEASE_{option}"), value)));
