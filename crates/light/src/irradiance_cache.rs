@@ -3,7 +3,7 @@
 //! It is solved in the background, which continues when a caller stops waiting: roughly for immediate pictures, and finely as soon as somebody
 //! asks for that.
 
-use crate::disk_cache::DiskCache;
+use crate::disk_cache::{CacheEntry, DiskCache};
 use crate::irradiance_file;
 use crate::options::{LightOptions, LightQuality};
 use crate::resources::Resources;
@@ -26,12 +26,31 @@ pub(crate) struct IrradianceCache {
     worlds: Mutex<Vec<Arc<WorldIrradiance>>>,
 }
 
+/// Irradiance that is stored, and once more when its last owner drops it if light was gathered meanwhile.
+struct StoredIrradiance {
+    irradiance: Arc<Irradiance>,
+    /// `None` if nothing is stored.
+    file: Option<CacheEntry>,
+    /// How much of it had been gathered when it was stored.
+    stored_count: usize,
+}
+
+impl Drop for StoredIrradiance {
+    fn drop(&mut self) {
+        if let Some(file) = &self.file
+            && self.irradiance.gathered().count() > self.stored_count
+        {
+            file.write(&irradiance_file::to_bytes(&self.irradiance));
+        }
+    }
+}
+
 /// The irradiance of a scene in a world.
 struct WorldIrradiance {
     /// Its [lighting](World::lighting).
     world: World,
     rough: OnceLock<Arc<Irradiance>>,
-    fine: OnceLock<Arc<Irradiance>>,
+    fine: OnceLock<Arc<StoredIrradiance>>,
     rough_task: OnceLock<Arc<SharedTask>>,
     fine_task: OnceLock<Arc<SharedTask>>,
 }
@@ -58,7 +77,7 @@ impl WorldIrradiance {
 
     fn available(&self, quality: LightQuality) -> Option<&Arc<Irradiance>> {
         let rough = || self.rough.get().filter(|_| quality == LightQuality::Rough);
-        self.fine.get().or_else(rough)
+        self.fine.get().map(|fine| &fine.irradiance).or_else(rough)
     }
 }
 
@@ -96,11 +115,8 @@ impl IrradianceCache {
     /// The memory of all solutions, in bytes.
     pub fn bytes(&self) -> usize {
         let solutions = |entry: &Arc<WorldIrradiance>| -> usize {
-            [&entry.rough, &entry.fine]
-                .into_iter()
-                .filter_map(OnceLock::get)
-                .map(|solved| solved.bytes())
-                .sum()
+            let fine = entry.fine.get().map(|fine| &fine.irradiance);
+            entry.rough.get().into_iter().chain(fine).map(|irradiance| irradiance.bytes()).sum()
         };
         self.lock().iter().map(solutions).sum()
     }
@@ -181,8 +197,13 @@ fn solve_world(
     });
     let cached_bytes = file.as_ref().and_then(|file| file.read());
     let from_bytes = |bytes: Vec<u8>| irradiance_file::from_bytes(&bytes, scene, world, options);
+    let set_fine = |irradiance: Irradiance| {
+        let (irradiance, file) = (Arc::new(irradiance), file.clone());
+        let stored_count = irradiance.gathered().count();
+        let _ = entry.fine.set(Arc::new(StoredIrradiance { irradiance, file, stored_count }));
+    };
     if let Some(cached) = cached_bytes.and_then(from_bytes) {
-        let _ = entry.fine.set(Arc::new(cached));
+        set_fine(cached);
         return Ok(());
     }
     let transport = transport_without_cache(tracer, entry.world.clone(), light, 1, 1);
@@ -194,7 +215,7 @@ fn solve_world(
     if let Some(file) = &file {
         file.write(&irradiance_file::to_bytes(&fine));
     }
-    let _ = entry.fine.set(Arc::new(fine));
+    set_fine(fine);
     Ok(())
 }
 

@@ -563,7 +563,7 @@ fn flipped(w: DVec3) -> DVec3 {
     DVec3::new(w.x, w.y, -w.z)
 }
 
-fn cosine_weighted(u: DVec2) -> DVec3 {
+pub(crate) fn cosine_weighted(u: DVec2) -> DVec3 {
     let (sin, cos) = (TAU * u.x).sin_cos();
     let flat = u.y.sqrt();
     DVec3::new(flat * cos, flat * sin, (1.0 - u.y).max(0.0).sqrt())

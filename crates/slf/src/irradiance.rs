@@ -2,21 +2,28 @@
 //!
 //! The surface is divided into patches ([`patches`]): the surface of one part within one lattice cell that faces
 //! roughly one direction. Each stores the light that arrives at it: *direct* (from sampled lights, with occlusion) and
-//! *indirect* (everything else), solved bounce by bounce (`irradiance_solver`). Between patches irradiance is
-//! interpolated by position and normal, so it is continuous except between parts; surfaces that face away, such as the
-//! other side of a wall, do not contribute. A surface point sends its diffuse albedo times E/π of it. The cache also
-//! holds the light of an unoccluded sky by normal (`open_sky`).
+//! *indirect* (everything else). Large patches are [solved](solved) together, bounce by bounce (`irradiance_solver`); small
+//! ones [gather](gathered) what these send, once somebody looks there: light is computed where it is seen. Between patches
+//! irradiance is interpolated by position and normal, so it is continuous except between parts; surfaces that face away,
+//! such as the other side of a wall, do not contribute. A surface point sends its diffuse albedo times E/π of it. The
+//! cache also holds the light of an unoccluded sky by normal (`open_sky`).
 
+pub(crate) mod gathered;
 mod lattice;
+pub(crate) mod patch_rays;
 mod patch_sizes;
 pub(crate) mod patches;
 pub(crate) mod place;
+pub(crate) mod solved;
 
 use crate::open_sky::OpenSky;
+use crate::transport::Transport;
+use gathered::{GatheredIrradiance, GatheredPatches};
 use glam::{DVec3, Vec3};
 use patches::Patches;
 use place::Place;
-use scene::World;
+use scene::{Scene, World};
+use solved::{IrradianceSolution, SolvedPatches};
 use trace::IncidentLight;
 
 /// Irradiance at every patch of a scene's surface.
@@ -26,36 +33,97 @@ use trace::IncidentLight;
 /// [`Transport::with_control_variate`](crate::Transport::with_control_variate).
 #[derive(Debug)]
 pub struct Irradiance {
-    patches: Patches,
-    solution: IrradianceSolution,
+    solved: SolvedPatches,
+    /// Smaller patches, if those that are solved are larger than asked for.
+    gathered: Option<GatheredPatches>,
     sky: Option<OpenSky>,
 }
 
-/// Solved irradiance: together with the scene, the world and the solver's options this is all that needs to be stored.
-#[derive(Clone, Debug, PartialEq)]
-pub struct IrradianceSolution {
-    /// Irradiance/π by patch (linear RGB radiance units), from sampled lights.
-    pub direct: Vec<Vec3>,
-    /// Irradiance/π by patch, all other light.
-    pub indirect: Vec<Vec3>,
-    /// Whether light was cut off after [`MAX_BOUNCES`](crate::MAX_BOUNCES) before it had died away.
-    pub is_cut_off: bool,
+/// Resolution of the irradiance.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct IrradianceOptions {
+    /// Approximate number of patches.
+    pub patches: u32,
+    /// Rays per patch.
+    pub rays: u32,
+}
+
+impl Default for IrradianceOptions {
+    fn default() -> Self {
+        Self { patches: 24_000, rays: 96 }
+    }
+}
+
+/// Patches to one that is solved: what light a patch receives changes less than what it shows.
+const PATCHES_PER_SOLVED: u32 = 12;
+
+/// The least number of patches that are solved, if there are as many.
+const MIN_SOLVED: u32 = 1500;
+
+impl IrradianceOptions {
+    /// Approximate number of patches that are solved.
+    pub(crate) fn solved(self) -> u32 {
+        (self.patches / PATCHES_PER_SOLVED).max(self.patches.min(MIN_SOLVED))
+    }
 }
 
 impl Irradiance {
-    /// Wraps solved values of patches in a world.
-    pub(crate) fn new(patches: Patches, solution: IrradianceSolution, world: &World) -> Self {
-        Self { patches, solution, sky: OpenSky::from_world(world) }
+    /// Wraps solved patches of a scene in a world.
+    pub(crate) fn new(
+        solved: SolvedPatches,
+        options: IrradianceOptions,
+        scene: &Scene,
+        world: &World,
+    ) -> Self {
+        let is_coarser = options.solved() < options.patches;
+        let gathered = is_coarser
+            .then(|| GatheredPatches::new(Patches::new(scene, options.patches), options.rays.max(1)));
+        Self { solved, gathered, sky: OpenSky::from_world(world) }
+    }
+
+    /// Restores an irradiance from its [`solution`](Irradiance::solution), of the same scene, world and options; `None`
+    /// if the number of values does not match or one is not finite.
+    pub fn from_solution(
+        scene: &Scene,
+        world: &World,
+        options: IrradianceOptions,
+        solution: IrradianceSolution,
+    ) -> Option<Self> {
+        let patches = Patches::new(scene, options.solved());
+        let fits = |values: &Vec<Vec3>| {
+            values.len() == patches.all().len() && values.iter().all(|value| value.is_finite())
+        };
+        let is_valid = [&solution.direct, &solution.indirect].into_iter().all(fits);
+        is_valid.then(|| Self::new(SolvedPatches { patches, solution }, options, scene, world))
     }
 
     /// What was solved; see [`Irradiance::from_solution`].
     pub fn solution(&self) -> &IrradianceSolution {
-        &self.solution
+        &self.solved.solution
+    }
+
+    /// The patches that were solved.
+    pub(crate) fn solved(&self) -> &SolvedPatches {
+        &self.solved
+    }
+
+    /// What was gathered so far, for the places at which somebody looked.
+    pub fn gathered(&self) -> GatheredIrradiance {
+        self.gathered.as_ref().map(GatheredPatches::all_gathered).unwrap_or_default()
+    }
+
+    /// Takes over what an irradiance of the same scene, world and options [`gathered`](Irradiance::gathered); `false` if a patch
+    /// does not exist or has a value that is not finite.
+    pub fn restore(&self, gathered: &GatheredIrradiance) -> bool {
+        match &self.gathered {
+            Some(patches) => patches.restore(gathered),
+            None => *gathered == GatheredIrradiance::default(),
+        }
     }
 
     /// The memory that it takes, in bytes.
     pub fn bytes(&self) -> usize {
-        self.patches.bytes() + size_of_val(&*self.solution.direct) + size_of_val(&*self.solution.indirect)
+        self.solved.bytes() + self.gathered.as_ref().map_or(0, GatheredPatches::bytes)
     }
 
     /// Irradiance/π that an unoccluded environment sends to a surface with this normal; `None` if the environment is
@@ -72,25 +140,22 @@ impl Irradiance {
 
     /// Side of a lattice cell for the patches of a part, world units.
     pub(crate) fn spacing(&self, part: u32) -> f64 {
-        self.patches.spacing(part)
+        self.gathered.as_ref().map_or(&self.solved.patches, |gathered| &gathered.patches).spacing(part)
     }
 
-    /// Indirect irradiance/π at a place; `None` if no patch covers it.
-    pub(crate) fn indirect(&self, place: &Place) -> Option<Vec3> {
-        self.interpolate(place, |patch| self.solution.indirect[patch])
-    }
-
-    /// Direct and indirect irradiance/π at a place; `None` if no patch covers it.
-    pub(crate) fn total(&self, place: &Place) -> Option<Vec3> {
-        self.interpolate(place, |patch| self.solution.direct[patch] + self.solution.indirect[patch])
-    }
-
-    fn interpolate(&self, place: &Place, value: impl Fn(usize) -> Vec3) -> Option<Vec3> {
-        let (mut sum, mut weights) = (Vec3::ZERO, 0.0);
-        for (patch, weight) in self.patches.around(place) {
-            sum += value(patch as usize) * weight;
-            weights += weight;
+    /// Indirect irradiance/π at a place, found by rays of `transport`; `None` if no patch covers it.
+    pub(crate) fn indirect(&self, transport: &Transport, place: &Place) -> Option<Vec3> {
+        match &self.gathered {
+            Some(gathered) => gathered.indirect(transport, &self.solved, place),
+            None => self.solved.indirect(place),
         }
-        (weights > 0.0).then(|| sum / weights)
+    }
+
+    /// Direct and indirect irradiance/π at a place, found by rays of `transport`; `None` if no patch covers it.
+    pub(crate) fn total(&self, transport: &Transport, place: &Place) -> Option<Vec3> {
+        match &self.gathered {
+            Some(gathered) => gathered.total(transport, &self.solved, place),
+            None => self.solved.total(place),
+        }
     }
 }

@@ -1,4 +1,4 @@
-//! Solution of the irradiance of all patches, bounce by bounce.
+//! Solution of the irradiance of patches, bounce by bounce.
 //!
 //! Every patch sends cosine-distributed rays once. A ray ends at a light, which counts at once, or at a diffuse
 //! surface: a *link* to a patch, with the weight by which its diffuse lobes pass on what arrives there. Gloss and
@@ -8,44 +8,29 @@
 //! as no near surface interferes (Ward 1988: the harmonic mean of the hit distances).
 
 use crate::bounce_limit::MAX_BOUNCES;
+use crate::irradiance::patch_rays::{IndirectRays, PatchRays, smoothed_indirect};
 use crate::irradiance::patches::{Patch, Patches};
 use crate::irradiance::place::Place;
-use crate::irradiance::{Irradiance, IrradianceSolution};
-use crate::transport::{PatchRay, PatchRayLink, Transport};
-use glam::{DVec3, Vec3};
+use crate::irradiance::solved::{IrradianceSolution, SolvedPatches};
+use crate::irradiance::{Irradiance, IrradianceOptions};
+use crate::transport::{IrradianceLookup, Transport};
+use glam::Vec3;
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;
-use scene::{Scene, World};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Change of a pass, as a share of the brightest patch, at which light has died away.
 const CONVERGED_CHANGE: f32 = 1e-5;
-/// Neighbours within this share of the harmonic mean distance are averaged.
-const SMOOTHING_RADIUS: f64 = 0.25;
 
 /// What the rays of a patch gathered, as irradiance/π.
 struct PatchLight {
     direct: Vec3,
     /// Light that did not come directly from a sampled light.
     indirect: Vec3,
+    /// Patches whose light is sent on, and the share of it.
     links: Vec<(u32, Vec3)>,
     /// Harmonic mean of the hit distances, infinite in the open.
     distance: f64,
-}
-
-/// Resolution of the solution.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct IrradianceOptions {
-    /// Approximate number of patches.
-    pub patches: u32,
-    /// Rays per patch.
-    pub rays: u32,
-}
-
-impl Default for IrradianceOptions {
-    fn default() -> Self {
-        Self { patches: 24_000, rays: 96 }
-    }
 }
 
 impl Irradiance {
@@ -58,25 +43,10 @@ impl Irradiance {
         options: IrradianceOptions,
         progress: &dyn Progress,
     ) -> Result<Self, Cancelled> {
-        let patches = Patches::new(transport.scene(), options.patches);
+        let patches = Patches::new(transport.scene(), options.solved());
         let solution = solve_bounces(transport, &patches, options.rays.max(1), progress)?;
-        Ok(Self::new(patches, solution, transport.world()))
-    }
-
-    /// Restores an irradiance from its [`solution`](Irradiance::solution), of the same scene, world and options; `None`
-    /// if the number of values does not match or one is not finite.
-    pub fn from_solution(
-        scene: &Scene,
-        world: &World,
-        options: IrradianceOptions,
-        solution: IrradianceSolution,
-    ) -> Option<Self> {
-        let patches = Patches::new(scene, options.patches);
-        let fits = |values: &Vec<Vec3>| {
-            values.len() == patches.all().len() && values.iter().all(|value| value.is_finite())
-        };
-        let is_valid = [&solution.direct, &solution.indirect].into_iter().all(fits);
-        is_valid.then(|| Self::new(patches, solution, world))
+        let solved = SolvedPatches { patches, solution };
+        Ok(Self::new(solved, options, transport.scene(), transport.world()))
     }
 }
 
@@ -124,50 +94,21 @@ fn solve_bounces(
     }
     let indirect = (0..all.len())
         .into_par_iter()
-        .map(|at| smoothed_indirect(patches, &patch_light, &indirect, at))
+        .map(|at| smoothed_indirect(patches, at, |patch| (indirect[patch], patch_light[patch].distance)))
         .collect();
     Ok(IrradianceSolution { direct, indirect, is_cut_off })
 }
 
 /// Traces the rays of a patch.
 fn trace_patch_rays(transport: &Transport, patches: &Patches, patch: &Patch, rays: u32) -> PatchLight {
-    let points = patches.points(patch);
-    let share = 1.0 / rays as f32;
-    let (mut direct, mut indirect, mut links) = (Vec3::ZERO, Vec3::ZERO, Vec::new());
-    let (mut nearness, mut albedo_sum) = (0.0, DVec3::ZERO);
-    for ray in 0..rays {
-        let point = points[ray as usize % points.len()];
-        let PatchRay { direct: drawn, indirect: other, distance, link: onward } =
-            transport.trace_patch_ray(points[0].point, point, ray, patches);
-        direct += drawn * share;
-        indirect += other * share;
-        nearness += 1.0 / distance;
-        if let Some(PatchRayLink { place, weight, albedo, choice }) = onward
-            && let Some(target) = choose_patch(patches, &place, choice)
-        {
-            links.push((target, weight * share));
-            albedo_sum += albedo;
-        }
-    }
-    bound_row_sum(&mut links, albedo_sum / f64::from(rays));
-    PatchLight { direct, indirect, links, distance: f64::from(rays) / nearness }
-}
-
-/// Scales the weights of a patch's links, channel by channel, so that they sum to at most `albedo`.
-fn bound_row_sum(links: &mut [(u32, Vec3)], albedo: DVec3) {
-    let sum = row_sum(links);
-    // The margin is for the rounding of the scaled weights.
-    let scale = albedo / sum * (1.0 - f64::from(f32::EPSILON));
-    if scale.cmplt(DVec3::ONE).any() {
-        links
-            .iter_mut()
-            .for_each(|(_, weight)| *weight = (weight.as_dvec3() * scale.min(DVec3::ONE)).as_vec3());
-    }
-}
-
-/// Sum of the absolute weights of a patch's links.
-fn row_sum(links: &[(u32, Vec3)]) -> DVec3 {
-    links.iter().map(|(_, weight)| weight.abs().as_dvec3()).sum()
+    let rays = PatchRays::new(transport, patches, patch, rays);
+    let IndirectRays { light, links, distance } =
+        rays.indirect(transport, IrradianceLookup::Unsolved(patches));
+    let links = links
+        .iter()
+        .filter_map(|link| Some((choose_patch(patches, &link.place, link.choice)?, link.weight)))
+        .collect();
+    PatchLight { direct: rays.direct(transport), indirect: light, links, distance }
 }
 
 /// Samples a patch around a place by its interpolation weight.
@@ -185,83 +126,16 @@ fn choose_patch(patches: &Patches, place: &Place, choice: f64) -> Option<u32> {
     chosen
 }
 
-/// The indirect light of a patch, averaged with its neighbours'.
-fn smoothed_indirect(patches: &Patches, patch_light: &[PatchLight], indirect: &[Vec3], at: usize) -> Vec3 {
-    let patch = &patches.all()[at];
-    let (mut sum, mut weights) = (indirect[at] * patch.area as f32, patch.area as f32);
-    patches.visit_neighbors(patch, |other| {
-        let other = other as usize;
-        if other == at {
-            return;
-        }
-        let neighbor = &patches.all()[other];
-        let reach = SMOOTHING_RADIUS * patch_light[at].distance.min(patch_light[other].distance);
-        let near = (1.0 - patch.position.distance(neighbor.position) / reach).max(0.0);
-        let weight = (near * neighbor.area) as f32;
-        sum += indirect[other] * weight;
-        weights += weight;
-    });
-    sum / weights
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::TransportOptions;
+    use glam::DVec3;
     use progress::Unwatched;
-    use scene::{Material, Scalar, Workflow};
+    use scene::{Material, World};
     use std::sync::Arc;
     use test_scenes::{Mesh, scene_of};
     use trace::Tracer;
-
-    /// A cube that rests on a slab, with a ball in the corner between them, of rough metal that is white in red and
-    /// darker in green and blue.
-    fn metal_shapes() -> Arc<Scene> {
-        let metal = || Material {
-            base_color: Vec3::new(1.0, 0.9, 0.3).extend(1.0),
-            workflow: Workflow::MetallicRoughness {
-                metallic: Scalar::constant(1.0),
-                roughness: Scalar::constant(1.0),
-            },
-            ..Material::default()
-        };
-        let slab = Mesh::cuboid(DVec3::new(-1.0, -0.1, -1.0), DVec3::new(1.0, 0.0, 1.0));
-        let cube = Mesh::cuboid(DVec3::ZERO, DVec3::splat(0.6));
-        let ball = Mesh::sphere(DVec3::new(-0.1, 0.1, 0.3), 0.1, 12);
-        scene_of([(slab, metal()), (cube, metal()), (ball, metal())])
-    }
-
-    #[test]
-    fn no_patch_sends_on_more_than_arrives() {
-        let scene = metal_shapes();
-        let transport = Transport::new(
-            Arc::new(Tracer::new(scene.clone())),
-            World::studio(),
-            TransportOptions::default(),
-        );
-        let patches = Patches::new(&scene, 600);
-        let rows: Vec<DVec3> = patches
-            .all()
-            .par_iter()
-            .map(|patch| row_sum(&trace_patch_rays(&transport, &patches, patch, 96).links))
-            .collect();
-        let largest = rows.iter().copied().fold(DVec3::ZERO, DVec3::max);
-        assert!(largest.cmple(DVec3::ONE).all(), "{largest}");
-        assert!(largest.x > 0.5, "some patches receive light from others alone: {largest}");
-    }
-
-    #[test]
-    fn a_row_is_scaled_to_its_bound_channel_by_channel() {
-        let links = || vec![(0, Vec3::new(0.9, 0.2, 0.0)), (1, Vec3::new(0.9, 0.1, 0.0))];
-        let mut bounded = links();
-        bound_row_sum(&mut bounded, DVec3::new(1.2, 0.5, 0.0));
-        let sum = row_sum(&bounded);
-        assert!(sum.x <= 1.2 && sum.x > 1.2 - 1e-6, "{sum}");
-        assert!((sum.y - 0.3).abs() < 1e-7 && sum.z == 0.0, "what is below its bound stays: {sum}");
-        let mut empty = Vec::new();
-        bound_row_sum(&mut empty, DVec3::ZERO);
-        assert!(empty.is_empty());
-    }
 
     #[test]
     fn light_in_a_closed_room_is_its_series_sum_or_cut_off() {

@@ -61,8 +61,9 @@ mod punctual;
 mod transport;
 
 pub use bounce_limit::{BounceLimit, MAX_BOUNCES};
-pub use irradiance::{Irradiance, IrradianceSolution};
-pub use irradiance_solver::IrradianceOptions;
+pub use irradiance::gathered::GatheredIrradiance;
+pub use irradiance::solved::IrradianceSolution;
+pub use irradiance::{Irradiance, IrradianceOptions};
 pub use material::Scattering;
 pub use photographs::{
     DirectPhotographs, Exposure, LightTexture, PhotographError, PhotographLight, PhotographModel,

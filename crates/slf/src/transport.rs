@@ -2,21 +2,22 @@
 
 mod batch_measurement;
 mod irradiance_lookup;
+pub(crate) mod patch_gathering;
 mod path_tracing;
 mod scattered_light;
 mod uncached_light;
 
 use crate::bounce_limit::BounceLimit;
 use crate::irradiance::Irradiance;
-use crate::irradiance::patches::{PatchPoint, Patches};
 use crate::irradiance::place::Place;
 use crate::lights::{LightSample, Lights};
 use crate::material_point::{MaterialPoint, emitted};
 use crate::media::{Media, MediumStack};
 use crate::path_random::PathRandom;
 use glam::{DVec3, Vec3};
-use irradiance_lookup::{CacheMode, IrradianceLookup};
-use material::{Bsdf, Frame, OutgoingBsdf, Parts, Scattered, Scattering, Split, Surface};
+use irradiance_lookup::CacheMode;
+pub(crate) use irradiance_lookup::IrradianceLookup;
+use material::{Bsdf, OutgoingBsdf, Parts, Scattered, Scattering, Split};
 use scattered_light::{ScatteredLight, max_split, scale_split};
 use scene::{Scene, SurfacePoint, World};
 use std::sync::{Arc, OnceLock};
@@ -111,26 +112,6 @@ struct Step {
     density: Option<f64>,
 }
 
-/// Result of one ray of a patch, as irradiance/π.
-pub(crate) struct PatchRay {
-    pub direct: Vec3,
-    pub indirect: Vec3,
-    pub distance: f64,
-    pub link: Option<PatchRayLink>,
-}
-
-/// Where the ray of a patch ended at another patch.
-pub(crate) struct PatchRayLink {
-    /// The place whose irradiance is passed on.
-    pub place: Place,
-    /// The share of it that is passed on.
-    pub weight: Vec3,
-    /// The product of the albedos along the ray, which the mean weight of all rays must not exceed.
-    pub albedo: DVec3,
-    /// Uniform number in [0, 1) that chooses among the patches around the place.
-    pub choice: f64,
-}
-
 impl Transport {
     /// Prepares to trace light paths in the scene of `tracer`, lit by `world`. No irradiance is cached.
     pub fn new(tracer: Arc<Tracer>, world: World, options: TransportOptions) -> Self {
@@ -169,61 +150,13 @@ impl Transport {
     }
 
     /// The lit scene.
-    pub(crate) fn scene(&self) -> &Scene {
+    pub fn scene(&self) -> &Arc<Scene> {
         self.tracer.scene()
     }
 
     /// The world around the scene.
     pub(crate) fn world(&self) -> &World {
         &self.world
-    }
-
-    /// Traces ray `index` of the patch whose first point is `seed`.
-    pub(crate) fn trace_patch_ray(
-        &self,
-        seed: SurfacePoint,
-        from: PatchPoint,
-        index: u32,
-        patches: &Patches,
-    ) -> PatchRay {
-        let scene = self.scene();
-        let PatchPoint { point, is_front } = from;
-        let place = Place::new(scene, point, is_front);
-        let geometric = scene.area_normal(point.triangle).normalize_or_zero();
-        let geometric = if is_front { geometric } else { -geometric };
-        let at = MaterialPoint {
-            position: place.position,
-            surface: Surface { metallic: 0.0, specular: 0.0, ..Surface::default() },
-            frame: Frame::new(geometric, place.normal, DVec3::ZERO),
-            material: scene.parts[place.part as usize].material,
-        };
-        let inside = self.media.outgoing_medium(at.material, is_front);
-        let random = PathRandom::new(PathRandom::seed(seed, place.normal), index);
-        let mut path = Path { random, inside, lights: LightsPerDirection::uniform(1.0) };
-        let interface = self.media.interface(at.material, &inside, is_front);
-        let bsdf = Bsdf::new(&at.surface, at.frame, interface);
-        let lobes = bsdf.toward(place.normal);
-        let mut ray = PatchRay {
-            direct: self.direct(point, &at, &lobes, &mut path).total().as_vec3(),
-            indirect: Vec3::ZERO,
-            distance: f64::INFINITY,
-            link: None,
-        };
-        if let Some(scattered) = lobes.sample(path.random.next3()) {
-            let step = self.step(point, &at, &scattered, &mut path);
-            let weight = scattered.weight.own;
-            let path_light = self.trace_path(step, &mut path, IrradianceLookup::Unsolved(patches));
-            ray.direct += (weight * path_light.direct).as_vec3();
-            ray.indirect = (weight * path_light.indirect).as_vec3();
-            ray.distance = path_light.distance;
-            ray.link = path_light.cached_end.map(|(cached, share)| PatchRayLink {
-                place: cached.place,
-                weight: (weight * share).as_vec3(),
-                albedo: weight * path_light.albedo,
-                choice: path.random.next(),
-            });
-        }
-        ray
     }
 
     /// Light scattered toward the eye, found by one path.
@@ -403,7 +336,7 @@ impl Radiance for Transport {
         let cached = self.cache_mode.trusted().and_then(|cached| {
             let irradiance = match slot.incident {
                 Some(incident) => cached.shaded(&self.world, &incident, lobes.normal()),
-                None => cached.indirect(&Place::new(scene, point, is_front))?.as_dvec3(),
+                None => cached.indirect(self, &Place::new(scene, point, is_front))?.as_dvec3(),
             };
             Some((cached, irradiance))
         });

@@ -7,6 +7,8 @@ pub(super) struct PatchSizes {
     coarsest: f64,
     /// By part: how often it is halved.
     levels: Vec<u8>,
+    /// By part: its lit area, square scene units.
+    areas: Vec<f64>,
 }
 
 /// Number of patches that a part has at least, if the scene's patches suffice for it.
@@ -33,7 +35,7 @@ impl PatchSizes {
             // As integers saturate; NaN for what is unlit.
             if is_lit(area) { (halvings as u8).min(MAX_LEVEL) } else { 0 }
         };
-        Self { coarsest, levels: part_areas.iter().map(level).collect() }
+        Self { coarsest, levels: part_areas.iter().map(level).collect(), areas: part_areas.to_vec() }
     }
 
     /// The level of a part's cells: 0 for the coarsest.
@@ -49,6 +51,11 @@ impl PatchSizes {
     /// The side of a level's cells, scene units.
     pub fn of_level(&self, level: u8) -> f64 {
         self.coarsest * 0.5_f64.powi(i32::from(level))
+    }
+
+    /// How many cells a part's lit area would fill.
+    pub fn cells_of_part(&self, part: u32) -> f64 {
+        self.areas[part as usize] / self.of_part(part).powi(2)
     }
 
     /// The side of a part's cells, scene units.

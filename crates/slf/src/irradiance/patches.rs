@@ -4,7 +4,7 @@ use super::lattice::Lattice;
 use super::patch_sizes::PatchSizes;
 use super::place::Place;
 use crate::emitters::uniform_barycentric;
-use glam::{DVec2, DVec3, IVec3};
+use glam::{DVec2, DVec3, IVec3, Vec3};
 use scene::{Scene, SurfacePoint};
 use std::collections::HashMap;
 
@@ -129,6 +129,11 @@ impl Patches {
         self.sizes.of_part(part)
     }
 
+    /// About how many patches a part has.
+    pub fn estimated_count(&self, part: u32) -> f64 {
+        self.sizes.cells_of_part(part)
+    }
+
     fn lattice(&self, part: u32) -> &Lattice {
         &self.lattices[usize::from(self.sizes.level(part))]
     }
@@ -167,6 +172,16 @@ impl Patches {
             let weight = share * (facing - 0.35).max(0.0).powi(2) * (1.0 - off).max(0.0);
             (weight > 0.0).then_some((number, weight as f32))
         })
+    }
+
+    /// The interpolated value of the patches around a place; `None` if no patch covers it.
+    pub fn interpolate(&self, place: &Place, value: impl Fn(usize) -> Vec3) -> Option<Vec3> {
+        let (mut sum, mut weights) = (Vec3::ZERO, 0.0);
+        for (patch, weight) in self.around(place) {
+            sum += value(patch as usize) * weight;
+            weights += weight;
+        }
+        (weights > 0.0).then(|| sum / weights)
     }
 
     /// Whether any patch contributes to the irradiance at a place.

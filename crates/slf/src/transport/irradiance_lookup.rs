@@ -3,8 +3,10 @@
 use crate::irradiance::Irradiance;
 use crate::irradiance::patches::Patches;
 use crate::irradiance::place::Place;
+use crate::irradiance::solved::SolvedPatches;
+use crate::transport::Transport;
 use glam::Vec3;
-use scene::{Scene, SurfacePoint};
+use scene::SurfacePoint;
 use std::sync::Arc;
 
 /// How cached irradiance is used.
@@ -30,24 +32,39 @@ impl CacheMode {
 
 /// What a path can look up of the scene's light.
 #[derive(Clone, Copy)]
-pub(super) enum IrradianceLookup<'a> {
+pub(crate) enum IrradianceLookup<'a> {
     Unavailable,
     /// Nothing yet, but the patches where irradiance will be solved.
     Unsolved(&'a Patches),
+    /// What is solved, for smaller patches to gather it.
+    Solved(&'a SolvedPatches),
     Trusted(&'a Irradiance),
     /// Indirect irradiance; direct light is sampled. Some paths go on to correct its error.
     ControlVariate(&'a Irradiance),
 }
 
 /// A place that a path came to, whose irradiance is cached or will be.
-pub(super) struct CachedPlace {
+pub(crate) struct CachedPlace {
     pub place: Place,
     /// Irradiance/π there; 0 while it is still being solved.
     pub irradiance: Vec3,
 }
 
+/// How a path came to a place.
+#[derive(Clone, Copy)]
+pub(crate) struct Arrival {
+    /// Length of its last segment, scene units.
+    pub distance: f64,
+    /// Number of surfaces that scattered it, with the one that it left first.
+    pub scatterings: u32,
+    /// The least density, 1/sr, with which its directions were sampled; `None` if none of them was spread.
+    pub density: Option<f64>,
+}
+
 /// Hits nearer than this many patch sizes are not looked up: patches are too coarse for them.
 const MIN_DISTANCE_PATCHES: f64 = 2.0;
+/// After this many scattering events nobody sees the patches any more.
+const MAX_NEAR_SCATTERINGS: u32 = 3;
 
 impl IrradianceLookup<'_> {
     /// Whether some paths go on past cached irradiance.
@@ -58,39 +75,50 @@ impl IrradianceLookup<'_> {
     /// Whether paths must not send on more than the albedos along them, for the price of a small bias: what is solved
     /// would grow from bounce to bounce. Unbiased paths have weights of mean 1 that are not bounded.
     pub fn is_bounded(self) -> bool {
-        matches!(self, Self::Unsolved(_) | Self::Trusted(_))
+        matches!(self, Self::Unsolved(_) | Self::Solved(_) | Self::Trusted(_))
     }
 
     /// Throughput below which Russian roulette ends paths. The rays of a patch are few, and their sum is bounded: there
     /// it would cut off what roulette adds to the surviving ones.
     pub fn roulette_throughput(self) -> f64 {
-        if matches!(self, Self::Unsolved(_)) { 0.05 } else { 1.0 }
+        if matches!(self, Self::Unsolved(_) | Self::Solved(_)) { 0.05 } else { 1.0 }
     }
 
-    /// The cached place at a hit after `distance` (scene units). `None` if nothing is cached there, or the hit is so
-    /// near that the patches would show.
+    /// The cached place at a surface point, on its front or its back, that a path came to; `None` if nothing is cached there, or
+    /// the path is so short that the patches would show.
     pub fn cached_place(
         self,
-        scene: &Scene,
-        point: SurfacePoint,
-        is_front: bool,
-        distance: f64,
+        transport: &Transport,
+        (point, is_front): (SurfacePoint, bool),
+        arrival: Arrival,
     ) -> Option<CachedPlace> {
+        let Arrival { distance, scatterings, density } = arrival;
+        let scene = transport.scene();
         let part = scene.triangles[point.triangle as usize].part;
-        let spacing = match self {
+        let lookup = match (self, density) {
+            (Self::Trusted(irradiance), Some(density))
+                if irradiance.solved().resolve(part, distance, density) =>
+            {
+                Self::Solved(irradiance.solved())
+            }
+            _ => self,
+        };
+        let spacing = match lookup {
             Self::Unavailable => return None,
             Self::Unsolved(patches) => patches.spacing(part),
+            Self::Solved(solved) => solved.patches.spacing(part),
             Self::Trusted(irradiance) | Self::ControlVariate(irradiance) => irradiance.spacing(part),
         };
-        if distance < MIN_DISTANCE_PATCHES * spacing {
+        if distance < MIN_DISTANCE_PATCHES * spacing && scatterings <= MAX_NEAR_SCATTERINGS {
             return None;
         }
         let place = Place::new(scene, point, is_front);
-        let irradiance = match self {
+        let irradiance = match lookup {
             Self::Unavailable => None,
             Self::Unsolved(patches) => patches.covers(&place).then_some(Vec3::ZERO),
-            Self::Trusted(irradiance) => irradiance.total(&place),
-            Self::ControlVariate(irradiance) => irradiance.indirect(&place),
+            Self::Solved(solved) => solved.total(&place),
+            Self::Trusted(irradiance) => irradiance.total(transport, &place),
+            Self::ControlVariate(irradiance) => irradiance.indirect(transport, &place),
         };
         irradiance.map(|irradiance| CachedPlace { place, irradiance })
     }

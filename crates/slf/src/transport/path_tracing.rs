@@ -1,6 +1,6 @@
 //! Tracing of a path from surface to surface, until its light is cached.
 
-use super::irradiance_lookup::{CachedPlace, IrradianceLookup};
+use super::irradiance_lookup::{Arrival, CachedPlace, IrradianceLookup};
 use super::{Path, Step, Transport, power_heuristic};
 use crate::bounce_limit::MAX_BOUNCES;
 use crate::material_point::{MaterialPoint, emitted};
@@ -95,7 +95,8 @@ impl Transport {
             let interface = self.media.interface(at.material, &path.inside, is_front);
             let bsdf = Bsdf::new(&at.surface, at.frame, interface);
             let lobes = bsdf.toward(outgoing);
-            let scattered = match lookup.cached_place(scene, point, is_front, t) {
+            let arrival = Arrival { distance: t, scatterings, density: min_density };
+            let scattered = match lookup.cached_place(self, (point, is_front), arrival) {
                 None => {
                     result.indirect += throughput * self.direct(point, &at, &lobes, path).total();
                     let Some(scattered) = lobes.resample(|| path.random.next()) else { return result };
