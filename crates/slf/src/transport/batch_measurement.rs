@@ -217,12 +217,14 @@ impl PointBatch<'_> {
     fn gloss(&self, facing: &FacingPoint, draws: &LightDraws) -> DVec3 {
         let (place, inside) = (&self.places[facing.index], self.inside[facing.index]);
         let gloss_albedo = (facing.lobes.albedo().own - facing.lobes.spread_albedo()).max_element();
-        let paths = if gloss_albedo < METAL_ALBEDO { GLOSS_PATHS_FACTOR } else { METAL_PATHS_FACTOR }
-            * self.lights_per_point();
+        let (paths_factor, sky_share) =
+            if gloss_albedo < METAL_ALBEDO { (GLOSS_PATHS_FACTOR, 4) } else { (METAL_PATHS_FACTOR, 1) };
+        let paths = paths_factor * self.lights_per_point();
+        let sky_samples = &self.sky_samples[..self.sky_samples.len() / sky_share];
         // All points sample the same few directions of the sky, which give its visible share; many more give the light
         // of all of it.
         let [sky, emitters] =
-            [self.sky_samples.len() as f64, draws.area_draws.into()].map(|count| count / f64::from(paths));
+            [sky_samples.len() as f64, draws.area_draws.into()].map(|count| count / f64::from(paths));
         let lights = LightsPerDirection { sky, emitters };
         let gloss_toward = |sample: &LightSample, light: DVec3| {
             let (Parts { sharp, .. }, lobe_density) = facing.lobes.scatter_parts(sample.direction);
@@ -248,10 +250,9 @@ impl PointBatch<'_> {
             }
         }
         if visible_sky != DVec3::ZERO {
-            let above_horizon =
-                self.sky_samples.iter().filter(|sample| place.normal.dot(sample.direction) > 0.0);
+            let above_horizon = sky_samples.iter().filter(|sample| place.normal.dot(sample.direction) > 0.0);
             let open: DVec3 = above_horizon.map(|sample| gloss_toward(sample, sample.light.as_dvec3())).sum();
-            sent += visible_sky * reciprocal(sky) * open / self.sky_samples.len() as f64;
+            sent += visible_sky * reciprocal(sky) * open / sky_samples.len() as f64;
         }
         for index in 0..paths {
             let random = PathRandom::new(shared_lights::DIRECTION_SEED, index);
