@@ -4,7 +4,7 @@
 //!
 //! ```text
 //! scene ─▶ part_mesh ─▶ reusable_charts (an artist's UVs, if they are sound)
-//!             │      ─▶ patches ─▶ child (xatlas, then uvunwrap) ─▶ planar (where the engines fail)
+//!             │      ─▶ patches ─▶ child (xatlas and uvunwrap) ─▶ planar (where the engines fail)
 //!             ▼
 //!          unpacked charts, each flat and free of overlap ─▶ packing ─▶ Atlas
 //! ```

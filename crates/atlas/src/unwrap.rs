@@ -87,8 +87,17 @@ struct PreparedPart {
     meshes: Vec<PartMesh>,
     degenerate: Vec<u32>,
     charts: Vec<UnpackedChart>,
-    /// Pieces for the engines: index of the mesh, and its triangles.
-    patches: Vec<(usize, Vec<u32>)>,
+    /// What is for the engines.
+    patches: Vec<PatchOfMesh>,
+}
+
+/// A piece of a mesh, or a part of one.
+struct PatchOfMesh {
+    /// Index of the mesh.
+    mesh: usize,
+    triangles: Vec<u32>,
+    /// Whether it is a part of a piece that is too large for the engines.
+    is_cut: bool,
 }
 
 impl PreparedPart {
@@ -122,9 +131,10 @@ impl PreparedPart {
                 } else if let Some(chart) = planar::flat_chart(mesh, &piece) {
                     self.charts.push(chart);
                 } else {
-                    self.patches.extend(
-                        patches::cut_into_patches(mesh, piece).into_iter().map(|patch| (index, patch)),
-                    );
+                    let patches = patches::cut_into_patches(mesh, piece);
+                    let is_cut = patches.len() > 1;
+                    let patch = |triangles| PatchOfMesh { mesh: index, triangles, is_cut };
+                    self.patches.extend(patches.into_iter().map(patch));
                 }
             }
         }
@@ -138,20 +148,21 @@ fn flatten_patches(
     progress: &dyn Progress,
     notes: &mut Vec<String>,
 ) -> Result<Vec<UnpackedChart>, AtlasError> {
-    let work: Vec<(&PartMesh, &[u32])> = parts
+    let work: Vec<(&PartMesh, &PatchOfMesh)> = parts
         .iter()
-        .flat_map(|part| part.patches.iter().map(|(mesh, patch)| (&part.meshes[*mesh], patch.as_slice())))
+        .flat_map(|part| part.patches.iter().map(|patch| (&part.meshes[patch.mesh], patch)))
         .collect();
     if work.is_empty() {
         return Ok(Vec::new());
     }
     let requests: Vec<SurfacePatch> =
-        work.par_iter().map(|(mesh, triangles)| SurfacePatch::new(mesh, triangles)).collect();
-    let flattened = run_engines(&requests, options, progress, notes)?;
+        work.par_iter().map(|(mesh, patch)| SurfacePatch::new(mesh, &patch.triangles)).collect();
+    let is_cut: Vec<bool> = work.iter().map(|(_, patch)| patch.is_cut).collect();
+    let flattened = run_engines(&requests, &is_cut, options, progress, notes)?;
     let charts: Vec<Vec<UnpackedChart>> = work
         .par_iter()
         .zip(&flattened)
-        .map(|(&(mesh, triangles), flattened)| {
+        .map(|(&(mesh, PatchOfMesh { triangles, .. }), flattened)| {
             progress.check()?;
             Ok(match flattened {
                 Some(flattened) => sound_charts(mesh, triangles, flattened),
@@ -169,25 +180,39 @@ fn flatten_patches(
     Ok(charts.concat())
 }
 
+/// Flattens patches by one engine after another: whole pieces by xatlas first, parts of large ones by uvunwrap, which makes fewer and less
+/// stretched charts of them in half the time (of small pieces it makes more).
 fn run_engines(
     patches: &[SurfacePatch],
+    is_cut: &[bool],
     options: &UnwrapOptions,
     progress: &dyn Progress,
     notes: &mut Vec<String>,
 ) -> Result<Vec<Option<FlattenedPatch>>, AtlasError> {
     let mut flattened: Vec<Option<FlattenedPatch>> = vec![None; patches.len()];
-    let open = |flattened: &[Option<FlattenedPatch>]| -> Vec<usize> {
-        (0..patches.len()).filter(|&i| flattened[i].is_none()).collect()
+    let open = |flattened: &[Option<FlattenedPatch>], is_wanted: &dyn Fn(usize) -> bool| -> Vec<usize> {
+        (0..patches.len()).filter(|&i| flattened[i].is_none() && is_wanted(i)).collect()
+    };
+    let share_done = |flattened: &[Option<FlattenedPatch>]| {
+        flattened.iter().flatten().count() as f32 / patches.len() as f32
     };
     if let Some(path) = &options.child {
         let program = ChildProgram { path, arguments: &options.child_arguments, deadline: options.deadline };
-        for engine in [Engine::Xatlas, Engine::Uvunwrap] {
-            let waiting = open(&flattened);
+        type IsWanted<'a> = &'a dyn Fn(usize) -> bool;
+        let rounds: [(Engine, IsWanted<'_>); 3] = [
+            (Engine::Xatlas, &|patch| !is_cut[patch]),
+            (Engine::Uvunwrap, &|_| true),
+            (Engine::Xatlas, &|patch| is_cut[patch]),
+        ];
+        for (engine, is_wanted) in rounds {
+            let waiting = open(&flattened, is_wanted);
             if waiting.is_empty() {
-                return Ok(flattened);
+                continue;
             }
             let requests: Vec<&SurfacePatch> = waiting.iter().map(|&i| &patches[i]).collect();
-            match child::flatten_in_children(&program, engine, &requests, batch_size(&requests), progress) {
+            let done = share_done(&flattened);
+            let stage = Stage::new(progress, done, done + waiting.len() as f32 / patches.len() as f32);
+            match child::flatten_in_children(&program, engine, &requests, batch_size(&requests), &stage) {
                 Ok(answers) => {
                     if answers.lost > 0 {
                         notes.push(format!(
@@ -205,19 +230,27 @@ fn run_engines(
                 Err(ChildError::OutOfMemory) => return Err(AtlasError::OutOfMemory),
                 Err(ChildError::Unusable(reason)) => {
                     notes.push(format!("unwrapping ran in this process: {reason}"));
-                    break;
+                    return flatten_here(patches, flattened, progress);
                 }
             }
-            if engine == Engine::Uvunwrap {
-                return Ok(flattened);
-            }
         }
+        return Ok(flattened);
     }
-    let waiting = open(&flattened);
-    for (n, &i) in waiting.iter().enumerate() {
+    flatten_here(patches, flattened, progress)
+}
+
+/// Flattens what is not flattened yet in this process, by the engine that does not crash.
+fn flatten_here(
+    patches: &[SurfacePatch],
+    mut flattened: Vec<Option<FlattenedPatch>>,
+    progress: &dyn Progress,
+) -> Result<Vec<Option<FlattenedPatch>>, AtlasError> {
+    for (n, (patch, place)) in patches.iter().zip(&mut flattened).enumerate() {
         progress.check()?;
-        flattened[i] = flatten_with_uvunwrap(&patches[i], &|| progress.cancelled());
-        progress.report((n + 1) as f32 / waiting.len() as f32);
+        if place.is_none() {
+            *place = flatten_with_uvunwrap(patch, &|| progress.cancelled());
+        }
+        progress.report((n + 1) as f32 / patches.len() as f32);
     }
     progress.check()?;
     Ok(flattened)
