@@ -229,7 +229,7 @@ fn absurd_counts() {
         ),
         (
             json!({"componentType": 5126, "type": "VEC3", "count": 4_000_000_000u64}),
-            "more than 5000000 triangles",
+            "more than 20000000 triangles",
         ),
         (json!({"componentType": 5126, "type": "VEC3", "count": 1e300}), "is not a whole number"),
         (

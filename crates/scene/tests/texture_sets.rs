@@ -149,7 +149,8 @@ fn further_sets_count_as_memory() {
         let file = folder.path().join("large.glb");
         std::fs::write(&file, glb.bytes()).unwrap();
         let opens = |max_memory: u64| {
-            load(&file, &LoadOptions { max_memory, ..LoadOptions::default() }, &progress::Unwatched).is_ok()
+            let options = LoadOptions { max_memory, memory_per_file_byte: 0, ..LoadOptions::default() };
+            load(&file, &options, &progress::Unwatched).is_ok()
         };
         let (mut low, mut high) = (0u64, 1 << 30);
         while high - low > 1000 {

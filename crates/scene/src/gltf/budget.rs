@@ -10,6 +10,8 @@ pub(crate) struct Budget {
     triangles: Cell<u64>,
     work: Cell<u64>,
     checks: Cell<u64>,
+    /// All the memory that may be used.
+    limit: Cell<u64>,
     pub options: LoadOptions,
 }
 
@@ -27,6 +29,7 @@ impl Budget {
             triangles: Cell::new(options.max_triangles),
             work: Cell::new(MAX_WORK),
             checks: Cell::new(MAX_CHECKS),
+            limit: Cell::new(options.max_memory),
             options: options.clone(),
         }
     }
@@ -36,10 +39,23 @@ impl Budget {
     /// # Errors
     /// Fewer bytes are left.
     pub fn take_memory(&self, bytes: u64, what: &str) -> Result<(), Fault> {
-        let limit = self.options.max_memory >> 20;
+        let limit = self.limit.get() >> 20;
         take(&self.memory, bytes, || {
             format!("{what} takes {} MiB of a limit of {limit} MiB in all", bytes >> 20)
         })
+    }
+
+    /// Takes the bytes of a file that is read for `what`, which errors name. What is made of it may take more memory the larger the file is:
+    /// large models are let through, and small files that claim to be large are not.
+    ///
+    /// # Errors
+    /// Fewer bytes are left.
+    pub fn take_file(&self, bytes: u64, what: &str) -> Result<(), Fault> {
+        self.take_memory(bytes, what)?;
+        let more = bytes.saturating_mul(self.options.memory_per_file_byte);
+        self.limit.set(self.limit.get().saturating_add(more));
+        self.release_memory(more);
+        Ok(())
     }
 
     /// The memory that is left, in bytes.
@@ -80,4 +96,25 @@ fn take(cell: &Cell<u64>, amount: u64, what: impl Fn() -> String) -> Result<(), 
     let left = cell.get().checked_sub(amount).ok_or_else(|| Fault::TooBig { what: what() })?;
     cell.set(left);
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_large_file_may_take_more_than_a_small_one() {
+        let options = LoadOptions { max_memory: 1 << 20, ..LoadOptions::default() };
+        let of_file = |bytes| {
+            let budget = Budget::new(&options);
+            budget.take_file(bytes, "the file").map(|()| budget)
+        };
+        let small = of_file(1 << 10).unwrap();
+        assert!(small.take_memory(2 << 20, "its mesh").is_err());
+        let large = of_file(1 << 19).unwrap();
+        assert!(large.take_memory(10 << 20, "its mesh").is_ok());
+        let more = large.take_memory(1 << 20, "another mesh").unwrap_err().to_string();
+        assert!(more.contains("of a limit of 11 MiB"), "{more}");
+        assert!(of_file(2 << 20).is_err());
+    }
 }

@@ -46,7 +46,7 @@ impl<'a> Document<'a> {
     /// The file is malformed, requires an extension that is not read, or exceeds the limits of `options`.
     pub fn parse(bytes: &'a [u8], folder: PathBuf, options: &LoadOptions) -> Result<Self, Fault> {
         let budget = Budget::new(options);
-        budget.take_memory(bytes.len() as u64, "the file")?;
+        budget.take_file(bytes.len() as u64, "the file")?;
         let mut warnings = Vec::new();
         let mut warn = |warning| warnings.push(warning);
         let Container { json, chunk, is_glb } = glb_chunks::split_chunks(bytes, &mut warn)?;

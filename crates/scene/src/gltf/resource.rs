@@ -28,7 +28,7 @@ impl<'a> Document<'a> {
         }
         let path = self.find_inner_file(owner, uri).map_err(|what| refuse(&what))?;
         let size = path.metadata().map_err(|error| refuse(&read_failure(&error)))?.len();
-        self.budget.take_memory(size, &shortened(uri))?;
+        self.budget.take_file(size, &shortened(uri))?;
         let mut bytes = Vec::with_capacity(size as usize);
         // No more than was accounted for, even if the file is growing.
         let read = std::fs::File::open(&path).and_then(|file| file.take(size).read_to_end(&mut bytes));

@@ -1,13 +1,21 @@
 //! Triangles that face the inside of a closed mesh.
 
 use glam::DVec3;
-use std::collections::HashMap;
+use rayon::prelude::*;
 
 /// A set of three corners; however often and in whatever order a mesh contains it, it is one face.
 struct Face {
     corners: [u32; 3],
     /// Whether its orientation must be reversed to agree with the rest of its piece.
     is_flipped: bool,
+}
+
+/// A face beside another one.
+#[derive(Clone, Copy, Default)]
+struct Neighbour {
+    face: u32,
+    /// Whether both traverse their edge in the same direction.
+    runs_alike: bool,
 }
 
 /// Number of triangles that face the inside of the closed piece they belong to.
@@ -17,28 +25,30 @@ struct Face {
 /// oriented consistently: the sign of its volume, Σ a·(b×c)/6 over its triangles, then decides which side is out.
 /// Triangles of other pieces are not counted.
 pub fn count_inverted_faces(corners: &[[u32; 3]], position: impl Fn(u32) -> DVec3) -> usize {
-    let mut faces: Vec<Face> = Vec::new();
-    let mut by_corners = HashMap::new();
-    // For each triangle, its face, and whether it has the face's orientation.
-    let mut face_of_triangle = Vec::with_capacity(corners.len());
-    for &triangle in corners {
-        let [a, b, c] = triangle;
-        if a == b || b == c || c == a {
-            continue;
-        }
-        let mut key = triangle;
-        key.sort_unstable();
-        let face = *by_corners.entry(key).or_insert_with(|| {
-            faces.push(Face { corners: triangle, is_flipped: false });
-            faces.len() - 1
-        });
-        face_of_triangle.push((face, has_same_orientation(faces[face].corners, triangle)));
-    }
+    let is_face = |[a, b, c]: [u32; 3]| a != b && b != c && c != a;
+    let sorted = |mut triangle: [u32; 3]| {
+        triangle.sort_unstable();
+        triangle
+    };
+    let mut by_corners: Vec<([u32; 3], u32)> = (0..corners.len() as u32)
+        .into_par_iter()
+        .filter(|&index| is_face(corners[index as usize]))
+        .map(|index| (sorted(corners[index as usize]), index))
+        .collect();
+    by_corners.par_sort_unstable();
+    let copies: Vec<&[([u32; 3], u32)]> = by_corners.chunk_by(|a, b| a.0 == b.0).collect();
+    // A face has the orientation of its first triangle.
+    let first = |copies: &[([u32; 3], u32)]| corners[copies[0].1 as usize];
+    let mut faces: Vec<Face> =
+        copies.iter().map(|copies| Face { corners: first(copies), is_flipped: false }).collect();
     let outward_sides = find_outward_sides(&mut faces, position);
-    face_of_triangle
-        .into_iter()
-        .filter(|&(face, is_same)| outward_sides[face].is_some_and(|is_outward| is_outward != is_same))
-        .count()
+    let inverted = |(copies, is_outward): (&&[([u32; 3], u32)], Option<bool>)| {
+        let is_inverted = |&&(_, index): &&([u32; 3], u32)| {
+            is_outward != Some(has_same_orientation(first(copies), corners[index as usize]))
+        };
+        if is_outward.is_some() { copies.iter().filter(is_inverted).count() } else { 0 }
+    };
+    copies.iter().zip(outward_sides).map(inverted).sum()
 }
 
 /// Whether two orders of the same corners have the same orientation.
@@ -49,24 +59,31 @@ fn has_same_orientation([a, b, c]: [u32; 3], other: [u32; 3]) -> bool {
 /// For each face, whether its corners are counter-clockwise seen from outside; `None` if there is no outside.
 fn find_outward_sides(faces: &mut [Face], position: impl Fn(u32) -> DVec3) -> Vec<Option<bool>> {
     // Each side of a face, by its edge: the face, and whether it traverses the edge from the lower vertex.
-    let mut sides: Vec<([u32; 2], usize, bool)> = Vec::with_capacity(3 * faces.len());
-    for (index, face) in faces.iter().enumerate() {
-        let [a, b, c] = face.corners;
-        sides.extend([[a, b], [b, c], [c, a]].map(|[p, q]| ([p.min(q), p.max(q)], index, p < q)));
-    }
-    sides.sort_unstable();
-    let mut neighbours = vec![Vec::with_capacity(3); faces.len()];
+    let mut sides: Vec<([u32; 2], u32, bool)> = faces
+        .par_iter()
+        .enumerate()
+        .flat_map_iter(|(index, face)| {
+            let [a, b, c] = face.corners;
+            [[a, b], [b, c], [c, a]].map(|[p, q]| ([p.min(q), p.max(q)], index as u32, p < q))
+        })
+        .collect();
+    sides.par_sort_unstable();
     let mut is_open = vec![false; faces.len()];
+    // Two neighbours each at most but where several faces meet at an edge: there the first has all others.
+    let mut neighbours: Vec<(u32, Neighbour)> = Vec::with_capacity(sides.len());
     for faces_at_edge in sides.chunk_by(|a, b| a.0 == b.0) {
         let (_, first, first_runs) = faces_at_edge[0];
         for &(_, face, runs) in &faces_at_edge[1..] {
-            neighbours[first].push((face, runs == first_runs));
-            neighbours[face].push((first, runs == first_runs));
+            let runs_alike = runs == first_runs;
+            neighbours.push((first, Neighbour { face, runs_alike }));
+            neighbours.push((face, Neighbour { face: first, runs_alike }));
         }
         if faces_at_edge.len() != 2 {
-            faces_at_edge.iter().for_each(|&(_, face, _)| is_open[face] = true);
+            faces_at_edge.iter().for_each(|&(_, face, _)| is_open[face as usize] = true);
         }
     }
+    drop(sides);
+    let (starts, neighbours) = grouped(faces.len(), &neighbours);
     let mut outward_sides = vec![None; faces.len()];
     let mut is_visited = vec![false; faces.len()];
     for start in 0..faces.len() {
@@ -78,7 +95,9 @@ fn find_outward_sides(faces: &mut [Face], position: impl Fn(u32) -> DVec3) -> Ve
         while let Some(&face) = piece.get(next) {
             next += 1;
             has_outside &= !is_open[face];
-            for &(neighbour, runs_alike) in &neighbours[face] {
+            let around = starts[face] as usize..starts[face + 1] as usize;
+            for &Neighbour { face: neighbour, runs_alike } in &neighbours[around] {
+                let neighbour = neighbour as usize;
                 // Consistently oriented faces traverse their edge in opposite directions.
                 let is_flipped = faces[face].is_flipped ^ runs_alike;
                 if is_visited[neighbour] {
@@ -99,6 +118,23 @@ fn find_outward_sides(faces: &mut [Face], position: impl Fn(u32) -> DVec3) -> Ve
         }
     }
     outward_sides
+}
+
+/// Values by the group that they belong to: where those of each group start, and all of them, with an end.
+fn grouped<T: Copy + Default>(groups: usize, values: &[(u32, T)]) -> (Vec<u32>, Vec<T>) {
+    let mut starts = vec![0; groups + 1];
+    for &(group, _) in values {
+        starts[group as usize + 1] += 1;
+    }
+    for group in 0..groups {
+        starts[group + 1] += starts[group];
+    }
+    let (mut next, mut all) = (starts.clone(), vec![T::default(); values.len()]);
+    for &(group, value) in values {
+        all[next[group as usize] as usize] = value;
+        next[group as usize] += 1;
+    }
+    (starts, all)
 }
 
 /// Six times the signed volume of the tetrahedron of a face, as oriented, and `origin`.

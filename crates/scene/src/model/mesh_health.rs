@@ -3,6 +3,7 @@
 use crate::Scene;
 use crate::model::inverted_faces::count_inverted_faces;
 use glam::DVec3;
+use rayon::prelude::*;
 use serde::Serialize;
 
 /// Counts over all triangles of a scene but those of splats. Corners at the same position count as one.
@@ -61,10 +62,10 @@ impl MeshHealth {
         }
         // A welded vertex is the lowest at its position.
         health.inverted = count_inverted_faces(&corners, |vertex| scene.positions[vertex as usize]);
-        corners.iter_mut().for_each(|ids| ids.sort_unstable());
-        corners.sort_unstable();
+        corners.par_iter_mut().for_each(|ids| ids.sort_unstable());
+        corners.par_sort_unstable();
         health.duplicates = corners.windows(2).filter(|pair| pair[0] == pair[1]).count();
-        edges.sort_unstable();
+        edges.par_sort_unstable();
         for same in edges.chunk_by(|a, b| a == b) {
             health.boundary_edges += usize::from(same.len() == 1);
             health.non_manifold_edges += usize::from(same.len() > 2);
@@ -83,7 +84,7 @@ fn weld(positions: &[DVec3]) -> Vec<u32> {
     // Adding zero unifies the two zeros.
     let key = |v: u32| (positions[v as usize] + DVec3::ZERO).to_array().map(f64::to_bits);
     let mut order: Vec<u32> = (0..positions.len() as u32).collect();
-    order.sort_unstable_by_key(|&v| (key(v), v));
+    order.par_sort_unstable_by_key(|&v| (key(v), v));
     let mut welded = vec![0; positions.len()];
     for same in order.chunk_by(|&a, &b| key(a) == key(b)) {
         for &v in same {
