@@ -44,17 +44,21 @@ impl Irradiance {
         progress: &dyn Progress,
     ) -> Result<Self, Cancelled> {
         let patches = Patches::new(transport.scene(), options.solved());
-        let solution = solve_bounces(transport, &patches, options.rays.max(1), progress)?;
+        // Smaller patches that gather this light add a bounce.
+        let gathering = u32::from(options.solved() < options.patches);
+        let limit = transport.world().bounces.map(|bounces| bounces.saturating_sub(gathering));
+        let solution = solve_bounces(transport, &patches, options.rays.max(1), limit, progress)?;
         let solved = SolvedPatches { patches, solution };
         Ok(Self::new(solved, options, transport.scene(), transport.world()))
     }
 }
 
-/// Direct and indirect irradiance/π of all patches.
+/// Direct and indirect irradiance/π of all patches, after at most `bounces` between them.
 fn solve_bounces(
     transport: &Transport,
     patches: &Patches,
     rays: u32,
+    bounces: Option<u32>,
     progress: &dyn Progress,
 ) -> Result<IrradianceSolution, Cancelled> {
     let done = AtomicUsize::new(0);
@@ -70,7 +74,6 @@ fn solve_bounces(
         .collect::<Result<_, Cancelled>>()?;
     let direct: Vec<Vec3> = patch_light.iter().map(|light| light.direct).collect();
     let mut indirect: Vec<Vec3> = patch_light.iter().map(|light| light.indirect).collect();
-    let bounces = transport.world().bounces;
     let mut is_cut_off = bounces.is_none();
     for _ in 0..bounces.map_or(MAX_BOUNCES, |bounces| bounces.min(MAX_BOUNCES)) {
         progress.check()?;

@@ -119,8 +119,10 @@ impl GatheredPatches {
         *self.indirect[patch].get_or_init(|| {
             let lookup = IrradianceLookup::Solved(solved);
             let rays = self.rays_of(transport, patch).indirect(transport, lookup);
-            let linked = rays.links.iter().map(|link| link.weight * link.irradiance);
-            Indirect { light: rays.light + linked.sum::<Vec3>(), distance: rays.distance as f32 }
+            let linked: Vec3 = rays.links.iter().map(|link| link.weight * link.irradiance).sum();
+            let can_bounce = transport.world().bounces != Some(0);
+            let light = if can_bounce { rays.light + linked } else { rays.light };
+            Indirect { light, distance: rays.distance as f32 }
         })
     }
 
@@ -140,6 +142,15 @@ mod tests {
     use std::sync::Arc;
     use test_scenes::{Mesh, scene_of};
     use trace::Tracer;
+
+    /// A grey wall that glows.
+    fn wall() -> Material {
+        Material {
+            base_color: Vec3::splat(0.5).extend(1.0),
+            emissive: Vec3::ONE,
+            ..Material::lambertian_white()
+        }
+    }
 
     /// A ball over a slab, and places on both.
     fn room() -> (Transport, Vec<Place>) {
@@ -182,6 +193,31 @@ mod tests {
         assert!((1..forward.gathered().count()).contains(&restored.gathered().count()));
         let lights: Vec<Vec3> = places.iter().map(|place| of(&restored, place)).collect();
         assert_eq!(lights, expected);
+    }
+
+    #[test]
+    fn light_bounces_as_often_as_if_all_patches_were_solved() {
+        for bounces in [Some(0), Some(1), Some(2), None] {
+            let mean = |patches: u32| {
+                let world = World { bounces, ..World::studio() };
+                let tracer = Arc::new(Tracer::new(scene_of([(
+                    Mesh::cuboid(-DVec3::ONE, DVec3::ONE).turned(),
+                    wall(),
+                )])));
+                let transport = Transport::new(tracer, world, TransportOptions::default());
+                let options = IrradianceOptions { patches, rays: 32 };
+                let irradiance = Irradiance::solve(&transport, options, &Unwatched).unwrap();
+                assert_eq!(irradiance.gathered.is_some(), patches > 1500);
+                let places = (0..12u32).map(|triangle| {
+                    let point = SurfacePoint { triangle, barycentric: DVec2::new(0.3, 0.4) };
+                    Place::new(transport.scene(), point, true)
+                });
+                places.map(|place| f64::from(irradiance.indirect(&transport, &place).unwrap().x)).sum::<f64>()
+                    / 12.0
+            };
+            let (gathered, solved) = (mean(6000), mean(1500));
+            assert!((gathered - solved).abs() <= 0.02 * solved, "{bounces:?}: {gathered}, not {solved}");
+        }
     }
 
     #[test]

@@ -26,6 +26,9 @@ const GLOSS_PATHS_FACTOR: u32 = 2;
 const METAL_PATHS_FACTOR: u32 = 8;
 const METAL_ALBEDO: f64 = 0.25;
 
+/// How many times fewer of the sky's directions gloss with a small albedo takes.
+const FEWER_SKY_DIRECTIONS: usize = 4;
+
 /// Light with a smaller cosine to the normal counts as isotropic: a slightly rotated normal would receive it
 /// differently.
 const MIN_COSINE: f64 = 0.1;
@@ -217,10 +220,13 @@ impl PointBatch<'_> {
     fn gloss(&self, facing: &FacingPoint, draws: &LightDraws) -> DVec3 {
         let (place, inside) = (&self.places[facing.index], self.inside[facing.index]);
         let gloss_albedo = (facing.lobes.albedo().own - facing.lobes.spread_albedo()).max_element();
-        let (paths_factor, sky_share) =
-            if gloss_albedo < METAL_ALBEDO { (GLOSS_PATHS_FACTOR, 4) } else { (METAL_PATHS_FACTOR, 1) };
+        let (paths_factor, directions) = if gloss_albedo < METAL_ALBEDO {
+            (GLOSS_PATHS_FACTOR, self.sky_samples.len() / FEWER_SKY_DIRECTIONS)
+        } else {
+            (METAL_PATHS_FACTOR, self.sky_samples.len())
+        };
         let paths = paths_factor * self.lights_per_point();
-        let sky_samples = &self.sky_samples[..self.sky_samples.len() / sky_share];
+        let sky_samples = &self.sky_samples[..directions];
         // All points sample the same few directions of the sky, which give its visible share; many more give the light
         // of all of it.
         let [sky, emitters] =

@@ -96,8 +96,10 @@ impl IrradianceLookup<'_> {
         let scene = transport.scene();
         let part = scene.triangles[point.triangle as usize].part;
         let lookup = match (self, density) {
+            // Where bounces are limited, small patches have one more.
             (Self::Trusted(irradiance), Some(density))
-                if irradiance.solved().resolve(part, distance, density) =>
+                if transport.world().bounces.is_none()
+                    && irradiance.solved().resolve(part, distance, density) =>
             {
                 Self::Solved(irradiance.solved())
             }
