@@ -10,15 +10,14 @@
 
 pub(crate) mod gathered;
 mod lattice;
-pub(crate) mod patch_rays;
 mod patch_sizes;
 pub(crate) mod patches;
 pub(crate) mod place;
+pub(crate) mod smoothing;
 pub(crate) mod solved;
 
 use crate::open_sky::OpenSky;
-use crate::transport::Transport;
-use gathered::{GatheredIrradiance, GatheredPatches};
+use gathered::{GatheredIrradiance, GatheredPatches, PatchGatherer};
 use glam::{DVec3, Vec3};
 use patches::Patches;
 use place::Place;
@@ -143,18 +142,18 @@ impl Irradiance {
         self.gathered.as_ref().map_or(&self.solved.patches, |gathered| &gathered.patches).spacing(part)
     }
 
-    /// Indirect irradiance/π at a place, found by rays of `transport`; `None` if no patch covers it.
-    pub(crate) fn indirect(&self, transport: &Transport, place: &Place) -> Option<Vec3> {
+    /// Indirect irradiance/π at a place, with the help of `gatherer`; `None` if no patch covers it.
+    pub(crate) fn indirect(&self, gatherer: &impl PatchGatherer, place: &Place) -> Option<Vec3> {
         match &self.gathered {
-            Some(gathered) => gathered.indirect(transport, &self.solved, place),
+            Some(gathered) => gathered.indirect(gatherer, &self.solved, place),
             None => self.solved.indirect(place),
         }
     }
 
-    /// Direct and indirect irradiance/π at a place, found by rays of `transport`; `None` if no patch covers it.
-    pub(crate) fn total(&self, transport: &Transport, place: &Place) -> Option<Vec3> {
+    /// Direct and indirect irradiance/π at a place, with the help of `gatherer`; `None` if no patch covers it.
+    pub(crate) fn total(&self, gatherer: &impl PatchGatherer, place: &Place) -> Option<Vec3> {
         match &self.gathered {
-            Some(gathered) => gathered.total(transport, &self.solved, place),
+            Some(gathered) => gathered.total(gatherer, &self.solved, place),
             None => self.solved.total(place),
         }
     }

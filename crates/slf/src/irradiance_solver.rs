@@ -8,12 +8,14 @@
 //! as no near surface interferes (Ward 1988: the harmonic mean of the hit distances).
 
 use crate::bounce_limit::MAX_BOUNCES;
-use crate::irradiance::patch_rays::{IndirectRays, PatchRays, smoothed_indirect};
 use crate::irradiance::patches::{Patch, Patches};
 use crate::irradiance::place::Place;
+use crate::irradiance::smoothing::smoothed_indirect;
 use crate::irradiance::solved::{IrradianceSolution, SolvedPatches};
 use crate::irradiance::{Irradiance, IrradianceOptions};
-use crate::transport::{IrradianceLookup, Transport};
+use crate::transport::Transport;
+use crate::transport::irradiance_lookup::IrradianceLookup;
+use crate::transport::patch_rays::{IndirectRays, PatchRays};
 use glam::Vec3;
 use progress::{Cancelled, Progress};
 use rayon::prelude::*;

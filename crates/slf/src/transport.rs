@@ -1,8 +1,9 @@
 //! Light transport by path tracing: emitted light, and light scattered between surfaces.
 
 mod batch_measurement;
-mod irradiance_lookup;
-pub(crate) mod patch_gathering;
+pub(crate) mod irradiance_lookup;
+mod patch_gathering;
+pub(crate) mod patch_rays;
 mod path_tracing;
 mod scattered_light;
 mod uncached_light;
@@ -15,8 +16,7 @@ use crate::material_point::{MaterialPoint, emitted};
 use crate::media::{Media, MediumStack};
 use crate::path_random::PathRandom;
 use glam::{DVec3, Vec3};
-use irradiance_lookup::CacheMode;
-pub(crate) use irradiance_lookup::IrradianceLookup;
+use irradiance_lookup::{CacheMode, IrradianceLookup};
 use material::{Bsdf, OutgoingBsdf, Parts, Scattered, Scattering, Split};
 use scattered_light::{ScatteredLight, max_split, scale_split};
 use scene::{Scene, SurfacePoint, World};

@@ -3,13 +3,31 @@
 //! What a patch's rays find depends on nothing but the scene, its world, the patch and the solved patches that they end
 //! at: it is the same whoever asks first, on whichever thread, and whatever was gathered before.
 
-use super::patch_rays::{PatchRays, smoothed_indirect};
-use super::patches::Patches;
+use super::patches::{Patch, Patches};
 use super::place::Place;
+use super::smoothing::smoothed_indirect;
 use super::solved::SolvedPatches;
-use crate::transport::{IrradianceLookup, Transport};
 use glam::Vec3;
+use scene::Scene;
 use std::sync::OnceLock;
+
+/// Finds the light that arrives at patches, by rays.
+pub(crate) trait PatchGatherer {
+    /// The scene of the patches.
+    fn scene(&self) -> &Scene;
+    /// How often light may be scattered; `None`: until it has died away.
+    fn bounces(&self) -> Option<u32>;
+    /// Irradiance/π from sampled lights.
+    fn direct_light(&self, patches: &Patches, patch: &Patch, rays: u32) -> Vec3;
+    /// All other light, with that of the solved patches.
+    fn indirect_light(
+        &self,
+        solved: &SolvedPatches,
+        patches: &Patches,
+        patch: &Patch,
+        rays: u32,
+    ) -> IndirectLight;
+}
 
 /// Patches whose light is gathered when it is first asked for.
 #[derive(Debug)]
@@ -18,18 +36,18 @@ pub(crate) struct GatheredPatches {
     /// Rays per patch.
     rays: u32,
     direct: Vec<OnceLock<Vec3>>,
-    indirect: Vec<OnceLock<Indirect>>,
+    indirect: Vec<OnceLock<IndirectLight>>,
     /// By patch: indirect irradiance/π, averaged with that of its neighbours.
     smoothed: Vec<OnceLock<Vec3>>,
 }
 
 /// Indirect light of a patch.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Indirect {
+pub(crate) struct IndirectLight {
     /// Irradiance/π.
-    light: Vec3,
+    pub light: Vec3,
     /// Harmonic mean of the distances of what the rays hit, scene units; infinite in the open.
-    distance: f32,
+    pub distance: f32,
 }
 
 /// What was gathered, by patch; together with what was solved this is all that needs to be stored.
@@ -70,7 +88,7 @@ impl GatheredPatches {
     pub fn all_gathered(&self) -> GatheredIrradiance {
         let direct = (0..).zip(&self.direct).filter_map(|(patch, light)| Some((patch, *light.get()?)));
         let indirect = (0..).zip(&self.indirect).filter_map(|(patch, indirect)| {
-            let Indirect { light, distance } = *indirect.get()?;
+            let IndirectLight { light, distance } = *indirect.get()?;
             Some((patch, light, distance))
         });
         GatheredIrradiance { direct: direct.collect(), indirect: indirect.collect() }
@@ -85,56 +103,62 @@ impl GatheredPatches {
         let set_indirect = |&(patch, light, distance): &(u32, Vec3, f32)| {
             let is_valid = light.is_finite() && distance >= 0.0;
             let place = self.indirect.get(patch as usize).filter(|_| is_valid);
-            place.map(|place| place.set(Indirect { light, distance })).is_some()
+            place.map(|place| place.set(IndirectLight { light, distance })).is_some()
         };
         gathered.direct.iter().all(set_direct) && gathered.indirect.iter().all(set_indirect)
     }
 
     /// Indirect irradiance/π at a place; `None` if no patch covers it.
-    pub fn indirect(&self, transport: &Transport, solved: &SolvedPatches, place: &Place) -> Option<Vec3> {
-        self.patches.interpolate(place, |patch| self.smoothed_of(transport, solved, patch))
+    pub fn indirect(
+        &self,
+        gatherer: &impl PatchGatherer,
+        solved: &SolvedPatches,
+        place: &Place,
+    ) -> Option<Vec3> {
+        self.patches.interpolate(place, |patch| self.smoothed_of(gatherer, solved, patch))
     }
 
     /// Direct and indirect irradiance/π at a place; `None` if no patch covers it.
-    pub fn total(&self, transport: &Transport, solved: &SolvedPatches, place: &Place) -> Option<Vec3> {
+    pub fn total(
+        &self,
+        gatherer: &impl PatchGatherer,
+        solved: &SolvedPatches,
+        place: &Place,
+    ) -> Option<Vec3> {
         self.patches.interpolate(place, |patch| {
-            self.direct_of(transport, patch) + self.smoothed_of(transport, solved, patch)
+            self.direct_of(gatherer, patch) + self.smoothed_of(gatherer, solved, patch)
         })
     }
 
-    fn direct_of(&self, transport: &Transport, patch: usize) -> Vec3 {
-        *self.direct[patch].get_or_init(|| self.rays_of(transport, patch).direct(transport))
+    fn direct_of(&self, gatherer: &impl PatchGatherer, patch: usize) -> Vec3 {
+        let gather = || gatherer.direct_light(&self.patches, &self.patches.all()[patch], self.rays);
+        *self.direct[patch].get_or_init(gather)
     }
 
-    fn smoothed_of(&self, transport: &Transport, solved: &SolvedPatches, patch: usize) -> Vec3 {
+    fn smoothed_of(&self, gatherer: &impl PatchGatherer, solved: &SolvedPatches, patch: usize) -> Vec3 {
         *self.smoothed[patch].get_or_init(|| {
             smoothed_indirect(&self.patches, patch, |patch| {
-                let Indirect { light, distance } = self.indirect_of(transport, solved, patch);
+                let IndirectLight { light, distance } = self.indirect_of(gatherer, solved, patch);
                 (light, f64::from(distance))
             })
         })
     }
 
-    fn indirect_of(&self, transport: &Transport, solved: &SolvedPatches, patch: usize) -> Indirect {
-        *self.indirect[patch].get_or_init(|| {
-            let lookup = IrradianceLookup::Solved(solved);
-            let rays = self.rays_of(transport, patch).indirect(transport, lookup);
-            let linked: Vec3 = rays.links.iter().map(|link| link.weight * link.irradiance).sum();
-            let can_bounce = transport.world().bounces != Some(0);
-            let light = if can_bounce { rays.light + linked } else { rays.light };
-            Indirect { light, distance: rays.distance as f32 }
-        })
-    }
-
-    fn rays_of(&self, transport: &Transport, patch: usize) -> PatchRays {
-        PatchRays::new(transport, &self.patches, &self.patches.all()[patch], self.rays)
+    fn indirect_of(
+        &self,
+        gatherer: &impl PatchGatherer,
+        solved: &SolvedPatches,
+        patch: usize,
+    ) -> IndirectLight {
+        let gather = || gatherer.indirect_light(solved, &self.patches, &self.patches.all()[patch], self.rays);
+        *self.indirect[patch].get_or_init(gather)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Irradiance, IrradianceOptions, TransportOptions};
+    use crate::{Irradiance, IrradianceOptions, Transport, TransportOptions};
     use glam::{DVec2, DVec3};
     use progress::Unwatched;
     use rayon::prelude::*;

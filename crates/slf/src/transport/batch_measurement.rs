@@ -77,7 +77,7 @@ impl IncidentSampler for PointBatch<'_> {
     fn measure(&self, index: usize) -> Option<Measurement> {
         let Self { transport, irradiance, .. } = self;
         let (point, place, inside) = (self.points[index].point, &self.places[index], self.inside[index]);
-        let indirect = irradiance.indirect(transport, place)?;
+        let indirect = irradiance.indirect(*transport, place)?;
         // Spread lobes are not perfectly diffuse: what they scatter is stored as the irradiance that would have the
         // same effect.
         let at = MaterialPoint {

@@ -1,10 +1,10 @@
 //! Lookup of cached irradiance along paths.
 
 use crate::irradiance::Irradiance;
+use crate::irradiance::gathered::PatchGatherer;
 use crate::irradiance::patches::Patches;
 use crate::irradiance::place::Place;
 use crate::irradiance::solved::SolvedPatches;
-use crate::transport::Transport;
 use glam::Vec3;
 use scene::SurfacePoint;
 use std::sync::Arc;
@@ -88,18 +88,17 @@ impl IrradianceLookup<'_> {
     /// the path is so short that the patches would show.
     pub fn cached_place(
         self,
-        transport: &Transport,
+        gatherer: &impl PatchGatherer,
         (point, is_front): (SurfacePoint, bool),
         arrival: Arrival,
     ) -> Option<CachedPlace> {
         let Arrival { distance, scatterings, density } = arrival;
-        let scene = transport.scene();
+        let scene = gatherer.scene();
         let part = scene.triangles[point.triangle as usize].part;
         let lookup = match (self, density) {
             // Where bounces are limited, small patches have one more.
             (Self::Trusted(irradiance), Some(density))
-                if transport.world().bounces.is_none()
-                    && irradiance.solved().resolve(part, distance, density) =>
+                if gatherer.bounces().is_none() && irradiance.solved().resolve(part, distance, density) =>
             {
                 Self::Solved(irradiance.solved())
             }
@@ -119,8 +118,8 @@ impl IrradianceLookup<'_> {
             Self::Unavailable => None,
             Self::Unsolved(patches) => patches.covers(&place).then_some(Vec3::ZERO),
             Self::Solved(solved) => solved.total(&place),
-            Self::Trusted(irradiance) => irradiance.total(transport, &place),
-            Self::ControlVariate(irradiance) => irradiance.indirect(transport, &place),
+            Self::Trusted(irradiance) => irradiance.total(gatherer, &place),
+            Self::ControlVariate(irradiance) => irradiance.indirect(gatherer, &place),
         };
         irradiance.map(|irradiance| CachedPlace { place, irradiance })
     }

@@ -1,13 +1,14 @@
 //! The rays of a patch: the light that they find, and where they end at surfaces whose light is cached.
 
-use super::patches::{Patch, Patches};
+use super::Transport;
+use super::irradiance_lookup::IrradianceLookup;
+use super::patch_gathering::{IndirectRay, PatchRayLink, Receiver};
+use crate::irradiance::gathered::{IndirectLight, PatchGatherer};
+use crate::irradiance::patches::{Patch, Patches};
+use crate::irradiance::solved::SolvedPatches;
 use crate::path_random::PathRandom;
-use crate::transport::patch_gathering::{IndirectRay, PatchRayLink, Receiver};
-use crate::transport::{IrradianceLookup, Transport};
 use glam::{DVec3, Vec3};
-
-/// Neighbours within this share of the harmonic mean distance are averaged.
-const SMOOTHING_RADIUS: f64 = 0.25;
+use scene::Scene;
 
 /// Where the rays of a patch start.
 pub(crate) struct PatchRays {
@@ -66,6 +67,35 @@ impl PatchRays {
     }
 }
 
+impl PatchGatherer for Transport {
+    fn scene(&self) -> &Scene {
+        self.scene()
+    }
+
+    fn bounces(&self) -> Option<u32> {
+        self.world().bounces
+    }
+
+    fn direct_light(&self, patches: &Patches, patch: &Patch, rays: u32) -> Vec3 {
+        PatchRays::new(self, patches, patch, rays).direct(self)
+    }
+
+    fn indirect_light(
+        &self,
+        solved: &SolvedPatches,
+        patches: &Patches,
+        patch: &Patch,
+        rays: u32,
+    ) -> IndirectLight {
+        let rays =
+            PatchRays::new(self, patches, patch, rays).indirect(self, IrradianceLookup::Solved(solved));
+        let linked: Vec3 = rays.links.iter().map(|link| link.weight * link.irradiance).sum();
+        let can_bounce = self.world().bounces != Some(0);
+        let light = if can_bounce { rays.light + linked } else { rays.light };
+        IndirectLight { light, distance: rays.distance as f32 }
+    }
+}
+
 /// Scales the weights of a patch's links, channel by channel, so that they sum to at most `albedo`.
 fn bound_row_sum(links: &mut [PatchRayLink], albedo: DVec3) {
     let sum = row_sum(links);
@@ -83,34 +113,12 @@ fn row_sum(links: &[PatchRayLink]) -> DVec3 {
     links.iter().map(|link| link.weight.abs().as_dvec3()).sum()
 }
 
-/// The indirect light of patch `at`, averaged with its neighbours' as far as no near surface interferes. `light` returns a
-/// patch's indirect light and the harmonic mean of its rays' distances; it is not asked for more patches than it takes.
-pub(crate) fn smoothed_indirect(patches: &Patches, at: usize, light: impl Fn(usize) -> (Vec3, f64)) -> Vec3 {
-    let patch = &patches.all()[at];
-    let (indirect, distance) = light(at);
-    let (mut sum, mut weights) = (indirect * patch.area as f32, patch.area as f32);
-    patches.visit_neighbors(patch, |other| {
-        let other = other as usize;
-        let neighbor = &patches.all()[other];
-        let apart = patch.position.distance(neighbor.position);
-        if other == at || apart >= SMOOTHING_RADIUS * distance {
-            return;
-        }
-        let (indirect, other_distance) = light(other);
-        let near = (1.0 - apart / (SMOOTHING_RADIUS * distance.min(other_distance))).max(0.0);
-        let weight = (near * neighbor.area) as f32;
-        sum += indirect * weight;
-        weights += weight;
-    });
-    sum / weights
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::TransportOptions;
     use rayon::prelude::*;
-    use scene::{Material, Scalar, Scene, Workflow, World};
+    use scene::{Material, Scalar, Workflow, World};
     use std::sync::Arc;
     use test_scenes::{Mesh, scene_of};
     use trace::Tracer;
