@@ -193,9 +193,7 @@ fn run_engines(
     let open = |flattened: &[Option<FlattenedPatch>], is_wanted: &dyn Fn(usize) -> bool| -> Vec<usize> {
         (0..patches.len()).filter(|&i| flattened[i].is_none() && is_wanted(i)).collect()
     };
-    let share_done = |flattened: &[Option<FlattenedPatch>]| {
-        flattened.iter().flatten().count() as f32 / patches.len() as f32
-    };
+    let share = |count: usize| count as f32 / patches.len() as f32;
     if let Some(path) = &options.child {
         let program = ChildProgram { path, arguments: &options.child_arguments, deadline: options.deadline };
         type IsWanted<'a> = &'a dyn Fn(usize) -> bool;
@@ -210,8 +208,8 @@ fn run_engines(
                 continue;
             }
             let requests: Vec<&SurfacePatch> = waiting.iter().map(|&i| &patches[i]).collect();
-            let done = share_done(&flattened);
-            let stage = Stage::new(progress, done, done + waiting.len() as f32 / patches.len() as f32);
+            let done = flattened.iter().flatten().count();
+            let stage = Stage::new(progress, share(done), share(done + waiting.len()));
             match child::flatten_in_children(&program, engine, &requests, batch_size(&requests), &stage) {
                 Ok(answers) => {
                     if answers.lost > 0 {

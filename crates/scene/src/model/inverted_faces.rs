@@ -69,7 +69,7 @@ fn find_outward_sides(faces: &mut [Face], position: impl Fn(u32) -> DVec3) -> Ve
         .collect();
     sides.par_sort_unstable();
     let mut is_open = vec![false; faces.len()];
-    // Two neighbours each at most but where several faces meet at an edge: there the first has all others.
+    // Two entries an edge; where more than two faces meet at one, the first of them has all others.
     let mut neighbours: Vec<(u32, Neighbour)> = Vec::with_capacity(sides.len());
     for faces_at_edge in sides.chunk_by(|a, b| a.0 == b.0) {
         let (_, first, first_runs) = faces_at_edge[0];

@@ -50,7 +50,7 @@ pub(crate) struct IndirectLight {
     pub distance: f32,
 }
 
-/// What was gathered, by patch; together with what was solved this is all that needs to be stored.
+/// What was gathered, by patch: with it, none of it needs to be gathered again.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GatheredIrradiance {
     /// Irradiance/π (linear RGB radiance units) from sampled lights.

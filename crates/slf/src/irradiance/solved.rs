@@ -4,7 +4,7 @@ use super::patches::Patches;
 use super::place::Place;
 use glam::Vec3;
 
-/// Solved irradiance: together with the scene, the world and the solver's options this is all that needs to be stored.
+/// Solved irradiance: from this, the scene, the world and the solver's options all other light is gathered again.
 #[derive(Clone, Debug, PartialEq)]
 pub struct IrradianceSolution {
     /// Irradiance/π by patch (linear RGB radiance units), from sampled lights.

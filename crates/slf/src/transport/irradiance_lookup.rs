@@ -36,7 +36,7 @@ pub(crate) enum IrradianceLookup<'a> {
     Unavailable,
     /// Nothing yet, but the patches where irradiance will be solved.
     Unsolved(&'a Patches),
-    /// What is solved, for smaller patches to gather it.
+    /// What is solved, for smaller patches that gather it, and for lobes so wide that they see no more.
     Solved(&'a SolvedPatches),
     Trusted(&'a Irradiance),
     /// Indirect irradiance; direct light is sampled. Some paths go on to correct its error.
