@@ -106,3 +106,21 @@ fn twenty_lost_cards_lose_no_stroke() {
         assert_eq!(picture(&session), blank, "round {round}");
     }
 }
+
+#[test]
+fn a_picture_that_stood_on_a_lost_card_is_drawn_again() {
+    let gpu = match Gpu::open(BackendChoice::Gpu, None) {
+        Ok(gpu) => gpu.expect("asked for"),
+        Err(why) => return eprintln!("SKIPPED: {why}"),
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("quads.glb");
+    tiny_glb::write(&path);
+    let mut session = opened(&path, Some(gpu.clone()));
+    let before = picture(&session);
+    gpu.destroy();
+    let told = settle(&mut session);
+    assert!(matches!(session.preview().unwrap().picture, LivePicture::InMemory(_)));
+    assert_eq!(picture(&session), before);
+    assert_eq!(told.iter().filter(|text| text.contains("was lost")).count(), 1, "{told:?}");
+}

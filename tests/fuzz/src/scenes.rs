@@ -8,7 +8,13 @@ use std::sync::Arc;
 
 /// Limits that a small file reaches soon.
 pub(crate) fn limits() -> LoadOptions {
-    LoadOptions { max_memory: 64 << 20, max_triangles: 100_000, max_texels: 1 << 20, variant: None }
+    LoadOptions {
+        max_memory: 64 << 20,
+        memory_per_file_byte: 0,
+        max_triangles: 100_000,
+        max_texels: 1 << 20,
+        variant: None,
+    }
 }
 
 /// Loads a glTF scene, and poses it where it is animated.

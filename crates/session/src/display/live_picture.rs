@@ -23,6 +23,11 @@ impl LivePicture {
         }
     }
 
+    /// Whether it was on a card that is lost.
+    pub fn is_lost(&self) -> bool {
+        matches!(self, Self::OnCard(picture) if picture.is_lost())
+    }
+
     /// Its pixels, brought back from the card if they are there, which takes some milliseconds. `None` where that was lost: the
     /// next picture is made by the processor.
     pub fn fetch(&self) -> Option<Arc<Picture>> {

@@ -397,14 +397,17 @@ impl LightField {
     ) -> Result<SumUpdate, SessionError> {
         // Until all is through, the sum is of no lens.
         self.summed_camera = None;
+        // A whole sum goes on without the card by itself.
+        let is_summed_again = !matches!(plan, Plan::Whole) && self.splatter.leave_lost_card()?;
         let update = match plan {
+            Plan::Move(samples) if samples.is_empty() && is_summed_again => SumUpdate::Whole,
             Plan::Move(samples) if samples.is_empty() => SumUpdate::Unchanged,
             Plan::Move(samples) => {
                 let [rows, columns] = self.splatter.update(focus, &samples)?;
                 if let Some(reach) = &mut self.reach {
                     reach.note_moved(&samples);
                 }
-                SumUpdate::Region([columns, rows])
+                if is_summed_again { SumUpdate::Whole } else { SumUpdate::Region([columns, rows]) }
             }
             Plan::Whole => {
                 self.reach = None;

@@ -93,6 +93,11 @@ impl Presenter {
         self.costs = DrawingCosts::default();
     }
 
+    /// Notes that what was shown is lost: whatever comes next is shown.
+    pub fn forget_shown(&mut self) {
+        self.shown = None;
+    }
+
     /// Tells if a document must be shown darker; its first light field says so.
     pub fn check_glare(&mut self, salf: &Salf) {
         if !std::mem::replace(&mut self.is_glare_checked, true)

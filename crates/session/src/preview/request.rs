@@ -26,6 +26,8 @@ pub(crate) struct PreviewRequest {
     pub is_idle: bool,
     /// Bake the light field again.
     pub bake: bool,
+    /// What is shown was on a card that is lost.
+    pub is_card_lost: bool,
     /// An edit is complete, so there is time for longer work.
     pub edit_done: bool,
     /// Pause all work.

@@ -95,6 +95,11 @@ impl PreviewThread {
         });
     }
 
+    /// Draws what is shown again: the card that had it is lost.
+    pub fn replace_lost_picture(&self) {
+        self.shared.post(StopScope::Nothing, |request| request.is_card_lost = true);
+    }
+
     /// Cancels current work; the last picture stays.
     pub fn cancel(&self) {
         self.shared.post(StopScope::Everything, |request| request.pause = true);

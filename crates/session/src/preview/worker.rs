@@ -321,6 +321,10 @@ impl Worker {
         let taken_up =
             spare.unwrap_or(Ok(())).and_then(|()| self.take_up()).and_then(|()| self.take_up_light());
         self.refinement.tidy(self.fine.as_ref());
+        if request.is_card_lost {
+            self.presenter.forget_shown();
+            self.is_new = true;
+        }
         taken_up
     }
 

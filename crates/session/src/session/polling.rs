@@ -53,6 +53,7 @@ impl Session {
                 self.preview = Some(preview);
             }
         }
+        self.replace_lost_picture();
         self.events.extend(updates.failures.into_iter().map(Event::Failed));
         self.events.extend(updates.notices.into_iter().map(Event::Notice));
         let jobs = self.jobs();
@@ -66,6 +67,15 @@ impl Session {
             self.events.push(Event::MapChanged(rectangles));
         }
         std::mem::take(&mut self.events)
+    }
+
+    /// Asks, once a picture, for another one where the card that had it is lost.
+    fn replace_lost_picture(&mut self) {
+        let is_lost = self.preview.as_ref().is_some_and(|preview| preview.picture.is_lost());
+        if is_lost && self.replaced_preview_id != self.last_preview_id {
+            self.replaced_preview_id = self.last_preview_id;
+            self.preview_thread.replace_lost_picture();
+        }
     }
 
     /// Shows a document that was opened.

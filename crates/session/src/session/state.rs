@@ -103,6 +103,8 @@ pub struct Session {
     pub(super) preview_camera: Option<Camera>,
     /// The newest preview that was seen, of whatever document.
     pub(super) last_preview_id: u64,
+    /// The picture on a lost card that another was asked for in place of; 0: none.
+    pub(super) replaced_preview_id: u64,
     /// Counts changes of the map that were shown to the preview.
     pub(super) map_serial: u64,
     pub(super) recovery: Recovery,
@@ -158,6 +160,7 @@ impl Session {
             fixation_point: None,
             preview_camera: None,
             last_preview_id: 0,
+            replaced_preview_id: 0,
             map_serial: 0,
             recovery: Recovery::default(),
             watched_file: None,

@@ -125,6 +125,8 @@ impl Gpu {
 
     /// Why the card no longer works, in its driver's words; `None` while it does.
     pub fn why_lost(&self) -> Option<&str> {
+        // A driver that is asked for nothing does not tell. What the poll itself returns, waiting work finds out.
+        let _ = self.device().poll(PollType::Poll);
         self.0.lost.get().map(String::as_str)
     }
 

@@ -33,6 +33,11 @@ impl PictureOnCard {
         self.gpu.name()
     }
 
+    /// Whether the card is lost, and the picture with it.
+    pub fn is_lost(&self) -> bool {
+        self.gpu.is_lost()
+    }
+
     /// Columns and rows of the picture, px.
     pub fn size(&self) -> [u32; 2] {
         self.size

@@ -32,6 +32,22 @@ impl Splatter {
         if self.drop_lost_card() { self.sum(&progress::Unwatched) } else { fetched }
     }
 
+    /// Sums on the processor what a card had summed that is lost. Returns whether it is.
+    ///
+    /// # Errors
+    /// [`SplatError::Overflow`] if the picture is too bright for its integers.
+    pub fn leave_lost_card(&mut self) -> Result<bool, SplatError> {
+        if !self.gpu().is_some_and(Gpu::is_lost) {
+            return Ok(false);
+        }
+        let was_summed = self.card.has_sums() && self.has_paint();
+        self.use_gpu(None);
+        if was_summed {
+            self.sum(&progress::Unwatched)?;
+        }
+        Ok(true)
+    }
+
     /// The seconds by the card's own clock that the last picture took, from its first sum to its last pixel; `None`
     /// where it has no clock.
     pub fn seconds_on_card(&self) -> Option<f64> {
