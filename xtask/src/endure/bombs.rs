@@ -15,7 +15,7 @@ pub const PROMISE: Promise = Promise {
     sentence: "Bombs are refused within 2 s and 1 GiB",
     what_is_done: "files made by code that claim or expand to far more than they are: dimensions, counts, depth of \
                    JSON, ZIPs, KTX2 levels, meshopt, Draco, frames, tiles, heads; processor time and memory measured",
-    full: 40,
+    full: 41,
     short: 40,
     batch: 40,
     at_once: 2,
@@ -59,7 +59,7 @@ mod tests {
     use super::all;
 
     #[test]
-    fn there_are_forty_bombs() {
+    fn there_are_as_many_bombs_as_are_counted() {
         assert_eq!(all().count(), super::PROMISE.full);
     }
 }

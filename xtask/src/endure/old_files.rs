@@ -12,8 +12,8 @@ use serde_json::{Value, json};
 pub const PROMISE: Promise = Promise {
     name: "old-files",
     sentence: "Old files open, or it says which version reads them",
-    what_is_done: "a file of each version: projects 1 to 11 and that of the first demo, strokes 1 to 5, presets 1, light \
-                   fields 1 to 6, and of versions that do not exist yet",
+    what_is_done: "a file of each version: projects 1 to 11 and that of the first demo, strokes 1 to 6, presets 1, \
+                   light fields 1 to 6, focus maps 1, and of versions that do not exist yet",
     full: GOLDENS.len(),
     short: GOLDENS.len(),
     batch: GOLDENS.len(),
@@ -60,7 +60,17 @@ const fn preset(version: u64) -> Golden {
     Golden { what: "a preset", version, write: write_preset, command, says }
 }
 
-const GOLDENS: [Golden; 28] = [
+const fn focus_map(version: u64, write: fn(&Workplace, u64) -> Verdict, command: &'static str) -> Golden {
+    let says = if version == LATER { UPDATE } else { "" };
+    Golden { what: "a focus map", version, write, command, says }
+}
+
+/// Renders with a focus map in OpenEXR.
+const WITH_EXR: &str = "render s.glb --focus m.exr --size 8x8 --backend cpu -o o.png";
+/// The same with one in PNG.
+const WITH_PNG: &str = "render s.glb --focus m.png --size 8x8 --backend cpu -o o.png";
+
+const GOLDENS: [Golden; 33] = [
     Golden {
         what: "the project of the first demo",
         version: 1,
@@ -91,6 +101,7 @@ const GOLDENS: [Golden; 28] = [
     strokes(3),
     strokes(4),
     strokes(5),
+    strokes(6),
     strokes(LATER),
     light_field(1),
     light_field(2),
@@ -107,6 +118,10 @@ const GOLDENS: [Golden; 28] = [
     },
     preset(1),
     preset(LATER),
+    focus_map(1, write_exr_map, WITH_EXR),
+    focus_map(LATER, write_exr_map, WITH_EXR),
+    focus_map(1, write_png_map, WITH_PNG),
+    focus_map(LATER, write_png_map, WITH_PNG),
 ];
 
 fn open(case: usize, place: &Workplace, context: &Context) -> Verdict {
@@ -153,7 +168,12 @@ fn write_strokes(place: &Workplace, version: u64) -> Verdict {
             if version >= 5 {
                 stroke["brush"]["target"]["gloss"] = json!(0.5);
             }
-            json!({"format": "focus-brush strokes", "version": version, "steps": [{"stroke": stroke}]})
+            let mut steps = vec![json!({"stroke": stroke})];
+            if version >= 6 {
+                let settings = json!({"reach": 4096, "softness": 0, "contrast": 0.06});
+                steps.push(json!({"spread": {"layer": "Paint", "settings": settings}}));
+            }
+            json!({"format": "focus-brush strokes", "version": version, "steps": steps})
         }
     };
     put(&place.own, "strokes.json", file.to_string())
@@ -163,6 +183,24 @@ fn write_salf(place: &Workplace, version: u64) -> Verdict {
     let mut bytes = std::fs::read(place.prepared.join("l.salf")).map_err(|e| e.to_string())?;
     bytes[8] = version as u8;
     put(&place.own, "l.salf", bytes)
+}
+
+/// The map that a project exports, as if by this version.
+fn write_exr_map(place: &Workplace, version: u64) -> Verdict {
+    const ATTRIBUTE: &[u8] = b"focusBrush.version\0double\0\x08\0\0\0";
+    let mut bytes = std::fs::read(place.prepared.join("m.exr")).map_err(|e| e.to_string())?;
+    let found = bytes.windows(ATTRIBUTE.len()).position(|window| window == ATTRIBUTE);
+    let value = found.ok_or("the map has no version")? + ATTRIBUTE.len();
+    bytes[value..value + 8].copy_from_slice(&(version as f64).to_le_bytes());
+    put(&place.own, "m.exr", bytes)
+}
+
+fn write_png_map(place: &Workplace, version: u64) -> Verdict {
+    let read = |name: &str| std::fs::read(place.prepared.join(name)).map_err(|e| format!("{name}: {e}"));
+    put(&place.own, "m.png", read("m.png")?)?;
+    let mut attributes: Value = serde_json::from_slice(&read("m.png.json")?).map_err(|e| e.to_string())?;
+    attributes["version"] = json!(version);
+    put(&place.own, "m.png.json", attributes.to_string())
 }
 
 fn write_preset(place: &Workplace, version: u64) -> Verdict {

@@ -188,6 +188,16 @@ mod tests {
     }
 
     #[test]
+    fn axes_that_are_none() {
+        for axes in
+            ["\u{fffd}Y 4 +X 12", "*Y 4 +X 12", "Y 4 X 12", "-Y 4 +\u{e9} 12", "-Y 4 +Y 12", "+ 4 - 12"]
+        {
+            let error = read(&flat(&format!("#?RADIANCE\n\n{axes}\n"))).unwrap_err();
+            assert!(error.contains("not like '-Y 512 +X 1024'"), "{axes}: {error}");
+        }
+    }
+
+    #[test]
     fn either_coding() {
         assert_eq!(read(&run_length_coded()).unwrap(), expected());
         // Runs of whole pixels: 1, 1, 1 and a count, the next such pixel counting 256 times as much.

@@ -98,8 +98,9 @@ pub const BOMBS: &[Bomb] = &[
         scene["bufferViews"][0]["byteLength"] = json!(92);
         put(to, "s.glb", glb(&scene.to_string(), &buffer))
     }),
-    bomb("a KTX2 texture of 65,536 × 65,536", INFO, |to| ktx2(to, 65_536, 1)),
-    bomb("a KTX2 texture with 2³² − 1 levels", INFO, |to| ktx2(to, 64, u32::MAX)),
+    bomb("a KTX2 texture of 65,536 × 65,536", INFO, |to| ktx2(to, 65_536, 1, BASIS_LZ)),
+    bomb("a KTX2 texture with 2³² − 1 levels", INFO, |to| ktx2(to, 64, u32::MAX, BASIS_LZ)),
+    bomb("a KTX2 level of 64 × 64 that claims to inflate to 16 EB", INFO, |to| ktx2(to, 64, 1, ZSTANDARD)),
     bomb(
         "a PNG texture that really inflates to 900 MB",
         "render s.gltf --size 8x8 --backend cpu -o o.png",
@@ -136,12 +137,16 @@ fn without_nulls(values: &Value) -> Value {
     Value::Array(values.as_array().map(|all| all.iter().map(clean).collect()).unwrap_or_default())
 }
 
-fn ktx2(to: &Path, side: u32, levels: u32) -> Result<(), String> {
+/// Supercompression of KTX 2.
+const BASIS_LZ: u32 = 1;
+const ZSTANDARD: u32 = 2;
+
+fn ktx2(to: &Path, side: u32, levels: u32, scheme: u32) -> Result<(), String> {
     let mut file = b"\xabKTX 20\xbb\r\n\x1a\n".to_vec();
     // Format (0: Basis Universal), type size, width, height, depth, layers, faces, levels, supercompression.
-    file.extend([0, 1, side, side, 0, 0, 1, levels, 1].into_iter().flat_map(u32::to_le_bytes));
+    file.extend([0, 1, side, side, 0, 0, 1, levels, scheme].into_iter().flat_map(u32::to_le_bytes));
     file.extend([0; 32]);
-    file.extend([u64::from(u32::MAX), 64, u64::from(u32::MAX)].into_iter().flat_map(u64::to_le_bytes));
+    file.extend([u64::from(u32::MAX), 64, u64::MAX >> 4].into_iter().flat_map(u64::to_le_bytes));
     file.extend([0; 128]);
     put(to, "t.ktx2", file)?;
     let mut scene = scene_with_texture("t.ktx2", Some("image/ktx2"));

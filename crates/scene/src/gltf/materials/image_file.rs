@@ -96,10 +96,18 @@ impl Document<'_> {
             what: format!("cannot be decoded: {error:?}"),
         };
         // The declared size, before anything is allocated.
-        let sides = [20, 24].map(|at| bytes.get(at..at + 4).and_then(|bytes| bytes.try_into().ok()));
-        let [width, height] = sides.map(|side| side.map_or(0, u32::from_le_bytes));
+        let [width, height] = [20, 24].map(|at| le_bytes(bytes, at).map_or(0, u32::from_le_bytes));
         let texels = self.checked_texel_count([width, height], bytes.len(), place)?;
         self.budget.take_memory(4 * texels, place)?;
+        let inflated = ktx2_inflated_bytes(bytes);
+        let blocks = u64::from(width.div_ceil(4)) * u64::from(height.div_ceil(4));
+        if inflated > BLOCK_BYTES * blocks {
+            return Err(Fault::Malformed {
+                place: place.into(),
+                what: format!("claims {inflated} bytes for {width}×{height} texels"),
+            });
+        }
+        self.budget.take_memory(inflated, place)?;
         let texture = Transcoder::new(bytes).map_err(broken)?;
         if texture.base_dimensions() != (width, height) {
             return Err(Fault::Malformed {
@@ -108,6 +116,7 @@ impl Document<'_> {
             });
         }
         let texels = texture.transcode(0, TargetFormat::Rgba32, DecodeFlags::NONE).map_err(broken)?;
+        self.budget.release_memory(inflated);
         Ok(Image { name: self.image_name(index), width, height, texels: ImageLevel::Bits8(texels) })
     }
 
@@ -138,4 +147,21 @@ impl Document<'_> {
         let name = file.and_then(|file| nonempty_name(file.name.as_deref())).or(uri);
         name.unwrap_or_else(|| format!("image {index}"))
     }
+}
+
+/// Bytes of a block of UASTC, of 4 × 4 texels, and of ASTC, of at least as many.
+const BLOCK_BYTES: u64 = 16;
+
+/// The bytes that the largest level of a KTX 2 file claims to inflate to; 0 where it is not compressed by Zstandard
+/// ([KTX 2.0](https://registry.khronos.org/KTX/specs/2.0/ktxspec.v2.html), *File Structure*).
+fn ktx2_inflated_bytes(bytes: &[u8]) -> u64 {
+    const ZSTANDARD: u32 = 2;
+    let scheme = le_bytes(bytes, 44).map(u32::from_le_bytes);
+    let inflated = le_bytes(bytes, 96).map(u64::from_le_bytes);
+    inflated.filter(|_| scheme == Some(ZSTANDARD)).unwrap_or(0)
+}
+
+/// The bytes of a number in a file.
+fn le_bytes<const N: usize>(bytes: &[u8], at: usize) -> Option<[u8; N]> {
+    bytes.get(at..at + N)?.try_into().ok()
 }

@@ -69,9 +69,9 @@ impl Header {
         let Some((major, Some(scanlines), minor, Some(length))) = axes else {
             return Err(format!("its size is given as '{line}', not like '-Y 512 +X 1024'"));
         };
-        let (by_columns, x, y) = match (&major[1..], &minor[1..]) {
-            ("Y", "X") => (false, minor, major),
-            ("X", "Y") => (true, major, minor),
+        let (by_columns, x, y) = match [major, minor] {
+            ["+Y" | "-Y", "+X" | "-X"] => (false, minor, major),
+            ["+X" | "-X", "+Y" | "-Y"] => (true, major, minor),
             _ => return Err(format!("its size is given as '{line}', not like '-Y 512 +X 1024'")),
         };
         let falls = [x, y].map(|axis| axis.starts_with('-'));
