@@ -4,25 +4,35 @@ pub mod projects;
 
 use super::harness::archive::{Entry, zip};
 use super::harness::made_files::{glb_of, put, scene, write_all};
+use super::harness::made_splats;
 use super::harness::promise::{Context, Promise, Verdict, Workplace, ended_as_documented};
 use crate::chore::repository;
 use serde_json::{Value, json};
+use std::path::Path;
 
 /// Old files open.
 pub const PROMISE: Promise = Promise {
     name: "old-files",
     sentence: "Old files open, or it says which version reads them",
     what_is_done: "a file of each version: projects 1 to 11 and that of the first demo, strokes 1 to 6, presets 1, \
-                   light fields 1 to 6, focus maps 1, and of versions that do not exist yet",
+                   light fields 1 to 7, focus maps 1, and of versions that do not exist yet",
     full: GOLDENS.len(),
     short: GOLDENS.len(),
     batch: GOLDENS.len(),
     at_once: 2,
-    prepare: |folder, context| {
-        if folder.join("tiles.tile2-of-2.part").exists() { Ok(()) } else { write_all(folder, context) }
-    },
+    prepare,
     case: open,
 };
+
+fn prepare(folder: &Path, context: &Context) -> Result<(), String> {
+    if folder.join("splats.salf").exists() {
+        return Ok(());
+    }
+    write_all(folder, context)?;
+    made_splats::write(folder)?;
+    context.program.line(folder, "bake splats/a.splat --size 32x32 -o splats.salf").succeed()?;
+    Ok(())
+}
 
 /// A file of a version, the command that reads it, and what the message contains if it cannot be read.
 struct Golden {
@@ -70,7 +80,7 @@ const WITH_EXR: &str = "render s.glb --focus m.exr --size 8x8 --backend cpu -o o
 /// The same with one in PNG.
 const WITH_PNG: &str = "render s.glb --focus m.png --size 8x8 --backend cpu -o o.png";
 
-const GOLDENS: [Golden; 33] = [
+const GOLDENS: [Golden; 34] = [
     Golden {
         what: "the project of the first demo",
         version: 1,
@@ -109,6 +119,13 @@ const GOLDENS: [Golden; 33] = [
     light_field(4),
     light_field(5),
     light_field(6),
+    Golden {
+        what: "a light field of splats",
+        version: 7,
+        write: write_salf_of_splats,
+        command: "info l.salf",
+        says: "",
+    },
     Golden {
         what: "a part",
         version: 9,
@@ -201,6 +218,14 @@ fn write_png_map(place: &Workplace, version: u64) -> Verdict {
     let mut attributes: Value = serde_json::from_slice(&read("m.png.json")?).map_err(|e| e.to_string())?;
     attributes["version"] = json!(version);
     put(&place.own, "m.png.json", attributes.to_string())
+}
+
+fn write_salf_of_splats(place: &Workplace, _: u64) -> Verdict {
+    for (from, to) in [("splats.salf", "l.salf"), ("splats/a.splat", "splats/a.splat")] {
+        let bytes = std::fs::read(place.prepared.join(from)).map_err(|e| format!("{from}: {e}"))?;
+        put(&place.own, to, bytes)?;
+    }
+    Ok(())
 }
 
 fn write_preset(place: &Workplace, version: u64) -> Verdict {
