@@ -133,6 +133,8 @@ impl Gpu {
     /// Destroys the device at once, as a driver crash would: sums continue on the processor.
     pub fn destroy(&self) {
         self.0.device.destroy();
+        // Its callback waits until what was submitted is done.
+        let _ = self.0.lost.set("it was destroyed".into());
     }
 
     pub(super) fn device(&self) -> &Device {
