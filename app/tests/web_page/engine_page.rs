@@ -1,7 +1,7 @@
 //! `export --web --engine`, end to end: the page draws and paints in the same bytes as the program.
 
 use crate::chromium::Chromium;
-use crate::exported_page::{ExportedPage, decode_base91};
+use crate::exported_page::{ExportedPage, decode_base122};
 use crate::program::done;
 use crate::{demo, small_project};
 use flate2::read::ZlibDecoder;
@@ -28,7 +28,7 @@ impl OpenPage {
     fn open(file: &Path) -> Option<Self> {
         let page = ExportedPage::read_as(file, "showEnginePage");
         let mut field = Vec::new();
-        let packed = decode_base91(page.data["field"].as_str().unwrap());
+        let packed = decode_base122(page.data["field"].as_str().unwrap());
         ZlibDecoder::new(&*packed).read_to_end(&mut field).unwrap();
         let engine = Engine::new(FieldOfPage::from_bytes(&field).unwrap());
         let mut browser = Chromium::start()?;

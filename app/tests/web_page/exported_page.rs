@@ -30,7 +30,7 @@ impl ExportedPage {
         let html = std::fs::read_to_string(file).unwrap();
         let (_, data) = html.rsplit_once(&format!("\n{function}(")).unwrap();
         let (data, _) = data.split_once(");\n</script>").unwrap();
-        Self { data: serde_json::from_str(data).unwrap(), html }
+        Self { data: from_script(data), html }
     }
 
     /// What is shown first; its picture is in the document.
@@ -47,7 +47,7 @@ impl ExportedPage {
         let poster = poster.split_once('"').unwrap().0;
         let decoded = |slice: usize| {
             let webp = match stack["slices"][slice].as_str() {
-                Some(text) => decode_base91(text),
+                Some(text) => decode_base122(text),
                 None => STANDARD.decode(poster).unwrap(),
             };
             image::load_from_memory(&webp).unwrap().into_rgb8()
@@ -80,19 +80,29 @@ impl ExportedPage {
     }
 }
 
-/// Bytes of text in base 91: 13 bits in two characters, the lowest first.
-pub fn decode_base91(text: &str) -> Vec<u8> {
-    let digits: Vec<u8> = (b'!'..=b'~').filter(|c| !b"\"<\\".contains(c)).collect();
-    let number = |c: &u8| digits.iter().position(|digit| digit == c).unwrap() as u32;
+/// Bytes of text in base 122: seven bits a character of ASCII, the lowest first; others join a group that is none with the next.
+pub fn decode_base122(text: &str) -> Vec<u8> {
+    const JOINED: [u32; 6] = [0, 10, 13, 34, 60, 92];
+    let groups = text.chars().map(u32::from).flat_map(|code| match code {
+        ..128 => vec![code],
+        896.. => vec![JOINED[code as usize - 896]],
+        _ => vec![JOINED[code as usize / 128 - 1], code % 128],
+    });
     let (mut bytes, mut bits, mut count) = (Vec::new(), 0, 0);
-    for pair in text.as_bytes().chunks(2) {
-        bits |= pair.iter().rev().fold(0, |value, c| 91 * value + number(c)) << count;
-        count += if pair.len() == 2 { 13 } else { 6 };
-        while count >= 8 {
+    for group in groups {
+        bits |= group << count;
+        count += 7;
+        if count >= 8 {
             bytes.push(bits as u8);
             bits >>= 8;
             count -= 8;
         }
     }
     bytes
+}
+
+/// JSON as it is written into the page, whose strings hold control characters as they are.
+fn from_script(text: &str) -> Value {
+    let escaped = |c: char| if c.is_ascii_control() { format!("\\u{:04x}", u32::from(c)) } else { c.into() };
+    serde_json::from_str(&text.chars().map(escaped).collect::<String>()).unwrap()
 }

@@ -34,7 +34,7 @@ pub use luminance::{REC709_LUMINANCE, luminance};
 pub use order_statistics::{
     median, order_statistic, quantile, quantile_of_sorted, upper_median, upper_quantile_of_sorted,
 };
-pub use psnr::psnr;
+pub use psnr::{mean_square_of_psnr, psnr};
 pub use real::Real;
 pub use robust_scale::{MAD_OF_NORMAL, MAD_SCALE, scaled_mad};
 pub use simd_dispatch::{prefetch, with_widest_simd};

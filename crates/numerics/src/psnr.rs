@@ -8,6 +8,11 @@ pub fn psnr(mean_square: f64) -> f64 {
     if mean_square < 1e-20 { MAX_PSNR } else { -10.0 * mean_square.log10() }
 }
 
+/// The mean square error of a PSNR in dB, of values in [0, 1].
+pub fn mean_square_of_psnr(psnr: f64) -> f64 {
+    10f64.powf(-psnr / 10.0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

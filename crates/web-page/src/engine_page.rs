@@ -1,6 +1,6 @@
 //! The page of the engine: the program that draws, and a light field.
 
-use crate::base91::encode_base91;
+use crate::base122::encode_base122;
 use crate::deflate::deflate;
 use crate::error::WebPageError;
 use crate::escaping::script_value;
@@ -11,7 +11,7 @@ use serde::Serialize;
 /// The parts of the viewer, in the order in which they are joined to one script.
 const VIEWER: [&str; 19] = [
     include_str!("viewer/elements.js"),
-    include_str!("viewer/base91.js"),
+    include_str!("viewer/base122.js"),
     include_str!("viewer/pixel_map.js"),
     include_str!("viewer/paint_tint.js"),
     include_str!("viewer/zoom.js"),
@@ -84,8 +84,8 @@ impl EnginePage {
         };
         let data = EngineData {
             title: self.caption.page_title(),
-            program: encode_base91(&deflate(PROGRAM)?),
-            field: encode_base91(&deflate(&self.field)?),
+            program: encode_base122(&deflate(PROGRAM)?),
+            field: encode_base122(&deflate(&self.field)?),
             view: &self.view,
             has_disc: self.has_disc,
             is_painted: self.is_painted,

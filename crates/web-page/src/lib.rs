@@ -14,7 +14,7 @@
 //!
 //! The crate draws nothing itself: pictures come from a function, already encoded for the screen.
 
-mod base91;
+mod base122;
 mod deflate;
 mod encoding;
 mod engine_page;

@@ -1,6 +1,6 @@
 //! The page of slices: its data, and how it is written.
 
-use crate::base91::encode_base91;
+use crate::base122::encode_base122;
 use crate::error::WebPageError;
 use crate::escaping::script_value;
 use crate::page_frame::{Caption, PageContent, PageFrame, PublicAddress};
@@ -12,7 +12,7 @@ use serde::Serialize;
 const VIEWER: [&str; 18] = [
     include_str!("viewer/page_data.js"),
     include_str!("viewer/elements.js"),
-    include_str!("viewer/base91.js"),
+    include_str!("viewer/base122.js"),
     include_str!("viewer/slice_cache.js"),
     include_str!("viewer/pixel_map.js"),
     include_str!("viewer/packed_map.js"),
@@ -114,7 +114,7 @@ struct StackData<'a> {
     is_painted: bool,
     inverse_distances: Vec<f64>,
     bases: Vec<Option<usize>>,
-    /// In base 91; the opening slice is `null`, since the document shows it before the script runs.
+    /// In base 122; the opening slice is `null`, since the document shows it before the script runs.
     slices: Vec<Option<String>>,
 }
 
@@ -181,7 +181,7 @@ impl WebPage {
     }
 
     fn data(&self) -> Result<PageData<'_>, WebPageError> {
-        let packed = |map: &PixelMap| map.packed().map(|bytes| encode_base91(&bytes));
+        let packed = |map: &PixelMap| map.packed().map(|bytes| encode_base122(&bytes));
         let has_ordinary = self.stacks.iter().any(|stack| !stack.is_painted);
         let stack_data = |(index, stack)| self.stack_data(index, stack);
         Ok(PageData {
@@ -207,7 +207,7 @@ impl WebPage {
     fn stack_data<'a>(&self, index: usize, stack: &'a SliceStack) -> StackData<'a> {
         let picture = |(slice_index, slice): (usize, &Slice)| {
             let is_opening = self.opening == OpeningSlice { stack: index, slice: slice_index };
-            (!is_opening).then(|| encode_base91(&slice.webp))
+            (!is_opening).then(|| encode_base122(&slice.webp))
         };
         StackData {
             aperture: &stack.aperture,
@@ -260,10 +260,10 @@ mod tests {
         let html = page().to_html().unwrap();
         let page = page();
         let [first, opening, last] = [0, 1, 2].map(|k| &page.stacks[0].slices[k].webp);
-        for slice in [encode_base91(first), STANDARD.encode(opening), encode_base91(last)] {
+        for slice in [encode_base122(first), STANDARD.encode(opening), encode_base122(last)] {
             assert_eq!(html.matches(&slice).count(), 1);
         }
-        assert!(!html.contains(&encode_base91(opening)));
+        assert!(!html.contains(&encode_base122(opening)));
         assert!(html.contains("<title>Fox &amp; &lt;owl&gt;</title>"));
         assert!(html.contains(
             "<span class=\"title\">Fox &amp; &lt;owl&gt;</span><span class=\"licence\">CC0</span></footer>"

@@ -3,8 +3,8 @@
 //! Whatever can be sharp is nearly so at some slice. Half way between two slices, their cross-fade is compared with the picture there:
 //! each slice is as far from the one before it as both allow.
 //!
-//! Of three slices one is whole; its neighbours on both sides are differences from it, which take half of the bytes. So no more than two
-//! pictures are decoded to show one. The neighbour before a whole slice is placed as a whole one first, and becomes a difference
+//! Of three slices one is whole; its neighbours on both sides are differences from it, which take a third of its bytes. So no more than two
+//! pictures are decoded to show one. Whole ones are better than the others, which inherit what they keep of them. The neighbour before a whole slice is placed as a whole one first, and becomes a difference
 //! once that is known, if it is still as good.
 
 use crate::encoding::{EncodedPicture, USUAL_QUALITY, encode_difference, encode_picture};
@@ -12,6 +12,7 @@ use crate::error::WebPageError;
 use crate::page::Slice;
 use crate::screen_picture::ScreenPicture;
 use crate::slice_spacing::SliceSpacing;
+use numerics::mean_square_of_psnr;
 
 /// How good the slices of a stack are to be.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,7 +74,7 @@ pub fn place_slices<E: From<WebPageError>>(
     mut draw: impl FnMut(f64) -> Result<ScreenPicture, E>,
 ) -> Result<PlacedSlices, E> {
     let farthest = spacing.range.farthest;
-    let first = encode_picture(&draw(farthest)?, options.rest_psnr, USUAL_QUALITY)?;
+    let first = encode_picture(&draw(farthest)?, options.rest_psnr + GAIN_OF_WHOLE, USUAL_QUALITY)?;
     let mut placed = Placed::new(farthest, first, spacing.opening, options)?;
     for end in spacing.ends() {
         while placed.last.inverse_distance < end {
@@ -89,6 +90,10 @@ pub fn place_slices<E: From<WebPageError>>(
     })
 }
 
+/// By how much whole slices are better than is asked, dB: with 0 or 2 dB, or two differences on each side, the demo takes more bytes.
+const GAIN_OF_WHOLE: f64 = 1.0;
+/// The share of the bytes of such a slice that it takes without the gain, about.
+const SHARE_WITHOUT_GAIN: f64 = 0.86;
 /// A longer step is tried where it is likely to be longer by this factor.
 const WORTHWHILE: f64 = 1.15;
 /// The share of the error allowed that a step aims at.
@@ -151,8 +156,14 @@ impl Placed {
         Ok(placed)
     }
 
-    fn keep(&mut self, mut best: Candidate, options: &PlacementOptions) -> Result<(), WebPageError> {
+    /// Whether the next slice, at a distance, is to become the difference from the one after it, if it is whole.
+    fn may_become_difference(&self, inverse_distance: f64) -> bool {
         let follows_difference = self.slices.last().is_some_and(|last| last.base.is_some());
+        follows_difference && self.pending.is_none() && inverse_distance != self.opening
+    }
+
+    fn keep(&mut self, mut best: Candidate, options: &PlacementOptions) -> Result<(), WebPageError> {
+        let may_become_difference = self.may_become_difference(best.inverse_distance);
         let pending = self.pending.take();
         if let Some(pending) = &pending {
             self.make_difference(pending, &mut best, options)?;
@@ -161,8 +172,7 @@ impl Placed {
         let EncodedPicture { webp, psnr, quality, decoded } = encoded;
         let before =
             std::mem::replace(&mut self.last, LastSlice { inverse_distance, decoded, psnr, quality });
-        let becomes_difference = follows_difference && pending.is_none() && base.is_none();
-        if becomes_difference && inverse_distance != self.opening {
+        if may_become_difference && base.is_none() {
             self.pending = Some(Pending { picture, before: before.decoded, midway });
         }
         self.midway_psnrs.push(midway_psnr);
@@ -250,9 +260,10 @@ impl Placed {
     /// half of both slices' since they are independent, and what a Taylor series leaves after its linear part: its mean square grows as the
     /// fourth power of the step.
     fn lengthening(&self, candidate: &Candidate, options: &PlacementOptions) -> f64 {
-        let mean_square = |psnr: f64| 10f64.powf(-psnr / 10.0);
-        let coding = 0.25 * (mean_square(self.last.psnr) + mean_square(candidate.encoded.psnr));
-        let beyond_coding = |psnr: f64, share: f64| (share * mean_square(psnr) - coding).max(1e-3 * coding);
+        let [last, next] = [self.last.psnr, candidate.encoded.psnr].map(mean_square_of_psnr);
+        let coding = 0.25 * (last + next);
+        let beyond_coding =
+            |psnr: f64, share: f64| (share * mean_square_of_psnr(psnr) - coding).max(1e-3 * coding);
         let allowed = beyond_coding(options.midway_psnr, AIM);
         (allowed / beyond_coding(candidate.midway_psnr, 1.0)).powf(0.25)
     }
@@ -282,11 +293,13 @@ impl Placed {
         let last = self.slices.last().filter(|last| last.base.is_none() && self.pending.is_none());
         if let Some(last) = last.filter(|_| inverse_distance != self.opening) {
             let difference = encode_difference(picture, &self.last.decoded, min_psnr, self.last.quality)?;
-            if difference.psnr >= min_psnr && difference.webp.len() < last.webp.len() {
+            let whole_bytes = SHARE_WITHOUT_GAIN * last.webp.len() as f64;
+            if difference.psnr >= min_psnr && (difference.webp.len() as f64) < whole_bytes {
                 return Ok((Some(self.slices.len() - 1), difference));
             }
         }
-        Ok((None, encode_picture(picture, min_psnr, self.last.quality)?))
+        let gain = if self.may_become_difference(inverse_distance) { 0.0 } else { GAIN_OF_WHOLE };
+        Ok((None, encode_picture(picture, min_psnr + gain, self.last.quality)?))
     }
 }
 

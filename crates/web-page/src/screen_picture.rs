@@ -1,7 +1,11 @@
 //! Pictures encoded for the screen, and their differences.
 
 use crate::error::{MAX_SIDE_PX, WebPageError};
+use std::ops::Range;
 use std::sync::LazyLock;
+
+/// The side of WebP's blocks, px.
+const BLOCK_PX: usize = 16;
 
 /// The linear light of each level, in [0, 1].
 static LIGHT: LazyLock<[f64; 256]> = LazyLock::new(|| {
@@ -57,6 +61,34 @@ impl ScreenPicture {
         let pairs = self.pixels.as_flattened().iter().zip(reference.pixels.as_flattened());
         let squares = pairs.map(|(&a, &b)| (light[usize::from(a)] - light[usize::from(b)]).powi(2));
         numerics::psnr(squares.sum::<f64>() / (3 * self.pixels.len()) as f64)
+    }
+
+    /// The picture with the blocks of `base`, a picture of the same size, whose mean square difference from it, of linear light, is at most
+    /// `mean_square`.
+    pub(crate) fn with_blocks_of(&self, base: &Self, mean_square: f64) -> Self {
+        let [width, height] = self.size.map(|side| side as usize);
+        let light = &*LIGHT;
+        let square = |(a, b): (&u8, &u8)| (light[usize::from(*a)] - light[usize::from(*b)]).powi(2);
+        let mut pixels = self.pixels.clone();
+        for top in (0..height).step_by(BLOCK_PX) {
+            for left in (0..width).step_by(BLOCK_PX) {
+                let right = (left + BLOCK_PX).min(width);
+                let rows =
+                    (top..(top + BLOCK_PX).min(height)).map(|row| row * width + left..row * width + right);
+                let channels = |row: Range<usize>| {
+                    let [own, of_base] =
+                        [self, base].map(|picture| picture.pixels[row.clone()].as_flattened());
+                    own.iter().zip(of_base)
+                };
+                let (sum, count) = rows.clone().fold((0.0, 0), |(sum, count), row| {
+                    (sum + channels(row.clone()).map(square).sum::<f64>(), count + 3 * row.len())
+                });
+                if sum <= mean_square * count as f64 {
+                    rows.for_each(|row| pixels[row.clone()].copy_from_slice(&base.pixels[row]));
+                }
+            }
+        }
+        Self { size: self.size, pixels }
     }
 
     /// What is to be added to `base`, a picture of the same size, for this one: their differences, 128 where there is none, as far as that goes.

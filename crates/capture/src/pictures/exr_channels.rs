@@ -65,6 +65,9 @@ fn guarded<T>(file: &Path, read: impl FnOnce() -> Result<T, String>) -> Result<T
 
 fn meta(bytes: &[u8]) -> Result<MetaData, String> {
     let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(|error| error.to_string())?;
+    if meta.headers.is_empty() {
+        return Err("has no part".into());
+    }
     if meta.headers.iter().any(|header| header.deep) {
         return Err("has deep pixels, which cannot be read".into());
     }

@@ -6,7 +6,7 @@
  * @property {boolean} isPainted Whether it is focused as painted, or by the ordinary lens.
  * @property {number[]} inverseDistances Ascending: from the farthest slice to the nearest.
  * @property {(number | null)[]} bases The slice that each is the difference from; `null`: it is whole.
- * @property {(string | null)[]} slices WebP in base 91; `null` for the one that the poster shows.
+ * @property {(string | null)[]} slices WebP in base 122; `null` for the one that the poster shows.
  *
  * @typedef {object} MapData Packed maps of one byte a pixel (`PixelMap`).
  * @property {[number, number]} size Columns and rows.

@@ -90,7 +90,7 @@ class SliceCache {
    * @returns {Promise<ImageBitmap>}
    */
   async decodeText(text) {
-    if (text !== null) return createImageBitmap(new Blob([decodeBase91(text)], { type: "image/webp" }));
+    if (text !== null) return createImageBitmap(new Blob([decodeBase122(text)], { type: "image/webp" }));
     await this.poster.decode();
     return createImageBitmap(this.poster);
   }

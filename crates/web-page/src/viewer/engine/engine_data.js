@@ -3,7 +3,7 @@
  *
  * @typedef {object} EngineData
  * @property {string} title
- * @property {string} program The WebAssembly module, compressed, in base 91.
+ * @property {string} program The WebAssembly module, compressed, in base 122.
  * @property {string} field The light field, likewise.
  * @property {object} view In which strokes are recorded.
  * @property {boolean} hasDisc Whether the exported aperture is a plain disc.
