@@ -201,9 +201,11 @@ impl Outcomes<'_> {
         let greatest = weights.iter().copied().fold(none, f32::max);
         let power = 1.0 / softness.min(1.0);
         let sharpen = |p: f32| (p / greatest).powf(power);
-        let sum = sharpen(none) + weights.iter().copied().map(sharpen).sum::<f32>();
-        weights.iter_mut().for_each(|weight| *weight = sharpen(*weight) / sum);
-        sharpen(none) / sum
+        weights.iter_mut().for_each(|weight| *weight = sharpen(*weight));
+        let none = sharpen(none);
+        let sum = none + weights.iter().sum::<f32>();
+        weights.iter_mut().for_each(|weight| *weight /= sum);
+        none / sum
     }
 }
 
