@@ -200,7 +200,9 @@ impl Outcomes<'_> {
         none = none.max(0.0);
         let greatest = weights.iter().copied().fold(none, f32::max);
         let power = 1.0 / softness.min(1.0);
-        let sharpen = |p: f32| (p / greatest).powf(power);
+        // Of the two that powers leave as they are, each node has one at least.
+        let sharpen =
+            |p: f32| if p == greatest || p == 0.0 { p / greatest } else { (p / greatest).powf(power) };
         weights.iter_mut().for_each(|weight| *weight = sharpen(*weight));
         let none = sharpen(none);
         let sum = none + weights.iter().sum::<f32>();
