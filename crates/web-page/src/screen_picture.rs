@@ -6,6 +6,8 @@ use std::sync::LazyLock;
 
 /// The side of WebP's blocks, px.
 const BLOCK_PX: usize = 16;
+/// The root mean square difference of levels that eyes miss in a block.
+const MISSED_LEVELS: f64 = 4.0;
 
 /// The linear light of each level, in [0, 1].
 static LIGHT: LazyLock<[f64; 256]> = LazyLock::new(|| {
@@ -64,31 +66,37 @@ impl ScreenPicture {
     }
 
     /// The picture with the blocks of `base`, a picture of the same size, whose mean square difference from it, of linear light, is at most
-    /// `mean_square`.
+    /// `mean_square`, and whose levels differ by no more than eyes miss: linear light alone would keep dark blocks blurred.
     pub(crate) fn with_blocks_of(&self, base: &Self, mean_square: f64) -> Self {
-        let [width, height] = self.size.map(|side| side as usize);
-        let light = &*LIGHT;
-        let square = |(a, b): (&u8, &u8)| (light[usize::from(*a)] - light[usize::from(*b)]).powi(2);
         let mut pixels = self.pixels.clone();
-        for top in (0..height).step_by(BLOCK_PX) {
-            for left in (0..width).step_by(BLOCK_PX) {
-                let right = (left + BLOCK_PX).min(width);
-                let rows =
-                    (top..(top + BLOCK_PX).min(height)).map(|row| row * width + left..row * width + right);
-                let channels = |row: Range<usize>| {
-                    let [own, of_base] =
-                        [self, base].map(|picture| picture.pixels[row.clone()].as_flattened());
-                    own.iter().zip(of_base)
-                };
-                let (sum, count) = rows.clone().fold((0.0, 0), |(sum, count), row| {
-                    (sum + channels(row.clone()).map(square).sum::<f64>(), count + 3 * row.len())
-                });
-                if sum <= mean_square * count as f64 {
-                    rows.for_each(|row| pixels[row.clone()].copy_from_slice(&base.pixels[row]));
+        for block in self.blocks() {
+            let (mut of_light, mut of_levels, mut count) = (0.0, 0, 0);
+            for row in block.clone() {
+                let [own, other] = [self, base].map(|picture| picture.pixels[row.clone()].as_flattened());
+                for (&a, &b) in own.iter().zip(other) {
+                    of_light += (LIGHT[usize::from(a)] - LIGHT[usize::from(b)]).powi(2);
+                    of_levels += u64::from(a.abs_diff(b)).pow(2);
                 }
+                count += own.len();
+            }
+            let count = count as f64;
+            if of_light <= mean_square * count && of_levels as f64 <= MISSED_LEVELS.powi(2) * count {
+                block.for_each(|row| pixels[row.clone()].copy_from_slice(&base.pixels[row]));
             }
         }
         Self { size: self.size, pixels }
+    }
+
+    /// The blocks, each as the pixels of its rows.
+    fn blocks(&self) -> impl Iterator<Item = impl Iterator<Item = Range<usize>> + Clone> {
+        let [width, height] = self.size.map(|side| side as usize);
+        let corners = (0..height).step_by(BLOCK_PX);
+        let corners = corners.flat_map(move |top| (0..width).step_by(BLOCK_PX).map(move |left| [left, top]));
+        corners.map(move |[left, top]| {
+            let columns = left..(left + BLOCK_PX).min(width);
+            (top..(top + BLOCK_PX).min(height))
+                .map(move |y| y * width + columns.start..y * width + columns.end)
+        })
     }
 
     /// What is to be added to `base`, a picture of the same size, for this one: their differences, 128 where there is none, as far as that goes.
@@ -138,6 +146,21 @@ impl ScreenPicture {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn blocks_that_are_good_enough_are_kept() {
+        // Blocks of 16 × 16 px, the last ones cut off; each by one more level from the base than the one before.
+        let block = |k: u32| (k % 40 / 16 + 3 * (k / 40 / 16)) as u8;
+        let picture = |level: &dyn Fn(u8) -> u8| {
+            ScreenPicture::new([40, 24], (0..40 * 24).map(|k| [level(block(k)); 3]).collect()).unwrap()
+        };
+        let base = picture(&|_| 100);
+        let kept = picture(&|block| 100 + block).with_blocks_of(&base, 1.0);
+        assert_eq!(kept, picture(&|block| if block <= 4 { 100 } else { 100 + block }), "by levels");
+        let step = LIGHT[102] - LIGHT[100];
+        let kept = picture(&|block| 100 + block).with_blocks_of(&base, 1.001 * step * step);
+        assert_eq!(kept, picture(&|block| if block <= 2 { 100 } else { 100 + block }), "by light");
+    }
 
     fn grey(values: &[u8]) -> ScreenPicture {
         ScreenPicture::new([values.len() as u32, 1], values.iter().map(|&v| [v; 3]).collect()).unwrap()
