@@ -45,7 +45,7 @@ pub fn encode_picture(
 
 /// The same of the [difference](ScreenPicture::difference_from) of a picture from `base`, which the browser has. What it decodes is the sum. Where
 /// they differ too much for that, the PSNR is lower than asked. Blocks of `base` that are good enough are kept, like those that a video skips:
-/// what they cost serves blocks that change (the demo: 11 % less).
+/// what they cost serves blocks that change (the demo: a twentieth less).
 ///
 /// # Errors
 /// [`WebPageError::Encoder`]: libwebp refuses the picture.

@@ -4,8 +4,8 @@
 //! each slice is as far from the one before it as both allow.
 //!
 //! Of three slices one is whole; its neighbours on both sides are differences from it, which take a third of its bytes. So no more than two
-//! pictures are decoded to show one. Whole ones are better than the others, which inherit what they keep of them. The neighbour before a whole slice is placed as a whole one first, and becomes a difference
-//! once that is known, if it is still as good.
+//! pictures are decoded to show one. Whole ones are better than the others, which inherit what they keep of them. The neighbour before a whole
+//! slice is placed as a whole one first, and becomes a difference once that is known, if it is still as good.
 
 use crate::encoding::{EncodedPicture, USUAL_QUALITY, encode_difference, encode_picture};
 use crate::error::WebPageError;
