@@ -1,10 +1,10 @@
-/** The groups of seven bits that are no character of their own, since they would need escaping: NUL, the ends of lines, ", < and \. */
+/** Seven bits that would need escaping: NUL, ends of lines, ", < and \. */
 const JOINED_GROUPS = [0, 10, 13, 34, 60, 92];
-/** The first code of characters that are one of these groups, with none after it. */
+/** The first code of characters that are one of these, with none after it. */
 const ALONE = (1 + JOINED_GROUPS.length) << 7;
 
 /**
- * Bytes of text: a character of ASCII holds seven bits, another one those of a group above and, unless it is the last, seven more.
+ * Bytes of text: ASCII holds seven bits, another character those above and, but for the last, seven more.
  *
  * @param {string} text
  * @returns {Uint8Array}
@@ -12,30 +12,20 @@ const ALONE = (1 + JOINED_GROUPS.length) << 7;
 function decodeBase122(text) {
   const bytes = new Uint8Array((14 * text.length) >> 3);
   let [bits, count, length] = [0, 0, 0];
-  /** @param {number} group */
-  const take = (group) => {
-    bits |= group << count;
-    count += 7;
-    if (count >= 8) {
+  for (let k = 0; k < text.length; k++) {
+    const code = text.charCodeAt(k);
+    const isPair = code >= 128 && code < ALONE;
+    const group = code < 128 ? code : JOINED_GROUPS[isPair ? (code >> 7) - 1 : code - ALONE];
+    bits |= (isPair ? group | ((code & 127) << 7) : group) << count;
+    count += isPair ? 14 : 7;
+    while (count >= 8) {
       bytes[length++] = bits;
       bits >>>= 8;
       count -= 8;
     }
-  };
-  for (let k = 0; k < text.length; k++) {
-    const code = text.charCodeAt(k);
-    if (code < 128) {
-      take(code);
-    } else if (code >= ALONE) {
-      take(JOINED_GROUPS[code - ALONE]);
-    } else {
-      take(JOINED_GROUPS[(code >> 7) - 1]);
-      take(code & 127);
-    }
   }
   return bytes.slice(0, length);
 }
-
 
 /**
  * Compressed bytes of text, decompressed; `null` where the browser cannot.

@@ -70,11 +70,13 @@ impl OpenPage {
 
     /// Stack and slice on the screen, at rest, as the page says and as its pixels are.
     fn shown(&mut self) -> [usize; 2] {
-        let drawn = self.text("document.getElementById('viewer').dataset.drawn");
-        let numbers: Vec<usize> = drawn.split('/').map(|n| n.parse().unwrap()).collect();
-        let level = self.evaluate(
-            "document.getElementById('screen').getContext('2d').getImageData(96, 64, 1, 1).data[0]",
+        // At once: a fade may be at its end.
+        let shown = self.evaluate(
+            "[document.getElementById('viewer').dataset.drawn, \
+             document.getElementById('screen').getContext('2d').getImageData(96, 64, 1, 1).data[0]]",
         );
+        let (drawn, level) = (shown[0].as_str().unwrap_or_default(), &shown[1]);
+        let numbers: Vec<usize> = drawn.split('/').map(|n| n.parse().unwrap()).collect();
         let expected = f64::from(grey(numbers[0], numbers[1]));
         assert!((level.as_f64().unwrap() - expected).abs() <= 2.0, "{drawn}: {level}, not {expected}");
         [numbers[0], numbers[1]]
