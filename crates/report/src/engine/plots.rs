@@ -73,7 +73,7 @@ fn ground_truth_chart(title: String, records: &[EngineRecord]) -> Chart {
 
 /// RMSE from a PSNR on a range of 1; `None` if converged.
 fn rmse_from_psnr(psnr: Option<f64>) -> Option<f64> {
-    psnr.filter(|&psnr| psnr < EXACT_PSNR).map(|psnr| 10f64.powf(-psnr / 20.0))
+    psnr.filter(|&psnr| psnr < EXACT_PSNR).map(|psnr| numerics::mean_square_of_psnr(psnr).sqrt())
 }
 
 /// A line for each field and focus over the tolerances, with its points given by `position`.

@@ -115,7 +115,8 @@ impl Photographs {
     pub fn overall_psnr(&self, method: &str) -> f64 {
         let of_method =
             || self.reconstructions.iter().filter(|reconstruction| reconstruction.method == method);
-        let squares: f64 = of_method().map(|reconstruction| 10f64.powf(-reconstruction.psnr / 10.0)).sum();
+        let squares: f64 =
+            of_method().map(|reconstruction| numerics::mean_square_of_psnr(reconstruction.psnr)).sum();
         numerics::psnr(squares / of_method().count().max(1) as f64)
     }
 }

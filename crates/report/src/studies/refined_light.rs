@@ -51,7 +51,7 @@ impl RefinedLight {
         let (refined, seconds) = draw_with(LightQuality::Refined { passes })?;
         let square = |picture: &LinearPicture| -> Result<_, SessionError> {
             let errors = compare(picture, &refined)?;
-            Ok((10f64.powf(-errors.psnr / 10.0), errors.signed_mean_error))
+            Ok((numerics::mean_square_of_psnr(errors.psnr), errors.signed_mean_error))
         };
         let (from_last, _) = square(&last)?;
         let (from_standing, at_once_mean) = square(&at_once)?;

@@ -88,9 +88,9 @@ impl Card {
         self.sums.is_some()
     }
 
-    /// Whether the card was lost.
+    /// Whether the card is lost: work on it has failed, or its driver says so.
     pub fn is_lost(&self) -> bool {
-        self.is_lost
+        self.is_lost || self.gpu.as_ref().is_some_and(Gpu::is_lost)
     }
 
     /// The card, if one is used.

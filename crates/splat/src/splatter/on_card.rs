@@ -37,15 +37,12 @@ impl Splatter {
     /// # Errors
     /// [`SplatError::Overflow`] if the picture is too bright for its integers.
     pub fn leave_lost_card(&mut self) -> Result<bool, SplatError> {
-        if !self.gpu().is_some_and(Gpu::is_lost) {
-            return Ok(false);
-        }
         let was_summed = self.card.has_sums() && self.has_paint();
-        self.use_gpu(None);
-        if was_summed {
+        let is_left = self.drop_lost_card();
+        if is_left && was_summed {
             self.sum(&progress::Unwatched)?;
         }
-        Ok(true)
+        Ok(is_left)
     }
 
     /// The seconds by the card's own clock that the last picture took, from its first sum to its last pixel; `None`

@@ -99,7 +99,7 @@ pub fn live(pictures: &[ShownPicture]) -> Chart {
         let own = pictures.iter().filter(|picture| picture.after == name && picture.psnr < 200.0);
         let point = |picture: &ShownPicture| Point {
             x: picture.seconds,
-            y: 10f64.powf(-picture.psnr / 20.0),
+            y: numerics::mean_square_of_psnr(picture.psnr).sqrt(),
             label: picture.what.clone(),
         };
         Line { name: name.into(), style, is_dashed: false, points: own.map(point).collect() }
