@@ -10,9 +10,9 @@
 
 use document::StrokePoint;
 use glam::DVec2;
+use graphics_card::{BackendChoice, Gpu};
 use lens::{FocusOffset, Picture};
 use session::{Command, Event, Session, SessionOptions};
-use splat::{BackendChoice, Gpu};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;

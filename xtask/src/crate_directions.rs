@@ -26,7 +26,9 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("slf", &["material", "trace", "scene", "atlas", "numerics", "progress"]),
     ("salf", &["slf", "trace", "scene", "gaussians", "surface", "lens", "numerics", "progress"]),
     ("focus", &["spread", "atlas", "scene", "lens", "numerics", "progress"]),
-    ("splat", &["salf", "surface", "lens", "numerics", "progress"]),
+    ("graphics-card", &[]),
+    ("sight-on-card", &["graphics-card", "trace", "scene"]),
+    ("splat", &["graphics-card", "salf", "surface", "lens", "numerics", "progress"]),
     ("test-scenes", &["scene"]),
     (
         "hard-cases",
@@ -74,6 +76,8 @@ const ALLOWED: &[(&str, &[&str])] = &[
     (
         "render",
         &[
+            "graphics-card",
+            "sight-on-card",
             "gaussians",
             "document",
             "atomic-file",
@@ -98,6 +102,8 @@ const ALLOWED: &[(&str, &[&str])] = &[
     (
         "session",
         &[
+            "graphics-card",
+            "sight-on-card",
             "render",
             "document",
             "light",
@@ -120,6 +126,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     (
         "report",
         &[
+            "graphics-card",
             "session",
             "atomic-file",
             "render",
@@ -143,6 +150,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     (
         "focus-brush",
         &[
+            "graphics-card",
             "report",
             "session",
             "render",
@@ -166,8 +174,20 @@ const ALLOWED: &[(&str, &[&str])] = &[
     (
         "python",
         &[
-            "report", "render", "document", "light", "jobs", "project", "splat", "focus", "salf", "atlas",
-            "scene", "lens", "progress",
+            "graphics-card",
+            "report",
+            "render",
+            "document",
+            "light",
+            "jobs",
+            "project",
+            "splat",
+            "focus",
+            "salf",
+            "atlas",
+            "scene",
+            "lens",
+            "progress",
         ],
     ),
     ("xtask", &[]),
@@ -177,7 +197,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
 const RESERVED: &[(&str, &[&str])] = &[
     ("eframe", &["focus-brush"]),
     ("egui", &["focus-brush"]),
-    ("wgpu", &["focus-brush", "splat"]),
+    ("wgpu", &["focus-brush", "graphics-card", "sight-on-card", "splat"]),
     ("rfd", &["focus-brush"]),
     ("anyhow", &["focus-brush"]),
     ("clap", &["focus-brush"]),

@@ -5,7 +5,9 @@ mod parsers;
 mod sequence;
 mod web_page;
 
-pub use names::{BackendName, EstimatorName, ExposureName, KindName, ProgressName, SamplerName, StereoName};
+pub use names::{
+    BackendName, BakeDeviceName, EstimatorName, ExposureName, KindName, ProgressName, SamplerName, StereoName,
+};
 
 use parsers::{
     camera_parser, choice_parser, name_parser, parse_aov, parse_integers, parse_non_negative,
@@ -291,6 +293,12 @@ pub struct BakeArguments {
     pub shot: ShotArguments,
     #[command(flatten)]
     pub light: LightArguments,
+    /// Device that bakes: what of the aperture is visible is computed with the precision of a graphics card's floats
+    #[arg(long, value_enum, default_value_t = BakeDeviceName::Cpu)]
+    pub bake_on: BakeDeviceName,
+    /// Bake on the graphics adapter whose name contains this (focus-brush doctor lists them)
+    #[arg(long, value_name = "NAME", value_parser = name_parser())]
+    pub adapter: Option<String>,
     /// Write counts and timings as JSON to stdout
     #[arg(long)]
     pub json: bool,
@@ -348,6 +356,10 @@ pub struct RenderArguments {
     /// the processor; software adapters are not used
     #[arg(long, value_enum, default_value_t = BackendName::Auto)]
     pub backend: BackendName,
+    /// Device that bakes the light field: what of the aperture is visible is then computed with the precision of the
+    /// graphics card's floats
+    #[arg(long, value_enum, default_value_t = BakeDeviceName::Cpu)]
+    pub bake_on: BakeDeviceName,
     /// Use the graphics adapter whose name contains this, even a software one (focus-brush doctor lists them)
     #[arg(long, value_name = "NAME", value_parser = name_parser())]
     pub adapter: Option<String>,

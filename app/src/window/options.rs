@@ -23,7 +23,7 @@ pub struct WindowOptions {
     /// What work on documents may use.
     pub resources: light::Resources,
     /// Device that sums the live picture.
-    pub backend: splat::BackendChoice,
+    pub backend: graphics_card::BackendChoice,
     /// How scenes are unwrapped.
     pub unwrap: atlas::UnwrapOptions,
     /// Whether to use the system's file dialogs; otherwise paths are typed.
@@ -51,7 +51,7 @@ impl Default for WindowOptions {
             light_passes: 256,
             light_fields: None,
             resources: light::Resources::default(),
-            backend: splat::BackendChoice::Auto,
+            backend: graphics_card::BackendChoice::Auto,
             unwrap: atlas::UnwrapOptions::default(),
             system_dialogs: system_dialogs_available(),
             presets: project::PresetLibrary::default_folder(),

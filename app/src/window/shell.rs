@@ -134,6 +134,7 @@ impl Shell {
             light_passes: options.light_passes,
             light_field_store: options.light_fields,
             resources: options.resources,
+            bake_on: gpu.as_ref().ok().cloned().flatten().filter(|gpu| !gpu.is_in_software()),
             gpu: gpu.ok().flatten(),
             recovery_delay: options.recovery_delay,
             waker: Arc::new(move || context.request_repaint()),

@@ -7,9 +7,9 @@ use crate::acting::{Person, at, difference};
 use crate::small_scene;
 use egui::{Key, Modifiers, Pos2, Rect};
 use focus_brush::window::WindowOptions;
+use graphics_card::BackendChoice;
 use image::RgbaImage;
 use session::{LivePicture, Quality};
-use splat::BackendChoice;
 use std::path::Path;
 use std::time::Duration;
 

@@ -2,12 +2,12 @@
 
 use crate::errors::exception;
 use document::Input;
+use graphics_card::{BackendChoice, Gpu};
 use light::LightQuality;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use render::{Aov, MAX_CELLS_A_SIDE, RenderError, RenderOptions, Renderer, ScatterOptions};
-use splat::{BackendChoice, Gpu};
 use std::ops::RangeInclusive;
 
 /// The options for keyword arguments of a picture of `input`.

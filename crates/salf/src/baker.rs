@@ -13,7 +13,9 @@
 //! retained or, for large pictures, made again. [`crate::baker::parts`] bakes parts of a picture.
 
 pub mod block_baker;
+pub mod block_samples;
 pub mod layers;
+pub mod map_rows;
 pub mod occluders;
 pub mod outgoing;
 pub mod outliers;
@@ -25,20 +27,21 @@ pub mod splats;
 pub mod surface_patches;
 
 use crate::baker::block_baker::{BlockBaker, CellSurvey};
+use crate::baker::block_samples::{BlockSampler, Surveys};
+use crate::baker::map_rows::map_rows;
 use crate::baker::occluders::Occluders;
 use crate::baker::outliers::Outliers;
 use crate::baker::splats::{BlockSamples, SplatBands};
 use crate::options::BakeOptions;
-use crate::salf::Salf;
+use crate::salf::{BakedOn, Salf};
 use crate::sample::Sample;
-use crate::samples::{BakedSample, Samples, block_corner};
+use crate::samples::{Samples, block_corner};
 use glam::IVec2;
 use lens::Camera;
 use progress::{Cancelled, Progress, Stage};
 use rayon::prelude::*;
 use std::collections::HashMap;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use trace::{Radiance, Tracer};
+use trace::{Radiance, SightDevice, Tracer};
 
 /// Surveys, of some 400 bytes a pixel and more, are retained for at most this many pixels; for larger pictures they are made twice.
 const MAX_RETAINED_PX: i64 = 1 << 23;
@@ -69,7 +72,22 @@ pub fn bake_with_outliers(
     options: &BakeOptions,
     progress: &dyn Progress,
 ) -> Result<(Salf, Outliers), Cancelled> {
-    bake_retaining(MAX_RETAINED_PX, tracer, radiance, camera, options, progress)
+    bake_on(None, tracer, radiance, camera, options, progress)
+}
+
+/// The same, where a `device` answers what of the aperture is visible, as far as it can: to the precision of its floats.
+///
+/// # Errors
+/// [`Cancelled`] if `progress` is cancelled.
+pub fn bake_on(
+    device: Option<&dyn SightDevice>,
+    tracer: &Tracer,
+    radiance: &dyn Radiance,
+    camera: &Camera,
+    options: &BakeOptions,
+    progress: &dyn Progress,
+) -> Result<(Salf, Outliers), Cancelled> {
+    bake_retaining(MAX_RETAINED_PX, device, tracer, radiance, camera, options, progress)
 }
 
 /// The share of a bake's progress for finding the surfaces that are seen.
@@ -81,6 +99,7 @@ const SURVEY_SHARE: f32 = 0.8;
 /// The same, retaining surveys of pictures of at most this many pixels.
 fn bake_retaining(
     max_retained_px: i64,
+    device: Option<&dyn SightDevice>,
     tracer: &Tracer,
     radiance: &dyn Radiance,
     camera: &Camera,
@@ -116,40 +135,47 @@ fn bake_retaining(
     let blocks: Vec<IVec2> = rows.iter().flat_map(|&y| (0..columns).map(move |x| IVec2::new(x, y))).collect();
     let numbered: Vec<_> = blocks.iter().copied().enumerate().collect();
     let looking = Stage::named(progress, "visibility", SURFACES_SHARE, 1.0);
-    let (parts, outliers) = pack_blocks(&baker, &numbered, &looking, |number, block| {
+    let device = device.filter(|_| camera.aperture_radius > 0.0);
+    let device = device
+        .and_then(|device| device.prepare(tracer, &baker.view.aperture_square(), &baker.patterns.all()));
+    let content_of = |number: usize, block: IVec2| {
         let patches = patches_of_block.get(&domain.corner_of_block(block)).map_or(&[][..], Vec::as_slice);
-        match retained.get(number) {
-            Some(surveys) => baker.bake_block(&occluders, surveys, patches),
-            None => baker.bake_block(&occluders, &baker.survey_cells(&domain.cells_of_block(block)), patches),
-        }
-    })?;
+        let surveys = match retained.get(number) {
+            Some(surveys) => Surveys::Retained(surveys),
+            None => Surveys::Made(baker.survey_cells(&domain.cells_of_block(block))),
+        };
+        (surveys, patches)
+    };
+    let sampler =
+        BlockSampler { baker: &baker, occluders: &occluders, device: device.as_deref(), content_of };
+    let (parts, outliers) = pack_blocks(&sampler, &numbered, &looking)?;
     blocks.iter().for_each(|&block| drop(patches_of_block.remove(&domain.corner_of_block(block))));
     let outside = outside_domain(patches_of_block);
     let samples = Samples::join(parts.into_iter().chain(outside));
-    Ok((
-        Salf { camera: camera.clone(), margin_px: domain.margin as u32, carried: options.carried, samples },
-        outliers,
-    ))
+    let baked_on = if device.is_some() { BakedOn::Card } else { BakedOn::Processor };
+    let margin_px = domain.margin as u32;
+    Ok((Salf { camera: camera.clone(), margin_px, carried: options.carried, baked_on, samples }, outliers))
 }
 
 /// Bakes numbered blocks, in rows, and packs their samples, with those of splats.
 ///
 /// # Errors
 /// [`Cancelled`] if `progress` is cancelled.
-pub fn pack_blocks(
-    baker: &BlockBaker,
+pub fn pack_blocks<'a>(
+    sampler: &BlockSampler<'a, impl Fn(usize, IVec2) -> (Surveys<'a>, &'a [Sample]) + Sync>,
     blocks: &[(usize, IVec2)],
     progress: &dyn Progress,
-    bake: impl Fn(usize, IVec2) -> (Vec<BakedSample>, Outliers) + Sync,
 ) -> Result<(Vec<Samples>, Outliers), Cancelled> {
+    let baker = sampler.baker;
     let merge = |all: Outliers, outliers: &Outliers| all.merged(*outliers);
+    let corner = |block: IVec2| baker.domain.corner_of_block(block);
     let Some(splats) = &baker.tracer.scene().splats else {
-        let (samples, outliers): (Vec<_>, Vec<_>) = map_rows(blocks, progress, |&(number, block)| {
-            let (baked, outliers) = bake(number, block);
-            (baker.pack(baker.domain.corner_of_block(block), baked), outliers)
-        })?
-        .into_iter()
-        .unzip();
+        let (samples, outliers): (Vec<_>, Vec<_>) = sampler
+            .sample(blocks, progress, |block, (baked, outliers)| {
+                (baker.pack(corner(block), baked), outliers)
+            })?
+            .into_iter()
+            .unzip();
         return Ok((samples, outliers.iter().fold(Outliers::default(), merge)));
     };
     let bands = SplatBands::new(baker, splats);
@@ -157,10 +183,9 @@ pub fn pack_blocks(
     for band in blocks.chunk_by(|(_, a), (_, b)| bands.band(a.y) == bands.band(b.y)) {
         let share = |done: usize| done as f32 / blocks.len() as f32;
         let stage = Stage::new(progress, share(packed.len()), share(packed.len() + band.len()));
-        let (mut baked, outliers): (Vec<BlockSamples>, Vec<_>) =
-            map_rows(band, &Stage::new(&stage, 0.0, 0.1), |&(number, block)| {
-                let (baked, outliers) = bake(number, block);
-                ((baker.domain.corner_of_block(block), baked), outliers)
+        let (mut baked, outliers): (Vec<BlockSamples>, Vec<_>) = sampler
+            .sample(band, &Stage::new(&stage, 0.0, 0.1), |block, (baked, outliers)| {
+                ((corner(block), baked), outliers)
             })?
             .into_iter()
             .unzip();
@@ -195,61 +220,4 @@ pub fn outside_domain(patches: HashMap<IVec2, Vec<Sample>>) -> impl Iterator<Ite
     let mut blocks: Vec<_> = patches.into_iter().collect();
     blocks.sort_by_key(|(corner, _)| (corner.y, corner.x));
     blocks.into_iter().map(|(_, patches)| Samples::from(patches))
-}
-
-/// Maps `rows` by `work` in parallel, and reports the share that is done. The results are in order; the work is not: at any time, what is
-/// done is a fair sample of all, so that it tells how long the rest will take.
-///
-/// # Errors
-/// [`Cancelled`] if `progress` asks to stop.
-pub fn map_rows<T: Sync, R: Send>(
-    rows: &[T],
-    progress: &dyn Progress,
-    work: impl Fn(&T) -> R + Sync,
-) -> Result<Vec<R>, Cancelled> {
-    let done = AtomicUsize::new(0);
-    let mapped: Result<Vec<(usize, R)>, Cancelled> = spread_order(rows.len())
-        .into_par_iter()
-        .map(|index| {
-            progress.check()?;
-            let result = work(&rows[index]);
-            progress.check()?;
-            progress.report((done.fetch_add(1, Ordering::Relaxed) + 1) as f32 / rows.len() as f32);
-            Ok((index, result))
-        })
-        .collect();
-    let mut mapped = mapped?;
-    mapped.sort_unstable_by_key(|(index, _)| *index);
-    Ok(mapped.into_iter().map(|(_, result)| result).collect())
-}
-
-/// The numbers below `count`, every run of them spread evenly: steps of the golden section.
-fn spread_order(count: usize) -> Vec<usize> {
-    let golden = (count as f64 / std::f64::consts::GOLDEN_RATIO).round() as usize;
-    let step = (golden.max(1)..).find(|&step| gcd(step, count) == 1).unwrap_or(1);
-    (0..count).map(|k| k * step % count).collect()
-}
-
-fn gcd(a: usize, b: usize) -> usize {
-    if b == 0 { a } else { gcd(b, a % b) }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn work_is_spread_and_results_are_in_order() {
-        let rows: Vec<u32> = (0..997).collect();
-        let doubled = map_rows(&rows, &progress::Unwatched, |row| 2 * row).unwrap();
-        assert!(doubled.into_iter().eq((0..997).map(|row| 2 * row)));
-        for count in [0, 1, 2, 3, 10, 4034] {
-            let mut order = spread_order(count);
-            // The first quarter is a sample of all: about as many below the middle as above.
-            let low = order[..count / 4].iter().filter(|&&index| index < count / 2).count();
-            assert!((2 * low).abs_diff(count / 4) <= 4, "{count}: {low}");
-            order.sort_unstable();
-            assert!(order.into_iter().eq(0..count));
-        }
-    }
 }

@@ -4,7 +4,7 @@
 //!
 //! ```text
 //! magic        8 bytes   "FBSALF\r\n"
-//! version      u32       6, or 7 where there are records of splats
+//! version      u32       6, or 7 where there are records of splats; 8 and 9 are the same, baked on a graphics card
 //! source       path      the scene or project it was baked from
 //! triangles    u32       of that scene: what surface addresses count in
 //! camera       see `write_camera`
@@ -38,7 +38,7 @@ mod samples;
 use crate::{Carried, Salf};
 use camera::{read_camera, write_camera};
 pub use error::SalfFileError;
-use error::{VERSION, VERSION_WITH_SPLATS};
+use error::{content_of, version};
 use little_endian::{bytes, read_path, write_path};
 use samples::{read_samples, write_samples};
 use sha2::{Digest, Sha256};
@@ -75,7 +75,7 @@ impl SalfFile {
 
     fn write_head(&self, to: &mut impl Write) -> io::Result<()> {
         to.write_all(MAGIC)?;
-        let version = if self.salf.samples.has_splats() { VERSION_WITH_SPLATS } else { VERSION };
+        let version = version(self.salf.samples.has_splats(), self.salf.baked_on);
         to.write_all(&version.to_le_bytes())?;
         write_path(to, &self.source)?;
         to.write_all(&self.triangles.to_le_bytes())?;
@@ -102,16 +102,14 @@ impl SalfFile {
             return Err(SalfFileError::NotSalf);
         }
         let version = u32::from_le_bytes(bytes(&mut from)?);
-        if ![VERSION, VERSION_WITH_SPLATS].contains(&version) {
-            return Err(SalfFileError::Version(version));
-        }
+        let (has_splats, baked_on) = content_of(version).ok_or(SalfFileError::Version(version))?;
         let source = read_path(&mut from)?;
         let triangles = u32::from_le_bytes(bytes(&mut from)?);
         let camera = read_camera(&mut from)?;
         camera.validate().map_err(|error| SalfFileError::Damaged(error.to_string()))?;
         let margin_px = u32::from_le_bytes(bytes(&mut from)?);
         let samples = read_samples(&mut from, triangles)?;
-        if samples.has_splats() != (version == VERSION_WITH_SPLATS) {
+        if samples.has_splats() != has_splats {
             return Err(SalfFileError::Damaged("splats in a version without them, or none".into()));
         }
         let expected = from.hash.clone().finalize();
@@ -122,7 +120,7 @@ impl SalfFile {
         Ok(Self {
             source,
             triangles,
-            salf: Arc::new(Salf { camera, margin_px, carried: Carried::Standard, samples }),
+            salf: Arc::new(Salf { camera, margin_px, carried: Carried::Standard, baked_on, samples }),
         })
     }
 }
@@ -155,7 +153,7 @@ impl<T: Read> Read for Hashing<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Sample, Visibility};
+    use crate::{BakedOn, Sample, Visibility};
     use glam::{DVec2, Vec2, Vec3};
     use lens::{Aperture, ApertureMask, ApertureShape, Camera};
     use surface::SurfacePoint;
@@ -184,6 +182,7 @@ mod tests {
             camera,
             margin_px: 32,
             carried: Carried::Standard,
+            baked_on: BakedOn::Card,
             samples: vec![on_surface, background].into(),
         };
         SalfFile { source: "garden.glb".into(), triangles: 7, salf: Arc::new(salf) }
@@ -202,6 +201,7 @@ mod tests {
         assert_eq!((read.source.to_str(), read.triangles), (Some("garden.glb"), 7));
         assert_eq!(read.salf.camera, file.salf.camera);
         assert_eq!((read.salf.margin_px, &read.salf.samples), (32, &file.salf.samples));
+        assert_eq!(read.salf.baked_on, BakedOn::Card);
     }
 
     #[cfg(unix)]

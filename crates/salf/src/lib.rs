@@ -8,7 +8,7 @@
 //!
 //! ```
 //! use glam::{Vec2, Vec3};
-//! use salf::{Carried, Salf, Sample, Visibility};
+//! use salf::{BakedOn, Carried, Salf, Sample, Visibility};
 //!
 //! let sample = Sample {
 //!     center: Vec2::splat(0.5),
@@ -22,7 +22,8 @@
 //!     visibility: Visibility::from_words(&[0x00FF_FFFF_FFFF_FFFF]),
 //! };
 //! let samples = [sample].into_iter().collect();
-//! let salf = Salf { camera: lens::Camera::default(), margin_px: 0, carried: Carried::Standard, samples };
+//! let (camera, baked_on) = (lens::Camera::default(), BakedOn::Processor);
+//! let salf = Salf { camera, margin_px: 0, carried: Carried::Standard, baked_on, samples };
 //! assert_eq!((salf.statistics().open, salf.statistics().partial), (0, 1));
 //! ```
 
@@ -51,7 +52,7 @@ pub use baker::outliers::Outliers;
 #[cfg(feature = "bake")]
 pub use baker::parts::{PartsBaker, Surroundings};
 #[cfg(feature = "bake")]
-pub use baker::{bake, bake_with_outliers};
+pub use baker::{bake, bake_on, bake_with_outliers};
 pub use carried::Carried;
 pub use domain::{Cell, Domain};
 pub use file::{SalfFile, SalfFileError};
@@ -60,6 +61,6 @@ pub use light_change::LightChange;
 pub use margin::LARGEST_MARGIN_HEIGHTS;
 #[cfg(feature = "bake")]
 pub use options::BakeOptions;
-pub use salf::{Salf, SalfStatistics};
+pub use salf::{BakedOn, Salf, SalfStatistics};
 pub use sample::{Address, Sample, SampleFocus, Visibility};
 pub use samples::{Addresses, Run, SampleLocation, Samples};

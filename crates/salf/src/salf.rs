@@ -16,8 +16,32 @@ pub struct Salf {
     pub margin_px: u32,
     /// How finely its carried light is sampled.
     pub carried: Carried,
+    /// What answered what of the aperture is visible.
+    pub baked_on: BakedOn,
     /// Its samples.
     pub samples: Samples,
+}
+
+/// What a light field was baked on. A graphics card answers to the precision of its floats.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
+pub enum BakedOn {
+    /// The processor.
+    #[default]
+    #[serde(rename = "cpu")]
+    Processor,
+    /// A graphics card, as far as it answered.
+    #[serde(rename = "gpu")]
+    Card,
+}
+
+impl BakedOn {
+    /// Its name on the command line and in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Processor => "cpu",
+            Self::Card => "gpu",
+        }
+    }
 }
 
 /// How many samples there are of each kind, and what they take.

@@ -6,9 +6,9 @@ mod tiny_glb;
 
 use document::StrokePoint;
 use glam::DVec2;
+use graphics_card::{BackendChoice, Gpu};
 use lens::{FocusOffset, Picture};
 use session::{Command, Event, LivePicture, Session, SessionOptions};
-use splat::{BackendChoice, Gpu};
 use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};

@@ -9,7 +9,6 @@
 //! by hand. Each shader lies beside the Rust file of the same name that computes the same; constants and layouts come from Rust
 //! ([`shader_source`], [`shader_structs`], [`formats`]).
 
-mod device;
 mod error;
 mod formats;
 mod layout;
@@ -17,7 +16,6 @@ mod listing;
 mod pace;
 mod passes;
 mod picture_on_card;
-mod probe;
 mod records;
 mod resolve;
 mod scene;
@@ -30,8 +28,6 @@ mod sums;
 #[cfg(test)]
 mod tests;
 
-pub use device::Gpu;
-pub use device::adapter::{AdapterDescription, BackendChoice, GpuAbsent, adapters};
 pub(crate) use error::GpuError;
 pub use picture_on_card::PictureOnCard;
 pub(crate) use sums::GpuSums;

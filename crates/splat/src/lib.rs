@@ -4,7 +4,7 @@
 //! use glam::{Vec2, Vec3};
 //! use lens::{Camera, FocusOffset};
 //! use progress::Unwatched;
-//! use salf::{Carried, Salf, Sample, Visibility};
+//! use salf::{BakedOn, Carried, Salf, Sample, Visibility};
 //! use surface::{SurfaceField, SurfacePoint};
 //! use splat::Splatter;
 //! use std::sync::Arc;
@@ -33,7 +33,8 @@
 //!     visibility: Visibility::Open,
 //! };
 //! let samples = (0..256).map(sample).collect();
-//! let salf = Salf { camera: camera.clone(), margin_px: 0, carried: Carried::Standard, samples };
+//! let baked_on = BakedOn::Processor;
+//! let salf = Salf { camera: camera.clone(), margin_px: 0, carried: Carried::Standard, baked_on, samples };
 //!
 //! let mut splatter = Splatter::new(Arc::new(salf)); // once per bake
 //! splatter.render(&camera, &Unpainted, &Unwatched)?; // the whole picture: at first, and for another lens
@@ -49,7 +50,7 @@
 //! of rows that were cut once for all splats of its size (`aperture`), on the level of a pyramid of accumulators whose pixels
 //! are about its own size (`canvas`, `sums`). Running sums and upsampling make the picture (`resolve`): partly occluded samples
 //! share what open ones leave of a pixel (`resolve::partition`), and the sum of light is preserved (`resolve::balance`).
-//! [`Gpu`] does the same on a graphics card, bit for bit.
+//! `gpu` does the same on a graphics card, bit for bit.
 //!
 //! A picture that is too large for memory is summed in crops ([`CropSums`]), from a light field in parts.
 
@@ -81,7 +82,7 @@ pub use crop::{
     KNOT_NUMBERS, Kind,
 };
 #[cfg(feature = "gpu")]
-pub use gpu::{AdapterDescription, BackendChoice, Gpu, GpuAbsent, PictureOnCard, adapters};
+pub use gpu::PictureOnCard;
 pub use lens_in_use::Tolerance;
 pub use nodes::QUANTUM;
 pub use splatter::{Mattes, SETS, SplatError, Splatter, WideImage};

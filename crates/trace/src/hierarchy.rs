@@ -77,6 +77,11 @@ impl Hierarchy {
         (Self { nodes, stack_size: 3 * depth + 4 }, order)
     }
 
+    /// All nodes; the first is the root.
+    pub fn nodes(&self) -> &[Node] {
+        &self.nodes
+    }
+
     /// Bytes of memory that all nodes take.
     pub fn bytes(&self) -> usize {
         size_of_val(self.nodes.as_slice())
@@ -329,6 +334,11 @@ impl NodeMerger<'_> {
 }
 
 impl Node {
+    /// Of each child the node, or the first item of the leaf; and the number of items, 0 for a node.
+    pub fn children(&self) -> ([u32; 4], [u32; 4]) {
+        (self.first, self.count)
+    }
+
     const EMPTY: Self =
         Self { sides: [[Vec4::INFINITY, Vec4::NEG_INFINITY]; 3], first: [0; 4], count: [0; 4] };
 

@@ -1,6 +1,7 @@
 //! The scene's triangles in a bounding volume hierarchy.
 
 mod beams;
+mod flat;
 mod splat_surface;
 mod splat_tree;
 mod square_visibility;
@@ -11,6 +12,7 @@ use crate::transparency::TransparencyMode;
 use crate::visibility::Outline;
 use crate::watertight::{Crossing, ShearedRay, has_area, in_plane};
 use crate::{Hit, Ray};
+pub use flat::{FlatHierarchy, FlatNode, FlatSpace, FlatTriangle, SplitPosition};
 use glam::DVec3;
 use numerics::with_widest_simd;
 use scene::{AlphaMode, Scene, SurfacePoint};

@@ -33,7 +33,13 @@ pub fn wall() -> Salf {
         }
     };
     let samples = (0..SIZE[0] * SIZE[1]).map(sample).collect();
-    Salf { camera: camera(), margin_px: 0, carried: Carried::Standard, samples }
+    Salf {
+        camera: camera(),
+        margin_px: 0,
+        carried: Carried::Standard,
+        baked_on: salf::BakedOn::Processor,
+        samples,
+    }
 }
 
 /// The upper half of the wall is sharp, the lower half blurred.

@@ -8,6 +8,7 @@ use super::harness::made_splats;
 use super::harness::promise::{Context, Promise, Verdict, Workplace, ended_as_documented};
 use crate::chore::repository;
 use serde_json::{Value, json};
+use sha2::{Digest, Sha256};
 use std::path::Path;
 
 /// Old files open.
@@ -15,7 +16,7 @@ pub const PROMISE: Promise = Promise {
     name: "old-files",
     sentence: "Old files open, or it says which version reads them",
     what_is_done: "a file of each version: projects 1 to 11 and that of the first demo, strokes 1 to 6, presets 1, \
-                   light fields 1 to 7, focus maps 1, and of versions that do not exist yet",
+                   light fields 1 to 9, focus maps 1, and of versions that do not exist yet",
     full: GOLDENS.len(),
     short: GOLDENS.len(),
     batch: GOLDENS.len(),
@@ -60,7 +61,7 @@ const fn strokes(version: u64) -> Golden {
 }
 
 const fn light_field(version: u64) -> Golden {
-    let says = if version == 6 { "" } else { "version" };
+    let says = if matches!(version, 6 | 8) { "" } else { "version" };
     Golden { what: "a light field", version, write: write_salf, command: "info l.salf", says }
 }
 
@@ -80,7 +81,7 @@ const WITH_EXR: &str = "render s.glb --focus m.exr --size 8x8 --backend cpu -o o
 /// The same with one in PNG.
 const WITH_PNG: &str = "render s.glb --focus m.png --size 8x8 --backend cpu -o o.png";
 
-const GOLDENS: [Golden; 34] = [
+const GOLDENS: [Golden; 36] = [
     Golden {
         what: "the project of the first demo",
         version: 1,
@@ -119,6 +120,8 @@ const GOLDENS: [Golden; 34] = [
     light_field(4),
     light_field(5),
     light_field(6),
+    light_field(8),
+    light_field(LATER),
     Golden {
         what: "a light field of splats",
         version: 7,
@@ -199,6 +202,9 @@ fn write_strokes(place: &Workplace, version: u64) -> Verdict {
 fn write_salf(place: &Workplace, version: u64) -> Verdict {
     let mut bytes = std::fs::read(place.prepared.join("l.salf")).map_err(|e| e.to_string())?;
     bytes[8] = version as u8;
+    let end = bytes.len() - 32;
+    let checksum = Sha256::digest(&bytes[..end]);
+    bytes[end..].copy_from_slice(&checksum);
     put(&place.own, "l.salf", bytes)
 }
 

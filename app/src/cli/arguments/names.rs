@@ -81,7 +81,16 @@ pub enum BackendName {
     Cpu,
 }
 
-impl From<BackendName> for splat::BackendChoice {
+/// Device that a light field is baked on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum BakeDeviceName {
+    /// The processor.
+    Cpu,
+    /// The graphics processor, also one in software.
+    Gpu,
+}
+
+impl From<BackendName> for graphics_card::BackendChoice {
     fn from(name: BackendName) -> Self {
         match name {
             BackendName::Auto => Self::Auto,

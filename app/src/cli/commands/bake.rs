@@ -1,6 +1,7 @@
 //! `focus-brush bake`.
 
 use crate::cli::arguments::BakeArguments;
+use crate::cli::commands::render::open_bake_device;
 use crate::cli::console::{Console, path_text, print_json};
 use crate::cli::failure::Failure;
 use crate::cli::input::{camera_and_focus, check_folder, open_input, refuse_additions};
@@ -28,7 +29,9 @@ pub fn run(arguments: &BakeArguments, console: &Console) -> Result<(), Failure> 
     let open_seconds = start.elapsed().as_secs_f64();
     let bake_start = Instant::now();
     let lit = input.lit_scene()?;
-    let options = RenderOptions { light: arguments.light.light_quality(), ..RenderOptions::default() };
+    let bake_on = open_bake_device(arguments.bake_on, None, arguments.adapter.as_deref())?;
+    let light = arguments.light.light_quality();
+    let options = RenderOptions { light, bake_on, ..RenderOptions::default() };
     let salf = Arc::new(options.bake(&lit, &camera, &focus, console)?);
     let bake_seconds = bake_start.elapsed().as_secs_f64();
     let bytes = write_salf(&arguments.output, &arguments.file, &input.scene, &salf)?;
@@ -48,6 +51,7 @@ pub fn run(arguments: &BakeArguments, console: &Console) -> Result<(), Failure> 
                 "background_samples": statistics.background,
                 "bytes": statistics.bytes,
                 "margin_px": salf.margin_px,
+                "baked_on": salf.baked_on.name(),
             },
             "file_bytes": bytes,
             "warnings": input.warnings,

@@ -40,7 +40,7 @@ const ADAPTER_ADVICE: &str = if cfg!(target_os = "linux") {
 /// # Errors
 /// Never; missing parts are results.
 pub fn run(arguments: &DoctorArguments) -> Result<(), Failure> {
-    let adapters = splat::adapters();
+    let adapters = graphics_card::adapters();
     let missing: Vec<&Library> = if cfg!(target_os = "linux") {
         LIBRARIES.iter().filter(|library| !is_installed(library.file)).collect()
     } else {
@@ -78,7 +78,7 @@ pub fn run(arguments: &DoctorArguments) -> Result<(), Failure> {
         print_line(format!("  graphics     no adapter (the window needs one: {ADAPTER_ADVICE})"));
     }
     for adapter in &adapters {
-        let splat::AdapterDescription { name, kind, interface, is_used } = adapter;
+        let graphics_card::AdapterDescription { name, kind, interface, is_used } = adapter;
         let adapter_use = match (is_used, &**kind) {
             (true, _) => "pictures are summed here",
             (false, "cpu") => "in software: only with render --backend gpu",

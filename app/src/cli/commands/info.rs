@@ -61,6 +61,7 @@ pub fn run(arguments: &InfoArguments, console: &Console) -> Result<(), Failure> 
                 "samples": salf.samples.len(),
                 "bytes": salf.statistics().bytes,
                 "margin_px": salf.margin_px,
+                "baked_on": salf.baked_on.name(),
             })),
             "modelled": modelled.as_ref().map(modelled_json),
             "would_bake": { "width": input.camera.width, "height": input.camera.height },

@@ -3,18 +3,20 @@
 pub mod sequence;
 pub mod tiles;
 
-use crate::cli::arguments::{BackendName, EstimatorName, ExposureName, RenderArguments, SamplerName};
+use crate::cli::arguments::{
+    BackendName, BakeDeviceName, EstimatorName, ExposureName, RenderArguments, SamplerName,
+};
 use crate::cli::console::{Console, path_text, path_texts, print_json};
 use crate::cli::failure::Failure;
 use crate::cli::input::{camera_and_focus, check_picture_output, open_input};
 use ::render::{LayeredOptions, ScatterOptions, ViewsOptions};
 use document::Input;
+use graphics_card::Gpu;
 use lens::Exposure;
 use project::{ColorSpace, Compression, PictureOptions, write_picture};
 use render::{Aov, RenderOptions, Rendered, Renderer, Stereo, render_input, render_stereo};
 use serde_json::json;
 use session::SessionError;
-use splat::Gpu;
 use std::time::Instant;
 use trace::truth::{Estimator, Sampler, TruthOptions};
 
@@ -86,6 +88,7 @@ pub fn run(arguments: &RenderArguments, console: &Console) -> Result<(), Failure
                 "background_samples": cost.background_samples,
                 "bytes": cost.salf_bytes,
                 "margin_px": cost.margin_px,
+                "baked_on": cost.baked_on.name(),
             })),
             "warnings": input.warnings.iter().chain(&warnings).collect::<Vec<_>>(),
         }));
@@ -138,6 +141,7 @@ pub fn options(
     Ok(RenderOptions {
         cells_a_side,
         light: arguments.light.light_quality(),
+        bake_on: open_bake_device(arguments.bake_on, gpu.as_ref(), arguments.adapter.as_deref())?,
         gpu,
         renderer: arguments.renderer,
         truth: ground_truth_options(arguments),
@@ -195,6 +199,22 @@ pub fn gpu(arguments: &RenderArguments) -> Result<Option<Gpu>, Failure> {
 pub fn open_gpu(backend: BackendName, adapter: Option<&str>) -> Result<Option<Gpu>, Failure> {
     let opened = Gpu::open(backend.into(), adapter);
     Ok(opened.map_err(|absent| SessionError::GpuAbsent(absent.to_string()))?)
+}
+
+/// The graphics card to bake on, that which is `open` if one is; `None` for the processor.
+///
+/// # Errors
+/// The requested graphics card is not available.
+pub fn open_bake_device(
+    device: BakeDeviceName,
+    open: Option<&Gpu>,
+    adapter: Option<&str>,
+) -> Result<Option<Gpu>, Failure> {
+    match (device, open) {
+        (BakeDeviceName::Cpu, _) => Ok(None),
+        (BakeDeviceName::Gpu, Some(gpu)) => Ok(Some(gpu.clone())),
+        (BakeDeviceName::Gpu, None) => open_gpu(BackendName::Gpu, adapter),
+    }
 }
 
 fn ground_truth_options(arguments: &RenderArguments) -> TruthOptions {

@@ -6,9 +6,9 @@ use crate::cli::console::{Console, path_texts, print_json};
 use crate::cli::failure::Failure;
 use crate::cli::input::{read_world, refuse_additions, unwrap_options};
 use crate::window::demo;
+use graphics_card::Gpu;
 use report::{ReportOptions, SceneRequest, build_checksum};
 use serde_json::json;
-use splat::Gpu;
 use std::path::PathBuf;
 
 /// Measures, and writes the report.

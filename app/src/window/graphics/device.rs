@@ -1,6 +1,6 @@
 //! The graphics device of the window.
 
-use splat::{BackendChoice, Gpu};
+use graphics_card::{BackendChoice, Gpu};
 use std::sync::Arc;
 
 /// A device with the adapter's own limits of texture and buffer size: atlases and scenes are larger than the

@@ -45,6 +45,7 @@ pub fn picture_of_stars(
             camera: camera.clone(),
             margin_px: 0,
             carried: salf::Carried::Standard,
+            baked_on: salf::BakedOn::Processor,
             samples: samples.into(),
         },
         &focus,

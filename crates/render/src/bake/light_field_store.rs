@@ -1,18 +1,18 @@
 //! Light fields stored on disk, so that they need not be baked again in the next run of the program.
 //!
 //! The key of a light field is a hash of what it was baked from: everything in the scene that emits or blocks light, the camera except
-//! for what may differ (see [`crate::is_compatible`]), and the build of the program. Light fields are `.salf` files in one folder; when
+//! for what may differ (see [`crate::is_compatible`]), what it was baked on, and the build of the program. Light fields are `.salf` files in one folder; when
 //! they exceed a budget, the least recently used are removed.
 
 use crate::bake::salf_file::write_salf;
 use document::Stage;
 use lens::{Aperture, Camera, Character};
 use light::{build_id, evict_oldest, mark_used};
-use salf::{Carried, Salf, SalfFile};
+use salf::{BakedOn, Carried, Salf, SalfFile};
 use sha2::{Digest, Sha256};
 use std::fs::File;
 use std::io::BufReader;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -45,47 +45,50 @@ impl LightFieldStore {
     }
 
     /// The file of a light field whose light was refined by `light_passes` passes. `None` if the build of the program has no identifier.
-    fn file(&self, stage: &Stage, camera: &Camera, light_passes: u32) -> Option<PathBuf> {
+    fn file(&self, stage: &Stage, camera: &Camera, light_passes: u32, on: BakedOn) -> Option<PathBuf> {
         let mut hash = Sha256::new();
         hash.update(build_id()?);
         hash.update(format!("{:?}", compatibility_key(camera)));
         hash.update(stage.light_hash());
         hash.update(light_passes.to_le_bytes());
+        if on == BakedOn::Card {
+            hash.update(on.name());
+        }
         let name = hex::encode(hash.finalize());
         Some(self.folder.join(name).with_extension("salf"))
     }
 
-    /// Whether there is an unrefined light field of the stage for `camera`.
-    pub fn has(&self, stage: &Stage, camera: &Camera) -> bool {
-        self.file(stage, camera, 0).is_some_and(|file| file.exists())
+    /// Whether there is an unrefined light field of the stage for `camera` that was baked on this.
+    pub fn has(&self, stage: &Stage, camera: &Camera, on: BakedOn) -> bool {
+        self.file(stage, camera, 0, on).is_some_and(|file| file.exists())
     }
 
     /// Loads the most refined light field of the stage for `camera` whose margin is at least `min_margin_px` pixels and whose carried
-    /// light is at least as fine as `carried`. Also returns its number of light passes. Files that cannot be read are ignored.
+    /// light is at least as fine as `carried`, baked on this device. Also returns its number of light passes. Files that cannot be read are ignored.
     pub fn find(
         &self,
         stage: &Stage,
         camera: &Camera,
         min_margin_px: f64,
         carried: Carried,
+        on: BakedOn,
     ) -> Option<(Salf, u32)> {
         let passes = Self::LIGHT_PASSES.into_iter().rev().chain([0]);
         passes.into_iter().find_map(|passes| {
-            Some((self.find_with_passes(stage, camera, passes, min_margin_px, carried)?, passes))
+            let path = self.file(stage, camera, passes, on)?;
+            Some((Self::load(&path, stage, camera, min_margin_px, carried)?, passes))
         })
     }
 
-    fn find_with_passes(
-        &self,
+    fn load(
+        path: &Path,
         stage: &Stage,
         camera: &Camera,
-        light_passes: u32,
         min_margin_px: f64,
         carried: Carried,
     ) -> Option<Salf> {
-        let path = self.file(stage, camera, light_passes)?;
-        let file = File::open(&path).ok()?;
-        mark_used(&path);
+        let file = File::open(path).ok()?;
+        mark_used(path);
         let salf_file = SalfFile::read(BufReader::with_capacity(1 << 20, file)).ok()?;
         let salf = Arc::into_inner(salf_file.salf)?;
         let fits = compatibility_key(&salf.camera) == compatibility_key(camera)
@@ -106,7 +109,7 @@ impl LightFieldStore {
     }
 
     fn write(&self, stage: &Stage, salf: &Arc<Salf>, light_passes: u32) {
-        let Some(path) = self.file(stage, &salf.camera, light_passes) else { return };
+        let Some(path) = self.file(stage, &salf.camera, light_passes, salf.baked_on) else { return };
         let has_folder = std::fs::create_dir_all(&self.folder).is_ok();
         if has_folder && write_salf(&path, &stage.scene.path, &stage.scene, salf).is_ok() {
             evict_oldest(&self.folder, "salf", self.budget_bytes, &path);

@@ -10,13 +10,14 @@ use crate::picture::renderer::Renderer;
 use crate::picture::splat_truth::{Dilation, SplatTruth};
 use baselines::{BaselineError, FirstHits, LayeredOptions, ScatterOptions, ViewsOptions};
 use focus::Focus;
+use graphics_card::Gpu;
 use lens::{Camera, Character, FocusOffset, Picture};
 use light::{LightQuality, LitScene, Steps};
 use project::{Cryptomatte, Layer};
-use salf::{BakeOptions, Salf, SalfStatistics};
+use salf::{BakeOptions, BakedOn, Salf, SalfStatistics};
 use serde::Serialize;
 use slf::MAX_BOUNCES;
-use splat::{Gpu, Splatter, Tolerance};
+use splat::{Splatter, Tolerance};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Instant;
@@ -55,6 +56,8 @@ pub struct RenderOptions {
     pub cells_a_side: u32,
     /// The graphics card to sum the splat on; `None` for the processor. The picture is the same.
     pub gpu: Option<Gpu>,
+    /// The graphics card to bake the light field on; `None` for the processor. The picture is the same to the precision of its floats.
+    pub bake_on: Option<Gpu>,
     /// Options of [`Renderer::Layers`].
     pub layered: LayeredOptions,
     /// Options of [`Renderer::Views`].
@@ -83,6 +86,7 @@ impl Default for RenderOptions {
             splat_tolerance: Tolerance::NONE,
             cells_a_side: 1,
             gpu: None,
+            bake_on: None,
             layered: LayeredOptions::default(),
             views: ViewsOptions::default(),
             dilation_sigma_radii: 1.0,
@@ -165,7 +169,7 @@ impl RenderOptions {
     ) -> Result<Salf, RenderError> {
         let tolerance_px = self.tolerance_px * f64::from(self.cells_a_side);
         let bake = BakeOptions { tolerance_px, pixel_px: f64::from(self.cells_a_side), ..needed };
-        bake_with(lit, &self.finer(camera)?, &bake, self.light, steps)
+        bake_with(lit, &self.finer(camera)?, &bake, self.light, self.bake_on.as_ref(), steps)
     }
 
     /// The camera of the light field that is baked for `camera`.
@@ -216,6 +220,8 @@ pub struct RenderCost {
     pub salf_bytes: usize,
     /// Width of the baked margin around the frame, px.
     pub margin_px: u32,
+    /// What the light field was baked on.
+    pub baked_on: BakedOn,
     /// Whether the picture was summed on a graphics card.
     pub is_on_gpu: bool,
 }
@@ -225,6 +231,7 @@ impl RenderCost {
     fn from_salf(salf: &Salf) -> Self {
         let SalfStatistics { open, partial, background, bytes, .. } = salf.statistics();
         Self {
+            baked_on: salf.baked_on,
             open_samples: open,
             partial_samples: partial,
             background_samples: background,

@@ -6,6 +6,7 @@ use crate::sequence::take::FrameState;
 use focus::{Focus, FocusMap, FocusSource};
 use lens::Camera;
 use light::LitScene;
+use salf::BakedOn;
 use sha2::{Digest, Sha256};
 use std::sync::Arc;
 
@@ -32,9 +33,12 @@ pub(crate) fn frame_plan(
     add(format!("{:?}", state.camera).as_bytes());
     add(baked.as_bytes());
     add_focus(&mut add, &state.focus);
-    // The device does not change the result.
-    let anywhere = RenderOptions { gpu: None, ..options.clone() };
+    // The device that sums does not change the result; that which bakes does, by the last bits of floats, whichever card it is.
+    let anywhere = RenderOptions { gpu: None, bake_on: None, ..options.clone() };
     add(format!("{anywhere:?}").as_bytes());
+    if options.bake_on.is_some() {
+        add(BakedOn::Card.name().as_bytes());
+    }
     add(written.as_bytes());
     hash.finalize().into()
 }

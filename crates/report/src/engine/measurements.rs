@@ -3,7 +3,7 @@
 use super::EngineRecord;
 use super::frame_copy::FrameCopy;
 use crate::measurement::machine::Machine;
-use splat::Gpu;
+use graphics_card::Gpu;
 use std::path::PathBuf;
 
 /// Measurements so far.

@@ -71,6 +71,7 @@ fn salf(camera: &Camera, margin_px: f64, add_samples: impl Fn(Cell, &mut Vec<Sam
         camera: camera.clone(),
         margin_px: domain.margin as u32,
         carried: salf::Carried::Standard,
+        baked_on: salf::BakedOn::Processor,
         samples: samples.into(),
     })
 }

@@ -49,6 +49,17 @@ pub struct CellSurvey {
     surfaces: Vec<(Candidate, Vec<BakedSample>)>,
 }
 
+/// What is asked about the visibility of the aperture from some cells, before they are sampled.
+struct CellQuestions {
+    /// What may show behind the nearest surfaces, by cell.
+    behind: Vec<Option<Layers>>,
+    /// By cell and surface; `None` for surfaces that see all of it.
+    requests: Vec<Vec<Option<VisibilityRequest>>>,
+}
+
+/// What is asked about the visibility of the aperture from a block.
+pub struct BlockQuestions(Vec<CellQuestions>);
+
 /// What every cell is sampled with.
 pub struct BlockBaker<'a> {
     /// Traces the rays.
@@ -102,13 +113,46 @@ impl<'a> BlockBaker<'a> {
         surveys: &[CellSurvey],
         patches: &[Sample],
     ) -> (Vec<BakedSample>, Outliers) {
+        let sampled = surveys.chunks(self.batch_cells()).flat_map(|surveys| {
+            let asked = self.ask(occluders, surveys);
+            let visible = self.look(&asked);
+            self.sample_visible(surveys, asked, visible)
+        });
+        self.finish_block(sampled.collect(), surveys, patches)
+    }
+
+    /// What [`Self::bake_block`] asks about visibility, for a device to answer.
+    pub fn ask_block(&self, occluders: &Occluders, surveys: &[CellSurvey]) -> BlockQuestions {
+        BlockQuestions(
+            surveys.chunks(self.batch_cells()).map(|surveys| self.ask(occluders, surveys)).collect(),
+        )
+    }
+
+    /// The samples of a block once it is known what is visible: of each of its [questions](Self::ask_block), in order.
+    pub fn bake_answered(
+        &self,
+        surveys: &[CellSurvey],
+        BlockQuestions(asked): BlockQuestions,
+        visible: impl IntoIterator<Item = Vec<VisiblePart>>,
+        patches: &[Sample],
+    ) -> (Vec<BakedSample>, Outliers) {
+        let mut visible = visible.into_iter();
+        let sampled = surveys.chunks(self.batch_cells()).zip(asked).flat_map(|(surveys, asked)| {
+            let visible = asked.answered(&mut visible);
+            self.sample_visible(surveys, asked, visible)
+        });
+        self.finish_block(sampled.collect(), surveys, patches)
+    }
+
+    fn finish_block(
+        &self,
+        mut baked: Vec<BakedSample>,
+        surveys: &[CellSurvey],
+        patches: &[Sample],
+    ) -> (Vec<BakedSample>, Outliers) {
         if surveys.is_empty() {
             return Default::default();
         }
-        let mut baked: Vec<_> = surveys
-            .chunks(self.batch_cells())
-            .flat_map(|surveys| self.sample_visible(occluders, surveys))
-            .collect();
         let unplaced =
             |patch: &Sample| BakedSample { sample: patch.clone(), part_of: None, noisy: Vec3::ZERO };
         baked.extend(patches.iter().map(unplaced));
@@ -232,8 +276,8 @@ impl<'a> BlockBaker<'a> {
         }
     }
 
-    /// The samples of a block's cells with their visibility: those of the surveys, and those of surfaces behind them.
-    fn sample_visible(&self, occluders: &Occluders, surveys: &[CellSurvey]) -> Vec<BakedSample> {
+    /// Traces what may show behind the nearest surfaces of some cells, and asks what of the aperture is visible from all of them.
+    fn ask(&self, occluders: &Occluders, surveys: &[CellSurvey]) -> CellQuestions {
         let is_pinhole = self.view.optics.aperture_radius == 0.0;
         let may_show = |survey: &CellSurvey| {
             survey.has_pane
@@ -241,26 +285,53 @@ impl<'a> BlockBaker<'a> {
         };
         let behind = |survey: &CellSurvey| self.trace_layers(survey.cell, survey.density, true);
         let behind: Vec<_> = surveys.iter().map(|survey| may_show(survey).then(|| behind(survey))).collect();
-        let candidates_behind = |survey: &CellSurvey, layers: &Layers| -> Vec<Candidate> {
-            layers.groups.iter().map(|group| self.candidate(survey.cell, layers, group)).collect()
+        let request = |cell: Cell, (index, candidate): (usize, &Candidate)| {
+            let Candidate { viewpoint, inverse_depth, .. } = *candidate;
+            let number = Patterns::number_of(cell, index);
+            let request = VisibilityRequest { from: viewpoint, inverse_depth, number };
+            (!self.is_open(occluders, cell, candidate)).then_some(request)
         };
-        let candidates: Vec<Option<Vec<Candidate>>> = surveys
-            .iter()
-            .zip(&behind)
-            .map(|(survey, layers)| layers.as_ref().map(|layers| candidates_behind(survey, layers)))
-            .collect();
-        let visible: Vec<Vec<Vec<VisiblePart>>> = surveys
-            .chunks(TILE_CELLS)
-            .zip(candidates.chunks(TILE_CELLS))
-            .flat_map(|(surveys, candidates)| {
-                let of_cells = surveys.iter().zip(candidates).map(|(survey, candidates)| {
-                    let nearest = || survey.surfaces.iter().map(|(candidate, _)| candidate).collect();
-                    let all = candidates.as_ref().map_or_else(nearest, |all| all.iter().collect());
-                    (survey.cell, all)
-                });
-                self.visible_parts(occluders, &of_cells.collect::<Vec<_>>())
-            })
-            .collect();
+        let requests = |(survey, behind): (&CellSurvey, &Option<Layers>)| -> Vec<_> {
+            let request = |at: (usize, &Candidate)| request(survey.cell, at);
+            match behind {
+                None => {
+                    let nearest = survey.surfaces.iter().map(|(candidate, _)| candidate);
+                    nearest.enumerate().map(request).collect()
+                }
+                Some(layers) => {
+                    let all = layers.groups.iter().map(|group| self.candidate(survey.cell, layers, group));
+                    all.enumerate().map(|(index, candidate)| request((index, &candidate))).collect()
+                }
+            }
+        };
+        let requests = surveys.iter().zip(&behind).map(requests).collect();
+        CellQuestions { behind, requests }
+    }
+
+    /// Whether a surface certainly sees all of the aperture.
+    fn is_open(&self, occluders: &Occluders, cell: Cell, candidate: &Candidate) -> bool {
+        let Candidate { center, inverse_depth, slope, is_in_front, .. } = *candidate;
+        let may_be_hidden = || occluders.may_occlude(&Footprint { center, cell, inverse_depth, slope });
+        self.view.optics.aperture_radius == 0.0 || is_in_front && !may_be_hidden()
+    }
+
+    /// The answers to questions about some cells, by the processor: what may hide something from cells that lie together is searched for once.
+    fn look(&self, asked: &CellQuestions) -> Vec<Vec<Vec<VisiblePart>>> {
+        let Self { tracer, view, patterns, .. } = self;
+        let of_tile = |requests: &[Vec<Option<VisibilityRequest>>]| {
+            let asked: Vec<_> = requests.iter().flatten().flatten().copied().collect();
+            shadow_rays::visible_parts_of_many(tracer, view, patterns, &asked)
+        };
+        asked.answered(&mut asked.requests.chunks(TILE_CELLS).flat_map(of_tile))
+    }
+
+    /// The samples of a block's cells with their visibility: those of the surveys, and those of surfaces behind them.
+    fn sample_visible(
+        &self,
+        surveys: &[CellSurvey],
+        CellQuestions { behind, .. }: CellQuestions,
+        visible: Vec<Vec<Vec<VisiblePart>>>,
+    ) -> Vec<BakedSample> {
         let behind: Vec<Option<Vec<_>>> = behind
             .into_iter()
             .zip(&visible)
@@ -293,36 +364,23 @@ impl<'a> BlockBaker<'a> {
         }
         samples
     }
+}
 
-    /// The visible parts of the aperture from the surfaces of some cells that lie together, cell by cell.
-    fn visible_parts(
-        &self,
-        occluders: &Occluders,
-        cells: &[(Cell, Vec<&Candidate>)],
-    ) -> Vec<Vec<Vec<VisiblePart>>> {
-        let Self { tracer, view, patterns, .. } = self;
-        let is_open = |cell: Cell, candidate: &Candidate| {
-            let Candidate { center, inverse_depth, slope, is_in_front, .. } = *candidate;
-            let may_be_hidden = || occluders.may_occlude(&Footprint { center, cell, inverse_depth, slope });
-            view.optics.aperture_radius == 0.0 || is_in_front && !may_be_hidden()
-        };
-        let request = |&(cell, ref candidates): &(Cell, Vec<&Candidate>)| -> Vec<Option<VisibilityRequest>> {
-            let request = |(index, candidate): (usize, &&Candidate)| {
-                let Candidate { viewpoint, inverse_depth, .. } = **candidate;
-                let number = Patterns::number_of(cell, index);
-                let request = VisibilityRequest { from: viewpoint, inverse_depth, number };
-                (!is_open(cell, candidate)).then_some(request)
-            };
-            candidates.iter().enumerate().map(request).collect()
-        };
-        let requests: Vec<_> = cells.iter().map(request).collect();
-        let asked: Vec<_> = requests.iter().flatten().flatten().copied().collect();
-        let mut found = shadow_rays::visible_parts_of_many(tracer, view, patterns, &asked).into_iter();
-        let mut parts = |request: Option<VisibilityRequest>| match request {
+impl CellQuestions {
+    /// What is visible from each surface of each cell, if these are the answers to the requests in their order.
+    fn answered(&self, answers: &mut impl Iterator<Item = Vec<VisiblePart>>) -> Vec<Vec<Vec<VisiblePart>>> {
+        let mut parts = |request: &Option<VisibilityRequest>| match request {
             None => vec![(Visibility::Open, 1.0)],
-            Some(_) => found.next().expect("every request is answered"),
+            Some(_) => answers.next().expect("every request is answered"),
         };
-        requests.into_iter().map(|cell| cell.into_iter().map(&mut parts).collect()).collect()
+        self.requests.iter().map(|cell| cell.iter().map(&mut parts).collect()).collect()
+    }
+}
+
+impl BlockQuestions {
+    /// The requests, in the order in which they are answered.
+    pub fn requests(&self) -> impl Iterator<Item = VisibilityRequest> {
+        self.0.iter().flat_map(|asked| &asked.requests).flatten().flatten().copied()
     }
 }
 

@@ -6,13 +6,15 @@
 //! a time. The parts of a light field have its camera, its blocks and its hierarchy.
 
 use crate::baker::block_baker::BlockBaker;
+use crate::baker::block_samples::{BlockSampler, Surveys};
+use crate::baker::map_rows::map_rows;
 use crate::baker::occluders::Occluders;
 use crate::baker::outliers::Outliers;
 use crate::baker::reach::{Bound, Reach, SQUARE_PX};
-use crate::baker::{map_rows, outside_domain, pack_blocks, patches};
+use crate::baker::{outside_domain, pack_blocks, patches};
 use crate::domain::Domain;
 use crate::options::BakeOptions;
-use crate::salf::Salf;
+use crate::salf::{BakedOn, Salf};
 use crate::sample::Sample;
 use crate::samples::Samples;
 use glam::{IVec2, Vec2};
@@ -158,11 +160,13 @@ impl<'a> PartsBaker<'a> {
         let mut blocks: Vec<IVec2> = squares.iter().flat_map(|square| self.blocks_of(*square)).collect();
         blocks.sort_by_key(|block| (block.y, block.x));
         let numbered: Vec<_> = blocks.into_iter().enumerate().collect();
-        let (parts, outliers) = pack_blocks(&self.baker, &numbered, progress, |_, block| {
+        let content_of = |_, block: IVec2| {
             let patches = around.patches.get(&domain.corner_of_block(block)).map_or(&[][..], Vec::as_slice);
-            let looks = self.baker.survey_cells(&domain.cells_of_block(block));
-            self.baker.bake_block(&around.occluders, &looks, patches)
-        })?;
+            (Surveys::Made(self.baker.survey_cells(&domain.cells_of_block(block))), patches)
+        };
+        let (baker, occluders) = (&self.baker, &around.occluders);
+        let sampler = BlockSampler { baker, occluders, device: None, content_of };
+        let (parts, outliers) = pack_blocks(&sampler, &numbered, progress)?;
         let here: HashSet<IVec2> = squares.iter().copied().collect();
         let is_beside = |corner: &IVec2| {
             let nearest = domain.nearest_block(*corner);
@@ -172,7 +176,8 @@ impl<'a> PartsBaker<'a> {
         let apart: HashMap<_, _> = apart.map(|(corner, patches)| (*corner, patches.clone())).collect();
         let samples = Samples::join(parts.into_iter().chain(outside_domain(apart)));
         let (camera, margin_px) = (self.camera.clone(), domain.margin as u32);
-        Ok((Salf { camera, margin_px, carried: self.options.carried, samples }, outliers))
+        let (carried, baked_on) = (self.options.carried, BakedOn::Processor);
+        Ok((Salf { camera, margin_px, carried, baked_on, samples }, outliers))
     }
 
     /// Where in the picture the light of each part of the scene may land: of each part, the first and the end of some pixels.

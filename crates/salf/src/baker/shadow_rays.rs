@@ -5,7 +5,8 @@ use crate::jitter::{Net, jitter};
 use crate::sample::Visibility;
 use crate::view::View;
 use glam::DVec2;
-use trace::{PointSet, SquareVisibility, TargetPoints, Tracer, Viewpoint};
+use rayon::prelude::*;
+use trace::{PointSet, PreparedSight, SightQuery, SquareVisibility, TargetPoints, Tracer, Viewpoint};
 
 /// How much of its cell, along each axis, the places of a ray are spread over, of 16 cells a side.
 ///
@@ -89,6 +90,20 @@ impl Patterns {
     /// The number of a pattern below [`Self::COUNT`], chosen at random by `seed`.
     pub fn random_number(seed: [u32; 2]) -> u32 {
         (jitter(seed[0], seed[1], 0)[0] * f64::from(Self::COUNT)) as u32
+    }
+
+    /// All of them, as a device is given them.
+    pub fn all(&self) -> Vec<&TargetPoints> {
+        self.coarse.iter().chain(self.fine.iter().flatten()).collect()
+    }
+
+    /// Where among all of them a pattern is.
+    fn place_among_all(fineness: Fineness, number: u32) -> u32 {
+        let sets_before = match fineness {
+            Fineness::Coarse => 0,
+            Fineness::Fine(spread) => 1 + spread as u32,
+        };
+        sets_before * Self::COUNT + number % Self::COUNT
     }
 
     fn pattern_points(&self, fineness: Fineness, number: u32) -> &TargetPoints {
@@ -200,6 +215,34 @@ pub fn visible_parts_of_many(
         }
     }
     found
+}
+
+/// [`visible_parts`] of any points, in their order, as a device sees them; the processor where it leaves them. `None` once it no longer works.
+pub fn visible_parts_by_device(
+    tracer: &Tracer,
+    view: &View,
+    patterns: &Patterns,
+    device: &dyn PreparedSight,
+    requests: &[VisibilityRequest],
+) -> Option<Vec<Vec<VisiblePart>>> {
+    let query = |request: &VisibilityRequest| {
+        let fineness = Fineness::for_depth(view, request.inverse_depth);
+        SightQuery { from: request.from, target: Patterns::place_among_all(fineness, request.number) }
+    };
+    let queries: Vec<_> = requests.par_iter().map(query).collect();
+    let square = view.aperture_square();
+    let parts_of = |(request, hidden): (&VisibilityRequest, Option<PointSet>)| {
+        let VisibilityRequest { from, inverse_depth, number } = *request;
+        let fineness = Fineness::for_depth(view, inverse_depth);
+        let places = patterns.pattern_points(fineness, number);
+        let visibility = match hidden {
+            Some(hidden) => tracer.visibility_from_hidden(from, &square, places, hidden),
+            None => tracer.square_visibility(from, &square, places),
+        };
+        parts(visibility, places, fineness, |_| true)
+    };
+    let hidden = device.hidden(&queries)?;
+    Some(requests.par_iter().zip(hidden).map(parts_of).collect())
 }
 
 /// Shares that differ by no more than this part of them are one.

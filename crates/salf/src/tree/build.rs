@@ -394,6 +394,7 @@ mod tests {
             camera,
             margin_px: 0,
             carried: crate::Carried::Standard,
+            baked_on: crate::BakedOn::Processor,
         }
     }
 

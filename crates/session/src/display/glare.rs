@@ -54,6 +54,7 @@ mod tests {
                 camera: Camera::default(),
                 margin_px: 0,
                 carried: salf::Carried::Standard,
+                baked_on: salf::BakedOn::Processor,
                 samples,
             })
         };

@@ -1,9 +1,10 @@
 //! Light fields in other light: what is baked stays.
 
 use crate::light_field::{BakedField, LightField};
+use graphics_card::Gpu;
 use render::Modelled;
 use salf::LightChange;
-use splat::{Gpu, Tolerance};
+use splat::Tolerance;
 use std::sync::Arc;
 
 /// A light field without its sums, that can be shown in other light.

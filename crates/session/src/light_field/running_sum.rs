@@ -9,15 +9,18 @@ use crate::light_field::margin_reach::MarginReach;
 use crate::light_field::sample_index::SampleIndex;
 use document::Stage;
 use focus::Focus;
+use graphics_card::Gpu;
 use lens::{Camera, Picture};
 use light::LightQuality;
 use progress::{Progress, Stage as Share};
 use render::{Modelled, is_compatible};
 use salf::{BakeOptions, Carried, Salf};
 use scene::SurfaceField;
-use splat::{Gpu, SplatError, Splatter, Tolerance};
+use sight_on_card::CardSight;
+use splat::{SplatError, Splatter, Tolerance};
 use std::sync::Arc;
 use std::time::Instant;
+use trace::SightDevice;
 
 /// The margin is baked this much wider than the paint needs, in picture heights, so that the next strokes find
 /// room: a tenth of the height is a circle of confusion as wide as paint usually gives.
@@ -54,6 +57,8 @@ pub(crate) struct FieldOptions {
     pub tolerance: Tolerance,
     /// The graphics card to sum on; `None`: the processor.
     pub gpu: Option<Gpu>,
+    /// The graphics card to bake on; `None`: the processor.
+    pub bake_on: Option<Gpu>,
     /// Quality of the scene's light.
     pub light: LightQuality,
 }
@@ -111,7 +116,9 @@ impl LightField {
         let solving = Share::new(progress, 0.0, LIGHT_SHARE);
         let radiance = stage.lit.solve(camera, field_options.light, &solving)?;
         let baking = Share::new(progress, LIGHT_SHARE, 1.0);
-        let salf = salf::bake(stage.tracer(), &*radiance, camera, &options, &baking)?;
+        let sight = field_options.bake_on.map(CardSight::new);
+        let device = sight.as_ref().map(|sight| sight as &dyn SightDevice);
+        let (salf, _) = salf::bake_on(device, stage.tracer(), &*radiance, camera, &options, &baking)?;
         let passes = if let LightQuality::Refined { passes } = field_options.light { passes } else { 0 };
         Ok(Self {
             light_passes: passes,

@@ -13,7 +13,7 @@ use lens::Camera;
 use light::LightQuality;
 use progress::{Progress, Stage as Share, Unwatched};
 use render::LightFieldStore;
-use salf::{Carried, LightChange};
+use salf::{BakedOn, Carried, LightChange};
 use splat::Tolerance;
 use std::sync::Arc;
 use std::thread::JoinHandle;
@@ -67,9 +67,9 @@ impl LightFieldMaker {
         Self { store, thread: None, stage: None, pending_changes: Changes::default() }
     }
 
-    /// Whether a stored light field can be read, so that none need be baked.
-    pub fn has_stored(&self, stage: &Stage, camera: &Camera) -> bool {
-        self.store.as_ref().is_some_and(|store| store.has(stage, camera))
+    /// Whether a stored light field, baked on this, can be read, so that none need be baked.
+    pub fn has_stored(&self, stage: &Stage, camera: &Camera, on: BakedOn) -> bool {
+        self.store.as_ref().is_some_and(|store| store.has(stage, camera, on))
     }
 
     /// Where light fields are kept.
@@ -156,8 +156,10 @@ fn make(
     let FieldOrder { origin, stage, camera, interim, focus, tolerance, epoch } = order;
     let bake = |least_margin_px| {
         let light = LightQuality::Fine;
-        let options_with_margin =
-            |least_margin_px| FieldOptions { least_margin_px, tolerance, gpu: shared.gpu(), light };
+        let options_with_margin = |least_margin_px| {
+            let (gpu, bake_on) = (shared.gpu(), shared.bake_on());
+            FieldOptions { least_margin_px, tolerance, gpu, bake_on, light }
+        };
         shared.progress.begin_step("", 0.0, BAKE_SHARE);
         // Both light fields are baked in the light that is solved now.
         stage.lit.solve(&camera, light, &Share::named(&shared.progress, "light", 0.0, LIGHT_SHARE))?;
@@ -187,7 +189,8 @@ fn make(
         },
         FieldOrigin::LoadOrBake { least_margin_px } => {
             let carried = Carried::for_focus(&focus);
-            let stored = store.and_then(|store| store.find(&stage, &camera, least_margin_px, carried));
+            let stored = store
+                .and_then(|store| store.find(&stage, &camera, least_margin_px, carried, shared.baked_on()));
             match stored {
                 Some((salf, passes)) => {
                     LightField::from_salf(&stage, Arc::new(salf), tolerance, shared.gpu()).refined(passes)

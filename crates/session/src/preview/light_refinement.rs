@@ -13,12 +13,13 @@ use crate::preview::helper_thread;
 use crate::preview::mailbox::Shared;
 use document::Stage;
 use focus::Focus;
+use graphics_card::Gpu;
 use jobs::{Urgency, catch_panics, run_in_own_pool};
 use lens::{Camera, Exposure, Picture};
 use light::{LightErrors, LightQuality};
 use progress::Stage as Share;
 use render::LightFieldStore;
-use splat::{Gpu, Tolerance};
+use splat::Tolerance;
 use std::sync::Arc;
 use std::thread::JoinHandle;
 use std::time::Instant;
@@ -169,7 +170,8 @@ fn make(task: LightTask, last: Option<LightField>, shared: &Shared) -> Result<Fi
         summed_last = Some(last.fetch_picture()?.clone());
     }
     let light = LightQuality::Refined { passes };
-    let options = FieldOptions { least_margin_px: margin_px, tolerance, gpu: shared.gpu(), light };
+    let (gpu, bake_on) = (shared.gpu(), shared.bake_on());
+    let options = FieldOptions { least_margin_px: margin_px, tolerance, gpu, bake_on, light };
     let start = Instant::now();
     let baking = Share::new(&shared.light, COMPARED_SHARE, BAKED_SHARE);
     let mut field = LightField::bake(&stage, &camera, &focus, options, &baking)?;

@@ -7,9 +7,10 @@ use crate::preview::deliveries::{ExactDelivery, FieldDelivery, InterimField, Ref
 use crate::preview::events::{PreviewEvents, Published};
 use crate::preview::picture::{PictureTimes, Preview, Quality};
 use crate::preview::request::{PreviewRequest, StopScope};
+use graphics_card::Gpu;
 use jobs::{JobProgress, Waker};
 use progress::{Cancelled, Progress};
-use splat::Gpu;
+use salf::BakedOn;
 use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU32, AtomicUsize, Ordering};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
@@ -48,6 +49,7 @@ pub(crate) struct Shared {
     bakes: AtomicUsize,
     published: Mutex<Published>,
     gpu: Option<Gpu>,
+    bake_on: Option<Gpu>,
     waker: Waker,
 }
 
@@ -57,10 +59,11 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 impl Shared {
-    /// Empty mailboxes. Pictures are summed on `gpu`, or on the processor if `None`.
-    pub fn new(waker: Waker, gpu: Option<Gpu>) -> Self {
+    /// Empty mailboxes. Pictures are summed, and light fields baked, on these graphics cards, or on the processor if `None`.
+    pub fn new(waker: Waker, [gpu, bake_on]: [Option<Gpu>; 2]) -> Self {
         Self {
             gpu,
+            bake_on,
             request: Mutex::default(),
             wake: Condvar::new(),
             quick: JobProgress::default(),
@@ -296,6 +299,16 @@ impl Shared {
     /// What pictures are summed on; none, or none any more: the processor.
     pub fn gpu(&self) -> Option<Gpu> {
         self.gpu.clone().filter(|gpu| !gpu.is_lost())
+    }
+
+    /// What light fields are baked on; none, or none any more: the processor.
+    pub fn bake_on(&self) -> Option<Gpu> {
+        self.bake_on.clone().filter(|gpu| !gpu.is_lost())
+    }
+
+    /// What light fields that are kept from before must have been baked on.
+    pub fn baked_on(&self) -> BakedOn {
+        if self.bake_on().is_some() { BakedOn::Card } else { BakedOn::Processor }
     }
 
     /// Makes the light field from which pictures are drawn available to others.

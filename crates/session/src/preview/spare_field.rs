@@ -8,12 +8,13 @@ use crate::preview::helper_thread;
 use crate::preview::mailbox::Shared;
 use document::Stage;
 use focus::Focus;
+use graphics_card::Gpu;
 use jobs::{Urgency, catch_panics, run_in_own_pool};
 use lens::Camera;
 use light::LightQuality;
 use render::LightFieldStore;
 use salf::Carried;
-use splat::{Gpu, Tolerance};
+use splat::Tolerance;
 use std::sync::Arc;
 use std::thread::JoinHandle;
 use std::time::Instant;
@@ -156,14 +157,15 @@ fn make(
     shared: &Shared,
 ) -> Result<LightField, SessionError> {
     let SpareTask { stage, baked_camera, focus, tolerance, .. } = task;
-    let stored = store.and_then(|store| store.find(&stage, &baked_camera, 0.0, Carried::for_focus(&focus)));
+    let carried = Carried::for_focus(&focus);
+    let stored = store.and_then(|store| store.find(&stage, &baked_camera, 0.0, carried, shared.baked_on()));
     let mut field = match stored {
         Some((salf, passes)) => {
             LightField::from_salf(&stage, Arc::new(salf), tolerance, shared.gpu()).refined(passes)
         }
         None => {
-            let (gpu, light) = (shared.gpu(), LightQuality::Fine);
-            let options = FieldOptions { least_margin_px: 0.0, tolerance, gpu, light };
+            let (gpu, bake_on, light) = (shared.gpu(), shared.bake_on(), LightQuality::Fine);
+            let options = FieldOptions { least_margin_px: 0.0, tolerance, gpu, bake_on, light };
             let start = Instant::now();
             let field = LightField::bake(&stage, &baked_camera, &focus, options, &shared.spare)?;
             shared.count_bake();

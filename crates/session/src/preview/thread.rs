@@ -11,10 +11,11 @@ use crate::preview::request::StopScope;
 use crate::preview::worker::Worker;
 use document::Stage;
 use focus::FocusMap;
+use graphics_card::Gpu;
 use jobs::{JobProgress, Urgency, Waker, build_thread_pool};
 use lens::Camera;
 use render::{LightFieldStore, Tone};
-use splat::{Gpu, Tolerance};
+use splat::Tolerance;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -26,7 +27,8 @@ pub(crate) struct PreviewThread {
 
 impl PreviewThread {
     /// Starts the thread. After nothing has changed for `exact_after` (`None`: never) the exact picture is drawn, and then light is refined
-    /// by at most `light_passes`. Light fields are stored in `store`. Pictures are summed on `gpu`, or on the processor if `None`.
+    /// by at most `light_passes`. Light fields are stored in `store`. Pictures are summed, and light
+    /// fields baked, on these graphics cards, or on the processor if `None`.
     ///
     /// # Errors
     /// The system refused a thread.
@@ -35,9 +37,9 @@ impl PreviewThread {
         exact_after: Option<Duration>,
         light_passes: u32,
         store: Option<LightFieldStore>,
-        gpu: Option<Gpu>,
+        cards: [Option<Gpu>; 2],
     ) -> Result<Self, SessionError> {
-        let shared = Arc::new(Shared::new(waker, gpu));
+        let shared = Arc::new(Shared::new(waker, cards));
         let (thread_shared, pool) = (shared.clone(), build_thread_pool(Urgency::Interactive)?);
         let thread = std::thread::Builder::new()
             .name("preview".into())

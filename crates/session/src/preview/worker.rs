@@ -224,7 +224,7 @@ impl Worker {
             return Ok(());
         }
         // What is kept is there sooner than the coarse picture.
-        let is_stored = !self.bakes_anew && self.maker.has_stored(&stage, &camera);
+        let is_stored = !self.bakes_anew && self.maker.has_stored(&stage, &camera, self.shared.baked_on());
         if !is_stored {
             self.show_coarse(&stage, &camera, &focus)?;
         }

@@ -14,12 +14,13 @@ use atlas::UnwrapOptions;
 use document::{ActiveEdit, Document};
 use focus::SpreadSettings;
 use glam::{DVec2, DVec3};
+use graphics_card::Gpu;
 use jobs::{Job, JobId, JobProgress, JobStatus, Waker};
 use lens::Camera;
 use light::Resources;
 use render::{Display, LightFieldStore};
 use slf::PhotographLight;
-use splat::{Gpu, Tolerance};
+use splat::Tolerance;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::{Arc, mpsc};
@@ -46,6 +47,8 @@ pub struct SessionOptions {
     pub light_field_store: Option<LightFieldStore>,
     /// The graphics card that sums and shows the preview; `None`: the processor.
     pub gpu: Option<Gpu>,
+    /// The graphics card that bakes the preview's light fields; `None`: the processor.
+    pub bake_on: Option<Gpu>,
     /// Called from any thread when there is something to poll.
     pub waker: Waker,
 }
@@ -62,6 +65,7 @@ impl Default for SessionOptions {
             light_passes: 0,
             light_field_store: None,
             gpu: None,
+            bake_on: None,
             waker: Arc::new(|| {}),
         }
     }
@@ -142,7 +146,7 @@ impl Session {
                 options.exact_delay,
                 options.light_passes,
                 options.light_field_store.clone(),
-                options.gpu.clone(),
+                [options.gpu.clone(), options.bake_on.clone()],
             )?,
             options,
             document: None,

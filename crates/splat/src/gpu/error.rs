@@ -1,7 +1,7 @@
 //! Why work on a card ends early.
 
-use crate::gpu::device::Lost;
 use crate::resolve::Overflow;
+use graphics_card::Lost;
 use progress::Cancelled;
 
 /// Why a sum on the card failed.

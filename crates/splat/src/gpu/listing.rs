@@ -2,12 +2,11 @@
 
 use crate::aperture::stencil::{COARSER, Place, Stencils};
 use crate::draw_list::Scene as DrawnScene;
-use crate::gpu::Gpu;
-use crate::gpu::device::Lost;
-use crate::gpu::device::commands::Commands;
 use crate::gpu::formats::{COUNTS, KINDS, RECORD_WORDS, THREADS};
+use crate::gpu::passes::Passes;
 use crate::gpu::scene::{Chunk, Scene};
 use crate::gpu::shader_structs;
+use graphics_card::{Commands, Gpu, Lost};
 use std::ops::Range;
 use wgpu::{BindGroup, Buffer, BufferUsages};
 
@@ -145,7 +144,7 @@ impl Listing {
         let uniform = &self.chunks[index][usize::from(is_writing)];
         gpu.write_struct(uniform, &of_chunk);
         let bound = self.bind_group(gpu, chunk, pen, focus, uniform);
-        let pass = &gpu.passes().list[usize::from(is_writing)];
+        let pass = &Passes::of(gpu).list[usize::from(is_writing)];
         let mut work = Commands::new(gpu);
         work.dispatch(pass, &bound, [chunk.shared.count.div_ceil(THREADS), 1]);
         work.submit();
@@ -161,7 +160,7 @@ impl Listing {
     ) -> BindGroup {
         let focus = focus.unwrap_or(&self.unpainted);
         let buffers = [&chunk.shared.nodes, focus, pen, &self.lens, &self.counts, &self.records, uniform];
-        gpu.bind(&gpu.passes().list_layout, (0..).zip(buffers))
+        gpu.bind(&Passes::of(gpu).list_layout, (0..).zip(buffers))
     }
 }
 

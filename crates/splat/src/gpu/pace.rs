@@ -1,8 +1,7 @@
 //! How many records a card draws per submission.
 
-use crate::gpu::Gpu;
-use crate::gpu::device::Lost;
 use crate::gpu::formats::KINDS;
+use graphics_card::{Gpu, Lost};
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 use wgpu::SubmissionIndex;

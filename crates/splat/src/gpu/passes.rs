@@ -2,8 +2,9 @@
 
 use crate::gpu::formats::{KINDS, LANES, SCAN_THREADS};
 use crate::gpu::shader_source;
-use std::sync::OnceLock;
-use wgpu::{BindGroupLayout, BufferBindingType, ComputePipeline, Device, ShaderModule};
+use graphics_card::{Bound, Gpu, Pass, bind_group_layout as layout, shader_module};
+use std::sync::Arc;
+use wgpu::{BindGroupLayout, Device};
 
 /// All passes.
 pub struct Passes {
@@ -20,71 +21,18 @@ pub struct Passes {
     pub balance: Pass,
     pub share: Pass,
     pub finish_layout: BindGroupLayout,
-    pub probe: Pass,
-    pub probe_layout: BindGroupLayout,
-}
-
-/// One pass, compiled when it is first needed.
-pub struct Pass {
-    module: ShaderModule,
-    layout: BindGroupLayout,
-    entry: &'static str,
-    constants: Vec<(&'static str, f64)>,
-    pipeline: OnceLock<ComputePipeline>,
-}
-
-impl Pass {
-    fn new(
-        module: &ShaderModule,
-        layout: &BindGroupLayout,
-        entry: &'static str,
-        constants: &[(&'static str, f64)],
-    ) -> Self {
-        let (module, layout, constants) = (module.clone(), layout.clone(), constants.to_vec());
-        Self { module, layout, entry, constants, pipeline: OnceLock::new() }
-    }
-
-    /// The compiled pipeline of the pass; it is compiled on first use.
-    pub fn pipeline(&self, device: &Device) -> &ComputePipeline {
-        self.pipeline.get_or_init(|| {
-            let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-                label: Some(self.entry),
-                bind_group_layouts: &[Some(&self.layout)],
-                ..wgpu::PipelineLayoutDescriptor::default()
-            });
-            device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some(self.entry),
-                layout: Some(&layout),
-                module: &self.module,
-                entry_point: Some(self.entry),
-                compilation_options: wgpu::PipelineCompilationOptions {
-                    constants: &self.constants,
-                    ..wgpu::PipelineCompilationOptions::default()
-                },
-                cache: None,
-            })
-        })
-    }
-}
-
-/// What a binding is.
-#[derive(Clone, Copy)]
-enum Bound {
-    Read,
-    Write,
-    Uniform,
 }
 
 impl Passes {
-    /// Loads the shaders of all passes on a card.
-    pub fn new(device: &Device) -> Self {
+    /// The passes of a card.
+    pub fn of(gpu: &Gpu) -> Arc<Self> {
+        gpu.kept(Self::new)
+    }
+
+    /// Loads the shaders of all passes.
+    fn new(device: &Device) -> Self {
         use Bound::{Read, Uniform, Write};
-        let module = |name: &'static str, source: String| {
-            device.create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some(name),
-                source: wgpu::ShaderSource::Wgsl(source.into()),
-            })
-        };
+        let module = |name: &'static str, source: String| shader_module(device, name, source);
         let (list, draw) = (module("list", shader_source::list()), module("draw", shader_source::draw()));
         let resolve = module("resolve", shader_source::resolve(has_whole_subgroups(device)));
         let list_layout = layout(
@@ -108,8 +56,6 @@ impl Passes {
                 (10, Read),
             ],
         );
-        let probe = module("probe", shader_source::probe());
-        let probe_layout = layout(device, [(0, Read), (1, Write), (2, Uniform)]);
         let of_kind = |is_wide: f64, kind: usize| {
             [1, LANES].map(|lanes| {
                 let constants = [("IS_WIDE", is_wide), ("KIND", kind as f64), ("LANES", lanes.into())];
@@ -129,8 +75,6 @@ impl Passes {
             balance: Pass::new(&resolve, &finish_layout, "balance", &[]),
             share: Pass::new(&resolve, &finish_layout, "share", &[]),
             finish_layout: finish_layout.clone(),
-            probe: Pass::new(&probe, &probe_layout, "probe", &[]),
-            probe_layout: probe_layout.clone(),
         }
     }
 }
@@ -143,23 +87,4 @@ fn has_whole_subgroups(device: &Device) -> bool {
         && size == info.subgroup_max_size
         && size >= 4
         && SCAN_THREADS.is_multiple_of(size)
-}
-
-fn layout(device: &Device, bound: impl IntoIterator<Item = (u32, Bound)>) -> BindGroupLayout {
-    let entry = |(binding, bound)| wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::COMPUTE,
-        ty: wgpu::BindingType::Buffer {
-            ty: match bound {
-                Bound::Read => BufferBindingType::Storage { read_only: true },
-                Bound::Write => BufferBindingType::Storage { read_only: false },
-                Bound::Uniform => BufferBindingType::Uniform,
-            },
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        },
-        count: None,
-    };
-    let entries: Vec<_> = bound.into_iter().map(entry).collect();
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries })
 }

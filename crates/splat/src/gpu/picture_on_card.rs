@@ -1,6 +1,6 @@
 //! A picture in the card's memory: shown from there, without coming back.
 
-use crate::gpu::Gpu;
+use graphics_card::Gpu;
 use lens::Picture;
 use std::ops::Range;
 use wgpu::{Buffer, BufferUsages};

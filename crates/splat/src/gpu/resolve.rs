@@ -1,17 +1,15 @@
 //! Accumulators to a picture, on the card.
 
-use crate::gpu::Gpu;
-use crate::gpu::device::Lost;
-use crate::gpu::device::commands::Commands;
 use crate::gpu::error::GpuError;
 use crate::gpu::formats::THREADS;
 use crate::gpu::layout::{Layout, Level};
-use crate::gpu::passes::Pass;
+use crate::gpu::passes::Passes;
 use crate::gpu::shader_structs::{Frame, LineLevel};
 use crate::nodes::{BRIGHT, Nodes};
 use crate::resolve::balance::Gains;
 use crate::resolve::knots::{KnotSums, Knots, SharedSums};
 use crate::resolve::{MARGIN, Overflow, Quanta};
+use graphics_card::{Commands, Gpu, Lost, Pass};
 use std::ops::Range;
 use wgpu::{BindGroup, Buffer, BufferUsages};
 
@@ -99,7 +97,7 @@ impl Resolve {
     /// Integrates the pixel rows `rows` of the sums of free (`kind` 0) or sharing (1) samples to lines, coarse levels
     /// first. Recorded in `work`, not yet run.
     pub fn integrate(&self, gpu: &Gpu, work: &mut Commands, kind: usize, sums: &Buffer, rows: &Range<u32>) {
-        let passes = gpu.passes();
+        let passes = Passes::of(gpu);
         for (k, level) in self.levels.iter().enumerate().rev() {
             let bound = self.integrate_bind_group(gpu, sums, kind, &self.uniforms[k]);
             // The requested rows, and those that they are made of.
@@ -129,20 +127,20 @@ impl Resolve {
     ) -> Result<(), Lost> {
         gpu.write_struct(&self.wide_uniform, &line_level(0, layout.levels.first().ok_or(Lost)?, None));
         let bound = self.integrate_bind_group(gpu, sums, kind, &self.wide_uniform);
-        work.dispatch(&gpu.passes().integrate_wide, &bound, [rows.len() as u32, 1]);
+        work.dispatch(&Passes::of(gpu).integrate_wide, &bound, [rows.len() as u32, 1]);
         Ok(())
     }
 
     fn integrate_bind_group(&self, gpu: &Gpu, sums: &Buffer, kind: usize, level: &Buffer) -> BindGroup {
         let buffers = [sums, &self.lines[kind], level, &self.frame, &self.overflow];
-        gpu.bind(&gpu.passes().integrate_layout, (0..).zip(buffers))
+        gpu.bind(&Passes::of(gpu).integrate_layout, (0..).zip(buffers))
     }
 
     /// Makes the shares or the picture from the lines of pixel rows, and submits that.
     pub fn finish(&self, gpu: &Gpu, rows: &Range<u32>) {
         let across = (self.size[0] as u32).div_ceil(THREADS);
         let mut work = Commands::new(gpu);
-        work.dispatch(&gpu.passes().finish, &self.finish_bind_group(gpu), [across, rows.len() as u32]);
+        work.dispatch(&Passes::of(gpu).finish, &self.finish_bind_group(gpu), [across, rows.len() as u32]);
         work.submit();
     }
 
@@ -152,7 +150,7 @@ impl Resolve {
     /// The card is lost, or an integer has overflowed.
     pub fn knot_sums(&self, gpu: &Gpu) -> Result<Vec<KnotSums>, GpuError> {
         let knots = Knots::new(self.size);
-        let sums = self.sums(gpu, &gpu.passes().balance, [knots.columns(), knots.rows()])?;
+        let sums = self.sums(gpu, &Passes::of(gpu).balance, [knots.columns(), knots.rows()])?;
         Ok(sums.into_iter().map(KnotSums).collect())
     }
 
@@ -162,7 +160,7 @@ impl Resolve {
     /// The card is lost, or an integer has overflowed.
     pub fn shared_sums(&self, gpu: &Gpu) -> Result<Vec<SharedSums>, GpuError> {
         let knots = Knots::new(self.size);
-        let sums = self.sums(gpu, &gpu.passes().share, [knots.columns() - 1, knots.rows() - 1])?;
+        let sums = self.sums(gpu, &Passes::of(gpu).share, [knots.columns() - 1, knots.rows() - 1])?;
         Ok(sums.into_iter().map(SharedSums).collect())
     }
 
@@ -201,7 +199,7 @@ impl Resolve {
             (9, &self.knots),
             (10, &self.gains),
         ];
-        gpu.bind(&gpu.passes().finish_layout, buffers)
+        gpu.bind(&Passes::of(gpu).finish_layout, buffers)
     }
 
     /// Waits for all submitted work, and checks that no integer has overflowed.

@@ -1,8 +1,6 @@
 //! Nodes in the card's memory.
 
 use crate::aperture::moments::MomentCache;
-use crate::gpu::Gpu;
-use crate::gpu::device::Lost;
 use crate::gpu::formats::{
     FOCUS_WORDS, NO_PARENT, NODE_CONTRAST_BIT, NODE_IS_BRIGHT, NODE_IS_HIGHLIGHT, NODE_IS_LEAF, NODE_IS_OPEN,
     NODE_WORDS, PARTIAL_WORDS,
@@ -10,6 +8,7 @@ use crate::gpu::formats::{
 use crate::lens_in_use::NodeFocus;
 use crate::nodes::{Nodes, SplatNode};
 use crate::paint::Paint;
+use graphics_card::{Gpu, Lost};
 use std::iter::repeat_n;
 use std::ops::Range;
 use std::sync::Arc;

@@ -1,6 +1,6 @@
 //! The WGSL source of each shader module: constants from Rust, then the files of the module.
 //!
-//! A constant that both Rust and WGSL need is written in Rust only. The macro `declarations` turns it into a `const` of WGSL under the same
+//! A constant that both Rust and WGSL need is written in Rust only. The macro [`constants`] turns it into a `const` of WGSL under the same
 //! name.
 
 use crate::aperture::stencil::{HEIGHT_BITS, MANTISSA_BITS, PHASE_BITS, RADIUS_BITS};
@@ -30,6 +30,7 @@ use crate::resolve::balance::Scaled;
 use crate::resolve::knots::SPACING;
 use crate::resolve::partition::{COVERAGE_ONE, LARGEST_SHARE, MAX_QUANTA, MIN_PARTIAL, RIPPLE};
 use crate::resolve::{CUBIC, MARGIN};
+use graphics_card::constants;
 use salf::tree::LEVELS;
 
 const FIXED: &str = include_str!("../fixed.wgsl");
@@ -38,55 +39,8 @@ const DRAW_LIST: &str = include_str!("../draw_list.wgsl");
 const DRAW: &str = include_str!("../draw.wgsl");
 const VISIBLE_RUNS: &str = include_str!("../draw/visible_runs.wgsl");
 const RESOLVE: &str = include_str!("resolve.wgsl");
-const PROBE: &str = include_str!("probe.wgsl");
 const SCAN: &str = include_str!("scan.wgsl");
 const SCAN_SUBGROUPS: &str = include_str!("scan_subgroups.wgsl");
-
-/// A value that a constant of WGSL can have.
-trait Literal {
-    /// Its type and its value in WGSL.
-    fn literal(self) -> (&'static str, String);
-}
-
-impl Literal for u32 {
-    fn literal(self) -> (&'static str, String) {
-        ("u32", format!("{self}u"))
-    }
-}
-
-/// Counts and lengths of arrays.
-impl Literal for usize {
-    fn literal(self) -> (&'static str, String) {
-        ("u32", format!("{self}u"))
-    }
-}
-
-impl Literal for i32 {
-    fn literal(self) -> (&'static str, String) {
-        ("i32", format!("{self}i"))
-    }
-}
-
-/// The shortest decimal that is read as the same float.
-impl Literal for f32 {
-    fn literal(self) -> (&'static str, String) {
-        ("f32", format!("{self:?}f"))
-    }
-}
-
-/// Declarations of constants in WGSL: of those of Rust under their own names, and of values under names that follow.
-macro_rules! declarations {
-    ($($name:ident),* $(,)? $(; $($as:ident = $value:expr),* $(,)?)?) => {
-        [
-            $(declaration(stringify!($name), $name.literal()),)*
-            $($(declaration(stringify!($as), $value.literal()),)*)?
-        ].concat()
-    };
-}
-
-fn declaration(name: &str, (of_type, value): (&str, String)) -> String {
-    format!("const {name}: {of_type} = {value};\n")
-}
 
 fn joined(parts: &[&str]) -> String {
     parts.join("\n")
@@ -94,7 +48,7 @@ fn joined(parts: &[&str]) -> String {
 
 /// What both drawing and listing need.
 fn of_pen() -> String {
-    declarations!(
+    constants!(
         POSITION_BITS,
         PIXEL,
         ONE,
@@ -138,7 +92,7 @@ fn of_pen() -> String {
 
 /// The module that lists what is drawn.
 pub fn list() -> String {
-    let constants = declarations!(
+    let constants = constants!(
         KINDS,
         COUNTS,
         FOCUS_WORDS,
@@ -160,7 +114,7 @@ pub fn list() -> String {
 
 /// The WGSL source of the module that draws.
 pub fn draw() -> String {
-    let constants = declarations!(
+    let constants = constants!(
         PARTIAL_WORDS,
         HEIGHT_BITS,
         LARGEST_HALF,
@@ -181,7 +135,7 @@ pub fn draw() -> String {
 /// The module that integrates sums and makes pictures of them. `by_subgroups`: with sums over subgroups, where a card has them.
 pub fn resolve(by_subgroups: bool) -> String {
     let [behind, near, far, beyond] = CUBIC;
-    let constants = declarations!(
+    let constants = constants!(
         THREADS,
         SCAN_THREADS,
         SLOTS,
@@ -191,19 +145,14 @@ pub fn resolve(by_subgroups: bool) -> String {
         RIPPLE,
         COVERAGE_ONE,
         MAX_QUANTA;
-        SPACING = (SPACING as i32),
-        KNOT_STEP = (1.0 / SPACING as f32),
-        SHARING = (Scaled::Sharing as i32),
-        ALL = (Scaled::All as i32),
+        SPACING = SPACING as i32,
+        KNOT_STEP = 1.0 / SPACING as f32,
+        SHARING = Scaled::Sharing as i32,
+        ALL = Scaled::All as i32,
         CUBIC_BEHIND = behind,
         CUBIC_NEAR = near,
         CUBIC_FAR = far,
         CUBIC_BEYOND = beyond,
     );
     joined(&[&constants, FIXED, if by_subgroups { SCAN_SUBGROUPS } else { SCAN }, RESOLVE])
-}
-
-/// The module that finds how a card rounds.
-pub fn probe() -> String {
-    joined(&[&declarations!(THREADS, LARGEST_RADIUS), PROBE])
 }

@@ -8,13 +8,12 @@ use naga::{AddressSpace, Module, ShaderStage, TypeInner};
 use std::collections::BTreeMap;
 
 /// Every module that a card is given, by name.
-fn sources() -> [(&'static str, String); 5] {
+fn sources() -> [(&'static str, String); 4] {
     [
         ("list", shader_source::list()),
         ("draw", shader_source::draw()),
         ("resolve", shader_source::resolve(false)),
         ("resolve by subgroups", shader_source::resolve(true)),
-        ("probe", shader_source::probe()),
     ]
 }
 

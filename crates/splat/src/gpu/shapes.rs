@@ -2,12 +2,11 @@
 
 use crate::aperture::stencil::{Place, Stencils};
 use crate::draw::Pen;
-use crate::gpu::Gpu;
-use crate::gpu::device::Lost;
 use crate::gpu::layout::Layout;
 use crate::gpu::shader_structs::{self, SumLevel};
 use crate::nodes::Scale;
 use bytemuck::Zeroable;
+use graphics_card::{Gpu, Lost};
 use wgpu::{Buffer, BufferUsages};
 
 /// Words of a table's beginning: where each stencil's runs lie.

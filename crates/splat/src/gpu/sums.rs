@@ -2,15 +2,12 @@
 
 use crate::draw::Pen;
 use crate::draw_list::{BlockChanges, Changes, Scene};
-use crate::gpu::Gpu;
-use crate::gpu::device::Lost;
-use crate::gpu::device::commands::Commands;
-use crate::gpu::device::stopwatch::Stopwatch;
 use crate::gpu::error::GpuError;
 use crate::gpu::formats::{KIND_LARGE, LANES, RECORD_WORDS, THREADS};
 use crate::gpu::layout::Layout;
 use crate::gpu::listing::{Listed, Listing};
 use crate::gpu::pace::{Batch, Pace};
+use crate::gpu::passes::Passes;
 use crate::gpu::records::{Records, complete_large};
 use crate::gpu::resolve::Resolve;
 use crate::gpu::scene::Scene as Uploaded;
@@ -19,6 +16,7 @@ use crate::gpu::shapes::Shapes;
 use crate::nodes::Nodes;
 use crate::resolve::balance::{Gains, NO_REST};
 use crate::resolve::knots::{Knots, SharedSums};
+use graphics_card::{Commands, Gpu, Lost, Stopwatch};
 use lens::Picture;
 use progress::Progress;
 use salf::tree::LEVELS;
@@ -279,7 +277,7 @@ impl GpuSums {
         let lanes = if is_few { LANES as usize } else { 1 };
         let count = count.min(MAX_GROUPS * THREADS as usize / lanes);
         self.gpu.write_struct(&self.batch, &shader_structs::Batch { count: count as u32, first });
-        let pass = &self.gpu.passes().draw[width][kind][usize::from(is_few)];
+        let pass = &Passes::of(&self.gpu).draw[width][kind][usize::from(is_few)];
         let mut work = Commands::new(&self.gpu);
         work.dispatch(pass, bound, [(count * lanes).div_ceil(THREADS as usize) as u32, 1]);
         let submission = work.submit();
@@ -303,7 +301,7 @@ impl GpuSums {
             &sums[1],
             &self.batch,
         ];
-        Ok(self.gpu.bind(&self.gpu.passes().draw_layout, (0..).zip(buffers)))
+        Ok(self.gpu.bind(&Passes::of(&self.gpu).draw_layout, (0..).zip(buffers)))
     }
 
     /// Finds the shares of a standard picture whose sums these are, and the gains.

@@ -3,11 +3,11 @@
 //! Skipped, loudly, where no adapter is found; `mesa-vulkan-drivers` has one in software, which `./test` installs.
 
 use super::layout::Layout;
-use super::{BackendChoice, Gpu};
 use crate::Tolerance;
 use crate::canvas::{Accumulator, Word};
 use crate::splatter::Splatter;
 use glam::{DVec2, Vec2, Vec3};
+use graphics_card::{BackendChoice, Gpu};
 use lens::{Aperture, ApertureMask, ApertureShape, Camera, FocusOffset, Picture};
 use progress::Unwatched;
 use salf::{Salf, Sample, Visibility};
@@ -49,7 +49,7 @@ fn gpu() -> Option<Gpu> {
     match Gpu::open(BackendChoice::Gpu, None) {
         Ok(gpu) => gpu,
         Err(why) => {
-            assert!(crate::adapters().is_empty(), "there is an adapter, and: {why}");
+            assert!(graphics_card::adapters().is_empty(), "there is an adapter, and: {why}");
             eprintln!("SKIPPED: {why}");
             None
         }
@@ -199,7 +199,13 @@ impl Hard {
         };
         let is_within = |index: &u32| index % WIDTH * self.cell < WIDTH && index / WIDTH * self.cell < HEIGHT;
         let samples = (0..WIDTH * HEIGHT).filter(is_within).map(sample).collect();
-        Arc::new(Salf { camera: self.camera(), margin_px: 0, carried: salf::Carried::Standard, samples })
+        Arc::new(Salf {
+            camera: self.camera(),
+            margin_px: 0,
+            carried: salf::Carried::Standard,
+            baked_on: salf::BakedOn::Processor,
+            samples,
+        })
     }
 
     fn focus(&self) -> ByTriangle {
@@ -320,8 +326,7 @@ fn strokes_on_the_card_equal_renders_from_scratch() {
 #[test]
 fn no_feature_is_needed() {
     let Some(gpu) = gpu() else { return };
-    let plain =
-        super::device::adapter::with_features(gpu.name(), wgpu::Features::empty()).expect("it opened before");
+    let plain = Gpu::with_features(gpu.name(), wgpu::Features::empty()).expect("it opened before");
     let features = gpu.device().features();
     eprintln!("{}: compared with none of {features:?}", gpu.name());
     assert!(!plain.device().features().intersects(Gpu::features(wgpu::Features::all())));

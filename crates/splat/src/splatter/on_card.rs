@@ -1,7 +1,8 @@
 //! Summing on a graphics card: the public methods of [`Splatter`].
 
 use super::{SplatError, Splatter};
-use crate::gpu::{Gpu, PictureOnCard};
+use crate::gpu::PictureOnCard;
+use graphics_card::Gpu;
 
 impl Splatter {
     /// Sums on a graphics card from the next [`Self::render`] on, or on the processor. The picture has the same bits.

@@ -50,7 +50,13 @@ fn light_field() -> Arc<Salf> {
         }
     };
     let samples = (0..camera.width * camera.height).map(sample).collect();
-    Arc::new(Salf { camera, margin_px: 0, carried: salf::Carried::Standard, samples })
+    Arc::new(Salf {
+        camera,
+        margin_px: 0,
+        carried: salf::Carried::Standard,
+        baked_on: salf::BakedOn::Processor,
+        samples,
+    })
 }
 
 fn standard() -> ByTriangle {
@@ -313,6 +319,7 @@ fn ripple_of_wall(slope: f64, tilt: f64, across: bool) -> f64 {
         camera: camera.clone(),
         margin_px: 48,
         carried: salf::Carried::Standard,
+        baked_on: salf::BakedOn::Processor,
         samples: samples.into(),
     }));
     splatter.render(&camera, &standard(), &Unwatched).unwrap();
@@ -349,6 +356,7 @@ fn what_sees_one_cell_loses_no_light() {
         camera: camera.clone(),
         margin_px: 0,
         carried: salf::Carried::Standard,
+        baked_on: salf::BakedOn::Processor,
         samples: samples.into(),
     }));
     for tolerance in [Tolerance::NONE, Tolerance::VIEWING] {
@@ -420,6 +428,7 @@ fn a_bright_sample_of_a_large_cell_sends_all_its_light() {
             camera: camera(),
             margin_px: 0,
             carried: salf::Carried::Standard,
+            baked_on: salf::BakedOn::Processor,
             samples: vec![cell(radiance)].into(),
         };
         let mut splatter = Splatter::new(Arc::new(salf));
@@ -450,6 +459,7 @@ fn pictures_of_any_width_are_summed() {
             camera: camera.clone(),
             margin_px: 0,
             carried: salf::Carried::Standard,
+            baked_on: salf::BakedOn::Processor,
             samples,
         }));
         let mut focus = ByTriangle(vec![FocusOffset::STANDARD; (width * 20) as usize]);
@@ -505,6 +515,7 @@ fn light_stays_within_reach() {
             camera: camera.clone(),
             margin_px: 64,
             carried: salf::Carried::Standard,
+            baked_on: salf::BakedOn::Processor,
             samples,
         }));
         splatter.set_live(true);

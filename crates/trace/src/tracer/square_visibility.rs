@@ -112,6 +112,19 @@ impl Tracer {
         visibility
     }
 
+    /// The visibility of `points` where these are `hidden` by opaque surfaces: what [`Self::square_visibility`] finds, if they are those
+    /// that a [device](crate::PreparedSight) found.
+    pub fn visibility_from_hidden(
+        &self,
+        from: Viewpoint,
+        square: &Square,
+        points: &TargetPoints,
+        mut hidden: PointSet,
+    ) -> SquareVisibility {
+        hidden |= self.behind_own_face(from, square, points);
+        SquareVisibility::from_hidden(hidden)
+    }
+
     /// The points of a square from which only the back of the viewpoint's own face is visible.
     fn behind_own_face(&self, from: Viewpoint, square: &Square, points: &TargetPoints) -> PointSet {
         let Viewpoint::Surface(point) = from else { return PointSet::default() };

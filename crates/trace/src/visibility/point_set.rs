@@ -47,6 +47,13 @@ impl PointSet {
     }
 }
 
+impl From<[u32; PointSet::MAX / 32]> for PointSet {
+    /// From the bits of 32 points a word, the first in the lowest bit.
+    fn from(halves: [u32; PointSet::MAX / 32]) -> Self {
+        Self(std::array::from_fn(|word| u64::from(halves[2 * word]) | u64::from(halves[2 * word + 1]) << 32))
+    }
+}
+
 impl FromIterator<usize> for PointSet {
     fn from_iter<I: IntoIterator<Item = usize>>(places: I) -> Self {
         let mut set = Self::default();

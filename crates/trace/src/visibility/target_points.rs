@@ -69,6 +69,11 @@ impl TargetPoints {
         self.all
     }
 
+    /// The number of points.
+    pub fn count(&self) -> usize {
+        self.all.iter().count()
+    }
+
     /// The coordinates, in [−1, 1]², of the point with number `index`, as they are used: rounded to f32.
     pub fn position(&self, index: usize) -> DVec2 {
         let [u, v] = &self.coordinates[index / GROUP];

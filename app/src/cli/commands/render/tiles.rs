@@ -1,7 +1,7 @@
 //! `focus-brush render --tiles`.
 
 use super::{check_options, exposure, open, options, picture_options};
-use crate::cli::arguments::{BackendName, RenderArguments};
+use crate::cli::arguments::{BackendName, BakeDeviceName, RenderArguments};
 use crate::cli::console::{Console, path_text, print_json};
 use crate::cli::failure::Failure;
 use crate::cli::input::camera_and_focus;
@@ -56,6 +56,11 @@ fn check_supported(arguments: &RenderArguments) -> Result<(), Failure> {
         let what = "--tiles: tiles are summed on the processor (leave out --backend gpu and --adapter; the \
                     picture is the same)";
         return Err(Failure::wrong_usage(what));
+    }
+    if arguments.bake_on == BakeDeviceName::Gpu {
+        return Err(Failure::wrong_usage(
+            "--tiles: tiles are baked on the processor (leave out --bake-on gpu)",
+        ));
     }
     check_exr_output(&arguments.output)
 }

@@ -49,6 +49,7 @@ fn a_stroke_tells_whether_the_margin_is_still_wide_enough_as_the_whole_frame_doe
         least_margin_px: 0.0,
         tolerance: Tolerance::VIEWING,
         gpu: None,
+        bake_on: None,
         light: LightQuality::Fine,
     };
     let mut field = LightField::bake(stage, &camera, &blank, how, &Unwatched).unwrap();
@@ -103,7 +104,7 @@ fn a_stroke_moves_carried_light_where_gloss_obeys_it() {
     let camera = Camera { width: 90, height: 60, ..document.camera.clone() };
     let (blank, _) = painted(&document, FocusOffset::STANDARD, |_| false);
     let (tolerance, gpu) = (Tolerance::VIEWING, None);
-    let how = FieldOptions { least_margin_px: 0.0, tolerance, gpu, light: LightQuality::Fine };
+    let how = FieldOptions { least_margin_px: 0.0, tolerance, gpu, bake_on: None, light: LightQuality::Fine };
     let own = LightField::bake(stage, &camera, &blank, how, &Unwatched).unwrap();
     let samples = own.baked().salf.samples.changed(|sample| sample.is_carried = true);
     let salf = Arc::new(Salf { samples, ..Salf::clone(&own.baked().salf) });
@@ -141,6 +142,7 @@ fn the_exact_sum_follows_as_a_new_one_would() {
         least_margin_px: 0.0,
         tolerance: Tolerance::VIEWING,
         gpu: None,
+        bake_on: None,
         light: LightQuality::Fine,
     };
     let field = LightField::bake(&document.stage, &camera, &blank, how, &Unwatched).unwrap();

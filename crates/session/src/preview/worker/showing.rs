@@ -244,9 +244,14 @@ impl Worker {
             None => {
                 self.shared.begin(PreviewActivity::RoughBaking)?;
                 // Circles of a few pixels show how nodes are spaced, and few samples are soon summed.
-                let (tolerance, gpu) = (Tolerance::NONE, self.shared.gpu());
-                let options =
-                    FieldOptions { least_margin_px: 0.0, tolerance, gpu, light: LightQuality::Rough };
+                let (tolerance, gpu, bake_on) = (Tolerance::NONE, self.shared.gpu(), self.shared.bake_on());
+                let options = FieldOptions {
+                    least_margin_px: 0.0,
+                    tolerance,
+                    gpu,
+                    bake_on,
+                    light: LightQuality::Rough,
+                };
                 // Rough as it is, it serves a lens that is opened, too.
                 let opened = spare_camera(small).unwrap_or_else(|| small.clone());
                 let start = Instant::now();

@@ -12,8 +12,8 @@ use focus::Focus;
 use lens::{Camera, Picture};
 use light::Steps;
 use project::{Layer, PictureOptions, write_picture, write_rgb};
-use render::{Aov, LightFieldStore, RenderOptions, Rendered, Tone, bake, is_baked_for};
-use salf::{BakeOptions, Carried, Salf};
+use render::{Aov, LightFieldStore, RenderOptions, Rendered, Tone, is_baked_for};
+use salf::{Carried, Salf};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
@@ -46,7 +46,9 @@ impl AvailableFields {
         let from_preview = self.preview_field.clone().filter(|salf| is_baked_for(&salf.camera, camera));
         let candidate = from_preview.or_else(|| {
             let store = self.store.as_ref()?;
-            store.find(&self.stage, camera, 0.0, Carried::for_focus(focus)).map(|(salf, _)| Arc::new(salf))
+            let carried = Carried::for_focus(focus);
+            let found = store.find(&self.stage, camera, 0.0, carried, self.preview.baked_on());
+            found.map(|(salf, _)| Arc::new(salf))
         });
         candidate.filter(|salf| covers_focus(salf, camera, focus))
     }
@@ -72,7 +74,8 @@ impl AvailableFields {
             Some(salf) => salf,
             None => {
                 let start = Instant::now();
-                let salf = Arc::new(bake(lit, camera, focus, BakeOptions::TOLERANCE_PX, steps)?);
+                let usual = RenderOptions { bake_on: self.preview.bake_on(), ..RenderOptions::default() };
+                let salf = Arc::new(usual.bake(lit, camera, focus, steps)?);
                 if let Some(store) = &self.store {
                     store.save(&self.stage, &salf, 0, start.elapsed());
                 }
@@ -104,7 +107,8 @@ impl Session {
         let is_preview_compatible =
             self.light_field.as_ref().is_some_and(|field| is_baked_for(&field.salf.camera));
         let store = self.options.light_field_store.as_ref();
-        if is_preview_compatible || store.is_some_and(|store| store.has(&document.stage, &camera)) {
+        let baked_on = self.preview_thread.shared().baked_on();
+        if is_preview_compatible || store.is_some_and(|store| store.has(&document.stage, &camera, baked_on)) {
             FullSizeFieldState::Ready
         } else if self.preview_camera.as_ref().is_some_and(is_baked_for)
             && self.preview_thread.shared().is_at_work()

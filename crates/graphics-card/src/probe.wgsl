@@ -17,5 +17,5 @@ fn probe(@builtin(global_invocation_id) id: vec3<u32>) {
     let c = numbers[3u * id.x + 2u];
     results[3u * id.x] = bitcast<u32>(exact(a * b) + c);
     results[3u * id.x + 1u] = bitcast<u32>(a - exact(b * c));
-    results[3u * id.x + 2u] = bitcast<u32>(i32(round(clamp(c, -LARGEST_RADIUS, LARGEST_RADIUS))));
+    results[3u * id.x + 2u] = bitcast<u32>(i32(round(clamp(c, -LARGEST_ROUNDED, LARGEST_ROUNDED))));
 }

@@ -1,7 +1,6 @@
 //! Buffers in the card's memory: made, written, bound and read.
 
-use crate::gpu::Gpu;
-use crate::gpu::device::Lost;
+use crate::{Gpu, Lost};
 use bytemuck::Pod;
 use std::ops::Range;
 use std::sync::mpsc;
@@ -9,12 +8,10 @@ use wgpu::{BindGroup, BindGroupLayout, Buffer, BufferUsages};
 
 impl Gpu {
     /// A buffer of this many words (at least a few: empty buffers cannot be bound).
-    pub(in crate::gpu) fn buffer(
-        &self,
-        label: &str,
-        words: usize,
-        usage: BufferUsages,
-    ) -> Result<Buffer, Lost> {
+    ///
+    /// # Errors
+    /// The card is lost, or has no room.
+    pub fn buffer(&self, label: &str, words: usize, usage: BufferUsages) -> Result<Buffer, Lost> {
         let size = 4 * words.max(16) as u64;
         if size > self.largest_binding() {
             return Err(Lost);
@@ -30,33 +27,32 @@ impl Gpu {
     }
 
     /// Room for a struct that shaders read.
-    pub(in crate::gpu) fn struct_buffer<T: Pod>(
-        &self,
-        label: &str,
-        usage: BufferUsages,
-    ) -> Result<Buffer, Lost> {
+    ///
+    /// # Errors
+    /// The card is lost, or has no room.
+    pub fn struct_buffer<T: Pod>(&self, label: &str, usage: BufferUsages) -> Result<Buffer, Lost> {
         self.buffer(label, size_of::<T>() / 4, usage | BufferUsages::COPY_DST)
     }
 
     /// Writes a struct that shaders read.
-    pub(in crate::gpu) fn write_struct<T: Pod>(&self, buffer: &Buffer, value: &T) {
+    pub fn write_struct<T: Pod>(&self, buffer: &Buffer, value: &T) {
         self.write(buffer, bytemuck::cast_slice(std::slice::from_ref(value)));
     }
 
     /// Writes words to a buffer's beginning.
-    pub(in crate::gpu) fn write(&self, buffer: &Buffer, words: &[u32]) {
+    pub fn write(&self, buffer: &Buffer, words: &[u32]) {
         self.write_at(buffer, 0, words);
     }
 
     /// Writes words, from the one at `first` on, to their places in a buffer.
-    pub(in crate::gpu) fn write_at(&self, buffer: &Buffer, first: usize, words: &[u32]) {
+    pub fn write_at(&self, buffer: &Buffer, first: usize, words: &[u32]) {
         if first < words.len() {
             self.queue().write_buffer(buffer, 4 * first as u64, bytemuck::cast_slice(&words[first..]));
         }
     }
 
     /// Buffers at their bindings.
-    pub(in crate::gpu) fn bind<'a>(
+    pub fn bind<'a>(
         &self,
         layout: &BindGroupLayout,
         buffers: impl IntoIterator<Item = (u32, &'a Buffer)>,
@@ -71,12 +67,18 @@ impl Gpu {
     }
 
     /// The words of a range of bytes of a buffer.
-    pub(in crate::gpu) fn read(&self, buffer: &Buffer, range: Range<u64>) -> Result<Vec<u32>, Lost> {
+    ///
+    /// # Errors
+    /// The card is lost.
+    pub fn read(&self, buffer: &Buffer, range: Range<u64>) -> Result<Vec<u32>, Lost> {
         self.read_all(&[(buffer, range)])
     }
 
     /// The words of ranges of bytes of buffers, one after the other, waited for once.
-    pub(in crate::gpu) fn read_all(&self, parts: &[(&Buffer, Range<u64>)]) -> Result<Vec<u32>, Lost> {
+    ///
+    /// # Errors
+    /// The card is lost.
+    pub fn read_all(&self, parts: &[(&Buffer, Range<u64>)]) -> Result<Vec<u32>, Lost> {
         self.check()?;
         let size = parts.iter().map(|(_, range)| range.end - range.start).sum::<u64>();
         let usage = BufferUsages::MAP_READ | BufferUsages::COPY_DST;

@@ -1,19 +1,23 @@
 //! Whether a card rounds as the processor does.
 //!
-//! Vulkan asks that sums and products of floats be the nearest ones, and leaves open what is done halfway between two. Nodes
-//! are placed, and lines resolved, by such: a card that does otherwise would not sum the same bits.
+//! Vulkan asks that sums and products of floats be the nearest ones, and leaves open what is done halfway between two. The splat places
+//! nodes and resolves lines by such: a card that does otherwise would not sum the same bits.
 
-use crate::gpu::Gpu;
-use crate::gpu::device::Lost;
-use crate::gpu::device::commands::Commands;
+use crate::{Bound, Commands, Gpu, Lost, Pass, bind_group_layout, constants, shader_module};
 use wgpu::BufferUsages;
 
 /// Threads of the pass.
-const THREADS: usize = 1024;
+const ALL_THREADS: usize = 1024;
+
+/// Threads of a workgroup of it.
+const THREADS: u32 = 64;
+
+/// Floats are rounded to integers within this much of 0.
+const LARGEST_ROUNDED: f32 = (1u32 << 29) as f32;
 
 impl Gpu {
     /// Whether it adds, multiplies and rounds floats as the processor does, on a few thousand of them.
-    pub(super) fn rounds_alike(&self) -> Result<bool, Lost> {
+    pub(crate) fn rounds_alike(&self) -> Result<bool, Lost> {
         let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC;
         let numbers = numbers();
         let input = self.buffer("numbers", numbers.len(), usage)?;
@@ -21,10 +25,13 @@ impl Gpu {
         let zero = self.buffer("zero", 4, BufferUsages::UNIFORM | BufferUsages::COPY_DST)?;
         self.write(&input, bytemuck::cast_slice(&numbers));
         self.write(&zero, &[0; 4]);
-        let passes = self.passes();
-        let bound = self.bind(&passes.probe_layout, [(0, &input), (1, &results), (2, &zero)]);
+        let device = self.device();
+        let source = [&constants!(THREADS, LARGEST_ROUNDED), include_str!("probe.wgsl")].join("\n");
+        let layout = bind_group_layout(device, [(0, Bound::Read), (1, Bound::Write), (2, Bound::Uniform)]);
+        let pass = Pass::new(&shader_module(device, "probe", source), &layout, "probe", &[]);
+        let bound = self.bind(&layout, [(0, &input), (1, &results), (2, &zero)]);
         let mut work = Commands::new(self);
-        work.dispatch(&passes.probe, &bound, [(THREADS / 64) as u32, 1]);
+        work.dispatch(&pass, &bound, [ALL_THREADS as u32 / THREADS, 1]);
         work.submit();
         Ok(self.read(&results, 0..4 * numbers.len() as u64)? == expected(&numbers))
     }
@@ -33,7 +40,7 @@ impl Gpu {
 /// What the processor makes of them.
 fn expected(numbers: &[f32]) -> Vec<u32> {
     let of = |&[a, b, c]: &[f32; 3]| {
-        let rounded = c.clamp(-536870912.0, 536870912.0).round_ties_even() as i32;
+        let rounded = c.clamp(-LARGEST_ROUNDED, LARGEST_ROUNDED).round_ties_even() as i32;
         [(a * b + c).to_bits(), (a - b * c).to_bits(), rounded as u32]
     };
     numbers.as_chunks().0.iter().flat_map(of).collect()
@@ -58,7 +65,7 @@ fn numbers() -> Vec<f32> {
             _ => f32::from_bits((112 + bits % 32) << 23 | bits >> 9 | (bits & 1) << 31),
         }
     };
-    (0..3 * THREADS as u32).map(number).collect()
+    (0..3 * ALL_THREADS as u32).map(number).collect()
 }
 
 #[cfg(test)]

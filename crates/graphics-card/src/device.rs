@@ -1,11 +1,7 @@
 //! A graphics card in use.
 
-pub mod adapter;
-mod buffers;
-pub mod commands;
-pub mod stopwatch;
-
-use crate::gpu::passes::Passes;
+use crate::kept::Kept;
+use std::any::Any;
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
@@ -21,7 +17,7 @@ const MAX_MOMENTS: usize = 10_000;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Lost;
 
-/// A graphics card to sum on. Copies share it.
+/// A graphics card to compute on. Copies share it.
 #[derive(Clone)]
 pub struct Gpu(Arc<Card>);
 
@@ -37,7 +33,7 @@ struct Card {
     name: String,
     /// Why it no longer works, once it does not.
     lost: Arc<OnceLock<String>>,
-    passes: Passes,
+    kept: Kept,
 }
 
 impl Gpu {
@@ -45,14 +41,14 @@ impl Gpu {
     ///
     /// # Errors
     /// The driver's message.
-    pub(super) fn new(adapter: &Adapter) -> Result<Self, String> {
+    pub(crate) fn new(adapter: &Adapter) -> Result<Self, String> {
         Self::with(adapter, Self::features(adapter.features()))
     }
 
     /// The same with no more than these features.
-    pub(super) fn with(adapter: &Adapter, required_features: Features) -> Result<Self, String> {
+    pub(crate) fn with(adapter: &Adapter, required_features: Features) -> Result<Self, String> {
         let descriptor = wgpu::DeviceDescriptor {
-            label: Some("splat"),
+            label: Some("compute"),
             required_limits: Self::limits(&adapter.limits()),
             required_features,
             ..wgpu::DeviceDescriptor::default()
@@ -62,7 +58,7 @@ impl Gpu {
         Self::from_device(device, queue, adapter.get_info().name)
     }
 
-    /// What a device must hold that sums, of what its adapter does: portable limits, but large pictures where it holds them.
+    /// What a device must hold that computes, of what its adapter does: portable limits, but large pictures where it holds them.
     pub fn limits(most: &Limits) -> Limits {
         Limits {
             max_storage_buffer_binding_size: most.max_storage_buffer_binding_size,
@@ -84,8 +80,7 @@ impl Gpu {
     pub fn from_device(device: Device, queue: Queue, name: String) -> Result<Self, String> {
         let lost = Arc::new(OnceLock::new());
         let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
-        let passes = Passes::new(&device);
-        let gpu = Self(Arc::new(Card { device, queue, name, lost: lost.clone(), passes }));
+        let gpu = Self(Arc::new(Card { device, queue, name, lost: lost.clone(), kept: Kept::default() }));
         let rounds_alike = gpu.rounds_alike();
         if let Some(error) = pollster::block_on(scope.pop()) {
             return Err(error.to_string());
@@ -113,6 +108,11 @@ impl Gpu {
         &self.0.name
     }
 
+    /// Whether it is the processor that computes, in the name of a card.
+    pub fn is_in_software(&self) -> bool {
+        self.0.device.adapter_info().device_type == wgpu::DeviceType::Cpu
+    }
+
     /// Whether both are the same device.
     pub fn is_same(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.0, &other.0)
@@ -130,33 +130,39 @@ impl Gpu {
         self.0.lost.get().map(String::as_str)
     }
 
-    /// Destroys the device at once, as a driver crash would: sums continue on the processor.
+    /// Destroys the device at once, as a driver crash would: work continues on the processor.
     pub fn destroy(&self) {
         self.0.device.destroy();
         // Its callback waits until what was submitted is done.
         let _ = self.0.lost.set("it was destroyed".into());
     }
 
-    pub(super) fn device(&self) -> &Device {
+    /// The device.
+    pub fn device(&self) -> &Device {
         &self.0.device
     }
 
-    pub(super) fn queue(&self) -> &Queue {
+    /// Where work is submitted.
+    pub fn queue(&self) -> &Queue {
         &self.0.queue
     }
 
-    pub(super) fn passes(&self) -> &Passes {
-        &self.0.passes
+    /// The card's value of this type, made when it is first asked for: compute passes are, so that they are compiled once.
+    pub fn kept<T: Any + Send + Sync>(&self, make: impl FnOnce(&Device) -> T) -> Arc<T> {
+        self.0.kept.get(|| make(&self.0.device))
     }
 
     /// The largest buffer that a pass can bind.
-    pub(super) fn largest_binding(&self) -> u64 {
+    pub fn largest_binding(&self) -> u64 {
         let limits = self.0.device.limits();
         limits.max_storage_buffer_binding_size.min(limits.max_buffer_size)
     }
 
     /// Waits until this is done, and all before it: a moment at a time, for nobody else can show anything meanwhile.
-    pub(super) fn wait_for(&self, submission: SubmissionIndex) -> Result<(), Lost> {
+    ///
+    /// # Errors
+    /// The card is lost.
+    pub fn wait_for(&self, submission: SubmissionIndex) -> Result<(), Lost> {
         loop {
             self.check()?;
             let until = PollType::Wait { submission_index: Some(submission.clone()), timeout: Some(MOMENT) };
@@ -170,7 +176,7 @@ impl Gpu {
 
     /// What a callback of the device sends about work that is done; another thread may be told that it is, first. A device
     /// that stays silent is lost.
-    pub(super) fn receive<T>(&self, receiver: &Receiver<T>) -> Result<T, Lost> {
+    pub(crate) fn receive<T>(&self, receiver: &Receiver<T>) -> Result<T, Lost> {
         for _ in 0..MAX_MOMENTS {
             match receiver.recv_timeout(MOMENT) {
                 Ok(answer) => return Ok(answer),
@@ -183,8 +189,11 @@ impl Gpu {
         Err(Lost)
     }
 
-    /// An error if it is lost.
-    pub(super) fn check(&self) -> Result<(), Lost> {
+    /// Whether it still works.
+    ///
+    /// # Errors
+    /// The card is lost.
+    pub fn check(&self) -> Result<(), Lost> {
         if self.is_lost() { Err(Lost) } else { Ok(()) }
     }
 }

@@ -1,7 +1,6 @@
 //! Passes that are submitted together.
 
-use crate::gpu::Gpu;
-use crate::gpu::passes::Pass;
+use crate::{Gpu, Pass};
 use wgpu::{BindGroup, Buffer, CommandEncoder, SubmissionIndex};
 
 /// What is to be done, one thing after the other.

@@ -1,9 +1,9 @@
 //! Choosing the graphics card.
 
-use crate::gpu::Gpu;
+use crate::Gpu;
 use wgpu::{Adapter, Backends, DeviceType, Instance};
 
-/// What sums are to be made on.
+/// What is to be computed on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BackendChoice {
     /// A hardware graphics card if there is one, else the processor.
@@ -35,7 +35,7 @@ const DRIVER_ADVICE: &str = if cfg!(target_os = "linux") {
     "install the driver of the graphics card's maker"
 };
 
-/// Why pictures cannot be summed on a graphics card.
+/// Why nothing can be computed on a graphics card.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum GpuAbsent {
     /// There is none.
@@ -106,12 +106,12 @@ impl Gpu {
             Err(_) => Ok(None),
         }
     }
-}
 
-/// A card with this name, of which no more than these features are used; `None` if there is none.
-#[cfg(test)]
-pub fn with_features(name: &str, features: wgpu::Features) -> Option<Gpu> {
-    ranked(&instance(), Some(name)).first().and_then(|adapter| Gpu::with(adapter, features).ok())
+    /// Another device of the card with this name, of which no more than these features are used; `None` if there is none. Results must not
+    /// depend on them.
+    pub fn with_features(name: &str, features: wgpu::Features) -> Option<Self> {
+        ranked(&instance(), Some(name)).first().and_then(|adapter| Self::with(adapter, features).ok())
+    }
 }
 
 /// Without OpenGL: asking for it makes drivers chatter on stderr.

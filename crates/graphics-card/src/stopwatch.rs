@@ -1,7 +1,6 @@
 //! Time measured by the card's own clock.
 
-use crate::gpu::Gpu;
-use crate::gpu::device::Lost;
+use crate::{Gpu, Lost};
 use wgpu::{Buffer, BufferUsages, ComputePassTimestampWrites, QuerySet};
 
 /// Two moments of the card's clock.
