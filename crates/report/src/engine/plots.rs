@@ -1,6 +1,7 @@
 //! Plots of the engine's measurements.
 
 use super::EngineRecord;
+use super::growth::{self, GROWTHS, Growth};
 use crate::output::page::plots::{error_axis, time_axis};
 use crate::output::plot::{Axis, Chart, Kind, Point, Series, plain, seconds};
 
@@ -38,11 +39,26 @@ pub fn plots(records: &[EngineRecord]) -> Vec<Chart> {
             rules: Vec::new(),
         },
     ];
+    charts.extend(GROWTHS.into_iter().filter_map(|growth| growth_chart(growth, records)));
     let traced = records.iter().filter(|record| record.renderer == "truth");
     let mut names: Vec<String> = traced.map(line_name).collect();
     names.dedup();
     charts.extend(names.into_iter().map(|name| ground_truth_chart(name, records)));
     charts
+}
+
+/// The time of a bake against what it grows with; `None` if that was not measured.
+fn growth_chart(growth: Growth, records: &[EngineRecord]) -> Option<Chart> {
+    let point = |(x, y): (f64, f64)| Point { x, y, label: plain(x) };
+    let points: Vec<Point> = growth::points(growth, records).into_iter().map(point).collect();
+    let series = Series { name: "bake".into(), style: 0, is_dashed: false, points };
+    (!series.points.is_empty()).then(|| Chart {
+        title: format!("time of a bake against {}", growth.with),
+        x: Axis { label: format!("{} (log)", growth.with), kind: Kind::Log, number: plain },
+        y: time_axis(),
+        series: vec![series],
+        rules: Vec::new(),
+    })
 }
 
 /// Time against error of the splat and the ray tracer, for a scene and focus.
@@ -140,6 +156,7 @@ mod tests {
             samples: 64,
             coc_px: 4.0,
             tolerance: Some(tolerance),
+            against: None,
             spp: None,
             ms_median: 2.0,
             card_ms: None,

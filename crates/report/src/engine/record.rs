@@ -31,6 +31,8 @@ pub struct EngineRecord {
     /// Side of a node that may be drawn as one, as a share of a circle of confusion of 16 px; 0: every sample
     /// is drawn.
     pub tolerance: Option<f64>,
+    /// What the time of a bake is measured against: samples, triangles, or layers of leaves.
+    pub against: Option<f64>,
     /// Rays per pixel of the ray tracer.
     pub spp: Option<u32>,
     /// Median time, ms.
@@ -68,6 +70,7 @@ impl EngineRecord {
             samples: salf.samples.len() as u64,
             coc_px: 0.0,
             tolerance: None,
+            against: None,
             spp: None,
             ms_median: 0.0,
             card_ms: None,

@@ -1,5 +1,6 @@
 //! The files of the engine's report.
 
+use super::growth::{GROWTHS, points, slope_sentence};
 use super::plots::plots;
 use super::{Check, EngineRecord, EngineReport};
 use crate::output::markup::escaped;
@@ -47,6 +48,7 @@ fn method(copy: f64) -> String {
 fn markdown(report: &EngineReport, copy: f64) -> String {
     let (machine, method) = (page::machine_sentence(&report.machine), method(copy));
     let mut text = format!("# {TITLE}\n\n{machine} {method}\n\n{}", table(report).to_markdown());
+    text += &format!("\n{}\n", slopes(report).join(" "));
     text += "\nWhat must hold:\n\n";
     for check in &report.checks {
         text += &format!("- {}\n", outcome(check));
@@ -58,12 +60,19 @@ fn html(report: &EngineReport, copy: f64) -> String {
     let (machine, method) = (escaped(&page::machine_sentence(&report.machine)), escaped(&method(copy)));
     let mut body = format!("<h1>{TITLE}</h1>\n<p class=\"byline\">{machine}</p>\n<p>{method}</p>\n");
     plots(&report.records).iter().for_each(|chart| body += &page::figure(chart));
+    body += &format!("<p>{}</p>\n", escaped(&slopes(report).join(" ")));
     body +=
         &format!("<h2>All measurements</h2>\n{}\n<h2>What must hold</h2>\n<ul>\n", table(report).to_html());
     for check in &report.checks {
         body += &format!("<li>{}</li>\n", escaped(&outcome(check)));
     }
     page::document(TITLE, &(body + "</ul>\n"))
+}
+
+/// How the time of a bake grows, a sentence each.
+fn slopes(report: &EngineReport) -> Vec<String> {
+    let measured = GROWTHS.into_iter().filter(|growth| !points(*growth, &report.records).is_empty());
+    measured.map(|growth| slope_sentence(growth, &report.records)).collect()
 }
 
 fn outcome(check: &Check) -> String {
@@ -79,6 +88,7 @@ fn table(report: &EngineReport) -> Table {
         "On",
         "Size",
         "#Samples",
+        "#Against",
         "#Circle, px",
         "#Tolerance",
         "#ms",
@@ -113,6 +123,7 @@ fn row(record: &EngineRecord) -> Vec<String> {
         record.adapter.clone().unwrap_or_else(|| "processor".into()),
         format!("{} × {}", record.size[0], record.size[1]),
         record.samples.to_string(),
+        decimals(record.against, 0),
         format!("{:.0}", record.coc_px),
         record.spp.map_or(decimals(record.tolerance, 3), |spp| format!("{spp} rays")),
         format!("{:.1}", record.ms_median),
