@@ -10,11 +10,11 @@
 use document::{CameraEdit, DepthRepair, DepthStroke, FillRegion, StrokePoint, StrokeTarget, SurfaceHit};
 use focus::{
     Adjustment, BlendMode, Brush, BrushMode, Channels, CombineMode, Curve, DepthCurve, Ease, FillTarget,
-    FocalPlane, FocusMap, FocusTarget, Gradient, GradientLine, GradientShape, Key, LayerEdit, LayerMotion,
-    LensMotion, Symmetry, ViewFrame,
+    FocalPlane, FocusMap, FocusTarget, Gradient, GradientLine, GradientShape, Key, KeyedCharacter, LayerEdit,
+    LayerMotion, LensMotion, Symmetry, ViewFrame,
 };
 use glam::{DMat4, DVec2, DVec3};
-use lens::{Aperture, ApertureShape, FocusOffset};
+use lens::{Aperture, ApertureShape, Character, FocusOffset};
 use project::{RecordedFill, RecordedStep, SelectionShape};
 use session::{Command, Event, Session, SessionOptions};
 use std::path::PathBuf;
@@ -499,8 +499,12 @@ fn edit_keys(session: &mut Session, random: &mut Random, hit: Option<SurfaceHit>
     let Some(document) = session.document() else { return String::new() };
     let mut motion = document.lens_motion.clone();
     let (seconds, ease) = (random.below(5) as f64, random.one_of(&Ease::ALL).1);
-    match (random.below(5), hit) {
+    match (random.below(6), hit) {
         (0, _) => motion = LensMotion::default(),
+        (5, _) => {
+            let character = Character { edges: 2.0 * random.unit() - 1.0, ..Character::default() };
+            let _ = motion.character.insert(Key { seconds, value: KeyedCharacter(character), ease });
+        }
         (1, Some(hit)) => {
             let _ = motion.focus.insert(Key { seconds, value: FocusTarget::Point(hit.point), ease });
         }

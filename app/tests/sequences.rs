@@ -225,8 +225,20 @@ fn keys_are_set_on_a_project_and_followed() {
         project::read_picture(&folder.path().join(name)).unwrap().rgb
     };
     assert_ne!(shown("keyed", 1), shown("still", 1), "another stop");
+    let soft = r#"{"format": "focus-brush preset", "version": 1, "name": "Soft", "lens": {"focal_length": 0.05, "f_number": 1.4,
+        "sensor_height": 0.024, "character": {"edges": -0.9}}}"#;
+    std::fs::write(folder.path().join("soft.json"), soft).unwrap();
+    done(
+        folder.path(),
+        "keys still.fbrush -o softened.fbrush --character none@0 --character soft.json@1 --ease linear",
+    );
+    let keys = report(&done(folder.path(), "keys softened.fbrush"));
+    assert_eq!(keys["lens"]["character"][1]["value"]["edges"], -0.9);
+    assert_eq!(shown("softened", 1), shown("still", 1), "not yet");
+    assert_ne!(shown("softened", 7), shown("still", 7), "another character");
     for (wrong, said) in [
         ("--distance 0@1", "above 0"),
+        ("--character nobody's@1", "no lens preset"),
         ("--point 900,900@0", "no surface is visible"),
         ("--opacity Sky=0.5@0", "single layer"),
         ("--set camera.json", "not a valid file of lens keys"),

@@ -47,7 +47,7 @@ pub use focus_map::{
     ChangedTexels, Edit, EditThumbnail, FocusImage, FocusMap, TILE_SIDE, ThumbnailCell, rectangle_union,
 };
 pub use layers::{Adjustment, BlendMode, DepthCurve, FocalPlane, FocusLayer, LayerEdit, LayerStack};
-pub use motion::{Ease, FocusTarget, Key, KeySpan, Keys, LayerMotion, LensMotion};
+pub use motion::{Ease, FocusTarget, Key, KeySpan, KeyedCharacter, Keys, LayerMotion, LensMotion};
 pub use painting::{
     Brush, BrushMode, Channels, FillTarget, FocusOffsetFields, Gradient, GradientLine, GradientShape,
     PenSample, Stroke, SurfaceHit, Symmetry, SymmetryImage, WORLD_AXES, draw_gradient, fill, fill_selected,

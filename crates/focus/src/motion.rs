@@ -6,10 +6,11 @@
 //!
 //! A value between two keys always lies between their values: nothing overshoots.
 
+mod character_motion;
 mod keys;
 mod layer_motion;
 mod lens_motion;
 
 pub use keys::{Ease, Key, KeySpan, Keys};
 pub use layer_motion::LayerMotion;
-pub use lens_motion::{FocusTarget, LensMotion};
+pub use lens_motion::{FocusTarget, KeyedCharacter, LensMotion};

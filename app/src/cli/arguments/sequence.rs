@@ -66,6 +66,9 @@ pub struct KeysArguments {
     /// Set the f-number at a time (s)
     #[arg(long, value_name = "N@SECONDS", value_parser = number_at, requires = "output")]
     pub f_number: Vec<(f64, f64)>,
+    /// Set the character of a lens at a time (s): that of a preset or lens file, or none
+    #[arg(long, value_name = "LENS@SECONDS", value_parser = lens_at, requires = "output")]
+    pub character: Vec<(String, f64)>,
     /// Set the opacity of a layer, by name, at a time (s)
     #[arg(long, value_name = "LAYER=OPACITY@SECONDS", value_parser = layer_at, requires = "output")]
     pub opacity: Vec<(String, f64, f64)>,
@@ -83,6 +86,11 @@ fn number_at(text: &str) -> Result<(f64, f64), String> {
     let parts =
         text.rsplit_once('@').and_then(|(value, at)| Some((value.trim().parse().ok()?, seconds(at)?)));
     parts.ok_or_else(|| "VALUE@SECONDS".into())
+}
+
+fn lens_at(text: &str) -> Result<(String, f64), String> {
+    let parts = text.rsplit_once('@').and_then(|(lens, at)| Some((lens.trim().to_string(), seconds(at)?)));
+    parts.filter(|(lens, _)| !lens.is_empty()).ok_or_else(|| "LENS@SECONDS".into())
 }
 
 fn place_at(text: &str) -> Result<(glam::DVec2, f64), String> {

@@ -2,12 +2,14 @@
 
 use super::new::check_project_name;
 use crate::cli::arguments::KeysArguments;
+use crate::cli::camera_presets::with_presets;
 use crate::cli::console::{Console, print_json};
 use crate::cli::failure::Failure;
 use crate::cli::input::check_folder;
 use document::{Input, chief_ray, pick};
-use focus::{FocusTarget, Key, LayerStack, LensMotion};
+use focus::{FocusTarget, Key, KeyedCharacter, LayerStack, LensMotion};
 use glam::DVec2;
+use lens::Character;
 use project::{ProjectFile, read_keys};
 use serde_json::json;
 use std::path::Path;
@@ -29,6 +31,7 @@ pub fn run(arguments: &KeysArguments, console: &Console) -> Result<(), Failure> 
         project.lens_motion = read_keys(file)?;
     }
     set_lens(arguments, &mut project.lens_motion, console)?;
+    set_character(arguments, &mut project)?;
     for (name, opacity, seconds) in &arguments.opacity {
         if !(0.0..=1.0).contains(opacity) {
             return Err(project_failure(
@@ -50,7 +53,10 @@ pub fn run(arguments: &KeysArguments, console: &Console) -> Result<(), Failure> 
         )?;
     }
     if !project.lens_motion.is_valid() {
-        return Err(project_failure(&arguments.project, "distances and f-numbers must be above 0"));
+        return Err(project_failure(
+            &arguments.project,
+            "distances and f-numbers must be above 0, characters those of lens files",
+        ));
     }
     project.save(output)?;
     console.note(&format!("wrote {}", output.display()));
@@ -86,6 +92,21 @@ fn set_lens(arguments: &KeysArguments, motion: &mut LensMotion, console: &Consol
             motion.focus.insert(Key { seconds, value: FocusTarget::Point(hit.point), ease }),
             arguments,
         )?;
+    }
+    Ok(())
+}
+
+/// Sets keys of the character: as it is on the project's camera.
+fn set_character(arguments: &KeysArguments, project: &mut ProjectFile) -> Result<(), Failure> {
+    let camera = project.cameras.get(project.active_camera).map(|named| named.camera.clone());
+    let camera = camera.unwrap_or_default();
+    for (lens, seconds) in &arguments.character {
+        let character = match lens.as_str() {
+            "none" => Character::default(),
+            name => with_presets(camera.clone(), Some(name.as_ref()), None)?.character,
+        };
+        let key = Key { seconds: *seconds, value: KeyedCharacter(character), ease: arguments.ease };
+        check_key_added(project.lens_motion.character.insert(key), arguments)?;
     }
     Ok(())
 }

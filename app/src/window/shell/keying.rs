@@ -2,11 +2,11 @@
 
 use super::Shell;
 use document::SurfaceHit;
-use focus::{FocusTarget, Key, Keys, LayerEdit};
+use focus::{FocusTarget, Key, KeyedCharacter, Keys, LayerEdit};
 use session::Command;
 
 impl Shell {
-    /// Sets keys for focus distance and f-number at the current time.
+    /// Sets keys for focus distance and f-number at the current time, and for the lens's character if it has one, or keys of one.
     pub(super) fn key_lens(&mut self) {
         let Some(document) = self.session.document() else { return };
         let (seconds, ease) = (document.seconds, self.settings.tools.rack.ease);
@@ -16,6 +16,10 @@ impl Shell {
         let number = document.camera.f_number();
         if number > 0.0 && number.is_finite() {
             has_room &= motion.f_number.insert(Key { seconds, value: number, ease });
+        }
+        let character = document.camera.character;
+        if !character.is_neutral() || !motion.character.is_empty() {
+            has_room &= motion.character.insert(Key { seconds, value: KeyedCharacter(character), ease });
         }
         match has_room {
             true => self.apply(Command::SetLensMotion("Key lens", motion)),
@@ -44,6 +48,7 @@ impl Shell {
         let mut motion = document.lens_motion.clone();
         motion.focus.remove(document.seconds);
         motion.f_number.remove(document.seconds);
+        motion.character.remove(document.seconds);
         self.apply(Command::SetLensMotion("Remove lens keys", motion));
     }
 

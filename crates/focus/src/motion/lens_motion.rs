@@ -1,8 +1,9 @@
 //! Keyframes of the lens.
 
+use super::character_motion;
 use super::keys::{Keys, mix};
 use glam::{DVec2, DVec3};
-use lens::Camera;
+use lens::{Camera, Character};
 use scene::SurfacePoint;
 use serde::{Deserialize, Serialize};
 
@@ -40,7 +41,12 @@ impl FocusTarget {
     }
 }
 
-/// Keyframes of the lens: what it is focused on, and its f-number.
+/// The character of a lens as the value of a key.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct KeyedCharacter(#[serde(with = "character_motion::form")] pub Character);
+
+/// Keyframes of the lens: what it is focused on, its f-number, and its character.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct LensMotion {
     /// What it is focused on. Between two keys the reciprocal of the distance is interpolated, so that a rack from
@@ -50,29 +56,36 @@ pub struct LensMotion {
     /// f/(2R), > 0. Between two keys its logarithm is interpolated, as stops are counted.
     #[serde(default, skip_serializing_if = "Keys::is_empty")]
     pub f_number: Keys<f64>,
+    /// What it does beside focusing. Between two keys every number is interpolated; a widest radius that a key does not give is the
+    /// camera's.
+    #[serde(default, skip_serializing_if = "Keys::is_empty")]
+    pub character: Keys<KeyedCharacter>,
 }
 
 impl LensMotion {
     /// Whether nothing is animated.
     pub fn is_empty(&self) -> bool {
-        self.focus.is_empty() && self.f_number.is_empty()
+        self.focus.is_empty() && self.f_number.is_empty() && self.character.is_empty()
     }
 
-    /// Whether all its keys are valid: f-numbers above 0 and finite.
+    /// Whether all its keys are valid: f-numbers above 0 and finite, characters within their ranges for some lens.
     pub fn is_valid(&self) -> bool {
         self.focus.is_valid(FocusTarget::is_valid)
             && self.f_number.is_valid(|number| *number > 0.0 && number.is_finite())
+            && self.character.is_valid(|KeyedCharacter(character)| character.validate(f64::INFINITY).is_ok())
     }
 
     /// The memory that it takes, in bytes.
     pub fn bytes(&self) -> usize {
-        size_of::<Self>() + size_of_val(self.focus.keys()) + size_of_val(self.f_number.keys())
+        let lists = size_of_val(self.focus.keys()) + size_of_val(self.f_number.keys());
+        size_of::<Self>() + lists + size_of_val(self.character.keys())
     }
 
     /// The times of all keys, s; some may occur twice.
     pub fn times(&self) -> impl Iterator<Item = f64> {
         let focus = self.focus.keys().iter().map(|key| key.seconds);
-        focus.chain(self.f_number.keys().iter().map(|key| key.seconds))
+        let f_number = self.f_number.keys().iter().map(|key| key.seconds);
+        focus.chain(f_number).chain(self.character.keys().iter().map(|key| key.seconds))
     }
 
     /// `camera` with the lens as it is at a time. `position` returns the position of a surface point at that time;
@@ -94,6 +107,12 @@ impl LensMotion {
         }
         if let Some(number) = self.f_number_at(seconds).filter(|number| *number != moved.f_number()) {
             moved.aperture_radius = moved.optics().focal_length() / (2.0 * number);
+        }
+        if let Some(span) = self.character.span_at(seconds) {
+            let character = character_motion::between(&span.from.0, &span.to.0, span.share);
+            let widest = camera.character.widest_radius.unwrap_or(camera.aperture_radius);
+            let widest_radius = character.widest_radius.or((widest > 0.0).then_some(widest));
+            moved.character = Character { widest_radius, ..character };
         }
         moved
     }
@@ -197,6 +216,30 @@ mod tests {
         assert!((distance(0.5, &away) - camera.focus_distance).abs() < 1e-12);
         let behind = |_: SurfacePoint| Some(DVec3::Z);
         assert!((distance(0.5, &behind) - camera.focus_distance).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_character_comes_and_goes_with_its_keys() {
+        let mut motion = LensMotion::default();
+        let soft = Character { edges: -0.8, ..Character::default() };
+        for (seconds, character) in [(0.0, Character::default()), (2.0, soft)] {
+            assert!(motion.character.insert(Key {
+                seconds,
+                value: KeyedCharacter(character),
+                ease: Ease::Linear
+            }));
+        }
+        assert!(motion.is_valid() && !motion.is_empty() && motion.times().eq([0.0, 2.0]));
+        let camera = Camera { aperture_radius: 0.02, ..Camera::default() };
+        let at = |seconds| motion.camera_at(seconds, &camera, &|_| None).character;
+        assert_eq!(at(1.0), Character { edges: -0.4, widest_radius: Some(0.02), ..Character::default() });
+        assert!(at(0.0).is_neutral() && at(9.0).edges == -0.8);
+        let text = serde_json::to_string(&motion).unwrap();
+        assert!(text.contains(r#""value":{"edges":-0.8}"#), "{text}");
+        assert_eq!(serde_json::from_str::<LensMotion>(&text).unwrap(), motion);
+        let wrong = text.replace("-0.8", "-1.8");
+        assert!(!serde_json::from_str::<LensMotion>(&wrong).unwrap().is_valid());
+        assert!(serde_json::from_str::<LensMotion>(&text.replace("edges", "swirl")).is_err());
     }
 
     #[test]

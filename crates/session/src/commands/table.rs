@@ -403,7 +403,7 @@ pub const COMMANDS: &[CommandInfo] = &[
     command_info(CommandId::SaveLensPreset, Menu::Lens, None, "Save lens preset…", "Keep focal length, f-number and sensor under a name."),
     command_info(CommandId::SaveBokehPreset, Menu::Lens, None, "Save bokeh preset…", "Keep the aperture's shape under a name, a mask with it."),
     command_info(CommandId::OrbitAperture, Menu::Lens, Shortcut::key("J"), "Look round the aperture", "Show the picture through one point of the aperture that runs round its rim; again or Esc ends it."),
-    command_info(CommandId::KeyLens, Menu::Lens, Shortcut::key("Y"), "Key lens", "Keep focus distance and f-number as they are for this time of the timeline."),
+    command_info(CommandId::KeyLens, Menu::Lens, Shortcut::key("Y"), "Key lens", "Keep focus distance, f-number and the lens's character as they are for this time of the timeline."),
     command_info(CommandId::KeyLayer, Menu::Layer, Shortcut::shift("Y"), "Key layer", "Keep the opacity of this layer as it is for this time of the timeline."),
     command_info(CommandId::RemoveKeys, Menu::Lens, Shortcut::alt("Y"), "Remove lens keys", "Take away the keys that the lens has at this time of the timeline."),
     command_info(CommandId::PlayTimeline, Menu::Lens, Shortcut::alt("P"), "Play", "Let lens and layers move as their keys say, again and again; or stop there."),

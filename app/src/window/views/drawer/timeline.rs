@@ -38,12 +38,17 @@ pub struct Timeline {
 enum Row {
     Focus,
     FNumber,
+    Character,
     Opacity,
 }
 
 impl Row {
-    const ALL: [(Self, &'static str); 3] =
-        [(Self::Focus, "Focus"), (Self::FNumber, "f-number"), (Self::Opacity, "Opacity")];
+    const ALL: [(Self, &'static str); 4] = [
+        (Self::Focus, "Focus"),
+        (Self::FNumber, "f-number"),
+        (Self::Character, "Character"),
+        (Self::Opacity, "Opacity"),
+    ];
 
     fn times(self, document: &Document) -> Vec<f64> {
         fn key_seconds<T>(keys: &Keys<T>) -> Vec<f64> {
@@ -52,11 +57,12 @@ impl Row {
         match self {
             Self::Focus => key_seconds(&document.lens_motion.focus),
             Self::FNumber => key_seconds(&document.lens_motion.f_number),
+            Self::Character => key_seconds(&document.lens_motion.character),
             Self::Opacity => key_seconds(&document.layers.active().motion.opacity),
         }
     }
 
-    /// Value of the row's curve at a time; `None` without keys.
+    /// Value of the row's curve at a time; `None` without keys, and for characters, which have many numbers.
     fn value(self, document: &Document, seconds: f64) -> Option<f64> {
         let scene = document.scene();
         match self {
@@ -67,6 +73,7 @@ impl Row {
                 Some(-1.0 / document.lens_motion.camera_at(seconds, &document.camera, &place).focus_distance)
             }
             Self::FNumber => document.lens_motion.f_number_at(seconds).map(f64::ln),
+            Self::Character => None,
             Self::Opacity => {
                 document.layers.active().motion.opacity.span_at(seconds).map(|around| around.interpolate())
             }
@@ -90,6 +97,9 @@ impl Row {
             }
             Self::FNumber => {
                 shift(&mut lens.f_number, from, to).then_some(Command::SetLensMotion("Move key", lens))
+            }
+            Self::Character => {
+                shift(&mut lens.character, from, to).then_some(Command::SetLensMotion("Move key", lens))
             }
             Self::Opacity => {
                 let index = document.layers.active_index();
