@@ -76,6 +76,8 @@ pub struct BlockBaker<'a> {
     pub domain: Domain,
     /// See [`BakeOptions::pixel_px`].
     pub pixel_px: f64,
+    /// See [`BakeOptions::splat_cells`].
+    pub splat_cells: u32,
     packs: bool,
 }
 
@@ -91,8 +93,18 @@ impl<'a> BlockBaker<'a> {
         let margin = standard_margin_px(tracer.scene(), &view).max(options.margin_px);
         let domain = Domain::new(camera.width, camera.height, margin);
         let placement = Placement::new(tracer.scene(), &view);
-        let BakeOptions { packs, pixel_px, .. } = *options;
-        Self { tracer, radiance, view, placement, patterns: Patterns::new(), domain, pixel_px, packs }
+        let BakeOptions { packs, pixel_px, splat_cells, .. } = *options;
+        Self {
+            tracer,
+            radiance,
+            view,
+            placement,
+            patterns: Patterns::new(),
+            domain,
+            pixel_px,
+            splat_cells,
+            packs,
+        }
     }
 
     /// Packs the samples of the block whose upper left corner is at `corner`, px.

@@ -1,7 +1,7 @@
 //! Gaussian splats in the light field.
 //!
 //! The splats on a pixel's chief ray are clusters ([`gaussians::cluster_picture`]), a sample each, with the address of the heaviest splat. Toward each of
-//! 8 × 8 cells of the aperture a cluster has a share, and whatever else the light field shows has what splats in front of it let through. A share is a weight
+//! 8 × 8 cells of the aperture (4 × 4 for rough pictures) a cluster has a share, and whatever else the light field shows has what splats in front of it let through. A share is a weight
 //! and a pattern of bits ([`share_bits`]), like that of a pane, so that samples of splats are samples like all others.
 
 mod share_bits;
@@ -18,7 +18,7 @@ use glam::{DVec2, DVec3, IVec2, Vec2, Vec3};
 use progress::{Cancelled, Progress, Stage};
 use rayon::prelude::*;
 use scene::PlacedCloud;
-use share_bits::{CELLS, COARSE_BELOW_PX2, share_bits};
+use share_bits::{COARSE_BELOW_PX2, share_bits};
 use std::collections::HashMap;
 
 /// Pixels of a band.
@@ -69,7 +69,7 @@ impl<'a> SplatBands<'a> {
             coarse_below_px2: COARSE_BELOW_PX2,
             rays_per_px: if self.baker.view.tolerance_px < EXACT_BELOW_PX { 2 } else { 1 },
         };
-        let cells = if self.view.optics().aperture_radius == 0.0 { 1 } else { CELLS as u32 };
+        let cells = if self.view.optics().aperture_radius == 0.0 { 1 } else { self.baker.splat_cells };
         let images = aperture_images(&scene, cells, &Stage::new(progress, 0.1, 1.0))?;
 
         let mut first = 0;

@@ -112,7 +112,10 @@ impl LightField {
             .margin_px
             .max(field_options.least_margin_px);
         let margin_px = needed + MARGIN_HEADROOM * camera.height as f64;
-        let options = BakeOptions { margin_px, carried: Carried::for_focus(focus), ..BakeOptions::default() };
+        let is_rough = field_options.light == LightQuality::Rough;
+        let splat_cells = if is_rough { BakeOptions::ROUGH_SPLAT_CELLS } else { BakeOptions::SPLAT_CELLS };
+        let carried = Carried::for_focus(focus);
+        let options = BakeOptions { margin_px, carried, splat_cells, ..BakeOptions::default() };
         let solving = Share::new(progress, 0.0, LIGHT_SHARE);
         let radiance = stage.lit.solve(camera, field_options.light, &solving)?;
         let baking = Share::new(progress, LIGHT_SHARE, 1.0);

@@ -55,6 +55,12 @@ pub(super) fn next_coarse_camera(camera: &Camera, shown_pixels: f64, pace: Optio
     Some(coarse.filter(is_quick).unwrap_or_else(|| of_pixels(GLANCE_PIXELS)))
 }
 
+/// The camera of the one picture of few pixels of a scene with Gaussian splats: whatever its size, most of the time is for what each cell of the aperture
+/// sees of all splats.
+pub(super) fn coarse_camera_of_splats(camera: &Camera) -> Option<Camera> {
+    has_coarse_pictures(camera).then(|| scaled(camera, COARSE_SCALE))
+}
+
 /// The camera with a picture of this size.
 pub(super) fn resized(camera: &Camera, [width, height]: [u32; 2]) -> Camera {
     Camera { width, height, ..camera.clone() }

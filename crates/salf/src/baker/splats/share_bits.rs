@@ -11,8 +11,11 @@ use crate::jitter::jitter;
 use crate::sample::Visibility;
 use std::sync::LazyLock;
 
-/// Cells a side for which shares are computed.
-pub const CELLS: usize = 8;
+/// Cells a side for which shares are told.
+const CELLS: usize = 8;
+
+/// The same where they are computed for a rough picture: each is told four times.
+const ROUGH_CELLS: usize = CELLS / 2;
 
 /// Shares that vary no more than from this part of the largest to it are one share.
 const EVEN: f32 = 0.8;
@@ -81,7 +84,7 @@ fn hilbert_curve(side: usize) -> Vec<u8> {
     (0..side * side).map(cell).collect()
 }
 
-/// Weight and visibility of something of which the cells of the aperture see these shares, row by row: 8 × 8, or one for all. `visibility` is the part of the
+/// Weight and visibility of something of which the cells of the aperture see these shares, row by row: 8 × 8, 4 × 4, or one for all. `visibility` is the part of the
 /// aperture from which nothing else hides it, `seed` chooses the pattern. `None` if nothing is visible.
 pub fn share_bits(
     shares: impl Iterator<Item = f32>,
@@ -90,6 +93,10 @@ pub fn share_bits(
 ) -> Option<(f32, Visibility)> {
     let mut list = [0.0; CELLS * CELLS];
     let count = list.iter_mut().zip(shares).map(|(place, share)| *place = share).count();
+    if count == ROUGH_CELLS * ROUGH_CELLS {
+        let rough = list;
+        list = std::array::from_fn(|cell| rough[cell / CELLS / 2 * ROUGH_CELLS + cell % CELLS / 2]);
+    }
     if count == 1 {
         return (list[0] > 0.0).then(|| (list[0], visibility.clone()));
     }
@@ -180,6 +187,17 @@ mod tests {
                     [pair[0], pair[1]].map(|cell| [usize::from(cell) % side, usize::from(cell) / side]);
                 assert_eq!(x.abs_diff(u) + y.abs_diff(v), 1);
             }
+        }
+    }
+
+    #[test]
+    fn rough_shares_are_those_of_four_cells_each() {
+        let rough: [f32; 16] = std::array::from_fn(|cell| (cell % 5) as f32 / 5.0);
+        let fine = (0..64).map(|cell| rough[cell / 16 * 4 + cell % 8 / 2]);
+        for seed in 0..50 {
+            let of =
+                |shares: &mut dyn Iterator<Item = f32>| share_bits(shares, &Visibility::Open, [seed, 1, 2]);
+            assert_eq!(of(&mut rough.into_iter()), of(&mut fine.clone()));
         }
     }
 

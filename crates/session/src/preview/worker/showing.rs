@@ -10,7 +10,7 @@ use crate::preview::light_field_maker::FieldOrigin;
 use crate::preview::mailbox::UntilCameraMoves;
 use crate::preview::picture::{PreviewKind, Quality};
 use crate::preview::picture_sizes::{
-    has_coarse_pictures, moving_camera, next_coarse_camera, pixel_count, resized,
+    coarse_camera_of_splats, has_coarse_pictures, moving_camera, next_coarse_camera, pixel_count, resized,
 };
 use crate::preview::pinhole::is_same_view;
 use crate::preview::presenter::{NewPicture, Relation};
@@ -218,8 +218,13 @@ impl Worker {
             shown_pixels = pixel_count(&small);
             self.show_small(stage, &small, size, focus)?;
         }
+        let has_splats = stage.scene.splats.is_some();
+        let next = |shown_pixels: f64, pace: Option<f64>| match has_splats {
+            true => coarse_camera_of_splats(camera).filter(|_| shown_pixels == 0.0),
+            false => next_coarse_camera(camera, shown_pixels, pace),
+        };
         while (shown_pixels == 0.0 || !self.is_painting)
-            && let Some(small) = next_coarse_camera(camera, shown_pixels, self.coarse_pace)
+            && let Some(small) = next(shown_pixels, self.coarse_pace)
         {
             shown_pixels = pixel_count(&small);
             self.show_small(stage, &small, size, focus)?;
