@@ -16,7 +16,7 @@ pub enum SceneError {
         why: String,
     },
     /// The file cannot be read as a scene.
-    #[error("{}: {fault}", file.display())]
+    #[error("{}: {}", file.display(), on_one_line(&fault.to_string()))]
     Bad {
         /// The scene file.
         file: PathBuf,
@@ -132,5 +132,30 @@ impl From<Fault> for Stop {
 impl From<Cancelled> for Stop {
     fn from(_: Cancelled) -> Self {
         Self::Cancelled
+    }
+}
+
+/// A text that may be a library's, with a space in the place of line breaks and what stands around them.
+fn on_one_line(text: &str) -> String {
+    let parts = text.split(char::is_control).map(str::trim).filter(|part| !part.is_empty());
+    parts.collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_error_is_one_line_whatever_a_library_says() {
+        let what =
+            "cannot be decoded: 7 corrections, more than the \n                 1628 bytes left".into();
+        let fault = Fault::Malformed { place: "/meshes/0".into(), what };
+        let text = SceneError::Bad { file: "scene.glb".into(), fault }.to_string();
+        assert!(
+            text.starts_with(
+                "scene.glb: /meshes/0: cannot be decoded: 7 corrections, more than the 1628 bytes left"
+            ),
+            "{text}"
+        );
     }
 }

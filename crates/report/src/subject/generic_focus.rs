@@ -68,7 +68,7 @@ fn names_by_coverage(tracer: &Tracer, camera: &Camera, name: impl Fn(u32) -> Str
     let mut counts: BTreeMap<String, u32> = BTreeMap::new();
     for index in 0..RAYS_A_SIDE * RAYS_A_SIDE {
         let at = DVec2::new((index % RAYS_A_SIDE) as f64 + 0.5, (index / RAYS_A_SIDE) as f64 + 0.5);
-        if let Some(hit) = tracer.first_hit(&chief_ray(camera, at / RAYS_A_SIDE as f64)) {
+        if let Some(hit) = tracer.visible_surface(&chief_ray(camera, at / RAYS_A_SIDE as f64)) {
             *counts.entry(name(hit.point.triangle)).or_default() += 1;
         }
     }
