@@ -105,14 +105,14 @@ impl NodeShape {
         let width = span[1] - span[0];
         let count = (width / row.part_width.max(1)).clamp(1, MAX_PARTS);
         // Parts of neighbouring rows begin elsewhere, so that no edge of one shows.
-        let offset = (i64::from(row.dither >> 16) * i64::from(width) / i64::from(count)) >> 16;
-        let edge = |k: i32| {
-            let at = i64::from(span[0]) + i64::from(width) * i64::from(k) / i64::from(count) + offset;
-            (at as i32).clamp(span[0], span[1])
-        };
+        let step = width / count;
+        let offset = ((i64::from(row.dither >> 16) * i64::from(step)) >> 16) as i32;
+        // One part is not parted.
+        let mut end = span[0] + if count == 1 { step } else { offset };
         let mut start = span[0];
-        for k in 0..=count {
-            let end = edge(k);
+        while start < span[1] {
+            // The last part takes what is left of the division.
+            end = if span[1] - end < count { span[1] } else { end };
             if end > start {
                 let half = (end - start) as f32 * 0.5 * per_radius;
                 let middle = ((start - row.center) as f32 + (end - start) as f32 * 0.5) * per_radius;
@@ -123,6 +123,7 @@ impl NodeShape {
                 }
                 start = end;
             }
+            end += step;
         }
     }
 

@@ -6,7 +6,7 @@ use crate::aperture::shape::Shape;
 use crate::canvas::PIXEL;
 use crate::fixed::ONE;
 use crate::nodes::{Cells, SplatNode};
-use glam::{DVec2, Vec2};
+use glam::DVec2;
 use lens::{ApertureShape, Camera, CharacterOptics, Rim};
 
 /// Rims and edges of a lens over a picture.
@@ -34,14 +34,45 @@ struct LensEdges {
     of_node: NodeEdges,
 }
 
-/// The light of each of 16 × 16 cells of the baked aperture.
+/// Cells of the baked aperture along a side.
+const CELLS: usize = 16;
+
+/// The light of each cell of the baked aperture.
 struct CellLight {
-    /// Share and mean aperture point of each.
-    cells: Vec<(f32, Vec2)>,
+    rows: Vec<CellRow>,
     /// Half a cell's side, in the lens's radii.
     half: f32,
     /// The lens's radius as a share of the baked one.
     stop: f32,
+}
+
+/// A row of cells: the share and the mean aperture point of each.
+struct CellRow {
+    share: [f32; CELLS],
+    x: [f32; CELLS],
+    y: [f32; CELLS],
+    /// The height of the row's middle, where rims cut it, 1/16384.
+    v: i32,
+}
+
+impl CellLight {
+    /// Of an aperture's shape, for a lens whose radius is `stop` of the baked one.
+    fn new(shape: &Shape, stop: f64) -> Self {
+        let cells = shape.cells(1.0 / stop);
+        let row = |row: usize| {
+            let of = |value: fn(&(f64, DVec2)) -> f64| {
+                std::array::from_fn(|column| value(&cells[row * CELLS + column]) as f32)
+            };
+            let middle = ((row as f64 + 0.5) / 8.0 - 1.0) / stop;
+            CellRow {
+                share: of(|(share, _)| *share),
+                x: of(|(_, mean)| mean.x),
+                y: of(|(_, mean)| mean.y),
+                v: fixed(middle as f32),
+            }
+        };
+        Self { rows: (0..CELLS).map(row).collect(), half: (1.0 / (16.0 * stop)) as f32, stop: stop as f32 }
+    }
 }
 
 /// Discs farther from the aperture's centre are drawn as if they were so far, with the same near edge: next to straight.
@@ -70,7 +101,6 @@ impl Shaper {
         let axis = camera.principal_point_px() * f64::from(PIXEL);
         // A pinhole sees what its chief ray sees.
         let stop = stop.max(1e-3);
-        let cells = shape.cells(1.0 / stop).into_iter().map(|(share, mean)| (share as f32, mean.as_vec2()));
         Some(Self {
             rims: camera.character.rims,
             edges: LensEdges::new(&optics, half_height),
@@ -80,11 +110,7 @@ impl Shaper {
             per_radius: if plain.aperture_radius > 0.0 { (1.0 / plain.aperture_radius) as f32 } else { 0.0 },
             reach: if is_round { 1.0 } else { std::f32::consts::SQRT_2 },
             table: MomentTable::new(&optics, &camera.aperture, frame(camera), largest_inverse_depth.into()),
-            cells: CellLight {
-                cells: cells.collect(),
-                half: (1.0 / (16.0 * stop)) as f32,
-                stop: stop as f32,
-            },
+            cells: CellLight::new(shape, stop),
         })
     }
 
@@ -138,32 +164,37 @@ impl Shaper {
 
     /// The moments of the light that a partly occluded node sends through its cells, of which `base` and `tilt` (1/16384) are the
     /// weight.
+    #[inline(always)]
     pub fn moments_of_cells(&self, node: &SplatNode, cells: &Cells, shape: &NodeShape) -> Moments {
-        let CellLight { cells: lights, half, stop } = &self.cells;
-        let mut sums = [0.0f32; 5];
+        let CellLight { rows, half, stop } = &self.cells;
         let one = ONE as f32;
-        for (row, &bits) in cells.iter().enumerate() {
-            let mut bits = u32::from(bits);
-            while bits != 0 {
-                let column = bits.trailing_zeros() as usize;
-                bits &= bits - 1;
-                let (share, mean) = lights[row * 16 + column];
-                if share <= 0.0 {
-                    continue;
-                }
-                let Some([from, to]) = shape.chord((mean.y * one) as i32) else { continue };
-                let passing = (to as f32 / one).min(mean.x + half) - (from as f32 / one).max(mean.x - half);
-                let passing = (passing / (2.0 * half)).clamp(0.0, 1.0);
-                let tilt = f32::from(node.tilt[0]) * mean.x + f32::from(node.tilt[1]) * mean.y;
-                let weight = (f32::from(node.base) + tilt * stop) / one;
-                let light = share * passing * weight.max(0.0) * shape.weight(mean.length_squared());
-                let own = [1.0, mean.x, mean.y, mean.x * mean.x, mean.y * mean.y];
-                (0..5).for_each(|k| sums[k] += light * own[k]);
+        let [across, up] = node.tilt.map(|tilt| f32::from(tilt) * stop / one);
+        let base = f32::from(node.base) / one;
+        let per_side = 0.5 / half;
+        let mut sums = [[0.0f32; CELLS]; 5];
+        for (row, &bits) in rows.iter().zip(cells) {
+            if bits == 0 {
+                continue;
+            }
+            let Some([from, to]) = shape.chord(row.v) else { continue };
+            let [from, to] = [from as f32 / one, to as f32 / one];
+            for k in 0..CELLS {
+                let (x, y) = (row.x[k], row.y[k]);
+                let is_seen = if bits >> k & 1 == 1 { row.share[k] } else { 0.0 };
+                let passing = ((to.min(x + half) - from.max(x - half)) * per_side).clamp(0.0, 1.0);
+                let weight = (base + across * x + up * y).max(0.0) * shape.weight(x * x + y * y);
+                let light = is_seen * passing * weight;
+                sums[0][k] += light;
+                sums[1][k] += light * x;
+                sums[2][k] += light * y;
+                sums[3][k] += light * x * x;
+                sums[4][k] += light * y * y;
             }
         }
+        let [light, x, y, xx, yy] = sums.map(|lanes| lanes.iter().sum::<f32>());
         // Within a cell.
-        let within = half * half / 3.0 * sums[0];
-        [sums[0], sums[1], sums[2], sums[3] + within, sums[4] + within]
+        let within = half * half / 3.0 * light;
+        [light, x, y, xx + within, yy + within]
     }
 }
 

@@ -11,11 +11,29 @@ use crate::draw::pen::{ALL, BoxPart, Form, Pen};
 use crate::fixed::{ONE, WHOLE, mul_shift};
 use crate::lens_in_use::Placed;
 use crate::nodes::{Cells, SplatNode};
+use numerics::with_widest_simd;
 
 impl Pen<'_> {
     /// Draws a node whose light passes the aperture as `shape` says, in the forms of any other.
+    // A function of its own, so that other nodes are drawn as quickly as without it.
     #[inline(never)]
     pub(super) fn draw_shaped<W: Word>(
+        &self,
+        by: (&Shaper, &NodeShape),
+        node: &SplatNode,
+        light: [f32; 4],
+        placed: Placed,
+        paper: &mut Paper<W>,
+        sign: i32,
+    ) {
+        with_widest_simd(
+            #[inline(always)]
+            || self.draw_shaped_forms(by, node, light, placed, paper, sign),
+        );
+    }
+
+    #[inline(always)]
+    fn draw_shaped_forms<W: Word>(
         &self,
         (shaper, shape): (&Shaper, &NodeShape),
         node: &SplatNode,
@@ -26,36 +44,42 @@ impl Pen<'_> {
     ) {
         let image = self.image(node, light, placed);
         let half_size = [u32::from(node.half_size[0]), u32::from(node.half_size[1])];
-        self.forms(node, placed, |form| {
-            let mut image = Image { ..image };
-            match form {
-                Form::Box(share) => {
-                    image.share = share;
-                    let moments = tilted(shaper.moments(node, shape), node, self.stop);
-                    self.draw_moments(&mut image, half_size, moments, paper, sign);
+        self.forms(
+            node,
+            placed,
+            #[inline(always)]
+            |form| {
+                let mut image = Image { ..image };
+                match form {
+                    Form::Box(share) => {
+                        image.share = share;
+                        let moments = tilted(shaper.moments(node, shape), node, self.stop);
+                        self.draw_moments(&mut image, half_size, moments, paper, sign);
+                    }
+                    Form::Parts(share) => {
+                        image.share = share;
+                        self.draw_parts(&image, placed.depth_share, Some(shape), paper, sign);
+                    }
+                    Form::Image(share) => {
+                        image.share = share;
+                        image.lean(node, self.tilt_shift);
+                        self.draw_shaped_image((shaper, shape), &mut image, None, paper, sign);
+                    }
+                    Form::Tilted(share) => {
+                        self.draw_shaped_image((shaper, shape), &mut image, Some((&ALL, share)), paper, sign);
+                    }
+                    Form::PartialBox => self.draw_shaped_cells((shaper, shape), &mut image, paper, sign),
+                    Form::PartialImage => {
+                        let visible = Some(self.visible_part(node));
+                        self.draw_shaped_image((shaper, shape), &mut image, visible, paper, sign);
+                    }
                 }
-                Form::Parts(share) => {
-                    image.share = share;
-                    self.draw_parts(&image, placed.depth_share, Some(shape), paper, sign);
-                }
-                Form::Image(share) => {
-                    image.share = share;
-                    image.lean(node, self.tilt_shift);
-                    self.draw_shaped_image((shaper, shape), &mut image, None, paper, sign);
-                }
-                Form::Tilted(share) => {
-                    self.draw_shaped_image((shaper, shape), &mut image, Some((&ALL, share)), paper, sign);
-                }
-                Form::PartialBox => self.draw_shaped_cells((shaper, shape), &mut image, paper, sign),
-                Form::PartialImage => {
-                    let visible = Some(self.visible_part(node));
-                    self.draw_shaped_image((shaper, shape), &mut image, visible, paper, sign);
-                }
-            }
-        });
+            },
+        );
     }
 
     /// A box of what a partly occluded node sends.
+    #[inline(always)]
     fn draw_shaped_cells<W: Word>(
         &self,
         (shaper, shape): (&Shaper, &NodeShape),
@@ -71,6 +95,7 @@ impl Pen<'_> {
     }
 
     /// A box of light with these moments, as a share of what `image` has.
+    #[inline(always)]
     fn draw_moments<W: Word>(
         &self,
         image: &mut Image,
@@ -95,6 +120,7 @@ impl Pen<'_> {
     }
 
     /// The aperture's image, or what `cells` let through of it, cut and weighed row by row.
+    #[inline(always)]
     fn draw_shaped_image<W: Word>(
         &self,
         (shaper, shape): (&Shaper, &NodeShape),
@@ -119,10 +145,14 @@ impl Pen<'_> {
                 let row = base + run.row;
                 if row >= paper.rows.first && row < paper.rows.end {
                     let span = [image.center[0] + run.start, image.center[0] + run.end];
-                    shape.visit_row(frame.row(row, Some(run.v), span), |part| {
-                        let value = image.value(mul_shift(run.height, part.weight, 14), shift, row);
-                        paper.rows.add_run(row, part.start, part.end, value, sign);
-                    });
+                    shape.visit_row(
+                        frame.row(row, Some(run.v), span),
+                        #[inline(always)]
+                        |part| {
+                            let value = image.value(mul_shift(run.height, part.weight, 14), shift, row);
+                            paper.rows.add_run(row, part.start, part.end, value, sign);
+                        },
+                    );
                 }
             }
             return;
@@ -139,10 +169,14 @@ impl Pen<'_> {
         let mut rows = paper.rows.borrowed();
         let here = rows.first..rows.end;
         for run in runs.iter().filter(|run| here.contains(&run.row)) {
-            shape.visit_row(frame.row(run.row, None, [run.start, run.end]), |part| {
-                let value = image.value(mul_shift(run.height, part.weight, 14), shift, run.row);
-                rows.add_run(run.row, part.start, part.end, value, sign);
-            });
+            shape.visit_row(
+                frame.row(run.row, None, [run.start, run.end]),
+                #[inline(always)]
+                |part| {
+                    let value = image.value(mul_shift(run.height, part.weight, 14), shift, run.row);
+                    rows.add_run(run.row, part.start, part.end, value, sign);
+                },
+            );
         }
     }
 }
