@@ -14,7 +14,7 @@ import struct
 import sys
 from collections import namedtuple
 
-VERSION, VERSION_WITH_SPLATS = 6, 7
+VERSIONS = {6: ("cpu", False), 7: ("cpu", True), 8: ("gpu", False), 9: ("gpu", True)}
 MAGIC = b"FBSALF\r\n"
 LONGEST_TEXT = 65536
 LARGEST_SIDE = 16384
@@ -239,8 +239,9 @@ class Salf:
             raise Damaged("not a .salf file")
         file.take(len(MAGIC))
         self.version = file.number("I")
-        known = f"only {VERSION} and {VERSION_WITH_SPLATS}"
-        require(self.version in (VERSION, VERSION_WITH_SPLATS), f"version {self.version} is not known, {known}")
+        known = f"only {min(VERSIONS)} to {max(VERSIONS)}"
+        require(self.version in VERSIONS, f"version {self.version} is not known, {known}")
+        self.baked_on, self.has_splats = VERSIONS[self.version]
         self.source = file.path()
         self.triangles = file.number("I")
         self.camera = read_camera(file)
@@ -319,7 +320,7 @@ class Salf:
             is_patch, is_quadrant, is_splat = form == 2, form == 3, (form, level) == (0, SPLAT_LEVEL)
             level = 0 if is_splat else level
             require(level <= (3 if is_quadrant else 4) and view <= 2, "a sample that makes no sense")
-            require(self.version == VERSION_WITH_SPLATS or not is_splat, "a splat in a version without them")
+            require(self.has_splats or not is_splat, "a splat in a version without them")
             inverse_depth = f24(inverse_depth)
             require(math.isfinite(inverse_depth), "a depth that is not finite")
             corner = [k + (place >> shift & 15) for k, shift in zip(self.blocks[index].corner, (0, 4))]
@@ -410,6 +411,7 @@ def summary(salf):
     without_texels = {key: value for key, value in salf.camera["aperture"].items() if key != "transmission"}
     return {
         "version": salf.version,
+        "baked_on": salf.baked_on,
         "source": salf.source,
         "triangles": salf.triangles,
         "camera": {**salf.camera, "aperture": without_texels},

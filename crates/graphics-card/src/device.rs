@@ -1,6 +1,6 @@
 //! A graphics card in use.
 
-use crate::kept::Kept;
+use crate::cache::Cache;
 use std::any::Any;
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::sync::{Arc, OnceLock};
@@ -33,7 +33,7 @@ struct Card {
     name: String,
     /// Why it no longer works, once it does not.
     lost: Arc<OnceLock<String>>,
-    kept: Kept,
+    cache: Cache,
 }
 
 impl Gpu {
@@ -80,7 +80,7 @@ impl Gpu {
     pub fn from_device(device: Device, queue: Queue, name: String) -> Result<Self, String> {
         let lost = Arc::new(OnceLock::new());
         let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
-        let gpu = Self(Arc::new(Card { device, queue, name, lost: lost.clone(), kept: Kept::default() }));
+        let gpu = Self(Arc::new(Card { device, queue, name, lost: lost.clone(), cache: Cache::default() }));
         let rounds_alike = gpu.rounds_alike();
         if let Some(error) = pollster::block_on(scope.pop()) {
             return Err(error.to_string());
@@ -148,8 +148,8 @@ impl Gpu {
     }
 
     /// The card's value of this type, made when it is first asked for: compute passes are, so that they are compiled once.
-    pub fn kept<T: Any + Send + Sync>(&self, make: impl FnOnce(&Device) -> T) -> Arc<T> {
-        self.0.kept.get(|| make(&self.0.device))
+    pub fn cached<T: Any + Send + Sync>(&self, make: impl FnOnce(&Device) -> T) -> Arc<T> {
+        self.0.cache.get(|| make(&self.0.device))
     }
 
     /// The largest buffer that a pass can bind.

@@ -34,7 +34,7 @@ pub use picture::{
     Aov, CocConvention, Display, LeftOut, LeftOutPicture, LeftOutPrediction, MAX_CELLS_A_SIDE, OcioViews,
     RenderCost, RenderOptions, Rendered, Renderer, ScreenPixel, Stereo, StereoForm, Tone, ToneCurve,
     leave_photographs_out, light_of_photographs, photograph_picture, read_thumbnail, render, render_input,
-    render_lit_input, render_photograph, render_stereo, to_screen,
+    render_lit_input, render_photograph, render_stereo, sharp_splats, to_screen,
 };
 pub use sequence::{
     Baking, FrameFiles, FrameList, FrameReport, Outcome, SequenceOptions, SequenceReport, Shard, Take,

@@ -26,7 +26,7 @@ pub use ocio_views::OcioViews;
 pub use photograph_picture::{photograph_picture, render_photograph};
 pub use photographed::light_of_photographs;
 pub(crate) use photographed::photographed_shares_of_pixels;
-pub use render::{MAX_CELLS_A_SIDE, RenderCost, RenderOptions, Rendered, render};
+pub use render::{MAX_CELLS_A_SIDE, RenderCost, RenderOptions, Rendered, render, sharp_splats};
 pub(crate) use render::{cut_off_warning, new_splatter, sum_baked};
 pub use renderer::Renderer;
 pub use stereo::{Stereo, StereoForm, render_stereo};

@@ -46,6 +46,12 @@ use trace::{Radiance, SightDevice, Tracer};
 /// Surveys, of some 400 bytes a pixel and more, are retained for at most this many pixels; for larger pictures they are made twice.
 const MAX_RETAINED_PX: i64 = 1 << 23;
 
+/// The share of a bake's progress for finding the surfaces that are seen.
+const SURFACES_SHARE: f32 = 0.35;
+
+/// The share of that for the pinhole picture; the rest is for patches.
+const SURVEY_SHARE: f32 = 0.8;
+
 /// Bakes the light field of `camera`'s square aperture. `camera` must be valid. The same input gives the same bits for any
 /// number of threads.
 ///
@@ -58,24 +64,11 @@ pub fn bake(
     options: &BakeOptions,
     progress: &dyn Progress,
 ) -> Result<Salf, Cancelled> {
-    bake_with_outliers(tracer, radiance, camera, options, progress).map(|(salf, _)| salf)
+    bake_on(None, tracer, radiance, camera, options, progress).map(|(salf, _)| salf)
 }
 
-/// The same as [`bake`], with how much light of outliers was spread.
-///
-/// # Errors
-/// [`Cancelled`] if `progress` is cancelled.
-pub fn bake_with_outliers(
-    tracer: &Tracer,
-    radiance: &dyn Radiance,
-    camera: &Camera,
-    options: &BakeOptions,
-    progress: &dyn Progress,
-) -> Result<(Salf, Outliers), Cancelled> {
-    bake_on(None, tracer, radiance, camera, options, progress)
-}
-
-/// The same, where a `device` answers what of the aperture is visible, as far as it can: to the precision of its floats.
+/// The same as [`bake`], where a `device`, if there is one, answers what of the aperture is visible, as far as it can: to the precision of its
+/// floats. Also tells how much light of outliers was spread.
 ///
 /// # Errors
 /// [`Cancelled`] if `progress` is cancelled.
@@ -87,29 +80,10 @@ pub fn bake_on(
     options: &BakeOptions,
     progress: &dyn Progress,
 ) -> Result<(Salf, Outliers), Cancelled> {
-    bake_retaining(MAX_RETAINED_PX, device, tracer, radiance, camera, options, progress)
-}
-
-/// The share of a bake's progress for finding the surfaces that are seen.
-const SURFACES_SHARE: f32 = 0.35;
-
-/// The share of that for the pinhole picture; the rest is for patches.
-const SURVEY_SHARE: f32 = 0.8;
-
-/// The same, retaining surveys of pictures of at most this many pixels.
-fn bake_retaining(
-    max_retained_px: i64,
-    device: Option<&dyn SightDevice>,
-    tracer: &Tracer,
-    radiance: &dyn Radiance,
-    camera: &Camera,
-    options: &BakeOptions,
-    progress: &dyn Progress,
-) -> Result<(Salf, Outliers), Cancelled> {
     let baker = BlockBaker::new(tracer, radiance, camera, options);
     let domain = baker.domain;
     let IVec2 { x: columns, y: rows } = domain.blocks();
-    let retains_surveys = domain.extent().as_i64vec2().element_product() <= max_retained_px;
+    let retains_surveys = domain.extent().as_i64vec2().element_product() <= MAX_RETAINED_PX;
 
     let rows: Vec<i32> = (0..rows).collect();
     let surveying = Stage::named(progress, "surfaces", 0.0, SURFACES_SHARE);

@@ -52,7 +52,7 @@ pub use baker::outliers::Outliers;
 #[cfg(feature = "bake")]
 pub use baker::parts::{PartsBaker, Surroundings};
 #[cfg(feature = "bake")]
-pub use baker::{bake, bake_on, bake_with_outliers};
+pub use baker::{bake, bake_on};
 pub use carried::Carried;
 pub use domain::{Cell, Domain};
 pub use file::{SalfFile, SalfFileError};

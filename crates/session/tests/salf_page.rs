@@ -390,7 +390,8 @@ fn a_malformed_file_is_told_in_one_line() {
     refused(&[&good[..], &[0]].concat(), "more bytes");
     // What a checksum does not tell: place and value, by what is wrong then.
     for (at, value, why) in [
-        (8, 8, "version 8"),
+        (8, 5, "version 5"),
+        (8, 10, "version 10"),
         (12, 0xFF, "picture without a size"),
         (14, 0xFF, "a text of"),
         (24, 1, "triangle"),

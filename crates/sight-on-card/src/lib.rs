@@ -26,7 +26,7 @@ pub struct CardSight {
     gpu: Gpu,
 }
 
-/// The scene that a card was asked about last: kept with it, so that the next light field of the scene finds it there.
+/// The scene that a card was asked about last: stored with it, so that the next light field of the scene finds it there.
 #[derive(Default)]
 struct LastScene(Mutex<Option<Arc<UploadedScene>>>);
 
@@ -36,22 +36,17 @@ impl CardSight {
         Self { gpu }
     }
 
-    /// The card.
-    pub fn gpu(&self) -> &Gpu {
-        &self.gpu
-    }
-
     /// The scene of a tracer on the card; `None` where it does not fit.
     fn uploaded(&self, tracer: &Tracer) -> Option<Arc<UploadedScene>> {
-        let last = self.gpu.kept(|_| LastScene::default());
-        let mut kept = last.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(scene) = kept.as_ref().filter(|scene| scene.is_of(tracer)) {
+        let last = self.gpu.cached(|_| LastScene::default());
+        let mut scene_there = last.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(scene) = scene_there.as_ref().filter(|scene| scene.is_of(tracer)) {
             return Some(scene.clone());
         }
         // Room for the next one.
-        *kept = None;
+        *scene_there = None;
         let scene = Arc::new(UploadedScene::new(&self.gpu, tracer).ok()?);
-        *kept = Some(scene.clone());
+        *scene_there = Some(scene.clone());
         Some(scene)
     }
 }

@@ -84,7 +84,7 @@ impl Prepared {
             buffers: None,
         };
         let surface = tracer.scene().clone();
-        let pass = gpu.kept(LookPass::new);
+        let pass = gpu.cached(LookPass::new);
         gpu.check()?;
         let batch = Mutex::new(batch);
         Ok(Self { gpu: gpu.clone(), pass, scene, surface, space, targets: room, frame, batch })

@@ -13,6 +13,7 @@ use focus::Focus;
 use graphics_card::Gpu;
 use lens::{Camera, Character, FocusOffset, Picture};
 use light::{LightQuality, LitScene, Steps};
+use progress::{Cancelled, Progress};
 use project::{Cryptomatte, Layer};
 use salf::{BakeOptions, BakedOn, Salf, SalfStatistics};
 use serde::Serialize;
@@ -21,8 +22,8 @@ use splat::{Splatter, Tolerance};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Instant;
-use trace::Radiance;
 use trace::truth::{Estimate, TruthOptions};
+use trace::{Radiance, Tracer};
 
 impl From<BaselineError> for RenderError {
     fn from(error: BaselineError) -> Self {
@@ -528,11 +529,26 @@ fn first_hits(
 ) -> Result<FirstHits, RenderError> {
     let light = lit.solve(camera, quality, &*steps.begin("light"))?;
     let mut hits = FirstHits::trace(lit.tracer(), &*light, focus, camera, &*steps.begin("first hits"))?;
-    if let Some(splats) = &lit.scene().splats {
-        // What a ray through splats brings is no light of one surface.
-        let pinhole = without_aperture(camera);
-        let truth = SplatTruth::new(lit.tracer(), splats, &*light, focus, &pinhole);
-        hits.radiance = truth.render(&*steps.begin("pinhole"))?.picture.radiance;
+    if let Some(radiance) = sharp_splats(lit.tracer(), &*light, focus, camera, &*steps.begin("pinhole"))? {
+        hits.radiance = radiance;
     }
     Ok(hits)
+}
+
+/// The radiance of each pixel of a scene with Gaussian splats without blur, for first hits: what a ray through splats brings is no light of
+/// one surface. `None` for scenes without.
+///
+/// # Errors
+/// [`Cancelled`] if `progress` is cancelled.
+pub fn sharp_splats(
+    tracer: &Tracer,
+    radiance: &dyn Radiance,
+    focus: &Focus,
+    camera: &Camera,
+    progress: &dyn Progress,
+) -> Result<Option<Vec<[f32; 3]>>, Cancelled> {
+    let Some(splats) = &tracer.scene().splats else { return Ok(None) };
+    let pinhole = without_aperture(camera);
+    let truth = SplatTruth::new(tracer, splats, radiance, focus, &pinhole);
+    Ok(Some(truth.render(progress)?.picture.radiance))
 }

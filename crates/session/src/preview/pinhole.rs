@@ -9,6 +9,7 @@ use focus::{Focus, FocusMap};
 use lens::{Camera, Picture};
 use light::LightQuality;
 use progress::Progress;
+use render::sharp_splats;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -57,7 +58,8 @@ impl PinholeTracer {
         Ok(antialiased(&hits.picture()))
     }
 
-    /// Traces the picture of a camera that rests, unless the last one is that, or has as many pixels.
+    /// Traces the picture of a camera that rests, unless the last one is that, or has as many pixels. Gaussian splats are blended; while the
+    /// camera moves each pixel shows one of them.
     ///
     /// # Errors
     /// The light cannot be solved, or the work was cancelled.
@@ -73,6 +75,11 @@ impl PinholeTracer {
             |last: &Pinhole| last.shows(camera, map) && (last.is_resting || last.hits.width >= resting.width);
         if !self.last.as_ref().is_some_and(is_enough) {
             self.trace_hits(stage, &resting, (focus, map), progress)?;
+            let light = stage.lit.solve(&resting, LightQuality::Rough, progress)?;
+            let blended = sharp_splats(stage.tracer(), &*light, focus, &resting, progress)?;
+            if let (Some(last), Some(radiance)) = (&mut self.last, blended) {
+                last.hits.radiance = radiance;
+            }
         }
         self.last.iter_mut().for_each(|last| last.is_resting = true);
         Ok(())

@@ -26,7 +26,7 @@ pub struct Passes {
 impl Passes {
     /// The passes of a card.
     pub fn of(gpu: &Gpu) -> Arc<Self> {
-        gpu.kept(Self::new)
+        gpu.cached(Self::new)
     }
 
     /// Loads the shaders of all passes.
