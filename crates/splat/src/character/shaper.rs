@@ -178,9 +178,8 @@ impl Shaper {
             }
             let Some([from, to]) = shape.chord(row.v) else { continue };
             let [from, to] = [from as f32 / one, to as f32 / one];
-            for k in 0..CELLS {
-                let (x, y) = (row.x[k], row.y[k]);
-                let is_seen = if bits >> k & 1 == 1 { row.share[k] } else { 0.0 };
+            for (k, ((&x, &y), &share)) in row.x.iter().zip(&row.y).zip(&row.share).enumerate() {
+                let is_seen = if bits >> k & 1 == 1 { share } else { 0.0 };
                 let passing = ((to.min(x + half) - from.max(x - half)) * per_side).clamp(0.0, 1.0);
                 let weight = (base + across * x + up * y).max(0.0) * shape.weight(x * x + y * y);
                 let light = is_seen * passing * weight;
