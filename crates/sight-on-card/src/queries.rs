@@ -10,17 +10,17 @@ use std::time::Instant;
 use trace::{FlatSpace, PointSet, PreparedSight, SightQuery, Square, TargetPoints, Tracer, Viewpoint};
 use wgpu::{BindGroup, BindGroupLayout, Buffer, BufferUsages, Device};
 
-/// The pass that looks, compiled once a card.
-struct LookPass {
+/// The pass that answers queries, compiled once a card.
+struct VisibilityPass {
     pass: Pass,
     layout: BindGroupLayout,
 }
 
-impl LookPass {
+impl VisibilityPass {
     fn new(device: &Device) -> Self {
         let reads = (0..4).map(|binding| (binding, Bound::Read));
         let layout = bind_group_layout(device, reads.chain([(4, Bound::Write), (5, Bound::Uniform)]));
-        let pass = Pass::new(&shader_module(device, "sight", source()), &layout, "look", &[]);
+        let pass = Pass::new(&shader_module(device, "sight", source()), &layout, "answer", &[]);
         Self { pass, layout }
     }
 }
@@ -28,7 +28,7 @@ impl LookPass {
 /// A card that is ready for queries about a square.
 pub struct Prepared {
     gpu: Gpu,
-    pass: Arc<LookPass>,
+    pass: Arc<VisibilityPass>,
     scene: Arc<UploadedScene>,
     /// The scene whose points are looked from, and the space that the card knows them in.
     surface: Arc<Scene>,
@@ -84,40 +84,40 @@ impl Prepared {
             buffers: None,
         };
         let surface = tracer.scene().clone();
-        let pass = gpu.cached(LookPass::new);
+        let pass = gpu.cached(VisibilityPass::new);
         gpu.check()?;
         let batch = Mutex::new(batch);
         Ok(Self { gpu: gpu.clone(), pass, scene, surface, space, targets: room, frame, batch })
     }
 
     /// The answers' words, in the order of the queries.
-    fn ask(&self, queries: &[Query]) -> Result<Vec<u32>, Lost> {
+    fn answers(&self, queries: &[Query]) -> Result<Vec<u32>, Lost> {
         let mut batch = self.batch.lock().unwrap_or_else(PoisonError::into_inner);
         let mut answers = Vec::with_capacity(queries.len() * ANSWER_WORDS);
         let mut left = queries;
         while !left.is_empty() {
             let (now, later) = left.split_at(batch.pace.size().min(left.len()));
             let begun = Instant::now();
-            answers.extend(self.ask_batch(&mut batch, now)?);
+            answers.extend(self.answers_of_batch(&mut batch, now)?);
             batch.pace.learn(now.len(), begun.elapsed());
             left = later;
         }
         Ok(answers)
     }
 
-    fn ask_batch(&self, batch: &mut BatchRoom, queries: &[Query]) -> Result<Vec<u32>, Lost> {
+    fn answers_of_batch(&self, batch: &mut BatchRoom, queries: &[Query]) -> Result<Vec<u32>, Lost> {
         self.gpu.check()?;
         let count = queries.len();
         if batch.buffers.as_ref().is_none_or(|(room, ..)| *room < count) {
             batch.buffers = Some(self.room(count, &batch.frame)?);
         }
-        let Some((_, asked, answers, bound)) = &batch.buffers else { return Err(Lost) };
-        self.gpu.write(asked, bytemuck::cast_slice(queries));
+        let Some((_, room_for_queries, room_for_answers, bound)) = &batch.buffers else { return Err(Lost) };
+        self.gpu.write(room_for_queries, bytemuck::cast_slice(queries));
         self.gpu.write_struct(&batch.frame, &Frame { count: count as u32, ..self.frame });
         let mut work = Commands::new(&self.gpu);
         work.dispatch(&self.pass.pass, bound, [(count as u32).div_ceil(THREADS), 1]);
         work.submit();
-        self.gpu.read(answers, 0..4 * (count * ANSWER_WORDS) as u64)
+        self.gpu.read(room_for_answers, 0..4 * (count * ANSWER_WORDS) as u64)
     }
 
     /// Buffers for `count` queries.
@@ -145,7 +145,7 @@ impl Prepared {
 impl PreparedSight for Prepared {
     fn hidden(&self, queries: &[SightQuery]) -> Option<Vec<Option<PointSet>>> {
         let queries: Vec<Query> = queries.iter().map(|query| self.query(query)).collect();
-        let words = self.ask(&queries).ok()?;
+        let words = self.answers(&queries).ok()?;
         let answer = |words: &[u32; ANSWER_WORDS]| {
             let hidden: [u32; POINT_WORDS] = std::array::from_fn(|word| words[word]);
             (words[POINT_WORDS] == 1).then(|| PointSet::from(hidden))

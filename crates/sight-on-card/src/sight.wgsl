@@ -292,7 +292,7 @@ fn at_four(f: vec3<f32>, u: vec4<f32>, v: vec4<f32>) -> vec4<f32> {
 }
 
 @compute @workgroup_size(THREADS)
-fn look(@builtin(global_invocation_id) id: vec3<u32>) {
+fn answer(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= frame.count {
         return;
     }

@@ -126,32 +126,32 @@ impl<'a> BlockBaker<'a> {
         patches: &[Sample],
     ) -> (Vec<BakedSample>, Outliers) {
         let sampled = surveys.chunks(self.batch_cells()).flat_map(|surveys| {
-            let asked = self.ask(occluders, surveys);
-            let visible = self.look(&asked);
-            self.sample_visible(surveys, asked, visible)
+            let questions = self.questions(occluders, surveys);
+            let visible = self.answers_on_processor(&questions);
+            self.sample_visible(surveys, questions, visible)
         });
         self.finish_block(sampled.collect(), surveys, patches)
     }
 
     /// What [`Self::bake_block`] asks about visibility, for a device to answer.
-    pub fn ask_block(&self, occluders: &Occluders, surveys: &[CellSurvey]) -> BlockQuestions {
+    pub fn block_questions(&self, occluders: &Occluders, surveys: &[CellSurvey]) -> BlockQuestions {
         BlockQuestions(
-            surveys.chunks(self.batch_cells()).map(|surveys| self.ask(occluders, surveys)).collect(),
+            surveys.chunks(self.batch_cells()).map(|surveys| self.questions(occluders, surveys)).collect(),
         )
     }
 
-    /// The samples of a block once it is known what is visible: of each of its [questions](Self::ask_block), in order.
+    /// The samples of a block once it is known what is visible: of each of its [questions](Self::block_questions), in order.
     pub fn bake_answered(
         &self,
         surveys: &[CellSurvey],
-        BlockQuestions(asked): BlockQuestions,
+        BlockQuestions(questions): BlockQuestions,
         visible: impl IntoIterator<Item = Vec<VisiblePart>>,
         patches: &[Sample],
     ) -> (Vec<BakedSample>, Outliers) {
         let mut visible = visible.into_iter();
-        let sampled = surveys.chunks(self.batch_cells()).zip(asked).flat_map(|(surveys, asked)| {
-            let visible = asked.answered(&mut visible);
-            self.sample_visible(surveys, asked, visible)
+        let sampled = surveys.chunks(self.batch_cells()).zip(questions).flat_map(|(surveys, questions)| {
+            let visible = questions.answered(&mut visible);
+            self.sample_visible(surveys, questions, visible)
         });
         self.finish_block(sampled.collect(), surveys, patches)
     }
@@ -289,7 +289,7 @@ impl<'a> BlockBaker<'a> {
     }
 
     /// Traces what may show behind the nearest surfaces of some cells, and asks what of the aperture is visible from all of them.
-    fn ask(&self, occluders: &Occluders, surveys: &[CellSurvey]) -> CellQuestions {
+    fn questions(&self, occluders: &Occluders, surveys: &[CellSurvey]) -> CellQuestions {
         let is_pinhole = self.view.optics.aperture_radius == 0.0;
         let may_show = |survey: &CellSurvey| {
             survey.has_pane
@@ -328,13 +328,13 @@ impl<'a> BlockBaker<'a> {
     }
 
     /// The answers to questions about some cells, by the processor: what may hide something from cells that lie together is searched for once.
-    fn look(&self, asked: &CellQuestions) -> Vec<Vec<Vec<VisiblePart>>> {
+    fn answers_on_processor(&self, questions: &CellQuestions) -> Vec<Vec<Vec<VisiblePart>>> {
         let Self { tracer, view, patterns, .. } = self;
         let of_tile = |requests: &[Vec<Option<VisibilityRequest>>]| {
-            let asked: Vec<_> = requests.iter().flatten().flatten().copied().collect();
-            shadow_rays::visible_parts_of_many(tracer, view, patterns, &asked)
+            let requests: Vec<_> = requests.iter().flatten().flatten().copied().collect();
+            shadow_rays::visible_parts_of_many(tracer, view, patterns, &requests)
         };
-        asked.answered(&mut asked.requests.chunks(TILE_CELLS).flat_map(of_tile))
+        questions.answered(&mut questions.requests.chunks(TILE_CELLS).flat_map(of_tile))
     }
 
     /// The samples of a block's cells with their visibility: those of the surveys, and those of surfaces behind them.
@@ -392,7 +392,7 @@ impl CellQuestions {
 impl BlockQuestions {
     /// The requests, in the order in which they are answered.
     pub fn requests(&self) -> impl Iterator<Item = VisibilityRequest> {
-        self.0.iter().flat_map(|asked| &asked.requests).flatten().flatten().copied()
+        self.0.iter().flat_map(|questions| &questions.requests).flatten().flatten().copied()
     }
 }
 

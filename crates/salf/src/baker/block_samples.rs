@@ -94,7 +94,7 @@ impl<'a, F: Fn(usize, IVec2) -> (Surveys<'a>, &'a [Sample]) + Sync> BlockSampler
         let BlockSampler { baker, occluders, .. } = *self;
         let ask = |&(number, block): &(usize, IVec2)| {
             let (surveys, patches) = (self.content_of)(number, block);
-            let asked = baker.ask_block(occluders, &surveys);
+            let asked = baker.block_questions(occluders, &surveys);
             (block, surveys, patches, asked)
         };
         let asked: Vec<_> = blocks.par_iter().map(ask).collect();
