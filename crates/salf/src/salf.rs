@@ -65,6 +65,12 @@ pub struct SalfStatistics {
 }
 
 impl Salf {
+    /// A light field of samples that were made, not baked: as if by the processor, of standard density, and of the frame alone.
+    pub fn with_samples(camera: Camera, samples: Samples) -> Self {
+        let (carried, baked_on) = (Carried::Standard, BakedOn::Processor);
+        Self { camera, margin_px: 0, carried, baked_on, samples }
+    }
+
     /// The same light field in other light; `None` if a radiance is too large to be stored.
     pub fn in_light(&self, light: &LightChange) -> Option<Self> {
         Some(Self { camera: self.camera.clone(), samples: self.samples.in_light(light)?, ..*self })

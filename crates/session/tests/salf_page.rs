@@ -314,13 +314,7 @@ fn a_reader_by_the_page_knows_all_apertures_and_samples_that_are_not_packed() {
         let file = SalfFile {
             source: "a/ü.glb".into(),
             triangles: 6,
-            salf: Arc::new(Salf {
-                camera,
-                samples,
-                margin_px: 0,
-                carried: salf::Carried::Standard,
-                baked_on: salf::BakedOn::Processor,
-            }),
+            salf: Arc::new(Salf::with_samples(camera, samples)),
         };
         file.write(std::fs::File::create(baked.path()).unwrap()).unwrap();
         let summary = summary(&baked.path());

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, Vec2, Vec3};
 use lens::{Camera, FocusOffset};
-use salf::{Carried, Salf, Sample, Visibility};
+use salf::{Salf, Sample, Visibility};
 use surface::{SurfaceField, SurfacePoint};
 
 /// Columns and rows.
@@ -33,13 +33,7 @@ pub fn wall() -> Salf {
         }
     };
     let samples = (0..SIZE[0] * SIZE[1]).map(sample).collect();
-    Salf {
-        camera: camera(),
-        margin_px: 0,
-        carried: Carried::Standard,
-        baked_on: salf::BakedOn::Processor,
-        samples,
-    }
+    Salf::with_samples(camera(), samples)
 }
 
 /// The upper half of the wall is sharp, the lower half blurred.

@@ -40,15 +40,5 @@ pub fn picture_of_stars(
     progress: &dyn Progress,
 ) -> Result<Picture, Cancelled> {
     let focus = Focus::constant(unlit_scene_of([]), offset);
-    picture_of(
-        Salf {
-            camera: camera.clone(),
-            margin_px: 0,
-            carried: salf::Carried::Standard,
-            baked_on: salf::BakedOn::Processor,
-            samples: samples.into(),
-        },
-        &focus,
-        progress,
-    )
+    picture_of(Salf::with_samples(camera.clone(), samples.into()), &focus, progress)
 }

@@ -220,13 +220,7 @@ mod tests {
     #[test]
     fn slopes_are_of_their_own_records() {
         let camera = camera([8, 8]);
-        let salf = salf::Salf {
-            camera,
-            margin_px: 0,
-            carried: salf::Carried::Standard,
-            baked_on: salf::BakedOn::Processor,
-            samples: Vec::new().into(),
-        };
+        let salf = salf::Salf::with_samples(camera, Vec::new().into());
         let record = |growth: Growth, against: f64, ms: f64| {
             let timing = crate::engine::frame_copy::Timing { seconds: ms / 1e3, frame_copy: 1.0 };
             EngineRecord {

@@ -67,13 +67,8 @@ fn salf(camera: &Camera, margin_px: f64, add_samples: impl Fn(Cell, &mut Vec<Sam
     let domain = Domain::new(camera.width, camera.height, margin_px);
     let mut samples = Vec::new();
     domain.block_rows().into_iter().flatten().for_each(|cell| add_samples(cell, &mut samples));
-    Arc::new(Salf {
-        camera: camera.clone(),
-        margin_px: domain.margin as u32,
-        carried: salf::Carried::Standard,
-        baked_on: salf::BakedOn::Processor,
-        samples: samples.into(),
-    })
+    let margin_px = domain.margin as u32;
+    Arc::new(Salf { margin_px, ..Salf::with_samples(camera.clone(), samples.into()) })
 }
 
 /// A plane with a circle of confusion of `diameter` px.

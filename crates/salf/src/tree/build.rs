@@ -389,13 +389,8 @@ mod tests {
                 visibility: Visibility::Open,
             }
         };
-        Salf {
-            samples: (0..40 * 24).map(sample).collect(),
-            camera,
-            margin_px: 0,
-            carried: crate::Carried::Standard,
-            baked_on: crate::BakedOn::Processor,
-        }
+        let samples = (0..40 * 24).map(sample).collect();
+        Salf::with_samples(camera, samples)
     }
 
     fn blocks(salf: &Salf) -> Vec<Block> {

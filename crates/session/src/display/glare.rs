@@ -50,13 +50,7 @@ mod tests {
                 visibility: Visibility::Open,
             };
             let samples = lights.iter().map(sample).collect();
-            darkening_stops(&Salf {
-                camera: Camera::default(),
-                margin_px: 0,
-                carried: salf::Carried::Standard,
-                baked_on: salf::BakedOn::Processor,
-                samples,
-            })
+            darkening_stops(&Salf::with_samples(Camera::default(), samples))
         };
         assert_eq!(stops(&[]), None);
         assert_eq!(stops(&[0.5, 0.7, 0.2, 0.9, 0.4]), None);

@@ -67,13 +67,7 @@ fn samples() -> Vec<Sample> {
 /// The light field of some of its samples.
 fn salf(samples: impl Iterator<Item = Sample>) -> Salf {
     let samples = samples.collect::<Vec<_>>().into();
-    Salf {
-        camera: camera(),
-        margin_px: 0,
-        carried: salf::Carried::Standard,
-        baked_on: salf::BakedOn::Processor,
-        samples,
-    }
+    Salf::with_samples(camera(), samples)
 }
 
 /// In strips of blocks, the last first.
@@ -222,14 +216,7 @@ fn what_leans_beyond_its_image_is_not_cut_off_where_crops_meet() {
             visibility: Visibility::Cells { words: Box::new([u64::MAX << (trial % 20)]) },
         };
         let samples = vec![sample].into();
-        let carried = salf::Carried::Standard;
-        let salf = Salf {
-            camera: camera.clone(),
-            margin_px: 0,
-            carried,
-            baked_on: salf::BakedOn::Processor,
-            samples,
-        };
+        let salf = Salf::with_samples(camera.clone(), samples);
         let mut splatter = Splatter::new(Arc::new(salf.clone()));
         splatter.set_live(true);
         splatter.render(&camera, &Corner(None), &Unwatched).unwrap();

@@ -199,13 +199,7 @@ impl Hard {
         };
         let is_within = |index: &u32| index % WIDTH * self.cell < WIDTH && index / WIDTH * self.cell < HEIGHT;
         let samples = (0..WIDTH * HEIGHT).filter(is_within).map(sample).collect();
-        Arc::new(Salf {
-            camera: self.camera(),
-            margin_px: 0,
-            carried: salf::Carried::Standard,
-            baked_on: salf::BakedOn::Processor,
-            samples,
-        })
+        Arc::new(Salf::with_samples(self.camera(), samples))
     }
 
     fn focus(&self) -> ByTriangle {

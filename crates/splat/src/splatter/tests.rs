@@ -50,13 +50,7 @@ fn light_field() -> Arc<Salf> {
         }
     };
     let samples = (0..camera.width * camera.height).map(sample).collect();
-    Arc::new(Salf {
-        camera,
-        margin_px: 0,
-        carried: salf::Carried::Standard,
-        baked_on: salf::BakedOn::Processor,
-        samples,
-    })
+    Arc::new(Salf::with_samples(camera, samples))
 }
 
 fn standard() -> ByTriangle {
@@ -315,13 +309,8 @@ fn ripple_of_wall(slope: f64, tilt: f64, across: bool) -> f64 {
             });
         }
     }
-    let mut splatter = Splatter::new(Arc::new(Salf {
-        camera: camera.clone(),
-        margin_px: 48,
-        carried: salf::Carried::Standard,
-        baked_on: salf::BakedOn::Processor,
-        samples: samples.into(),
-    }));
+    let mut splatter =
+        Splatter::new(Arc::new(Salf { margin_px: 48, ..Salf::with_samples(camera.clone(), samples.into()) }));
     splatter.render(&camera, &standard(), &Unwatched).unwrap();
     let coverage = &splatter.picture().coverage;
     let inside = |k: &usize| [k % 120, k / 120].iter().all(|c| (20..100).contains(c));
@@ -352,13 +341,7 @@ fn what_sees_one_cell_loses_no_light() {
     };
     let samples: Vec<_> = (0..36 * 30).map(sample).collect();
     let sent = samples.len() as f64 / 256.0;
-    let mut splatter = Splatter::new(Arc::new(Salf {
-        camera: camera.clone(),
-        margin_px: 0,
-        carried: salf::Carried::Standard,
-        baked_on: salf::BakedOn::Processor,
-        samples: samples.into(),
-    }));
+    let mut splatter = Splatter::new(Arc::new(Salf::with_samples(camera.clone(), samples.into())));
     for tolerance in [Tolerance::NONE, Tolerance::VIEWING] {
         splatter.set_tolerance(tolerance);
         for radius_px in [0.3, 1.0, 1.7, 2.5, 4.0, 7.0, 15.0] {
@@ -424,13 +407,7 @@ fn a_bright_sample_of_a_large_cell_sends_all_its_light() {
         visibility: Visibility::Open,
     };
     for radiance in [3.0, 12.0, 300.0] {
-        let salf = Salf {
-            camera: camera(),
-            margin_px: 0,
-            carried: salf::Carried::Standard,
-            baked_on: salf::BakedOn::Processor,
-            samples: vec![cell(radiance)].into(),
-        };
+        let salf = Salf::with_samples(camera(), vec![cell(radiance)].into());
         let mut splatter = Splatter::new(Arc::new(salf));
         splatter.render(&camera(), &standard(), &Unwatched).unwrap();
         let sum: f32 = splatter.picture().radiance.iter().map(|pixel| pixel[0]).sum();
@@ -455,13 +432,7 @@ fn pictures_of_any_width_are_summed() {
             visibility: Visibility::Open,
         };
         let samples = (0..width * 20).map(sample).collect();
-        let mut splatter = Splatter::new(Arc::new(Salf {
-            camera: camera.clone(),
-            margin_px: 0,
-            carried: salf::Carried::Standard,
-            baked_on: salf::BakedOn::Processor,
-            samples,
-        }));
+        let mut splatter = Splatter::new(Arc::new(Salf::with_samples(camera.clone(), samples)));
         let mut focus = ByTriangle(vec![FocusOffset::STANDARD; (width * 20) as usize]);
         splatter.render(&camera, &focus, &Unwatched).unwrap();
         assert_eq!(splatter.nodes.as_ref().unwrap().scale, Scale::FINEST, "{width}: nothing overflows");
@@ -511,13 +482,8 @@ fn light_stays_within_reach() {
             visibility,
         };
         let samples = vec![sample].into();
-        let mut splatter = Splatter::new(Arc::new(Salf {
-            camera: camera.clone(),
-            margin_px: 64,
-            carried: salf::Carried::Standard,
-            baked_on: salf::BakedOn::Processor,
-            samples,
-        }));
+        let mut splatter =
+            Splatter::new(Arc::new(Salf { margin_px: 64, ..Salf::with_samples(camera.clone(), samples) }));
         splatter.set_live(true);
         splatter.set_tolerance([Tolerance::NONE, Tolerance::px(2.0), Tolerance::px(10.0)][trial / 6 % 3]);
         let t = if trial % 5 == 0 { 1.0 + 0.05 * f64::from(random()) } else { 1.0 };

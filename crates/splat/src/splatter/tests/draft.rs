@@ -23,13 +23,7 @@ fn surface() -> Arc<Salf> {
         }
     };
     let samples = (0..camera.width * camera.height).map(sample).collect();
-    Arc::new(Salf {
-        camera,
-        margin_px: 0,
-        carried: salf::Carried::Standard,
-        baked_on: salf::BakedOn::Processor,
-        samples,
-    })
+    Arc::new(Salf::with_samples(camera, samples))
 }
 
 /// Root mean square of how far a draft is from the means of the pixels in its own.
